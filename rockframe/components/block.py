@@ -1,0 +1,272 @@
+"""The rigid block."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar, Self
+
+from rockframe.components.base import Component, SIProperty, with_unit
+from rockframe.constants import STANDARD_GRAVITY
+from rockframe.errors import ComponentError
+from rockframe.units import (
+    ANGLE,
+    ANGULAR_VELOCITY,
+    DENSITY,
+    INERTIA,
+    LENGTH,
+    MASS,
+    POSITIVE,
+    QuantityLike,
+    RatioLike,
+    to_ratio,
+    to_si,
+)
+
+SOLID_RECTANGLE_SHAPE_FACTOR = 3.0
+"""mu of a solid rectangle: I_O = m (B^2 + H^2)/12 = m R0^2/3."""
+
+
+@dataclass(frozen=True)
+class BlockSI:
+    """Geometry and mass of a block in SI units."""
+
+    width: float
+    height: float
+    mass: float
+    shape_factor: float
+
+    @property
+    def half_width(self) -> float:
+        """b [m]."""
+        return 0.5 * self.width
+
+    @property
+    def half_height(self) -> float:
+        """h [m]."""
+        return 0.5 * self.height
+
+    @property
+    def radius(self) -> float:
+        """R0, from a corner to the centre of mass [m]."""
+        return math.hypot(self.half_width, self.half_height)
+
+    @property
+    def overturning_angle(self) -> float:
+        """theta = arctan(b/h) [rad], Eq. (1)."""
+        return math.atan2(self.width, self.height)
+
+    @property
+    def inertia(self) -> float:
+        """I_O about the centre of mass [kg m^2]."""
+        return self.mass * self.radius**2 / self.shape_factor
+
+    def frequency_at(self, gravity: float) -> float:
+        """Angular frequency omega of Eq. (6) under a given gravity [rad s^-1]."""
+        mu = self.shape_factor
+        return math.sqrt(mu / (1.0 + mu) * gravity / self.radius)
+
+    @property
+    def frequency(self) -> float:
+        """Omega of Eq. (6) under standard gravity [rad s^-1]."""
+        return self.frequency_at(STANDARD_GRAVITY)
+
+    @property
+    def maximum_restitution(self) -> float:
+        """eps_max = (1 + mu cos 2 theta)/(1 + mu), Eq. (4)."""
+        mu = self.shape_factor
+        return (1.0 + mu * math.cos(2.0 * self.overturning_angle)) / (1.0 + mu)
+
+
+class Block(Component[BlockSI]):
+    """A rigid rectangular block, or a body that rocks like one.
+
+    Parameters
+    ----------
+    width : str or Quantity
+        Base width B [m].
+    height : str or Quantity
+        Height H; the centre of mass stands at H/2 [m].
+    mass : str or Quantity
+        Mass m [kg].
+    shape_factor : float, optional
+        mu = m R0^2 / I_O; 3, the solid rectangle's, unless given [1].
+    inertia : str or Quantity, optional
+        Moment of inertia about the centre of mass I_O, instead of
+        `shape_factor` [kg m^2].
+
+    Raises
+    ------
+    UnitsError
+        A dimensional argument has no unit or a unit of the wrong kind.
+    ComponentError
+        A value is not finite or not positive, both `shape_factor` and
+        `inertia` are given, or the block is so squat that it cannot rock.
+
+    Notes
+    -----
+    A block rocks only while the greatest restitution, Eq. (4), is positive; for
+    a solid rectangle that is H/B > sqrt(2)/2, Eq. (5).
+
+    Examples
+    --------
+    >>> block = Block(width="2.4254 m", height="9.7014 m", mass="50 t")
+    >>> round(block.overturning_angle.m_as("rad"), 4)
+    0.245
+    """
+
+    noun: ClassVar[str] = "superstructure"
+
+    width = SIProperty(LENGTH, "Base width B.")
+    height = SIProperty(LENGTH, "Height H.")
+    mass = SIProperty(MASS, "Mass m.")
+    radius = SIProperty(LENGTH, "R0, distance from a corner to the centre of mass.")
+    overturning_angle = SIProperty(ANGLE, "theta = arctan(B/H), Eq. (1).")
+    inertia = SIProperty(INERTIA, "Moment of inertia about the centre of mass, I_O.")
+    frequency = SIProperty(
+        ANGULAR_VELOCITY, "Angular frequency omega under standard gravity, Eq. (6)."
+    )
+
+    def __init__(
+        self,
+        *,
+        width: QuantityLike,
+        height: QuantityLike,
+        mass: QuantityLike,
+        shape_factor: RatioLike | None = None,
+        inertia: QuantityLike | None = None,
+    ) -> None:
+        owner = type(self).__name__
+        size = {
+            name: to_si(value, LENGTH, owner=owner, name=name, condition=POSITIVE)
+            for name, value in (("width", width), ("height", height))
+        }
+        kilograms = to_si(mass, MASS, owner=owner, name="mass", condition=POSITIVE)
+        mu = SOLID_RECTANGLE_SHAPE_FACTOR
+        inertia_si = None
+        if shape_factor is not None and inertia is not None:
+            msg = f"{owner}: give shape_factor or inertia, not both; one follows from the other"
+            raise ComponentError(msg)
+        if shape_factor is not None:
+            mu = to_ratio(shape_factor, owner=owner, name="shape_factor", condition=POSITIVE)
+        if inertia is not None:
+            inertia_si = to_si(inertia, INERTIA, owner=owner, name="inertia", condition=POSITIVE)
+            mu = kilograms * (size["width"] ** 2 + size["height"] ** 2) / (4.0 * inertia_si)
+        si = BlockSI(mass=kilograms, shape_factor=mu, **size)
+        _check_rocks(si, owner)
+        self._freeze(
+            si,
+            {
+                "width": with_unit(si.width, LENGTH),
+                "height": with_unit(si.height, LENGTH),
+                "mass": with_unit(si.mass, MASS),
+                "shape_factor": mu if shape_factor is not None else None,
+                "inertia": with_unit(inertia_si, INERTIA),
+            },
+        )
+
+    @classmethod
+    def from_density(
+        cls,
+        *,
+        width: QuantityLike,
+        height: QuantityLike,
+        depth: QuantityLike,
+        density: QuantityLike,
+        shape_factor: RatioLike | None = None,
+    ) -> Self:
+        """Build a solid block from its size and density.
+
+        Parameters
+        ----------
+        width, height, depth : str or Quantity
+            Size; `depth` is perpendicular to the plane of rocking [m].
+        density : str or Quantity
+            Mass per volume [kg m^-3].
+        shape_factor : float, optional
+            mu; 3 unless given [1].
+
+        Returns
+        -------
+        Block
+
+        Raises
+        ------
+        UnitsError, ComponentError
+            As for :class:`Block`.
+        """
+        owner = f"{cls.__name__}.from_density"
+        volume = 1.0
+        for name, value in (("width", width), ("height", height), ("depth", depth)):
+            volume *= to_si(value, LENGTH, owner=owner, name=name, condition=POSITIVE)
+        per_volume = to_si(density, DENSITY, owner=owner, name="density", condition=POSITIVE)
+        mass = f"{per_volume * volume!r} {MASS.unit}"
+        return cls(width=width, height=height, mass=mass, shape_factor=shape_factor)
+
+    @classmethod
+    def from_size(
+        cls,
+        *,
+        radius: QuantityLike,
+        slenderness: RatioLike,
+        mass: QuantityLike,
+        shape_factor: RatioLike | None = None,
+    ) -> Self:
+        """Build a block from the paper's parameters R0 and H/B.
+
+        Parameters
+        ----------
+        radius : str or Quantity
+            R0, distance from a corner to the centre of mass [m].
+        slenderness : float
+            Height over width, H/B [1].
+        mass : str or Quantity
+            Mass [kg].
+        shape_factor : float, optional
+            mu; 3 unless given [1].
+
+        Returns
+        -------
+        Block
+
+        Raises
+        ------
+        UnitsError, ComponentError
+            As for :class:`Block`.
+        """
+        owner = f"{cls.__name__}.from_size"
+        metres = to_si(radius, LENGTH, owner=owner, name="radius", condition=POSITIVE)
+        ratio = to_ratio(slenderness, owner=owner, name="slenderness", condition=POSITIVE)
+        width = 2.0 * metres / math.hypot(1.0, ratio)
+        return cls(
+            width=f"{width!r} {LENGTH.unit}",
+            height=f"{width * ratio!r} {LENGTH.unit}",
+            mass=mass,
+            shape_factor=shape_factor,
+        )
+
+    @property
+    def slenderness(self) -> float:
+        """Height over width, H/B [1]."""
+        return self.si.height / self.si.width
+
+    @property
+    def shape_factor(self) -> float:
+        """Mu = m R0^2 / I_O [1]."""
+        return self.si.shape_factor
+
+    @property
+    def maximum_restitution(self) -> float:
+        """eps_max of Eq. (4) [1]."""
+        return self.si.maximum_restitution
+
+
+def _check_rocks(si: BlockSI, owner: str) -> None:
+    if si.maximum_restitution > 0.0:
+        return
+    msg = (
+        f"{owner}: a block of H/B = {si.height / si.width:.4g} with shape factor "
+        f"{si.shape_factor:.4g} cannot rock: its greatest restitution, Eq. (4), is "
+        f"{si.maximum_restitution:.4g}; a solid rectangle needs H/B above sqrt(2)/2 = 0.7071"
+    )
+    raise ComponentError(msg)

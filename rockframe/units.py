@@ -1,0 +1,263 @@
+"""The unit boundary: quantities come in here and leave as SI floats.
+
+The shared pint application registry is used and never changed; quantities are
+converted by unit *strings*, so that a registry swapped by another library
+does no harm.
+"""
+
+import math
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import StrEnum
+from numbers import Real
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
+
+from rockframe.errors import ComponentError, UnitsError
+
+if TYPE_CHECKING:
+    import pint
+
+QuantityLike: TypeAlias = "str | pint.Quantity[Any]"
+RatioLike: TypeAlias = "float | str | pint.Quantity[Any]"
+
+
+class Unit(StrEnum):
+    """Every unit string of rockframe, in a spelling that pint and UDUNITS both parse."""
+
+    ONE = "1"
+    METRE = "m"
+    SECOND = "s"
+    KILOGRAM = "kg"
+    RADIAN = "rad"
+    HERTZ = "Hz"
+    METRE_PER_SECOND = "m s^-1"
+    METRE_PER_SECOND_SQUARED = "m s^-2"
+    RADIAN_PER_SECOND = "rad s^-1"
+    KILOGRAM_METRE_SQUARED = "kg m^2"
+    KILOGRAM_PER_CUBIC_METRE = "kg m^-3"
+    NEWTON = "N"
+    NEWTON_METRE = "N m"
+    NEWTON_PER_METRE = "N m^-1"
+    NEWTON_SECOND_PER_METRE = "N s m^-1"
+    JOULE = "J"
+
+
+@dataclass(frozen=True)
+class Measure:
+    """A kind of physical quantity that an argument can ask for."""
+
+    name: str
+    unit: Unit
+    example: str
+
+
+LENGTH: Final = Measure("a length", Unit.METRE, "4 m")
+MASS: Final = Measure("a mass", Unit.KILOGRAM, "99 t")
+DENSITY: Final = Measure("a density", Unit.KILOGRAM_PER_CUBIC_METRE, "2500 kg/m^3")
+INERTIA: Final = Measure("a moment of inertia", Unit.KILOGRAM_METRE_SQUARED, "1.2e6 kg*m^2")
+TIME: Final = Measure("a time", Unit.SECOND, "20 s")
+ANGLE: Final = Measure("an angle", Unit.RADIAN, "0.1 rad")
+ANGULAR_VELOCITY: Final = Measure("an angular velocity", Unit.RADIAN_PER_SECOND, "0.2 rad/s")
+VELOCITY: Final = Measure("a velocity", Unit.METRE_PER_SECOND, "0.1 m/s")
+ACCELERATION: Final = Measure("an acceleration", Unit.METRE_PER_SECOND_SQUARED, "9.81 m/s^2")
+FREQUENCY: Final = Measure("a cyclic frequency", Unit.HERTZ, "1 Hz")
+STIFFNESS: Final = Measure("a stiffness", Unit.NEWTON_PER_METRE, "12 MN/m")
+DAMPING: Final = Measure("a damping coefficient", Unit.NEWTON_SECOND_PER_METRE, "80 kN*s/m")
+
+_MISREAD_UNITS: Final = (
+    # (pattern, measure it is meant for or None for any, what is wrong)
+    (r"\bg\b", ACCELERATION, "'g' is the gram; the acceleration of gravity is written 'g_0'"),
+    (r"\bgal\b", ACCELERATION, "'gal' is the gallon; the galileo (cm/s^2) is written 'Gal'"),
+    (r"[A-Za-z]\d", None, "powers need '^', as in 'm/s^2'"),
+)
+_AMBIGUOUS: Final = (
+    # read without complaint by pint, but rarely as the writer meant it
+    (r",", "a decimal point is written '.'; pint would drop the comma"),
+    (r"\btons?\b", "'ton' is the US short ton of 907 kg; the tonne is written 't'"),
+)
+_TURNING: Final = frozenset({"radian", "turn", "count"})
+
+
+def quantity(value: float, measure: Measure) -> "pint.Quantity[Any]":
+    """Give an SI value its unit back.
+
+    Parameters
+    ----------
+    value : float
+        Value in the SI unit of `measure`.
+    measure : Measure
+        Kind of quantity.
+
+    Returns
+    -------
+    pint.Quantity
+        In the shared application registry.
+    """
+    import pint
+
+    return pint.get_application_registry().Quantity(value, str(measure.unit))
+
+
+def to_si(
+    value: object,
+    measure: Measure,
+    *,
+    owner: str,
+    name: str,
+    condition: "Condition | None" = None,
+) -> float:
+    """Convert an argument to a float in SI units, or refuse it.
+
+    Parameters
+    ----------
+    value : str or pint.Quantity
+        What the user gave.
+    measure : Measure
+        What the argument needs.
+    owner, name : str
+        Class (or function) and argument, for the message.
+    condition : Condition, optional
+        Range that the value must lie in.
+
+    Returns
+    -------
+    float
+        Finite value in the SI unit of `measure`.
+
+    Raises
+    ------
+    UnitsError
+        No unit, an unknown unit, or a unit of another kind.
+    ComponentError
+        Not finite, or outside `condition`.
+    """
+    given = _parse(value, measure, owner=owner, name=name)
+    _check_kind(given, value, measure, owner=owner, name=name)
+    magnitude = given.m_as(str(measure.unit))
+    if not isinstance(magnitude, Real) and getattr(magnitude, "ndim", 1) != 0:
+        msg = f"{owner}: {name} needs one value, got {value!r}"
+        raise UnitsError(msg)
+    return _check_value(float(magnitude), value, condition, owner=owner, name=name)
+
+
+def to_ratio(
+    value: object, *, owner: str, name: str, condition: "Condition | None" = None
+) -> float:
+    """Convert a pure ratio (bare number, or a dimensionless quantity such as ``"5 %"``).
+
+    Parameters
+    ----------
+    value : float, str or pint.Quantity
+        What the user gave.
+    owner, name : str
+        Class and argument, for the message.
+    condition : Condition, optional
+        Range that the value must lie in.
+
+    Returns
+    -------
+    float
+
+    Raises
+    ------
+    UnitsError
+        Not a pure ratio.
+    ComponentError
+        Not finite, or outside `condition`.
+    """
+    import pint
+
+    number: object = value
+    if isinstance(value, str | pint.Quantity):
+        ratio = Measure("a pure ratio", Unit.ONE, "0.1")
+        given = _parse(value, ratio, owner=owner, name=name)
+        _check_kind(given, value, ratio, owner=owner, name=name)
+        number = given.m_as("")
+    if isinstance(number, bool) or not isinstance(number, Real):
+        msg = f"{owner}: {name} needs a pure ratio (a bare number), got {value!r}"
+        raise UnitsError(msg)
+    return _check_value(float(number), value, condition, owner=owner, name=name)
+
+
+@dataclass(frozen=True)
+class Condition:
+    """A range that a value must lie in, with the words for it."""
+
+    words: str
+    holds: Callable[[float], bool]
+
+
+POSITIVE: Final = Condition("greater than zero", lambda value: value > 0.0)
+NOT_NEGATIVE: Final = Condition("zero or more", lambda value: value >= 0.0)
+UNIT_INTERVAL: Final = Condition("above 0 and at most 1", lambda value: 0.0 < value <= 1.0)
+
+
+def _parse(value: object, measure: Measure, *, owner: str, name: str) -> "pint.Quantity[Any]":
+    import pint
+
+    if isinstance(value, pint.Quantity):
+        return value
+    needed = f"{owner}: {name} needs {measure.name} with a unit"
+    example = f"write for example {name}={measure.example!r}"
+    if not isinstance(value, str):
+        kind = "a bare number" if isinstance(value, Real) else f"a {type(value).__name__}"
+        msg = f"{needed}, got {value!r} ({kind} has no unit); {example}"
+        raise UnitsError(msg)
+    for pattern, words in _AMBIGUOUS:
+        if re.search(pattern, value):
+            msg = f"{needed}, got {value!r} ({words}); {example}"
+            raise UnitsError(msg)
+    try:
+        return pint.get_application_registry().Quantity(value)
+    except Exception as problem:  # pint's parser raises many unrelated types
+        hint = _misread(value, measure)
+        msg = f"{needed}, got {value!r}, which cannot be read{hint}; {example}"
+        raise UnitsError(msg) from problem
+
+
+def _check_kind(
+    given: "pint.Quantity[Any]", value: object, measure: Measure, *, owner: str, name: str
+) -> None:
+    wanted = type(given)(1.0, "" if measure.unit is Unit.ONE else str(measure.unit))
+    try:
+        same_kind = given.is_compatible_with(wanted) and _turning(given) == _turning(wanted)
+    except Exception:  # offset units such as degC cannot be compared
+        same_kind = False
+    if same_kind:
+        return
+    unit = f"{given.units:~}" or "no unit"
+    unit_needed = "" if measure.unit is Unit.ONE else f" in a unit such as {measure.unit}"
+    msg = (
+        f"{owner}: {name} needs {measure.name}{unit_needed}, got {str(value)!r} ({unit})"
+        f"{_misread(str(value), measure)}; write for example {name}={measure.example!r}"
+    )
+    raise UnitsError(msg)
+
+
+def _turning(given: "pint.Quantity[Any]") -> frozenset[str]:
+    # pint calls the radian dimensionless, so that a ratio would pass for an
+    # angle and rad/s for Hz (a factor of 2 pi); the root units tell them apart.
+    roots = given.to_root_units().unit_items()
+    return frozenset(unit for unit, _ in roots) & _TURNING
+
+
+def _misread(text: str, measure: Measure) -> str:
+    for pattern, meant, words in _MISREAD_UNITS:
+        if (meant is None or meant is measure) and re.search(pattern, text):
+            return f" ({words})"
+    if measure is FREQUENCY:
+        return " (a cyclic frequency in Hz is the angular one in rad/s divided by 2 pi)"
+    return ""
+
+
+def _check_value(
+    number: float, value: object, condition: Condition | None, *, owner: str, name: str
+) -> float:
+    if not math.isfinite(number):
+        msg = f"{owner}: {name} must be finite, got {str(value)!r}"
+        raise ComponentError(msg)
+    if condition is not None and not condition.holds(number):
+        msg = f"{owner}: {name} must be {condition.words}, got {str(value)!r}"
+        raise ComponentError(msg)
+    return number
