@@ -65,9 +65,7 @@ class RecordError(RockframeError, ValueError):
         return (_rebuild_record_error, (self.path, self.found, self.expected, self.line))
 
 
-def _rebuild_record_error(
-    path: str, found: str, expected: str, line: int | None
-) -> RecordError:
+def _rebuild_record_error(path: str, found: str, expected: str, line: int | None) -> RecordError:
     return RecordError(path, found=found, expected=expected, line=line)
 
 

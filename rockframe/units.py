@@ -18,8 +18,10 @@ from rockframe.errors import ComponentError, UnitsError
 if TYPE_CHECKING:
     import pint
 
-QuantityLike: TypeAlias = "str | pint.Quantity[Any]"
-RatioLike: TypeAlias = "float | str | pint.Quantity[Any]"
+    QuantityLike: TypeAlias = str | pint.Quantity[Any]
+    RatioLike: TypeAlias = float | str | pint.Quantity[Any]
+else:  # pint is imported when the first quantity is read
+    QuantityLike = RatioLike = object
 
 
 class Unit(StrEnum):
@@ -66,17 +68,37 @@ STIFFNESS: Final = Measure("a stiffness", Unit.NEWTON_PER_METRE, "12 MN/m")
 DAMPING: Final = Measure("a damping coefficient", Unit.NEWTON_SECOND_PER_METRE, "80 kN*s/m")
 
 _MISREAD_UNITS: Final = (
-    # (pattern, measure it is meant for or None for any, what is wrong)
-    (r"\bg\b", ACCELERATION, "'g' is the gram; the acceleration of gravity is written 'g_0'"),
-    (r"\bgal\b", ACCELERATION, "'gal' is the gallon; the galileo (cm/s^2) is written 'Gal'"),
+    # (pattern, unit it is meant for or None for any, what is wrong)
+    (
+        r"(?<![A-Za-z_])g(?![A-Za-z_0])",
+        Unit.METRE_PER_SECOND_SQUARED,
+        "'g' is the gram; the acceleration of gravity is written 'g_0'",
+    ),
+    (
+        r"(?<![A-Za-z_])gal\b",
+        Unit.METRE_PER_SECOND_SQUARED,
+        "'gal' is the gallon; the galileo (cm/s^2) is written 'Gal'",
+    ),
+    (r"\bnp\.", None, "a NumPy number was written with its type; write float(...) of it"),
     (r"[A-Za-z]\d", None, "powers need '^', as in 'm/s^2'"),
 )
 _AMBIGUOUS: Final = (
     # read without complaint by pint, but rarely as the writer meant it
     (r",", "a decimal point is written '.'; pint would drop the comma"),
-    (r"\btons?\b", "'ton' is the US short ton of 907 kg; the tonne is written 't'"),
+    (r"\d\s+[\d.]", "a number is written without blanks; pint would multiply its parts"),
+    (
+        r"\b(?:k|M|G|kilo|mega|giga)?tons?\b",
+        "'ton' is the US short ton of 907 kg; the tonne is written 't'",
+    ),
 )
-_TURNING: Final = frozenset({"radian", "turn", "count"})
+_NUMBER: Final = r"[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|nan\b|inf(?:inity)?\b)"
+_NUMBER_AND_UNIT: Final = re.compile(rf"\s*(?:{_NUMBER})\s*(?P<unit>.*)", re.DOTALL)
+_NO_UNIT: Final = re.compile(
+    # a second number, or a power of a number or of a power: no unit has them, and
+    # pint would compute even 9**9**9
+    r"^\^|(?:^|[\s/(*])[\d.]|\^[-+]?(?:\d{3}|\d+\^)|[A-Za-z]\d"
+)
+_POWER: Final = re.compile(r"\s*(?:\*\*|\^)\s*")
 
 
 def quantity(value: float, measure: Measure) -> "pint.Quantity[Any]":
@@ -136,7 +158,10 @@ def to_si(
     _check_kind(given, value, measure, owner=owner, name=name)
     magnitude = given.m_as(str(measure.unit))
     if not isinstance(magnitude, Real) and getattr(magnitude, "ndim", 1) != 0:
-        msg = f"{owner}: {name} needs one value, got {value!r}"
+        msg = (
+            f"{owner}: {name} needs {measure.name}, one value only, got {value!r}; "
+            f"write for example {name}={measure.example!r}"
+        )
         raise UnitsError(msg)
     return _check_value(float(magnitude), value, condition, owner=owner, name=name)
 
@@ -173,7 +198,8 @@ def to_ratio(
         ratio = Measure("a pure ratio", Unit.ONE, "0.1")
         given = _parse(value, ratio, owner=owner, name=name)
         _check_kind(given, value, ratio, owner=owner, name=name)
-        number = given.m_as("")
+        magnitude: Any = given.m_as("")
+        number = magnitude.item() if getattr(magnitude, "ndim", 1) == 0 else magnitude
     if isinstance(number, bool) or not isinstance(number, Real):
         msg = f"{owner}: {name} needs a pure ratio (a bare number), got {value!r}"
         raise UnitsError(msg)
@@ -208,11 +234,16 @@ def _parse(value: object, measure: Measure, *, owner: str, name: str) -> "pint.Q
         if re.search(pattern, value):
             msg = f"{needed}, got {value!r} ({words}); {example}"
             raise UnitsError(msg)
+    parts = _NUMBER_AND_UNIT.fullmatch(value)
+    if parts is None or _NO_UNIT.search(_POWER.sub("^", parts["unit"])):
+        hint = _misread(value, measure)
+        msg = f"{needed}, got {value!r}, which is not one number and a unit{hint}; {example}"
+        raise UnitsError(msg)
     try:
         return pint.get_application_registry().Quantity(value)
     except Exception as problem:  # pint's parser raises many unrelated types
         hint = _misread(value, measure)
-        msg = f"{needed}, got {value!r}, which cannot be read{hint}; {example}"
+        msg = f"{needed}, got {value!r}, whose unit cannot be read{hint}; {example}"
         raise UnitsError(msg) from problem
 
 
@@ -221,7 +252,7 @@ def _check_kind(
 ) -> None:
     wanted = type(given)(1.0, "" if measure.unit is Unit.ONE else str(measure.unit))
     try:
-        same_kind = given.is_compatible_with(wanted) and _turning(given) == _turning(wanted)
+        same_kind = given.is_compatible_with(wanted) and _roots(given) == _roots(wanted)
     except Exception:  # offset units such as degC cannot be compared
         same_kind = False
     if same_kind:
@@ -235,16 +266,17 @@ def _check_kind(
     raise UnitsError(msg)
 
 
-def _turning(given: "pint.Quantity[Any]") -> frozenset[str]:
+def _roots(given: Any) -> dict[str, float]:
     # pint calls the radian dimensionless, so that a ratio would pass for an
     # angle and rad/s for Hz (a factor of 2 pi); the root units tell them apart.
-    roots = given.to_root_units().unit_items()
-    return frozenset(unit for unit, _ in roots) & _TURNING
+    return {unit: float(power) for unit, power in given.to_root_units().unit_items()}
 
 
 def _misread(text: str, measure: Measure) -> str:
+    parts = _NUMBER_AND_UNIT.fullmatch(text)
+    text = text if parts is None else parts["unit"]
     for pattern, meant, words in _MISREAD_UNITS:
-        if (meant is None or meant is measure) and re.search(pattern, text):
+        if meant in (None, measure.unit) and re.search(pattern, text):
             return f" ({words})"
     if measure is FREQUENCY:
         return " (a cyclic frequency in Hz is the angular one in rad/s divided by 2 pi)"

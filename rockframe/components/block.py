@@ -1,7 +1,5 @@
 """The rigid block."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import ClassVar, Self
@@ -38,12 +36,12 @@ class BlockSI:
 
     @property
     def half_width(self) -> float:
-        """b [m]."""
+        """Half the width, b [m]."""
         return 0.5 * self.width
 
     @property
     def half_height(self) -> float:
-        """h [m]."""
+        """Half the height, h [m]."""
         return 0.5 * self.height
 
     @property
@@ -53,13 +51,13 @@ class BlockSI:
 
     @property
     def overturning_angle(self) -> float:
-        """theta = arctan(b/h) [rad], Eq. (1)."""
+        """Overturning angle theta = arctan(b/h) [rad], Eq. (1)."""
         return math.atan2(self.width, self.height)
 
     @property
     def inertia(self) -> float:
         """I_O about the centre of mass [kg m^2]."""
-        return self.mass * self.radius**2 / self.shape_factor
+        return self.mass * self.radius * self.radius / self.shape_factor
 
     def frequency_at(self, gravity: float) -> float:
         """Angular frequency omega of Eq. (6) under a given gravity [rad s^-1]."""
@@ -151,8 +149,10 @@ class Block(Component[BlockSI]):
             mu = to_ratio(shape_factor, owner=owner, name="shape_factor", condition=POSITIVE)
         if inertia is not None:
             inertia_si = to_si(inertia, INERTIA, owner=owner, name="inertia", condition=POSITIVE)
-            mu = kilograms * (size["width"] ** 2 + size["height"] ** 2) / (4.0 * inertia_si)
+            diagonal = math.hypot(size["width"], size["height"])
+            mu = kilograms * diagonal * (diagonal / (4.0 * inertia_si))
         si = BlockSI(mass=kilograms, shape_factor=mu, **size)
+        _check_representable(si, owner)
         _check_rocks(si, owner)
         self._freeze(
             si,
@@ -259,6 +259,16 @@ class Block(Component[BlockSI]):
     def maximum_restitution(self) -> float:
         """eps_max of Eq. (4) [1]."""
         return self.si.maximum_restitution
+
+
+def _check_representable(si: BlockSI, owner: str) -> None:
+    if 0.0 < si.inertia < math.inf and 0.0 < si.shape_factor < math.inf:
+        return
+    msg = (
+        f"{owner}: a block of {si.width:.4g} m by {si.height:.4g} m and {si.mass:.4g} kg has a "
+        "moment of inertia that a computer's numbers cannot hold"
+    )
+    raise ComponentError(msg)
 
 
 def _check_rocks(si: BlockSI, owner: str) -> None:

@@ -1,7 +1,5 @@
 """The rigid ground that a block stands on when nothing else is given."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import ClassVar
 

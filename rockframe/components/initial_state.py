@@ -1,7 +1,5 @@
 """The state a run starts from."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import ClassVar

@@ -1,7 +1,5 @@
 """The two viscoelastic pads under the corners."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import ClassVar
 
