@@ -1,0 +1,183 @@
+"""Checks that every reader shares: units, time steps, components, plausibility."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from rockframe.constants import STANDARD_GRAVITY
+from rockframe.motion.unit_names import RecordUnit, acceleration_unit, other_quantity
+
+if TYPE_CHECKING:
+    from rockframe.motion.formats.source import Request, Source
+    from rockframe.motion.samples import Array
+
+TIME_STEP_LIMITS: Final = (1e-6, 10.0)
+"""Time steps outside are refused [s]."""
+USUAL_TIME_STEPS: Final = (1e-4, 0.1)
+"""Time steps outside are warned about [s]."""
+USUAL_PEAKS: Final = (1e-4, 5.0)
+"""Peaks outside are warned about [g]."""
+
+_ROUNDING: Final = 1e-6
+
+
+def choose_unit(
+    source: Source, request: Request, name: str | None, line: int | None
+) -> tuple[RecordUnit, str, list[str]]:
+    """Settle the unit of the samples between the file and the ``unit=`` argument.
+
+    Parameters
+    ----------
+    source : Source
+        File.
+    request : Request
+        What the caller asked for.
+    name : str or None
+        Unit that the file names, if any.
+    line : int or None
+        Where it does, from 1.
+
+    Returns
+    -------
+    tuple of RecordUnit, str, list of str
+        Unit, its name as read, warnings.
+
+    Raises
+    ------
+    RecordError
+        The file's unit is unknown or not an acceleration, or there is none.
+    """
+    known = None if name is None else acceleration_unit(name)
+    if name is not None and known is None:
+        other = other_quantity(name)
+        if other is not None:
+            raise source.refuse(found=f"{other} in {name}", expected="an acceleration", line=line)
+    if request.unit is not None and request.unit_name is not None:
+        warnings: list[str] = []
+        if known is not None and not math.isclose(known.factor, request.unit.factor):
+            warnings.append(
+                f"{source.path}, line {line}: the file names the unit {name!r}, but "
+                f"unit={request.unit_name!r} was asked for and is used"
+            )
+        return request.unit, request.unit_name, warnings
+    if name is None:
+        raise source.refuse(
+            found="no unit of the samples",
+            expected="a unit in the header, or the argument unit, for example unit='g'",
+        )
+    if known is None:
+        expected = "an acceleration unit such as g, gal, cm/s^2 or m/s^2 (or the argument unit)"
+        raise source.refuse(found=f"the unknown unit {name!r}", expected=expected, line=line)
+    return known, name, []
+
+
+def check_time_step(source: Source, time_step: float, line: int | None) -> None:
+    """Refuse a time step that no record has.
+
+    Parameters
+    ----------
+    source : Source
+        File.
+    time_step : float
+        As read [s].
+    line : int or None
+        Where, from 1.
+
+    Raises
+    ------
+    RecordError
+        Not finite, not positive, or outside 1e-6 s to 10 s.
+    """
+    low, high = TIME_STEP_LIMITS
+    if not (math.isfinite(time_step) and low <= time_step <= high):
+        expected = f"a time step between {low:g} s and {high:g} s"
+        raise source.refuse(found=f"a time step of {time_step!r} s", expected=expected, line=line)
+
+
+def check_asked_time_step(
+    source: Source, request: Request, time_step: float, line: int | None
+) -> None:
+    """Refuse a ``time_step=`` argument that the file contradicts."""
+    asked = request.time_step
+    if asked is not None and not math.isclose(asked, time_step, rel_tol=_ROUNDING):
+        raise source.refuse(
+            found=f"a time step of {time_step!r} s",
+            expected=f"the {asked!r} s asked for by the argument time_step",
+            line=line,
+        )
+
+
+def check_component(
+    source: Source, request: Request, named: str | None, line: int | None = None
+) -> None:
+    """Refuse a file that holds another component than the one asked for.
+
+    Parameters
+    ----------
+    source : Source
+        File.
+    request : Request
+        What the caller asked for.
+    named : str or None
+        Component that the file names, if any.
+    line : int, optional
+        Where it does, from 1.
+
+    Raises
+    ------
+    RecordError
+        The names differ, or the file gives none.
+    """
+    asked = request.component
+    if asked is None:
+        return
+    if named is None:
+        raise source.refuse(found="no name of the component", expected=f"the component {asked!r}")
+    if _component_key(named) != _component_key(asked):
+        raise source.refuse(
+            found=f"the component {named!r}", expected=f"the component {asked!r}", line=line
+        )
+
+
+def plausibility(source: Source, time_step: float, samples: Array, unit: RecordUnit) -> list[str]:
+    """Say what looks like a wrong unit or a wrong time step.
+
+    Parameters
+    ----------
+    source : Source
+        File.
+    time_step : float
+        [s]
+    samples : ndarray, shape (n,)
+        In `unit`.
+    unit : RecordUnit
+        Unit of the samples.
+
+    Returns
+    -------
+    list of str
+        Sentences, none if all is usual.
+    """
+    warnings: list[str] = []
+    low, high = USUAL_PEAKS
+    with np.errstate(over="ignore"):
+        peak = float(np.max(np.abs(samples))) * unit.factor / STANDARD_GRAVITY
+    if not low <= peak <= high:
+        warnings.append(
+            f"{source.path}: the peak acceleration is {peak:.4g} g (usual: {low:g} g to "
+            f"{high:g} g); is the unit {unit.spelling} right?"
+        )
+    short, long = USUAL_TIME_STEPS
+    if not short <= time_step <= long:
+        warnings.append(
+            f"{source.path}: the time step is {time_step:.4g} s (usual: {short:g} s to {long:g} s)"
+        )
+    return warnings
+
+
+def _component_key(name: str) -> str:
+    key = name.split("(")[0].strip().casefold()
+    return key.lstrip("0") if key.isdigit() else key

@@ -1,0 +1,103 @@
+"""From a printed column of times to one time step."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from rockframe.motion.samples import Array
+
+_JITTER: Final = 1e-6
+_FLOAT_ULPS: Final = 8.0
+_TIES: Final = 1.0 + 1e-6
+_COARSEST_DIGIT: Final = 0.5
+_ROUNDED_AT_ALL: Final = 0.05
+_PLAIN_DIGITS: Final = 4
+
+
+def uniform_step(times: Array, fields: Sequence[str]) -> tuple[float, int | None]:
+    """Find the time step that a column of times was printed from.
+
+    Parameters
+    ----------
+    times : ndarray, shape (n,)
+        At least two times.
+    fields : sequence of str
+        The same times as printed: their digits tell how they were rounded.
+
+    Returns
+    -------
+    float
+        Time step: the plainest number that explains all the times.
+    int or None
+        Index of the first time that does not fit, if any.
+
+    Notes
+    -----
+    Times t_0 + k dt, each rounded to its last printed digit q, lie within q/2
+    of a straight line through the first, or, if that one was rounded too,
+    within q of one another. What rounding does not explain must stay below
+    1e-6 dt. A missing sample or one wrong last digit is not taken for rounding:
+    a last digit of more than dt/2 allows none.
+    """
+    rises = np.diff(times)
+    typical = float(np.median(rises))
+    if typical <= 0.0 or np.any(rises <= 0.0):
+        return typical, _first_misfit(rises, typical)
+    digit = _last_digits(times, fields)
+    digit = np.where(digit > _COARSEST_DIGIT * typical, 0.0, digit)
+    noise = _JITTER * typical + _FLOAT_ULPS * np.finfo(float).eps * float(np.max(np.abs(times)))
+    count = np.arange(times.size)
+    for within in (0.5 * _TIES * digit + noise, _TIES * digit + noise):
+        lower = float(np.max((times[1:] - times[0] - within[1:]) / count[1:]))
+        upper = float(np.min((times[1:] - times[0] + within[1:]) / count[1:]))
+        for step in _plain_numbers(lower, upper):
+            rest = times - times[0] - count * step
+            first_exact = np.all(np.abs(rest) <= 0.5 * _TIES * digit + noise)
+            if first_exact or _all_rounded(rest, float(np.max(digit))):
+                return step, None
+    return typical, _first_misfit(rises, typical)
+
+
+def _all_rounded(rest: Array, digit: float) -> bool:
+    spread = float(np.median(np.abs(rest - np.median(rest))))
+    return float(np.ptp(rest)) <= _TIES * digit and spread >= _ROUNDED_AT_ALL * digit
+
+
+def _first_misfit(rises: Array, typical: float) -> int:
+    misfit = np.abs(rises - typical)
+    beyond = np.flatnonzero((misfit > 0.5 * abs(typical)) | (rises <= 0.0))
+    if not beyond.size:
+        # one wrong time makes two wrong steps of almost the same size
+        beyond = np.flatnonzero(misfit >= 0.99 * np.max(misfit))
+    return int(beyond[0]) + 1
+
+
+def _plain_numbers(lower: float, upper: float) -> Iterator[float]:
+    # short decimals first, then a whole number of samples per second
+    if not 0.0 < lower <= upper:
+        return
+    middle = 0.5 * (lower + upper)
+    candidates = [float(f"{middle:.{digits}g}") for digits in range(1, 18)]
+    rate = round(1.0 / middle)
+    if rate > 0:
+        candidates.insert(_PLAIN_DIGITS, 1.0 / rate)
+    yield from (step for step in candidates if lower <= step <= upper)
+
+
+def _last_digits(times: Array, fields: Sequence[str]) -> Array:
+    # Printed with a fixed number of decimals, all times share the last digit;
+    # printed with a fixed number of significant digits, it grows with the time.
+    decimals, significant = -400, 1
+    for field in fields:
+        mantissa, _, exponent = field.upper().replace("D", "E").partition("E")
+        whole, _, fraction = mantissa.partition(".")
+        decimals = max(decimals, len(fraction) - int(exponent or 0))
+        significant = max(significant, len((whole + fraction).lstrip("+-0")))
+    size = np.abs(times)
+    leading = np.floor(np.log10(np.where(size > 0.0, size, 1.0))) + 1.0 - significant
+    return 10.0 ** np.where(size > 0.0, np.maximum(-decimals, leading), -float(decimals))

@@ -1,0 +1,217 @@
+"""Arrays of quantities: how they come in, and how they leave with their unit."""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING, Any, Final, TypeAlias, cast
+
+import numpy as np
+
+from rockframe.errors import ComponentError, UnitsError
+from rockframe.motion.unit_names import RecordUnit, acceleration_unit
+from rockframe.units import ACCELERATION, Measure, to_si
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    import numpy.typing as npt
+    import xarray as xr
+    from pint.facets.plain import PlainQuantity
+
+    from rockframe.motion.samples import Array
+
+    # pint.Quantity itself, in a form that a strict type checker can follow
+    Quantity: TypeAlias = PlainQuantity[Any]
+
+QuantityLike: TypeAlias = "str | Quantity"
+RatioLike: TypeAlias = "float | str | Quantity"
+ArrayLike: TypeAlias = "Quantity | xr.DataArray | tuple[Sequence[float] | npt.NDArray[Any], str]"
+
+_EXAMPLE: Final = "(values, 'm/s^2')"
+_TRY_UNIT: Final = Measure("an acceleration", ACCELERATION.unit, "m/s^2")
+
+
+def with_quantity(value: float | Array, measure: Measure) -> Quantity:
+    """Give an SI number or array its unit back.
+
+    Parameters
+    ----------
+    value : float or ndarray
+        In the SI unit of `measure`; an array is copied, so that the quantity
+        may be changed.
+    measure : Measure
+        Kind of quantity.
+
+    Returns
+    -------
+    pint.Quantity
+        In the shared application registry.
+    """
+    import pint
+
+    registry: Any = pint.get_application_registry()
+    own = value.copy() if isinstance(value, np.ndarray) else value
+    return registry.Quantity(own, str(measure.unit))
+
+
+def accelerations_to_si(value: object, *, owner: str, name: str) -> Array:
+    """Convert an array argument to accelerations in SI units, or refuse it.
+
+    Parameters
+    ----------
+    value : Quantity, (sequence, unit) or xarray.DataArray with a ``units`` attribute
+        What the user gave.
+    owner, name : str
+        Function and argument, for the message.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [m s^-2]
+
+    Raises
+    ------
+    UnitsError
+        No unit, an unknown unit, or a unit of another kind.
+    ComponentError
+        Not one-dimensional, not numbers, or masked.
+    """
+    if _is_data_array(value):
+        array = cast("xr.DataArray", value)
+        if _is_quantity(array.data):
+            return accelerations_to_si(array.data, owner=owner, name=name)
+        unit: object = array.attrs.get("units")
+        if not isinstance(unit, str):
+            msg = (
+                f"{owner}: {name} needs accelerations with a unit, got a DataArray without "
+                f"a 'units' attribute; set for example {name}.attrs['units'] = 'm s-2'"
+            )
+            raise UnitsError(msg)
+        return _scaled(array.values, _unit_factor(unit, owner, name, udunits=True), owner, name)
+    if _is_quantity(value):
+        given = cast("Any", value)
+        factor = to_si(type(given)(1.0, given.units), ACCELERATION, owner=owner, name=name)
+        return _scaled(given.magnitude, factor, owner, name)
+    if isinstance(value, tuple):
+        pair = cast("tuple[object, ...]", value)
+        if len(pair) == 2 and isinstance(pair[1], str):
+            return _scaled(pair[0], _unit_factor(pair[1], owner, name), owner, name)
+    if isinstance(value, str):
+        found = f"{value!r}, which is one value"
+    else:
+        found = f"a {type(cast('object', value)).__name__} without a unit"
+    msg = (
+        f"{owner}: {name} needs an array of accelerations with a unit such as "
+        f"{ACCELERATION.unit}, got {found}; write for example {name}={_EXAMPLE}"
+    )
+    raise UnitsError(msg)
+
+
+def argument_unit(unit: object, *, owner: str) -> RecordUnit:
+    """Read the ``unit=`` argument that goes with a record file.
+
+    Parameters
+    ----------
+    unit : str
+        A name that record files use (``g``, ``gal``, ``cm/s2``, ...) or any
+        acceleration unit in the general spelling.
+    owner : str
+        Function, for the message.
+
+    Returns
+    -------
+    RecordUnit
+
+    Raises
+    ------
+    UnitsError
+        Not a known acceleration unit.
+    """
+    text = str(unit)
+    known = acceleration_unit(text)
+    if known is not None:
+        return known
+    try:
+        factor = to_si(f"1 {text}", _TRY_UNIT, owner=owner, name="unit")
+    except (UnitsError, ComponentError) as problem:
+        factor = 0.0
+        cause: Exception | None = problem
+    else:
+        cause = None
+    if factor > 0.0:
+        return RecordUnit(text, factor)
+    msg = (
+        f"{owner}: unit needs the unit of an acceleration, got {text!r}; "
+        "write for example unit='g', unit='cm/s^2' or unit='m/s^2'"
+    )
+    raise UnitsError(msg) from cause
+
+
+def _unit_factor(unit: str, owner: str, name: str, *, udunits: bool = False) -> float:
+    known = acceleration_unit(unit)
+    if udunits and known is not None and known.spelling.endswith("/s^2"):
+        return known.factor  # 'm s-2', 'm/s2': right in UDUNITS, which labels follow
+    try:
+        return to_si(f"1 {unit}", ACCELERATION, owner=owner, name=name)
+    except UnitsError as problem:
+        better = "m/s^2" if known is None else known.spelling
+        msg = (
+            f"{owner}: {name} needs the unit of an acceleration such as {ACCELERATION.unit}, "
+            f"got {unit!r}; write for example {name}=(values, {better!r})"
+        )
+        raise UnitsError(msg) from problem
+
+
+def _scaled(values: object, factor: float, owner: str, name: str) -> Array:
+    if np.ma.isMaskedArray(values) and np.ma.getmaskarray(cast("Any", values)).any():
+        msg = f"{owner}: {name} has masked samples; fill them in first"
+        raise ComponentError(msg)
+    try:
+        array: npt.NDArray[Any] = np.asarray(values)
+    except ValueError as problem:  # ragged
+        msg = f"{owner}: {name} needs a one-dimensional array of numbers"
+        raise ComponentError(msg) from problem
+    if array.dtype.kind not in "fiu" or array.ndim != 1:
+        msg = (
+            f"{owner}: {name} needs a one-dimensional array of real numbers, "
+            f"got {array.ndim} dimensions of {array.dtype}"
+        )
+        raise ComponentError(msg)
+    with np.errstate(over="ignore"):
+        return np.asarray(array, dtype=np.float64) * factor
+
+
+def _is_quantity(value: object) -> bool:
+    import pint
+
+    module: Any = pint  # its Quantity is a generic that strict checkers cannot follow
+    return isinstance(value, module.Quantity)
+
+
+def _is_data_array(value: object) -> bool:
+    xarray = sys.modules.get("xarray")  # not imported: then it cannot be one
+    return xarray is not None and isinstance(value, xarray.DataArray)
+
+
+def declared_step(value: object) -> float | None:
+    """Give the mean step of a DataArray's own time axis, if it has one.
+
+    Parameters
+    ----------
+    value : object
+        What the user gave for an array.
+
+    Returns
+    -------
+    float or None
+        In the axis's own unit, which is taken for seconds [s].
+    """
+    if not _is_data_array(value):
+        return None
+    array = cast("Any", value)
+    if array.ndim != 1 or array.dims[0] not in array.coords or array.size < 2:
+        return None
+    axis = array[array.dims[0]]
+    if axis.dims[0] != "time" or axis.dtype.kind != "f" or axis.attrs.get("units", "s") != "s":
+        return None
+    return float(axis[-1] - axis[0]) / (axis.size - 1)

@@ -1,0 +1,117 @@
+"""Unit names as record files spell them.
+
+Record files write ``g`` for the acceleration of gravity and ``gal`` for cm/s^2,
+which elsewhere are the gram and the gallon. This table is for the units *of
+records* only; every other argument of rockframe goes through the general unit
+reader.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import Final
+
+from rockframe.constants import STANDARD_GRAVITY
+
+
+@dataclass(frozen=True)
+class RecordUnit:
+    """An acceleration unit of a record.
+
+    Parameters
+    ----------
+    spelling : str
+        In the spelling that the general unit reader knows.
+    factor : float
+        Value of one unit [m s^-2].
+    """
+
+    spelling: str
+    factor: float
+
+
+_G: Final = RecordUnit("g_0", STANDARD_GRAVITY)
+_MILLI_G: Final = RecordUnit("1e-3 g_0", 1e-3 * STANDARD_GRAVITY)
+_PER_CENT_G: Final = RecordUnit("1e-2 g_0", 1e-2 * STANDARD_GRAVITY)
+_GAL: Final = RecordUnit("cm/s^2", 0.01)
+_MILLI_GAL: Final = RecordUnit("1e-3 cm/s^2", 1e-5)
+
+_METRES: Final = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
+_PER_SECOND_SQUARED: Final = tuple(
+    pattern.format(second=second)
+    for second in ("s", "sec")
+    for pattern in (
+        "/{second}2",
+        "/{second}^2",
+        "/{second}/{second}",
+        "/({second}^2)",
+        "/({second}*{second})",
+        "{second}-2",
+        "{second}^-2",
+        "{second}^(-2)",
+    )
+)
+
+ACCELERATION_UNITS: Final[dict[str, RecordUnit]] = {
+    **dict.fromkeys(("g", "g's", "gs", "g0", "g_0", "gravity", "standard_gravity"), _G),
+    **dict.fromkeys(("mg", "milli-g", "millig", "g/1000"), _MILLI_G),
+    **dict.fromkeys(("%g", "g/100"), _PER_CENT_G),
+    **dict.fromkeys(("gal", "gals", "galileo"), _GAL),
+    **dict.fromkeys(("mgal", "milligal"), _MILLI_GAL),
+    **{
+        f"{length}{per_second_squared}": RecordUnit(f"{length}/s^2", factor)
+        for length, factor in _METRES.items()
+        for per_second_squared in _PER_SECOND_SQUARED
+    },
+}
+"""Acceleration units by their name: lower case, no blanks, powers with ``^``."""
+
+OTHER_QUANTITIES: Final[dict[str, str]] = {
+    **{f"{length}/{s}": "a velocity" for length in _METRES for s in ("s", "sec")},
+    **{f"{length}{s}-1": "a velocity" for length in _METRES for s in ("s", "s^")},
+    **dict.fromkeys(_METRES, "a displacement"),
+}
+"""Units that name another quantity than an acceleration, spelt as above."""
+
+
+def normalised(name: str) -> str:
+    """Spell a unit name as the tables here do.
+
+    Parameters
+    ----------
+    name : str
+        As it stands in a file: ``CM/SEC**2``, ``m/s²``, ...
+
+    Returns
+    -------
+    str
+    """
+    text = re.sub(r"\s+", "", name.casefold())
+    text = text.replace("**", "^").replace("²", "^2").replace("·", "").replace("⁻^2", "^-2")
+    return re.sub(r"^(centi|milli)?met(?:er|re)s?(?=/|s|$)", _short_metre, text)
+
+
+def acceleration_unit(name: str) -> RecordUnit | None:
+    """Look up an acceleration unit by the name a record gives it.
+
+    Parameters
+    ----------
+    name : str
+        Any spelling.
+
+    Returns
+    -------
+    RecordUnit or None
+        None if the name is not known as an acceleration.
+    """
+    return ACCELERATION_UNITS.get(normalised(name))
+
+
+def other_quantity(name: str) -> str | None:
+    """Say which other quantity a unit name stands for, if it is known to."""
+    return OTHER_QUANTITIES.get(normalised(name))
+
+
+def _short_metre(match: re.Match[str]) -> str:
+    return {"centi": "c", "milli": "m", None: ""}[match.group(1)] + "m"

@@ -1,0 +1,167 @@
+"""The immutable value behind a ground motion: its samples, its name, its past."""
+
+from __future__ import annotations
+
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, ClassVar, Final, Self
+
+from rockframe.errors import ComponentError
+from rockframe.motion.quantities import with_quantity
+from rockframe.units import ACCELERATION, TIME
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from rockframe.motion.quantities import Quantity
+    from rockframe.motion.samples import MotionSI
+
+UNNAMED: Final = "unnamed motion"
+
+
+class MotionValue:
+    """Samples in SI units with a name, metadata and a history; immutable.
+
+    Parameters
+    ----------
+    si : MotionSI
+        The motion itself.
+    name : str, optional
+        For titles and messages.
+    metadata : mapping, optional
+        Strings and numbers: event, station, unit as read, ...
+    history : iterable of str, optional
+        One sentence per step.
+    recipe : mapping, optional
+        Constructor and arguments of an analytic motion.
+
+    Raises
+    ------
+    ComponentError
+        A metadata value is neither a string nor a number.
+    """
+
+    __slots__ = ("_recipe", "_sha256", "history", "metadata", "name", "si")
+
+    si: MotionSI
+    name: str
+    metadata: Mapping[str, str | float | int]
+    history: tuple[str, ...]
+    _recipe: Mapping[str, str | float] | None
+    _sha256: str
+
+    noun: ClassVar[str] = "ground motion"
+
+    def __init__(
+        self,
+        si: MotionSI,
+        *,
+        name: str = UNNAMED,
+        metadata: Mapping[str, str | float | int] | None = None,
+        history: tuple[str, ...] = (),
+        recipe: Mapping[str, str | float] | None = None,
+    ) -> None:
+        entries: dict[str, Any] = dict(metadata or {})
+        for key, value in entries.items():
+            if isinstance(value, bool) or not isinstance(value, str | int | float):
+                msg = f"GroundMotion: metadata {key!r} must be a string or a number, got {value!r}"
+                raise ComponentError(msg)
+        values = {
+            "si": si,
+            "name": _one_line(name) or UNNAMED,
+            "metadata": MappingProxyType(entries),
+            "history": tuple(_one_line(step) for step in history),
+            "_recipe": None if recipe is None else MappingProxyType(dict(recipe)),
+            "_sha256": si.digest(),
+        }
+        for key, value in values.items():
+            object.__setattr__(self, key, value)
+
+    @property
+    def sha256(self) -> str:
+        """Digest of time step, samples and pieces: the identity of what is simulated."""
+        return self._sha256
+
+    @property
+    def time_step(self) -> Quantity:
+        """Time between samples [s]."""
+        return with_quantity(self.si.time_step, TIME)
+
+    @property
+    def duration(self) -> Quantity:
+        """Time from the first to the last sample [s]."""
+        return with_quantity(self.si.duration, TIME)
+
+    @property
+    def acceleration(self) -> Quantity:
+        """Horizontal acceleration of the ground, a copy of the samples [m s^-2]."""
+        return with_quantity(self.si.acceleration, ACCELERATION)
+
+    @property
+    def vertical_acceleration(self) -> Quantity | None:
+        """Vertical acceleration of the ground, upwards, or None [m s^-2]."""
+        vertical = self.si.vertical
+        return None if vertical is None else with_quantity(vertical, ACCELERATION)
+
+    @property
+    def peak_acceleration(self) -> Quantity:
+        """Greatest absolute horizontal acceleration, between samples too [m s^-2]."""
+        return with_quantity(self.si.peak, ACCELERATION)
+
+    def __len__(self) -> int:
+        return int(self.si.acceleration.size)
+
+    def __repr__(self) -> str:
+        vertical = "" if self.si.vertical is None else ", with vertical"
+        return (
+            f"<{type(self).__name__} {self.name!r}: {len(self)} samples at "
+            f"{self.si.time_step:.6g} s, {self.si.duration:.6g} s long, "
+            f"peak {self.si.peak:.5g} m/s^2{vertical}>"
+        )
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, MotionValue):
+            return NotImplemented
+        mine = (self.sha256, self.name, dict(self.metadata), self.history)
+        return mine == (other.sha256, other.name, dict(other.metadata), other.history)
+
+    def __hash__(self) -> int:
+        return hash((type(self).__name__, self.sha256))
+
+    def __setattr__(self, name: str, value: object) -> None:
+        msg = f"{type(self).__name__} is immutable; build a new one to change {name}"
+        raise AttributeError(msg)
+
+    def __delattr__(self, name: str) -> None:
+        msg = f"{type(self).__name__} is immutable; {name} cannot be deleted"
+        raise AttributeError(msg)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        recipe = None if self._recipe is None else dict(self._recipe)
+        return (
+            _rebuild,
+            (type(self), self.si, self.name, dict(self.metadata), self.history, recipe),
+        )
+
+    def _next(self, si: MotionSI, *steps: str, metadata: Mapping[str, Any] | None = None) -> Self:
+        return type(self)(
+            si,
+            name=self.name,
+            metadata={**self.metadata, **(metadata or {})},
+            history=(*self.history, *steps),
+        )
+
+
+def _rebuild(
+    kind: type[MotionValue],
+    si: MotionSI,
+    name: str,
+    metadata: dict[str, str | float | int],
+    history: tuple[str, ...],
+    recipe: dict[str, str | float] | None,
+) -> MotionValue:
+    return kind(si, name=name, metadata=metadata, history=history, recipe=recipe)
+
+
+def _one_line(text: str) -> str:
+    plain = "".join(letter if letter.isprintable() else " " for letter in text)
+    return " ".join(plain.split())

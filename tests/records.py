@@ -1,0 +1,28 @@
+"""Where the recorded motions are that some tests read; none is kept with the tests."""
+
+import os
+from pathlib import Path
+
+import pytest
+
+RECORDS_VARIABLE = "ROCKFRAME_RECORDS"
+_BESIDE_THE_PROJECT = Path(__file__).resolve().parents[2] / "shared" / "records"
+
+
+def record_path(name: str) -> Path:
+    """Give the path of a recorded motion, or skip the test when it is not there.
+
+    Parameters
+    ----------
+    name : str
+        File name.
+
+    Returns
+    -------
+    Path
+    """
+    folder = Path(os.environ.get(RECORDS_VARIABLE, _BESIDE_THE_PROJECT))
+    path = folder / name
+    if not path.is_file():
+        pytest.skip(f"the record {name} is not in {folder} (set {RECORDS_VARIABLE})")
+    return path

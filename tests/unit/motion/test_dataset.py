@@ -1,0 +1,151 @@
+"""To a dataset and back, bit for bit, in memory and through a file."""
+
+import json
+
+import cf_units
+import numpy as np
+import pytest
+import xarray as xr
+from unit.motion.motion_files import at2, numbers
+
+from rockframe.errors import SchemaError
+from rockframe.motion import GroundMotion
+
+RNG = np.random.default_rng(3)
+
+
+def plain():
+    return GroundMotion.from_arrays((RNG.normal(size=101), "g_0"), "0.0051 s", name="plain ü")
+
+
+def with_vertical():
+    up = (RNG.normal(size=101), "m/s^2")
+    return GroundMotion.from_arrays((RNG.normal(size=101), "m/s^2"), "5 ms", up).scaled(0.3)
+
+
+def pulse():
+    return GroundMotion.sine_pulse("0.3 g_0", "1.7 Hz", 1.3)
+
+
+def two_pulses():
+    return pulse().with_vertical(pulse().scaled(0.5)).window("0.1 s", "0.6 s")
+
+
+@pytest.fixture(params=[plain, with_vertical, pulse, two_pulses])
+def motion(request):
+    return request.param()
+
+
+def same(found: GroundMotion, motion: GroundMotion) -> None:
+    assert found == motion
+    assert found.si.time_step == motion.si.time_step
+    for name in ("acceleration", "vertical", "pieces", "vertical_pieces"):
+        ours, theirs = getattr(motion.si, name), getattr(found.si, name)
+        assert (ours is None) == (theirs is None)
+        if ours is not None:
+            assert ours.tobytes() == theirs.tobytes()
+    assert found.history == motion.history
+    assert dict(found.metadata) == dict(motion.metadata)
+    assert found.name == motion.name
+    assert found.to_dict() == motion.to_dict()
+
+
+def test_in_memory(motion):
+    same(GroundMotion.from_dataset(motion.to_dataset()), motion)
+
+
+@pytest.mark.parametrize("format_name", ["NETCDF4", "NETCDF3_64BIT"])
+def test_through_a_file(motion, tmp_path, format_name):
+    path = tmp_path / "motion.nc"
+    motion.to_dataset().to_netcdf(path, engine="netcdf4", format=format_name)
+    with xr.open_dataset(path, engine="netcdf4") as stored:
+        same(GroundMotion.from_dataset(stored), motion)
+        assert "_FillValue" not in stored["time"].encoding
+        assert stored["time"].dtype == np.float64
+
+
+def test_a_record_through_a_file(write, tmp_path):
+    read = GroundMotion.read(write(at2("NPTS= 30, DT= .005 SEC", numbers(30))))
+    path = tmp_path / "motion.nc"
+    read.to_dataset().to_netcdf(path)
+    with xr.open_dataset(path) as stored:
+        found = GroundMotion.from_dataset(stored)
+    same(found, read)
+    assert found.metadata["component"] == "67"
+
+
+def test_layout(motion):
+    dataset = motion.to_dataset()
+    assert dataset["acceleration"].dims == ("time",)
+    assert dataset["acceleration"].values.tolist() == motion.si.acceleration.tolist()
+    assert ("vertical_acceleration" in dataset) == (motion.si.vertical is not None)
+    assert dataset["time"].attrs["units"] == "s"
+    assert dataset["time"].values[-1] == motion.si.duration
+    assert np.all(np.diff(dataset["time"].values) > 0.0)
+    for name in dataset.variables:
+        attributes = dataset[name].attrs
+        assert dataset[name].dtype == np.float64
+        assert attributes["long_name"]
+        assert cf_units.Unit(attributes["units"]).is_convertible("s" if name == "time" else "m s-2")
+        assert dataset[name].encoding["_FillValue"] is None
+    assert all(isinstance(value, str | int | float) for value in dataset.attrs.values())
+    assert dataset.attrs["Conventions"] == "CF-1.11"
+    assert json.loads(dataset.attrs["metadata"]) == dict(motion.metadata)
+
+
+def test_changing_the_dataset_leaves_the_motion_alone():
+    motion = plain()
+    digest = motion.sha256
+    dataset = motion.to_dataset()
+    dataset["acceleration"].values[:] = 0.0
+    assert motion.si.digest() == digest
+
+
+def test_changed_samples_are_noticed():
+    dataset = plain().to_dataset()
+    dataset["acceleration"].values[3] += 1.0
+    with pytest.raises(SchemaError, match="motion_sha256"):
+        GroundMotion.from_dataset(dataset)
+
+
+def test_samples_changed_on_purpose_lose_the_recipe():
+    dataset = pulse().to_dataset()
+    dataset["acceleration_pieces"].values[:] = 0.0
+    del dataset.attrs["motion_sha256"]
+    assert GroundMotion.from_dataset(dataset).to_dict()["constructor"] is None
+
+
+def test_a_hand_made_dataset():
+    acceleration = ("time", [0.0, 1.0, 2.0], {"units": "m s^-2"})
+    dataset = xr.Dataset({"acceleration": acceleration}, coords={"time": [0.0, 0.02, 0.04]})
+    motion = GroundMotion.from_dataset(dataset)
+    assert motion.si.time_step == pytest.approx(0.02)
+    assert motion.si.acceleration.tolist() == [0.0, 1.0, 2.0]
+    assert motion.name == "unnamed motion"
+
+
+@pytest.mark.parametrize(
+    ("damage", "words"),
+    [
+        (lambda d: d.drop_vars("acceleration"), "no variable 'acceleration'"),
+        (lambda d: d.drop_vars("time"), "no variable 'time'"),
+        (lambda d: d.isel(time=[0]), "two samples"),
+        (lambda d: d.assign_attrs(time_step=-1.0), "time_step"),
+        (lambda d: d.assign_attrs(time_step="often"), "holds no ground motion"),
+        (lambda d: d.assign_attrs(metadata="{"), "'metadata' that is not JSON"),
+        (lambda d: d.assign_attrs(metadata="[1]"), "not a JSON object"),
+        (lambda d: d.assign(acceleration=d["acceleration"] * np.nan), "units|finite"),
+        (lambda d: d.assign(acceleration=d["acceleration"].assign_attrs(units="g")), "units 'g'"),
+        (lambda d: d.assign(acceleration_pieces=(("a", "b"), np.zeros((2, 2)))), "units None"),
+    ],
+)
+def test_datasets_that_hold_no_motion(damage, words):
+    with pytest.raises(SchemaError, match=words):
+        GroundMotion.from_dataset(damage(plain().to_dataset()))
+
+
+def test_an_uneven_time_axis():
+    acceleration = ("time", [0.0, 1.0, 2.0], {"units": "m s^-2"})
+    dataset = xr.Dataset({"acceleration": acceleration}, coords={"time": [0.0, 0.02, 0.05]})
+    with pytest.raises(SchemaError, match="uneven time axis"):
+        GroundMotion.from_dataset(dataset)

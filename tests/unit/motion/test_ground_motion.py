@@ -1,0 +1,331 @@
+"""The value object: construction from arrays, immutability, equality, description."""
+
+import copy
+import json
+import pickle
+import subprocess
+import sys
+
+import numpy as np
+import pint
+import pytest
+import xarray as xr
+
+from rockframe.errors import ComponentError, SchemaError, UnitsError
+from rockframe.motion import GroundMotion, MotionSI
+
+G = 9.80665
+UREG = pint.get_application_registry()
+VALUES = [0.0, 1.5, -2.25, 0.5, 0.125]
+
+
+def motion(vertical=None, **given):
+    up = None if vertical is None else (vertical, "m/s^2")
+    return GroundMotion.from_arrays((VALUES, "m/s^2"), "0.01 s", up, **given)
+
+
+@pytest.mark.parametrize(
+    "acceleration",
+    [
+        (VALUES, "m/s^2"),
+        (tuple(VALUES), "m/s^2"),
+        (np.array(VALUES), "m/s^2"),
+        (np.array(VALUES, dtype=np.float32), "m s^-2"),
+        (np.array(VALUES[::-1])[::-1], "m/s^2"),
+        UREG.Quantity(np.array(VALUES), "m/s^2"),
+        UREG.Quantity(VALUES, "m/s^2"),
+        xr.DataArray(VALUES, dims="time", attrs={"units": "m s^-2"}),
+        xr.DataArray(VALUES, dims="time", attrs={"units": "m s-2"}),
+        xr.DataArray(VALUES, dims="time", attrs={"units": "m/s2"}),
+        xr.DataArray(UREG.Quantity(np.array(VALUES), "m/s^2"), dims="time"),
+    ],
+)
+def test_accepted_arrays(acceleration):
+    made = GroundMotion.from_arrays(acceleration, "0.01 s")
+    assert made.si.acceleration.tolist() == VALUES
+    assert made.si.time_step == 0.01
+    assert made == motion()
+
+
+@pytest.mark.parametrize(
+    ("unit", "factor"), [("g_0", G), ("cm/s^2", 0.01), ("Gal", 0.01), ("mm/s**2", 1e-3)]
+)
+def test_units_are_converted(unit, factor):
+    for given in ((VALUES, unit), UREG.Quantity(np.array(VALUES), unit)):
+        made = GroundMotion.from_arrays(given, "10 ms")
+        assert made.si.acceleration == pytest.approx(np.array(VALUES) * factor, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("acceleration", "words"),
+    [
+        (VALUES, "a list without a unit"),
+        (np.array(VALUES), "a ndarray without a unit"),
+        ("1 m/s^2", "which is one value"),
+        (VALUES[0], "a float without a unit"),
+        (None, "a NoneType without a unit"),
+        ((VALUES, 3), "a tuple without a unit"),
+        ((VALUES, "g"), "write for example acceleration=.values, 'g_0'."),
+        ((VALUES, "gal"), "write for example acceleration=.values, 'cm/s.2'."),
+        ((VALUES, "cm/s2"), "write for example acceleration=.values, 'cm/s.2'."),
+        ((VALUES, "m/s"), "needs the unit of an acceleration such as m s"),
+        ((VALUES, "nonsense"), "got 'nonsense'"),
+        (UREG.Quantity(np.array(VALUES), "m"), "needs an acceleration"),
+        (xr.DataArray(VALUES, dims="time"), "without a 'units' attribute"),
+        (xr.DataArray(VALUES, dims="time", attrs={"units": "g"}), "got 'g'"),
+    ],
+)
+def test_arrays_without_a_right_unit_are_refused(acceleration, words):
+    with pytest.raises(UnitsError, match=words) as caught:
+        GroundMotion.from_arrays(acceleration, "0.01 s")
+    assert "GroundMotion.from_arrays: acceleration" in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("acceleration", "words"),
+    [
+        (([0.0, float("nan"), 1.0], "m/s^2"), "finite, got nan at index 1"),
+        (([0.0, 1.0, float("inf")], "m/s^2"), "finite, got inf at index 2"),
+        (([1e308, 1e308], "km/s^2"), "finite"),
+        (([1.0], "m/s^2"), "at least two samples"),
+        (([], "m/s^2"), "at least two samples"),
+        ((1.0, "m/s^2"), "one-dimensional"),
+        ((np.zeros((2, 3)), "m/s^2"), "one-dimensional.*2 dimensions"),
+        (([[1.0], [1.0, 2.0]], "m/s^2"), "one-dimensional"),
+        ((["a", "b"], "m/s^2"), "real numbers"),
+        (([True, False], "m/s^2"), "real numbers"),
+        (([1j, 2j], "m/s^2"), "real numbers"),
+        (([None, 1.0], "m/s^2"), "real numbers"),
+        ((np.ma.masked_array(VALUES, mask=[0, 1, 0, 0, 0]), "m/s^2"), "masked"),
+    ],
+)
+def test_arrays_that_are_no_samples_are_refused(acceleration, words):
+    with pytest.raises(ComponentError, match=words):
+        GroundMotion.from_arrays(acceleration, "0.01 s")
+
+
+@pytest.mark.parametrize("time_step", [0.01, "0.01", "0.01 m", "1 Hz", None])
+def test_time_step_without_a_right_unit(time_step):
+    with pytest.raises(UnitsError, match="time_step needs a time"):
+        GroundMotion.from_arrays((VALUES, "m/s^2"), time_step)
+
+
+@pytest.mark.parametrize("time_step", ["0 s", "-1 s", "nan s", "inf s"])
+def test_time_step_out_of_range(time_step):
+    with pytest.raises(ComponentError, match="time_step must be"):
+        GroundMotion.from_arrays((VALUES, "m/s^2"), time_step)
+
+
+def test_vertical_of_another_length():
+    with pytest.raises(ComponentError, match=r"5 samples, vertical 2.*with_vertical"):
+        GroundMotion.from_arrays((VALUES, "m/s^2"), "0.01 s", ([1.0, 2.0], "m/s^2"))
+
+
+def test_a_time_axis_that_contradicts_the_time_step():
+    array = xr.DataArray(
+        VALUES, dims="time", coords={"time": np.arange(5) * 0.02}, attrs={"units": "m s-2"}
+    )
+    assert GroundMotion.from_arrays(array, "0.02 s").si.time_step == 0.02
+    with pytest.raises(ComponentError, match=r"step 0\.02 s, but time_step is 0\.01 s"):
+        GroundMotion.from_arrays(array, "0.01 s")
+
+
+def test_public_properties_are_quantities_of_the_application_registry():
+    made = motion(vertical=VALUES[::-1])
+    assert made.time_step == UREG.Quantity(0.01, "s")
+    assert made.duration == UREG.Quantity(0.04, "s")
+    assert made.peak_acceleration == UREG.Quantity(2.25, "m/s^2")
+    assert made.acceleration.m_as("cm/s^2") == pytest.approx(np.array(VALUES) * 100.0)
+    assert made.vertical_acceleration.m_as("m/s^2").tolist() == VALUES[::-1]
+    assert motion().vertical_acceleration is None
+    assert len(made) == 5
+
+
+def test_arrays_are_own_read_only_contiguous_float64():
+    source = np.array(VALUES)
+    made = GroundMotion.from_arrays((source, "m/s^2"), "0.01 s", (source, "m/s^2"))
+    pulse = GroundMotion.sine_pulse()
+    source[:] = 7.0
+    assert made.si.acceleration.tolist() == VALUES
+    for array in (made.si.acceleration, made.si.vertical, pulse.si.pieces):
+        assert array.dtype == np.float64
+        assert array.flags.c_contiguous
+        assert not array.flags.writeable
+        with pytest.raises(ValueError, match="read-only"):
+            array[0] = 1.0
+
+
+def test_changing_a_quantity_leaves_the_motion_alone():
+    made = motion()
+    made.acceleration.magnitude[:] = 7.0
+    assert made == motion()
+
+
+def test_the_motion_cannot_be_changed():
+    made = motion()
+    with pytest.raises(AttributeError, match="immutable"):
+        made.name = "other"
+    with pytest.raises(AttributeError, match="immutable"):
+        made.anything = 1
+    with pytest.raises(AttributeError, match="immutable"):
+        del made.si
+    with pytest.raises(TypeError):
+        made.metadata["event"] = "other"
+    with pytest.raises(AttributeError):
+        made.si.time_step = 1.0
+
+
+def test_equality_and_hash_go_by_content():
+    assert motion() == motion()
+    assert hash(motion()) == hash(motion())
+    others = [
+        motion(name="other"),
+        motion(vertical=VALUES),
+        motion().scaled(1),
+        GroundMotion.from_arrays((VALUES, "m/s^2"), "0.02 s"),
+        GroundMotion.from_arrays(([*VALUES, 0.0], "m/s^2"), "0.01 s"),
+    ]
+    assert all(other != motion() for other in others)
+    assert motion() != "a motion"
+    assert len({motion(), motion(), *others}) == 6
+
+
+def test_digest_is_that_of_what_is_simulated():
+    assert motion().sha256 == motion(name="other").sha256
+    assert len(motion().sha256) == 64
+    pulse = GroundMotion.sine_pulse()
+    sampled = MotionSI(pulse.si.time_step, pulse.si.acceleration)
+    digests = {
+        motion().sha256,
+        motion(vertical=VALUES).sha256,
+        pulse.sha256,
+        GroundMotion(sampled).sha256,
+        GroundMotion(MotionSI(0.02, motion().si.acceleration)).sha256,
+        GroundMotion(MotionSI(0.01, np.append(VALUES, 0.0))).sha256,
+    }
+    assert len(digests) == 6
+
+
+def test_digest_does_not_depend_on_the_run():
+    assert motion().sha256 == ("e232ee31eab2dfa149347365be71da80d71c66dbc14dae1317ce3a83174ff732")
+
+
+def _pickled(made):
+    return pickle.loads(pickle.dumps(made))  # noqa: S301
+
+
+@pytest.mark.parametrize("twin", [copy.copy, copy.deepcopy, _pickled])
+@pytest.mark.parametrize("made", [motion(vertical=VALUES, name="x"), GroundMotion.sine_pulse()])
+def test_copies_are_equal_and_read_only(made, twin):
+    other = twin(made)
+    assert other == made
+    assert other.to_dict() == made.to_dict()
+    assert not other.si.acceleration.flags.writeable
+    with pytest.raises(AttributeError, match="immutable"):
+        other.name = "other"
+
+
+def test_repr_says_what_it_is():
+    assert repr(motion(name="test")) == (
+        "<GroundMotion 'test': 5 samples at 0.01 s, 0.04 s long, peak 2.25 m/s^2>"
+    )
+    assert "with vertical" in repr(motion(vertical=VALUES))
+
+
+def test_names_and_history_stay_on_one_line():
+    made = GroundMotion(motion().si, name=" two\nlines\x00", history=("a\nb",))
+    assert made.name == "two lines"
+    assert made.history == ("a b",)
+    assert GroundMotion(motion().si, name="\n").name == "unnamed motion"
+
+
+@pytest.mark.parametrize("value", [None, True, [1], {"a": 1}])
+def test_metadata_are_strings_and_numbers(value):
+    with pytest.raises(ComponentError, match="metadata 'key' must be"):
+        GroundMotion(motion().si, metadata={"key": value})
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ({"time_step": 0.0}, "time_step"),
+        ({"time_step": float("nan")}, "time_step"),
+        ({"vertical": np.zeros(4)}, "vertical needs the shape"),
+        ({"pieces": np.zeros((5, 6))}, "pieces needs the shape"),
+        ({"pieces": np.zeros((4, 5))}, "pieces needs the shape"),
+        ({"vertical_pieces": np.zeros((4, 6))}, "without vertical samples"),
+        ({"pieces": np.full((4, 6), np.nan)}, "pieces must be finite"),
+    ],
+)
+def test_samples_that_do_not_fit_together(arguments, words):
+    with pytest.raises(ComponentError, match=words):
+        MotionSI(**{"time_step": 0.01, "acceleration": np.array(VALUES), **arguments})
+
+
+def test_the_ground_is_linear_between_samples_and_still_outside():
+    si = motion(vertical=VALUES[::-1]).si
+    assert si.at([0.0, 0.005, 0.01, 0.0125, 0.04]) == pytest.approx(
+        [0.0, 0.75, 1.5, 0.5625, 0.125], abs=1e-14
+    )
+    assert si.at([-1e-9, 0.04 + 1e-9, 7.0]).tolist() == [0.0, 0.0, 0.0]
+    assert si.vertical_at(0.005) == pytest.approx(0.3125)
+    assert motion().si.vertical_at([0.0, 0.01]).tolist() == [0.0, 0.0]
+    assert motion().si.vertical_peak == 0.0
+    assert si.vertical_peak == 2.25
+
+
+def test_description_of_a_record_asks_for_the_record():
+    made = motion(name="test")
+    description = json.loads(json.dumps(made.to_dict()))
+    assert description == {
+        "type": "GroundMotion",
+        "constructor": None,
+        "name": "test",
+        "sha256": made.sha256,
+    }
+    with pytest.raises(SchemaError, match=f"test.*{made.sha256}.*supply the record"):
+        GroundMotion.from_dict(description)
+
+
+@pytest.mark.parametrize(
+    "made",
+    [
+        GroundMotion.sine_pulse(),
+        GroundMotion.sine_pulse("0.3 g_0", "0.7 Hz", 2.5),
+        GroundMotion.harmonic("10 cm/s^2", "0.3 Hz", "7.1 s"),
+        GroundMotion.harmonic("10 cm/s^2", "0.3 Hz", "7.1 s", "30 deg"),
+    ],
+)
+def test_description_of_a_pulse_builds_it_again(made):
+    description = json.loads(json.dumps(made.to_dict()))
+    assert GroundMotion.from_dict(description) == made
+
+
+@pytest.mark.parametrize("changed", [lambda m: m.scaled(2), lambda m: m.window("0 s", "0.5 s")])
+def test_a_changed_pulse_is_described_by_its_digest(changed):
+    assert changed(GroundMotion.sine_pulse()).to_dict()["constructor"] is None
+
+
+@pytest.mark.parametrize(
+    "description",
+    [
+        {},
+        {"constructor": "read", "path": "/etc/passwd"},
+        {"constructor": "sine_pulse", "colour": "red"},
+        {"constructor": "harmonic"},
+    ],
+)
+def test_descriptions_that_fit_nothing(description):
+    with pytest.raises(SchemaError):
+        GroundMotion.from_dict(description)
+
+
+def test_the_import_is_light():
+    code = (
+        "import sys, rockframe.motion; "
+        "print([m for m in ('scipy', 'pint', 'xarray', 'netCDF4', 'numba') if m in sys.modules])"
+    )
+    result = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    )
+    assert result.stdout.strip() == "[]"

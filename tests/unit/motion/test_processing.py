@@ -1,0 +1,379 @@
+"""Processing steps: what each does to the function of time, and what it says of it."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from rockframe.errors import ComponentError, UnitsError
+from rockframe.motion import GroundMotion
+
+RNG = np.random.default_rng(20)
+NOISE = RNG.normal(size=400)
+STEP = 0.01
+
+
+def motion(values=NOISE, vertical=None, step=STEP):
+    up = None if vertical is None else (vertical, "m/s^2")
+    return GroundMotion.from_arrays((values, "m/s^2"), f"{step!r} s", up, name="noise")
+
+
+def tone(frequency, step=STEP, count=4001):
+    """A tone that swells and fades, so that its ends do not matter."""
+    time = np.arange(count) * step
+    swell = np.sin(np.pi * time / time[-1]) ** 2
+    return swell * np.sin(2.0 * np.pi * frequency * time)
+
+
+ALL_STEPS = {
+    "window": lambda m: m.window("1 s", "2 s"),
+    "scaled": lambda m: m.scaled(0.5),
+    "scaled to a peak": lambda m: m.scaled(peak="0.1 g_0"),
+    "refined": lambda m: m.resampled("0.0025 s"),
+    "coarsened": lambda m: m.resampled("0.02 s"),
+    "filtered": lambda m: m.filtered(low="0.5 Hz", high="20 Hz"),
+    "baseline": lambda m: m.baseline_corrected(),
+    "vertical": lambda m: m.with_vertical(m),
+}
+
+
+@pytest.mark.parametrize("step", ALL_STEPS)
+@pytest.mark.parametrize("vertical", [None, NOISE[::-1]])
+def test_every_step_returns_a_new_motion_and_adds_to_the_history(step, vertical):
+    before = motion(vertical=vertical)
+    copy = motion(vertical=vertical)
+    after = ALL_STEPS[step](before)
+    assert before == copy
+    assert isinstance(after, GroundMotion)
+    assert after.history[: len(before.history)] == before.history
+    assert len(after.history) > len(before.history)
+    assert after.name == before.name
+    assert (after.si.vertical is None) == (vertical is None and step != "vertical")
+    assert not after.si.acceleration.flags.writeable
+
+
+@pytest.mark.parametrize(
+    "step", ["window", "scaled", "refined", "coarsened", "filtered", "baseline"]
+)
+def test_the_vertical_component_is_processed_alike(step):
+    both = ALL_STEPS[step](motion(NOISE, NOISE))
+    assert both.si.vertical.tolist() == both.si.acceleration.tolist()
+
+
+def test_window_cuts_samples_and_restarts_time():
+    part = motion(vertical=-NOISE).window("1 s", "2.5 s")
+    assert part.si.acceleration.tolist() == NOISE[100:251].tolist()
+    assert part.si.vertical.tolist() == (-NOISE[100:251]).tolist()
+    assert part.si.time_step == STEP
+    assert part.history[-1] == "window from 1 s to 2.5 s"
+
+
+def test_window_snaps_to_samples_and_says_so():
+    part = motion().window("1.004 s", "1506 ms")
+    assert part.si.acceleration.tolist() == NOISE[100:152].tolist()
+    assert part.history[-1] == (
+        "window from 1 s to 1.51 s, the samples nearest to 1.004 s and 1.506 s"
+    )
+
+
+def test_window_of_everything():
+    assert motion().window("0 s", "3.99 s").sha256 == motion().sha256
+
+
+def test_window_may_end_one_step_after_the_last_sample():
+    part = motion().window("3 s", "4 s")
+    assert part.si.acceleration.tolist() == NOISE[300:].tolist()
+    assert "nearest to" in part.history[-1]
+
+
+@pytest.mark.parametrize(
+    ("start", "end", "words"),
+    [
+        ("-1 s", "2 s", "start = -1 s is outside the motion, which lasts from 0 s to 3.99 s"),
+        ("1 s", "5 s", "end = 5 s is outside the motion"),
+        ("6 s", "7 s", "start = 6 s is outside"),
+        ("2 s", "1 s", "end = 1 s must be at least one time step"),
+        ("2 s", "2 s", "end = 2 s must be at least one time step"),
+        ("2 s", "2.004 s", "at least one time step"),
+        ("nan s", "1 s", "start must be finite"),
+        ("0 s", "inf s", "end must be finite"),
+    ],
+)
+def test_windows_out_of_range(start, end, words):
+    with pytest.raises(ComponentError, match=words):
+        motion().window(start, end)
+
+
+@pytest.mark.parametrize("end", [2.0, "2", "2 m"])
+def test_window_needs_times(end):
+    with pytest.raises(UnitsError, match="end needs a time"):
+        motion().window("1 s", end)
+
+
+@pytest.mark.parametrize("factor", [2, -0.5, "50 %", 0])
+def test_scaled_by_a_factor(factor):
+    number = 0.5 if factor == "50 %" else float(factor)
+    scaled = motion(vertical=NOISE[::-1]).scaled(factor)
+    assert scaled.si.acceleration.tolist() == (NOISE * number).tolist()
+    assert scaled.si.vertical.tolist() == (NOISE[::-1] * number).tolist()
+
+
+def test_scaled_to_a_peak():
+    scaled = motion(vertical=NOISE * 0.5).scaled(peak="0.3 g_0")
+    assert scaled.si.peak == pytest.approx(0.3 * 9.80665, rel=1e-15)
+    assert scaled.si.vertical_peak == pytest.approx(0.15 * 9.80665, rel=1e-15)
+    assert "to a peak of 2.941995 m/s^2" in scaled.history[-1]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error", "words"),
+    [
+        ({}, ComponentError, "give either factor or peak"),
+        ({"factor": 1, "peak": "1 m/s^2"}, ComponentError, "give either factor or peak"),
+        ({"peak": "0 m/s^2"}, ComponentError, "peak must be greater than zero"),
+        ({"peak": 3.0}, UnitsError, "peak needs an acceleration"),
+        ({"factor": "3 m/s^2"}, UnitsError, "factor needs a pure ratio"),
+        ({"factor": float("nan")}, ComponentError, "factor must be finite"),
+        ({"factor": 1e308 * 1.7}, ComponentError, "finite"),
+    ],
+)
+def test_scaling_that_is_refused(arguments, error, words):
+    with pytest.raises(error, match=words):
+        motion(NOISE * 10.0).scaled(**arguments)
+
+
+def test_a_still_ground_has_no_peak_to_scale():
+    with pytest.raises(ComponentError, match="no horizontal acceleration"):
+        motion(np.zeros(5)).scaled(peak="1 m/s^2")
+
+
+@pytest.mark.parametrize("times", [2, 3, 5, 16])
+def test_refining_by_a_whole_number_keeps_the_function(times):
+    fine = motion().resampled(f"{STEP / times!r} s")
+    assert len(fine) == 399 * times + 1
+    assert fine.si.acceleration[::times].tolist() == NOISE.tolist()
+    time = RNG.uniform(0.0, 3.99, 2000)
+    assert fine.si.at(time) == pytest.approx(motion().si.at(time), abs=1e-12)
+
+
+def test_refining_by_another_number_reads_off_the_straight_lines():
+    fine = motion().resampled("0.003 s")
+    time = np.arange(len(fine)) * 0.003
+    assert time[-1] == pytest.approx(3.99)
+    expected = np.interp(time, np.arange(400) * STEP, NOISE)
+    assert fine.si.acceleration == pytest.approx(expected, abs=1e-12)
+
+
+def test_refining_says_what_is_left_out():
+    fine = motion().resampled("0.007 s")
+    assert fine.si.duration == pytest.approx(570 * 0.007)
+    assert motion().resampled("0.0071 s").history[-1] == (
+        "the last 0.0069 s, less than one new time step, are left out"
+    )
+
+
+def test_resampling_to_the_same_step_changes_nothing():
+    assert motion().resampled("10 ms").sha256 == motion().sha256
+
+
+@pytest.mark.parametrize("step", [0.02, 0.05, 0.025, 0.0333])
+def test_coarsening_keeps_slow_and_removes_fast_motion_without_delay(step):
+    slow, fast = tone(0.1 / step), tone(0.7 / step)  # 0.2 and 1.4 of the new Nyquist frequency
+    coarse = motion(slow).resampled(f"{step} s")
+    assert coarse.si.time_step == step
+    time = np.arange(len(coarse)) * step
+    swell = np.sin(np.pi * time / 40.0) ** 2
+    exact = swell * np.sin(2.0 * np.pi * 0.1 / step * time)
+    assert coarse.si.acceleration == pytest.approx(exact, abs=0.02)
+    assert motion(fast).resampled(f"{step} s").si.peak < 1e-3
+    assert "anti-alias" in coarse.history[-1] or "anti-alias" in coarse.history[-2]
+
+
+def test_coarsening_by_picking_samples_would_alias():
+    assert np.max(np.abs(tone(0.7 / 0.05)[::5])) > 0.5
+
+
+def test_coarsening_keeps_a_constant():
+    assert motion(np.full(400, 2.0)).resampled("0.03 s").si.acceleration == pytest.approx(
+        2.0, rel=0.02
+    )
+
+
+@pytest.mark.parametrize(
+    ("step", "error", "words"),
+    [
+        ("0 s", ComponentError, "greater than zero"),
+        ("-1 s", ComponentError, "greater than zero"),
+        ("4 s", ComponentError, "exceeds the duration"),
+        ("1e-9 s", ComponentError, "more than 50000000 samples"),
+        (0.01, UnitsError, "time_step needs a time"),
+    ],
+)
+def test_resampling_that_is_refused(step, error, words):
+    with pytest.raises(error, match=words):
+        motion().resampled(step)
+
+
+@pytest.mark.parametrize("count", [2, 3, 5, 12])
+def test_short_motions_can_be_coarsened(count):
+    coarse = motion(NOISE[:count]).resampled(f"{STEP * (count - 1)!r} s")
+    assert len(coarse) == 2
+    assert np.isfinite(coarse.si.acceleration).all()
+
+
+@pytest.mark.parametrize(
+    ("corners", "passes", "stops"),
+    [
+        ({"high": "5 Hz"}, [0.5, 1.0, 2.0], [12.0, 30.0]),
+        ({"low": "5 Hz"}, [12.0, 30.0], [0.5, 1.0, 2.0]),
+        ({"low": "2 Hz", "high": "10 Hz"}, [4.5], [0.4, 0.8, 25.0, 40.0]),
+    ],
+)
+def test_filters_pass_and_stop_without_delay(corners, passes, stops):
+    for frequency in passes:
+        filtered = motion(tone(frequency)).filtered(**corners)
+        assert filtered.si.acceleration == pytest.approx(tone(frequency), abs=0.03)
+    for frequency in stops:
+        assert motion(tone(frequency)).filtered(**corners).si.peak < 0.03
+
+
+def test_amplitude_at_a_corner_is_halved():
+    assert motion(tone(5.0)).filtered(high="5 Hz").si.peak == pytest.approx(0.5, rel=0.01)
+
+
+def test_a_higher_order_is_steeper():
+    peaks = [motion(tone(8.0)).filtered(high="5 Hz", order=order).si.peak for order in (1, 2, 4, 8)]
+    assert peaks == sorted(peaks, reverse=True)
+    assert peaks[0] > 10.0 * peaks[-1]
+
+
+def test_filter_says_how_it_padded():
+    filtered = motion().filtered(low="0.1 Hz", order=4)
+    assert len(filtered) == len(motion())
+    assert "low corner 0.1 Hz, padded with 6000 zeros" in filtered.history[-1]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error", "words"),
+    [
+        ({}, ComponentError, "give low, high or both"),
+        ({"low": "5 Hz", "high": "1 Hz"}, ComponentError, "must be below high"),
+        ({"high": "50 Hz"}, ComponentError, "below the Nyquist frequency, 50 Hz"),
+        ({"low": "0 Hz"}, ComponentError, "low must be greater than zero"),
+        ({"low": "1e-9 Hz"}, ComponentError, "too low"),
+        ({"low": 1.0}, UnitsError, "low needs a cyclic frequency"),
+        ({"high": "1 rad/s"}, UnitsError, "high needs a cyclic frequency"),
+        ({"high": "5 Hz", "order": 0}, ComponentError, "order must be a whole number"),
+        ({"high": "5 Hz", "order": 2.0}, ComponentError, "order must be a whole number"),
+        ({"high": "5 Hz", "order": True}, ComponentError, "order must be a whole number"),
+    ],
+)
+def test_filters_that_are_refused(arguments, error, words):
+    with pytest.raises(error, match=words):
+        motion().filtered(**arguments)
+
+
+@pytest.mark.parametrize(("order", "power"), [(0, 0), (1, 0), (1, 1), (2, 2), (5, 5)])
+def test_baseline_correction_removes_its_polynomial(order, power):
+    time = np.arange(400) * STEP
+    assert motion(3.0 * time**power).baseline_corrected(order).si.peak < 1e-9
+    plain = motion().baseline_corrected(order).si.acceleration
+    shifted = motion(NOISE + 7.0 * time**power).baseline_corrected(order).si.acceleration
+    assert shifted == pytest.approx(plain, abs=1e-9)
+
+
+def test_baseline_correction_leaves_higher_powers():
+    time = np.arange(400) * STEP
+    assert motion(time**2).baseline_corrected(1).si.peak > 1.0
+
+
+@pytest.mark.parametrize("order", [-1, 21, 1.0, True, "1"])
+def test_baseline_orders_that_are_refused(order):
+    with pytest.raises(ComponentError, match="order must be a whole number from 0 to 20"):
+        motion().baseline_corrected(order)
+
+
+def test_baseline_order_is_below_the_number_of_samples():
+    with pytest.raises(ComponentError, match="from 0 to 2"):
+        motion(NOISE[:3]).baseline_corrected(3)
+
+
+@pytest.mark.parametrize(("across", "up"), [(400, 400), (400, 300), (300, 400)])
+def test_with_vertical_pads_the_shorter(across, up):
+    other = motion(NOISE[::-1][:up])
+    both = motion(NOISE[:across]).with_vertical(other)
+    count = max(across, up)
+    assert both.si.acceleration.tolist() == [*NOISE[:across], *[0.0] * (count - across)]
+    assert both.si.vertical.tolist() == [*NOISE[::-1][:up], *[0.0] * (count - up)]
+    padded = [sentence for sentence in both.history if "padded with 100 zeros" in sentence]
+    assert len(padded) == (across != up)
+    assert other.sha256[:12] in " ".join(both.history)
+
+
+def test_with_vertical_of_another_step():
+    with pytest.raises(ComponentError, match=r"0\.01 s and 0\.02 s; resample.*'0\.01 s'"):
+        motion().with_vertical(motion(step=0.02))
+
+
+@pytest.mark.parametrize("other", [NOISE, None, "vertical"])
+def test_with_vertical_of_something_else(other):
+    with pytest.raises(ComponentError, match="needs a GroundMotion"):
+        motion().with_vertical(other)
+
+
+def test_a_replaced_vertical_component_is_told():
+    both = motion(vertical=NOISE).with_vertical(motion(-NOISE))
+    assert "replaced" in both.history[-1]
+    assert both.si.vertical.tolist() == (-NOISE).tolist()
+
+
+def test_pieces_survive_scaling_and_windows():
+    pulse = GroundMotion.sine_pulse("1 m/s^2", "1 Hz", 2)
+    part = pulse.scaled(3).window("0.25 s", "1.5 s")
+    time = np.linspace(0.0, 1.25, 5001)
+    assert part.si.at(time) == pytest.approx(3.0 * np.cos(2.0 * np.pi * time), abs=3e-12)
+
+
+def test_pieces_of_both_components_survive_with_vertical():
+    pulse = GroundMotion.sine_pulse("1 m/s^2", "1 Hz", 1)
+    other = GroundMotion.sine_pulse("2 m/s^2", "1 Hz", 1.25)
+    both = pulse.with_vertical(other)
+    time = np.linspace(0.0, 1.25, 5001)
+    across = np.where(time <= 1.0, np.sin(2.0 * np.pi * time), 0.0)
+    assert both.si.at(time) == pytest.approx(across, abs=1e-12)
+    assert both.si.vertical_at(time) == pytest.approx(2.0 * np.sin(2.0 * np.pi * time), abs=2e-12)
+
+
+def test_a_pulse_that_ends_abruptly_is_padded_with_a_ramp():
+    abrupt = GroundMotion.sine_pulse("1 m/s^2", "1 Hz", 0.25)
+    both = abrupt.with_vertical(GroundMotion.sine_pulse("1 m/s^2", "1 Hz", 1))
+    dt = both.si.time_step
+    assert both.si.at([0.25, 0.25 + 0.25 * dt, 0.25 + dt, 0.5]) == pytest.approx(
+        [1.0, 0.75, 0.0, 0.0], abs=1e-10
+    )
+
+
+@pytest.mark.parametrize("step", ["refined", "coarsened", "filtered", "baseline"])
+def test_other_steps_replace_pieces_and_say_so(step):
+    changed = ALL_STEPS[step](GroundMotion.sine_pulse("1 m/s^2", "1 Hz", 3))
+    assert changed.si.pieces is None
+    assert "straight lines" in changed.history[-1]
+
+
+def test_refined_pulse_is_sampled_from_the_function():
+    fine = GroundMotion.sine_pulse("1 m/s^2", "1 Hz").resampled("0.001 s")
+    exact = np.sin(2.0 * np.pi * 0.001 * np.arange(1001))
+    assert fine.si.acceleration == pytest.approx(exact, abs=1e-12)
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    values=st.lists(st.floats(-50.0, 50.0), min_size=2, max_size=40),
+    times=st.integers(1, 6),
+)
+def test_refining_never_changes_the_function(values, times):
+    coarse = motion(values)
+    fine = coarse.resampled(f"{STEP / times!r} s")
+    time = np.linspace(0.0, coarse.si.duration, 97)
+    assert fine.si.at(time) == pytest.approx(coarse.si.at(time), abs=1e-9)
+    assert fine.si.peak == pytest.approx(coarse.si.peak, rel=1e-14, abs=1e-300)
