@@ -1,0 +1,1 @@
+"""Event-driven integration; knows contact models only by their protocol."""

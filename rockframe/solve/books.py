@@ -1,0 +1,197 @@
+"""Keeping a run's books: outputs, peaks, events, energies."""
+
+import math
+from collections.abc import Callable
+from typing import Final
+
+from rockframe.compiled import Integers, Vector, inlined, kernel
+from rockframe.dynamics.protocol import (
+    IMPACT,
+    IMPACT_LOSS,
+    MEMORY_SIZE,
+    OVERTURNING,
+    REPINNING_LOSS,
+    ROTATION_LIMIT,
+    TOPPLED,
+    ContactState,
+)
+from rockframe.solve import layout as at
+from rockframe.solve.hermite import extremum, interpolate
+from rockframe.solve.workspace import EventTable, Output, Progress, Tables, Workspace
+
+FULL: Final = int(ContactState.FULL)
+FLIGHT: Final = int(ContactState.FLIGHT)
+RIGHT_ANGLE: Final = 0.5 * math.pi
+ON_SAMPLE: Final = 1e-9
+"""Share of the output step within which a step's end is an output time."""
+
+
+@kernel
+def audit(
+    energy: Callable[..., None],
+    mode: int,
+    p: Vector,
+    memory: Vector,
+    clock: Vector,
+    w: Workspace,
+) -> None:
+    """Compare the energy now with its start and all that came and went, :eq:`eq-audit`."""
+    energy(mode, w.state, p, w.energies)
+    stored = w.energies[1] + w.energies[3]
+    lost = clock[at.BURNT] + memory[IMPACT_LOSS] + memory[REPINNING_LOSS]
+    balance = w.energies[0] + stored + lost - clock[at.SUPPLIED] - clock[at.START_ENERGY]
+    clock[at.RESIDUAL] = max(clock[at.RESIDUAL], abs(balance))
+    terms = max(w.energies[0], abs(w.energies[1]), w.energies[2], lost, abs(clock[at.SUPPLIED]))
+    clock[at.LARGEST_TERM] = max(clock[at.LARGEST_TERM], terms)
+
+
+@kernel
+def part_of_work(fraction: float, whole: float, first: float, last: float) -> float:
+    """Give the work done in a fraction of a step, from that in all of it and its powers."""
+    rest = 1.0 - fraction
+    cubic = fraction * fraction * (3.0 - 2.0 * fraction) * whole
+    return cubic + fraction * rest * (rest * first - fraction * last)
+
+
+@inlined
+def store_outputs(
+    end: float,
+    h: float,
+    mode: int,
+    count: int,
+    burnt: float,
+    supplied: float,
+    progress: Progress,
+    output: Output,
+    w: Workspace,
+) -> None:
+    """Store the output samples that lie in the step (end - h, end]."""
+    clock = progress.clock
+    step = progress.controls[at.OUTPUT_STEP]
+    row = progress.counters[at.OUTPUTS]
+    while row < len(output.mode) and row * step - end <= ON_SAMPLE * step:
+        ahead = row * step - end
+        fraction = 1.0
+        if ahead < -ON_SAMPLE * step and h + ahead > 0.0:
+            fraction = 1.0 + ahead / h
+            interpolate(count, fraction, h, w)
+            for i in range(len(w.scratch)):
+                output.state[row, i] = w.scratch[i]
+        else:
+            for i in range(len(w.new)):
+                output.state[row, i] = w.new[i]
+        output.mode[row] = mode
+        if len(output.work) > 0:
+            size = len(w.new) // 2
+            output.work[row, 0] = clock[at.BURNT] + part_of_work(
+                fraction, burnt, h * w.slopes[0, size], h * w.slope[size]
+            )
+            output.work[row, 1] = clock[at.SUPPLIED] + part_of_work(
+                fraction, supplied, h * w.slopes[0, size + 1], h * w.slope[size + 1]
+            )
+        row += 1
+    progress.counters[at.OUTPUTS] = row
+
+
+@inlined
+def follow_peak(count: int, h: float, weights: Vector, clock: Vector, w: Workspace) -> None:
+    """Raise the peak of the rotation by what the step holds, between its ends too."""
+    size = len(w.state) // 2
+    r0 = v0 = r1 = v1 = 0.0
+    for i in range(count):
+        r0 += weights[i] * w.state[i]
+        v0 += weights[i] * w.state[size + i]
+        r1 += weights[i] * w.new[i]
+        v1 += weights[i] * w.new[size + i]
+    top = max(abs(r0), abs(r1))
+    clock[at.PEAK] = max(clock[at.PEAK], top)
+    if v0 * v1 < 0.0 and top + 0.5 * h * max(abs(v0), abs(v1)) > clock[at.PEAK]:
+        a0 = a1 = 0.0
+        for i in range(count):
+            a0 += weights[i] * w.slopes[0, i]
+            a1 += weights[i] * w.slopes[6, i]
+        top = abs(extremum(r0, h * v0, h * h * a0, r1, h * v1, h * h * a1))
+        clock[at.PEAK] = max(clock[at.PEAK], top)
+
+
+@kernel
+def reach_limit(
+    time: float, mode: int, tables: Tables, p: Vector, progress: Progress, w: Workspace
+) -> tuple[int, int]:
+    """Mark overturning, or the fall that ends a run; give the event's kind and a status."""
+    clock = progress.clock
+    if clock[at.OVERTURNING_TIME] >= 0.0:
+        return TOPPLED, at.FELL
+    turned = 0.0
+    for i in range(tables.active[mode]):
+        turned += tables.weights[i] * w.state[i]
+    clock[at.OVERTURNING_TIME] = time
+    clock[at.OVERTURNING_SIDE] = math.copysign(1.0, turned)
+    p[ROTATION_LIMIT] = RIGHT_ANGLE
+    if progress.counters[at.STOP_AT_OVERTURNING] == 1:
+        return OVERTURNING, at.OVERTURNED
+    return OVERTURNING, at.COMPLETED
+
+
+@kernel
+def book_event(
+    time: float,
+    kind: int,
+    old_mode: int,
+    mode: int,
+    tables: Tables,
+    memory: Vector,
+    progress: Progress,
+    events: EventTable,
+    w: Workspace,
+) -> int:
+    """Count an event and fill its row of the table, whose state before stands there already."""
+    clock, counters = progress.clock, progress.counters
+    row = counters[at.EVENTS]
+    width = len(w.state)
+    events.values[row, 0] = time
+    for i in range(width):
+        events.values[row, 1 + width + i] = w.state[i]
+    for i in range(MEMORY_SIZE):
+        events.values[row, 1 + 2 * width + i] = memory[i]
+    events.codes[row, 0] = kind
+    events.codes[row, 1] = old_mode
+    events.codes[row, 2] = mode
+    counters[at.EVENTS] += 1
+    if kind == IMPACT:
+        counters[at.IMPACTS] += 1
+    if tables.contact[mode] == FLIGHT and tables.contact[old_mode] != FLIGHT:
+        counters[at.FLIGHTS] += 1
+    if tables.contact[mode] != FULL and clock[at.FIRST_UPLIFT] < 0.0:
+        clock[at.FIRST_UPLIFT] = time
+    close = time - clock[at.EVENT_TIME] <= progress.controls[at.CHATTER_TIME]
+    counters[at.CLOSE_EVENTS] = counters[at.CLOSE_EVENTS] + 1 if close else 0
+    clock[at.EVENT_TIME] = time
+    if counters[at.CLOSE_EVENTS] > at.CLOSE_EVENTS_LIMIT:
+        return at.CHATTER
+    return at.COMPLETED
+
+
+@inlined
+def accept(
+    burnt: float,
+    supplied: float,
+    x: float,
+    y: float,
+    clock: Vector,
+    counters: Integers,
+    w: Workspace,
+) -> None:
+    """Go on from the step's end."""
+    for i in range(len(w.state)):
+        w.state[i] = w.new[i]
+        w.reference[i] = max(w.reference[i], abs(w.new[i]))
+    for i in range(len(w.slope)):
+        w.slopes[0, i] = w.slope[i]
+    for i in range(len(w.before)):
+        w.before[i] = w.after[i]
+    clock[at.BURNT] += burnt
+    clock[at.SUPPLIED] += supplied
+    clock[at.GROUND_X] = x
+    clock[at.GROUND_Y] = y
+    counters[at.STEPS] += 1

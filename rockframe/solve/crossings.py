@@ -1,0 +1,160 @@
+"""Finding where a guard falls through zero inside a step."""
+
+import math
+from collections.abc import Callable
+from typing import Final
+
+from rockframe.compiled import Vector, kernel
+from rockframe.solve.ground import TERMS, ground_acceleration
+from rockframe.solve.hermite import interpolate
+from rockframe.solve.workspace import Span, Tables, Workspace
+
+DIP_MARGIN: Final = 0.02
+"""Share of a guard's variation in a step below which a predicted dip is looked into."""
+
+ROOT_TOLERANCE: Final = 1e-13
+"""Width of the bracket, as a share of the step, at which the search for a root ends."""
+
+
+@kernel
+def earliest_crossing(
+    guard: Callable[..., None],
+    tables: Tables,
+    mode: int,
+    count: int,
+    span: Span,
+    p: Vector,
+    w: Workspace,
+) -> tuple[int, float]:
+    """Give the guard that falls through zero first, and where (a fraction of the step).
+
+    Looks at the step's end and, where a guard falls at first and rises at last,
+    for a dip in between. Gives -1 if no guard crosses.
+    """
+    guards = len(tables.lazy)
+    found = -1
+    place = 2.0
+    for i in range(guards):
+        armed = w.before[i] > tables.tolerance[i]
+        end = -1.0
+        if w.after[i] < 0.0:
+            if armed or tables.lazy[i] == 0:
+                end = 1.0
+        elif armed and w.before[guards + i] < 0.0 and w.after[guards + i] > 0.0:
+            fall = span.h * w.before[guards + i]
+            rise = span.h * w.after[guards + i]
+            bottom, depth = _dip(w.before[i], fall, w.after[i], rise)
+            if depth < DIP_MARGIN * (rise - fall):
+                end = _point_below_zero(guard, i, bottom, mode, count, span, p, w)
+        if end >= 0.0:
+            root = _first_root(guard, i, end, mode, count, span, p, w)
+            if root < place:
+                found = i
+                place = root
+    return found, place
+
+
+@kernel
+def _dip(g0: float, fall: float, g1: float, rise: float) -> tuple[float, float]:
+    """Give place and depth of the lowest point of a cubic that falls at 0 and rises at 1."""
+    c2 = 3.0 * (g1 - g0) - 2.0 * fall - rise
+    c3 = 2.0 * (g0 - g1) + fall + rise
+    u = -fall / (c2 + math.sqrt(max(c2 * c2 - 3.0 * c3 * fall, 0.0)))
+    u = min(max(u, 0.0), 1.0)
+    return u, g0 + u * (fall + u * (c2 + u * c3))
+
+
+@kernel
+def _guard_inside(
+    guard: Callable[..., None],
+    which: int,
+    fraction: float,
+    mode: int,
+    count: int,
+    span: Span,
+    p: Vector,
+    w: Workspace,
+) -> float:
+    """Give a guard's value at a fraction of the step, from the dense solution."""
+    interpolate(count, fraction, span.h, w)
+    u = span.u + fraction * span.du
+    x = ground_acceleration(u, span.degree_x, 0, w.ground)
+    y = ground_acceleration(u, span.degree_y, TERMS, w.ground)
+    guard(mode, w.scratch, w.scratch_rates, x, y, p, w.inside)
+    return w.inside[which]
+
+
+@kernel
+def _point_below_zero(
+    guard: Callable[..., None],
+    which: int,
+    bottom: float,
+    mode: int,
+    count: int,
+    span: Span,
+    p: Vector,
+    w: Workspace,
+) -> float:
+    """Search around a predicted dip (golden section); -1 if the guard stays positive."""
+    low = max(bottom - 0.25, 0.0)
+    high = min(bottom + 0.25, 1.0)
+    for _ in range(40):
+        left = low + 0.381966 * (high - low)
+        right = low + 0.618034 * (high - low)
+        g_left = _guard_inside(guard, which, left, mode, count, span, p, w)
+        if g_left < 0.0:
+            return left
+        g_right = _guard_inside(guard, which, right, mode, count, span, p, w)
+        if g_right < 0.0:
+            return right
+        if g_left < g_right:
+            high = right
+        else:
+            low = left
+    return -1.0
+
+
+@kernel
+def _first_root(
+    guard: Callable[..., None],
+    which: int,
+    end: float,
+    mode: int,
+    count: int,
+    span: Span,
+    p: Vector,
+    w: Workspace,
+) -> float:
+    """Give the root between the step's start (positive) and `end` (negative).
+
+    Illinois' variant of false position, kept inside its bracket by bisection;
+    from a guard at its limit at the start only bisection can tell.
+    """
+    low, high = 0.0, end
+    g_low = _guard_inside(guard, which, low, mode, count, span, p, w)
+    g_high = _guard_inside(guard, which, high, mode, count, span, p, w)
+    if g_high >= 0.0:
+        return high
+    last = 0
+    for _ in range(100):
+        if high - low <= ROOT_TOLERANCE:
+            break
+        middle = 0.5 * (low + high)
+        if g_low > 0.0:
+            trial = (low * g_high - high * g_low) / (g_high - g_low)
+            if low < trial < high:
+                middle = trial
+        g = _guard_inside(guard, which, middle, mode, count, span, p, w)
+        if g == 0.0:
+            return middle
+        if g > 0.0:
+            low, g_low = middle, g
+            if last == 1:
+                g_high *= 0.5
+            last = 1
+        else:
+            high, g_high = middle, g
+            if last == -1:
+                g_low *= 0.5
+            last = -1
+    return high

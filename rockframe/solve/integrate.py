@@ -1,0 +1,196 @@
+"""From a model, a start and a ground motion to a trajectory."""
+
+import math
+
+import numpy as np
+
+from rockframe.compiled import Vector
+from rockframe.dynamics.protocol import MEMORY_SIZE, ContactModel, ContactState, Start
+from rockframe.solve import layout as at
+from rockframe.solve.accuracy import Accuracy
+from rockframe.solve.driver import advance
+from rockframe.solve.ground_table import Ground
+from rockframe.solve.layout import Status
+from rockframe.solve.trajectory import Events, Trajectory
+from rockframe.solve.workspace import (
+    EventTable,
+    MotionTables,
+    Output,
+    Progress,
+    Tables,
+    make_workspace,
+)
+
+FIRST_SCALE = 1e-6
+"""Share of its typical size that counts as a variable's size before it has moved."""
+FIRST_STEP = 1e-3
+"""First step, as a share of the model's shortest period."""
+CHATTER_SHARE = 1e-6
+"""Events closer than this share of the model's shortest period count as chatter."""
+EVENT_ROOM = 256
+
+
+def integrate(
+    model: ContactModel,
+    start: Start,
+    ground: Ground,
+    accuracy: Accuracy,
+    *,
+    duration: float,
+    output_step: float | None,
+    stop_at_overturning: bool = True,
+    with_work: bool = False,
+) -> Trajectory:
+    """Integrate a model under a ground motion.
+
+    Parameters
+    ----------
+    model : ContactModel
+        The equations.
+    start : Start
+        Where the run starts.
+    ground : Ground
+        Its motion; the ground stands still beyond its last sample.
+    accuracy : Accuracy
+        Settings.
+    duration : float
+        Length of the run [s].
+    output_step : float or None
+        Spacing of the output samples; None stores none [s].
+    stop_at_overturning : bool
+        Whether the run ends when the rotation reaches its limit.
+    with_work : bool
+        Whether dashpot and input work are stored at the output times.
+
+    Returns
+    -------
+    Trajectory
+        Also where the run could not be finished; see its status.
+    """
+    mode, state, memory = model.initial(start)
+    shortest_period = 2.0 * math.pi / model.fastest_frequency
+    controls = np.zeros(at.CONTROLS)
+    controls[at.RTOL] = accuracy.rtol
+    controls[at.FLOOR] = accuracy.floor
+    controls[at.MAX_STEP] = shortest_period / accuracy.steps_per_period
+    controls[at.DURATION] = duration
+    controls[at.TIME_STEP] = ground.time_step
+    controls[at.OUTPUT_STEP] = output_step or 1.0
+    controls[at.CHATTER_TIME] = CHATTER_SHARE * shortest_period
+    clock = np.zeros(at.CLOCK)
+    clock[at.NEXT_STEP] = FIRST_STEP * shortest_period
+    clock[at.PEAK] = abs(float(model.rotation_weights @ state[: len(model.rotation_weights)]))
+    clock[at.FIRST_UPLIFT] = -1.0 if model.contact[mode] == ContactState.FULL else 0.0
+    clock[at.OVERTURNING_TIME] = clock[at.EVENT_TIME] = -1.0
+    clock[at.START_ENERGY] = clock[at.GROUND_X] = clock[at.GROUND_Y] = math.nan
+    counters = np.zeros(at.COUNTERS, dtype=np.int64)
+    counters[at.MODE] = mode
+    counters[at.PENDING] = -1
+    counters[at.MAX_STEPS] = accuracy.max_steps
+    counters[at.STOP_AT_OVERTURNING] = int(stop_at_overturning)
+    counters[at.FLIGHTS] = int(model.contact[mode] == ContactState.FLIGHT)
+
+    rows = 0 if output_step is None else 1 + math.floor(duration / output_step * (1.0 + 1e-12))
+    width = len(state)
+    out_state = np.empty((rows, width))
+    out_mode = np.empty(rows, dtype=np.int8)
+    out_work = np.zeros((rows if with_work else 0, 2))
+    if rows:
+        out_state[0], out_mode[0] = state, mode
+        counters[at.OUTPUTS] = 1
+
+    start_memory = memory.copy()
+    reference = np.maximum(np.abs(state), FIRST_SCALE * model.scales)
+    parameters = model.parameters.copy()
+    progress = Progress(controls, clock, counters)
+    output = Output(out_state, out_mode, out_work)
+    events = EventTable(
+        np.empty((EVENT_ROOM, 1 + 2 * width + MEMORY_SIZE)),
+        np.empty((EVENT_ROOM, 3), dtype=np.int64),
+    )
+    tables = Tables(
+        model.active,
+        model.contact,
+        model.lazy_guard,
+        model.guard_tolerance,
+        model.rotation_weights,
+    )
+    motion = MotionTables(
+        ground.horizontal, ground.vertical, ground.horizontal_pieces, ground.vertical_pieces
+    )
+    workspace = make_workspace(state, reference, len(model.lazy_guard))
+    while True:
+        result = advance(
+            model.accelerate,
+            model.guard,
+            model.switch,
+            model.energy,
+            tables,
+            parameters,
+            memory,
+            motion,
+            progress,
+            output,
+            events,
+            workspace,
+        )
+        if result != at.MORE_ROOM:
+            break
+        events = EventTable(
+            np.concatenate([events.values, np.empty_like(events.values)]),
+            np.concatenate([events.codes, np.empty_like(events.codes)]),
+        )
+
+    stored = int(counters[at.OUTPUTS])
+    time: Vector = np.arange(stored, dtype=np.float64) * (output_step or 1.0)
+    end = float(clock[at.TIME])
+    out_state, out_mode, out_work = out_state[:stored], out_mode[:stored], out_work[:stored]
+    if rows and result != at.COMPLETED and end > time[-1]:
+        # the instant at which the run ended belongs to its history
+        time = np.concatenate([time, np.array([end])])
+        out_state = np.vstack([out_state, state])
+        out_mode = np.append(out_mode, np.int8(counters[at.MODE]))
+        if with_work:
+            out_work = np.vstack([out_work, [clock[at.BURNT], clock[at.SUPPLIED]]])
+    return Trajectory(
+        time=time,
+        state=out_state,
+        mode=out_mode,
+        work=out_work,
+        start_memory=start_memory,
+        events=_events(events, int(counters[at.EVENTS]), width),
+        status=Status(result),
+        end_time=end,
+        peak_rotation=float(clock[at.PEAK]),
+        overturning_time=_time_or_nan(clock[at.OVERTURNING_TIME]),
+        overturning_direction=int(clock[at.OVERTURNING_SIDE]),
+        first_uplift_time=_time_or_nan(clock[at.FIRST_UPLIFT]),
+        flight_time=float(clock[at.FLIGHT_TIME]),
+        impact_count=int(counters[at.IMPACTS]),
+        flight_count=int(counters[at.FLIGHTS]),
+        step_count=int(counters[at.STEPS]),
+        rejected_count=int(counters[at.REJECTED]),
+        energy_residual=_ratio(float(clock[at.RESIDUAL]), float(clock[at.LARGEST_TERM])),
+        start_energy=float(clock[at.START_ENERGY]),
+    )
+
+
+def _events(table: EventTable, count: int, width: int) -> Events:
+    values, codes = table.values[:count], table.codes[:count]
+    return Events(
+        time=values[:, 0].copy(),
+        kind=codes[:, 0].copy(),
+        mode_before=codes[:, 1].copy(),
+        mode_after=codes[:, 2].copy(),
+        state_before=values[:, 1 : 1 + width].copy(),
+        state_after=values[:, 1 + width : 1 + 2 * width].copy(),
+        memory=values[:, 1 + 2 * width :].copy(),
+    )
+
+
+def _time_or_nan(value: float) -> float:
+    return float(value) if value >= 0.0 else math.nan
+
+
+def _ratio(part: float, whole: float) -> float:
+    return part / whole if whole > 0.0 else 0.0

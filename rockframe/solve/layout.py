@@ -1,0 +1,77 @@
+"""Where the integrator keeps its numbers: indices into its arrays.
+
+The integrator can stop (for want of room for events) and go on; everything it
+must remember stands in three small arrays.
+"""
+
+from enum import IntEnum
+from typing import Final
+
+
+class Status(IntEnum):
+    """How a run ended."""
+
+    COMPLETED = 0
+    OVERTURNED = 1
+    TOPPLED = 2
+    STEP_LIMIT = 3
+    STEP_TOO_SMALL = 4
+    CHATTER = 5
+
+
+# Results of the integrator's entry point: a Status, or this.
+MORE_ROOM: Final = -1
+
+COMPLETED: Final = int(Status.COMPLETED)
+OVERTURNED: Final = int(Status.OVERTURNED)
+FELL: Final = int(Status.TOPPLED)
+STEP_LIMIT: Final = int(Status.STEP_LIMIT)
+STEP_TOO_SMALL: Final = int(Status.STEP_TOO_SMALL)
+CHATTER: Final = int(Status.CHATTER)
+
+# controls: real settings
+RTOL: Final = 0
+FLOOR: Final = 1
+MAX_STEP: Final = 2
+DURATION: Final = 3
+TIME_STEP: Final = 4
+OUTPUT_STEP: Final = 5
+CHATTER_TIME: Final = 6
+CONTROLS: Final = 7
+
+# clock: real progress
+INTO_INTERVAL: Final = 0
+NEXT_STEP: Final = 1
+FLIGHT_TIME: Final = 2
+FIRST_UPLIFT: Final = 3
+PEAK: Final = 4
+OVERTURNING_TIME: Final = 5
+OVERTURNING_SIDE: Final = 6
+BURNT: Final = 7
+SUPPLIED: Final = 8
+RESIDUAL: Final = 9
+LARGEST_TERM: Final = 10
+START_ENERGY: Final = 11
+EVENT_TIME: Final = 12
+GROUND_X: Final = 13
+GROUND_Y: Final = 14
+TIME: Final = 15
+CLOCK: Final = 16
+
+# counters: integer progress and switches
+MODE: Final = 0
+INTERVAL: Final = 1
+OUTPUTS: Final = 2
+EVENTS: Final = 3
+STEPS: Final = 4
+REJECTED: Final = 5
+IMPACTS: Final = 6
+FLIGHTS: Final = 7
+PENDING: Final = 8
+CLOSE_EVENTS: Final = 9
+MAX_STEPS: Final = 10
+STOP_AT_OVERTURNING: Final = 11
+COUNTERS: Final = 12
+
+CLOSE_EVENTS_LIMIT: Final = 1000
+"""Events in a row, each within CHATTER_TIME of the one before, that end a run as chatter."""

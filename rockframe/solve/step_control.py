@@ -1,0 +1,42 @@
+"""Whether a step is accurate enough, and how long the next may be, :eq:`eq-error-norm`."""
+
+import math
+from typing import Final
+
+from rockframe.compiled import Vector, inlined, kernel
+from rockframe.solve import layout as at
+from rockframe.solve.dormand_prince_tableau import ORDER
+from rockframe.solve.workspace import Workspace
+
+# step-size control, after Hairer, Norsett, Wanner, "Solving Ordinary Differential
+# Equations I", 2nd ed., section II.4
+SAFETY: Final = 0.9
+SMALLEST_FACTOR: Final = 0.2
+LARGEST_FACTOR: Final = 5.0
+EASY: Final = 0.5
+"""Error below which a step that spans its whole interval needs no new step size."""
+
+
+@inlined
+def excess_error(count: int, controls: Vector, w: Workspace) -> float:
+    """Give the largest error of a step over the error allowed."""
+    size = len(w.state) // 2
+    largest = 0.0
+    for i in range(2 * count):
+        j = i if i < count else size + i - count
+        if not math.isfinite(w.error[j]):
+            return math.inf
+        allowed = max(abs(w.new[j]), controls[at.FLOOR] * w.reference[j])
+        largest = max(largest, abs(w.error[j]) / allowed)
+    return largest / controls[at.RTOL]
+
+
+@kernel
+def next_step(h: float, h_next: float, excess: float) -> float:
+    """Give the step size that a step's error suggests."""
+    growth = LARGEST_FACTOR
+    if excess > 0.0:
+        growth = min(growth, max(SMALLEST_FACTOR, SAFETY * excess ** (-1.0 / ORDER)))
+    if h < h_next and growth >= 1.0:  # cut short by its interval: it says little of longer ones
+        return max(h_next, h * growth)
+    return h * growth

@@ -1,0 +1,87 @@
+"""What an integration leaves behind: plain arrays, in SI units and per unit mass."""
+
+from dataclasses import dataclass
+
+from rockframe.compiled import Codes, Integers, Matrix, Vector
+from rockframe.solve.layout import Status
+
+
+@dataclass(frozen=True)
+class Events:
+    """Table of events; `n` coordinates.
+
+    Parameters
+    ----------
+    time : ndarray, shape (events,)
+        [s].
+    kind : ndarray of int64, shape (events,)
+        :class:`rockframe.dynamics.protocol.EventKind`, or ``SILENT`` where a
+        model only kept its books.
+    mode_before, mode_after : ndarray of int64, shape (events,)
+        Modes of the model.
+    state_before, state_after : ndarray, shape (events, 2 n)
+        Coordinates, then their rates.
+    memory : ndarray, shape (events, 4)
+        The model's memory after each event.
+    """
+
+    time: Vector
+    kind: Integers
+    mode_before: Integers
+    mode_after: Integers
+    state_before: Matrix
+    state_after: Matrix
+    memory: Matrix
+
+
+@dataclass(frozen=True)
+class Trajectory:
+    """A run.
+
+    Parameters
+    ----------
+    time : ndarray, shape (samples,)
+        Output times [s].
+    state : ndarray, shape (samples, 2 n)
+        Coordinates, then their rates.
+    mode : ndarray of int8, shape (samples,)
+        Modes of the model.
+    work : ndarray, shape (samples, 2) or (0, 2)
+        Energies burnt by dashpots and put in by the ground, if asked for.
+    start_memory : ndarray, shape (4,)
+        The model's memory at the start.
+    events : Events
+        What happened when.
+    status : Status
+        How the run ended.
+    end_time, peak_rotation, overturning_time, first_uplift_time, flight_time : float
+        Of the dense solution; times are NaN where nothing of the kind happened.
+    overturning_direction : int
+        Sign of the rotation at overturning, 0 if none.
+    impact_count, flight_count, step_count, rejected_count : int
+        Counts.
+    energy_residual : float
+        Largest imbalance of the energies over their largest term.
+    start_energy : float
+        Kinetic, gravity and elastic energy at the start, from that at rest.
+    """
+
+    time: Vector
+    state: Matrix
+    mode: Codes
+    work: Matrix
+    start_memory: Vector
+    events: Events
+    status: Status
+    end_time: float
+    peak_rotation: float
+    overturning_time: float
+    overturning_direction: int
+    first_uplift_time: float
+    flight_time: float
+    impact_count: int
+    flight_count: int
+    step_count: int
+    rejected_count: int
+    energy_residual: float
+    start_energy: float
