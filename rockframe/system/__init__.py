@@ -1,0 +1,1 @@
+"""Assembly of parts into a scene, and of a scene into equations."""

@@ -1,0 +1,123 @@
+"""Assembly: parts and options checked together, and the scene they make."""
+
+import warnings
+from collections.abc import Sequence
+from functools import cached_property
+
+from rockframe.constants import STANDARD_GRAVITY
+from rockframe.errors import AssemblyError, ModelWarning, RockframeError
+from rockframe.motion import GroundMotion
+from rockframe.system.options import Coupling, Restraint, Rotation, read_option
+from rockframe.system.parts import Parts, sort_parts
+from rockframe.system.scenes import SCENES, Scene, Setting
+from rockframe.units import ACCELERATION, POSITIVE, QuantityLike, to_si
+
+
+class Assembly:
+    """Parts and options that have been checked and make a supported scene.
+
+    Parameters
+    ----------
+    *parts
+        Components, in any order; a ground motion may be one of them.
+    restraint : Restraint or str
+        Which point of the base is held horizontally.
+    rotation : Rotation or str
+        Exact kinematics, or expanded to second order.
+    coupling : Coupling or str
+        How block, pads, cap and soil are joined, in a scene that has them.
+    gravity : str or Quantity, optional
+        Acceleration of gravity; standard gravity unless given [m s^-2].
+
+    Raises
+    ------
+    AssemblyError
+        With every fault found, and the supported scenes.
+    """
+
+    def __init__(
+        self,
+        *parts: object,
+        restraint: Restraint | str = Restraint.CONTACT_STATE,
+        rotation: Rotation | str = Rotation.FINITE,
+        coupling: Coupling | str = Coupling.COUPLED,
+        gravity: QuantityLike | None = None,
+    ) -> None:
+        faults: list[str] = []
+        self.parts: Parts = sort_parts(parts, faults)
+        self.restraint = read_option(Restraint, restraint, "restraint", faults)
+        self.rotation = read_option(Rotation, rotation, "rotation", faults)
+        self.coupling = read_option(Coupling, coupling, "coupling", faults)
+        self.gravity_si = STANDARD_GRAVITY
+        if gravity is not None:
+            try:
+                self.gravity_si = to_si(
+                    gravity, ACCELERATION, owner="System", name="gravity", condition=POSITIVE
+                )
+            except RockframeError as problem:
+                faults.append(str(problem))
+        scene = self._find_scene(faults)
+        if faults or scene is None:
+            raise AssemblyError(faults, [scene.title for scene in SCENES])
+        self.scene: Scene = scene
+        for caution in self.setting.cautions():
+            warnings.warn(caution, ModelWarning, stacklevel=2)
+
+    def _find_scene(self, faults: list[str]) -> Scene | None:
+        if self.parts.block is None:
+            faults.append("no Block is given")
+        if self.parts.ground is not None and self.parts.pads is not None:
+            faults.append(
+                "RigidGround and TwoSpringSupport are both given; a block stands on one of them"
+            )
+        for scene in SCENES:
+            if scene.signature == self.parts.signature:
+                return scene
+        return None
+
+    @cached_property
+    def setting(self) -> Setting:
+        """The scene's numbers in SI units."""
+        return self.scene.make_setting(self.parts, self.restraint, self.rotation, self.gravity_si)
+
+    @property
+    def motion(self) -> GroundMotion | None:
+        """The ground motion among the parts, if there is one."""
+        return self.parts.motion
+
+    def describe(self) -> str:
+        """Tell which model was picked, by which equations, and what it leaves out.
+
+        Returns
+        -------
+        str
+            Several lines of plain text.
+        """
+        from rockframe.system.describe import describe
+
+        return describe(self.scene, self.setting, self.parts)
+
+    def __repr__(self) -> str:
+        parts = ", ".join(repr(part) for part in self.parts.given())
+        return (
+            f"{type(self).__name__}({parts}, restraint={str(self.restraint)!r}, "
+            f"rotation={str(self.rotation)!r})"
+        )
+
+    def to_dict(self) -> dict[str, object]:
+        """Give parts and options as plain values, fit for JSON; the motion stands apart.
+
+        Returns
+        -------
+        dict
+        """
+        structural: Sequence[object] = [
+            part.to_dict() for part in self.parts.given() if not isinstance(part, GroundMotion)
+        ]
+        return {
+            "parts": structural,
+            "restraint": str(self.restraint),
+            "rotation": str(self.rotation),
+            "coupling": str(self.coupling),
+            "gravity": f"{self.gravity_si!r} {ACCELERATION.unit}",
+        }

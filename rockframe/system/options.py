@@ -1,0 +1,55 @@
+"""Options of a system."""
+
+from enum import StrEnum
+from typing import TypeVar
+
+
+class Restraint(StrEnum):
+    """Which point of the base the ground holds horizontally."""
+
+    CONTACT_STATE = "contact-state"
+    LEADING_CORNER = "leading-corner"
+    CENTRE = "centre"
+
+
+class Rotation(StrEnum):
+    """Kinematics: exact, or expanded to second order in the rotation."""
+
+    FINITE = "finite"
+    SMALL = "small"
+
+
+class Coupling(StrEnum):
+    """How a block on pads, cap and soil is joined."""
+
+    COUPLED = "coupled"
+    CASCADE = "cascade"
+
+
+Option = TypeVar("Option", bound=StrEnum)
+
+
+def read_option(kind: type[Option], value: object, name: str, faults: list[str]) -> Option:
+    """Give the option that a string names, or note the fault.
+
+    Parameters
+    ----------
+    kind : type
+        The enumeration.
+    value : object
+        What the user gave.
+    name : str
+        Argument, for the message.
+    faults : list of str
+        Appended to if `value` is none of the options.
+
+    Returns
+    -------
+    Option
+    """
+    try:
+        return kind(value)  # type: ignore[arg-type]
+    except ValueError:
+        known = ", ".join(repr(str(option)) for option in kind)
+        faults.append(f"{name} must be one of {known}, got {value!r}")
+        return next(iter(kind))
