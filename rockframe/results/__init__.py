@@ -1,0 +1,1 @@
+"""Labelled results: one table of variables, and the dataset built by it."""

@@ -1,0 +1,77 @@
+"""Building the labelled dataset; the only maker of result datasets."""
+
+from collections.abc import Mapping
+from datetime import UTC, datetime
+from functools import cache
+from importlib.metadata import version
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rockframe.constants import PAPER_TITLE
+from rockframe.errors import SchemaError
+from rockframe.results.outcome import Values
+from rockframe.results.schema import SCHEMA, SCHEMA_VERSION
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+def build_dataset(values: Values, attributes: Mapping[str, str | float | int]) -> "xr.Dataset":
+    """Label values by the schema and add the provenance every result carries.
+
+    Parameters
+    ----------
+    values : mapping
+        Arrays and scalars by their names in the schema.
+    attributes : mapping
+        Strings and numbers that describe the run.
+
+    Returns
+    -------
+    xarray.Dataset
+
+    Raises
+    ------
+    SchemaError
+        A name is not in the schema, or a shape does not fit its dimensions.
+    """
+    import xarray as xr
+
+    variables: dict[str, xr.Variable] = {}
+    for name, value in values.items():
+        row = SCHEMA.get(name)
+        if row is None:
+            msg = f"{name!r} is not in the schema of results"
+            raise SchemaError(msg)
+        data = np.asarray(value, dtype=row.dtype)
+        if data.ndim != len(row.dims):
+            msg = f"{name!r} needs the dimensions {row.dims}, got an array of shape {data.shape}"
+            raise SchemaError(msg)
+        variables[name] = xr.Variable(row.dims, data, row.attributes())
+    coordinates = {"time": variables.pop("time")} if "time" in variables else {}
+    dataset = xr.Dataset(variables, coords=coordinates, attrs=_attributes(attributes))
+    for name in coordinates:
+        # a coordinate has no missing values, so it needs no fill value (CF 2.5.1)
+        dataset[name].encoding["_FillValue"] = None
+    return dataset
+
+
+@cache
+def _release() -> str:
+    return version("rockframe")
+
+
+def _attributes(given: Mapping[str, str | float | int]) -> dict[str, Any]:
+    now = datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
+    release = _release()
+    return {
+        "Conventions": "CF-1.11",
+        "title": "Rocking response",
+        "history": f"{now} computed by rockframe {release}",
+        "source": f"rockframe {release}, event-driven integration",
+        "references": PAPER_TITLE,
+        "rockframe_version": release,
+        "schema_version": SCHEMA_VERSION,
+        **given,
+    }
