@@ -1,1 +1,93 @@
-"""rockframe."""
+"""Rocking blocks and frames on rigid ground, viscoelastic pads and soil.
+
+Assemble components into a :class:`System`, simulate it under a
+:class:`GroundMotion`, and get a labelled :class:`xarray.Dataset` that netCDF
+can hold.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from rockframe import plot as plot
+    from rockframe.components import Block as Block
+    from rockframe.components import InitialState as InitialState
+    from rockframe.components import RigidGround as RigidGround
+    from rockframe.components import TwoSpringSupport as TwoSpringSupport
+    from rockframe.errors import AssemblyError as AssemblyError
+    from rockframe.errors import ComponentError as ComponentError
+    from rockframe.errors import ModelWarning as ModelWarning
+    from rockframe.errors import RecordError as RecordError
+    from rockframe.errors import RecordWarning as RecordWarning
+    from rockframe.errors import RockframeError as RockframeError
+    from rockframe.errors import RockframeWarning as RockframeWarning
+    from rockframe.errors import SchemaError as SchemaError
+    from rockframe.errors import SolverError as SolverError
+    from rockframe.errors import UnitsError as UnitsError
+    from rockframe.motion import GroundMotion as GroundMotion
+    from rockframe.simulation.system import System as System
+    from rockframe.solve.accuracy import Accuracy as Accuracy
+
+    __version__: str
+
+_HOMES = {
+    "rockframe.components": ("Block", "InitialState", "RigidGround", "TwoSpringSupport"),
+    "rockframe.errors": (
+        "AssemblyError",
+        "ComponentError",
+        "ModelWarning",
+        "RecordError",
+        "RecordWarning",
+        "RockframeError",
+        "RockframeWarning",
+        "SchemaError",
+        "SolverError",
+        "UnitsError",
+    ),
+    "rockframe.motion": ("GroundMotion",),
+    "rockframe.simulation.system": ("System",),
+    "rockframe.solve.accuracy": ("Accuracy",),
+}
+_HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
+
+__all__ = [
+    "Accuracy",
+    "AssemblyError",
+    "Block",
+    "ComponentError",
+    "GroundMotion",
+    "InitialState",
+    "ModelWarning",
+    "RecordError",
+    "RecordWarning",
+    "RigidGround",
+    "RockframeError",
+    "RockframeWarning",
+    "SchemaError",
+    "SolverError",
+    "System",
+    "TwoSpringSupport",
+    "UnitsError",
+    "__version__",
+    "plot",
+]
+
+
+def __getattr__(name: str) -> Any:
+    # Names are imported on their first use: a script that only reads records
+    # never waits for the integrator.
+    if name in _HOME_OF:
+        value = getattr(import_module(_HOME_OF[name]), name)
+    elif name == "plot":
+        value = import_module("rockframe.plot")
+    elif name == "__version__":
+        value = import_module("importlib.metadata").version("rockframe")
+    else:
+        msg = f"module {__name__!r} has no attribute {name!r}"
+        raise AttributeError(msg)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -1,0 +1,1 @@
+"""From an assembled system to labelled results."""

@@ -1,0 +1,154 @@
+"""The system that users build and simulate."""
+
+import json
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Self
+
+from rockframe.components import InitialState, component_from_dict
+from rockframe.errors import SchemaError
+from rockframe.motion import GroundMotion
+from rockframe.solve.accuracy import Accuracy, AccuracyLevel
+from rockframe.system.assembly import Assembly
+from rockframe.units import QuantityLike
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+class System(Assembly):
+    """An assembled scene: parts in any order, checked together, ready to simulate.
+
+    Parameters
+    ----------
+    *parts
+        Components (:class:`~rockframe.Block`, :class:`~rockframe.TwoSpringSupport`, ...), in
+        any order; a :class:`~rockframe.GroundMotion` may be one of them.
+    restraint : {"contact-state", "leading-corner", "centre"}
+        Which point of the base the ground holds horizontally.
+    rotation : {"finite", "small"}
+        Exact kinematics, or expanded to second order in the rotation.
+    coupling : {"coupled", "cascade"}
+        How block, pads, cap and soil are joined, in a scene that has them.
+    gravity : str or Quantity, optional
+        Acceleration of gravity; standard gravity unless given [m s^-2].
+
+    Raises
+    ------
+    AssemblyError
+        With every fault found at once, and the supported scenes.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> block = rf.Block.from_size(radius="5 m", slenderness=4, mass="50 t")
+    >>> pads = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.10)
+    >>> response = rf.System(block, pads).simulate(
+    ...     rf.GroundMotion.sine_pulse(amplitude="-3 m/s^2"), free_vibration="2 s"
+    ... )
+    >>> bool(response.overturned)
+    False
+    """
+
+    def simulate(
+        self,
+        motion: GroundMotion | None = None,
+        *,
+        duration: QuantityLike | None = None,
+        free_vibration: QuantityLike | None = None,
+        initial: InitialState | None = None,
+        accuracy: Accuracy | AccuracyLevel | str = AccuracyLevel.STANDARD,
+        output_step: QuantityLike | None = None,
+        outputs: Sequence[str] | None = (),
+        overturning: str = "stop",
+    ) -> "xr.Dataset":
+        """Integrate the equations of motion.
+
+        Parameters
+        ----------
+        motion : GroundMotion, optional
+            The ground's motion; the one among the parts unless given.
+        duration : str or Quantity, optional
+            Length of the run; the motion's unless given. Beyond the motion the
+            ground stands still [s].
+        free_vibration : str or Quantity, optional
+            Time added to the motion's length, instead of `duration` [s].
+        initial : InitialState, optional
+            Where the run starts; at rest unless given.
+        accuracy : {"fast", "standard", "reference"} or Accuracy
+            How accurate, and so how costly, the run is.
+        output_step : str or Quantity, optional
+            Spacing of the histories; the motion's time step unless given [s].
+        outputs : sequence of str, optional
+            Histories beyond those every run has: names such as
+            ``"kinetic_energy"``, or ``"energy"`` for all energies. None keeps
+            no histories at all, only events and scalars.
+        overturning : {"stop", "continue"}
+            Whether the run ends when the rotation reaches the overturning
+            angle, or goes on until the block lies flat.
+
+        Returns
+        -------
+        xarray.Dataset
+            Histories over ``time``, events over ``event``, and scalars; also of
+            a run that could not be finished, as its ``status`` tells.
+
+        Raises
+        ------
+        UnitsError
+            An argument has the wrong unit, or none.
+        AssemblyError
+            The arguments do not fit the system or one another.
+        SolverError
+            Unknown accuracy.
+        """
+        from rockframe.simulation.run import plan_run, run
+
+        plan = plan_run(
+            self,
+            motion,
+            duration=duration,
+            free_vibration=free_vibration,
+            initial=initial,
+            accuracy=accuracy,
+            output_step=output_step,
+            outputs=outputs,
+            overturning=overturning,
+        )
+        return run(self, plan)
+
+    @classmethod
+    def from_dataset(cls, dataset: "xr.Dataset") -> Self:
+        """Build the system that a result came from.
+
+        Parameters
+        ----------
+        dataset : xarray.Dataset
+            A result of :meth:`simulate`, also one read back from a file.
+
+        Returns
+        -------
+        System
+            With the result's ground motion among its parts, where the dataset
+            holds enough of it (analytic pulses always; records where the
+            histories have the record's own time step).
+
+        Raises
+        ------
+        SchemaError
+            The dataset does not describe a system.
+        """
+        from rockframe.simulation.provenance import motion_from_dataset
+
+        text = dataset.attrs.get("system_json")
+        if not isinstance(text, str):
+            msg = "the dataset has no attribute 'system_json'; expected a result of simulate()"
+            raise SchemaError(msg)
+        try:
+            description = json.loads(text)
+            parts = [component_from_dict(part) for part in description.pop("parts")]
+            options = {name: str(value) for name, value in description.items()}
+            motion = motion_from_dataset(dataset)
+            return cls(*parts, *([] if motion is None else [motion]), **options)
+        except (ValueError, KeyError, TypeError, AttributeError) as problem:
+            msg = f"the dataset's attributes do not describe a system: {problem}"
+            raise SchemaError(msg) from problem
