@@ -1,0 +1,111 @@
+"""The response along time, laid out as in Figs. 7-15 of the paper."""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rockframe.errors import SchemaError
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_COLOURS = {"full": "0.85", "left": "#4477aa", "right": "#cc6677", "flight": "#ddcc77"}
+_UPLIFT_COLOUR = "#8c510a"
+
+
+def response(dataset: "xr.Dataset", *, title: str | None = None) -> "Figure":
+    """Draw rotation, vertical displacement and contact states along time.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        A result with histories.
+    title : str, optional
+        Title of the figure; the verdict unless given.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Not yet shown nor saved.
+
+    Raises
+    ------
+    SchemaError
+        The dataset has no histories.
+    """
+    from matplotlib.figure import Figure
+
+    if "rotation" not in dataset or "time" not in dataset.coords:
+        msg = "the dataset has no histories to draw; simulate with outputs=() instead of None"
+        raise SchemaError(msg)
+    figure = Figure(figsize=(8.0, 7.0), layout="constrained")
+    axes: Any = figure.subplots(
+        4, 1, sharex=True, gridspec_kw={"height_ratios": [1.0, 2.0, 2.0, 0.35]}
+    )
+    time = dataset["time"].to_numpy()
+    _ground(axes[0], dataset, time)
+    _rotation(axes[1], dataset, time)
+    _vertical(axes[2], dataset, time)
+    _contact(axes[3], dataset, time)
+    axes[3].set_xlabel("time [s]")
+    axes[0].set_xlim(time[0], time[-1])
+    figure.suptitle(title or str(dataset.attrs.get("verdict", "")), fontsize="medium", wrap=True)
+    return figure
+
+
+def _ground(axes: "Axes", dataset: "xr.Dataset", time: Any) -> None:
+    axes.plot(time, dataset["ground_acceleration"], color="0.3", linewidth=0.8)
+    if "vertical_ground_acceleration" in dataset:
+        vertical = dataset["vertical_ground_acceleration"]
+        axes.plot(time, vertical, color="0.65", linewidth=0.6, label="vertical")
+        axes.legend(loc="upper right", fontsize="small")
+    axes.set_ylabel("ground\n[m s$^{-2}$]")
+
+
+def _rotation(axes: "Axes", dataset: "xr.Dataset", time: Any) -> None:
+    axes.plot(time, dataset["relative_rotation"], color="#222255", linewidth=1.0)
+    uplift = float(dataset["uplift_angle"] / dataset["overturning_angle"])
+    if np.isfinite(uplift) and uplift > 0.0:
+        for side in (-1.0, 1.0):
+            axes.axhline(
+                side * uplift,
+                color=_UPLIFT_COLOUR,
+                linewidth=0.7,
+                label="uplift" if side > 0.0 else None,
+            )
+        axes.legend(loc="upper right", fontsize="small")
+    if bool(dataset["overturned"]):
+        axes.axvline(float(dataset["overturning_time"]), color="#cc3311", linestyle=":")
+    axes.axhline(0.0, color="0.8", linewidth=0.5, zorder=0)
+    axes.set_ylabel(r"rotation $\alpha/\theta$ [-]")
+
+
+def _vertical(axes: "Axes", dataset: "xr.Dataset", time: Any) -> None:
+    if "relative_vertical_displacement" in dataset:
+        axes.plot(time, dataset["relative_vertical_displacement"], color="#225522", linewidth=1.0)
+        axes.set_ylabel(r"vertical $y/\delta$ [-]")
+    else:
+        axes.plot(time, dataset["vertical_displacement"], color="#225522", linewidth=1.0)
+        axes.set_ylabel("vertical $y$ [m]")
+    axes.axhline(0.0, color="0.8", linewidth=0.5, zorder=0)
+
+
+def _contact(axes: "Axes", dataset: "xr.Dataset", time: Any) -> None:
+    state = dataset["contact_state"]
+    values = state.to_numpy()
+    meanings = str(state.attrs["flag_meanings"]).split()
+    starts = np.flatnonzero(np.diff(values, prepend=values[0] - 1))
+    ends = np.append(time[starts[1:]], time[-1])
+    for value, meaning in zip(state.attrs["flag_values"], meanings, strict=True):
+        held = values[starts] == value
+        spans = np.column_stack([time[starts], ends - time[starts]])[held]
+        axes.broken_barh(spans.tolist(), (0.0, 1.0), color=_COLOURS[meaning], label=meaning)
+    axes.set_ylim(0.0, 1.0)
+    axes.set_yticks([])
+    axes.set_ylabel("contact", rotation=0, ha="right", va="center")
+    axes.legend(
+        loc="upper center", bbox_to_anchor=(0.5, -1.6), ncols=len(meanings), fontsize="small",
+        frameon=False,
+    )  # fmt: skip
