@@ -1,0 +1,190 @@
+"""Hand-written integrations of the rocking equations, kept apart from the package.
+
+Nothing here imports the package. The two modules state the mechanics anew, step with
+SciPy's DOP853 at tight tolerance, and find every contact change on the dense output. What
+they share is below: the ground motion, cut into smooth pieces, and the search for crossings.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.integrate import DOP853
+from scipy.optimize import brentq
+
+EPS = float(np.finfo(float).eps)
+SIMULTANEOUS = 1e-9
+"""Crossings closer than this (seconds) belong to one instant."""
+
+
+class _Samples:
+    """Samples at k * step, linear in between, zero after the last one."""
+
+    def __init__(self, values: Sequence[float], step: float) -> None:
+        self.values = np.asarray(values, dtype=float)
+        if self.values.ndim != 1 or self.values.size < 2:
+            msg = "a sampled acceleration needs at least two samples in one row"
+            raise ValueError(msg)
+        self.step = float(step)
+        self.end = (self.values.size - 1) * self.step
+
+    def knots(self, every: bool) -> list[float]:
+        return [k * self.step for k in range(self.values.size)] if every else [self.end]
+
+    def piece(self, start: float, stop: float) -> Callable:
+        middle = 0.5 * (start + stop)
+        if middle > self.end:
+            return lambda t: 0.0 * t
+        first = int(start / self.step + 1e-6)
+        last = int(np.ceil(stop / self.step - 1e-6))
+        if last - first <= 1:
+            at, slope = first * self.step, self.values[first + 1] - self.values[first]
+            base, slope = float(self.values[first]), float(slope) / self.step
+            return lambda t: base + slope * (t - at)
+        times = np.arange(self.values.size) * self.step
+        return lambda t: np.interp(t, times, self.values)
+
+
+class _Given:
+    """A function of time, smooth between its breakpoints."""
+
+    def __init__(self, function: Callable[[float], float]) -> None:
+        self.function = function
+
+    def knots(self, every: bool) -> list[float]:
+        return []
+
+    def piece(self, start: float, stop: float) -> Callable:
+        low, high = np.nextafter(start, np.inf), np.nextafter(stop, -np.inf)
+
+        def value(t):
+            if isinstance(t, np.ndarray):
+                return np.array([value(float(one)) for one in t])
+            return float(self.function(min(max(t, low), high)))
+
+        return value
+
+
+class _None:
+    def knots(self, every: bool) -> list[float]:
+        return []
+
+    def piece(self, start: float, stop: float) -> Callable:
+        return lambda t: 0.0 * t
+
+
+class Drive:
+    """Ground acceleration in two directions, cut where it is not smooth."""
+
+    def __init__(
+        self,
+        *,
+        acceleration,
+        vertical,
+        time_step: float | None,
+        breakpoints: Sequence[float],
+        duration: float,
+        restart_every_knot: bool,
+    ) -> None:
+        def source(given):
+            if given is None:
+                return _None()
+            if callable(given):
+                return _Given(given)
+            if time_step is None:
+                msg = "a sampled acceleration needs its time_step"
+                raise ValueError(msg)
+            return _Samples(given, time_step)
+
+        self.sources = (source(acceleration), source(vertical))
+        edges = {0.0, float(duration), *map(float, breakpoints)}
+        for one in self.sources:
+            edges.update(one.knots(restart_every_knot))
+        inside = sorted(edge for edge in edges if 0.0 <= edge <= duration)
+        kept = [0.0]
+        for edge in inside[1:]:
+            if edge - kept[-1] > 1e-12 * max(1.0, edge):
+                kept.append(edge)
+        kept[-1] = float(duration)
+        self.edges = kept
+
+    def pieces(self):
+        """Give (start, stop, horizontal, vertical) for one smooth piece after another."""
+        for start, stop in zip(self.edges[:-1], self.edges[1:], strict=True):
+            yield start, stop, *(source.piece(start, stop) for source in self.sources)
+
+
+@dataclass
+class Guard:
+    """A quantity that is positive as long as nothing happens.
+
+    ``strict``: it cannot start a piece negative, unless the event is due at once.
+    """
+
+    kind: str
+    where: str
+    strict: bool = True
+    armed: bool = False
+
+
+def stepper(rhs, start, state, stop, *, max_step, rtol, atol) -> DOP853:
+    """Set up DOP853 without its trial steps: the step is bounded anyway."""
+    return DOP853(
+        rhs,
+        start,
+        state,
+        stop,
+        max_step=max_step,
+        first_step=min(max_step, stop - start),
+        rtol=rtol,
+        atol=atol,
+    )
+
+
+def polish(function: Callable[[float], float], left: float, right: float) -> float:
+    """Find the root between two points at which the function differs in sign."""
+    at_left, at_right = function(left), function(right)
+    if at_left * at_right >= 0.0:
+        return float(left if abs(at_left) <= abs(at_right) else right)
+    return float(brentq(function, left, right, xtol=1e-15, rtol=4.0 * EPS))
+
+
+def crossings(guards, values, rates, times, dense_values) -> list[float | None]:
+    """Find for each guard when it first falls through zero in this step.
+
+    The sub-points are joined by each guard's own turning points, so that a dip between two
+    sub-points is seen too. ``dense_values(i, t)`` gives guard i and its rate at one time.
+    A guard counts from the moment it has been positive. The flags ``armed`` are renewed.
+    """
+    found: list[float | None] = []
+    for i, guard in enumerate(guards):
+        value, rate = values[i], rates[i]
+        turning = np.nonzero(rate[:-1] * rate[1:] < 0.0)[0]
+        if guard.armed and turning.size == 0 and value.min() > 0.0:
+            found.append(None)
+            continue
+        points = list(zip(times, value, strict=True))
+        for j in turning:
+            at = polish(lambda t, i=i: dense_values(i, t)[1], times[j], times[j + 1])
+            points.append((at, dense_values(i, at)[0]))
+        points.sort(key=lambda point: point[0])
+        hit = None
+        armed = guard.armed or points[0][1] > 0.0
+        before = points[0]
+        for number, point in enumerate(points[1:], start=1):
+            if armed and point[1] <= 0.0:
+                if point[1] == 0.0 or before[1] <= 0.0:
+                    hit = point[0] if before[1] > 0.0 else before[0]
+                else:
+                    hit = polish(lambda t, i=i: dense_values(i, t)[0], before[0], point[0])
+                break
+            if not armed and point[1] < 0.0 and number == 1 and guard.strict:
+                hit = points[0][0]
+                break
+            armed = armed or point[1] > 0.0
+            before = point
+        guard.armed = armed
+        found.append(hit)
+    return found
