@@ -1,0 +1,281 @@
+"""Blocks thrown up: parabolas, landings by the impulse equations, bouncing in closed form."""
+
+import math
+
+import numpy as np
+import pytest
+from analytical.pads import Pads
+from scipy.optimize import brentq
+
+import rockframe as rf
+
+pytestmark = pytest.mark.analytical
+
+PADS = Pads()
+RULES = ("contact-state", "leading-corner", "centre")
+FULL, LEFT, RIGHT, FLIGHT = range(4)
+SEPARATION, IMPACT = 1, 2
+
+
+def thrown(pads, start, duration, motion=None, restitution=None, **options):
+    """Let a block go above its pads: start is (alpha, its rate, y, its rate)."""
+    alpha, spin, y, speed = start
+    return pads.system(restitution=restitution, **options).simulate(
+        motion,
+        duration=f"{duration!r} s",
+        initial=rf.InitialState(
+            rotation=f"{alpha!r} rad",
+            angular_velocity=f"{spin!r} rad/s",
+            vertical_displacement=f"{y!r} m",
+            vertical_velocity=f"{speed!r} m/s",
+        ),
+        output_step=f"{duration / 200.0!r} s",
+        accuracy="reference",
+        outputs="energy",
+    )
+
+
+def heights(pads, alpha, y):
+    """Heights of the left and the right corner above their places at rest."""
+    middle = y + pads.h * (1.0 - math.cos(alpha))
+    return middle + pads.b * math.sin(alpha), middle - pads.b * math.sin(alpha)
+
+
+def landing(pads, start):
+    """Time and side of the first landing of a free parabola."""
+    alpha, spin, y, speed = start
+
+    def gap(t):
+        fallen = y + speed * t - 0.5 * pads.gravity * t * t
+        return min(heights(pads, alpha + spin * t, fallen)) - pads.delta
+
+    fine = np.linspace(0.0, 3.0, 3001)
+    below = np.flatnonzero(np.array([gap(t) for t in fine]) < 0.0)[0]
+    time = brentq(gap, fine[below - 1], fine[below], xtol=1e-15, rtol=1e-15)
+    return time, RIGHT if alpha + spin * time > 0.0 else LEFT
+
+
+THROWS = [
+    # alpha, rate, y, its rate
+    (0.0, 0.3, 0.10, 1.0),
+    (0.0, -0.3, 0.10, 1.0),
+    (0.05, -0.4, 0.20, 2.0),
+    (-0.05, 0.05, 0.15, 0.0),
+    (0.1, 0.0, 0.40, -1.0),
+]
+
+
+@pytest.mark.parametrize("rule", RULES)
+@pytest.mark.parametrize("start", THROWS)
+def test_flight_is_a_parabola(start, rule):
+    alpha, spin, y, speed = start
+    time, side = landing(PADS, start)
+    response = thrown(PADS, start, time + 1e-4, restraint=rule)
+    t = response.time.values[response.time.values < time]
+    flying = response.isel(time=slice(0, len(t)))
+    assert (flying.contact_state.values == FLIGHT).all()
+    fallen = y + speed * t - 0.5 * PADS.gravity * t**2
+    np.testing.assert_allclose(flying.vertical_displacement.values, fallen, atol=1e-13)
+    rate = speed - PADS.gravity * t
+    np.testing.assert_allclose(flying.vertical_velocity.values, rate, atol=1e-12)
+    np.testing.assert_allclose(flying.rotation.values, alpha + spin * t, atol=1e-14)
+    np.testing.assert_allclose(flying.angular_velocity.values, spin, atol=1e-12)
+    x = flying.horizontal_displacement.values
+    np.testing.assert_allclose(x, PADS.h * math.sin(alpha), atol=1e-14)
+    assert (flying.left_reaction.values == 0.0).all()
+    assert (flying.right_reaction.values == 0.0).all()
+    assert response.event_time.values[0] == pytest.approx(time, abs=1e-12)
+    assert response.event_kind.values[0] == IMPACT
+    assert response.contact_state_before.values[0] == FLIGHT
+    assert response.contact_state_after.values[0] == side
+    assert response.flight_time.item() == pytest.approx(time, abs=1e-12)
+    assert response.flight_count.item() == 1
+    assert response.first_uplift_time.item() == 0.0
+    assert response.energy_residual.item() < 1e-12
+
+
+def test_flight_feels_the_ground_only_through_its_own_motion():
+    """Relative to a ground of acceleration (a + s t) the block falls by the double integral."""
+    start = (0.02, 0.1, 0.3, 1.0)
+    across, upwards = np.array([1.0, 4.0]), np.array([-2.0, 3.0])
+    motion = rf.GroundMotion.from_arrays((across, "m/s^2"), "0.4 s", vertical=(upwards, "m/s^2"))
+    response = thrown(PADS, start, 0.3, motion)
+    t = response.time.values
+    assert (response.contact_state.values == FLIGHT).all()
+    slope = np.diff(across).item() / 0.4
+    x = PADS.h * math.sin(0.02) - 0.5 * across[0] * t**2 - slope * t**3 / 6.0
+    np.testing.assert_allclose(response.horizontal_displacement.values, x, atol=1e-12)
+    slope = np.diff(upwards).item() / 0.4
+    y = 0.3 + t - 0.5 * (PADS.gravity + upwards[0]) * t**2 - slope * t**3 / 6.0
+    np.testing.assert_allclose(response.vertical_displacement.values, y, atol=1e-12)
+    np.testing.assert_allclose(response.rotation.values, 0.02 + 0.1 * t, atol=1e-13)
+
+
+def reach(pads, alpha, e):
+    return pads.h * math.cos(alpha) + e * math.sin(alpha)
+
+
+@pytest.mark.parametrize("restitution", [1.0, 0.6, 0.05])
+@pytest.mark.parametrize("rule", RULES)
+@pytest.mark.parametrize("start", THROWS)
+def test_landing_on_one_corner(start, rule, restitution):
+    """First the momentum is projected on the new restraint, then the corner is slowed."""
+    alpha, spin, _, speed = start
+    time, side = landing(PADS, start)
+    if restitution > PADS.eps_max:
+        with pytest.warns(rf.ModelWarning, match="eps_max"):
+            response = thrown(PADS, start, time + 1e-4, restitution=1.0, restraint=rule)
+    else:
+        response = thrown(PADS, start, time + 1e-4, restitution=restitution, restraint=rule)
+    alpha += spin * time
+    speed -= PADS.gravity * time
+    e = 0.0 if rule == "centre" else PADS.b * math.copysign(1.0, alpha)
+    x = reach(PADS, alpha, e)
+    inertia = PADS.inertia + x * x
+    held = PADS.inertia * spin / inertia  # the centre of mass flew straight down
+    lever = PADS.h * math.sin(alpha) - math.copysign(PADS.b, alpha) * math.cos(alpha)
+    corner = speed + lever * held
+    impulse = -(1.0 - restitution) * corner / (1.0 + lever**2 / inertia)
+    after = held + impulse * lever / inertia
+    assert corner < 0.0
+    assert response.event_rotation.values[0] == pytest.approx(alpha, abs=1e-13)
+    assert response.angular_velocity_before.values[0] == pytest.approx(spin, abs=1e-14)
+    assert response.angular_velocity_after.values[0] == pytest.approx(after, abs=1e-12)
+    slip = x * held
+    repinning = 0.5 * (PADS.inertia * spin**2 - PADS.inertia * held**2 - slip**2)
+    impact = -impulse * corner - 0.5 * impulse**2 * (1.0 + lever**2 / inertia)
+    assert response.repinning_energy.values[-1] == pytest.approx(
+        PADS.mass * repinning, rel=1e-9, abs=1e-9
+    )
+    assert response.impact_energy.values[-1] == pytest.approx(
+        PADS.mass * impact, rel=1e-9, abs=1e-9
+    )
+    assert (np.sign(alpha) > 0.0) == (side == RIGHT)
+
+
+def flat_drop_events(pads, height, restitution, bounces):
+    """Times at which a block dropped flat on undamped pads lands and leaves again."""
+    times = []
+    speed = math.sqrt(2.0 * pads.gravity * height)
+    now = speed / pads.gravity
+    for _ in range(bounces):
+        times.append(now)
+        speed *= restitution
+        amplitude = math.hypot(pads.delta, speed / pads.omega_v)
+        phase = math.acos(pads.delta / amplitude)
+        now += 2.0 * (math.pi - phase) / pads.omega_v
+        times.append(now)
+        now += 2.0 * speed / pads.gravity
+    return np.array(times)
+
+
+@pytest.mark.parametrize("restitution", [0.9, 0.5])
+@pytest.mark.parametrize("rule", RULES)
+def test_bouncing_flat_on_undamped_pads(restitution, rule):
+    pads = Pads(damping_ratio=0.0)
+    height = 0.1
+    expected = flat_drop_events(pads, height, restitution, 4)
+    response = thrown(
+        pads,
+        (0.0, 0.0, pads.delta + height, 0.0),
+        float(expected[-1]) + 1e-3,
+        restitution=restitution,
+        restraint=rule,
+    )
+    together = response.event_time.values
+    found = together[np.concatenate([[True], np.diff(together) > 1e-9])]
+    np.testing.assert_allclose(found, expected, rtol=1e-9)
+    assert (response.rotation.values == 0.0).all()
+    assert (response.angular_velocity.values == 0.0).all()
+    landed = 0.5 * (response.contact_state.values != FLIGHT).mean()
+    assert landed > 0.0
+    flights = np.diff(np.concatenate([[0.0], expected]))[::2].sum()
+    assert response.flight_time.item() == pytest.approx(flights + 1e-3, rel=1e-9)
+    assert response.flight_count.item() == 5
+    assert response.impact_count.item() == 4
+    fallen = pads.mass * pads.gravity * height
+    lost = fallen * (1.0 - restitution**8)
+    assert response.impact_energy.values[-1] == pytest.approx(lost, rel=1e-9)
+    assert response.energy_residual.item() < 1e-10
+
+
+def test_without_losses_a_flat_bounce_comes_back_to_its_height():
+    pads = Pads(damping_ratio=0.0)
+    height = 0.05
+    with pytest.warns(rf.ModelWarning, match="eps_max"):
+        response = thrown(pads, (0.0, 0.0, pads.delta + height, 0.0), 3.0, restitution=1.0)
+    flying = response.isel(time=np.flatnonzero(response.contact_state.values == FLIGHT))
+    assert flying.time.values[-1] > 2.0
+    y = flying.vertical_displacement.values - pads.delta
+    summit = y + 0.5 * flying.vertical_velocity.values**2 / pads.gravity
+    np.testing.assert_allclose(summit, height, rtol=1e-8)
+    assert response.impact_energy.values[-1] == pytest.approx(0.0, abs=1e-6)
+
+
+@pytest.mark.parametrize("xi", [0.05, 0.3])
+def test_a_block_leaves_damped_pads_when_they_no_longer_push(xi):
+    """From equilibrium, kicked upwards: the reaction k(delta - y) - c y' falls through zero."""
+    pads = Pads(damping_ratio=xi)
+    speed = 1.5 * pads.omega_v * pads.delta
+    response = thrown(pads, (0.0, 0.0, 0.0, speed), 0.05)
+    damped = xi * pads.omega_v
+    turning = math.sqrt(pads.omega_v**2 - damped**2)
+
+    def state(t):
+        fade = math.exp(-damped * t)
+        y = speed / turning * fade * math.sin(turning * t)
+        return y, fade * speed * math.cos(turning * t) - damped * y
+
+    def push(t):
+        y, rate = state(t)
+        return pads.k * (pads.delta - y) - pads.c * rate
+
+    time = brentq(push, 0.0, 1.0 / pads.omega_v, xtol=1e-16)
+    assert push(0.0) > 0.0
+    assert response.event_time.values[0] == pytest.approx(time, abs=1e-11)
+    assert response.event_kind.values[0] == SEPARATION
+    assert response.contact_state_after.values[-1] == FLIGHT
+    assert response.first_uplift_time.item() == pytest.approx(time, abs=1e-11)
+    y0, rate0 = state(time)
+    t = response.time.values
+    flying = t > time
+    fallen = y0 + rate0 * (t - time) - 0.5 * pads.gravity * (t - time) ** 2
+    np.testing.assert_allclose(
+        response.vertical_displacement.values[flying], fallen[flying], atol=1e-10
+    )
+    assert (response.contact_state.values[flying] == FLIGHT).all()
+
+
+@pytest.mark.parametrize("xi", [0.3, 2.0])
+def test_a_kick_beyond_what_the_dashpots_can_hold_is_flight_at_once(xi):
+    pads = Pads(damping_ratio=xi)
+    speed = 1.01 * pads.k * pads.delta / pads.c
+    response = thrown(pads, (0.0, 0.0, 0.0, speed), 0.02)
+    assert response.contact_state.values[0] == FLIGHT
+    t = response.time.values
+    fallen = speed * t - 0.5 * pads.gravity * t**2
+    catches = response.event_time.values
+    flying = t < (catches[0] if len(catches) else 1.0)
+    assert flying.sum() > 1
+    np.testing.assert_allclose(
+        response.vertical_displacement.values[flying], fallen[flying], atol=1e-13
+    )
+
+
+def test_a_pad_that_catches_up_takes_the_corner_back_without_impact():
+    """Overdamped pads lag behind a slow kick, and touch again while the block still rises."""
+    pads = Pads(damping_ratio=2.0)
+    speed = 1.01 * pads.k * pads.delta / pads.c
+    response = thrown(pads, (0.0, 0.0, 0.0, speed), 0.5)
+
+    def push(t):
+        y = speed * t - 0.5 * pads.gravity * t * t
+        return pads.k * (pads.delta - y) - pads.c * (speed - pads.gravity * t)
+
+    time = brentq(push, 0.0, 0.1)
+    assert speed - pads.gravity * time > 0.0
+    assert response.event_time.values[0] == pytest.approx(time, abs=1e-12)
+    assert set(response.event_kind.values.tolist()) == {3}
+    assert response.impact_count.item() == 0
+    assert response.flight_time.item() == pytest.approx(time, abs=1e-12)
+    assert response.energy_residual.item() < 1e-9

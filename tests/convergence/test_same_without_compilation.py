@@ -1,0 +1,55 @@
+"""Compiled and plain runs are the same source, and give the same numbers."""
+
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+RUN = """
+import sys
+import numpy as np
+import rockframe as rf
+
+rng = np.random.default_rng(3)
+x, y = (np.convolve(rng.normal(size=201), np.ones(5) / 5, "same") for _ in range(2))
+motion = rf.GroundMotion.from_arrays((8 * x, "m/s^2"), "0.02 s", vertical=(4 * y, "m/s^2"))
+block = rf.Block.from_size(radius="3 m", slenderness=3, mass="2 t")
+pads = rf.TwoSpringSupport(frequency_ratio=15, damping_ratio=0.1)
+out = {}
+for rule in ("contact-state", "leading-corner", "centre"):
+    for rotation in ("finite", "small"):
+        system = rf.System(block, pads, restraint=rule, rotation=rotation)
+        out[f"{rule} {rotation}"] = system.simulate(motion, outputs=["energy"])
+out["rigid"] = rf.System(block).simulate(motion, outputs=["energy"])
+arrays = {
+    f"{scene}/{name}": variable.to_numpy()
+    for scene, result in out.items()
+    for name, variable in result.variables.items()
+}
+np.savez(sys.argv[1], **arrays)
+"""
+
+
+@pytest.mark.skipif(
+    os.environ.get("ROCKFRAME_COMPILE") == "0", reason="this run does without compilation"
+)
+def test_compiled_and_plain_agree_to_rounding(tmp_path):
+    pytest.importorskip("numba")
+    results = {}
+    for compiled in ("1", "0"):
+        file = tmp_path / f"{compiled}.npz"
+        subprocess.run(
+            [sys.executable, "-c", RUN, str(file)],
+            env=os.environ | {"ROCKFRAME_COMPILE": compiled},
+            check=True,
+        )
+        results[compiled] = np.load(file)
+    assert set(results["1"].files) == set(results["0"].files)
+    for name in results["1"].files:
+        np.testing.assert_allclose(
+            results["1"][name], results["0"][name], rtol=1e-12, atol=1e-12, err_msg=name
+        )
+    impacts = [results["1"][name] for name in results["1"].files if "impact_count" in name]
+    assert max(int(count) for count in impacts) > 3
