@@ -1,0 +1,31 @@
+"""The battery's axes."""
+
+from functools import cache
+
+import pytest
+from contract.scenes import MOTIONS, SCENES
+
+
+@pytest.fixture(params=list(SCENES))
+def scene(request):
+    """Give the name of a scene; SCENES makes it."""
+    return request.param
+
+
+@pytest.fixture(params=list(MOTIONS))
+def motion_name(request):
+    """Give the name of a motion; MOTIONS makes it."""
+    return request.param
+
+
+@pytest.fixture
+def response(scene, motion_name):
+    """Give the response of a scene to a motion, with everything that can be asked for."""
+    return _run(scene, motion_name).copy(deep=True)
+
+
+@cache
+def _run(scene, motion_name):
+    return SCENES[scene]().simulate(
+        MOTIONS[motion_name](), free_vibration="0.5 s", outputs="energy"
+    )

@@ -1,0 +1,338 @@
+"""The dataset of every scene: layout, types, attributes, as promised."""
+
+import math
+import re
+
+import cf_xarray  # noqa: F401
+import numpy as np
+import pytest
+import xarray as xr
+from contract.scenes import MODELS, MOTIONS, SCENES, pulse, record
+
+import rockframe as rf
+from rockframe.results.schema import ENERGIES, SCHEMA
+from rockframe.solve.accuracy import accuracy_of
+
+pytestmark = pytest.mark.contract
+
+HISTORIES = {
+    "rotation",
+    "angular_velocity",
+    "vertical_displacement",
+    "vertical_velocity",
+    "horizontal_displacement",
+    "relative_rotation",
+    "contact_state",
+    "ground_acceleration",
+    "left_reaction",
+    "right_reaction",
+}
+SCALARS = {
+    "overturned",
+    "overturning_time",
+    "overturning_direction",
+    "peak_rotation",
+    "peak_relative_rotation",
+    "first_uplift_time",
+    "impact_count",
+    "flight_time",
+    "energy_residual",
+    "status",
+    "overturning_angle",
+    "uplift_angle",
+}
+EVENTS = {"event_time", "event_kind", "contact_state_before", "contact_state_after"}
+BOTH_SIDES = {"angular_velocity_before", "angular_velocity_after"}
+
+
+class TestEveryDataset:
+    def test_its_layout(self, scene, motion_name, response):
+        assert isinstance(response, xr.Dataset)
+        assert set(response.dims) == {"time", "event"}
+        assert set(response.coords) == {"time"}
+        assert HISTORIES | SCALARS | EVENTS | BOTH_SIDES | set(ENERGIES) <= set(response.data_vars)
+        assert ("vertical_ground_acceleration" in response) == ("vertical" in motion_name)
+        on_pads = MODELS[scene] == "two-spring"
+        assert ("relative_vertical_displacement" in response) == on_pads
+        for name, variable in response.variables.items():
+            assert name in SCHEMA
+            assert variable.dims == SCHEMA[name].dims, name
+            assert variable.dtype == SCHEMA[name].dtype, name
+
+    def test_its_time_axis(self, response):
+        time = response.time.values
+        assert time.dtype == np.float64
+        assert time[0] == 0.0
+        assert (np.diff(time) > 0.0).all()
+        assert response.indexes["time"].is_unique
+        assert response.time.attrs["units"] == "s"
+
+    def test_floats_are_plain_and_have_units_and_long_names(self, response):
+        for name, variable in response.variables.items():
+            assert isinstance(variable.data, np.ndarray), name
+            assert variable.data.flags.writeable or name == "time", name
+            assert variable.attrs["long_name"], name
+            if variable.dtype.kind == "f":
+                assert variable.dtype == np.float64, name
+                assert isinstance(variable.attrs["units"], str), name
+            for value in variable.attrs.values():
+                assert isinstance(value, str | np.ndarray), name
+            assert "_FillValue" not in variable.attrs, name
+
+    def test_histories_are_finite(self, response):
+        for name, variable in response.variables.items():
+            if variable.dims:
+                assert np.isfinite(variable.values).all(), name
+
+    def test_flags_read_as_words(self, response):
+        state = response.contact_state
+        assert state.dtype == np.int8
+        assert state.attrs["flag_values"].dtype == np.int8
+        assert state.attrs["flag_meanings"] == "full left right flight"
+        flying = state.cf == "flight"
+        np.testing.assert_array_equal(flying.values, state.values == 3)
+        np.testing.assert_array_equal((state.cf == "full").values, state.values == 0)
+        words = ["full", "left", "right", "flight"]
+        counts = [int((state.cf == word).sum()) for word in words]
+        assert sum(counts) == state.size
+        assert counts[0] > 0
+        assert counts[1] > 0
+        assert counts[2] > 0
+        assert bool((response.status.cf == "completed").item())
+        direction = response.overturning_direction
+        assert bool((direction.cf == "none").item())
+        assert ((response.event_kind.cf == "impact").sum() == response.impact_count).item()
+        for name in ("event_kind", "status", "overturning_direction", "contact_state"):
+            flags = response[name].attrs["flag_values"]
+            assert np.isin(response[name].values, flags).all(), name
+
+    def test_its_contact_states_are_those_of_its_reactions(self, response):
+        left = response.left_reaction.values
+        right = response.right_reaction.values
+        state = response.contact_state.values
+        assert (left >= -1e-6).all()
+        assert (right >= -1e-6).all()
+        assert (left[(state == 2) | (state == 3)] == 0.0).all()
+        assert (right[(state == 1) | (state == 3)] == 0.0).all()
+
+    def test_its_scalars_agree_with_its_histories(self, response):
+        assert response.overturned.dtype == bool
+        theta = response.overturning_angle.item()
+        assert theta == pytest.approx(math.atan(0.25), rel=1e-15)
+        relative = response.rotation.values / theta
+        np.testing.assert_array_equal(response.relative_rotation.values, relative)
+        peak = response.peak_rotation.item()
+        largest = np.abs(response.rotation.values).max()
+        assert largest <= peak * (1.0 + 1e-9)
+        assert largest >= 0.99 * peak
+        assert response.peak_relative_rotation.item() == peak / theta
+        assert 0.0 <= response.energy_residual.item() < 1e-5
+        lifted = response.time.values[response.contact_state.values != 0]
+        first = response.first_uplift_time.item()
+        assert first <= lifted[0]
+        assert lifted[0] - first <= 0.0101
+        assert math.isnan(response.overturning_time.item())
+
+    def test_its_events_are_in_order_and_join_up(self, response):
+        time = response.event_time.values
+        assert time.size > 0
+        assert (np.diff(time) >= 0.0).all()
+        assert time[0] >= 0.0
+        assert time[-1] <= response.time.values[-1] + 0.0101
+        before = response.contact_state_before.values
+        after = response.contact_state_after.values
+        np.testing.assert_array_equal(before[1:], after[:-1])
+        assert before[0] == response.contact_state.values[0]
+        # between events the histories stay in the state that the last event left
+        held = np.concatenate([before[:1], after])
+        row = np.searchsorted(time, response.time.values, side="left")
+        np.testing.assert_array_equal(response.contact_state.values, held[row])
+        assert (response.event_kind.values == 2).sum() == response.impact_count.item()
+
+    def test_its_rates_are_the_slopes_of_its_histories(self, scene, motion_name):
+        """Between events, by the trapezoidal rule: its error is of third order in the step."""
+        response = SCENES[scene]().simulate(
+            MOTIONS[motion_name](), free_vibration="0.5 s", output_step="1 ms"
+        )
+        time = response.time.values
+        events = response.event_time.values
+        calm = np.searchsorted(events, time[:-1]) == np.searchsorted(events, time[1:])
+        assert calm.mean() > 0.5
+        step = np.diff(time)
+        for value, rate in (
+            ("rotation", "angular_velocity"),
+            ("vertical_displacement", "vertical_velocity"),
+        ):
+            y, v = response[value].values, response[rate].values
+            error = np.abs(np.diff(y) - 0.5 * step * (v[1:] + v[:-1]))
+            bend = np.abs(np.diff(v, 2))
+            around = np.maximum(np.append(bend, 0.0), np.insert(bend, 0, 0.0))
+            assert (error <= 0.25 * step * around + 1e-9 * np.abs(y).max())[calm].all(), value
+
+    def test_its_attributes_are_strings_and_numbers(self, response):
+        for name, value in response.attrs.items():
+            assert isinstance(name, str)
+            assert type(value) in (str, int, float), name
+            if isinstance(value, str):
+                assert value, name
+                assert value.isprintable() or "\n" in value, name
+
+    def test_its_attributes_tell_the_whole_story(self, scene, motion_name, response):
+        attrs = response.attrs
+        assert attrs["Conventions"] == "CF-1.11"
+        assert attrs["title"]
+        assert re.match(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ ", attrs["history"])
+        assert re.search(rf"rockframe {re.escape(rf.__version__)}\b", attrs["source"])
+        assert "Winkler Foundation" in attrs["references"] or "doi" in attrs["references"].lower()
+        assert attrs["model"] == MODELS[scene]
+        assert attrs["model_description"] == SCENES[scene]().describe()
+        assert attrs["overturned"] == 0
+        assert type(attrs["overturned"]) is int
+        assert math.isnan(attrs["overturning_time"])
+        assert attrs["overturning_direction"] == "none"
+        assert attrs["verdict"].endswith(".")
+        assert "not overturn" in attrs["verdict"]
+        assert attrs["solver_rtol"] == accuracy_of("standard").rtol
+        assert attrs["solver_steps"] > 10
+        assert re.fullmatch(r"[0-9a-f]{64}", attrs["motion_sha256"])
+        assert attrs["motion_sha256"] == MOTIONS[motion_name]().sha256
+        assert attrs["motion"] == MOTIONS[motion_name]().name
+        assert attrs["system_json"].startswith("{")
+        if "finite" in scene:
+            assert "finite" in attrs.values()
+        else:
+            assert "small" in attrs.values()
+        if MODELS[scene] == "two-spring":
+            assert scene.split(", ")[1] in attrs.values()
+
+    def test_its_ground_acceleration_is_the_motion(self, motion_name, response):
+        si = MOTIONS[motion_name]().si
+        across = response.ground_acceleration.values
+        np.testing.assert_array_equal(across[: si.acceleration.size], si.acceleration)
+        assert (across[si.acceleration.size :] == 0.0).all()
+        if "vertical" in motion_name:
+            upwards = response.vertical_ground_acceleration.values
+            np.testing.assert_allclose(upwards[: si.vertical.size], si.vertical, atol=1e-12)
+            assert (upwards[si.vertical.size :] == 0.0).all()
+
+
+def falling(scene, **options):
+    motion = rf.GroundMotion.sine_pulse("-9 m/s^2", "0.5 Hz")
+    return SCENES[scene]().simulate(motion, **options)
+
+
+class TestOverturning:
+    def test_it_ends_the_run_and_is_told_everywhere(self, scene):
+        response = falling(scene, free_vibration="5 s")
+        time = response.overturning_time.item()
+        assert response.overturned.item() is True
+        assert 0.0 < time < 2.0
+        assert response.time.values[-1] == time
+        assert response.event_time.values[-1] == time
+        assert bool(response.event_kind.cf.isin(["overturning"])[-1])
+        theta = response.overturning_angle.item()
+        assert abs(response.rotation.values[-1]) == pytest.approx(theta, rel=1e-12)
+        assert response.peak_relative_rotation.item() == pytest.approx(1.0, rel=1e-12)
+        assert bool((response.overturning_direction.cf == "right").item())
+        assert bool((response.status.cf == "overturned").item())
+        assert response.attrs["overturned"] == 1
+        assert response.attrs["overturning_time"] == time
+        assert response.attrs["overturning_direction"] == "right"
+        assert "right" in response.attrs["verdict"]
+        assert f"{time:.3f} s" in response.attrs["verdict"]
+
+    def test_it_may_go_on_until_the_block_lies_flat(self, scene):
+        short = falling(scene, free_vibration="5 s")
+        long = falling(scene, free_vibration="60 s", overturning="continue")
+        assert bool((long.status.cf == "toppled").item())
+        assert long.overturning_time.item() == short.overturning_time.item()
+        assert abs(long.rotation.values[-1]) == pytest.approx(0.5 * math.pi, rel=1e-12)
+        assert long.peak_rotation.item() == pytest.approx(0.5 * math.pi, rel=1e-12)
+        kinds = long.event_kind
+        assert int((kinds.cf == "overturning").sum()) == 1
+        assert bool((kinds.cf == "toppled")[-1])
+        assert long.event_time.values[-1] == long.time.values[-1]
+        assert (np.diff(long.time.values) > 0.0).all()
+        count = short.sizes["time"] - 1
+        np.testing.assert_array_equal(long.rotation.values[:count], short.rotation.values[:count])
+        assert "flat" in long.attrs["verdict"]
+
+    def test_the_other_side_is_left(self, scene):
+        motion = rf.GroundMotion.sine_pulse("9 m/s^2", "0.5 Hz")
+        response = SCENES[scene]().simulate(motion)
+        assert bool((response.overturning_direction.cf == "left").item())
+        assert "left" in response.attrs["verdict"]
+
+
+class TestWhatIsAskedFor:
+    def test_energies_only_on_request(self, scene):
+        assert not set(ENERGIES) & set(SCENES[scene]().simulate(pulse()).variables)
+
+    @pytest.mark.parametrize("name", ENERGIES)
+    def test_one_energy_only(self, scene, name):
+        for outputs in (name, [name], (name,), {name}):
+            response = SCENES[scene]().simulate(pulse(), duration="0.4 s", outputs=outputs)
+            assert set(ENERGIES) & set(response.variables) == {name}
+
+    def test_no_histories_at_all(self, scene):
+        response = SCENES[scene]().simulate(pulse(), outputs=None)
+        assert set(response.dims) == {"event"}
+        assert set(response.variables) >= SCALARS | EVENTS
+        assert not HISTORIES & set(response.variables)
+
+    def test_the_output_step(self, scene):
+        response = SCENES[scene]().simulate(record(), duration="3 s", output_step="30 ms")
+        np.testing.assert_array_equal(response.time.values, np.arange(101) * 0.03)
+        own = SCENES[scene]().simulate(record(), duration="3 s")
+        np.testing.assert_array_equal(own.time.values, np.arange(301) * 0.01)
+
+    def test_a_still_ground(self, scene):
+        response = SCENES[scene]().simulate(
+            duration="1 s", initial=rf.InitialState(rotation="0.1 rad")
+        )
+        assert (response.ground_acceleration.values == 0.0).all()
+        assert response.rotation.values[0] == 0.1
+        assert response.time.values[-1] == pytest.approx(1.0, abs=1e-12)
+        assert "motion_sha256" not in response.attrs
+        assert response.attrs["motion"] == "none"
+
+    def test_nothing_happens_to_a_block_left_alone(self, scene):
+        response = SCENES[scene]().simulate(duration="1 s", outputs="energy")
+        assert response.sizes["event"] == 0
+        assert (response.rotation.values == 0.0).all()
+        assert (response.vertical_displacement.values == 0.0).all()
+        assert math.isnan(response.first_uplift_time.item())
+        assert response.peak_rotation.item() == 0.0
+        assert response.energy_residual.item() == 0.0
+        weight = 50e3 * 9.80665
+        total = response.left_reaction.values + response.right_reaction.values
+        np.testing.assert_allclose(total, weight, rtol=1e-12)
+        assert "no uplift" in response.attrs["verdict"]
+
+
+def test_scalars_of_a_study_concatenate():
+    rows = []
+    for scene in SCENES:
+        for amplitude in ("-3 m/s^2", "-9 m/s^2"):
+            motion = rf.GroundMotion.sine_pulse(amplitude, "0.5 Hz")
+            rows.append(SCENES[scene]().simulate(motion, outputs=None).drop_dims("event"))
+    assert set(rows[0].data_vars) >= SCALARS
+    study = xr.concat(rows, dim="run", data_vars="all", coords="minimal", compat="override")
+    assert study.sizes == {"run": len(rows)}
+    for name in SCALARS:
+        assert study[name].dims == ("run",)
+        assert study[name].dtype == SCHEMA[name].dtype
+        assert study[name].attrs["long_name"] == SCHEMA[name].long_name
+    assert 0 < study.overturned.sum() < len(rows)
+    assert (np.isnan(study.overturning_time) == ~study.overturned).all()
+
+
+def test_an_unfinished_run_says_so():
+    system = SCENES["two-spring, contact-state, finite"]()
+    response = system.simulate(pulse(), accuracy=rf.Accuracy(rtol=1e-7, max_steps=50))
+    assert bool((response.status.cf == "step_limit").item())
+    assert "Not finished" in response.attrs["verdict"]
+    assert response.attrs["solver_steps"] <= 50
+    assert response.time.values[-1] == pytest.approx(response.attrs["solver_end_time"], abs=0.01)
+    assert response.attrs["solver_end_time"] < 1.0
+    assert response.overturned.item() is False

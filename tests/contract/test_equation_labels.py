@@ -1,0 +1,71 @@
+"""Code and manual cite the same equations: no label is missing, doubled or forgotten."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+DOCS = ROOT / "docs"
+
+# a display equation's label, "$$ (label)", or that of a math directive, ":label: label"
+DEFINITION = re.compile(r"^\s*\$\$\s*\(([\w-]+)\)\s*$|^\s*:label:\s*([\w-]+)\s*$", re.MULTILINE)
+CITATION = re.compile(r"(?::eq:|\{eq\})`(?:[^`<]*<)?([\w-]+)>?`")
+
+
+def read(folder: Path, pattern: str) -> dict[Path, str]:
+    built = folder / "_build"
+    return {
+        path: path.read_text(encoding="utf-8")
+        for path in sorted(folder.rglob(pattern))
+        if not path.is_relative_to(built)
+    }
+
+
+PAGES = read(DOCS, "*.md")
+CODE = read(ROOT / "rockframe", "*.py")
+DEFINED = {
+    page: [label or other for label, other in DEFINITION.findall(text)]
+    for page, text in PAGES.items()
+}
+COUNT = Counter(label for labels in DEFINED.values() for label in labels)
+CITED_BY_CODE = {
+    label: path.relative_to(ROOT) for path, text in CODE.items() for label in CITATION.findall(text)
+}
+CITED_BY_PAGES = {
+    label: page.relative_to(ROOT)
+    for page, text in PAGES.items()
+    for label in CITATION.findall(text)
+}
+THEORY = [
+    (label, page)
+    for page, labels in DEFINED.items()
+    if page.is_relative_to(DOCS / "theory")
+    for label in labels
+]
+
+
+def test_there_is_something_to_check():
+    assert len(CITED_BY_CODE) >= 12
+    assert len(THEORY) >= 12
+
+
+@pytest.mark.parametrize("label", sorted(CITED_BY_CODE))
+def test_an_equation_cited_by_code_is_defined_once(label):
+    assert COUNT[label] == 1, f"{CITED_BY_CODE[label]} cites {label}, defined {COUNT[label]} times"
+
+
+@pytest.mark.parametrize("label", sorted(CITED_BY_PAGES))
+def test_an_equation_cited_by_a_page_is_defined_once(label):
+    assert COUNT[label] == 1, f"{CITED_BY_PAGES[label]} cites {label}, defined {COUNT[label]} times"
+
+
+@pytest.mark.parametrize(("label", "page"), THEORY, ids=[label for label, _ in THEORY])
+def test_an_equation_of_the_theory_is_cited_elsewhere(label, page):
+    elsewhere = any(
+        label in CITATION.findall(text) for other, text in PAGES.items() if other != page
+    )
+    assert label in CITED_BY_CODE or elsewhere

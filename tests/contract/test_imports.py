@@ -1,0 +1,102 @@
+"""What is loaded when: a script that only reads records waits for nothing else."""
+
+import subprocess
+import sys
+
+import pytest
+
+import rockframe as rf
+
+pytestmark = pytest.mark.contract
+
+HEAVY = ("numba", "llvmlite", "matplotlib", "xarray", "pandas", "pint", "scipy", "netCDF4")
+
+
+def loaded(code):
+    """Run code in a fresh interpreter and give the heavy modules it has loaded."""
+    report = f"import sys; print(*[m for m in {(*HEAVY, 'matplotlib.pyplot')} if m in sys.modules])"
+    done = subprocess.run(
+        [sys.executable, "-c", f"{code}\n{report}"], capture_output=True, text=True, timeout=240
+    )
+    assert done.returncode == 0, done.stderr
+    return set(done.stdout.split())
+
+
+def test_importing_loads_nothing_heavy():
+    assert loaded("import rockframe") == set()
+
+
+def test_looking_around_loads_nothing_heavy():
+    code = "import rockframe\nassert 'System' in dir(rockframe)\nrockframe.__version__"
+    assert loaded(code) == set()
+
+
+def test_naming_everything_loads_neither_numba_nor_a_plot():
+    code = """
+import rockframe
+for name in rockframe.__all__:
+    if name != "plot":
+        getattr(rockframe, name)
+"""
+    assert not {"numba", "llvmlite", "matplotlib"} & loaded(code)
+
+
+def test_describing_a_system_loads_neither_numba_nor_a_plot():
+    code = """
+import rockframe as rf
+block = rf.Block(width="2 m", height="8 m", mass="50 t")
+text = rf.System(block, rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)).describe()
+assert "two-spring" in text
+"""
+    assert not {"numba", "llvmlite", "matplotlib", "xarray"} & loaded(code)
+
+
+def test_simulating_does_not_load_a_plot():
+    code = """
+import rockframe as rf
+block = rf.Block(width="2 m", height="8 m", mass="50 t")
+response = rf.System(block).simulate(rf.GroundMotion.sine_pulse())
+response.to_netcdf
+"""
+    found = loaded(code)
+    assert "matplotlib" not in found
+    assert "matplotlib.pyplot" not in found
+    assert "xarray" in found
+
+
+def test_plotting_does_not_need_a_screen_nor_pyplot_at_import():
+    assert "matplotlib" not in loaded("import rockframe as rf\nrf.plot")
+
+
+def test_all_names_are_there():
+    expected = {
+        "Accuracy",
+        "AssemblyError",
+        "Block",
+        "ComponentError",
+        "GroundMotion",
+        "InitialState",
+        "ModelWarning",
+        "RecordError",
+        "RockframeError",
+        "SchemaError",
+        "SolverError",
+        "System",
+        "TwoSpringSupport",
+        "UnitsError",
+        "plot",
+    }
+    assert expected <= set(rf.__all__)
+    assert len(set(rf.__all__)) == len(rf.__all__)
+    for name in rf.__all__:
+        assert getattr(rf, name) is not None
+    with pytest.raises(AttributeError, match="Sytem"):
+        rf.Sytem  # noqa: B018
+
+
+def test_errors_form_one_family():
+    for name in ("Units", "Component", "Assembly", "Record", "Solver", "Schema"):
+        error = getattr(rf, f"{name}Error")
+        assert issubclass(error, rf.RockframeError)
+        assert error is not rf.RockframeError
+    assert issubclass(rf.ModelWarning, UserWarning)

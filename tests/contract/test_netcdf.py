@@ -1,0 +1,252 @@
+"""Through a file with plain xarray, and back to a system that gives the same bits."""
+
+import json
+
+import cf_xarray  # noqa: F401
+import netCDF4
+import numpy as np
+import pytest
+import xarray as xr
+from contract.scenes import MOTIONS, RULES, SCENES, block, pads, pulse, record
+
+import rockframe as rf
+
+pytestmark = pytest.mark.contract
+
+WHEN = ("history",)
+
+
+def through_file(dataset, folder, **options):
+    path = folder / "response.nc"
+    dataset.to_netcdf(path, **options)
+    with xr.open_dataset(path, **options) as again:
+        return again.load()
+
+
+class TestEveryFile:
+    def test_it_comes_back_identical(self, response, tmp_path):
+        again = through_file(response, tmp_path)
+        xr.testing.assert_identical(again, response)
+        for name, variable in response.variables.items():
+            assert again[name].dtype == variable.dtype, name
+            np.testing.assert_array_equal(again[name].values, variable.values)
+        for name, value in response.attrs.items():
+            assert np.array_equal(again.attrs[name], value, equal_nan=isinstance(value, float))
+        assert ((again.contact_state.cf == "full") == (response.contact_state.cf == "full")).all()
+
+    def test_writing_leaves_the_dataset_alone(self, response, tmp_path):
+        before = response.copy(deep=True)
+        response.to_netcdf(tmp_path / "one.nc")
+        response.to_netcdf(tmp_path / "two.nc")
+        xr.testing.assert_identical(before, response)
+
+    def test_the_file_itself_is_clean(self, response, tmp_path):
+        path = tmp_path / "response.nc"
+        response.to_netcdf(path)
+        with netCDF4.Dataset(path) as file:
+            for name, variable in file.variables.items():
+                attributes = variable.ncattrs()
+                assert "long_name" in attributes
+                if name == "time" or "flag_values" in attributes:
+                    assert "_FillValue" not in attributes, name
+                    assert "missing_value" not in attributes, name
+                if "flag_values" in attributes:
+                    assert variable.dtype == np.int8
+                    assert variable.getncattr("flag_values").dtype == np.int8
+                if variable.dtype == np.float64:
+                    assert "units" in attributes, name
+                assert "coordinates" not in attributes, name
+            assert not any(dimension.isunlimited() for dimension in file.dimensions.values())
+            assert "coordinates" not in file.ncattrs()
+
+    def test_it_rebuilds_the_system_and_the_bits(self, scene, motion_name, response, tmp_path):
+        again = through_file(response, tmp_path)
+        system = rf.System.from_dataset(again)
+        assert system.to_dict() == SCENES[scene]().to_dict()
+        motion = system.motion
+        if motion_name == "pulse and vertical":
+            # two analytic pulses in one: only the digest is on record
+            assert motion is None or motion.sha256 == MOTIONS[motion_name]().sha256
+            motion = MOTIONS[motion_name]()
+        assert motion is not None
+        assert motion.sha256 == MOTIONS[motion_name]().sha256
+        rerun = system.simulate(motion, free_vibration="0.5 s", outputs="energy")
+        for attribute in WHEN:
+            del rerun.attrs[attribute], again.attrs[attribute]
+        for name in again.variables:
+            np.testing.assert_array_equal(rerun[name].values, again[name].values, err_msg=name)
+        assert rerun.attrs["system_json"] == again.attrs["system_json"]
+        assert rerun.attrs["motion_sha256"] == again.attrs["motion_sha256"]
+
+
+@pytest.mark.parametrize("rule", RULES)
+@pytest.mark.parametrize("gravity", ["9.81 m/s^2", "0.1654 g_0"])
+@pytest.mark.parametrize("motion", [pulse, record])
+def test_options_and_odd_numbers_come_back(rule, gravity, motion, tmp_path):
+    system = rf.System(
+        rf.Block(width="7.77 ft", height="29.1 ft", mass="33.3 t", shape_factor=2.87),
+        rf.TwoSpringSupport(stiffness="9.87 kN/mm", damping="71.3 kN*s/m", restitution=0.71),
+        restraint=rule,
+        rotation="finite",
+        gravity=gravity,
+    )
+    initial = rf.InitialState(rotation="-1.1 deg", angular_velocity="0.7 deg/s")
+    options = {"initial": initial, "duration": "2.5 s"}
+    response = system.simulate(motion(), **options)
+    again = rf.System.from_dataset(through_file(response, tmp_path))
+    assert again.to_dict() == system.to_dict()
+    assert again.gravity_si == system.gravity_si
+    rerun = again.simulate(**options)
+    assert rerun.drop_attrs(deep=False).identical(response.drop_attrs(deep=False))
+
+
+def test_the_run_itself_is_on_record(tmp_path):
+    initial = rf.InitialState(rotation="-1 deg")
+    response = SCENES["two-spring, centre, finite"]().simulate(
+        record(),
+        duration="2.5 s",
+        initial=initial,
+        accuracy="fast",
+        output_step="20 ms",
+        outputs=["input_energy"],
+        overturning="continue",
+    )
+    plan = json.loads(through_file(response, tmp_path).attrs["run_json"])
+    assert plan["duration"] == "2.5 s"
+    assert (
+        rf.InitialState.from_dict(
+            {key: value for key, value in plan["initial"].items() if key != "type"}
+        )
+        == initial
+    )
+    accuracy = rf.Accuracy(**plan["accuracy"])
+    rerun = SCENES["two-spring, centre, finite"]().simulate(
+        record(),
+        duration=plan["duration"],
+        initial=initial,
+        accuracy=accuracy,
+        output_step=plan["output_step"],
+        outputs=plan["outputs"],
+        overturning=plan["overturning"],
+    )
+    assert rerun.drop_attrs(deep=False).identical(response.drop_attrs(deep=False))
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"outputs": None},
+        {"output_step": "33 ms"},
+        {"duration": "0.5 s"},
+    ],
+)
+def test_a_record_that_the_result_does_not_hold_is_left_out(options, tmp_path):
+    response = SCENES["rigid ground, finite"]().simulate(record(), **options)
+    system = rf.System.from_dataset(through_file(response, tmp_path))
+    assert system.motion is None
+    assert system.to_dict() == SCENES["rigid ground, finite"]().to_dict()
+
+
+def test_a_pulse_is_kept_even_without_histories(tmp_path):
+    response = SCENES["rigid ground, finite"]().simulate(pulse(), outputs=None)
+    system = rf.System.from_dataset(through_file(response, tmp_path))
+    assert system.motion is not None
+    assert system.motion.sha256 == pulse().sha256
+
+
+def test_a_motion_among_the_parts_is_used_and_kept(tmp_path):
+    motion = pulse()
+    system = rf.System(motion, pads(), block())
+    apart = rf.System(block(), pads())
+    one, other = system.simulate(), apart.simulate(motion)
+    assert one.drop_attrs(deep=False).identical(other.drop_attrs(deep=False))
+    again = rf.System.from_dataset(through_file(one, tmp_path))
+    assert again.motion is not None
+    assert again.motion.sha256 == motion.sha256
+
+
+def test_a_run_without_events_survives_the_file(tmp_path):
+    response = SCENES["two-spring, centre, small"]().simulate(duration="0.1 s")
+    assert response.sizes["event"] == 0
+    xr.testing.assert_identical(through_file(response, tmp_path), response)
+
+
+def test_an_overturned_run_survives_the_file(tmp_path):
+    motion = rf.GroundMotion.sine_pulse("-9 m/s^2", "0.5 Hz")
+    response = SCENES["two-spring, centre, small"]().simulate(motion)
+    assert response.attrs["overturned"] == 1
+    again = through_file(response, tmp_path)
+    xr.testing.assert_identical(again, response)
+    assert again.attrs["overturning_time"] == response.overturning_time.item()
+    assert again.attrs["overturned"] == 1
+
+
+def damaged(**changed):
+    response = SCENES["rigid ground, finite"]().simulate(record(), duration="1.8 s")
+    response.attrs.update(changed)
+    return response
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "nonsense",
+        "[]",
+        "3",
+        "null",
+        "{}",
+        '{"parts": []}',
+        '{"parts": 3}',
+        '{"parts": [3]}',
+        '{"parts": [{"type": "Brick"}]}',
+        '{"parts": [{"type": "Block", "width": "2 m"}]}',
+        '{"parts": [{"type": "Block", "width": "2 m", "height": "8 m", "mass": "1 t", "x": 1}]}',
+        '{"parts": [{"type": "Block", "width": "2 m", "height": "8 m", "mass": "1 t"}], "x": 1}',
+        '{"parts": [{"type": "Block", "width": "2 m", "height": "8 m", "mass": 5}]}',
+        '{"parts": [{"type": "Block", "width": "2 m", "height": "8 m", "mass": "1 t"}], '
+        '"gravity": 9.81}',
+    ],
+)
+def test_a_damaged_description_of_the_system_is_refused(text):
+    with pytest.raises(rf.RockframeError):
+        rf.System.from_dataset(damaged(system_json=text))
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [
+        {"motion_json": "nonsense"},
+        {"motion_json": "[]"},
+        {"motion_json": "3"},
+        {"motion_json": '{"constructor": "eval"}'},
+        {"motion_json": '{"constructor": "sine_pulse", "wrong": 1}'},
+        {"motion_time_step": "nonsense"},
+        {"motion_samples": "nonsense"},
+    ],
+)
+def test_a_damaged_description_of_the_motion_is_refused(changed):
+    with pytest.raises(rf.RockframeError):
+        rf.System.from_dataset(damaged(**changed))
+
+
+@pytest.mark.parametrize("name", ["motion_time_step", "motion_samples", "motion_sha256", "motion"])
+def test_a_missing_part_of_the_description_is_no_crash(name):
+    response = damaged()
+    del response.attrs[name]
+    try:
+        system = rf.System.from_dataset(response)
+    except rf.SchemaError:
+        return
+    assert system.to_dict() == SCENES["rigid ground, finite"]().to_dict()
+
+
+def test_changed_samples_are_not_taken_for_the_record():
+    response = damaged()
+    response.ground_acceleration.values[17] *= 1.0 + 1e-12
+    assert rf.System.from_dataset(response).motion is None
+
+
+def test_a_foreign_dataset_is_refused():
+    with pytest.raises(rf.SchemaError, match="system_json"):
+        rf.System.from_dataset(xr.Dataset({"rotation": ("time", [0.0, 1.0])}))

@@ -1,0 +1,140 @@
+"""The one table of variables: names, units, flags."""
+
+import re
+
+import cf_units
+import cf_xarray.units
+import numpy as np
+import pint
+import pytest
+
+from rockframe.results.schema import ENERGIES, SCHEMA
+
+pytestmark = pytest.mark.contract
+
+# dimensions in kg, m, s, rad of everything that the contract names
+DIMENSIONS = {
+    "time": (0, 0, 1, 0),
+    "rotation": (0, 0, 0, 1),
+    "angular_velocity": (0, 0, -1, 1),
+    "vertical_displacement": (0, 1, 0, 0),
+    "vertical_velocity": (0, 1, -1, 0),
+    "horizontal_displacement": (0, 1, 0, 0),
+    "relative_rotation": (0, 0, 0, 0),
+    "relative_vertical_displacement": (0, 0, 0, 0),
+    "ground_acceleration": (0, 1, -2, 0),
+    "vertical_ground_acceleration": (0, 1, -2, 0),
+    "left_reaction": (1, 1, -2, 0),
+    "right_reaction": (1, 1, -2, 0),
+    "kinetic_energy": (1, 2, -2, 0),
+    "potential_energy": (1, 2, -2, 0),
+    "elastic_energy": (1, 2, -2, 0),
+    "dissipated_energy": (1, 2, -2, 0),
+    "impact_energy": (1, 2, -2, 0),
+    "repinning_energy": (1, 2, -2, 0),
+    "input_energy": (1, 2, -2, 0),
+    "event_time": (0, 0, 1, 0),
+    "event_rotation": (0, 0, 0, 1),
+    "angular_velocity_before": (0, 0, -1, 1),
+    "angular_velocity_after": (0, 0, -1, 1),
+    "overturning_time": (0, 0, 1, 0),
+    "peak_rotation": (0, 0, 0, 1),
+    "peak_relative_rotation": (0, 0, 0, 0),
+    "first_uplift_time": (0, 0, 1, 0),
+    "impact_count": (0, 0, 0, 0),
+    "flight_time": (0, 0, 1, 0),
+    "energy_residual": (0, 0, 0, 0),
+    "overturning_angle": (0, 0, 0, 1),
+    "uplift_angle": (0, 0, 0, 1),
+}
+PLAIN = pint.UnitRegistry(cache_folder=None)
+FLAGS = {"contact_state", "event_kind", "overturning_direction", "status"}
+
+with_unit = pytest.mark.parametrize(
+    "row", [row for row in SCHEMA.values() if row.unit is not None], ids=lambda row: row.name
+)
+every_row = pytest.mark.parametrize("row", SCHEMA.values(), ids=lambda row: row.name)
+
+
+def test_the_contract_is_in_the_table():
+    assert set(DIMENSIONS) | FLAGS | {"overturned"} <= set(SCHEMA)
+    assert set(ENERGIES) <= set(SCHEMA)
+    assert set(ENERGIES) == {name for name in SCHEMA if name.endswith("_energy")}
+
+
+@with_unit
+def test_udunits_and_pint_agree_on_the_unit(row):
+    text = row.attributes()["units"]
+    udunits = cf_units.Unit(text)
+    assert not udunits.is_unknown()
+    for registry in (PLAIN, cf_xarray.units.units):
+        unit = registry.Unit(text)
+        size = registry.Quantity(1.0, unit).to_base_units()
+        assert size.magnitude == pytest.approx(1.0, rel=1e-15)
+        base = {"kilogram": "kg", "meter": "m", "second": "s", "radian": "rad"}
+        powers = {base[name]: power for name, power in size.unit_items()}
+        again = " ".join(f"{name}{power:g}" for name, power in powers.items()) or "1"
+        assert udunits == cf_units.Unit(again)
+        assert udunits.convert(1.0, cf_units.Unit(again)) == 1.0
+
+
+@pytest.mark.parametrize("name", DIMENSIONS)
+def test_the_unit_has_the_dimensions_of_the_quantity(name):
+    powers = DIMENSIONS[name]
+    text = SCHEMA[name].attributes()["units"]
+    symbols = ("kg", "m", "s", "rad")
+    expected = " ".join(
+        f"{symbol}{power}" for symbol, power in zip(symbols, powers, strict=True) if power
+    )
+    unit = cf_units.Unit(text)
+    assert unit.convert(1.0, cf_units.Unit(expected or "1")) == 1.0
+    # UDUNITS takes the radian for a pure number; the spelling tells them apart
+    assert ("rad" in text) == bool(powers[3])
+
+
+@with_unit
+def test_the_spelling_is_the_agreed_one(row):
+    text = row.attributes()["units"]
+    word = r"(kg|m|s|rad|Hz|N|J)(\^-?[1-9])?"
+    assert text == "1" or re.fullmatch(rf"{word}( {word})*", text), text
+
+
+@every_row
+def test_names_are_full_words(row):
+    assert re.fullmatch(r"[a-z]+(_[a-z]+)*", row.name)
+    assert row.long_name
+    assert row.long_name == row.long_name.strip()
+    assert not row.long_name.endswith(".")
+    assert row.dims in ((), ("time",), ("event",))
+    assert "standard_name" not in row.attributes()
+
+
+def test_long_names_tell_variables_apart():
+    words = [row.long_name for row in SCHEMA.values()]
+    assert len(set(words)) == len(words)
+
+
+@every_row
+def test_flags_follow_cf(row):
+    attributes = row.attributes()
+    if row.flags is None:
+        assert "flag_values" not in attributes
+        assert (row.unit is None) == (row.dtype == "bool")
+        assert row.dtype in ("float64", "int64", "bool")
+        return
+    assert row.dtype == "int8"
+    assert "units" not in attributes
+    values = attributes["flag_values"]
+    assert isinstance(values, np.ndarray)
+    assert values.dtype == np.int8
+    meanings = attributes["flag_meanings"].split(" ")
+    assert len(meanings) == len(values) == len(set(meanings)) == len(set(values.tolist()))
+    assert all(re.fullmatch(r"[A-Za-z0-9_.+@-]+", meaning) for meaning in meanings)
+
+
+def test_contact_states_have_the_agreed_names():
+    row = SCHEMA["contact_state"]
+    assert row.dims == ("time",)
+    attributes = row.attributes()
+    assert attributes["flag_meanings"] == "full left right flight"
+    assert attributes["flag_values"].tolist() == [0, 1, 2, 3]

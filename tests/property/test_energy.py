@@ -1,0 +1,193 @@
+"""The energy audit over random scenes, and what no event may do.
+
+Ranges: see `property.scenarios`.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import example, given, settings
+from property.scenarios import GRAVITY, RULES, Scenario, scenarios
+
+import rockframe as rf
+from rockframe.dynamics.protocol import Start
+from rockframe.simulation.run import ground_of
+from rockframe.solve.accuracy import accuracy_of
+from rockframe.solve.integrate import integrate
+
+pytestmark = pytest.mark.property
+
+FINISHED = {0, 1, 2}
+HARD = {
+    "radius": 5.0,
+    "slenderness": 4.0,
+    "frequency": 1.0,
+    "cycles": 1.0,
+    "peak": 1.0,
+}
+
+
+def energy_scale(response):
+    names = ("kinetic_energy", "input_energy", "dissipated_energy")
+    return max(float(np.abs(response[name].values).max()) for name in names)
+
+
+@given(scenarios())
+@example(Scenario(base="contact-state", beta=60.0, xi=0.0, rotation="finite", vertical=0.5, **HARD))
+@example(Scenario(base="centre", beta=8.0, xi=0.5, rotation="finite", vertical=-0.5, **HARD))
+@example(Scenario(base="leading-corner", beta=20.0, xi=0.0, rotation="small", vertical=0.0, **HARD))
+@example(
+    # upright at every event and at the end: the largest energies stand in between
+    Scenario(
+        base="leading-corner",
+        radius=1.051,
+        slenderness=1.051,
+        beta=36.979,
+        xi=0.0,
+        rotation="finite",
+        peak=0.5,
+        frequency=0.5,
+        cycles=0.5,
+        vertical=0.0,
+    )
+)
+@settings(max_examples=150, deadline=None)
+def test_energy_balances(scenario):
+    standard = scenario.run(outputs=None)
+    assert standard.status.item() in FINISHED
+    assert standard.energy_residual.item() <= 1e-5
+    reference = scenario.run(outputs=None, accuracy="reference")
+    assert reference.status.item() in FINISHED
+    assert reference.energy_residual.item() <= 1e-8
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        {"base": "contact-state", "radius": 0.5, "slenderness": 1.0, "beta": 29.815, "cycles": 2.5},
+        {"base": "leading-corner", "radius": 1.051, "slenderness": 1.051, "beta": 36.979},
+        {"base": "rigid", "radius": 5.0, "slenderness": 4.0, "beta": 20.0, "start": 0.5},
+    ],
+)
+def test_the_residual_is_over_the_largest_term_of_the_whole_run(scene):
+    """Not only of the instants of events and of the end, where little may be stored."""
+    shaking = {"peak": 0.2, "frequency": 0.5, "cycles": 0.5, "vertical": 0.0}
+    scenario = Scenario(**{"xi": 0.0, "rotation": "finite", **shaking, **scene})
+    response = scenario.run(outputs="energy", output_step="1 ms")
+    stored = sum(response[f"{kind}_energy"].values for kind in ("kinetic", "potential", "elastic"))
+    stored -= stored[0]
+    gone = sum(response[f"{kind}_energy"].values for kind in ("dissipated", "impact", "repinning"))
+    supplied = response.input_energy.values
+    imbalance = np.abs(stored + gone - supplied).max()
+    largest = max(np.abs(stored).max(), np.abs(supplied).max(), np.abs(gone).max())
+    assert imbalance / largest > 1e-10
+    # the samples between the steps can only add to the imbalance
+    assert response.energy_residual.item() <= 2.0 * imbalance / largest
+
+
+@given(scenarios())
+@example(Scenario(base="rigid", beta=60.0, xi=0.0, rotation="finite", vertical=0.5, **HARD))
+@example(Scenario(base="contact-state", beta=20.0, xi=0.1, rotation="finite", vertical=0.0, **HARD))
+@settings(max_examples=60, deadline=None)
+def test_energy_balances_in_the_histories(scenario):
+    """At every sample: what is stored, burnt and lost is what came in."""
+    response = scenario.run(outputs="energy", output_step="5 ms", accuracy="reference")
+    stored = sum(response[f"{kind}_energy"].values for kind in ("kinetic", "potential", "elastic"))
+    gone = sum(response[f"{kind}_energy"].values for kind in ("dissipated", "impact", "repinning"))
+    balance = stored + gone - response.input_energy.values
+    drift = np.abs(balance - balance[0]).max()
+    assert drift <= 1e-6 * max(energy_scale(response), 1e-300)
+
+
+@given(scenarios())
+@settings(max_examples=60, deadline=None)
+def test_losses_only_grow(scenario):
+    response = scenario.run(outputs="energy", output_step="5 ms", overturning="continue")
+    slack = 1e-9 * energy_scale(response)
+    for name in ("dissipated_energy", "impact_energy", "repinning_energy"):
+        steps = np.diff(response[name].values)
+        assert (steps >= -slack).all(), name
+    assert (response.kinetic_energy.values >= 0.0).all()
+    assert (response.elastic_energy.values >= 0.0).all()
+    if scenario.xi == 0.0 or scenario.base == "rigid":
+        np.testing.assert_allclose(response.dissipated_energy.values, 0.0, atol=slack)
+    if scenario.base in ("rigid", "centre") or scenario.rotation == "small":
+        pinned = response.flight_count.item() == 0
+        assert not pinned or (response.repinning_energy.values == 0.0).all()
+
+
+def stored_energy(model, mode, state):
+    out = np.zeros(4)
+    # the plain function behind the compiled one
+    getattr(model.energy, "__wrapped__", model.energy)(int(mode), state, model.parameters, out)
+    return out[0] + out[1] + out[3], max(abs(out[0]), abs(out[1]), abs(out[2]))
+
+
+@given(scenarios())
+@settings(max_examples=60, deadline=None)
+def test_energy_never_rises_at_an_event(scenario):
+    model = scenario.system.setting.compile()
+    start = scenario.initial.si
+    run = integrate(
+        model,
+        Start(start.rotation, start.angular_velocity),
+        ground_of(scenario.motion),
+        accuracy_of("standard"),
+        duration=scenario.motion.si.duration + 2.0,
+        output_step=None,
+        stop_at_overturning=False,
+    )
+    lost = [run.start_memory, *run.events.memory]
+    for i in range(len(run.events.time)):
+        before, size = stored_energy(model, run.events.mode_before[i], run.events.state_before[i])
+        after, _ = stored_energy(model, run.events.mode_after[i], run.events.state_after[i])
+        # a rigid block's impact is found to 1e-15 of theta, and its energy there to that
+        slack = 1e-11 * size + 1e-14 * GRAVITY * scenario.radius
+        assert after <= before + slack
+        # and the books say how much went
+        booked = (lost[i + 1][1] + lost[i + 1][2]) - (lost[i][1] + lost[i][2])
+        assert before - after == pytest.approx(booked, abs=slack)
+
+
+@pytest.mark.parametrize("rotation", ["finite", "small"])
+@pytest.mark.parametrize("start", [0.2, 0.6, -0.9])
+def test_without_losses_the_leading_corner_keeps_all_energy(start, rotation):
+    """Undamped, with eps = 1, rocking freely through many contact changes."""
+
+    block = rf.Block.from_size(radius="5 m", slenderness=4, mass="50 t")
+    pads = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0, restitution=1)
+    with pytest.warns(rf.ModelWarning, match="eps_max"):
+        system = rf.System(block, pads, restraint="leading-corner", rotation=rotation)
+    scenario = Scenario(
+        base="leading-corner", beta=20.0, xi=0.0, rotation=rotation, vertical=0.0, **HARD
+    )
+    response = system.simulate(
+        duration="20 s",
+        initial=replace(scenario, start=start).initial,
+        accuracy="reference",
+        outputs="energy",
+    )
+    assert not response.overturned.item()
+    assert response.impact_count.item() > 3
+    stored = sum(response[f"{kind}_energy"].values for kind in ("kinetic", "potential", "elastic"))
+    at_rest = 0.5 * block.mass.m_as("kg") * 9.80665 * 9.80665 / (20.0**2 * 0.75 * 9.80665 / 5.0)
+    free = stored[0] - at_rest
+    assert free > 0.0
+    np.testing.assert_allclose(stored - at_rest, free, rtol=1e-7)
+    assert (response.impact_energy.values <= 1e-9 * free).all()
+    assert (np.abs(response.repinning_energy.values) <= 1e-9 * free).all()
+
+
+@pytest.mark.parametrize("rule", RULES)
+def test_a_block_left_alone_comes_to_rest(rule):
+    scenario = Scenario(
+        base=rule, beta=20.0, xi=0.2, rotation="finite", vertical=0.0, free=60.0,
+        **{**HARD, "peak": 0.4},
+    )  # fmt: skip
+    response = scenario.run(outputs="energy")
+    assert response.peak_relative_rotation.item() > 0.05
+    kinetic = response.kinetic_energy.values
+    assert kinetic[-1] < 1e-9 * kinetic.max()
+    assert abs(response.rotation.values[-1]) < 1e-6
+    assert response.contact_state.values[-1] == 0

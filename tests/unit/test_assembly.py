@@ -1,0 +1,467 @@
+"""Putting a system together and asking it to run: what fits, what does not, what is said."""
+
+import itertools
+import math
+import multiprocessing
+import re
+import sys
+
+import numpy as np
+import pytest
+
+import rockframe as rf
+
+pytestmark = pytest.mark.unit
+
+
+def block(**changed):
+    return rf.Block(**{"width": "2 m", "height": "8 m", "mass": "50 t", **changed})
+
+
+def pads(**changed):
+    return rf.TwoSpringSupport(**{"frequency_ratio": 20, "damping_ratio": 0.1, **changed})
+
+
+def pulse():
+    return rf.GroundMotion.sine_pulse("-3 m/s^2")
+
+
+def faults(*parts, **options):
+    with pytest.raises(rf.AssemblyError) as caught:
+        rf.System(*parts, **options)
+    return caught.value
+
+
+SCENES = {
+    "rigid ground": (block(),),
+    "rigid ground by name": (block(), rf.RigidGround()),
+    "two-spring": (block(), pads()),
+}
+
+
+# parts -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_parts_come_in_any_order(name):
+    motion = pulse()
+    systems = [rf.System(*order) for order in itertools.permutations((*SCENES[name], motion))]
+    assert len({system.describe() for system in systems}) == 1
+    assert len({repr(system) for system in systems}) == 1
+    assert all(system.motion is motion for system in systems)
+    assert all(system.to_dict() == systems[0].to_dict() for system in systems)
+    first = systems[0].simulate()
+    for system in systems[1:]:
+        assert system.simulate().drop_attrs().identical(first.drop_attrs())
+
+
+def test_the_assembly_picks_the_model():
+    for name, parts in SCENES.items():
+        model = name.removesuffix(" by name")
+        assert rf.System(*parts).describe().splitlines()[0] == f"Model: {model}"
+
+
+def test_a_system_does_not_change_its_parts():
+    own, base = block(), pads()
+    before = (own.to_dict(), base.to_dict())
+    system = rf.System(own, base)
+    system.simulate(pulse(), outputs=None)
+    assert (own.to_dict(), base.to_dict()) == before
+    assert rf.System(own, base).to_dict() == system.to_dict()
+
+
+@pytest.mark.parametrize(
+    ("parts", "words"),
+    [
+        ((), ["no Block"]),
+        ((pads(),), ["no Block"]),
+        ((rf.RigidGround(),), ["no Block"]),
+        ((block(), block()), ["Block", "twice"]),
+        ((block(), block(width="3 m")), ["Block", "twice", "3.0 m"]),
+        ((block(), pads(), pads()), ["TwoSpringSupport", "twice"]),
+        ((block(), pulse(), pulse()), ["GroundMotion", "twice"]),
+        ((block(), rf.RigidGround(), rf.RigidGround()), ["RigidGround", "twice"]),
+        ((block(), pads(), rf.RigidGround()), ["RigidGround", "TwoSpringSupport", "both"]),
+        ((block(), None), ["None is not a part"]),
+        ((block(), "pads"), ["'pads' is not a part"]),
+        ((block(), 3.5), ["3.5 is not a part"]),
+        ((block(), rf.InitialState()), ["InitialState", "not a part"]),
+        (([block(), pads()],), ["is not a part", "no Block"]),
+        ((rf.Block,), ["class itself", "no Block"]),
+        ((block(), rf.TwoSpringSupport), ["TwoSpringSupport", "class itself"]),
+        ((block(), rf.RigidGround), ["RigidGround", "class itself"]),
+        ((block(), rf.GroundMotion), ["GroundMotion", "class itself"]),
+        ((block(), rf.GroundMotion.sine_pulse), ["not a part"]),
+        ((block(), rf.System(block())), ["not a part"]),
+    ],
+)
+def test_parts_that_make_no_scene_are_refused(parts, words):
+    error = faults(*parts)
+    for word in words:
+        assert word in str(error)
+    assert "Supported scenes:" in str(error)
+    assert "Block + TwoSpringSupport" in str(error)
+    assert "rigid ground" in str(error)
+    assert isinstance(error, rf.RockframeError)
+
+
+def test_every_fault_is_listed_at_once():
+    error = faults(
+        pads(),
+        pads(),
+        rf.RigidGround(),
+        "soil",
+        rf.Block,
+        restraint="left",
+        rotation="large",
+        coupling="loose",
+        gravity="9.81",
+    )
+    expected = [
+        "TwoSpringSupport is given twice",
+        "'soil' is not a part",
+        "class itself",
+        "restraint must be one of 'contact-state', 'leading-corner', 'centre', got 'left'",
+        "rotation must be one of 'finite', 'small', got 'large'",
+        "coupling must be one of 'coupled', 'cascade', got 'loose'",
+        "gravity needs an acceleration",
+        "no Block is given",
+        "both given",
+    ]
+    for words in expected:
+        assert sum(words in fault for fault in error.faults) == 1, words
+        assert words in str(error)
+    assert len(error.faults) == len(expected)
+
+
+def test_a_single_fault_is_one_sentence():
+    error = faults(pads())
+    assert len(error.faults) == 1
+    assert str(error).startswith(error.faults[0])
+
+
+# options -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("name", "values"),
+    [
+        ("restraint", ["contact-state", "leading-corner", "centre"]),
+        ("rotation", ["finite", "small"]),
+        ("coupling", ["coupled", "cascade"]),
+    ],
+)
+class TestOptions:
+    def test_strings_and_members_are_taken(self, name, values):
+        for value in values:
+            system = rf.System(block(), pads(), **{name: value})
+            member = getattr(system, name)
+            assert member == value
+            assert str(member) == value
+            assert rf.System(block(), pads(), **{name: member}).to_dict() == system.to_dict()
+            assert system.to_dict()[name] == value
+
+    @pytest.mark.parametrize("bad", ["", "Finite", "CENTRE", None, True, 0, [], {}, object, "x"])
+    def test_others_are_refused_with_the_choice(self, name, values, bad):
+        error = faults(block(), pads(), **{name: bad})
+        assert name in str(error)
+        assert repr(bad) in str(error)
+        for value in values:
+            assert repr(value) in str(error)
+
+
+def test_unknown_options_are_refused():
+    with pytest.raises(TypeError, match="restrain"):
+        rf.System(block(), pads(), restrain="centre")
+
+
+def test_gravity_is_standard_unless_given():
+    assert rf.System(block()).gravity_si == 9.80665
+    assert rf.System(block(), gravity="1 g_0").gravity_si == pytest.approx(9.80665)
+    assert rf.System(block(), gravity="981 Gal").gravity_si == pytest.approx(9.81)
+    for bad in ("0 m/s^2", "-9.81 m/s^2", "nan m/s^2", "9.81", 9.81, "9.81 N"):
+        assert "gravity" in str(faults(block(), gravity=bad))
+
+
+# description -----------------------------------------------------------------------------------
+
+
+class TestDescription:
+    def test_of_two_springs(self):
+        text = rf.System(block(), pads(restitution=0.8)).describe()
+        theta = math.atan(0.25)
+        radius = math.sqrt(17.0)
+        omega = math.sqrt(0.75 * 9.80665 / radius)
+        uplift = math.asin(4.0 / (3.0 * 400.0 * math.sin(theta)))
+        stiffness = 0.5 * 5e4 * (20.0 * omega) ** 2
+        base = 5e4 * (17.0 / 3.0 + 16.0)
+        rocking = math.sqrt((2.0 * stiffness - 5e4 * 9.80665 * 4.0) / base)
+        damping = 0.1 * 5e4 * 20.0 * omega
+        for word in (
+            "Model: two-spring",
+            "Block(",
+            "TwoSpringSupport(",
+            f"{theta:.6g} rad",
+            f"{uplift:.6g} rad",
+            f"{omega:.6g} rad/s",
+            f"{20.0 * omega:.6g} rad/s",
+            f"{rocking:.6g} rad/s",
+            f"period {2.0 * math.pi / rocking:.6g} s",
+            "damping ratio 0.1",
+            f"damping ratio {damping / (base * rocking):.6g}",
+            f"{stiffness:.6g} N/m",
+            f"{0.5 * 5e4 * 9.80665 / stiffness:.6g} m",
+            "0.8",
+            "Eq. (12)",
+            "Eq. (15)",
+            "Eqs. (2)-(4)",
+            "sliding",
+            "tension",
+        ):
+            assert word in text, word
+        states = re.findall(r"^  (full|left|right|flight|impact) ", text, re.MULTILINE)
+        assert states == ["full", "left", "right", "flight", "impact"]
+
+    def test_of_rigid_ground(self):
+        text = rf.System(block()).describe()
+        for word in (
+            "Model: rigid ground",
+            "omega^2",
+            "sin(theta s - a)",
+            "Housner",
+            f"{9.80665 * 0.25:.4g} m s^-2",
+            f"{1.0 - 1.5 / 17.0:.6g}",
+            "sliding",
+            "flight",
+        ):
+            assert word in text, word
+
+    @pytest.mark.parametrize("rule", ["contact-state", "leading-corner", "centre"])
+    def test_names_the_restraint_rule(self, rule):
+        assert rule in rf.System(block(), pads(), restraint=rule).describe()
+        others = {"contact-state", "leading-corner", "centre"} - {rule}
+        text = rf.System(block(), pads(), restraint=rule).describe()
+        assert not any(f"{other}:" in text for other in others)
+
+    def test_says_when_rotations_are_small(self):
+        for parts in SCENES.values():
+            small = rf.System(*parts, rotation="small").describe()
+            assert "small rotation" in small
+            assert small != rf.System(*parts).describe()
+            assert "small rotation" not in rf.System(*parts).describe()
+
+    def test_says_under_what_gravity(self):
+        moon = rf.System(block(), pads(), gravity="1.62 m/s^2").describe()
+        omega = math.sqrt(0.75 * 1.62 / math.sqrt(17.0))
+        assert f"{omega:.6g} rad/s" in moon
+        assert "1.62" in moon
+
+    def test_is_plain_text(self):
+        for parts in SCENES.values():
+            text = rf.System(*parts).describe()
+            assert text.isascii()
+            assert "nan" not in text
+            assert not any(line != line.rstrip() for line in text.splitlines())
+            assert not text.endswith("\n")
+
+
+# simulate ----------------------------------------------------------------------------------------
+
+
+def refusal(error=rf.AssemblyError, system=None, **arguments):
+    chosen = rf.System(block(), pads()) if system is None else system
+    with pytest.raises(error) as caught:
+        chosen.simulate(arguments.pop("motion", pulse()), **arguments)
+    return str(caught.value)
+
+
+class TestSimulateRefuses:
+    def test_nothing_to_do(self):
+        with pytest.raises(rf.AssemblyError, match="nothing to simulate"):
+            rf.System(block()).simulate()
+        with pytest.raises(rf.AssemblyError, match="nothing to simulate"):
+            rf.System(block()).simulate(initial=rf.InitialState(rotation="0.1 rad"))
+
+    @pytest.mark.parametrize("bad", ["pulse", 3, [0.0, 1.0], rf.GroundMotion, np.zeros(3)])
+    def test_what_is_no_motion(self, bad):
+        assert "motion must be a GroundMotion" in refusal(motion=bad)
+
+    @pytest.mark.parametrize("bad", ["0.1 rad", 0.1, {}, rf.InitialState])
+    def test_what_is_no_initial_state(self, bad):
+        assert "InitialState" in refusal(initial=bad)
+
+    def test_two_lengths(self):
+        message = refusal(duration="1 s", free_vibration="2 s")
+        assert "duration or free_vibration, not both" in message
+
+    @pytest.mark.parametrize("name", ["duration", "free_vibration", "output_step"])
+    @pytest.mark.parametrize("bad", ["0 s", "-1 s", "nan s", "inf s", "1 m", "1", 1.0])
+    def test_lengths_that_are_none(self, name, bad):
+        assert name in refusal(rf.RockframeError, **{name: bad})
+
+    @pytest.mark.parametrize("sign", ["", "-"])
+    def test_an_initial_rotation_beyond_overturning(self, sign):
+        theta = math.atan(0.25)
+        for system in (rf.System(block()), rf.System(block(), pads())):
+            inside = rf.InitialState(rotation=f"{sign}{theta * (1.0 - 1e-9)!r} rad")
+            system.simulate(pulse(), initial=inside, outputs=None)
+            for angle in (theta, theta * (1.0 + 1e-9), 1.0):
+                start = rf.InitialState(rotation=f"{sign}{angle!r} rad")
+                message = refusal(system=system, initial=start)
+                assert "initial rotation" in message
+                assert "overturning angle" in message
+
+    def test_a_vertical_start_on_rigid_ground(self):
+        for start in (
+            rf.InitialState(vertical_displacement="1 mm"),
+            rf.InitialState(vertical_displacement="0 mm"),
+            rf.InitialState(vertical_velocity="1 mm/s"),
+        ):
+            message = refusal(system=rf.System(block()), initial=start)
+            assert "vertical_displacement" in message
+
+    @pytest.mark.parametrize(
+        "bad", ["x", ["rotations"], ["peak_rotation"], ["energy", "x"], [3], 3, [[]], [None], True]
+    )
+    def test_outputs_that_do_not_exist(self, bad):
+        message = refusal(rf.RockframeError, outputs=bad)
+        assert "outputs" in message
+        assert "kinetic_energy" in message
+
+    @pytest.mark.parametrize("bad", ["Stop", "go on", None, True, 1, []])
+    def test_other_ways_to_overturn(self, bad):
+        message = refusal(overturning=bad)
+        assert "'stop' or 'continue'" in message
+        assert repr(bad) in message
+
+    @pytest.mark.parametrize("bad", ["best", "", None, 1e-7, True, []])
+    def test_other_accuracies(self, bad):
+        message = refusal(rf.RockframeError, accuracy=bad)
+        for word in ("fast", "standard", "reference", "Accuracy", repr(bad)):
+            assert word in message
+
+    def test_several_faults_at_once(self):
+        message = refusal(
+            duration="1 s",
+            free_vibration="1 s",
+            overturning="x",
+            outputs=["y"],
+            initial=rf.InitialState(rotation="1 rad"),
+        )
+        for word in ("not both", "overturning must", "'y'", "initial rotation"):
+            assert word in message
+
+    def test_an_output_step_of_no_use_even_without_histories(self):
+        assert "output_step" in refusal(rf.RockframeError, outputs=None, output_step="5")
+
+
+def _simulate(options):
+    try:
+        rf.System(block(), pads()).simulate(pulse(), **options)
+    except rf.RockframeError:
+        sys.exit(7)
+    sys.exit(0)
+
+
+@pytest.mark.parametrize(
+    "options", [{"duration": "1e12 s"}, {"output_step": "1e-13 s"}, {"free_vibration": "1e300 s"}]
+)
+def test_more_samples_than_any_machine_holds_are_refused(options):
+    worker = multiprocessing.get_context("fork").Process(target=_simulate, args=(options,))
+    worker.start()
+    worker.join(20.0)
+    alive = worker.is_alive()
+    if alive:
+        worker.kill()
+        worker.join()
+    assert not alive
+    assert worker.exitcode == 7
+
+
+class TestAccuracy:
+    def test_it_is_a_frozen_value(self):
+        accuracy = rf.Accuracy(rtol=1e-8)
+        assert accuracy == rf.Accuracy(rtol=1e-8)
+        assert hash(accuracy) == hash(rf.Accuracy(rtol=1e-8))
+        with pytest.raises(AttributeError):
+            accuracy.rtol = 1e-3
+
+    @pytest.mark.parametrize(
+        ("name", "bad"),
+        [
+            ("rtol", 0.0),
+            ("rtol", -1e-7),
+            ("rtol", 1.0),
+            ("rtol", 1e-16),
+            ("rtol", math.nan),
+            ("rtol", math.inf),
+            ("rtol", "1e-7"),
+            ("rtol", None),
+            ("rtol", True),
+            ("steps_per_period", 0),
+            ("steps_per_period", math.nan),
+            ("max_steps", 0),
+            ("max_steps", -5),
+            ("max_steps", 10.5),
+            ("floor", -0.1),
+            ("floor", 2.0),
+        ],
+    )
+    def test_settings_out_of_range_are_refused(self, name, bad):
+        with pytest.raises(rf.SolverError, match=name):
+            rf.Accuracy(**{"rtol": 1e-7, name: bad})
+
+    @pytest.mark.parametrize("name", ["fast", "standard", "reference"])
+    def test_names_stand_for_settings(self, name):
+        response = rf.System(block(), pads()).simulate(pulse(), accuracy=name, outputs=None)
+        assert response.attrs["accuracy"] == name
+        own = rf.Accuracy(rtol=response.attrs["solver_rtol"])
+        assert own.rtol <= 1e-4
+
+    def test_own_settings_are_used(self):
+        own = rf.Accuracy(rtol=3e-9)
+        response = rf.System(block(), pads()).simulate(pulse(), accuracy=own, outputs=None)
+        assert response.attrs["solver_rtol"] == 3e-9
+
+
+# motion ------------------------------------------------------------------------------------------
+
+
+def test_a_motion_given_to_simulate_goes_before_that_among_the_parts():
+    system = rf.System(block(), pads(), pulse())
+    other = rf.GroundMotion.sine_pulse("-1 m/s^2")
+    response = system.simulate(other)
+    assert response.attrs["motion_sha256"] == other.sha256
+    assert abs(response.ground_acceleration.values).max() == pytest.approx(1.0)
+
+
+def test_lengths_of_runs():
+    system = rf.System(block(), pads())
+    for options, length in (
+        ({}, 1.0),
+        ({"free_vibration": "0.5 s"}, 1.5),
+        ({"duration": "0.25 s"}, 0.25),
+        ({"duration": "3 s"}, 3.0),
+    ):
+        response = system.simulate(pulse(), output_step="0.25 s", **options)
+        np.testing.assert_array_equal(
+            response.time.values, np.arange(round(length / 0.25) + 1) * 0.25
+        )
+        assert response.attrs["solver_end_time"] == pytest.approx(length, rel=1e-12)
+    still = system.simulate(free_vibration="2 s", output_step="1 s")
+    assert still.time.values.tolist() == [0.0, 1.0, 2.0]
+
+
+def test_a_weightless_block_on_rigid_ground_is_warned_about():
+    flat = np.zeros(101)
+    for lowest, warned in ((-9.0, False), (-10.0, True)):
+        upwards = flat.copy()
+        upwards[40:60] = lowest
+        motion = rf.GroundMotion.from_arrays((flat, "m/s^2"), "10 ms", vertical=(upwards, "m/s^2"))
+        if not warned:
+            rf.System(block()).simulate(motion)
+            continue
+        with pytest.warns(rf.ModelWarning, match="leave the rigid ground") as caught:
+            rf.System(block()).simulate(motion)
+        assert caught[0].filename == __file__
+        rf.System(block(), pads()).simulate(motion)

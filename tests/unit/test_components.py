@@ -1,0 +1,394 @@
+"""Components as values: what they hold, what they refuse, the way to text and back."""
+
+import copy
+import itertools
+import json
+import math
+import pickle
+
+import pint
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import rockframe as rf
+from rockframe.components import component_from_dict
+
+pytestmark = pytest.mark.unit
+
+SIZE = {"width": "2 m", "height": "8 m", "mass": "50 t"}
+PADS = {"frequency_ratio": 20, "damping_ratio": 0.1}
+
+
+def examples():
+    return {
+        "block": rf.Block(**SIZE),
+        "block with shape factor": rf.Block(**SIZE, shape_factor=1.153),
+        "block with inertia": rf.Block(**SIZE, inertia="283333.3 kg*m^2"),
+        "pads by ratios": rf.TwoSpringSupport(**PADS),
+        "pads by constants": rf.TwoSpringSupport(
+            stiffness="12 MN/m", damping="80 kN*s/m", restitution=0.7
+        ),
+        "pads mixed": rf.TwoSpringSupport(stiffness="12 MN/m", damping_ratio=0),
+        "ground": rf.RigidGround(),
+        "ground with restitution": rf.RigidGround(restitution=0.9),
+        "initial state at rest": rf.InitialState(),
+        "initial state": rf.InitialState(
+            rotation="5 deg",
+            angular_velocity="-0.1 rad/s",
+            vertical_displacement="0 mm",
+            vertical_velocity="1 mm/s",
+        ),
+    }
+
+
+EXAMPLES = examples()
+
+
+@pytest.fixture(params=list(EXAMPLES))
+def name(request):
+    return request.param
+
+
+@pytest.fixture
+def component(name):
+    return EXAMPLES[name]
+
+
+class TestEveryComponent:
+    def test_it_is_immutable(self, component):
+        before = repr(component)
+        public = [word for word in dir(component) if not word.startswith("__")]
+        for attribute in [*public, "brand_new"]:
+            with pytest.raises(AttributeError):
+                setattr(component, attribute, 1.0)
+            with pytest.raises(AttributeError):
+                delattr(component, attribute)
+        with pytest.raises(AttributeError):
+            component.si.restitution = 0.1
+        assert repr(component) == before
+
+    def test_what_it_gives_away_does_not_lead_back_in(self, component):
+        description = component.to_dict()
+        description.clear()
+        assert component == copy.deepcopy(component)
+        assert component.to_dict()["type"] == type(component).__name__
+
+    def test_it_equals_its_like_and_nothing_else(self, name, component):
+        assert component == examples()[name]
+        assert hash(component) == hash(examples()[name])
+        others = [other for key, other in EXAMPLES.items() if key != name]
+        assert all(component != other for other in others)
+        assert component != component.to_dict()
+        assert component != repr(component)
+        assert component is not None
+        assert len({component, examples()[name], *others}) == len(EXAMPLES)
+
+    @pytest.mark.parametrize("protocol", range(pickle.HIGHEST_PROTOCOL + 1))
+    def test_it_survives_pickling(self, component, protocol):
+        again = pickle.loads(pickle.dumps(component, protocol))  # noqa: S301
+        assert type(again) is type(component)
+        assert again == component
+        assert again.si == component.si
+        with pytest.raises(AttributeError):
+            again.si = None
+
+    def test_it_survives_copying(self, component):
+        assert copy.copy(component) == component
+        assert copy.deepcopy(component).si == component.si
+
+    def test_it_survives_the_way_through_text_bit_for_bit(self, component):
+        description = component.to_dict()
+        assert all(isinstance(value, str | float) for value in description.values())
+        text = json.dumps(description, allow_nan=False)
+        again = component_from_dict(json.loads(text))
+        assert again == component
+        assert again.si == component.si
+        assert json.dumps(again.to_dict()) == text
+
+    def test_its_repr_builds_it_again(self, component):
+        space = {kind.__name__: kind for kind in (type(component),)}
+        assert eval(repr(component), space) == component  # noqa: S307
+
+    def test_it_says_what_it_is_for(self, component):
+        assert component.noun
+        assert type(component).__doc__
+
+
+# the way to text and back ----------------------------------------------------------------
+
+_size = st.floats(1e-3, 1e4)
+_ratio = st.floats(1e-3, 1e3)
+
+
+@given(_size, st.floats(1.01, 100.0), st.floats(1e-6, 1e12), st.none() | st.floats(3.0, 4.0))
+@settings(max_examples=200, deadline=None)
+def test_a_block_is_kept_bit_for_bit(width, slenderness, mass, shape_factor):
+    height = width * slenderness
+    block = rf.Block(
+        width=f"{width!r} m", height=f"{height!r} m", mass=f"{mass!r} kg", shape_factor=shape_factor
+    )
+    assert (block.si.width, block.si.height, block.si.mass) == (width, height, mass)
+    again = component_from_dict(json.loads(json.dumps(block.to_dict())))
+    assert again.si == block.si
+    assert again == block
+
+
+@given(_ratio, _ratio, st.none() | st.floats(1e-9, 1.0))
+@settings(max_examples=100, deadline=None)
+def test_pads_are_kept_bit_for_bit(first, second, restitution):
+    for pads in (
+        rf.TwoSpringSupport(frequency_ratio=first, damping_ratio=second, restitution=restitution),
+        rf.TwoSpringSupport(
+            stiffness=f"{first!r} kN/mm", damping=f"{second!r} kN*s/m", restitution=restitution
+        ),
+    ):
+        again = component_from_dict(json.loads(json.dumps(pads.to_dict())))
+        assert again.si == pads.si
+        assert again == pads
+
+
+@given(
+    st.none() | st.floats(-1.5, 1.5),
+    st.none() | st.floats(-1e3, 1e3),
+    st.none() | st.floats(-1e3, 1e3),
+)
+@settings(max_examples=100, deadline=None)
+def test_an_initial_state_is_kept_bit_for_bit(rotation, rate, height):
+    state = rf.InitialState(
+        rotation=None if rotation is None else f"{rotation!r} rad",
+        angular_velocity=None if rate is None else f"{rate!r} rad/s",
+        vertical_displacement=None if height is None else f"{height!r} m",
+    )
+    again = component_from_dict(json.loads(json.dumps(state.to_dict())))
+    assert again.si == state.si
+    assert again == state
+
+
+@pytest.mark.parametrize(
+    "description",
+    [
+        {},
+        {"type": None},
+        {"type": "Brick", "width": "2 m"},
+        {"type": 3},
+        {"type": ["Block"]},
+    ],
+)
+def test_a_description_of_nothing_known_is_refused(description):
+    with pytest.raises(rf.RockframeError):
+        component_from_dict(description)
+
+
+# the block -------------------------------------------------------------------------------
+
+
+def test_properties_are_quantities_with_units():
+    block = rf.Block(**SIZE)
+    expected = {
+        "width": (2.0, "m"),
+        "height": (8.0, "m"),
+        "mass": (5e4, "kg"),
+        "radius": (math.sqrt(17.0), "m"),
+        "overturning_angle": (math.atan(0.25), "rad"),
+        "inertia": (5e4 * (4.0 + 64.0) / 12.0, "kg m^2"),
+        "frequency": (math.sqrt(0.75 * 9.80665 / math.sqrt(17.0)), "rad s^-1"),
+    }
+    for name, (value, unit) in expected.items():
+        quantity = getattr(block, name)
+        assert isinstance(quantity, pint.Quantity), name
+        assert quantity.units == pint.get_application_registry().Unit(unit), name
+        assert quantity.magnitude == pytest.approx(value, rel=1e-15), name
+    assert block.overturning_angle.to("deg").magnitude == pytest.approx(14.036243467926477)
+    assert block.slenderness == 4.0
+    assert block.shape_factor == 3.0
+    assert block.maximum_restitution == pytest.approx(1.0 - 1.5 / 17.0, rel=1e-15)
+
+
+def test_all_arguments_are_by_keyword_and_none_is_forgotten():
+    with pytest.raises(TypeError):
+        rf.Block("2 m", "8 m", "50 t")
+    for name in SIZE:
+        with pytest.raises(TypeError):
+            rf.Block(**{key: value for key, value in SIZE.items() if key != name})
+        with pytest.raises(rf.UnitsError, match=f"{name} needs"):
+            rf.Block(**{**SIZE, name: None})
+
+
+@given(st.floats(0.5, 20.0), st.floats(0.75, 10.0))
+@settings(max_examples=100, deadline=None)
+def test_shape_factor_and_inertia_say_the_same(width, slenderness):
+    size = {"width": f"{width!r} m", "height": f"{width * slenderness!r} m", "mass": "50 t"}
+    by_factor = rf.Block(**size, shape_factor=2.9)
+    by_inertia = rf.Block(**size, inertia=by_factor.inertia)
+    assert by_inertia.shape_factor == pytest.approx(2.9, rel=1e-14)
+    assert by_inertia.frequency.magnitude == pytest.approx(by_factor.frequency.magnitude)
+    solid = rf.Block(**size)
+    assert solid.inertia.magnitude == pytest.approx(
+        5e4 * width**2 * (1.0 + slenderness**2) / 12.0, rel=1e-14
+    )
+
+
+def test_shape_factor_and_inertia_exclude_one_another():
+    with pytest.raises(rf.ComponentError, match="shape_factor or inertia, not both"):
+        rf.Block(**SIZE, shape_factor=3, inertia="3e5 kg*m^2")
+
+
+@pytest.mark.parametrize("bad", [0, -1, math.nan, math.inf])
+def test_a_shape_factor_must_be_a_positive_number(bad):
+    with pytest.raises(rf.ComponentError, match="shape_factor"):
+        rf.Block(**SIZE, shape_factor=bad)
+
+
+def test_a_squat_block_is_refused_exactly_below_the_limit():
+    limit = math.sqrt(0.5)
+    for excess in (1e-9, 1e-12):
+        rf.Block(width="1 m", height=f"{limit * (1.0 + excess)!r} m", mass="1 t")
+        with pytest.raises(rf.ComponentError, match="cannot rock") as caught:
+            rf.Block(width="1 m", height=f"{limit * (1.0 - excess)!r} m", mass="1 t")
+        assert "0.7071" in str(caught.value)
+    with pytest.raises(rf.ComponentError, match="cannot rock"):
+        rf.Block.from_size(radius="1 m", slenderness=0.7, mass="1 t")
+    with pytest.raises(rf.ComponentError, match="cannot rock"):
+        rf.Block.from_density(
+            width="2 m", height="1 m", depth="1 m", density="2400 kg/m^3", shape_factor=3
+        )
+
+
+@given(st.floats(0.05, 50.0), st.floats(0.05, 50.0))
+@settings(max_examples=200, deadline=None)
+def test_a_block_is_refused_where_its_greatest_restitution_is_not_positive(slenderness, mu):
+    theta = math.atan(1.0 / slenderness)
+    greatest = (1.0 + mu * math.cos(2.0 * theta)) / (1.0 + mu)
+    size = {"width": "1 m", "height": f"{slenderness!r} m", "mass": "1 t", "shape_factor": mu}
+    if greatest > 1e-12:
+        assert rf.Block(**size).maximum_restitution == pytest.approx(greatest, abs=1e-14)
+    elif greatest < -1e-12:
+        with pytest.raises(rf.ComponentError, match="cannot rock"):
+            rf.Block(**size)
+
+
+def test_from_density_multiplies():
+    block = rf.Block.from_density(
+        width="2 m", height="8 m", depth="150 cm", density="2.5 t/m^3", shape_factor=2.9
+    )
+    assert block.mass.m_as("kg") == pytest.approx(2.0 * 8.0 * 1.5 * 2500.0, rel=1e-15)
+    assert block.shape_factor == 2.9
+    for name in ("width", "height", "depth", "density"):
+        size = {"width": "2 m", "height": "8 m", "depth": "1 m", "density": "2500 kg/m^3"}
+        with pytest.raises(rf.UnitsError, match=f"{name} needs"):
+            rf.Block.from_density(**{**size, name: 2.0})
+        with pytest.raises(rf.ComponentError, match=f"{name} must be greater than zero"):
+            rf.Block.from_density(**{**size, name: "0 " + size[name].split()[1]})
+
+
+@given(st.floats(0.05, 100.0), st.floats(0.75, 20.0))
+@settings(max_examples=100, deadline=None)
+def test_from_size_gives_the_size_asked_for(radius, slenderness):
+    block = rf.Block.from_size(radius=f"{radius!r} m", slenderness=slenderness, mass="50 t")
+    assert block.radius.m_as("m") == pytest.approx(radius, rel=1e-14)
+    assert block.slenderness == pytest.approx(slenderness, rel=1e-14)
+    assert math.tan(block.overturning_angle.m_as("rad")) == pytest.approx(1.0 / slenderness)
+    expected = math.sqrt(0.75 * 9.80665 / radius)
+    assert block.frequency.m_as("rad/s") == pytest.approx(expected, rel=1e-14)
+
+
+def test_from_size_refuses_what_it_cannot_use():
+    size = {"radius": "5 m", "slenderness": 4, "mass": "50 t"}
+    for name, bad, error in (
+        ("radius", 5, rf.UnitsError),
+        ("radius", "5 rad", rf.UnitsError),
+        ("radius", "-5 m", rf.ComponentError),
+        ("slenderness", "4 m", rf.UnitsError),
+        ("slenderness", 0, rf.ComponentError),
+        ("slenderness", math.nan, rf.ComponentError),
+        ("mass", 50, rf.UnitsError),
+        ("mass", "0 t", rf.ComponentError),
+    ):
+        with pytest.raises(error, match=name):
+            rf.Block.from_size(**{**size, name: bad})
+
+
+@pytest.mark.parametrize("size", ["1e200 m", "1e-200 m", "5e-324 m", "1e308 m"])
+def test_absurd_sizes_are_refused_or_make_a_sound_block(size):
+    try:
+        block = rf.Block(width=size, height=size, mass="1 t")
+    except rf.ComponentError:
+        return
+    si = block.si
+    for value in (si.radius, si.inertia, si.frequency, si.overturning_angle):
+        assert math.isfinite(value)
+        assert value > 0.0
+
+
+# bases -----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "maker",
+    [
+        lambda eps: rf.RigidGround(restitution=eps),
+        lambda eps: rf.TwoSpringSupport(**PADS, restitution=eps),
+    ],
+    ids=["ground", "pads"],
+)
+class TestRestitution:
+    @pytest.mark.parametrize("bad", [0, 0.0, -0.1, 1.0000001, 2, math.nan, math.inf])
+    def test_outside_its_interval_is_refused(self, maker, bad):
+        with pytest.raises(rf.ComponentError, match="restitution"):
+            maker(bad)
+
+    @pytest.mark.parametrize("good", [1e-300, 0.5, 1, "50 %"])
+    def test_inside_its_interval_is_taken(self, maker, good):
+        assert 0.0 < maker(good).restitution <= 1.0
+
+    def test_unless_given_it_is_left_to_the_block(self, maker):
+        assert maker(None).restitution is None
+
+    def test_above_the_greatest_is_warned_about(self, maker):
+        block = rf.Block(**SIZE)
+        greatest = block.maximum_restitution
+        with pytest.warns(rf.ModelWarning, match="eps_max") as caught:
+            rf.System(block, maker(greatest + 1e-6))
+        assert len(caught) == 1
+        assert caught[0].filename == __file__
+        # warnings are errors here: these must give none
+        rf.System(block, maker(greatest))
+        rf.System(block, maker(greatest - 1e-6))
+        rf.System(block, maker(None))
+
+
+def test_each_pair_of_the_pads_needs_exactly_one_member():
+    first = {"frequency_ratio": 20, "stiffness": "12 MN/m"}
+    second = {"damping_ratio": 0.1, "damping": "80 kN*s/m"}
+    names = list(itertools.chain(first, second))
+    for chosen in itertools.product([False, True], repeat=4):
+        given_names = [name for name, is_in in zip(names, chosen, strict=True) if is_in]
+        arguments = {name: {**first, **second}[name] for name in given_names}
+        if chosen[0] != chosen[1] and chosen[2] != chosen[3]:
+            rf.TwoSpringSupport(**arguments)
+            continue
+        with pytest.raises(rf.ComponentError, match=r"(both|neither) was given"):
+            rf.TwoSpringSupport(**arguments)
+
+
+@pytest.mark.parametrize("bad", [0, -20, math.nan, math.inf])
+def test_a_frequency_ratio_must_be_a_positive_number(bad):
+    with pytest.raises(rf.ComponentError, match="frequency_ratio"):
+        rf.TwoSpringSupport(frequency_ratio=bad, damping_ratio=0.1)
+
+
+# initial state -----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("bad", ["90 deg", "-90 deg", "10 rad", "-1.6 rad", "1 turn"])
+def test_an_initial_rotation_of_a_right_angle_is_refused(bad):
+    with pytest.raises(rf.ComponentError, match="right angle"):
+        rf.InitialState(rotation=bad)
+
+
+def test_an_initial_state_is_at_rest_unless_told_otherwise():
+    state = rf.InitialState()
+    assert state.si.rotation == state.si.angular_velocity == state.si.vertical_velocity == 0.0
+    assert state.si.vertical_displacement is None
+    assert rf.InitialState(vertical_displacement="0 m").si.vertical_displacement == 0.0

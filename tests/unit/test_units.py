@@ -1,0 +1,482 @@
+"""What the unit boundary lets in, what it refuses, and what it says then."""
+
+import copy
+import math
+import multiprocessing
+import subprocess
+import sys
+
+import numpy as np
+import pint
+import pytest
+
+import rockframe as rf
+
+pytestmark = pytest.mark.unit
+
+SIZE = {"width": "2 m", "height": "8 m", "mass": "50 t"}
+PADS = {"frequency_ratio": 20, "damping_ratio": 0.1}
+
+
+def make_block(**changed):
+    return rf.Block(**{**SIZE, **changed})
+
+
+def make_pads(**changed):
+    given = dict(PADS)
+    if "stiffness" in changed:
+        del given["frequency_ratio"]
+    if "damping" in changed:
+        del given["damping_ratio"]
+    return rf.TwoSpringSupport(**{**given, **changed})
+
+
+def make_system(**changed):
+    return rf.System(make_block(), **changed)
+
+
+def make_pulse(**changed):
+    return rf.GroundMotion.sine_pulse(**changed)
+
+
+def run(**changed):
+    return make_system().simulate(make_pulse(), **changed)
+
+
+# every dimensional argument of the library: maker, name, words for it, unit, an accepted value
+DIMENSIONAL = [
+    (make_block, "width", "length", "m", "2 m"),
+    (make_block, "height", "length", "m", "8 m"),
+    (make_block, "mass", "mass", "kg", "50 t"),
+    (make_block, "inertia", "moment of inertia", "kg m^2", "3e5 kg*m^2"),
+    (make_pads, "stiffness", "stiffness", "N m^-1", "12 MN/m"),
+    (make_pads, "damping", "damping", "N s m^-1", "80 kN*s/m"),
+    (rf.InitialState, "rotation", "angle", "rad", "0.1 rad"),
+    (rf.InitialState, "angular_velocity", "angular velocity", "rad s^-1", "0.1 rad/s"),
+    (rf.InitialState, "vertical_displacement", "length", "m", "1 mm"),
+    (rf.InitialState, "vertical_velocity", "velocity", "m s^-1", "1 mm/s"),
+    (make_system, "gravity", "acceleration", "m s^-2", "9.81 m/s^2"),
+    (make_pulse, "amplitude", "acceleration", "m s^-2", "-3 m/s^2"),
+    (make_pulse, "frequency", "frequency", "Hz", "2 Hz"),
+    (run, "duration", "time", "s", "20 s"),
+    (run, "free_vibration", "time", "s", "20 s"),
+    (run, "output_step", "time", "s", "10 ms"),
+]
+FOREIGN = pint.UnitRegistry(cache_folder=None)
+NAMES = [f"{row[0].__name__}-{row[1]}" for row in DIMENSIONAL]
+MUST_BE_POSITIVE = [
+    row
+    for row in DIMENSIONAL
+    if row[0] is not rf.InitialState and row[1] not in ("amplitude", "damping")
+]
+
+
+def refusal(maker, **arguments):
+    with pytest.raises(rf.RockframeError) as caught:
+        maker(**arguments)
+    return str(caught.value)
+
+
+@pytest.mark.parametrize(("maker", "name", "words", "unit", "good"), DIMENSIONAL, ids=NAMES)
+class TestEveryDimensionalArgument:
+    @pytest.fixture(autouse=True)
+    def _accepts(self, maker, name, words, unit, good):
+        maker(**{name: good})
+
+    @pytest.mark.parametrize("bad", [3, 3.5, np.float64(2.0), np.int64(4), math.nan])
+    def test_a_bare_number_is_refused(self, maker, name, words, unit, good, bad):
+        message = refusal(maker, **{name: bad})
+        assert f"{name} needs" in message
+        assert words in message
+        assert repr(bad) in message
+        assert f"{name}=" in message.split("for example")[1]
+
+    @pytest.mark.parametrize("bad", ["3", "3.5e2", "7 %", "2 dimensionless"])
+    def test_a_number_in_a_string_is_still_bare(self, maker, name, words, unit, good, bad):
+        message = refusal(maker, **{name: bad})
+        assert f"{name} needs" in message
+        assert words in message
+        assert unit in message
+        assert f"'{bad}'" in message
+        assert f"{name}=" in message.split("for example")[1]
+
+    @pytest.mark.parametrize("bad", ["3 A", "3 m^7", "3 degC"])
+    def test_a_unit_of_another_kind_is_refused(self, maker, name, words, unit, good, bad):
+        message = refusal(maker, **{name: bad})
+        assert f"{name} needs" in message
+        assert words in message
+        assert bad in message
+        assert f"{name}=" in message.split("for example")[1]
+
+    def test_an_array_is_refused(self, maker, name, words, unit, good):
+        one = pint.get_application_registry().Quantity(good)
+        for bad in (
+            one.__class__([one.magnitude] * 2, one.units),
+            one.__class__([one.magnitude], one.units),
+            [good, good],
+            np.array([1.0, 2.0]),
+            (1.0, "m"),
+        ):
+            message = refusal(maker, **{name: bad})
+            assert f"{name} needs" in message
+            assert f"{name}=" in message.split("for example")[1]
+
+    @pytest.mark.parametrize(
+        "bad",
+        [
+            True,
+            False,
+            b"2 m",
+            object(),
+            {},
+            "",
+            "   ",
+            "metre please",
+            "4,5 m",
+            "1,000 m",
+            "4 m/",
+            "4 (m",
+            "nan",
+            "__import__('os')",
+            "4 +/- 1 m",
+        ],
+    )
+    def test_rubbish_is_refused_by_name(self, maker, name, words, unit, good, bad):
+        message = refusal(maker, **{name: bad})
+        assert f"{name} needs" in message
+        assert "for example" in message
+
+    @pytest.mark.parametrize("number", ["nan", "inf", "-inf", "1e999"])
+    def test_a_value_that_is_not_finite_is_refused(self, maker, name, words, unit, good, number):
+        symbol = unit.replace(" ", "*")
+        message = refusal(maker, **{name: f"{number} {symbol}"})
+        assert name in message
+        assert "finite" in message
+        assert number in message
+        quantity = pint.get_application_registry().Quantity(float(number), symbol)
+        assert "finite" in refusal(maker, **{name: quantity})
+
+    def test_a_quantity_of_a_foreign_registry_is_read(self, maker, name, words, unit, good):
+        maker(**{name: FOREIGN.Quantity(good)})
+
+    def test_a_foreign_quantity_of_another_kind_is_refused(self, maker, name, words, unit, good):
+        bad = FOREIGN.Quantity("3 ampere")
+        assert f"{name} needs" in refusal(maker, **{name: bad})
+
+
+@pytest.mark.parametrize(
+    ("maker", "name", "unit"), [(row[0], row[1], row[3]) for row in MUST_BE_POSITIVE]
+)
+@pytest.mark.parametrize("number", ["0", "-1", "-1e-300"])
+def test_zero_and_less_are_refused_where_they_make_no_sense(maker, name, unit, number):
+    message = refusal(maker, **{name: f"{number} {unit.replace(' ', '*')}"})
+    assert name in message
+    assert "greater than zero" in message
+    assert number in message
+
+
+def test_a_negative_damping_is_refused_and_a_zero_one_is_not():
+    assert "zero or more" in refusal(make_pads, damping="-1 N*s/m")
+    assert "zero or more" in refusal(make_pads, damping_ratio=-0.1)
+    make_pads(damping="0 N*s/m")
+    make_pads(damping_ratio=0)
+
+
+# traps, one by one -----------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("maker", "name", "bad", "hint"),
+    [
+        (make_pulse, "amplitude", "0.3 g", "g_0"),
+        (make_pulse, "amplitude", "0.3g", "g_0"),
+        (make_pulse, "amplitude", "30 gal", "Gal"),
+        (make_pulse, "amplitude", "30gal", "Gal"),
+        (make_pulse, "amplitude", "3 m/s2", "^"),
+        (make_system, "gravity", "1 g", "g_0"),
+        (make_block, "width", "4,5 m", "decimal point"),
+        (make_block, "mass", "1 ton", "'t'"),
+        (make_block, "mass", "10 tons", "'t'"),
+        (make_pulse, "frequency", "6 rad/s", "2 pi"),
+        (make_pulse, "frequency", "60 rpm", "2 pi"),
+        (rf.InitialState, "rotation", "10 rad", "deg"),
+    ],
+)
+def test_a_known_trap_is_refused_with_a_hint(maker, name, bad, hint):
+    message = refusal(maker, **{name: bad})
+    assert name in message
+    assert bad in message
+    assert hint in message
+
+
+@pytest.mark.parametrize(
+    ("maker", "name", "bad"),
+    [
+        (make_pads, "stiffness", "12 t"),
+        (make_pads, "stiffness", "12 t/m"),
+        (make_pads, "stiffness", "12 kg"),
+        (make_pads, "stiffness", "12 MN"),
+        (make_pads, "stiffness", "12 MPa"),
+        (make_pads, "damping", "80 kN/m"),
+        (make_block, "mass", "500 kN"),
+        (make_block, "mass", "2500 kg/m^3"),
+        (make_block, "inertia", "3e5 m^4"),
+        (rf.InitialState, "rotation", "5"),
+        (rf.InitialState, "rotation", "5 %"),
+        (rf.InitialState, "rotation", "0.1 m/m"),
+        (rf.InitialState, "angular_velocity", "1 Hz"),
+        (rf.InitialState, "angular_velocity", "1/s"),
+        (rf.InitialState, "vertical_displacement", "0.1 rad"),
+        (make_pulse, "frequency", "1 s"),
+        (run, "duration", "20 m"),
+        (run, "duration", "20 Hz"),
+    ],
+)
+def test_a_look_alike_is_refused(maker, name, bad):
+    assert f"{name} needs" in refusal(maker, **{name: bad})
+
+
+@pytest.mark.parametrize(
+    ("name", "bad"),
+    [
+        ("rotation", "0.1 sr"),
+        ("rotation", "0.1 rad^2"),
+        ("rotation", "0.1 / rad"),
+        ("angular_velocity", "0.1 rad^2/s"),
+        ("angular_velocity", "0.1 sr/s"),
+    ],
+)
+def test_a_power_of_the_radian_is_no_angle(name, bad):
+    assert f"{name} needs" in refusal(rf.InitialState, **{name: bad})
+
+
+def test_bits_are_no_ratio_and_no_frequency():
+    refusal(make_pads, frequency_ratio="20 bit")
+    refusal(make_pulse, frequency="1 bit/s")
+
+
+@pytest.mark.parametrize(
+    ("maker", "name", "bad"),
+    [
+        (make_block, "mass", "1 500 kg"),
+        (make_block, "mass", "1 234 567 kg"),
+        (make_block, "width", "4 5 m"),
+        (rf.InitialState, "vertical_displacement", "1 000 mm"),
+        (make_pulse, "amplitude", "1 2 m/s^2"),
+    ],
+)
+def test_a_blank_inside_a_number_is_not_a_multiplication(maker, name, bad):
+    assert f"{name} needs" in refusal(maker, **{name: bad})
+
+
+@pytest.mark.parametrize("bad", ["m", "kilometre"])
+def test_a_unit_without_a_number_is_not_one(bad):
+    assert "width needs" in refusal(make_block, width=bad)
+
+
+@pytest.mark.parametrize("bad", ["1 kton", "1 Mton", "3 kilotons"])
+def test_a_multiple_of_the_short_ton_is_as_ambiguous_as_the_ton(bad):
+    assert "mass needs" in refusal(make_block, mass=bad)
+
+
+def _build(text):
+    try:
+        make_block(mass=text)
+    except rf.RockframeError:
+        sys.exit(7)
+    sys.exit(0)
+
+
+def test_a_tower_of_powers_does_not_hang():
+    worker = multiprocessing.get_context("fork").Process(target=_build, args=("9**9**9 kg",))
+    worker.start()
+    worker.join(5.0)
+    alive = worker.is_alive()
+    if alive:
+        worker.kill()
+        worker.join()
+    assert not alive
+    assert worker.exitcode == 7
+
+
+@pytest.mark.parametrize("text", ["1e3 A", "2.5e6 s"])
+def test_an_exponent_is_not_taken_for_a_missing_power_sign(text):
+    assert "powers need" not in refusal(make_block, width=text)
+
+
+@pytest.mark.parametrize(
+    ("maker", "name", "text", "attribute", "expected"),
+    [
+        (make_block, "width", "250 cm", "width", 2.5),
+        (make_block, "width", "2.5m", "width", 2.5),
+        (make_block, "width", " 2.5  metre ", "width", 2.5),
+        (make_block, "height", "30 ft", "height", 9.144),
+        (make_block, "mass", "50 t", "mass", 5e4),
+        (make_block, "mass", "50 tonne", "mass", 5e4),
+        (make_block, "mass", "50 Mg", "mass", 5e4),
+        (make_block, "mass", "1e4 lb", "mass", 4535.9237),
+        (make_pads, "stiffness", "12 kN/mm", "stiffness", 1.2e7),
+        (make_pads, "stiffness", "12 MN/m", "stiffness", 1.2e7),
+        (make_pads, "damping", "80 kN*s/m", "damping", 8e4),
+        (rf.InitialState, "rotation", "5 deg", "rotation", math.radians(5.0)),
+        (rf.InitialState, "rotation", "5 °", "rotation", math.radians(5.0)),
+        (rf.InitialState, "rotation", "100 mrad", "rotation", 0.1),
+        (rf.InitialState, "rotation", "-0.01 turn", "rotation", -0.02 * math.pi),
+        (rf.InitialState, "angular_velocity", "1 rpm", "angular_velocity", math.pi / 30.0),
+        (rf.InitialState, "angular_velocity", "90 deg/s", "angular_velocity", 0.5 * math.pi),
+        (rf.InitialState, "vertical_displacement", "-3 mm", "vertical_displacement", -0.003),
+        (rf.InitialState, "vertical_velocity", "36 km/h", "vertical_velocity", 10.0),
+    ],
+)
+def test_other_units_are_converted(maker, name, text, attribute, expected):
+    assert getattr(maker(**{name: text}).si, attribute) == pytest.approx(expected, rel=4e-16)
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("0.3 g_0", 0.3 * 9.80665),
+        ("0.3 gravity", 0.3 * 9.80665),
+        ("300 Gal", 3.0),
+        ("300 cm/s^2", 3.0),
+        ("300 cm/s**2", 3.0),
+        ("3 m/s²", 3.0),
+        ("3 m s^-2", 3.0),
+    ],
+)
+def test_accelerations_are_converted(text, expected):
+    assert make_pulse(amplitude=text).si.peak == pytest.approx(expected, rel=1e-12)
+
+
+@pytest.mark.parametrize("text", ["60 /min", "1 Hz", "1000 mHz", "1/s"])
+def test_frequencies_are_converted(text):
+    assert make_pulse(frequency=text).si.duration == pytest.approx(1.0, rel=1e-14)
+
+
+# ratios ----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("given", "expected"),
+    [
+        (20, 20.0),
+        (np.float32(20.0), 20.0),
+        (np.int64(20), 20.0),
+        ("20", 20.0),
+        ("2000 %", 20.0),
+        ("20 mm/mm", 20.0),
+        ("20 m/mm", 20000.0),
+    ],
+)
+def test_a_ratio_may_be_bare_or_dimensionless(given, expected):
+    assert make_pads(frequency_ratio=given).si.frequency_ratio == pytest.approx(expected)
+
+
+def test_a_ratio_may_be_a_quantity_of_any_registry():
+    for registry in (pint.get_application_registry(), FOREIGN):
+        for magnitude in (20, 20.0, np.float64(20.0), np.array(20.0)):
+            quantity = registry.Quantity(magnitude, "")
+            assert make_pads(frequency_ratio=quantity).si.frequency_ratio == 20.0
+
+
+@pytest.mark.parametrize(
+    "bad",
+    ["0.1 rad", "5 deg", "1 m", "1 Hz", True, np.True_, [0.1], np.array([0.1]), 1 + 0j, "x", ""],
+)
+@pytest.mark.parametrize(
+    ("maker", "name"),
+    [
+        (make_block, "shape_factor"),
+        (make_pads, "frequency_ratio"),
+        (make_pads, "damping_ratio"),
+        (make_pads, "restitution"),
+        (rf.RigidGround, "restitution"),
+        (make_pulse, "cycles"),
+    ],
+)
+def test_what_is_no_ratio_is_refused(maker, name, bad):
+    message = refusal(maker, **{name: bad})
+    assert f"{name} needs a pure ratio" in message
+    assert (f"'{bad}'" if isinstance(bad, str) else repr(bad)) in message
+
+
+@pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf, "nan", "inf"])
+@pytest.mark.parametrize("name", ["frequency_ratio", "damping_ratio", "restitution"])
+def test_a_ratio_must_be_finite(name, bad):
+    message = refusal(make_pads, **{name: bad})
+    assert name in message
+    assert "finite" in message
+
+
+# the registry that all libraries share -----------------------------------------------------
+
+
+def test_the_application_registry_is_left_alone():
+    registry = pint.get_application_registry()
+    units = set(registry._units)
+    settings = (registry.formatter.default_format, registry.autoconvert_offset_to_baseunit)
+    held = registry.get()
+    make_block(width="250 cm").width.to("ft")
+    make_pulse(amplitude="0.3 g_0")
+    refusal(make_pulse, amplitude="0.3 g")
+    run()
+    assert pint.get_application_registry().get() is held
+    assert set(registry._units) == units
+    after = (registry.formatter.default_format, registry.autoconvert_offset_to_baseunit)
+    assert after == settings
+
+
+@pytest.fixture
+def restored_registry():
+    held = pint.get_application_registry().get()
+    yield held
+    pint.set_application_registry(held)
+
+
+def test_swapping_the_registry_mid_session_does_no_harm(restored_registry):
+    before = make_block()
+    width = before.width
+    pint.set_application_registry(FOREIGN)
+    after = make_block()
+    assert after == before
+    assert hash(after) == hash(before)
+    assert make_block(width=width) == before
+    assert before.width == after.width
+    assert copy.deepcopy(before) == after
+    first = rf.System(before, make_pads()).simulate(make_pulse(), outputs=None)
+    second = rf.System(after, make_pads()).simulate(make_pulse(), outputs=None)
+    assert first.drop_attrs().identical(second.drop_attrs())
+
+
+def test_a_registry_of_another_library_does_no_harm():
+    code = """
+import rockframe as rf
+before = rf.Block(width="2 m", height="8 m", mass="50 t")
+width = before.width
+import cf_xarray.units, pint
+registry = pint.get_application_registry()
+assert rf.Block(width=width, height="8 m", mass="50 t") == before
+after = rf.Block(width=registry("2 m"), height=registry.Quantity(8.0, "m"), mass="50 t")
+assert after == before and after.width == before.width
+assert after.width.check("[length]") and after.width.units == registry.metre
+pulse = rf.GroundMotion.sine_pulse(amplitude="0.3 g_0", frequency="1 Hz")
+try:
+    rf.GroundMotion.sine_pulse(amplitude="0.3 g")
+except rf.UnitsError as problem:
+    assert "g_0" in str(problem)
+else:
+    raise AssertionError("0.3 g was read")
+for wrong in ("5", "5 %"):
+    try:
+        rf.InitialState(rotation=wrong)
+    except rf.UnitsError:
+        pass
+    else:
+        raise AssertionError(wrong)
+response = rf.System(after).simulate(pulse, outputs=None)
+assert rf.System.from_dataset(response).parts.block == after
+"""
+    done = subprocess.run(
+        [sys.executable, "-W", "ignore", "-c", code], capture_output=True, text=True, timeout=120
+    )
+    assert done.returncode == 0, done.stderr
