@@ -1,0 +1,97 @@
+"""Tables that are read from the code when the manual is built: ``{code-table} <name>``."""
+
+from collections.abc import Callable, Iterable
+
+from docutils import nodes
+from sphinx.application import Sphinx
+from sphinx.util.docutils import SphinxDirective
+
+from rockframe.dynamics.protocol import ContactState, EventKind
+from rockframe.results.schema import ENERGIES, SCHEMA, Direction
+from rockframe.solve.accuracy import LEVELS
+from rockframe.solve.layout import Status
+from rockframe.system.options import Restraint, Rotation
+from rockframe.system.scenes import SCENES
+from rockframe.units import Unit
+
+Rows = Iterable[tuple[str, ...]]
+
+
+def _variables(dims: tuple[str, ...], *, energies: bool = False) -> Rows:
+    yield "name", "unit", "type", "meaning"
+    for row in SCHEMA.values():
+        if row.dims == dims and (row.name in ENERGIES) is energies:
+            unit = "flag" if row.flags else "" if row.unit is None else str(row.unit)
+            yield row.name, unit, row.dtype, row.long_name
+
+
+def _flags(kind: type) -> Rows:
+    yield "value", "meaning"
+    yield from ((str(int(member)), member.name.lower()) for member in sorted(kind))
+
+
+def _scenes() -> Rows:
+    yield "parts", "model"
+    yield from ((scene.title, scene.model) for scene in SCENES)
+
+
+def _options(kind: type) -> Rows:
+    yield (kind.__name__.lower(),)
+    yield from ((str(option),) for option in kind)
+
+
+def _accuracy() -> Rows:
+    yield "level", "rtol", "floor", "steps_per_period"
+    for name, level in LEVELS.items():
+        yield str(name), f"{level.rtol:g}", f"{level.floor:g}", f"{level.steps_per_period:g}"
+
+
+def _units() -> Rows:
+    yield "in results", "quantity"
+    words = (name.replace("_", " ").lower() for name in Unit.__members__)
+    yield from zip(map(str, Unit), words, strict=True)
+
+
+TABLES: dict[str, Callable[[], Rows]] = {
+    "histories": lambda: _variables(("time",)),
+    "energies": lambda: _variables(("time",), energies=True),
+    "events": lambda: _variables(("event",)),
+    "scalars": lambda: _variables(()),
+    "contact-states": lambda: _flags(ContactState),
+    "event-kinds": lambda: _flags(EventKind),
+    "directions": lambda: _flags(Direction),
+    "statuses": lambda: _flags(Status),
+    "scenes": _scenes,
+    "restraints": lambda: _options(Restraint),
+    "rotations": lambda: _options(Rotation),
+    "accuracy": _accuracy,
+    "units": _units,
+}
+
+
+class CodeTable(SphinxDirective):
+    """A table of `TABLES`; the first row is the head, the first column literal."""
+
+    required_arguments = 1
+
+    def run(self) -> list[nodes.Node]:
+        """Build the table."""
+        head, *body = TABLES[self.arguments[0]]()
+        group = nodes.tgroup(cols=len(head))
+        group += [nodes.colspec(colwidth=1) for _ in head]
+        group += nodes.thead("", self._row(head, literal=False))
+        group += nodes.tbody("", *(self._row(row, literal=True) for row in body))
+        return [nodes.table("", group, classes=["colwidths-auto", "align-left"])]
+
+    def _row(self, cells: tuple[str, ...], *, literal: bool) -> nodes.row:
+        row = nodes.row()
+        for place, text in enumerate(cells):
+            words = nodes.literal if literal and place == 0 else nodes.inline
+            row += nodes.entry("", nodes.paragraph("", "", words(text, text)))
+        return row
+
+
+def setup(app: Sphinx) -> dict[str, bool]:
+    """Register the directive."""
+    app.add_directive("code-table", CodeTable)
+    return {"parallel_read_safe": True}

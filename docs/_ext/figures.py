@@ -1,0 +1,82 @@
+"""Figures that are drawn when the manual is built, into ``reference/generated``."""
+
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Arc, Polygon, Rectangle
+from sphinx.application import Sphinx
+
+import rockframe as rf
+
+INK = "#1f3a5f"
+
+
+def quickstart() -> Figure:
+    """Draw the response of the quick start."""
+    block = rf.Block(width="4.85 m", height="19.4 m", mass="600 t")
+    pads = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.10)
+    motion = rf.GroundMotion.sine_pulse()
+    return rf.plot.response(rf.System(block, pads).simulate(motion, free_vibration="5 s"))
+
+
+def conventions() -> Figure:
+    """Draw a block that leans to the right, with the symbols of the notation."""
+    b, h, alpha = 1.0, 2.2, 0.2
+    turn = np.array([[np.cos(alpha), np.sin(alpha)], [-np.sin(alpha), np.cos(alpha)]])
+    right = np.array([b, 0.0])
+
+    def place(s: float, height: float) -> np.ndarray:
+        return right + turn @ (np.array([s, height]) - right)
+
+    figure = Figure(figsize=(4.6, 5.0), layout="constrained")
+    axes = figure.subplots()
+    corners = [(-b, 0.0), (b, 0.0), (b, 2 * h), (-b, 2 * h)]
+    axes.add_patch(Rectangle((-b, 0.0), 2 * b, 2 * h, fill=False, ls=":", color="0.6"))
+    outline = [place(*corner) for corner in corners]
+    axes.add_patch(Polygon(outline, facecolor="#e8eef5", edgecolor=INK, lw=1.6))
+    for s in (-b, b):
+        axes.add_patch(Rectangle((s - 0.12, -0.3), 0.24, 0.3, color="0.75"))
+    axes.axhline(-0.3, color="0.3", lw=1.2)
+    points = {"L": (-b, 0.0), "R": (b, 0.0), "M": (0.0, 0.0), "O": (0.0, h)}
+    shifts = {"L": (-0.28, 0.05), "R": (0.14, -0.18), "M": (0.06, -0.3), "O": (0.12, 0.05)}
+    for name, spot in points.items():
+        at = place(*spot)
+        axes.plot(*at, "o", color=INK, ms=4)
+        axes.text(*(at + shifts[name]), name, color=INK)
+    _line(axes, place(0.0, 0.0), place(0.0, h), "h", (-0.25, 0.0))
+    _line(axes, place(0.0, h), place(b, 0.0), "$R_0$", (0.1, 0.1))
+    _line(axes, place(0.0, 0.0), place(-b, 0.0), "b", (0.0, 0.1))
+    axes.plot([1.0, 1.0], [0.0, 2.0], color="0.6", lw=0.8)
+    axes.plot(*np.array([right, place(b, 2.0)]).T, color="0.6", lw=0.8)
+    axes.add_patch(Arc((b, 0.0), 3.4, 3.4, theta1=90 - np.degrees(alpha), theta2=90))
+    axes.text(1.07, 1.8, r"$\alpha$")
+    axes.annotate("", (-2.0, 0.5), (-2.0, -0.3), arrowprops={"arrowstyle": "->"})
+    axes.annotate("", (-1.2, -0.3), (-2.0, -0.3), arrowprops={"arrowstyle": "->"})
+    axes.text(-2.15, 0.55, "$y$")
+    axes.text(-1.35, -0.55, "$x$")
+    axes.set(xlim=(-2.4, 2.4), ylim=(-0.8, 4.9), aspect="equal")
+    axes.axis("off")
+    return figure
+
+
+def _line(
+    axes: Axes, start: np.ndarray, end: np.ndarray, text: str, shift: tuple[float, float]
+) -> None:
+    axes.plot(*np.array([start, end]).T, color=INK, lw=0.9, ls="--")
+    axes.text(*((start + end) / 2 + shift), text, color=INK)
+
+
+def draw(app: Sphinx) -> None:
+    """Draw all figures."""
+    folder = Path(app.srcdir) / "reference" / "generated"
+    folder.mkdir(parents=True, exist_ok=True)
+    for figure in (quickstart, conventions):
+        figure().savefig(folder / f"{figure.__name__}.png", dpi=130)
+
+
+def setup(app: Sphinx) -> dict[str, bool]:
+    """Draw before the pages are read."""
+    app.connect("builder-inited", draw)
+    return {"parallel_read_safe": True}
