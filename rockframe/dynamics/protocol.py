@@ -140,6 +140,8 @@ class ContactModel:
         Names of what `observe` gives.
     fastest_frequency : float
         Highest angular frequency of the model [rad s^-1].
+    energy_scale : float
+        Typical energy per unit mass, by which rounding noise is known [m^2 s^-2].
     mass : float
         Mass that turns the energies into joules [kg].
     initial : callable
@@ -161,5 +163,6 @@ class ContactModel:
     lazy_guard: Integers
     columns: tuple[str, ...]
     fastest_frequency: float
+    energy_scale: float
     mass: float
     initial: Callable[[Start], tuple[int, Vector, Vector]]

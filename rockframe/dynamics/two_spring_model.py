@@ -120,6 +120,7 @@ def two_spring(
         lazy_guard=np.array([0, 1, 0, 0, 1, 0, 0, 0]),
         columns=two.COLUMNS,
         fastest_frequency=max(vertical_frequency, rotational),
+        energy_scale=gravity * radius * angle,
         mass=mass,
         initial=initial,
     )

@@ -27,6 +27,8 @@ FIRST_STEP = 1e-3
 """First step, as a share of the model's shortest period."""
 CHATTER_SHARE = 1e-6
 """Events closer than this share of the model's shortest period count as chatter."""
+ENERGY_NOISE = 1e-12
+"""Share of the model's typical energy below which energies are rounding noise."""
 EVENT_ROOM = 256
 
 
@@ -83,6 +85,7 @@ def integrate(
     clock[at.FIRST_UPLIFT] = -1.0 if model.contact[mode] == ContactState.FULL else 0.0
     clock[at.OVERTURNING_TIME] = clock[at.EVENT_TIME] = -1.0
     clock[at.START_ENERGY] = clock[at.GROUND_X] = clock[at.GROUND_Y] = math.nan
+    clock[at.LARGEST_TERM] = ENERGY_NOISE * model.energy_scale
     counters = np.zeros(at.COUNTERS, dtype=np.int64)
     counters[at.MODE] = mode
     counters[at.PENDING] = -1

@@ -38,6 +38,21 @@ def energy_scale(response):
 @example(Scenario(base="centre", beta=8.0, xi=0.5, rotation="finite", vertical=-0.5, **HARD))
 @example(Scenario(base="leading-corner", beta=20.0, xi=0.0, rotation="small", vertical=0.0, **HARD))
 @example(
+    # shaken by exactly g tan(theta): the block lifts by no more than rounding
+    Scenario(
+        base="rigid",
+        radius=0.5,
+        slenderness=1.0,
+        beta=8.0,
+        xi=0.0,
+        rotation="finite",
+        peak=1.0,
+        frequency=0.5,
+        cycles=0.5,
+        vertical=0.0,
+    )
+)
+@example(
     # upright at every event and at the end: the largest energies stand in between
     Scenario(
         base="leading-corner",
