@@ -20,7 +20,7 @@ Vector = Annotated[NDArray[np.float64], "vector"]
 Matrix = Annotated[NDArray[np.float64], "matrix"]
 Integers = Annotated[NDArray[np.int64], "integers"]
 IntegerMatrix = Annotated[NDArray[np.int64], "integer_matrix"]
-Codes = Annotated[NDArray[np.int8], "codes"]
+Codes = Annotated[NDArray[np.int16], "codes"]
 FrozenVector = Annotated[NDArray[np.float64], "frozen_vector"]
 FrozenMatrix = Annotated[NDArray[np.float64], "frozen_matrix"]
 
@@ -76,7 +76,7 @@ if _numba is not None:
         matrix=_f[:, ::1],
         integers=_i[::1],
         integer_matrix=_i[:, ::1],
-        codes=_numba.int8[::1],
+        codes=_numba.int16[::1],
         frozen_vector=_numba.types.Array(_f, 1, "C", readonly=True),
         frozen_matrix=_numba.types.Array(_f, 2, "C", readonly=True),
     )

@@ -4,12 +4,14 @@ import math
 
 import numpy as np
 
-from rockframe.compiled import Vector, kernel
+from rockframe.compiled import Integers, Vector, kernel
+from rockframe.dynamics import pad
+from rockframe.dynamics import single_body as body
 from rockframe.dynamics import two_spring as two
+from rockframe.dynamics.kinematics import about_pin, pinned_point, sine_cosine_rise
 from rockframe.dynamics.protocol import (
     HORIZONTAL_REFERENCE,
     MEMORY_SIZE,
-    ROTATION_LIMIT,
     ContactModel,
     ContactState,
     Start,
@@ -46,7 +48,7 @@ def two_spring(
         eps of a landing corner [1].
     restraint : int
         ``BY_CONTACT``, ``LEADING_CORNER`` or ``CENTRE`` of
-        :mod:`rockframe.dynamics.two_spring`.
+        :mod:`rockframe.dynamics.kinematics`.
     small_rotation : bool
         Whether the kinematics are expanded to second order.
     gravity : float
@@ -56,33 +58,27 @@ def two_spring(
     -------
     ContactModel
     """
-    angle = math.atan2(half_width, half_height)
     radius = math.hypot(half_width, half_height)
-    p = np.zeros(two.PARAMETERS)
-    p[ROTATION_LIMIT] = p[two.ANGLE] = angle
-    p[two.GRAVITY] = gravity
-    p[two.HALF_HEIGHT] = half_height
-    p[two.HALF_WIDTH] = half_width
-    p[two.INERTIA] = radius**2 / shape_factor
+    p = body.body_parameters(
+        two.PARAMETERS,
+        half_width=half_width,
+        half_height=half_height,
+        inertia=radius**2 / shape_factor,
+        restraint=restraint,
+        small_rotation=small_rotation,
+        gravity=gravity,
+    )
     p[two.STIFFNESS] = stiffness / mass
     p[two.DAMPING] = damping / mass
     p[two.SETTLEMENT] = settlement = 0.5 * gravity * mass / stiffness
     p[two.RESTITUTION] = restitution
-    p[two.RESTRAINT] = two.CENTRE if small_rotation else restraint
-    p[two.SMALL] = float(small_rotation)
     vertical_frequency = math.sqrt(2.0 * p[two.STIFFNESS])
-    frequency = math.sqrt(gravity * radius / (radius**2 + p[two.INERTIA]))
-    modes = np.arange(two.MODES)
-    left_free = (modes & 3) >= two.RELAXING
-    right_free = (modes >> 2 & 3) >= two.RELAXING
-    contact = np.full(two.MODES, ContactState.FULL, dtype=np.int64)
-    contact[left_free] = ContactState.RIGHT
-    contact[right_free] = ContactState.LEFT
-    contact[left_free & right_free] = ContactState.FLIGHT
-    rotational = half_width * math.sqrt(2.0 * p[two.STIFFNESS] / (p[two.INERTIA] + half_height**2))
+    base_inertia = p[body.INERTIA] + half_height**2
+    rotational_frequency = half_width * math.sqrt(2.0 * p[two.STIFFNESS] / base_inertia)
+    contact = contact_of_corners(np.arange(two.MODES))
 
     def initial(start: Start) -> tuple[int, Vector, Vector]:
-        state, memory = np.zeros(2 * two.COORDINATES), np.zeros(MEMORY_SIZE)
+        state, memory = np.zeros(2 * body.COORDINATES), np.zeros(MEMORY_SIZE)
         height = start.vertical_displacement
         mode = start_mode(
             start.rotation,
@@ -105,53 +101,57 @@ def two_spring(
         active=np.where(contact == ContactState.FLIGHT, 3, 2),
         contact=contact,
         parameters=p,
-        scales=np.array(
-            [
-                angle,
-                settlement,
-                radius * angle,
-                angle * frequency,
-                settlement * vertical_frequency,
-                radius * angle * frequency,
-            ]
-        ),
+        scales=body.body_scales(p, settlement, vertical_frequency),
         rotation_weights=np.array([1.0, 0.0, 0.0]),
-        guard_tolerance=_guard_tolerance(p, radius),
-        lazy_guard=np.array([0, 1, 0, 0, 1, 0, 0, 0]),
+        guard_tolerance=corner_tolerance(two.GUARDS, radius, settlement),
+        lazy_guard=lazy_corners(two.GUARDS),
         columns=two.COLUMNS,
-        fastest_frequency=max(vertical_frequency, rotational),
-        energy_scale=gravity * radius * angle,
+        fastest_frequency=max(vertical_frequency, rotational_frequency),
+        energy_scale=body.energy_scale(p),
         mass=mass,
         initial=initial,
     )
 
 
-def _guard_tolerance(p: Vector, radius: float) -> Vector:
+def contact_of_corners(modes: Integers) -> Integers:
+    """Give the contact state of modes that hold two corners' contacts in their low bits."""
+    left_free = (modes & 3) >= pad.RELAXING
+    right_free = (modes >> 2 & 3) >= pad.RELAXING
+    contact = np.full(len(modes), ContactState.FULL, dtype=np.int64)
+    contact[left_free] = ContactState.RIGHT
+    contact[right_free] = ContactState.LEFT
+    contact[left_free & right_free] = ContactState.FLIGHT
+    return contact
+
+
+ROUNDING = 4.0 * float(np.finfo(float).eps)
+"""Rounding noise of a guard that is no difference of large terms."""
+
+
+def corner_tolerance(guards: int, radius: float, settlement: float) -> Vector:
     """Estimate the rounding noise: heights are differences of terms as large as the block."""
-    noise = 4.0 * np.finfo(float).eps
-    gap = noise * (1.0 + radius / p[two.SETTLEMENT])
-    tolerance = np.full(two.GUARDS, gap)
-    tolerance[[two.TURN, two.RIGHT_GUARDS + two.TURN]] = noise
-    tolerance[[two.PIVOT_GUARD, two.LIMIT_GUARD]] = noise
+    tolerance = np.full(guards, ROUNDING)
+    for first in (two.LEFT_GUARDS, two.RIGHT_GUARDS):
+        for guard in (pad.LEAVE, pad.REENGAGE):
+            tolerance[first + guard] = ROUNDING * (1.0 + radius / settlement)
     return tolerance
+
+
+def lazy_corners(guards: int) -> Integers:
+    """Mark the guards of re-engagement, which count only once they have been positive."""
+    lazy = np.zeros(guards, dtype=np.int64)
+    lazy[[two.LEFT_GUARDS + pad.REENGAGE, two.RIGHT_GUARDS + pad.REENGAGE]] = 1
+    return lazy
 
 
 @kernel
 def equilibrium_height(rotation: float, p: Vector) -> float:
     """Give y of vertical equilibrium at a rotation, both pads bearing or only one [m]."""
-    sine, _, rise = two.sine_cosine_rise(p, rotation)
-    half = p[two.HALF_WIDTH] * abs(sine)
+    sine, _, rise = sine_cosine_rise(p[body.HALF_HEIGHT], p[body.SMALL], rotation)
+    half = p[body.HALF_WIDTH] * abs(sine)
     if half <= p[two.SETTLEMENT]:
         return -rise
     return half - rise - p[two.SETTLEMENT]
-
-
-@kernel
-def start_contact(first: int, state: Vector, p: Vector) -> int:
-    """Give a corner's contact at the start of a run."""
-    if corner_level(first, state, p) >= p[two.SETTLEMENT]:
-        return two.CLEAR
-    return two.TOUCHING if reaction(first, state, p) > 0.0 else two.RELAXING
 
 
 @kernel
@@ -164,14 +164,22 @@ def start_mode(
     A height of NaN asks for vertical equilibrium. The pinned point starts where
     it is when the block rests, so that x = 0 there.
     """
-    state[two.ROTATION] = rotation
-    state[two.VERTICAL] = equilibrium_height(rotation, p) if math.isnan(height) else height
-    state[two.COORDINATES + two.ROTATION] = spin
-    state[two.COORDINATES + two.VERTICAL] = speed
-    left = start_contact(two.LEAVE, state, p)
-    right = start_contact(two.RIGHT_GUARDS, state, p)
+    state[body.ROTATION] = rotation
+    state[body.VERTICAL] = equilibrium_height(rotation, p) if math.isnan(height) else height
+    state[body.COORDINATES + body.ROTATION] = spin
+    state[body.COORDINATES + body.VERTICAL] = speed
+    left = pad.start_contact(
+        corner_level(two.LEFT_GUARDS, state, p),
+        reaction(two.LEFT_GUARDS, state, p),
+        p[two.SETTLEMENT],
+    )
+    right = pad.start_contact(
+        corner_level(two.RIGHT_GUARDS, state, p),
+        reaction(two.RIGHT_GUARDS, state, p),
+        p[two.SETTLEMENT],
+    )
     mode = mode_of(left, right, rotation, spin, p)
-    memory[HORIZONTAL_REFERENCE] = two.pinned_point(mode, p)
+    memory[HORIZONTAL_REFERENCE] = pinned_point(mode >> 4, p[body.HALF_WIDTH])
     if two.in_flight(mode):
-        state[two.HORIZONTAL] = two.about_pin(0.0, rotation, p)
+        state[body.HORIZONTAL] = about_pin(p[body.HALF_HEIGHT], p[body.SMALL], 0.0, rotation)
     return mode

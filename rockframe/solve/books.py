@@ -4,6 +4,8 @@ import math
 from collections.abc import Callable
 from typing import Final
 
+import numpy as np
+
 from rockframe.compiled import Integers, Vector, inlined, kernel
 from rockframe.dynamics.protocol import (
     IMPACT,
@@ -16,14 +18,21 @@ from rockframe.dynamics.protocol import (
     ContactState,
 )
 from rockframe.solve import layout as at
+from rockframe.solve.ground import TERMS, ground_acceleration
 from rockframe.solve.hermite import extremum, interpolate
-from rockframe.solve.workspace import EventTable, Output, Progress, Tables, Workspace
+from rockframe.solve.workspace import EventTable, Output, Progress, Span, Tables, Workspace
 
 FULL: Final = int(ContactState.FULL)
 FLIGHT: Final = int(ContactState.FLIGHT)
 RIGHT_ANGLE: Final = 0.5 * math.pi
 ON_SAMPLE: Final = 1e-9
 """Share of the output step within which a step's end is an output time."""
+
+
+# Gauss-Legendre rule on (0, 1), exact for polynomials of the ninth degree
+_POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(5)
+GAUSS_POINTS: Final = tuple(float(0.5 + 0.5 * x) for x in _POINTS)
+GAUSS_WEIGHTS: Final = tuple(float(0.5 * x) for x in _WEIGHTS)
 
 
 @kernel
@@ -46,49 +55,91 @@ def audit(
 
 
 @kernel
-def part_of_work(fraction: float, whole: float, first: float, last: float) -> float:
-    """Give the work done in a fraction of a step, from that in all of it and its powers."""
-    rest = 1.0 - fraction
-    cubic = fraction * fraction * (3.0 - 2.0 * fraction) * whole
-    return cubic + fraction * rest * (rest * first - fraction * last)
+def work_between(
+    accelerate: Callable[..., None],
+    start: float,
+    end: float,
+    mode: int,
+    count: int,
+    span: Span,
+    p: Vector,
+    w: Workspace,
+) -> tuple[float, float]:
+    """Integrate the dashpots' and the ground's power over a part of a step, by Gauss' rule."""
+    size = len(w.state) // 2
+    burnt = supplied = 0.0
+    for i in range(len(GAUSS_POINTS)):
+        fraction = start + GAUSS_POINTS[i] * (end - start)
+        interpolate(count, fraction, span.h, w)
+        u = span.u + fraction * span.du
+        x = ground_acceleration(u, span.degree_x, 0, w.ground)
+        y = ground_acceleration(u, span.degree_y, TERMS, w.ground)
+        accelerate(mode, w.scratch, x, y, p, w.powers)
+        weight = GAUSS_WEIGHTS[i] * (end - start) * span.h
+        burnt += weight * w.powers[size]
+        supplied += weight * w.powers[size + 1]
+    return burnt, supplied
+
+
+@kernel
+def work_until(
+    accelerate: Callable[..., None],
+    fraction: float,
+    burnt: float,
+    supplied: float,
+    mode: int,
+    count: int,
+    span: Span,
+    p: Vector,
+    w: Workspace,
+) -> tuple[float, float]:
+    """Share the work of a step out to a fraction of it, by the powers of the dense solution."""
+    if fraction >= 1.0:
+        return burnt, supplied
+    b0, s0 = work_between(accelerate, 0.0, fraction, mode, count, span, p, w)
+    b1, s1 = work_between(accelerate, fraction, 1.0, mode, count, span, p, w)
+    # what is burnt never comes back: scaled, not shifted, to the work of the step
+    share = b0 / (b0 + b1) if b0 + b1 > 0.0 else fraction
+    return share * burnt, s0 + fraction * (supplied - s0 - s1)
 
 
 @inlined
 def store_outputs(
+    accelerate: Callable[..., None],
     end: float,
-    h: float,
+    span: Span,
     mode: int,
     count: int,
     burnt: float,
     supplied: float,
+    p: Vector,
     progress: Progress,
     output: Output,
     w: Workspace,
 ) -> None:
-    """Store the output samples that lie in the step (end - h, end]."""
+    """Store the output samples that lie in the step that ends at `end`."""
     clock = progress.clock
     step = progress.controls[at.OUTPUT_STEP]
     row = progress.counters[at.OUTPUTS]
     while row < len(output.mode) and row * step - end <= ON_SAMPLE * step:
         ahead = row * step - end
         fraction = 1.0
-        if ahead < -ON_SAMPLE * step and h + ahead > 0.0:
-            fraction = 1.0 + ahead / h
-            interpolate(count, fraction, h, w)
+        if ahead < -ON_SAMPLE * step and span.h + ahead > 0.0:
+            fraction = 1.0 + ahead / span.h
+        if len(output.work) > 0:
+            burnt_so_far, supplied_so_far = work_until(
+                accelerate, fraction, burnt, supplied, mode, count, span, p, w
+            )
+            output.work[row, 0] = clock[at.BURNT] + burnt_so_far
+            output.work[row, 1] = clock[at.SUPPLIED] + supplied_so_far
+        if fraction < 1.0:
+            interpolate(count, fraction, span.h, w)
             for i in range(len(w.scratch)):
                 output.state[row, i] = w.scratch[i]
         else:
             for i in range(len(w.new)):
                 output.state[row, i] = w.new[i]
         output.mode[row] = mode
-        if len(output.work) > 0:
-            size = len(w.new) // 2
-            output.work[row, 0] = clock[at.BURNT] + part_of_work(
-                fraction, burnt, h * w.slopes[0, size], h * w.slope[size]
-            )
-            output.work[row, 1] = clock[at.SUPPLIED] + part_of_work(
-                fraction, supplied, h * w.slopes[0, size + 1], h * w.slope[size + 1]
-            )
         row += 1
     progress.counters[at.OUTPUTS] = row
 

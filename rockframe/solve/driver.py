@@ -129,9 +129,9 @@ def stand_still(w: Workspace) -> None:
 
 
 class Step(NamedTuple):
-    """A step made: its length and works, its error over that allowed, the guard that crossed."""
+    """A step made: where, its works, its error over that allowed, the guard that crossed."""
 
-    h: float
+    span: Span
     burnt: float
     supplied: float
     excess: float
@@ -190,7 +190,7 @@ def make_step(
                 break
             h = moved
         attempt += 1
-    return Step(h, burnt, supplied, excess, crossed, x, y)
+    return Step(span, burnt, supplied, excess, crossed, x, y)
 
 
 @kernel
@@ -342,15 +342,17 @@ def advance(
             crossed = step.crossed
             if crossed < 0 and (step.excess > EASY or whole < time_step or whole >= h_next):
                 h_next = next_step(whole, h_next, step.excess)
-            tau += step.h
+            h = step.span.h
+            tau += h
             count = int(tables.active[mode])
             store_outputs(
-                begin + tau, step.h, mode, count, step.burnt, step.supplied, progress, output, w
-            )
-            if step.h > 0.0:
-                follow_peak(count, step.h, tables.weights, clock, w)
+                accelerate, begin + tau, step.span, mode, count, step.burnt, step.supplied, p,
+                progress, output, w,
+            )  # fmt: skip
+            if h > 0.0:
+                follow_peak(count, h, tables.weights, clock, w)
             if tables.contact[mode] == FLIGHT:
-                clock[at.FLIGHT_TIME] += step.h
+                clock[at.FLIGHT_TIME] += h
             accept(step.burnt, step.supplied, step.ground_x, step.ground_y, clock, counters, w)
         if status != at.COMPLETED or index >= intervals or begin + length >= duration:
             break

@@ -96,7 +96,7 @@ def integrate(
     rows = 0 if output_step is None else 1 + math.floor(duration / output_step * (1.0 + 1e-12))
     width = len(state)
     out_state = np.empty((rows, width))
-    out_mode = np.empty(rows, dtype=np.int8)
+    out_mode = np.empty(rows, dtype=np.int16)
     out_work = np.zeros((rows if with_work else 0, 2))
     if rows:
         out_state[0], out_mode[0] = state, mode
@@ -152,7 +152,7 @@ def integrate(
         # the instant at which the run ended belongs to its history
         time = np.concatenate([time, np.array([end])])
         out_state = np.vstack([out_state, state])
-        out_mode = np.append(out_mode, np.int8(counters[at.MODE]))
+        out_mode = np.append(out_mode, np.int16(counters[at.MODE]))
         if with_work:
             out_work = np.vstack([out_work, [clock[at.BURNT], clock[at.SUPPLIED]]])
     return Trajectory(

@@ -44,7 +44,7 @@ class Trajectory:
         Output times [s].
     state : ndarray, shape (samples, 2 n)
         Coordinates, then their rates.
-    mode : ndarray of int8, shape (samples,)
+    mode : ndarray of int16, shape (samples,)
         Modes of the model.
     work : ndarray, shape (samples, 2) or (0, 2)
         Energies burnt by dashpots and put in by the ground, if asked for.

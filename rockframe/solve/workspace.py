@@ -75,6 +75,7 @@ class Workspace(NamedTuple):
     inside: Vector  # and in between
     scratch: Vector  # state and accelerations in between
     scratch_rates: Vector
+    powers: Vector  # accelerations and powers in between
     ground: Vector  # coefficients of the ground motion in this interval
     energies: Vector
 
@@ -119,6 +120,7 @@ def make_workspace(state: Vector, reference: Vector, guards: int) -> Workspace:
         inside=np.zeros(2 * guards),
         scratch=np.zeros(width),
         scratch_rates=np.zeros(size),
+        powers=np.zeros(size + 2),
         ground=np.zeros(2 * TERMS),
         energies=np.zeros(4),
     )

@@ -144,7 +144,7 @@ class TwoSpringSetting:
 
     def compile(self) -> "ContactModel":
         """Give the equations, ready for the integrator."""
-        from rockframe.dynamics import two_spring as equations
+        from rockframe.dynamics import kinematics as equations
         from rockframe.dynamics.two_spring_model import two_spring
 
         rules = {

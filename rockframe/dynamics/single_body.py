@@ -1,0 +1,243 @@
+"""What all models of one body on a yielding base share: state, parameters, restraint.
+
+The base is two pads (:mod:`rockframe.dynamics.two_spring`) or a bed of springs
+(:mod:`rockframe.dynamics.winkler`). All quantities per unit mass of the body.
+"""
+
+import math
+from typing import Final
+
+import numpy as np
+
+from rockframe.compiled import Vector, inlined, kernel
+from rockframe.dynamics.kinematics import (
+    CENTRE,
+    PIVOT_CENTRE,
+    PIVOT_LEFT,
+    PIVOT_RIGHT,
+    about_pin,
+    leading_pivot,
+    pinned_point,
+    reach_and_bend,
+    sine_cosine_rise,
+)
+from rockframe.dynamics.protocol import (
+    HORIZONTAL_REFERENCE,
+    LAST_EVENT,
+    PIVOT_CHANGE,
+    REPINNING_LOSS,
+    ROTATION_LIMIT,
+    SILENT,
+)
+
+# parameters, after ROTATION_LIMIT
+GRAVITY: Final = 1  # g
+ANGLE: Final = 2  # theta
+HALF_HEIGHT: Final = 3  # h, of the centre of mass above the base
+HALF_WIDTH: Final = 4  # b
+INERTIA: Final = 5  # I_O/m
+RESTRAINT: Final = 6  # a restraint rule
+SMALL: Final = 7  # 1 for small rotation
+BODY_PARAMETERS: Final = 8
+
+# state
+ROTATION: Final = 0
+VERTICAL: Final = 1
+HORIZONTAL: Final = 2  # a coordinate of its own in flight only
+COORDINATES: Final = 3
+
+COLUMNS: Final = (
+    "rotation",
+    "angular_velocity",
+    "vertical_displacement",
+    "vertical_velocity",
+    "horizontal_displacement",
+)
+
+FREE: Final = -1
+"""Stands for the pivot of a body in flight."""
+
+
+@inlined
+def horizontal_velocity(pivot: int, state: Vector, p: Vector, sine: float, cosine: float) -> float:
+    """Give dx/dt of the centre of mass: about the pinned point, or free in flight."""
+    if pivot == FREE:
+        return state[COORDINATES + HORIZONTAL]
+    pin = pinned_point(pivot, p[HALF_WIDTH])
+    reach, _ = reach_and_bend(p[HALF_HEIGHT], p[SMALL], pin, sine, cosine)
+    return reach * state[COORDINATES + ROTATION]
+
+
+@kernel
+def horizontal_position(pivot: int, state: Vector, p: Vector, memory: Vector) -> float:
+    """Give x of the centre of mass: about the pinned point, or free in flight."""
+    if pivot == FREE:
+        return state[HORIZONTAL]
+    pin = pinned_point(pivot, p[HALF_WIDTH])
+    return memory[HORIZONTAL_REFERENCE] + about_pin(p[HALF_HEIGHT], p[SMALL], pin, state[ROTATION])
+
+
+@inlined
+def move_body(
+    pivot: int,
+    state: Vector,
+    sine: float,
+    cosine: float,
+    force: float,
+    moment: float,
+    ground_x: float,
+    ground_y: float,
+    p: Vector,
+    out: Vector,
+) -> None:
+    """Write the accelerations of :eq:`eq-two-spring` and the ground's power.
+
+    `force` and `moment` are the base's vertical force and its generalised force
+    on the rotation.
+    """
+    spin = state[COORDINATES + ROTATION]
+    speed = state[COORDINATES + VERTICAL]
+    out[VERTICAL] = force - p[GRAVITY] - ground_y
+    if pivot == FREE:
+        out[ROTATION] = 0.0
+        out[HORIZONTAL] = -ground_x
+        out[COORDINATES + 1] = -ground_x * state[COORDINATES + HORIZONTAL] - ground_y * speed
+        return
+    pin = pinned_point(pivot, p[HALF_WIDTH])
+    reach, bend = reach_and_bend(p[HALF_HEIGHT], p[SMALL], pin, sine, cosine)
+    push = reach * (ground_x + bend * spin * spin)
+    out[ROTATION] = (moment - push) / (p[INERTIA] + reach * reach)
+    out[HORIZONTAL] = 0.0
+    out[COORDINATES + 1] = -ground_x * reach * spin - ground_y * speed
+
+
+@kernel
+def kinetic_energy(pivot: int, state: Vector, p: Vector) -> float:
+    """Give the kinetic energy relative to the ground, :eq:`eq-energy`."""
+    sine, cosine, _ = sine_cosine_rise(p[HALF_HEIGHT], p[SMALL], state[ROTATION])
+    sway = horizontal_velocity(pivot, state, p, sine, cosine)
+    spin = state[COORDINATES + ROTATION]
+    speed = state[COORDINATES + VERTICAL]
+    return 0.5 * (p[INERTIA] * spin * spin + speed * speed + sway * sway)
+
+
+@kernel
+def limit_guard(state: Vector, p: Vector) -> tuple[float, float]:
+    """Give the distance of the rotation from its limit, and its rate."""
+    spin = state[COORDINATES + ROTATION]
+    rotation = state[ROTATION]
+    return p[ROTATION_LIMIT] - abs(rotation), -spin if rotation > 0.0 else spin
+
+
+@kernel
+def repin(old: int, new: int, state: Vector, p: Vector, memory: Vector) -> None:
+    """Project the momentum on the horizontal restraint of a new pivot, :eq:`eq-repinning`."""
+    position = horizontal_position(old, state, p, memory)
+    rotation = state[ROTATION]
+    spin = state[COORDINATES + ROTATION]
+    sine, cosine, _ = sine_cosine_rise(p[HALF_HEIGHT], p[SMALL], rotation)
+    sway = horizontal_velocity(old, state, p, sine, cosine)
+    if new == FREE:
+        state[HORIZONTAL] = position
+        state[COORDINATES + HORIZONTAL] = sway
+        return
+    pin = pinned_point(new, p[HALF_WIDTH])
+    memory[HORIZONTAL_REFERENCE] = position - about_pin(p[HALF_HEIGHT], p[SMALL], pin, rotation)
+    reach, _ = reach_and_bend(p[HALF_HEIGHT], p[SMALL], pin, sine, cosine)
+    # the constraint's impulse does no work on what it lets through: the loss is
+    # that of the slip between the old sway and the new one
+    slip = sway - reach * spin
+    inertia = p[INERTIA] + reach * reach
+    state[COORDINATES + ROTATION] = (p[INERTIA] * spin + reach * sway) / inertia
+    memory[REPINNING_LOSS] += 0.5 * p[INERTIA] * slip * slip / inertia
+
+
+@kernel
+def turned_pivot(pivot: int, state: Vector, ground_x: float, memory: Vector) -> int:
+    """Give the pivot after the guard of the leading corner has fallen, and note the event."""
+    spin = state[COORDINATES + ROTATION]
+    if pivot != PIVOT_CENTRE:
+        state[ROTATION] = 0.0
+        memory[LAST_EVENT] = PIVOT_CHANGE
+        return PIVOT_LEFT if pivot == PIVOT_RIGHT else PIVOT_RIGHT
+    memory[LAST_EVENT] = SILENT  # the first lean decides; at rest the ground does
+    return leading_pivot(state[ROTATION], spin if spin != 0.0 else -ground_x)
+
+
+@kernel
+def observe_body(pivot: int, state: Vector, memory: Vector, p: Vector, out: Vector) -> None:
+    """Write the columns of the body's motion."""
+    out[0] = state[ROTATION]
+    out[1] = state[COORDINATES + ROTATION]
+    out[2] = state[VERTICAL]
+    out[3] = state[COORDINATES + VERTICAL]
+    out[4] = horizontal_position(pivot, state, p, memory)
+
+
+def body_parameters(
+    size: int,
+    *,
+    half_width: float,
+    half_height: float,
+    inertia: float,
+    restraint: int,
+    small_rotation: bool,
+    gravity: float,
+) -> Vector:
+    """Give an array of parameters with those of the body filled in.
+
+    Parameters
+    ----------
+    size : int
+        Number of parameters of the model.
+    half_width, half_height : float
+        b, and h of the centre of mass above the base [m].
+    inertia : float
+        I_O per unit mass [m^2].
+    restraint : int
+        A rule of :mod:`rockframe.dynamics.kinematics`; at small rotation the rules coincide.
+    small_rotation : bool
+        Whether the kinematics are expanded to second order.
+    gravity : float
+        Acceleration of gravity [m s^-2].
+
+    Returns
+    -------
+    ndarray
+    """
+    p = np.zeros(size)
+    p[ROTATION_LIMIT] = p[ANGLE] = math.atan2(half_width, half_height)
+    p[GRAVITY] = gravity
+    p[HALF_HEIGHT] = half_height
+    p[HALF_WIDTH] = half_width
+    p[INERTIA] = inertia
+    p[RESTRAINT] = restraint_in_use(restraint, small_rotation)
+    p[SMALL] = float(small_rotation)
+    return p
+
+
+def restraint_in_use(restraint: int, small_rotation: bool) -> int:
+    """Give the restraint rule, or the simplest where all rules are the same."""
+    return CENTRE if small_rotation else restraint
+
+
+def body_scales(p: Vector, settlement: float, vertical_frequency: float) -> Vector:
+    """Give typical sizes of the coordinates and their rates."""
+    angle, radius = p[ANGLE], math.hypot(p[HALF_WIDTH], p[HALF_HEIGHT])
+    rocking = math.sqrt(p[GRAVITY] * radius / (radius**2 + p[INERTIA]))
+    return np.array(
+        [
+            angle,
+            settlement,
+            radius * angle,
+            angle * rocking,
+            settlement * vertical_frequency,
+            radius * angle * rocking,
+        ]
+    )
+
+
+def energy_scale(p: Vector) -> float:
+    """Give a typical energy, by which rounding noise is known."""
+    radius = math.hypot(p[HALF_WIDTH], p[HALF_HEIGHT])
+    return float(p[GRAVITY] * radius * p[ANGLE])
