@@ -10,6 +10,7 @@ All energies and powers are per unit mass. Modes are small integers private to
 the model; ``contact`` maps them to the contact states users see.
 """
 
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import IntEnum
@@ -57,6 +58,9 @@ LAST_EVENT: Final = 3
 """Index into the memory: kind of the last switch, an :class:`EventKind`."""
 MEMORY_SIZE: Final = 4
 
+ROUNDING: Final = 4.0 * sys.float_info.epsilon
+"""Rounding noise of a guard that is no difference of large terms."""
+
 
 class ContactState(IntEnum):
     """The corner, or the part of the base, that bears."""
@@ -78,6 +82,9 @@ class EventKind(IntEnum):
     REST = 6
     OVERTURNING = 7
     TOPPLED = 8
+    SOIL_SEPARATION = 9
+    SOIL_CONTACT = 10
+    SOIL_PIVOT_CHANGE = 11
 
 
 # Plain integers for the kernels: compiled code cannot store an enumeration's member.
@@ -90,6 +97,9 @@ UPLIFT: Final = int(EventKind.UPLIFT)
 REST: Final = int(EventKind.REST)
 OVERTURNING: Final = int(EventKind.OVERTURNING)
 TOPPLED: Final = int(EventKind.TOPPLED)
+SOIL_SEPARATION: Final = int(EventKind.SOIL_SEPARATION)
+SOIL_CONTACT: Final = int(EventKind.SOIL_CONTACT)
+SOIL_PIVOT_CHANGE: Final = int(EventKind.SOIL_PIVOT_CHANGE)
 
 
 @dataclass(frozen=True)
@@ -142,6 +152,9 @@ class ContactModel:
         Highest angular frequency of the model [rad s^-1].
     energy_scale : float
         Typical energy per unit mass, by which rounding noise is known [m^2 s^-2].
+    soil_contact : ndarray of int64, shape (modes,), or None
+        :class:`ContactState` of the cap on the soil in each mode, where `contact` is
+        that of a block on a cap.
     mass : float
         Mass that turns the energies into joules [kg].
     initial : callable
@@ -166,3 +179,4 @@ class ContactModel:
     energy_scale: float
     mass: float
     initial: Callable[[Start], tuple[int, Vector, Vector]]
+    soil_contact: Integers | None = None

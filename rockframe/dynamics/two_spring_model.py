@@ -12,6 +12,7 @@ from rockframe.dynamics.kinematics import about_pin, pinned_point, sine_cosine_r
 from rockframe.dynamics.protocol import (
     HORIZONTAL_REFERENCE,
     MEMORY_SIZE,
+    ROUNDING,
     ContactModel,
     ContactState,
     Start,
@@ -122,10 +123,6 @@ def contact_of_corners(modes: Integers) -> Integers:
     contact[right_free] = ContactState.LEFT
     contact[left_free & right_free] = ContactState.FLIGHT
     return contact
-
-
-ROUNDING = 4.0 * float(np.finfo(float).eps)
-"""Rounding noise of a guard that is no difference of large terms."""
 
 
 def corner_tolerance(guards: int, radius: float, settlement: float) -> Vector:

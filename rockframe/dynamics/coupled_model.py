@@ -1,0 +1,234 @@
+"""Assembly of the model of a block on pads on a cap on soil."""
+
+import math
+
+import numpy as np
+
+from rockframe.compiled import Matrix, Vector, kernel
+from rockframe.dynamics import bed, pad
+from rockframe.dynamics import coupled as model
+from rockframe.dynamics.coupled_switches import (
+    bed_mode_of,
+    block_mode_of,
+    corner_level,
+    reaction,
+    switch,
+)
+from rockframe.dynamics.kinematics import about_pin, pinned_point, sine_cosine_rise
+from rockframe.dynamics.protocol import (
+    HORIZONTAL_REFERENCE,
+    MEMORY_SIZE,
+    ContactModel,
+    ContactState,
+    Start,
+)
+from rockframe.dynamics.single_body import FREE, restraint_in_use
+from rockframe.dynamics.two_spring_model import (
+    contact_of_corners,
+    corner_tolerance,
+    lazy_corners,
+)
+from rockframe.dynamics.winkler_model import bed_tolerance, contact_of_bed
+
+
+def coupled(
+    *,
+    half_width: float,
+    half_height: float,
+    inertia: float,
+    mass: float,
+    pad_stiffness: float,
+    pad_damping: float,
+    restitution: float,
+    cap_half_width: float,
+    cap_half_height: float,
+    cap_mass: float,
+    cap_inertia: float,
+    soil_stiffness: float,
+    soil_damping: float,
+    by_pressure: bool,
+    restraint: int,
+    small_rotation: bool,
+    gravity: float,
+) -> ContactModel:
+    """Assemble the model of a block on two pads on a cap on a Winkler bed.
+
+    Parameters
+    ----------
+    half_width, half_height : float
+        b and h of the block [m].
+    inertia, mass : float
+        I_O and m of the block [kg m^2], [kg].
+    pad_stiffness, pad_damping : float
+        k and c of one pad [N m^-1], [N s m^-1].
+    restitution : float
+        eps of a landing corner [1].
+    cap_half_width, cap_half_height : float
+        b_c and h_c [m].
+    cap_mass, cap_inertia : float
+        m_c and I_c about the cap's centre [kg], [kg m^2].
+    soil_stiffness, soil_damping : float
+        k0 and c0 per unit length of base [N m^-2], [N s m^-2].
+    by_pressure : bool
+        Whether the soil lets go where its pressure would be negative, too.
+    restraint : int
+        A rule of :mod:`rockframe.dynamics.kinematics`, for block and cap alike.
+    small_rotation : bool
+        Whether the kinematics of each body on its base are expanded to second order.
+    gravity : float
+        Acceleration of gravity [m s^-2].
+
+    Returns
+    -------
+    ContactModel
+    """
+    radius = math.hypot(half_width, half_height)
+    p = np.zeros(model.PARAMETERS)
+    p[model.ROTATION_LIMIT] = p[model.ANGLE] = theta = math.atan2(half_width, half_height)
+    p[model.GRAVITY] = gravity
+    p[model.RESTRAINT] = restraint_in_use(restraint, small_rotation)
+    p[model.SMALL] = float(small_rotation)
+    p[model.HALF_HEIGHT] = half_height
+    p[model.HALF_WIDTH] = half_width
+    p[model.INERTIA] = inertia / mass
+    p[model.PAD_STIFFNESS] = pad_stiffness / mass
+    p[model.PAD_DAMPING] = pad_damping / mass
+    p[model.PAD_SETTLEMENT] = settlement = 0.5 * gravity * mass / pad_stiffness
+    p[model.RESTITUTION] = restitution
+    p[model.CAP_HALF_HEIGHT] = cap_half_height
+    p[model.CAP_HALF_WIDTH] = cap_half_width
+    p[model.CAP_MASS] = cap_mass / mass
+    p[model.CAP_INERTIA] = cap_inertia / mass
+    p[model.SOIL_STIFFNESS] = soil_stiffness / mass
+    p[model.SOIL_DAMPING] = soil_damping / mass
+    soil_settlement = 0.5 * (mass + cap_mass) * gravity / (cap_half_width * soil_stiffness)
+    p[model.SOIL_SETTLEMENT] = soil_settlement
+    p[model.BY_PRESSURE] = float(by_pressure)
+    modes = np.arange(model.MODES)
+    contact = contact_of_corners(modes % model.BLOCK_MODES)
+    soil_contact = contact_of_bed(modes // model.BLOCK_MODES)
+    fastest = fastest_frequency(p)
+    rocking = math.sqrt(gravity * radius / (radius**2 + p[model.INERTIA]))
+    pads = math.sqrt(2.0 * p[model.PAD_STIFFNESS])
+    soil = math.sqrt(2.0 * cap_half_width * p[model.SOIL_STIFFNESS] / (1.0 + p[model.CAP_MASS]))
+    sizes = np.array([soil_settlement, theta, settlement, theta, radius * theta, radius * theta])
+    rates = np.array([soil, rocking, pads, rocking, rocking, rocking])
+    tolerance = corner_tolerance(model.GUARDS, radius, settlement)
+    cap_radius = math.hypot(cap_half_width, cap_half_height)
+    tolerance[model.SOIL_GUARDS : model.SOIL_PIVOT_GUARD] = bed_tolerance(
+        bed.BED_GUARDS, cap_radius, soil_settlement
+    )
+
+    def initial(start: Start) -> tuple[int, Vector, Vector]:
+        state, memory = np.zeros(2 * model.COORDINATES), np.zeros(MEMORY_SIZE)
+        height = start.vertical_displacement
+        mode = start_mode(
+            start.rotation,
+            start.angular_velocity,
+            math.nan if height is None else height,
+            start.vertical_velocity,
+            state,
+            memory,
+            p,
+        )
+        return mode, state, memory
+
+    return ContactModel(
+        name="coupled",
+        accelerate=model.accelerate,
+        guard=model.guard,
+        switch=switch,
+        energy=model.energy,
+        observe=model.observe,
+        active=np.where(soil_contact == ContactState.FLIGHT, 6, 5),
+        contact=contact,
+        parameters=p,
+        scales=np.concatenate([sizes, sizes * rates]),
+        rotation_weights=np.array([0.0, 1.0, 0.0, 1.0, 0.0, 0.0]),
+        guard_tolerance=tolerance,
+        lazy_guard=lazy_corners(model.GUARDS),
+        columns=model.COLUMNS,
+        fastest_frequency=fastest,
+        energy_scale=gravity * radius * theta,
+        mass=mass,
+        initial=initial,
+        soil_contact=soil_contact,
+    )
+
+
+def small_motion_matrices(p: Vector) -> tuple[Matrix, Matrix, Matrix]:
+    """Give mass, damping and stiffness of small motion about rest, in full contact.
+
+    In the order Y, phi, r, psi, per unit mass of the block, :eq:`eq-coupled-small`.
+    """
+    h, h_c, g = p[model.HALF_HEIGHT], p[model.CAP_HALF_HEIGHT], p[model.GRAVITY]
+    b, b_c, m_c = p[model.HALF_WIDTH], p[model.CAP_HALF_WIDTH], p[model.CAP_MASS]
+    high = h + 2.0 * h_c
+    mass = np.array(
+        [
+            [1.0 + m_c, 0.0, 1.0, 0.0],
+            [
+                0.0,
+                p[model.CAP_INERTIA] + m_c * h_c**2 + p[model.INERTIA] + high**2,
+                0.0,
+                p[model.INERTIA] + h * high,
+            ],
+            [1.0, 0.0, 1.0, 0.0],
+            [0.0, p[model.INERTIA] + h * high, 0.0, p[model.INERTIA] + h**2],
+        ]
+    )
+
+    def springs(soil: float, pads: float) -> Matrix:
+        return np.diag([2.0 * b_c * soil, soil * b_c**3 / 1.5, 2.0 * pads, 2.0 * pads * b**2])
+
+    stiffness = springs(p[model.SOIL_STIFFNESS], p[model.PAD_STIFFNESS])
+    stiffness[1, 1] -= g * (m_c * h_c + high)
+    stiffness[3, 3] -= g * h
+    stiffness[1, 3] = stiffness[3, 1] = -g * h
+    return mass, springs(p[model.SOIL_DAMPING], p[model.PAD_DAMPING]), stiffness
+
+
+def fastest_frequency(p: Vector) -> float:
+    """Give the highest angular frequency of block and cap together, or of the cap alone."""
+    mass, _, stiffness = small_motion_matrices(p)
+    together = np.linalg.eigvals(np.linalg.solve(mass, stiffness)).real.max()
+    b_c, k, m_c = p[model.CAP_HALF_WIDTH], p[model.SOIL_STIFFNESS], p[model.CAP_MASS]
+    turning = p[model.CAP_INERTIA] + m_c * p[model.CAP_HALF_HEIGHT] ** 2
+    return math.sqrt(max(together, 2.0 * b_c * k / m_c, k * b_c**3 / 1.5 / turning))
+
+
+@kernel
+def start_mode(
+    rotation: float, spin: float, height: float, speed: float, state: Vector, memory: Vector,
+    p: Vector,
+) -> int:  # fmt: skip
+    """Fill the state and the memory at the start of a run, and give its mode.
+
+    The cap starts upright and at rest; rotation and height are those of the block on
+    it, and NaN for a height asks for equilibrium on the pads.
+    """
+    delta = p[model.PAD_SETTLEMENT]
+    sine, _, rise = sine_cosine_rise(p[model.HALF_HEIGHT], p[model.SMALL], rotation)
+    state[model.ROTATION] = rotation
+    state[model.NORMAL] = height
+    if math.isnan(height):
+        tilt = p[model.HALF_WIDTH] * abs(sine)
+        state[model.NORMAL] = max(tilt - delta, 0.0) - rise
+    state[model.COORDINATES + model.ROTATION] = spin
+    state[model.COORDINATES + model.NORMAL] = speed
+    left = pad.start_contact(
+        corner_level(model.LEFT_GUARDS, state, p), reaction(model.LEFT_GUARDS, state, p), delta
+    )
+    right = pad.start_contact(
+        corner_level(model.RIGHT_GUARDS, state, p), reaction(model.RIGHT_GUARDS, state, p), delta
+    )
+    rule = p[model.RESTRAINT]
+    bed_mode = bed_mode_of(bed.DOWN, bed.DOWN, 0, 0.0, 0.0, rule)
+    mode = block_mode_of(left, right, rotation, spin, rule) + model.BLOCK_MODES * bed_mode
+    pivot = model.block_pivot(mode)
+    pin = 0.0 if pivot == FREE else pinned_point(pivot, p[model.HALF_WIDTH])
+    state[model.ALONG] = pin + about_pin(p[model.HALF_HEIGHT], p[model.SMALL], pin, rotation)
+    place = model.configuration(mode, state, p)
+    state[model.COORDINATES + model.ALONG] = 0.0 if pivot == FREE else place.slide * spin
+    memory[HORIZONTAL_REFERENCE] = pinned_point(model.cap_pivot(mode), p[model.CAP_HALF_WIDTH])
+    return mode
