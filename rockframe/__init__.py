@@ -11,9 +11,14 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from rockframe import plot as plot
     from rockframe.components import Block as Block
+    from rockframe.components import CushionCap as CushionCap
+    from rockframe.components import FrameEquivalent as FrameEquivalent
     from rockframe.components import InitialState as InitialState
+    from rockframe.components import Member as Member
+    from rockframe.components import RegularFrame as RegularFrame
     from rockframe.components import RigidGround as RigidGround
     from rockframe.components import TwoSpringSupport as TwoSpringSupport
+    from rockframe.components import WinklerSoil as WinklerSoil
     from rockframe.errors import AssemblyError as AssemblyError
     from rockframe.errors import ComponentError as ComponentError
     from rockframe.errors import ModelWarning as ModelWarning
@@ -31,7 +36,17 @@ if TYPE_CHECKING:
     __version__: str
 
 _HOMES = {
-    "rockframe.components": ("Block", "InitialState", "RigidGround", "TwoSpringSupport"),
+    "rockframe.components": (
+        "Block",
+        "CushionCap",
+        "FrameEquivalent",
+        "InitialState",
+        "Member",
+        "RegularFrame",
+        "RigidGround",
+        "TwoSpringSupport",
+        "WinklerSoil",
+    ),
     "rockframe.errors": (
         "AssemblyError",
         "ComponentError",
@@ -55,11 +70,15 @@ __all__ = [
     "AssemblyError",
     "Block",
     "ComponentError",
+    "CushionCap",
+    "FrameEquivalent",
     "GroundMotion",
     "InitialState",
+    "Member",
     "ModelWarning",
     "RecordError",
     "RecordWarning",
+    "RegularFrame",
     "RigidGround",
     "RockframeError",
     "RockframeWarning",
@@ -68,6 +87,7 @@ __all__ = [
     "System",
     "TwoSpringSupport",
     "UnitsError",
+    "WinklerSoil",
     "__version__",
     "plot",
 ]

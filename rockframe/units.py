@@ -7,7 +7,7 @@ does no harm.
 
 import math
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from enum import StrEnum
 from numbers import Real
@@ -29,6 +29,7 @@ class Unit(StrEnum):
 
     ONE = "1"
     METRE = "m"
+    CUBIC_METRE = "m^3"
     SECOND = "s"
     KILOGRAM = "kg"
     RADIAN = "rad"
@@ -43,6 +44,9 @@ class Unit(StrEnum):
     NEWTON_PER_METRE = "N m^-1"
     NEWTON_SECOND_PER_METRE = "N s m^-1"
     JOULE = "J"
+    PASCAL = "Pa"
+    PASCAL_SECOND = "Pa s"
+    PASCAL_PER_METRE = "Pa m^-1"
 
 
 @dataclass(frozen=True)
@@ -66,6 +70,9 @@ ACCELERATION: Final = Measure("an acceleration", Unit.METRE_PER_SECOND_SQUARED, 
 FREQUENCY: Final = Measure("a cyclic frequency", Unit.HERTZ, "1 Hz")
 STIFFNESS: Final = Measure("a stiffness", Unit.NEWTON_PER_METRE, "12 MN/m")
 DAMPING: Final = Measure("a damping coefficient", Unit.NEWTON_SECOND_PER_METRE, "80 kN*s/m")
+BED_STIFFNESS: Final = Measure("a stiffness per length of base", Unit.PASCAL, "9 MPa")
+BED_DAMPING: Final = Measure("a damping per length of base", Unit.PASCAL_SECOND, "400 kN*s/m^2")
+SUBGRADE_MODULUS: Final = Measure("a subgrade modulus", Unit.PASCAL_PER_METRE, "20 MN/m^3")
 
 _MISREAD_UNITS: Final = (
     # (pattern, unit it is meant for or None for any, what is wrong)
@@ -164,6 +171,53 @@ def to_si(
         )
         raise UnitsError(msg)
     return _check_value(float(magnitude), value, condition, owner=owner, name=name)
+
+
+def to_si_values(value: object, measure: Measure, *, owner: str, name: str) -> list[float]:
+    """Convert an argument that holds one or several values to floats in SI units.
+
+    Parameters
+    ----------
+    value : (sequence, unit), pint.Quantity, or sequence of str or Quantity
+        What the user gave; the values in one dimension.
+    measure : Measure
+        What the argument needs.
+    owner, name : str
+        Class (or function) and argument, for the message.
+
+    Returns
+    -------
+    list of float
+
+    Raises
+    ------
+    UnitsError
+        No unit, an unknown unit, or a unit of another kind.
+    ComponentError
+        Not finite.
+    """
+    import pint
+
+    if isinstance(value, str):
+        return [to_si(value, measure, owner=owner, name=name)]
+    if isinstance(value, pint.Quantity):
+        given: Any = value
+        return [to_si(one, measure, owner=owner, name=name) for one in _each(given)]
+    if isinstance(value, Iterable):
+        items: list[Any] = list(value)
+        if len(items) == 2 and isinstance(items[1], str) and not isinstance(items[0], str):
+            factor = to_si(f"1 {items[1]}", measure, owner=owner, name=name)
+            numbers = items[0] if isinstance(items[0], Iterable) else [items[0]]
+            return [
+                _check_value(float(number) * factor, number, None, owner=owner, name=name)
+                for number in numbers
+            ]
+        return [to_si(item, measure, owner=owner, name=name) for item in items]
+    return [to_si(value, measure, owner=owner, name=name)]
+
+
+def _each(given: Any) -> Iterable[Any]:
+    return given if getattr(given.magnitude, "ndim", 0) == 1 else [given]
 
 
 def to_ratio(

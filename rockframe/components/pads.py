@@ -72,8 +72,8 @@ class TwoSpringSupport(Component[TwoSpringSupportSI]):
         restitution: RatioLike | None = None,
     ) -> None:
         owner = "TwoSpringSupport"
-        _one_of(owner, frequency_ratio=frequency_ratio, stiffness=stiffness)
-        _one_of(owner, damping_ratio=damping_ratio, damping=damping)
+        one_of(owner, frequency_ratio=frequency_ratio, stiffness=stiffness)
+        one_of(owner, damping_ratio=damping_ratio, damping=damping)
         beta = k = xi = c = eps = None
         if frequency_ratio is not None:
             beta = to_ratio(
@@ -104,7 +104,8 @@ class TwoSpringSupport(Component[TwoSpringSupportSI]):
         return self.si.restitution
 
 
-def _one_of(owner: str, **pair: object) -> None:
+def one_of(owner: str, **pair: object) -> None:
+    """Refuse to be given both or neither of a pair of arguments."""
     given = [name for name, value in pair.items() if value is not None]
     if len(given) == 1:
         return

@@ -11,13 +11,19 @@ import numpy as np
 from rockframe.constants import PAPER_TITLE
 from rockframe.errors import SchemaError
 from rockframe.results.outcome import Values
-from rockframe.results.schema import SCHEMA, SCHEMA_VERSION
+from rockframe.results.schema import COORDINATES, SCHEMA, SCHEMA_VERSION
 
 if TYPE_CHECKING:
     import xarray as xr
 
 
-def build_dataset(values: Values, attributes: Mapping[str, str | float | int]) -> "xr.Dataset":
+def build_dataset(
+    values: Values,
+    attributes: Mapping[str, str | float | int],
+    *,
+    title: str = "Rocking response",
+    source: str = "event-driven integration",
+) -> "xr.Dataset":
     """Label values by the schema and add the provenance every result carries.
 
     Parameters
@@ -26,6 +32,8 @@ def build_dataset(values: Values, attributes: Mapping[str, str | float | int]) -
         Arrays and scalars by their names in the schema.
     attributes : mapping
         Strings and numbers that describe the run.
+    title, source : str
+        What the dataset holds, and how it was computed.
 
     Returns
     -------
@@ -49,8 +57,10 @@ def build_dataset(values: Values, attributes: Mapping[str, str | float | int]) -
             msg = f"{name!r} needs the dimensions {row.dims}, got an array of shape {data.shape}"
             raise SchemaError(msg)
         variables[name] = xr.Variable(row.dims, data, row.attributes())
-    coordinates = {"time": variables.pop("time")} if "time" in variables else {}
-    dataset = xr.Dataset(variables, coords=coordinates, attrs=_attributes(attributes))
+    coordinates = {name: variables.pop(name) for name in COORDINATES if name in variables}
+    dataset = xr.Dataset(
+        variables, coords=coordinates, attrs=_attributes(attributes, title, source)
+    )
     for name in coordinates:
         # a coordinate has no missing values, so it needs no fill value (CF 2.5.1)
         dataset[name].encoding["_FillValue"] = None
@@ -62,14 +72,14 @@ def _release() -> str:
     return version("rockframe")
 
 
-def _attributes(given: Mapping[str, str | float | int]) -> dict[str, Any]:
+def _attributes(given: Mapping[str, str | float | int], title: str, source: str) -> dict[str, Any]:
     now = datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
     release = _release()
     return {
         "Conventions": "CF-1.11",
-        "title": "Rocking response",
+        "title": title,
         "history": f"{now} computed by rockframe {release}",
-        "source": f"rockframe {release}, event-driven integration",
+        "source": f"rockframe {release}, {source}",
         "references": PAPER_TITLE,
         "rockframe_version": release,
         "schema_version": SCHEMA_VERSION,

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,31 +12,33 @@ from rockframe.dynamics.protocol import IMPACT_LOSS, REPINNING_LOSS, SILENT, Con
 from rockframe.results.schema import Direction
 from rockframe.solve.layout import Status
 from rockframe.solve.observe import energies_of, memory_at_outputs, observe_trajectory
-from rockframe.solve.trajectory import Trajectory
+from rockframe.solve.trajectory import Summary, Trajectory
 
-Values = Mapping[str, "NDArray[np.generic] | float | int | bool"]
+Array = NDArray[np.float64]
+Generic = NDArray[Any]
+Values = Mapping[str, "Generic | float | int | bool"]
 
-FORCES = ("left_reaction", "right_reaction")
+REACTION = "_reaction"
+"""Ending of the names of forces, which models give per unit mass."""
 
 
 @dataclass(frozen=True)
 class Scales:
-    """Angles and lengths by which a response is made relative, in SI units."""
+    """What a response is made relative to, in SI units.
+
+    `cap_offset` is the height of a cap's centre above that of the body of which the
+    cap is a part; None where there is no such cap.
+    """
 
     overturning_angle: float
     uplift_angle: float
     settlement: float | None
+    cap_offset: float | None = None
+    small_rotation: bool = False
 
 
-def histories(
-    model: ContactModel,
-    run: Trajectory,
-    scales: Scales,
-    ground: NDArray[np.float64],
-    *,
-    has_vertical_motion: bool,
-) -> dict[str, NDArray[np.generic]]:
-    """Give the histories of a run by their names in the schema.
+def histories(model: ContactModel, run: Trajectory, ground: Array) -> dict[str, Generic]:
+    """Give what a model can be observed by, and its contact states.
 
     Parameters
     ----------
@@ -43,34 +46,65 @@ def histories(
         The equations.
     run : Trajectory
         The run.
-    scales : Scales
-        For the relative response.
     ground : ndarray, shape (samples, 2)
         Ground acceleration at the output times.
-    has_vertical_motion : bool
-        Whether the motion has a vertical component.
 
     Returns
     -------
     dict of str to ndarray
+        By their names in the schema.
     """
     observed = observe_trajectory(model, run, ground)
-    values: dict[str, NDArray[np.generic]] = {
-        name: model.mass * column if name in FORCES else column for name, column in observed.items()
+    values: dict[str, Generic] = {
+        name: model.mass * column if name.endswith(REACTION) else column
+        for name, column in observed.items()
     }
-    values["relative_rotation"] = observed["rotation"] / scales.overturning_angle
-    if scales.settlement is not None:
-        values["relative_vertical_displacement"] = (
-            observed["vertical_displacement"] / scales.settlement
-        )
     values["contact_state"] = model.contact[run.mode].astype(np.int8)
-    values["ground_acceleration"] = ground[:, 0].copy()
+    if model.soil_contact is not None:
+        values["soil_contact_state"] = model.soil_contact[run.mode].astype(np.int8)
+    return values
+
+
+def relative_histories(values: Mapping[str, Generic], scales: Scales) -> dict[str, Generic]:
+    """Give rotation and vertical displacement over their scales."""
+    relative: dict[str, Generic] = {
+        "relative_rotation": values["rotation"] / scales.overturning_angle
+    }
+    if scales.settlement is not None:
+        relative["relative_vertical_displacement"] = (
+            values["vertical_displacement"] / scales.settlement
+        )
+    return relative
+
+
+def ground_histories(ground: Array, *, has_vertical_motion: bool) -> dict[str, Generic]:
+    """Give the ground acceleration at the output times."""
+    values: dict[str, Generic] = {"ground_acceleration": ground[:, 0].copy()}
     if has_vertical_motion:
         values["vertical_ground_acceleration"] = ground[:, 1].copy()
     return values
 
 
-def energy_histories(model: ContactModel, run: Trajectory) -> dict[str, NDArray[np.generic]]:
+def cap_histories(values: Mapping[str, Generic], scales: Scales) -> dict[str, Generic]:
+    """Give the motion of a cap that is a part of the body, :eq:`eq-carried`."""
+    offset, rotation = scales.cap_offset, values["rotation"]
+    if offset is None:
+        return {}
+    if scales.small_rotation:
+        sine, versine = rotation, 0.5 * rotation**2
+    else:
+        sine, versine = np.sin(rotation), 2.0 * np.sin(0.5 * rotation) ** 2
+    spin = values["angular_velocity"]
+    return {
+        "cap_rotation": rotation.copy(),
+        "cap_angular_velocity": spin.copy(),
+        "cap_vertical_displacement": values["vertical_displacement"] - offset * versine,
+        "cap_vertical_velocity": values["vertical_velocity"] - offset * sine * spin,
+        "soil_contact_state": values["contact_state"].copy(),
+    }
+
+
+def energy_histories(model: ContactModel, run: Trajectory) -> dict[str, Generic]:
     """Give the energies at the output times by their names in the schema [J]."""
     stored = model.mass * energies_of(model, run)
     memory, row = memory_at_outputs(run)
@@ -87,11 +121,18 @@ def energy_histories(model: ContactModel, run: Trajectory) -> dict[str, NDArray[
     }
 
 
-def event_columns(model: ContactModel, run: Trajectory) -> dict[str, NDArray[np.generic]]:
+def event_columns(model: ContactModel, run: Trajectory) -> dict[str, Generic]:
     """Give the table of events by its names in the schema."""
     events, size, weights = run.events, len(model.rotation_weights), model.rotation_weights
     shown = events.kind != SILENT
+    soil: dict[str, Generic] = {}
+    if model.soil_contact is not None:
+        soil = {
+            "soil_contact_state_before": model.soil_contact[events.mode_before[shown]],
+            "soil_contact_state_after": model.soil_contact[events.mode_after[shown]],
+        }
     return {
+        **soil,
         "event_time": events.time[shown],
         "event_kind": events.kind[shown].astype(np.int8),
         "contact_state_before": model.contact[events.mode_before[shown]].astype(np.int8),
@@ -102,7 +143,7 @@ def event_columns(model: ContactModel, run: Trajectory) -> dict[str, NDArray[np.
     }
 
 
-def scalars(run: Trajectory, scales: Scales) -> dict[str, float | int | bool]:
+def scalars(run: Summary, scales: Scales) -> dict[str, float | int | bool]:
     """Give the scalars of a run by their names in the schema."""
     return {
         "overturned": not math.isnan(run.overturning_time),
@@ -128,7 +169,7 @@ _ENDINGS = {
 }
 
 
-def verdict(run: Trajectory, scales: Scales) -> str:
+def verdict(run: Summary, scales: Scales) -> str:
     """Say in one sentence what became of the block."""
     impacts = f"{run.impact_count} impact{'' if run.impact_count == 1 else 's'}"
     if not math.isnan(run.overturning_time):

@@ -60,6 +60,8 @@ class Variable:
 
 _T: Final = ("time",)
 _E: Final = ("event",)
+_A: Final = ("angle",)
+_M: Final = ("mode",)
 
 
 def _flag(name: str, dims: tuple[str, ...], words: str, kind: type[IntEnum]) -> Variable:
@@ -68,6 +70,10 @@ def _flag(name: str, dims: tuple[str, ...], words: str, kind: type[IntEnum]) -> 
 
 def _count(name: str, words: str) -> Variable:
     return Variable(name, (), Unit.ONE, words, dtype="int64")
+
+
+def _number(name: str, words: str) -> Variable:
+    return Variable(name, (name,), Unit.ONE, words, dtype="int64")
 
 
 _ROWS: Final = (
@@ -109,6 +115,43 @@ _ROWS: Final = (
     ),
     Variable("left_reaction", _T, Unit.NEWTON, "vertical reaction at the left corner"),
     Variable("right_reaction", _T, Unit.NEWTON, "vertical reaction at the right corner"),
+    # soil and cap
+    Variable("soil_reaction", _T, Unit.NEWTON, "vertical reaction of the soil"),
+    Variable("contact_length", _T, Unit.METRE, "length of the base that bears on the soil"),
+    Variable("cap_rotation", _T, Unit.RADIAN, "rotation of the cap, clockwise positive"),
+    Variable("cap_angular_velocity", _T, Unit.RADIAN_PER_SECOND, "rate of the cap's rotation"),
+    Variable(
+        "cap_vertical_displacement",
+        _T,
+        Unit.METRE,
+        "vertical displacement of the cap's centre from rest, relative to the ground, upwards",
+    ),
+    Variable(
+        "cap_vertical_velocity",
+        _T,
+        Unit.METRE_PER_SECOND,
+        "rate of the cap's vertical displacement",
+    ),
+    _flag("soil_contact_state", _T, "end of the base that bears on the soil", ContactState),
+    Variable("rotation_on_cap", _T, Unit.RADIAN, "rotation of the block relative to the cap"),
+    Variable(
+        "vertical_displacement_on_cap",
+        _T,
+        Unit.METRE,
+        "displacement of the block's centre of mass from rest relative to the cap, along its axis",
+    ),
+    Variable(
+        "cap_acceleration",
+        _T,
+        Unit.METRE_PER_SECOND_SQUARED,
+        "absolute horizontal acceleration of the middle of the cap's top",
+    ),
+    Variable(
+        "cap_vertical_acceleration",
+        _T,
+        Unit.METRE_PER_SECOND_SQUARED,
+        "absolute vertical acceleration of the middle of the cap's top",
+    ),
     # energies, on request
     Variable("kinetic_energy", _T, Unit.JOULE, "kinetic energy relative to the ground"),
     Variable("potential_energy", _T, Unit.JOULE, "gravity energy from rest"),
@@ -127,6 +170,8 @@ _ROWS: Final = (
     _flag("event_kind", _E, "kind of the event", EventKind),
     _flag("contact_state_before", _E, "corner that bore before the event", ContactState),
     _flag("contact_state_after", _E, "corner that bears after the event", ContactState),
+    _flag("soil_contact_state_before", _E, "end that bore on the soil before", ContactState),
+    _flag("soil_contact_state_after", _E, "end that bears on the soil after", ContactState),
     Variable("event_rotation", _E, Unit.RADIAN, "rotation at the event"),
     Variable(
         "angular_velocity_before",
@@ -159,10 +204,58 @@ _ROWS: Final = (
     _flag("status", (), "how the run ended", Status),
     Variable("overturning_angle", (), Unit.RADIAN, "rotation of unstable equilibrium, theta"),
     Variable("uplift_angle", (), Unit.RADIAN, "rotation at which contact is first lost at rest"),
+    # quasi-static states over the angle at which the body is held
+    Variable("angle", _A, Unit.RADIAN, "rotation at which the body is held"),
+    Variable(
+        "restoring_moment",
+        _A,
+        Unit.NEWTON_METRE,
+        "couple that holds the body: base moment less the weight's about the middle of the base",
+    ),
+    Variable(
+        "base_moment",
+        _A,
+        Unit.NEWTON_METRE,
+        "moment of the base's vertical reactions about its middle, against the rotation",
+    ),
+    Variable(
+        "static_vertical_displacement",
+        _A,
+        Unit.METRE,
+        "vertical displacement of the centre of mass from rest",
+    ),
+    _flag("static_contact_state", _A, "corner that bears", ContactState),
+    Variable("left_reaction_at", _A, Unit.NEWTON, "vertical reaction at the left corner"),
+    Variable("right_reaction_at", _A, Unit.NEWTON, "vertical reaction at the right corner"),
+    Variable("soil_reaction_at", _A, Unit.NEWTON, "vertical reaction of the soil"),
+    Variable("contact_length_at", _A, Unit.METRE, "length of the base that bears on the soil"),
+    Variable("cap_rotation_at", _A, Unit.RADIAN, "rotation of the cap"),
+    # rest
+    Variable("pad_settlement", (), Unit.METRE, "settlement of the pads under the weight"),
+    Variable("soil_settlement", (), Unit.METRE, "settlement of the soil under the weight"),
+    Variable("static_left_reaction", (), Unit.NEWTON, "reaction at the left corner at rest"),
+    Variable("static_right_reaction", (), Unit.NEWTON, "reaction at the right corner at rest"),
+    Variable("static_soil_reaction", (), Unit.NEWTON, "reaction of the soil at rest"),
+    Variable(
+        "uplift_moment", (), Unit.NEWTON_METRE, "base moment at which contact is first lost"
+    ),
+    # modes of small motion
+    _number("mode", "number of the mode, from slow to fast"),
+    Variable("angular_frequency", _M, Unit.RADIAN_PER_SECOND, "angular frequency, undamped"),
+    Variable("frequency", _M, Unit.HERTZ, "cyclic frequency, undamped"),
+    Variable("period", _M, Unit.SECOND, "period, undamped"),
+    Variable("damping_ratio", _M, Unit.ONE, "damping ratio"),
+    Variable("vertical_displacement_shape", _M, Unit.ONE, "share of the vertical displacement [m]"),
+    Variable("rotation_shape", _M, Unit.ONE, "share of the rotation [rad]"),
+    Variable("cap_vertical_displacement_shape", _M, Unit.ONE, "share of the cap's rise [m]"),
+    Variable("cap_rotation_shape", _M, Unit.ONE, "share of the cap's rotation [rad]"),
 )  # fmt: skip
 
 SCHEMA: Final = {row.name: row for row in _ROWS}
 """All variables by name."""
+
+COORDINATES: Final = ("time", "angle", "mode")
+"""Variables that label a dimension."""
 
 ENERGIES: Final = (
     "kinetic_energy",

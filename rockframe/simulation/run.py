@@ -1,184 +1,41 @@
-"""One run: its plan, the integration and the dataset."""
+"""One run: the integration and the dataset."""
 
 import json
 import math
 import warnings
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
-from rockframe.components import InitialState
 from rockframe.dynamics.protocol import Start
-from rockframe.errors import AssemblyError, ModelWarning
+from rockframe.errors import ModelWarning
 from rockframe.motion import GroundMotion
 from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import (
+    Generic,
     Scales,
+    cap_histories,
     energy_histories,
     event_columns,
+    ground_histories,
     histories,
+    relative_histories,
     scalars,
     verdict,
 )
-from rockframe.results.schema import ENERGIES, SCHEMA, Direction
+from rockframe.results.schema import Direction
+from rockframe.results.stages import cascade_energies, cascade_events, cascade_histories
+from rockframe.simulation.plan import Plan
 from rockframe.simulation.provenance import motion_attributes
-from rockframe.solve.accuracy import Accuracy, AccuracyLevel, accuracy_of
+from rockframe.solve.cascade import Cascade, integrate_cascade
 from rockframe.solve.ground_table import Ground, ground_at
 from rockframe.solve.integrate import integrate
-from rockframe.solve.trajectory import Trajectory
+from rockframe.solve.trajectory import Summary
 from rockframe.system.assembly import Assembly
-from rockframe.units import POSITIVE, TIME, QuantityLike, to_si
+from rockframe.system.options import Rotation
 
 if TYPE_CHECKING:
     import xarray as xr
-
-ENERGY_GROUP = "energy"
-MOST_SAMPLES = 1e8
-"""Samples of the histories beyond which a run is refused: some ten gigabytes."""
-STILL_GROUND_OUTPUT_STEP = 0.005
-"""Spacing of the histories of a run without a ground motion [s]."""
-
-
-@dataclass(frozen=True)
-class Plan:
-    """A run's arguments, checked and in SI units."""
-
-    motion: GroundMotion | None
-    duration: float
-    initial: InitialState
-    accuracy: Accuracy
-    accuracy_name: str
-    output_step: float | None
-    energies: tuple[str, ...]
-    stop_at_overturning: bool
-
-    def to_json(self) -> str:
-        """Give the plan as JSON, without the motion."""
-        return json.dumps(
-            {
-                "duration": f"{self.duration!r} {TIME.unit}",
-                "initial": self.initial.to_dict(),
-                "accuracy": vars(self.accuracy),
-                "output_step": self.output_step and f"{self.output_step!r} {TIME.unit}",
-                "outputs": list(self.energies),
-                "overturning": "stop" if self.stop_at_overturning else "continue",
-            }
-        )
-
-
-def plan_run(
-    system: Assembly,
-    motion: GroundMotion | None,
-    *,
-    duration: QuantityLike | None,
-    free_vibration: QuantityLike | None,
-    initial: InitialState | None,
-    accuracy: Accuracy | AccuracyLevel | str,
-    output_step: QuantityLike | None,
-    outputs: Sequence[str] | None,
-    overturning: str,
-) -> Plan:
-    """Check the arguments of a run against the system and one another.
-
-    Returns
-    -------
-    Plan
-
-    Raises
-    ------
-    AssemblyError
-        With every fault found.
-    """
-    faults: list[str] = []
-    motion = system.motion if motion is None else motion
-    initial = InitialState() if initial is None else initial
-    _check_kind(motion, GroundMotion, "motion", faults)
-    _check_kind(initial, InitialState, "initial", faults)
-    if faults:
-        raise AssemblyError(faults)
-    start = initial.si
-    vertical_start = start.vertical_displacement is not None or start.vertical_velocity != 0.0
-    faults += system.setting.start_faults(start.rotation, vertical_start)
-    theta = system.setting.overturning_angle
-    if abs(start.rotation) >= theta:
-        faults.append(
-            f"initial rotation {start.rotation:.6g} rad is not below the overturning angle "
-            f"{theta:.6g} rad"
-        )
-    length = _length(motion, duration, free_vibration, faults)
-    step = motion.si.time_step if motion is not None else STILL_GROUND_OUTPUT_STEP
-    if output_step is not None:
-        step = to_si(output_step, TIME, owner="simulate", name="output_step", condition=POSITIVE)
-    if outputs is None:
-        step = None
-    if step is not None and length / step > MOST_SAMPLES:
-        faults.append(
-            f"the histories would have {length / step:.3g} samples ({length:.6g} s in steps of "
-            f"{step:.6g} s); give a longer output_step, or outputs=None"
-        )
-    if overturning not in ("stop", "continue"):
-        faults.append(f"overturning must be 'stop' or 'continue', got {overturning!r}")
-    energies = _energies(outputs, faults)
-    if faults:
-        raise AssemblyError(faults)
-    settings = accuracy_of(accuracy)
-    return Plan(
-        motion=motion,
-        duration=length,
-        initial=initial,
-        accuracy=settings,
-        accuracy_name="own" if isinstance(accuracy, Accuracy) else str(accuracy),
-        output_step=step,
-        energies=energies,
-        stop_at_overturning=overturning == "stop",
-    )
-
-
-def _check_kind(value: object, kind: type, name: str, faults: list[str]) -> None:
-    if value is not None and not isinstance(value, kind):
-        faults.append(f"{name} must be a {kind.__name__}, got {value!r}")
-
-
-def _length(
-    motion: GroundMotion | None,
-    duration: QuantityLike | None,
-    free_vibration: QuantityLike | None,
-    faults: list[str],
-) -> float:
-    if duration is not None and free_vibration is not None:
-        faults.append("give duration or free_vibration, not both: each fixes the run's length")
-    shaking = 0.0 if motion is None else (len(motion) - 1) * motion.si.time_step
-    if duration is not None:
-        return to_si(duration, TIME, owner="simulate", name="duration", condition=POSITIVE)
-    if free_vibration is not None:
-        return shaking + to_si(
-            free_vibration, TIME, owner="simulate", name="free_vibration", condition=POSITIVE
-        )
-    if motion is None:
-        faults.append("nothing to simulate: give a motion, or a duration for a still ground")
-    return shaking
-
-
-def _energies(outputs: object, faults: list[str]) -> tuple[str, ...]:
-    if outputs is None:
-        return ()
-    if isinstance(outputs, Iterable) and not isinstance(outputs, str):
-        names: list[object] = list(outputs)
-    else:
-        names = [outputs]
-    histories = {name for name, row in SCHEMA.items() if row.dims == ("time",)}
-    for name in names:
-        if not (isinstance(name, str) and (name in histories or name == ENERGY_GROUP)):
-            known = ", ".join(repr(other) for other in (ENERGY_GROUP, *ENERGIES))
-            faults.append(
-                f"outputs has no {name!r}; every run has its response, and on request {known}"
-            )
-    if ENERGY_GROUP in names:
-        return ENERGIES
-    return tuple(name for name in ENERGIES if name in names)
 
 
 def ground_of(motion: GroundMotion | None) -> Ground:
@@ -209,63 +66,87 @@ def run(system: Assembly, plan: Plan) -> "xr.Dataset":
     -------
     xarray.Dataset
     """
-    model = system.setting.compile()
     ground = ground_of(plan.motion)
     _warn_of_lost_weight(system, ground)
-    start = plan.initial.si
-    trajectory = integrate(
-        model,
-        Start(
-            start.rotation,
-            start.angular_velocity,
-            start.vertical_displacement,
-            start.vertical_velocity,
-        ),
-        ground,
-        plan.accuracy,
-        duration=plan.duration,
-        output_step=plan.output_step,
-        stop_at_overturning=plan.stop_at_overturning,
-        with_work=bool(plan.energies),
-    )
     setting = system.setting
-    scales = Scales(setting.overturning_angle, setting.uplift_angle, setting.settlement)
-    values: dict[str, NDArray[np.generic] | float | int | bool] = {}
-    if plan.output_step is not None:
-        values["time"] = trajectory.time
-        values |= histories(
-            model,
-            trajectory,
-            scales,
-            ground_at(ground, trajectory.time),
-            has_vertical_motion=len(ground.vertical) > 0,
-        )
-    if plan.energies:
-        all_energies = energy_histories(model, trajectory)
-        values |= {name: all_energies[name] for name in plan.energies}
-    values |= event_columns(model, trajectory)
-    values |= scalars(trajectory, scales)
-    return build_dataset(values, _attributes(system, plan, trajectory, scales))
+    scales = Scales(
+        setting.overturning_angle,
+        setting.uplift_angle,
+        setting.settlement,
+        setting.cap_offset,
+        small_rotation=system.rotation is Rotation.SMALL,
+    )
+    values, summary = _respond(system, plan, ground, scales)
+    return build_dataset(
+        {**values, **scalars(summary, scales)}, _attributes(system, plan, summary, scales)
+    )
+
+
+def _respond(
+    system: Assembly, plan: Plan, ground: Ground, scales: Scales
+) -> tuple[dict[str, Generic], Summary]:
+    """Integrate; give histories and events by their names, and what became of the run."""
+    equations = system.setting.compile()
+    initial = plan.initial.si
+    start = Start(
+        initial.rotation,
+        initial.angular_velocity,
+        initial.vertical_displacement,
+        initial.vertical_velocity,
+    )
+    wanted = plan.output_step is not None
+    if isinstance(equations, Cascade):
+        stages = integrate_cascade(
+            equations, start, ground, plan.accuracy,
+            duration=plan.duration, output_step=plan.output_step,
+            stop_at_overturning=plan.stop_at_overturning, with_work=bool(plan.energies),
+        )  # fmt: skip
+        summary, time = stages.summary, stages.second.time
+        shaking = ground_at(ground, time)
+        values = cascade_histories(equations, stages, scales, shaking) if wanted else {}
+        energies = cascade_energies(equations, stages) if plan.energies else {}
+        events = cascade_events(equations, stages)
+    else:
+        trajectory = integrate(
+            equations, start, ground, plan.accuracy,
+            duration=plan.duration, output_step=plan.output_step,
+            stop_at_overturning=plan.stop_at_overturning, with_work=bool(plan.energies),
+        )  # fmt: skip
+        summary, time = trajectory, trajectory.time
+        shaking = ground_at(ground, time)
+        values = histories(equations, trajectory, shaking) if wanted else {}
+        if wanted and equations.soil_contact is None:
+            values |= cap_histories(values, scales)
+        energies = energy_histories(equations, trajectory) if plan.energies else {}
+        events = event_columns(equations, trajectory)
+    if wanted:
+        values |= relative_histories(values, scales)
+        values |= ground_histories(shaking, has_vertical_motion=len(ground.vertical) > 0)
+        values["time"] = time
+    values |= {name: energies[name] for name in plan.energies}
+    return values | events, summary
 
 
 def _attributes(
-    system: Assembly, plan: Plan, trajectory: Trajectory, scales: Scales
+    system: Assembly, plan: Plan, summary: Summary, scales: Scales
 ) -> dict[str, str | float | int]:
+    coupling = {"coupling": str(system.coupling)} if system.scene.coupling else {}
     return {
-        "verdict": verdict(trajectory, scales),
-        "overturned": int(not math.isnan(trajectory.overturning_time)),
-        "overturning_time": trajectory.overturning_time,
-        "overturning_direction": Direction(trajectory.overturning_direction).name.lower(),
+        "verdict": verdict(summary, scales),
+        "overturned": int(not math.isnan(summary.overturning_time)),
+        "overturning_time": summary.overturning_time,
+        "overturning_direction": Direction(summary.overturning_direction).name.lower(),
         "model": system.scene.model,
         "restraint": str(system.restraint),
         "kinematics": str(system.rotation),
+        **coupling,
         "model_description": system.describe(),
         "accuracy": plan.accuracy_name,
         "solver_method": "Dormand-Prince 5(4) from sample to sample, with event location",
         "solver_rtol": plan.accuracy.rtol,
-        "solver_steps": trajectory.step_count,
-        "solver_rejected_steps": trajectory.rejected_count,
-        "solver_end_time": trajectory.end_time,
+        "solver_steps": summary.step_count,
+        "solver_rejected_steps": summary.rejected_count,
+        "solver_end_time": summary.end_time,
         **motion_attributes(plan.motion),
         "system_json": json.dumps(system.to_dict()),
         "run_json": plan.to_json(),

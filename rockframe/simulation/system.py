@@ -101,7 +101,8 @@ class System(Assembly):
         SolverError
             Unknown accuracy.
         """
-        from rockframe.simulation.run import plan_run, run
+        from rockframe.simulation.plan import plan_run
+        from rockframe.simulation.run import run
 
         plan = plan_run(
             self,

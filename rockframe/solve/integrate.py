@@ -8,6 +8,7 @@ from rockframe.compiled import Vector
 from rockframe.dynamics.protocol import MEMORY_SIZE, ContactModel, ContactState, Start
 from rockframe.solve import layout as at
 from rockframe.solve.accuracy import Accuracy
+from rockframe.solve.books import ON_SAMPLE
 from rockframe.solve.driver import advance
 from rockframe.solve.ground_table import Ground
 from rockframe.solve.layout import Status
@@ -42,6 +43,7 @@ def integrate(
     output_step: float | None,
     stop_at_overturning: bool = True,
     with_work: bool = False,
+    keep_end: bool = False,
 ) -> Trajectory:
     """Integrate a model under a ground motion.
 
@@ -63,6 +65,8 @@ def integrate(
         Whether the run ends when the rotation reaches its limit.
     with_work : bool
         Whether dashpot and input work are stored at the output times.
+    keep_end : bool
+        Whether the end of a completed run is stored though it is no output time.
 
     Returns
     -------
@@ -148,7 +152,8 @@ def integrate(
     time: Vector = np.arange(stored, dtype=np.float64) * (output_step or 1.0)
     end = float(clock[at.TIME])
     out_state, out_mode, out_work = out_state[:stored], out_mode[:stored], out_work[:stored]
-    if rows and result != at.COMPLETED and end > time[-1]:
+    unfinished = result != at.COMPLETED or keep_end
+    if rows and unfinished and end - time[-1] > ON_SAMPLE * (output_step or 1.0):
         # the instant at which the run ended belongs to its history
         time = np.concatenate([time, np.array([end])])
         out_state = np.vstack([out_state, state])
@@ -160,6 +165,7 @@ def integrate(
         state=out_state,
         mode=out_mode,
         work=out_work,
+        start_mode=mode,
         start_memory=start_memory,
         events=_events(events, int(counters[at.EVENTS]), width),
         status=Status(result),

@@ -37,7 +37,7 @@ def memory_at_outputs(trajectory: Trajectory) -> tuple[Matrix, Integers]:
 
     Returns
     -------
-    memory : ndarray, shape (events + 1, 4)
+    memory : ndarray, shape (events + 1, memory)
         At the start and after each event.
     row : ndarray of int64, shape (samples,)
         An output sample at the time of an event shows the state before it.

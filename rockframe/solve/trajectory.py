@@ -1,6 +1,7 @@
 """What an integration leaves behind: plain arrays, in SI units and per unit mass."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Self
 
 from rockframe.compiled import Codes, Integers, Matrix, Vector
 from rockframe.solve.layout import Status
@@ -21,7 +22,7 @@ class Events:
         Modes of the model.
     state_before, state_after : ndarray, shape (events, 2 n)
         Coordinates, then their rates.
-    memory : ndarray, shape (events, 4)
+    memory : ndarray, shape (events, memory)
         The model's memory after each event.
     """
 
@@ -34,24 +35,12 @@ class Events:
     memory: Matrix
 
 
-@dataclass(frozen=True)
-class Trajectory:
-    """A run.
+@dataclass(frozen=True, kw_only=True)
+class Summary:
+    """What became of a run.
 
     Parameters
     ----------
-    time : ndarray, shape (samples,)
-        Output times [s].
-    state : ndarray, shape (samples, 2 n)
-        Coordinates, then their rates.
-    mode : ndarray of int16, shape (samples,)
-        Modes of the model.
-    work : ndarray, shape (samples, 2) or (0, 2)
-        Energies burnt by dashpots and put in by the ground, if asked for.
-    start_memory : ndarray, shape (4,)
-        The model's memory at the start.
-    events : Events
-        What happened when.
     status : Status
         How the run ended.
     end_time, peak_rotation, overturning_time, first_uplift_time, flight_time : float
@@ -62,16 +51,8 @@ class Trajectory:
         Counts.
     energy_residual : float
         Largest imbalance of the energies over their largest term.
-    start_energy : float
-        Kinetic, gravity and elastic energy at the start, from that at rest.
     """
 
-    time: Vector
-    state: Matrix
-    mode: Codes
-    work: Matrix
-    start_memory: Vector
-    events: Events
     status: Status
     end_time: float
     peak_rotation: float
@@ -84,4 +65,52 @@ class Trajectory:
     step_count: int
     rejected_count: int
     energy_residual: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Trajectory(Summary):
+    """A run.
+
+    Parameters
+    ----------
+    time : ndarray, shape (samples,)
+        Output times [s].
+    state : ndarray, shape (samples, 2 n)
+        Coordinates, then their rates.
+    mode : ndarray of int16, shape (samples,)
+        Modes of the model.
+    work : ndarray, shape (samples, 2) or (0, 2)
+        Energies burnt by dashpots and put in by the ground, if asked for.
+    start_mode : int
+        The model's mode at the start.
+    start_memory : ndarray, shape (memory,)
+        The model's memory at the start.
+    events : Events
+        What happened when.
+    start_energy : float
+        Kinetic, gravity and elastic energy at the start, from that at rest.
+    """
+
+    time: Vector
+    state: Matrix
+    mode: Codes
+    work: Matrix
+    start_mode: int
+    start_memory: Vector
+    events: Events
     start_energy: float
+
+    def thinned(self, every: int, last: int) -> Self:
+        """Give the run with one in `every` of its samples, up to number `last` of these."""
+        rows = slice(0, every * last + 1, every)
+        return replace(
+            self,
+            time=self.time[rows],
+            state=self.state[rows],
+            mode=self.mode[rows],
+            work=self.work[rows],
+        )
+
+    def without_histories(self) -> Self:
+        """Give the run without samples."""
+        return self.thinned(1, -1)

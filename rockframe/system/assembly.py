@@ -7,7 +7,8 @@ from functools import cached_property
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import AssemblyError, ModelWarning, RockframeError
 from rockframe.motion import GroundMotion
-from rockframe.system.options import Coupling, Restraint, Rotation, read_option
+from rockframe.system.fitting import misfits
+from rockframe.system.options import Coupling, Options, Restraint, Rotation, read_option
 from rockframe.system.parts import Parts, sort_parts
 from rockframe.system.scenes import SCENES, Scene, Setting
 from rockframe.units import ACCELERATION, POSITIVE, QuantityLike, to_si
@@ -64,21 +65,17 @@ class Assembly:
             warnings.warn(caution, ModelWarning, stacklevel=2)
 
     def _find_scene(self, faults: list[str]) -> Scene | None:
-        if self.parts.block is None:
-            faults.append("no Block is given")
-        if self.parts.ground is not None and self.parts.pads is not None:
-            faults.append(
-                "RigidGround and TwoSpringSupport are both given; a block stands on one of them"
-            )
+        faults += misfits(self.parts)
         for scene in SCENES:
-            if scene.signature == self.parts.signature:
+            if scene.fits(self.parts, self.coupling):
                 return scene
         return None
 
     @cached_property
     def setting(self) -> Setting:
         """The scene's numbers in SI units."""
-        return self.scene.make_setting(self.parts, self.restraint, self.rotation, self.gravity_si)
+        options = Options(self.restraint, self.rotation, self.coupling, self.gravity_si)
+        return self.scene.make_setting(self.parts, options)
 
     @property
     def motion(self) -> GroundMotion | None:
@@ -99,9 +96,10 @@ class Assembly:
 
     def __repr__(self) -> str:
         parts = ", ".join(repr(part) for part in self.parts.given())
+        coupling = f", coupling={str(self.coupling)!r}" if self.scene.coupling else ""
         return (
             f"{type(self).__name__}({parts}, restraint={str(self.restraint)!r}, "
-            f"rotation={str(self.rotation)!r})"
+            f"rotation={str(self.rotation)!r}{coupling})"
         )
 
     def to_dict(self) -> dict[str, object]:

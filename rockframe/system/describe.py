@@ -26,7 +26,7 @@ def describe(scene: Scene, setting: Setting, parts: Parts) -> str:
     """
     theta = setting.overturning_angle
     uplift = setting.uplift_angle
-    never = "never: the pads stay in contact up to overturning"
+    never = "never: the base stays in contact up to overturning"
     lines = [f"Model: {scene.model}"]
     lines += _section("Parts", [("", repr(part)) for part in parts.given()])
     lines += _section("Contact states and their equations", setting.equations())
@@ -36,7 +36,10 @@ def describe(scene: Scene, setting: Setting, parts: Parts) -> str:
         [
             ("gravity", f"{setting.gravity:.6g} m s^-2"),
             ("overturning angle theta, Eq. (1)", _angle(theta)),
-            ("uplift angle, Eq. (16)", never if math.isnan(uplift) else _angle(uplift)),
+            (
+                f"uplift angle, {setting.uplift_source}",
+                never if math.isnan(uplift) else _angle(uplift),
+            ),
             *setting.numbers(),
         ],
     )

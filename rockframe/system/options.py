@@ -1,5 +1,6 @@
 """Options of a system."""
 
+from dataclasses import dataclass
 from enum import StrEnum
 from typing import TypeVar
 
@@ -24,6 +25,21 @@ class Coupling(StrEnum):
 
     COUPLED = "coupled"
     CASCADE = "cascade"
+
+
+@dataclass(frozen=True)
+class Options:
+    """Options of a system, and the gravity it stands in [m s^-2]."""
+
+    restraint: Restraint
+    rotation: Rotation
+    coupling: Coupling
+    gravity: float
+
+    @property
+    def small(self) -> bool:
+        """Whether the kinematics are expanded to second order."""
+        return self.rotation is Rotation.SMALL
 
 
 Option = TypeVar("Option", bound=StrEnum)

@@ -3,7 +3,14 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from rockframe.components import Block, Component, RigidGround, TwoSpringSupport
+from rockframe.components import (
+    Block,
+    Component,
+    CushionCap,
+    RigidGround,
+    TwoSpringSupport,
+    WinklerSoil,
+)
 from rockframe.motion import GroundMotion
 
 
@@ -13,6 +20,8 @@ class Parts:
 
     block: Block | None = None
     pads: TwoSpringSupport | None = None
+    cap: CushionCap | None = None
+    soil: WinklerSoil | None = None
     ground: RigidGround | None = None
     motion: GroundMotion | None = None
 
@@ -30,6 +39,8 @@ class Parts:
 _SLOTS: dict[type, str] = {
     Block: "block",
     TwoSpringSupport: "pads",
+    CushionCap: "cap",
+    WinklerSoil: "soil",
     RigidGround: "ground",
     GroundMotion: "motion",
 }

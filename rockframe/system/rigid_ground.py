@@ -6,11 +6,16 @@ from typing import TYPE_CHECKING
 
 from rockframe.components.block import BlockSI
 from rockframe.system.impact import resolve_restitution, restitution_cautions
-from rockframe.system.options import Restraint, Rotation
+from rockframe.system.options import Options, Rotation
 from rockframe.system.parts import Parts
+from rockframe.system.small_motion import SmallMotion
+from rockframe.system.statics import Statics
 
 if TYPE_CHECKING:
     from rockframe.dynamics.protocol import ContactModel
+
+
+_REACTIONS = ("left_reaction", "right_reaction")
 
 
 @dataclass(frozen=True)
@@ -31,6 +36,16 @@ class RigidGroundSetting:
     def uplift_angle(self) -> float:
         """Zero: any rotation lifts a corner [rad]."""
         return 0.0
+
+    @property
+    def cap_offset(self) -> float | None:
+        """None: there is no cap [m]."""
+        return None
+
+    @property
+    def uplift_source(self) -> str:
+        """Where the uplift angle comes from."""
+        return "any rotation lifts a corner"
 
     @property
     def settlement(self) -> float | None:
@@ -106,13 +121,49 @@ class RigidGroundSetting:
             gravity=self.gravity,
         )
 
+    def small_motion(self) -> SmallMotion | None:
+        """Give None: a rigid base leaves no small motion; the period depends on the amplitude."""
+        return None
 
-def rigid_ground_setting(
-    parts: Parts, restraint: Restraint, rotation: Rotation, gravity: float
-) -> RigidGroundSetting:
+    def statics(self, rotation: float) -> Statics:
+        """Give the equilibrium at a rotation: the bearing corner carries the weight."""
+        if rotation == 0.0:
+            return Statics(0.0, 0.0, 0.0, "full", dict.fromkeys(_REACTIONS, 0.5 * self.weight))
+        side = math.copysign(1.0, rotation)
+        theta, lean = self.overturning_angle, abs(rotation)
+        radius = self.block.radius
+        if self.rotation is Rotation.SMALL:
+            rise, restoring = radius * lean * (theta - 0.5 * lean), theta - lean
+            weight_arm = radius * lean
+        else:
+            rise = 2.0 * radius * math.sin(theta - 0.5 * lean) * math.sin(0.5 * lean)
+            restoring = math.sin(theta - lean)
+            weight_arm = self.block.half_height * math.sin(lean)
+        moment = side * self.weight * radius * restoring
+        reactions = (0.0, self.weight) if side > 0.0 else (self.weight, 0.0)
+        return Statics(
+            vertical_displacement=rise,
+            base_moment=moment + side * self.weight * weight_arm,
+            restoring_moment=moment,
+            contact_state="right" if side > 0.0 else "left",
+            reactions=dict(zip(_REACTIONS, reactions, strict=True)),
+        )
+
+    @property
+    def weight(self) -> float:
+        """Weight of the block [N]."""
+        return self.block.mass * self.gravity
+
+    def equilibrium(self) -> dict[str, float]:
+        """Give the reactions at rest, by their names in the schema."""
+        return {f"static_{name}": 0.5 * self.weight for name in _REACTIONS}
+
+
+def rigid_ground_setting(parts: Parts, options: Options) -> RigidGroundSetting:
     """Resolve the parts of a scene on rigid ground."""
     block = parts.block.si if parts.block is not None else None
     if block is None:  # the scene's signature has a block
         raise TypeError
     given = parts.ground.si.restitution if parts.ground is not None else None
-    return RigidGroundSetting(block, resolve_restitution(given, block), rotation, gravity)
+    restitution = resolve_restitution(given, block)
+    return RigidGroundSetting(block, restitution, options.rotation, options.gravity)

@@ -7,13 +7,18 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
-from rockframe.system.options import Restraint, Rotation
+from rockframe.system.options import Coupling, Options
 from rockframe.system.parts import Parts
 from rockframe.system.rigid_ground import rigid_ground_setting
+from rockframe.system.small_motion import SmallMotion
+from rockframe.system.stacked import cascade_setting, coupled_setting
+from rockframe.system.statics import Statics
 from rockframe.system.two_spring import two_spring_setting
+from rockframe.system.winkler import winkler_setting
 
 if TYPE_CHECKING:
     from rockframe.dynamics.protocol import ContactModel
+    from rockframe.solve.cascade import Cascade
 
 
 class Setting(Protocol):
@@ -35,8 +40,18 @@ class Setting(Protocol):
         ...
 
     @property
+    def uplift_source(self) -> str:
+        """Where the uplift angle comes from."""
+        ...
+
+    @property
     def settlement(self) -> float | None:
         """Settlement under the weight, where the base gives way [m]."""
+        ...
+
+    @property
+    def cap_offset(self) -> float | None:
+        """Height of a cap's centre above that of a body of which it is a part [m]."""
         ...
 
     def cautions(self) -> list[str]:
@@ -63,8 +78,20 @@ class Setting(Protocol):
         """Say what the model does not have."""
         ...
 
-    def compile(self) -> "ContactModel":
+    def compile(self) -> "ContactModel | Cascade":
         """Give the equations, ready for the integrator."""
+        ...
+
+    def small_motion(self) -> SmallMotion | None:
+        """Give the linear equations of small motion about rest, if there are any."""
+        ...
+
+    def statics(self, rotation: float) -> Statics:
+        """Give the quasi-static state at a rotation."""
+        ...
+
+    def equilibrium(self) -> dict[str, float]:
+        """Give settlements and reactions at rest, by their names in the schema."""
         ...
 
 
@@ -82,13 +109,22 @@ class Scene:
         Slots of :class:`rockframe.system.parts.Parts` that must be filled.
     make_setting : callable
         From parts and options to the scene's numbers.
+    coupling : Coupling, optional
+        The option that picks this one of two models of the same parts.
     """
 
     title: str
     model: str
     signature: frozenset[str]
-    make_setting: Callable[[Parts, Restraint, Rotation, float], Setting]
+    make_setting: Callable[[Parts, Options], Setting]
+    coupling: Coupling | None = None
 
+    def fits(self, parts: Parts, coupling: Coupling) -> bool:
+        """Whether the scene is that of the parts."""
+        return self.signature == parts.signature and self.coupling in (None, coupling)
+
+
+_STACK = frozenset({"block", "pads", "cap", "soil"})
 
 SCENES: tuple[Scene, ...] = (
     Scene(
@@ -102,5 +138,26 @@ SCENES: tuple[Scene, ...] = (
         "two-spring",
         frozenset({"block", "pads"}),
         two_spring_setting,
+    ),
+    Scene("Block + WinklerSoil", "Winkler", frozenset({"block", "soil"}), winkler_setting),
+    Scene(
+        "Block + CushionCap + WinklerSoil (block and cap as one body)",
+        "Winkler",
+        frozenset({"block", "cap", "soil"}),
+        winkler_setting,
+    ),
+    Scene(
+        "Block + TwoSpringSupport + CushionCap + WinklerSoil, coupling='coupled'",
+        "coupled",
+        _STACK,
+        coupled_setting,
+        Coupling.COUPLED,
+    ),
+    Scene(
+        "Block + TwoSpringSupport + CushionCap + WinklerSoil, coupling='cascade'",
+        "cascade",
+        _STACK,
+        cascade_setting,
+        Coupling.CASCADE,
     ),
 )

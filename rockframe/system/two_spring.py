@@ -4,25 +4,19 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from rockframe.components.block import BlockSI
 from rockframe.components.pads import TwoSpringSupportSI
 from rockframe.system.impact import resolve_restitution, restitution_cautions
-from rockframe.system.options import Restraint, Rotation
+from rockframe.system.options import Options, Restraint, Rotation
 from rockframe.system.parts import Parts
+from rockframe.system.restraints import restraint_code, restraint_words
+from rockframe.system.small_motion import SmallMotion
+from rockframe.system.statics import Statics, contact_of, sine_cosine_rise
 
 if TYPE_CHECKING:
     from rockframe.dynamics.protocol import ContactModel
-
-_RULES = {
-    Restraint.CONTACT_STATE: (
-        "contact-state: the middle of the base while both corners bear, else the bearing "
-        "corner; at each change the momentum is projected on the new restraint"
-    ),
-    Restraint.LEADING_CORNER: (
-        "leading-corner: the corner towards which the block leans, in every contact state"
-    ),
-    Restraint.CENTRE: "centre: the middle of the base, in every contact state",
-}
 
 
 @dataclass(frozen=True)
@@ -54,6 +48,16 @@ class TwoSpringSetting:
         if self.rotation is Rotation.SMALL:
             return ratio
         return math.asin(ratio) if ratio <= 1.0 else math.nan
+
+    @property
+    def cap_offset(self) -> float | None:
+        """None: there is no cap [m]."""
+        return None
+
+    @property
+    def uplift_source(self) -> str:
+        """Where the uplift angle comes from."""
+        return "Eq. (16)"
 
     @property
     def vertical_frequency(self) -> float:
@@ -134,9 +138,7 @@ class TwoSpringSetting:
 
     def restraint_rule(self) -> str:
         """Say which point of the base is held horizontally."""
-        if self.rotation is Rotation.SMALL:
-            return "the middle of the base (at small rotation the rules coincide)"
-        return _RULES[self.restraint]
+        return restraint_words(self.restraint, self.rotation)
 
     def left_out(self) -> list[str]:
         """Say what the model does not have."""
@@ -144,14 +146,8 @@ class TwoSpringSetting:
 
     def compile(self) -> "ContactModel":
         """Give the equations, ready for the integrator."""
-        from rockframe.dynamics import kinematics as equations
         from rockframe.dynamics.two_spring_model import two_spring
 
-        rules = {
-            Restraint.CONTACT_STATE: equations.BY_CONTACT,
-            Restraint.LEADING_CORNER: equations.LEADING_CORNER,
-            Restraint.CENTRE: equations.CENTRE,
-        }
         return two_spring(
             half_width=self.block.half_width,
             half_height=self.block.half_height,
@@ -160,10 +156,49 @@ class TwoSpringSetting:
             stiffness=self.stiffness,
             damping=self.damping,
             restitution=self.restitution,
-            restraint=rules[self.restraint],
+            restraint=restraint_code(self.restraint),
             small_rotation=self.rotation is Rotation.SMALL,
             gravity=self.gravity,
         )
+
+    def small_motion(self) -> SmallMotion:
+        """Give the equations of small motion in full contact, Eq. (12) to first order."""
+        width = self.block.half_width
+        return SmallMotion(
+            ("vertical_displacement", "rotation"),
+            np.diag([self.block.mass, self.base_inertia]),
+            2.0 * self.damping * np.diag([1.0, width**2]),
+            np.diag([2.0 * self.stiffness, self.rocking_stiffness]),
+        )
+
+    def statics(self, rotation: float) -> Statics:
+        """Give the vertical equilibrium at a rotation, :eq:`eq-static-pads`."""
+        sine, cosine, rise = sine_cosine_rise(self.block.half_height, self.rotation, rotation)
+        weight = self.block.mass * self.gravity
+        lift = self.block.half_width * sine
+        left = 0.5 * weight - self.stiffness * lift
+        right = weight - left
+        middle = 0.0
+        if left < 0.0 or right < 0.0:
+            left, right = (0.0, weight) if sine > 0.0 else (weight, 0.0)
+            middle = abs(lift) - 0.5 * weight / self.stiffness
+        moment = (right - left) * self.block.half_width * cosine
+        return Statics(
+            vertical_displacement=middle - rise,
+            base_moment=moment,
+            restoring_moment=moment - weight * self.block.half_height * sine,
+            contact_state=contact_of(left > 0.0, right > 0.0),
+            reactions={"left_reaction": left, "right_reaction": right},
+        )
+
+    def equilibrium(self) -> dict[str, float]:
+        """Give settlement and reactions at rest, by their names in the schema."""
+        half = 0.5 * self.block.mass * self.gravity
+        return {
+            "pad_settlement": half / self.stiffness,
+            "static_left_reaction": half,
+            "static_right_reaction": half,
+        }
 
 
 def pad_constants(pads: TwoSpringSupportSI, block: BlockSI, gravity: float) -> tuple[float, float]:
@@ -194,20 +229,18 @@ def pad_constants(pads: TwoSpringSupportSI, block: BlockSI, gravity: float) -> t
     return stiffness, (pads.damping_ratio or 0.0) * block.mass * vertical
 
 
-def two_spring_setting(
-    parts: Parts, restraint: Restraint, rotation: Rotation, gravity: float
-) -> TwoSpringSetting:
+def two_spring_setting(parts: Parts, options: Options) -> TwoSpringSetting:
     """Resolve the parts of a scene on two pads."""
     if parts.block is None or parts.pads is None:  # the scene's signature has both
         raise TypeError
     block, pads = parts.block.si, parts.pads.si
-    stiffness, damping = pad_constants(pads, block, gravity)
+    stiffness, damping = pad_constants(pads, block, options.gravity)
     return TwoSpringSetting(
         block=block,
         stiffness=stiffness,
         damping=damping,
         restitution=resolve_restitution(pads.restitution, block),
-        restraint=restraint,
-        rotation=rotation,
-        gravity=gravity,
+        restraint=options.restraint,
+        rotation=options.rotation,
+        gravity=options.gravity,
     )

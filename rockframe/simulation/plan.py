@@ -1,0 +1,158 @@
+"""The arguments of a run, checked against the system and one another."""
+
+import json
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from rockframe.components import InitialState
+from rockframe.errors import AssemblyError
+from rockframe.motion import GroundMotion
+from rockframe.results.schema import ENERGIES, SCHEMA
+from rockframe.solve.accuracy import Accuracy, AccuracyLevel, accuracy_of
+from rockframe.system.assembly import Assembly
+from rockframe.units import POSITIVE, TIME, QuantityLike, to_si
+
+ENERGY_GROUP = "energy"
+MOST_SAMPLES = 1e8
+"""Samples of the histories beyond which a run is refused: some ten gigabytes."""
+STILL_GROUND_OUTPUT_STEP = 0.005
+"""Spacing of the histories of a run without a ground motion [s]."""
+
+
+@dataclass(frozen=True)
+class Plan:
+    """A run's arguments, checked and in SI units."""
+
+    motion: GroundMotion | None
+    duration: float
+    initial: InitialState
+    accuracy: Accuracy
+    accuracy_name: str
+    output_step: float | None
+    energies: tuple[str, ...]
+    stop_at_overturning: bool
+
+    def to_json(self) -> str:
+        """Give the plan as JSON, without the motion."""
+        return json.dumps(
+            {
+                "duration": f"{self.duration!r} {TIME.unit}",
+                "initial": self.initial.to_dict(),
+                "accuracy": vars(self.accuracy),
+                "output_step": self.output_step and f"{self.output_step!r} {TIME.unit}",
+                "outputs": list(self.energies),
+                "overturning": "stop" if self.stop_at_overturning else "continue",
+            }
+        )
+
+
+def plan_run(
+    system: Assembly,
+    motion: GroundMotion | None,
+    *,
+    duration: QuantityLike | None,
+    free_vibration: QuantityLike | None,
+    initial: InitialState | None,
+    accuracy: Accuracy | AccuracyLevel | str,
+    output_step: QuantityLike | None,
+    outputs: Sequence[str] | None,
+    overturning: str,
+) -> Plan:
+    """Check the arguments of a run against the system and one another.
+
+    Returns
+    -------
+    Plan
+
+    Raises
+    ------
+    AssemblyError
+        With every fault found.
+    """
+    faults: list[str] = []
+    motion = system.motion if motion is None else motion
+    initial = InitialState() if initial is None else initial
+    _check_kind(motion, GroundMotion, "motion", faults)
+    _check_kind(initial, InitialState, "initial", faults)
+    if faults:
+        raise AssemblyError(faults)
+    start = initial.si
+    vertical_start = start.vertical_displacement is not None or start.vertical_velocity != 0.0
+    faults += system.setting.start_faults(start.rotation, vertical_start)
+    theta = system.setting.overturning_angle
+    if abs(start.rotation) >= theta:
+        faults.append(
+            f"initial rotation {start.rotation:.6g} rad is not below the overturning angle "
+            f"{theta:.6g} rad"
+        )
+    length = _length(motion, duration, free_vibration, faults)
+    step = motion.si.time_step if motion is not None else STILL_GROUND_OUTPUT_STEP
+    if output_step is not None:
+        step = to_si(output_step, TIME, owner="simulate", name="output_step", condition=POSITIVE)
+    if outputs is None:
+        step = None
+    if step is not None and length / step > MOST_SAMPLES:
+        faults.append(
+            f"the histories would have {length / step:.3g} samples ({length:.6g} s in steps of "
+            f"{step:.6g} s); give a longer output_step, or outputs=None"
+        )
+    if overturning not in ("stop", "continue"):
+        faults.append(f"overturning must be 'stop' or 'continue', got {overturning!r}")
+    energies = _energies(outputs, faults)
+    if faults:
+        raise AssemblyError(faults)
+    settings = accuracy_of(accuracy)
+    return Plan(
+        motion=motion,
+        duration=length,
+        initial=initial,
+        accuracy=settings,
+        accuracy_name="own" if isinstance(accuracy, Accuracy) else str(accuracy),
+        output_step=step,
+        energies=energies,
+        stop_at_overturning=overturning == "stop",
+    )
+
+
+def _check_kind(value: object, kind: type, name: str, faults: list[str]) -> None:
+    if value is not None and not isinstance(value, kind):
+        faults.append(f"{name} must be a {kind.__name__}, got {value!r}")
+
+
+def _length(
+    motion: GroundMotion | None,
+    duration: QuantityLike | None,
+    free_vibration: QuantityLike | None,
+    faults: list[str],
+) -> float:
+    if duration is not None and free_vibration is not None:
+        faults.append("give duration or free_vibration, not both: each fixes the run's length")
+    shaking = 0.0 if motion is None else (len(motion) - 1) * motion.si.time_step
+    if duration is not None:
+        return to_si(duration, TIME, owner="simulate", name="duration", condition=POSITIVE)
+    if free_vibration is not None:
+        return shaking + to_si(
+            free_vibration, TIME, owner="simulate", name="free_vibration", condition=POSITIVE
+        )
+    if motion is None:
+        faults.append("nothing to simulate: give a motion, or a duration for a still ground")
+    return shaking
+
+
+def _energies(outputs: object, faults: list[str]) -> tuple[str, ...]:
+    if outputs is None:
+        return ()
+    if isinstance(outputs, Iterable) and not isinstance(outputs, str):
+        names: list[object] = list(outputs)
+    else:
+        names = [outputs]
+    histories = {name for name, row in SCHEMA.items() if row.dims == ("time",)}
+    for name in names:
+        if not (isinstance(name, str) and (name in histories or name == ENERGY_GROUP)):
+            known = ", ".join(repr(other) for other in (ENERGY_GROUP, *ENERGIES))
+            faults.append(
+                f"outputs has no {name!r}; every run has its response, and on request {known}"
+            )
+    if ENERGY_GROUP in names:
+        return ENERGIES
+    return tuple(name for name in ENERGIES if name in names)

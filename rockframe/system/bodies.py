@@ -1,0 +1,62 @@
+"""Rigid bodies that scenes put on a base: a block, or a block and its cap as one."""
+
+import math
+from dataclasses import dataclass
+
+from rockframe.components.block import BlockSI
+from rockframe.components.cap import CushionCapSI
+
+
+@dataclass(frozen=True)
+class Body:
+    """A rigid body with a straight base, in SI units."""
+
+    half_width: float  # of the base, b
+    centre_height: float  # of the centre of mass above the base, h
+    mass: float
+    inertia: float  # about the centre of mass
+
+    @property
+    def overturning_angle(self) -> float:
+        """Rotation at which the centre of mass stands above the end of the base [rad]."""
+        return math.atan2(self.half_width, self.centre_height)
+
+    @property
+    def base_inertia(self) -> float:
+        """About the middle of the base [kg m^2]."""
+        return self.inertia + self.mass * self.centre_height**2
+
+
+@dataclass(frozen=True)
+class Cap:
+    """A cap under a building, in SI units."""
+
+    half_width: float
+    half_height: float
+    mass: float
+    inertia: float
+
+
+def body_of(block: BlockSI) -> Body:
+    """Give a block as a body."""
+    return Body(block.half_width, block.half_height, block.mass, block.inertia)
+
+
+def cap_under(block: BlockSI, cap: CushionCapSI) -> Cap:
+    """Give a cap in the size it has under a block."""
+    width = cap.width if cap.width is not None else block.width
+    return Cap(0.5 * width, 0.5 * cap.height, cap.mass_at(width), cap.inertia_at(width))
+
+
+def one_body(block: BlockSI, cap: Cap) -> Body:
+    """Give block and cap as one body, :eq:`eq-one-body`."""
+    mass = block.mass + cap.mass
+    block_height = 2.0 * cap.half_height + block.half_height
+    height = (block.mass * block_height + cap.mass * cap.half_height) / mass
+    inertia = (
+        block.inertia
+        + block.mass * (block_height - height) ** 2
+        + cap.inertia
+        + cap.mass * (height - cap.half_height) ** 2
+    )
+    return Body(cap.half_width, height, mass, inertia)

@@ -1,0 +1,47 @@
+"""Whether parts fit one another."""
+
+from rockframe.system.bodies import cap_under
+from rockframe.system.parts import Parts
+
+_ROUNDING = 1e-12
+
+
+def misfits(parts: Parts) -> list[str]:
+    """Give the faults of a combination of parts.
+
+    Parameters
+    ----------
+    parts : Parts
+        Parts of which none is given twice.
+
+    Returns
+    -------
+    list of str
+        Each names the parts and what would mend the combination.
+    """
+    block, pads, cap, soil = parts.block, parts.pads, parts.cap, parts.soil
+    faults: list[str] = []
+    if block is None:
+        faults.append("no Block is given")
+    if parts.ground is not None:
+        others = [type(part).__name__ for part in (pads, cap, soil) if part is not None]
+        if others:
+            faults.append(
+                f"RigidGround and {' and '.join(others)} are both given; rigid ground carries a "
+                "block directly"
+            )
+    if cap is not None and soil is None:
+        faults.append("a CushionCap is given without a WinklerSoil for it to stand on")
+    if pads is not None and soil is not None and cap is None:
+        faults.append(
+            "a TwoSpringSupport and a WinklerSoil are given without a CushionCap; the cap "
+            "carries the pads and spreads their reactions over the soil"
+        )
+    if block is not None and cap is not None:
+        width = 2.0 * cap_under(block.si, cap.si).half_width
+        if width < block.si.width * (1.0 - _ROUNDING):
+            faults.append(
+                f"the CushionCap is {width:.6g} m wide, narrower than the {block.si.width:.6g} m "
+                "of the building on it"
+            )
+    return faults

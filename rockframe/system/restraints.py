@@ -1,0 +1,32 @@
+"""The restraint rules in words and in the codes of the equations."""
+
+from rockframe.system.options import Restraint, Rotation
+
+_WORDS = {
+    Restraint.CONTACT_STATE: (
+        "contact-state: the middle of the base while both {ends} bear, else the bearing "
+        "{end}; at each change the momentum is projected on the new restraint"
+    ),
+    Restraint.LEADING_CORNER: (
+        "leading-corner: the corner towards which the block leans, in every contact state"
+    ),
+    Restraint.CENTRE: "centre: the middle of the base, in every contact state",
+}
+
+
+def restraint_words(restraint: Restraint, rotation: Rotation, end: str = "corner") -> str:
+    """Say which point of the base is held horizontally."""
+    if rotation is Rotation.SMALL:
+        return "the middle of the base (at small rotation the rules coincide)"
+    return _WORDS[restraint].format(end=end, ends=f"{end}s")
+
+
+def restraint_code(restraint: Restraint) -> int:
+    """Give the equations' code of a rule."""
+    from rockframe.dynamics import kinematics
+
+    return {
+        Restraint.CONTACT_STATE: kinematics.BY_CONTACT,
+        Restraint.LEADING_CORNER: kinematics.LEADING_CORNER,
+        Restraint.CENTRE: kinematics.CENTRE,
+    }[restraint]

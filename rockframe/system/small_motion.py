@@ -1,0 +1,90 @@
+"""Modes of small motion about rest: frequencies, damping ratios and shapes."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class SmallMotion:
+    """Linear equations of small motion M q'' + C q' + K q = 0.
+
+    Parameters
+    ----------
+    coordinates : tuple of str
+        Names of the coordinates.
+    mass, damping, stiffness : ndarray, shape (n, n)
+        SI units.
+    """
+
+    coordinates: tuple[str, ...]
+    mass: Array
+    damping: Array
+    stiffness: Array
+
+
+@dataclass(frozen=True)
+class Mode:
+    """A mode: frequency without damping, damping ratio, and shape.
+
+    The frequency and the damping ratio of a mode that does not return are NaN.
+    """
+
+    angular_frequency: float
+    damping_ratio: float
+    shape: Array
+
+
+def modes_of(motion: SmallMotion) -> list[Mode]:
+    """Give the modes, from slow to fast.
+
+    Parameters
+    ----------
+    motion : SmallMotion
+        The equations.
+
+    Returns
+    -------
+    list of Mode
+        A pair of real rates s1, s2 counts as one overdamped mode, of the frequency
+        sqrt(s1 s2); unstable pairs stand first.
+    """
+    size = len(motion.coordinates)
+    transition = np.block(
+        [
+            [np.zeros((size, size)), np.eye(size)],
+            [
+                -np.linalg.solve(motion.mass, motion.stiffness),
+                -np.linalg.solve(motion.mass, motion.damping),
+            ],
+        ]
+    )
+    rates, vectors = np.linalg.eig(transition)
+    modes: list[Mode] = []
+    real: list[int] = []
+    for i, rate in enumerate(rates):
+        if rate.imag > 0.0:
+            frequency = abs(rate)
+            modes.append(Mode(frequency, -rate.real / frequency, _shape(vectors[:size, i])))
+        elif rate.imag == 0.0:
+            real.append(i)
+    real.sort(key=lambda i: float(rates[i].real), reverse=True)
+    for first, second in zip(real[::2], real[1::2], strict=True):
+        shape = _shape(vectors[:size, first])
+        slow, quick = float(rates[first].real), float(rates[second].real)
+        if slow * quick <= 0.0:
+            modes.append(Mode(math.nan, math.nan, shape))
+            continue
+        frequency = math.sqrt(slow * quick)
+        modes.append(Mode(frequency, -0.5 * (slow + quick) / frequency, shape))
+    return sorted(modes, key=lambda mode: (not math.isnan(mode.angular_frequency),
+                                           mode.angular_frequency))  # fmt: skip
+
+
+def _shape(vector: NDArray[np.complex128]) -> Array:
+    """Give the real part of a shape, turned so that its largest entry is 1."""
+    return np.real(vector / vector[np.argmax(np.abs(vector))])
