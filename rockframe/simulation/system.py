@@ -21,8 +21,9 @@ class System(Assembly):
     Parameters
     ----------
     *parts
-        Components (:class:`~rockframe.Block`, :class:`~rockframe.TwoSpringSupport`, ...), in
-        any order; a :class:`~rockframe.GroundMotion` may be one of them.
+        Components (:class:`~rockframe.Block`, :class:`~rockframe.TwoSpringSupport`,
+        :class:`~rockframe.CushionCap`, :class:`~rockframe.WinklerSoil`, ...), in any
+        order; a :class:`~rockframe.GroundMotion` may be one of them.
     restraint : {"contact-state", "leading-corner", "centre"}
         Which point of the base the ground holds horizontally.
     rotation : {"finite", "small"}
@@ -116,6 +117,78 @@ class System(Assembly):
             overturning=overturning,
         )
         return run(self, plan)
+
+    def frequencies(self) -> "xr.Dataset":
+        """Give the modes of small motion about rest, in full contact.
+
+        Returns
+        -------
+        xarray.Dataset
+            Over ``mode``, from slow to fast: angular and cyclic frequency and
+            period without damping, damping ratio, and the shape in displacements
+            of block and cap. NaN where a mode does not return to rest.
+
+        Raises
+        ------
+        AssemblyError
+            The block stands on rigid ground, which leaves no small motion.
+
+        Examples
+        --------
+        >>> import rockframe as rf
+        >>> block = rf.Block.from_size(radius="5 m", slenderness=4, mass="50 t")
+        >>> pads = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.10)
+        >>> rf.System(block, pads, gravity="9.81 m/s^2").frequencies().period.values.round(4)
+        array([1.2401, 0.259 ])
+        """
+        from rockframe.simulation.statics import frequencies
+
+        return frequencies(self)
+
+    def moment_rotation(self, angles: object) -> "xr.Dataset":
+        """Give the moments that hold the body at given rotations, in vertical equilibrium.
+
+        Parameters
+        ----------
+        angles : (sequence, unit), Quantity or sequence of str
+            Rotations of the body, on cap and soil together [rad].
+
+        Returns
+        -------
+        xarray.Dataset
+            Over ``angle``: restoring moment, moment of the base, vertical
+            displacement, contact state and reactions.
+
+        Raises
+        ------
+        UnitsError
+            The angles have no unit, or not that of an angle.
+
+        Examples
+        --------
+        >>> import rockframe as rf
+        >>> soil = rf.WinklerSoil(stiffness="9 MPa", damping_ratio=0.2)
+        >>> system = rf.System(rf.Block(width="4 m", height="18 m", mass="99 t"), soil)
+        >>> held = system.moment_rotation(([0.0, 0.01, 0.1], "rad"))
+        >>> [round(float(length), 3) for length in held.contact_length_at]
+        [4.0, 4.0, 1.468]
+        """
+        from rockframe.simulation.statics import moment_rotation
+
+        return moment_rotation(self, angles)
+
+    def equilibrium(self) -> "xr.Dataset":
+        """Give settlements and reactions at rest, and where full contact ends.
+
+        Returns
+        -------
+        xarray.Dataset
+            Scalars: settlements and reactions of what the scene has,
+            ``uplift_angle``, ``uplift_moment`` and ``overturning_angle``.
+        """
+        from rockframe.simulation.statics import equilibrium
+
+        return equilibrium(self)
 
     @classmethod
     def from_dataset(cls, dataset: "xr.Dataset") -> Self:

@@ -1,0 +1,87 @@
+"""Labelled answers that need no run: rest, quasi-static rotation, small motion."""
+
+import json
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rockframe.dynamics.protocol import ContactState
+from rockframe.errors import AssemblyError
+from rockframe.results.dataset import build_dataset
+from rockframe.results.outcome import Generic
+from rockframe.system.assembly import Assembly
+from rockframe.system.small_motion import modes_of
+from rockframe.units import ANGLE, to_si_values
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+def equilibrium(system: Assembly) -> "xr.Dataset":
+    """Give settlements and reactions at rest, and the bounds of full contact."""
+    setting = system.setting
+    values: dict[str, float] = {
+        **setting.equilibrium(),
+        "overturning_angle": setting.overturning_angle,
+        "uplift_angle": setting.uplift_angle,
+    }
+    uplift = setting.uplift_angle
+    if not math.isnan(uplift):
+        # at uplift itself; on rigid ground just beyond it
+        held = setting.statics(uplift if uplift > 0.0 else math.ulp(0.0))
+        values["uplift_moment"] = held.base_moment
+    return build_dataset(values, _about(system), title="Rest", source="vertical equilibrium")
+
+
+def moment_rotation(system: Assembly, angles: object) -> "xr.Dataset":
+    """Give the quasi-static moments at given rotations."""
+    held_at = to_si_values(angles, ANGLE, owner="moment_rotation", name="angles")
+    states = [system.setting.statics(angle) for angle in held_at]
+    values: dict[str, Generic] = {
+        "angle": np.array(held_at),
+        "restoring_moment": np.array([state.restoring_moment for state in states]),
+        "base_moment": np.array([state.base_moment for state in states]),
+        "static_vertical_displacement": np.array([state.vertical_displacement for state in states]),
+        "static_contact_state": np.array(
+            [ContactState[state.contact_state.upper()] for state in states]
+        ),
+    }
+    for name in states[0].reactions if states else ():
+        values[f"{name}_at"] = np.array([state.reactions[name] for state in states])
+    return build_dataset(
+        values, _about(system), title="Moment and rotation", source="vertical equilibrium"
+    )
+
+
+def frequencies(system: Assembly) -> "xr.Dataset":
+    """Give the modes of small motion about rest."""
+    motion = system.setting.small_motion()
+    if motion is None:
+        msg = (
+            "a block on rigid ground has no small motion: it stands still or rocks, with a "
+            "period that grows with the amplitude; put it on pads or soil"
+        )
+        raise AssemblyError([msg])
+    modes = modes_of(motion)
+    rate = np.array([mode.angular_frequency for mode in modes])
+    values: dict[str, Generic] = {
+        "mode": np.arange(1, len(modes) + 1),
+        "angular_frequency": rate,
+        "frequency": rate / (2.0 * math.pi),
+        "period": 2.0 * math.pi / rate,
+        "damping_ratio": np.array([mode.damping_ratio for mode in modes]),
+    }
+    for row, name in enumerate(motion.coordinates):
+        values[f"{name}_shape"] = np.array([mode.shape[row] for mode in modes])
+    return build_dataset(
+        values, _about(system), title="Modes of small motion", source="eigenvalues"
+    )
+
+
+def _about(system: Assembly) -> dict[str, str]:
+    return {
+        "model": system.scene.model,
+        "model_description": system.describe(),
+        "system_json": json.dumps(system.to_dict()),
+    }
