@@ -184,22 +184,38 @@ def cap_ends(state: Vector, p: Vector, sine: float, cosine: float, rise: float) 
 
 
 @inlined
-def configuration(mode: int, state: Vector, p: Vector) -> Configuration:
-    """Give the geometry of a state, in the restraints of a mode."""
+def placed(
+    mode: int,
+    state: Vector,
+    p: Vector,
+    cap_sine: float,
+    cap_cosine: float,
+    block_sine: float,
+    block_cosine: float,
+) -> Configuration:
+    """Give the geometry of a state from the sines and cosines of both bodies on their bases."""
     small = p[SMALL]
     cap = cap_pivot(mode)
     block = block_pivot(mode)
-    sine, cosine, _ = sine_cosine_rise(p[CAP_HALF_HEIGHT], small, state[CAP_ROTATION])
     pin = pinned_point(cap, p[CAP_HALF_WIDTH])
-    reach, bend = reach_and_bend(p[CAP_HALF_HEIGHT], small, pin, sine, cosine)
+    reach, bend = reach_and_bend(p[CAP_HALF_HEIGHT], small, pin, cap_sine, cap_cosine)
+    pin = pinned_point(block, p[HALF_WIDTH])
+    slide, curve = reach_and_bend(p[HALF_HEIGHT], small, pin, block_sine, block_cosine)
+    sine = cap_sine
+    cosine = cap_cosine
     if small != 0.0:  # the frame of the cap turns exactly, whatever the kinematics on the bases
         sine = math.sin(state[CAP_ROTATION])
         cosine = math.cos(state[CAP_ROTATION])
-    block_sine, block_cosine, _ = sine_cosine_rise(p[HALF_HEIGHT], small, state[ROTATION])
-    pin = pinned_point(block, p[HALF_WIDTH])
-    slide, curve = reach_and_bend(p[HALF_HEIGHT], small, pin, block_sine, block_cosine)
     arm = p[CAP_HALF_HEIGHT] + p[HALF_HEIGHT] + state[NORMAL]
     return Configuration(sine, cosine, reach, bend, slide, curve, arm, block == FREE, cap == FREE)
+
+
+@kernel
+def configuration(mode: int, state: Vector, p: Vector) -> Configuration:
+    """Give the geometry of a state, in the restraints of a mode."""
+    cap_sine, cap_cosine, _ = sine_cosine_rise(p[CAP_HALF_HEIGHT], p[SMALL], state[CAP_ROTATION])
+    sine, cosine, _ = sine_cosine_rise(p[HALF_HEIGHT], p[SMALL], state[ROTATION])
+    return placed(mode, state, p, cap_sine, cap_cosine, sine, cosine)
 
 
 @inlined
@@ -294,7 +310,6 @@ def accelerate(
 ) -> None:
     """Accelerations of :eq:`eq-coupled`, dashpot power and input power."""
     small = p[SMALL]
-    place = configuration(mode, state, p)
     # soil
     cap_sine, cap_cosine, cap_rise = sine_cosine_rise(
         p[CAP_HALF_HEIGHT], small, state[CAP_ROTATION]
@@ -315,6 +330,7 @@ def accelerate(
     spin = state[COORDINATES + ROTATION]
     lift = state[COORDINATES + NORMAL]
     sine, cosine, rise = sine_cosine_rise(p[HALF_HEIGHT], small, state[ROTATION])
+    place = placed(mode, state, p, cap_sine, cap_cosine, sine, cosine)
     height = state[NORMAL] + rise
     half = p[HALF_WIDTH] * sine
     lever_left = p[HALF_HEIGHT] * sine + p[HALF_WIDTH] * cosine
