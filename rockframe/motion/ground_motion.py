@@ -26,6 +26,14 @@ if TYPE_CHECKING:
     from rockframe.motion.quantities import ArrayLike, QuantityLike, RatioLike
 
 _ANALYTIC = ("sine_pulse", "harmonic")
+_OPERATIONS = (
+    "window",
+    "scaled",
+    "resampled",
+    "filtered",
+    "baseline_corrected",
+    "with_vertical",
+)
 _SAME_STEP = 1e-6
 
 
@@ -314,14 +322,15 @@ class GroundMotion(MotionOperations):
 
         return cls(**from_dataset(dataset))
 
-    def to_dict(self) -> dict[str, str | float | None]:
+    def to_dict(self) -> dict[str, Any]:
         """Describe the motion: an analytic one completely, a record by its digest.
 
         Returns
         -------
         dict
-            Plain strings and floats, fit for JSON; ``constructor`` is None for
-            a motion that only its samples describe.
+            Plain values, fit for JSON: constructor and arguments of an analytic motion,
+            with the ``operations`` done to it since; ``constructor`` is None for a
+            motion that only its samples describe.
         """
         kind = {"type": type(self).__name__}
         if self._recipe is not None:
@@ -349,6 +358,7 @@ class GroundMotion(MotionOperations):
         """
         arguments = {key: value for key, value in description.items() if key != "type"}
         constructor = arguments.pop("constructor", None)
+        operations = arguments.pop("operations", ())
         if constructor is None:
             known = " and ".join(
                 f"{key} {arguments[key]}" for key in ("name", "sha256") if key in arguments
@@ -359,7 +369,16 @@ class GroundMotion(MotionOperations):
             msg = f"found the constructor {constructor!r}; expected one of {', '.join(_ANALYTIC)}"
             raise SchemaError(msg)
         try:
-            return getattr(cls, constructor)(**arguments)
+            motion = getattr(cls, constructor)(**arguments)
+            for operation in operations:
+                ((name, given),) = operation.items()
+                if name not in _OPERATIONS:
+                    msg = f"found the operation {name!r}; expected one of {', '.join(_OPERATIONS)}"
+                    raise SchemaError(msg)
+                if name == "with_vertical":
+                    given = {"other": cls.from_dict(given["other"])}
+                motion = getattr(motion, name)(**given)
         except TypeError as problem:
-            msg = f"found arguments that do not fit {constructor}: {problem}"
+            msg = f"found arguments that do not fit {constructor} or what was done to it: {problem}"
             raise SchemaError(msg) from problem
+        return motion

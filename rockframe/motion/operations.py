@@ -82,7 +82,13 @@ class MotionOperations(MotionValue):
             pieces=None if si.pieces is None else si.pieces[between],
             vertical_pieces=None if si.vertical_pieces is None else si.vertical_pieces[between],
         )
-        return self._next(part, step)
+        operation = {
+            "window": {
+                name: f"{place * si.time_step!r} {TIME.unit}"
+                for name, place in (("start", first), ("end", final))
+            }
+        }
+        return self._next(part, step, operation=operation)
 
     def scaled(self, factor: RatioLike | None = None, *, peak: QuantityLike | None = None) -> Self:
         """Multiply the motion, both components alike.
@@ -117,9 +123,11 @@ class MotionOperations(MotionValue):
                 raise ComponentError(msg)
             ratio = target / si.peak
             step = f"scaled by {ratio!r} to a peak of {target:.9g} m/s^2"
+            given: dict[str, float | str] = {"peak": f"{target!r} {ACCELERATION.unit}"}
         else:
             ratio = to_ratio(factor, owner=owner, name="factor")
             step = f"scaled by {ratio!r}"
+            given = {"factor": ratio}
 
         def times(values: Array | None) -> Array | None:
             with np.errstate(over="ignore"):
@@ -128,7 +136,8 @@ class MotionOperations(MotionValue):
         with np.errstate(over="ignore"):
             larger = si.acceleration * ratio
         pieces = times(si.pieces), times(si.vertical_pieces)
-        return self._next(MotionSI(si.time_step, larger, times(si.vertical), *pieces), step)
+        result = MotionSI(si.time_step, larger, times(si.vertical), *pieces)
+        return self._next(result, step, operation={"scaled": given})
 
     def resampled(self, time_step: QuantityLike) -> Self:
         """Change the time step.
@@ -163,8 +172,10 @@ class MotionOperations(MotionValue):
                 f"{owner}: time_step = {step:.6g} s would give more than {MAXIMUM_SAMPLES} samples"
             )
             raise ComponentError(msg)
+        operation = {"resampled": {"time_step": f"{step!r} {TIME.unit}"}}
         if math.isclose(step, si.time_step, rel_tol=_SAME_STEP):
-            return self._next(si, f"resampled to {step!r} s: the time step that it had")
+            same = f"resampled to {step!r} s: the time step that it had"
+            return self._next(si, same, operation=operation)
         finer = step < si.time_step
 
         def anew(samples: Array, pieces: Array | None) -> Array:
@@ -180,7 +191,7 @@ class MotionOperations(MotionValue):
         rest = si.duration - result.duration
         if rest > _SNAP * step:
             steps.append(f"the last {rest:.6g} s, less than one new time step, are left out")
-        return self._next(result, *steps, *self._drop_note())
+        return self._next(result, *steps, *self._drop_note(), operation=operation)
 
     def filtered(
         self,
@@ -254,7 +265,9 @@ class MotionOperations(MotionValue):
             f"Butterworth filter of order {order}, forwards and backwards, {band}, "
             f"padded with {padding} zeros at both ends"
         )
-        return self._next(result, step, *self._drop_note())
+        given = {name: f"{value!r} {FREQUENCY.unit}" for name, value in corners.items()}
+        operation = {"filtered": {**given, "order": order}}
+        return self._next(result, step, *self._drop_note(), operation=operation)
 
     def baseline_corrected(self, order: int = 1) -> Self:
         """Subtract the polynomial of degree `order` that fits the acceleration best.
@@ -277,7 +290,8 @@ class MotionOperations(MotionValue):
         _check_whole(order, "order", 0, min(_HIGHEST_DEGREE, len(self) - 1), owner)
         result = self._replaced(lambda samples, _: processing.without_baseline(samples, order))
         step = f"baseline corrected: polynomial of degree {order} subtracted (least squares)"
-        return self._next(result, step, *self._drop_note())
+        operation = {"baseline_corrected": {"order": order}}
+        return self._next(result, step, *self._drop_note(), operation=operation)
 
     def with_vertical(self, other: MotionValue) -> Self:
         """Add a vertical motion: the horizontal component of another one, upwards.
@@ -318,7 +332,9 @@ class MotionOperations(MotionValue):
                 steps.append(f"{label} component padded with {count - len(motion)} zeros")
         result = MotionSI(si.time_step, across, upwards, pieces, vertical_pieces)
         about = {f"vertical_{key}": value for key, value in other.metadata.items()}
-        return self._next(result, *steps, metadata=about)
+        known = None if other._recipe is None else dict(other._recipe)
+        operation = None if known is None else {"with_vertical": {"other": known}}
+        return self._next(result, *steps, operation=operation, metadata=about)
 
     def _replaced(
         self, change: Callable[[Array, Array | None], Array], time_step: float | None = None

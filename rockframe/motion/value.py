@@ -32,7 +32,7 @@ class MotionValue:
     history : iterable of str, optional
         One sentence per step.
     recipe : mapping, optional
-        Constructor and arguments of an analytic motion.
+        Constructor and arguments of an analytic motion, and what was done to it since.
 
     Raises
     ------
@@ -46,7 +46,7 @@ class MotionValue:
     name: str
     metadata: Mapping[str, str | float | int]
     history: tuple[str, ...]
-    _recipe: Mapping[str, str | float] | None
+    _recipe: Mapping[str, Any] | None
     _sha256: str
 
     noun: ClassVar[str] = "ground motion"
@@ -58,7 +58,7 @@ class MotionValue:
         name: str = UNNAMED,
         metadata: Mapping[str, str | float | int] | None = None,
         history: tuple[str, ...] = (),
-        recipe: Mapping[str, str | float] | None = None,
+        recipe: Mapping[str, Any] | None = None,
     ) -> None:
         entries: dict[str, Any] = dict(metadata or {})
         for key, value in entries.items():
@@ -142,12 +142,23 @@ class MotionValue:
             (type(self), self.si, self.name, dict(self.metadata), self.history, recipe),
         )
 
-    def _next(self, si: MotionSI, *steps: str, metadata: Mapping[str, Any] | None = None) -> Self:
+    def _next(
+        self,
+        si: MotionSI,
+        *steps: str,
+        operation: Mapping[str, Any] | None = None,
+        metadata: Mapping[str, Any] | None = None,
+    ) -> Self:
+        recipe = None
+        if self._recipe is not None and operation is not None:
+            done = [*self._recipe.get("operations", ()), dict(operation)]
+            recipe = {**self._recipe, "operations": done}
         return type(self)(
             si,
             name=self.name,
             metadata={**self.metadata, **(metadata or {})},
             history=(*self.history, *steps),
+            recipe=recipe,
         )
 
 
@@ -157,7 +168,7 @@ def _rebuild(
     name: str,
     metadata: dict[str, str | float | int],
     history: tuple[str, ...],
-    recipe: dict[str, str | float] | None,
+    recipe: dict[str, Any] | None,
 ) -> MotionValue:
     return kind(si, name=name, metadata=metadata, history=history, recipe=recipe)
 

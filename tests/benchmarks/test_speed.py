@@ -66,6 +66,7 @@ def c_loop(tmp_path_factory):
 
 
 def test_against_a_c_loop(c_loop):
+    from rockframe.dynamics import single_body as body
     from rockframe.dynamics import two_spring as two
     from rockframe.dynamics.protocol import Start
     from rockframe.solve.accuracy import LEVELS
@@ -77,7 +78,7 @@ def test_against_a_c_loop(c_loop):
     model = system().setting.compile()
     p = model.parameters
     block = (ctypes.c_double * 7)(
-        *(p[i] for i in (two.GRAVITY, two.HALF_HEIGHT, two.HALF_WIDTH, two.INERTIA,
+        *(p[i] for i in (body.GRAVITY, body.HALF_HEIGHT, body.HALF_WIDTH, body.INERTIA,
                          two.STIFFNESS, two.DAMPING, two.SETTLEMENT))
     )  # fmt: skip
     ground = Ground(time_step=STEP, horizontal=weak)

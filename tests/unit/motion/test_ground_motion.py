@@ -301,9 +301,29 @@ def test_description_of_a_pulse_builds_it_again(made):
     assert GroundMotion.from_dict(description) == made
 
 
-@pytest.mark.parametrize("changed", [lambda m: m.scaled(2), lambda m: m.window("0 s", "0.5 s")])
-def test_a_changed_pulse_is_described_by_its_digest(changed):
-    assert changed(GroundMotion.sine_pulse()).to_dict()["constructor"] is None
+@pytest.mark.parametrize(
+    "changed",
+    [
+        lambda m: m.scaled(2),
+        lambda m: m.scaled(peak="0.2 g_0"),
+        lambda m: m.window("0 s", "0.5 s"),
+        lambda m: m.resampled("0.003 s"),
+        lambda m: m.filtered(low="0.2 Hz", high="20 Hz", order=2),
+        lambda m: m.baseline_corrected(0),
+        lambda m: m.scaled(0.1).with_vertical(m.scaled(0.3).window("0 s", "0.5 s")).scaled(2),
+    ],
+)
+def test_a_changed_pulse_is_described_with_what_was_done_to_it(changed):
+    motion = changed(GroundMotion.sine_pulse())
+    description = json.loads(json.dumps(motion.to_dict()))
+    assert GroundMotion.from_dict(description) == motion
+    assert GroundMotion.from_dataset(motion.to_dataset()).to_dict() == motion.to_dict()
+
+
+def test_a_pulse_with_a_record_as_vertical_is_described_by_its_digest():
+    record = GroundMotion.from_arrays(([0.0, 1.0, 0.0], "m/s^2"), "0.0078125 s")
+    motion = GroundMotion.sine_pulse().with_vertical(record)
+    assert motion.to_dict()["constructor"] is None
 
 
 @pytest.mark.parametrize(
@@ -313,6 +333,8 @@ def test_a_changed_pulse_is_described_by_its_digest(changed):
         {"constructor": "read", "path": "/etc/passwd"},
         {"constructor": "sine_pulse", "colour": "red"},
         {"constructor": "harmonic"},
+        {"constructor": "sine_pulse", "operations": [{"to_dataset": {}}]},
+        {"constructor": "sine_pulse", "operations": [{"scaled": {"colour": "red"}}]},
     ],
 )
 def test_descriptions_that_fit_nothing(description):
