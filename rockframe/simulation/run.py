@@ -3,6 +3,7 @@
 import json
 import math
 import warnings
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -36,6 +37,10 @@ from rockframe.system.options import Rotation
 
 if TYPE_CHECKING:
     import xarray as xr
+
+
+TENSION = 1e-9
+"""Share of the largest reaction below which a pull is rounding."""
 
 
 def ground_of(motion: GroundMotion | None) -> Ground:
@@ -123,6 +128,7 @@ def _respond(
         values |= relative_histories(values, scales)
         values |= ground_histories(shaking, has_vertical_motion=len(ground.vertical) > 0)
         values["time"] = time
+        _warn_of_pulling(system, values)
     values |= {name: energies[name] for name in plan.energies}
     return values | events, summary
 
@@ -158,10 +164,25 @@ def _warn_of_lost_weight(system: Assembly, ground: Ground) -> None:
         return
     lowest = float(np.min(ground.vertical))
     if lowest < -system.gravity_si:
-        warnings.warn(
-            f"the vertical ground acceleration falls to {lowest:.4g} m s^-2, beyond gravity: the "
-            "block would leave the rigid ground, which this model cannot show; put it on a "
-            "TwoSpringSupport to follow its flight",
-            ModelWarning,
-            stacklevel=4,
-        )
+        _warn_of_tension(f"the vertical ground acceleration falls to {lowest:.4g} m s^-2, beyond "
+                         "gravity")  # fmt: skip
+
+
+def _warn_of_pulling(system: Assembly, values: Mapping[str, Generic]) -> None:
+    if system.setting.settlement is not None or "left_reaction" not in values:
+        return
+    reaction = values["left_reaction"] + values["right_reaction"]
+    lowest = float(np.min(reaction))
+    if lowest < -TENSION * float(np.max(np.abs(reaction))):
+        when = float(values["time"][np.argmin(reaction)])
+        _warn_of_tension(f"the ground would have to pull at the bearing corner, with "
+                         f"{-lowest:.4g} N at {when:.4g} s")  # fmt: skip
+
+
+def _warn_of_tension(found: str) -> None:
+    warnings.warn(
+        f"{found}: the block would leave the rigid ground, which this model cannot show; put it "
+        "on a TwoSpringSupport to follow its flight",
+        ModelWarning,
+        stacklevel=5,
+    )

@@ -232,3 +232,11 @@ def test_a_short_strong_pulse_is_a_velocity_step():
     h = RADIUS * math.cos(0.2)
     expected = -h * speed / (4.0 / 3.0 * RADIUS**2)
     assert response.angular_velocity.values[-1] == pytest.approx(expected, rel=1e-4)
+
+
+def test_a_block_that_would_leave_the_ground_is_warned_about():
+    """A squat block, thrown fast: at impact m (g - R0 cos(theta) a'^2 ...) is negative."""
+    system = rf.System(rf.Block(width="2 m", height="2 m", mass="1 t"))
+    fast = rf.InitialState(rotation="0.1 rad", angular_velocity="-4 rad/s")
+    with pytest.warns(rf.ModelWarning, match=r"the ground would have to pull .* TwoSpringSupport"):
+        system.simulate(duration="0.2 s", initial=fast)

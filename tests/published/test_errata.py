@@ -17,7 +17,9 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
 import rockframe as rf
-from rockframe.dynamics import two_spring as kernels
+from rockframe.dynamics.kinematics import PIVOT_LEFT, PIVOT_RIGHT
+from rockframe.dynamics.pad import CLEAR
+from rockframe.dynamics.single_body import COORDINATES, ROTATION, VERTICAL
 
 G = 9.80665
 STATES = 200
@@ -398,15 +400,15 @@ def model_of(case, restraint="contact-state"):
 def evaluate(model, mode, state, ground_x, ground_y):
     """Call the right-hand side as Python, compiled or not."""
     function = getattr(model.accelerate, "__wrapped__", model.accelerate)
-    out = np.zeros(kernels.COORDINATES + 2)
+    out = np.zeros(COORDINATES + 2)
     function(mode, state, ground_x, ground_y, model.parameters, out)
     return out
 
 
 MODES = {
     FULL: 0,
-    LEFT: 4 * kernels.CLEAR + 16 * kernels.PIVOT_LEFT,
-    RIGHT: kernels.CLEAR + 16 * kernels.PIVOT_RIGHT,
+    LEFT: 4 * CLEAR + 16 * PIVOT_LEFT,
+    RIGHT: CLEAR + 16 * PIVOT_RIGHT,
 }
 
 
@@ -418,6 +420,6 @@ def test_rockframe_solves_newton_and_eulers_equations(contact):
         out = evaluate(model, MODES[contact], state, case.ground_x, case.ground_y)
         _, y_acc, alpha_acc, _, pads = newton_euler(case, contact)
         sizes = [G, *map(abs, pads.values())]
-        assert abs(out[kernels.VERTICAL] - y_acc) < 10.0 * EXACT * max(sizes)
+        assert abs(out[VERTICAL] - y_acc) < 10.0 * EXACT * max(sizes)
         turning = max(sizes) * case.radius / case.inertia
-        assert abs(out[kernels.ROTATION] - alpha_acc) < 10.0 * EXACT * turning
+        assert abs(out[ROTATION] - alpha_acc) < 10.0 * EXACT * turning
