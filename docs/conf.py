@@ -41,7 +41,7 @@ numpydoc_show_class_members = False
 
 def _keep_bars(app, what, name, obj, options, lines):
     """Keep |x| in docstrings an absolute value: reStructuredText would substitute it."""
-    lines[:] = [re.sub(r"\|(\w+)\|", r"\\|\1\\|", line) for line in lines]
+    lines[:] = [re.sub(r"\|(\w[\w ]*)\|", r"\\|\1\\|", line) for line in lines]
 
 
 def setup(app):

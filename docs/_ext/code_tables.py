@@ -16,11 +16,23 @@ from rockframe.units import Unit
 
 Rows = Iterable[tuple[str, ...]]
 
+REST = (
+    "pad_settlement",
+    "soil_settlement",
+    "static_left_reaction",
+    "static_right_reaction",
+    "static_soil_reaction",
+    "uplift_moment",
+    "soil_uplift_moment",
+)
+"""Scalars of a system at rest; all others are those of a run."""
 
-def _variables(dims: tuple[str, ...], *, energies: bool = False) -> Rows:
+
+def _variables(dims: tuple[str, ...], *, energies: bool = False, rest: bool = False) -> Rows:
     yield "name", "unit", "type", "meaning"
     for row in SCHEMA.values():
-        if row.dims == dims and (row.name in ENERGIES) is energies:
+        chosen = (row.name in ENERGIES) is energies and (row.name in REST) is rest
+        if row.dims == dims and chosen:
             unit = "flag" if row.flags else "" if row.unit is None else str(row.unit)
             yield row.name, unit, row.dtype, row.long_name
 
@@ -57,6 +69,9 @@ TABLES: dict[str, Callable[[], Rows]] = {
     "energies": lambda: _variables(("time",), energies=True),
     "events": lambda: _variables(("event",)),
     "scalars": lambda: _variables(()),
+    "rest": lambda: _variables((), rest=True),
+    "held": lambda: _variables(("angle",)),
+    "modes": lambda: _variables(("mode",)),
     "contact-states": lambda: _flags(ContactState),
     "event-kinds": lambda: _flags(EventKind),
     "directions": lambda: _flags(Direction),

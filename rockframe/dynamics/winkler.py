@@ -1,7 +1,8 @@
 """A body on a Winkler bed, section "Winkler bed" of the theory manual.
 
-Equation :eq:`eq-winkler`; the paper's Eqs. (18) and (19), corrected, are its
-small-rotation forms. Kinematics :eq:`eq-kinematics`, bed :eq:`eq-bed`.
+Equation :eq:`eq-winkler`; the paper's Eq. (18) is its small-rotation form in full
+contact, Eq. (19), corrected, its first order with an end raised. Kinematics
+:eq:`eq-kinematics`, bed :eq:`eq-bed`.
 All quantities per unit mass of the body.
 """
 

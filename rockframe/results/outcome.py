@@ -35,6 +35,7 @@ class Scales:
     settlement: float | None
     cap_offset: float | None = None
     small_rotation: bool = False
+    pads_on_cap: bool = False
 
 
 def histories(model: ContactModel, run: Trajectory, ground: Array) -> dict[str, Generic]:
@@ -184,7 +185,7 @@ def verdict(run: Summary, scales: Scales) -> str:
             f"{share:.3g} % of the overturning angle; {impacts}"
         )
         if math.isnan(run.first_uplift_time):
-            text += ", no uplift"
+            text += ", no uplift from the pads" if scales.pads_on_cap else ", no uplift"
     if run.flight_time > 0.0:
         text += f", {run.flight_time:.3g} s in flight"
     if run.status in _ENDINGS:

@@ -113,8 +113,8 @@ _ROWS: Final = (
         Unit.METRE_PER_SECOND_SQUARED,
         "vertical ground acceleration, upwards",
     ),
-    Variable("left_reaction", _T, Unit.NEWTON, "vertical reaction at the left corner"),
-    Variable("right_reaction", _T, Unit.NEWTON, "vertical reaction at the right corner"),
+    Variable("left_reaction", _T, Unit.NEWTON, "reaction of the base at the left corner"),
+    Variable("right_reaction", _T, Unit.NEWTON, "reaction of the base at the right corner"),
     # soil and cap
     Variable("soil_reaction", _T, Unit.NEWTON, "vertical reaction of the soil"),
     Variable("contact_length", _T, Unit.METRE, "length of the base that bears on the soil"),
@@ -203,7 +203,12 @@ _ROWS: Final = (
     ),
     _flag("status", (), "how the run ended", Status),
     Variable("overturning_angle", (), Unit.RADIAN, "rotation of unstable equilibrium, theta"),
-    Variable("uplift_angle", (), Unit.RADIAN, "rotation at which contact is first lost at rest"),
+    Variable(
+        "uplift_angle",
+        (),
+        Unit.RADIAN,
+        "rotation of the block on its base at which contact is first lost at rest",
+    ),
     # quasi-static states over the angle at which the body is held
     Variable("angle", _A, Unit.RADIAN, "rotation at which the body is held"),
     Variable(
@@ -225,8 +230,8 @@ _ROWS: Final = (
         "vertical displacement of the centre of mass from rest",
     ),
     _flag("static_contact_state", _A, "corner that bears", ContactState),
-    Variable("left_reaction_at", _A, Unit.NEWTON, "vertical reaction at the left corner"),
-    Variable("right_reaction_at", _A, Unit.NEWTON, "vertical reaction at the right corner"),
+    Variable("left_reaction_at", _A, Unit.NEWTON, "reaction of the base at the left corner"),
+    Variable("right_reaction_at", _A, Unit.NEWTON, "reaction of the base at the right corner"),
     Variable("soil_reaction_at", _A, Unit.NEWTON, "vertical reaction of the soil"),
     Variable("contact_length_at", _A, Unit.METRE, "length of the base that bears on the soil"),
     Variable("cap_rotation_at", _A, Unit.RADIAN, "rotation of the cap"),
@@ -238,6 +243,12 @@ _ROWS: Final = (
     Variable("static_soil_reaction", (), Unit.NEWTON, "reaction of the soil at rest"),
     Variable(
         "uplift_moment", (), Unit.NEWTON_METRE, "base moment at which contact is first lost"
+    ),
+    Variable(
+        "soil_uplift_moment",
+        (),
+        Unit.NEWTON_METRE,
+        "moment of the soil's reaction at which the cap first loses contact",
     ),
     # modes of small motion
     _number("mode", "number of the mode, from slow to fast"),

@@ -80,6 +80,7 @@ def run(system: Assembly, plan: Plan) -> "xr.Dataset":
         setting.settlement,
         setting.cap_offset,
         small_rotation=system.rotation is Rotation.SMALL,
+        pads_on_cap=system.scene.coupling is not None,
     )
     values, summary = _respond(system, plan, ground, scales)
     return build_dataset(

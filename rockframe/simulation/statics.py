@@ -26,11 +26,6 @@ def equilibrium(system: Assembly) -> "xr.Dataset":
         "overturning_angle": setting.overturning_angle,
         "uplift_angle": setting.uplift_angle,
     }
-    uplift = setting.uplift_angle
-    if not math.isnan(uplift):
-        # at uplift itself; on rigid ground just beyond it
-        held = setting.statics(uplift if uplift > 0.0 else math.ulp(0.0))
-        values["uplift_moment"] = held.base_moment
     return build_dataset(values, _about(system), title="Rest", source="vertical equilibrium")
 
 

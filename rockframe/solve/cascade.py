@@ -1,7 +1,7 @@
 """Two models in series, Eq. (20): the response of the first shakes the second.
 
 The first is a block and its cap as one body on a bed; the middle of the cap's top is
-the ground of the second, page "Cascade" of the manual.
+the ground of the second, page "Cap and soil" of the manual.
 """
 
 import math

@@ -155,8 +155,11 @@ class RigidGroundSetting:
         return self.block.mass * self.gravity
 
     def equilibrium(self) -> dict[str, float]:
-        """Give the reactions at rest, by their names in the schema."""
-        return {f"static_{name}": 0.5 * self.weight for name in _REACTIONS}
+        """Give the reactions at rest and the moment at uplift, by their names in the schema."""
+        uplift = self.weight * self.block.half_width
+        return {"uplift_moment": uplift} | {
+            f"static_{name}": 0.5 * self.weight for name in _REACTIONS
+        }
 
 
 def rigid_ground_setting(parts: Parts, options: Options) -> RigidGroundSetting:

@@ -192,9 +192,11 @@ class TwoSpringSetting:
         )
 
     def equilibrium(self) -> dict[str, float]:
-        """Give settlement and reactions at rest, by their names in the schema."""
+        """Give settlement, reactions and moment at uplift, by their names in the schema."""
         half = 0.5 * self.block.mass * self.gravity
+        uplift = self.uplift_angle
         return {
+            "uplift_moment": math.nan if math.isnan(uplift) else self.statics(uplift).base_moment,
             "pad_settlement": half / self.stiffness,
             "static_left_reaction": half,
             "static_right_reaction": half,

@@ -93,11 +93,19 @@ class WinklerSetting:
 
     def equations(self) -> list[tuple[str, str]]:
         """Give each contact state with the equation that governs it."""
+        one_sided = (
+            "Eq. (19), corrected: inertia I_O + m (h + b a)^2 and its a'^2 term in (19b), (19e), "
+            "(19f), (19h); resultants over the part in contact"
+        )
+        if self.options.small:
+            one_sided = (
+                "Eq. (19), corrected: (19e), (19f), (19h); inertia I_M and heights to second "
+                "order, so that energies balance"
+            )
         return [
             ("full", "Eq. (18) at small rotation; at finite rotation the same bed with "
              "x' = h cos(a), and its resultants over the whole base"),
-            ("left, right", "Eq. (19), corrected: inertia I_O + m (h + b a)^2 and its a'^2 term in "
-             "(19b), (19e), (19f), (19h); resultants over the part in contact"),
+            ("left, right", one_sided),
             ("flight", "free fall and constant rotation rate"),
             ("contact", f"without impact law; the base parts from the bed "
              f"{_SEPARATION[self.separation]}"),
@@ -173,10 +181,12 @@ class WinklerSetting:
         )
 
     def equilibrium(self) -> dict[str, float]:
-        """Give settlement and reaction at rest, by their names in the schema."""
+        """Give settlement, reaction and moment at uplift, by their names in the schema."""
+        uplift = self.uplift_angle
         return {
             "soil_settlement": self.sinking,
             "static_soil_reaction": self.body.mass * self.gravity,
+            "uplift_moment": math.nan if math.isnan(uplift) else self.statics(uplift).base_moment,
         }
 
 
