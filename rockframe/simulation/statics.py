@@ -37,13 +37,13 @@ def moment_rotation(system: Assembly, angles: object) -> "xr.Dataset":
         "angle": np.array(held_at),
         "restoring_moment": np.array([state.restoring_moment for state in states]),
         "base_moment": np.array([state.base_moment for state in states]),
-        "static_vertical_displacement": np.array([state.vertical_displacement for state in states]),
-        "static_contact_state": np.array(
+        "held_vertical_displacement": np.array([state.vertical_displacement for state in states]),
+        "held_contact_state": np.array(
             [ContactState[state.contact_state.upper()] for state in states]
         ),
     }
     for name in states[0].reactions if states else ():
-        values[f"{name}_at"] = np.array([state.reactions[name] for state in states])
+        values[f"held_{name}"] = np.array([state.reactions[name] for state in states])
     return build_dataset(
         values, _about(system), title="Moment and rotation", source="vertical equilibrium"
     )
