@@ -1,8 +1,11 @@
 """Figures that are drawn when the manual is built, into ``reference/generated``."""
 
+import warnings
+from itertools import product
 from pathlib import Path
 
 import numpy as np
+import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Arc, Polygon, Rectangle
@@ -68,11 +71,68 @@ def _line(
     axes.text(*((start + end) / 2 + shift), text, color=INK)
 
 
+def _released(
+    height: float, mass: float, shape_factor: float, beta: int, k0: int, coupling: str, seconds: int
+) -> xr.Dataset:
+    """Let a frame of the paper's Table 2 go from 0.10 rad."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", rf.ModelWarning)  # the page is about the printed mu
+        frame = rf.FrameEquivalent(
+            width="4 m", height=f"{height} m", mass=f"{mass} t", shape_factor=shape_factor
+        )
+    system = rf.System(
+        frame,
+        rf.TwoSpringSupport(frequency_ratio=beta, damping_ratio=0.10),
+        rf.CushionCap(height=f"{height / 20} m", density="2500 kg/m^3", depth="4 m"),
+        rf.WinklerSoil(stiffness=f"{k0} MPa", damping_ratio=0.20),
+        coupling=coupling,
+        gravity="9.81 m/s^2",
+    )
+    start = rf.InitialState(rotation="0.1 rad")
+    return system.simulate(
+        duration=f"{seconds} s", initial=start, output_step="0.02 s", accuracy="fast"
+    )
+
+
+def _free_response(height: float, mass: float, shape_factor: float, seconds: int) -> Figure:
+    figure = Figure(figsize=(9.0, 4.6), layout="constrained")
+    axes = figure.subplots(2, 3, sharex=True, sharey="row")
+    runs = {("coupled", 3): "#cc6677", ("coupled", 12): INK, ("cascade", 9): "0.55"}
+    names = ("rotation", "vertical_displacement")
+    for (column, beta), ((coupling, k0), colour) in product(enumerate((20, 40, 60)), runs.items()):
+        run = _released(height, mass, shape_factor, beta, k0, coupling, seconds)
+        label = "cascade, any $k_0$" if coupling == "cascade" else f"coupled, $k_0={k0}$ MPa"
+        style = "--" if coupling == "cascade" else "-"
+        for row, name in enumerate(names):
+            axes[row, column].plot(run.time, run[name], style, color=colour, lw=1.0, label=label)
+    for column, beta in enumerate((20, 40, 60)):
+        axes[0, column].set_title(rf"$\beta={beta}$", fontsize="medium")
+        axes[1, column].set_xlabel("time [s]")
+    for row, text in enumerate((r"rotation $\alpha$ [rad]", "vertical $y$ [m]")):
+        axes[row, 0].set_ylabel(text)
+    for place in axes.flat:
+        place.axhline(0.0, color="0.8", lw=0.5, zorder=0)
+    axes[0, 0].set_xlim(0.0, seconds)
+    handles, labels = axes[0, 0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=3, frameon=False)
+    return figure
+
+
+def three_storeys_released() -> Figure:
+    """Draw the free response of the three-storey frame, as in Fig. 19."""
+    return _free_response(9.0, 45.8, 1.153, 12)
+
+
+def six_storeys_released() -> Figure:
+    """Draw the free response of the six-storey frame, as in Fig. 20."""
+    return _free_response(18.0, 99.0, 0.380, 20)
+
+
 def draw(app: Sphinx) -> None:
     """Draw all figures."""
     folder = Path(app.srcdir) / "reference" / "generated"
     folder.mkdir(parents=True, exist_ok=True)
-    for figure in (quickstart, conventions):
+    for figure in (quickstart, conventions, three_storeys_released, six_storeys_released):
         figure().savefig(folder / f"{figure.__name__}.png", dpi=130)
 
 

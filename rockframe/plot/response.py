@@ -13,6 +13,9 @@ if TYPE_CHECKING:
 
 _COLOURS = {"full": "0.85", "left": "#4477aa", "right": "#cc6677", "flight": "#ddcc77"}
 _UPLIFT_COLOUR = "#8c510a"
+_CAP_COLOUR = "#999933"
+CONTACTS = {"contact_state": "pads", "soil_contact_state": "soil"}
+"""Strips of contact states, and what they are called where there are two."""
 
 
 def response(dataset: "xr.Dataset", *, title: str | None = None) -> "Figure":
@@ -40,16 +43,22 @@ def response(dataset: "xr.Dataset", *, title: str | None = None) -> "Figure":
     if "rotation" not in dataset or "time" not in dataset.coords:
         msg = "the dataset has no histories to draw; simulate with outputs=() instead of None"
         raise SchemaError(msg)
-    figure = Figure(figsize=(8.0, 7.0), layout="constrained")
+    strips = [name for name in CONTACTS if name in dataset]
+    if "rotation_on_cap" not in dataset:
+        strips = strips[:1]  # one body: the soil's contact is the only one
+    figure = Figure(figsize=(8.0, 7.0 + 0.4 * (len(strips) - 1)), layout="constrained")
+    heights = [1.0, 2.0, 2.0, *[0.35] * len(strips)]
     axes: Any = figure.subplots(
-        4, 1, sharex=True, gridspec_kw={"height_ratios": [1.0, 2.0, 2.0, 0.35]}
+        len(heights), 1, sharex=True, gridspec_kw={"height_ratios": heights}
     )
     time = dataset["time"].to_numpy()
     _ground(axes[0], dataset, time)
     _rotation(axes[1], dataset, time)
     _vertical(axes[2], dataset, time)
-    _contact(axes[3], dataset, time)
-    axes[3].set_xlabel("time [s]")
+    for strip, name in zip(axes[3:], strips, strict=True):
+        _contact(strip, dataset[name], time, CONTACTS[name] if len(strips) > 1 else "contact")
+    _contact_legend(axes[-1], dataset[strips[0]])
+    axes[-1].set_xlabel("time [s]")
     axes[0].set_xlim(time[0], time[-1])
     figure.suptitle(title or str(dataset.attrs.get("verdict", "")), fontsize="medium", wrap=True)
     return figure
@@ -65,9 +74,14 @@ def _ground(axes: "Axes", dataset: "xr.Dataset", time: Any) -> None:
 
 
 def _rotation(axes: "Axes", dataset: "xr.Dataset", time: Any) -> None:
-    axes.plot(time, dataset["relative_rotation"], color="#222255", linewidth=1.0)
-    uplift = float(dataset["uplift_angle"] / dataset["overturning_angle"])
-    if np.isfinite(uplift) and uplift > 0.0:
+    theta = float(dataset["overturning_angle"])
+    axes.plot(time, dataset["relative_rotation"], color="#222255", linewidth=1.0, label="block")
+    uplift = float(dataset["uplift_angle"]) / theta
+    if "rotation_on_cap" in dataset:  # the uplift angle is that of the block on the cap
+        cap = dataset["cap_rotation"] / theta
+        axes.plot(time, cap, color=_CAP_COLOUR, linewidth=0.8, label="cap")
+        axes.legend(loc="upper right", fontsize="small")
+    elif np.isfinite(uplift) and uplift > 0.0:
         for side in (-1.0, 1.0):
             axes.axhline(
                 side * uplift,
@@ -92,20 +106,26 @@ def _vertical(axes: "Axes", dataset: "xr.Dataset", time: Any) -> None:
     axes.axhline(0.0, color="0.8", linewidth=0.5, zorder=0)
 
 
-def _contact(axes: "Axes", dataset: "xr.Dataset", time: Any) -> None:
-    state = dataset["contact_state"]
+def _contact(axes: "Axes", state: "xr.DataArray", time: Any, name: str) -> None:
     values = state.to_numpy()
-    meanings = str(state.attrs["flag_meanings"]).split()
     starts = np.flatnonzero(np.diff(values, prepend=values[0] - 1))
     ends = np.append(time[starts[1:]], time[-1])
-    for value, meaning in zip(state.attrs["flag_values"], meanings, strict=True):
+    for value, meaning in _states(state):
         held = values[starts] == value
         spans = np.column_stack([time[starts], ends - time[starts]])[held]
         axes.broken_barh(spans.tolist(), (0.0, 1.0), color=_COLOURS[meaning], label=meaning)
     axes.set_ylim(0.0, 1.0)
     axes.set_yticks([])
-    axes.set_ylabel("contact", rotation=0, ha="right", va="center")
+    axes.set_ylabel(name, rotation=0, ha="right", va="center")
+
+
+def _states(state: "xr.DataArray") -> list[tuple[int, str]]:
+    meanings = str(state.attrs["flag_meanings"]).split()
+    return list(zip(state.attrs["flag_values"], meanings, strict=True))
+
+
+def _contact_legend(axes: "Axes", state: "xr.DataArray") -> None:
     axes.legend(
-        loc="upper center", bbox_to_anchor=(0.5, -1.6), ncols=len(meanings), fontsize="small",
-        frameon=False,
+        loc="upper center", bbox_to_anchor=(0.5, -1.6), ncols=len(_states(state)),
+        fontsize="small", frameon=False,
     )  # fmt: skip

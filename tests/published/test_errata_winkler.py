@@ -161,7 +161,7 @@ def printed_19h(q, sums):
         (printed_19b_inertia, 0.05),
         (printed_19b_rate, 1e-3),
         (printed_19e, 0.5),
-        (printed_19f, 0.5),
+        (printed_19f, 0.2),
         (printed_19h, 0.5),
     ],
     ids=lambda value: getattr(value, "__name__", None),
