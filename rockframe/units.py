@@ -323,7 +323,9 @@ def _check_kind(
 def _roots(given: Any) -> dict[str, float]:
     # pint calls the radian dimensionless, so that a ratio would pass for an
     # angle and rad/s for Hz (a factor of 2 pi); the root units tell them apart.
-    return {unit: float(power) for unit, power in given.to_root_units().unit_items()}
+    # Of one unit, not of the value: a huge one would overflow.
+    one: Any = type(given)(1.0, given.units)
+    return {unit: float(power) for unit, power in one.to_root_units().unit_items()}
 
 
 def _misread(text: str, measure: Measure) -> str:
