@@ -2,6 +2,7 @@
 
 import json
 import math
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -35,18 +36,22 @@ def moment_rotation(system: Assembly, angles: object) -> "xr.Dataset":
     states = [system.setting.statics(angle) for angle in held_at]
     values: dict[str, Generic] = {
         "angle": np.array(held_at),
-        "restoring_moment": np.array([state.restoring_moment for state in states]),
-        "base_moment": np.array([state.base_moment for state in states]),
-        "held_vertical_displacement": np.array([state.vertical_displacement for state in states]),
+        "restoring_moment": _column(state.restoring_moment for state in states),
+        "base_moment": _column(state.base_moment for state in states),
+        "held_vertical_displacement": _column(state.vertical_displacement for state in states),
         "held_contact_state": np.array(
             [ContactState[state.contact_state.upper()] for state in states]
         ),
     }
     for name in states[0].reactions if states else ():
-        values[f"held_{name}"] = np.array([state.reactions[name] for state in states])
+        values[f"held_{name}"] = _column(state.reactions[name] for state in states)
     return build_dataset(
         values, _about(system), title="Moment and rotation", source="vertical equilibrium"
     )
+
+
+def _column(numbers: Iterable[float]) -> Generic:
+    return np.array(list(numbers)) + 0.0  # no negative zeros
 
 
 def frequencies(system: Assembly) -> "xr.Dataset":

@@ -41,7 +41,7 @@ def misfits(parts: Parts) -> list[str]:
         width = 2.0 * cap_under(block.si, cap.si).half_width
         if width < block.si.width * (1.0 - _ROUNDING):
             faults.append(
-                f"the CushionCap is {width:.6g} m wide, narrower than the {block.si.width:.6g} m "
+                f"the CushionCap is {width:.12g} m wide, narrower than the {block.si.width:.12g} m "
                 "of the building on it"
             )
     return faults

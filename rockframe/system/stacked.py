@@ -2,11 +2,13 @@
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rockframe.components.soil import Separation
+from rockframe.errors import SolverError
 from rockframe.system.bodies import Cap, cap_under, one_body
 from rockframe.system.options import Options
 from rockframe.system.parts import Parts
@@ -24,6 +26,10 @@ LEAST_CAP_SHARE = 1e-3
 """Least mass of a cap, as a share of the block's, with which the coupled equations are
 solved: a plate without mass has no acceleration. Halving it changes histories of the
 paper's example by up to 3e-3 of their peak, page "Coupled" of the manual."""
+
+
+STATIC_STEPS = 200
+"""Steps in which the cap's tilt under a held block is searched."""
 
 
 @dataclass(frozen=True)
@@ -125,14 +131,7 @@ class StackedSetting:
 
     def statics(self, rotation: float) -> Statics:
         """Give the equilibrium with the block held at a rotation, :eq:`eq-static-stack`."""
-        from scipy.optimize import root_scalar
-
-        def unbalance(tilt: float) -> float:
-            return self._held(tilt, rotation)[0]
-
-        tilt = 0.0
-        if rotation != 0.0:
-            tilt = root_scalar(unbalance, bracket=(0.0, rotation), xtol=1e-15, rtol=1e-14).root
+        tilt = self._tilt_under(rotation)
         _, moment, couple, rise, pads, length = self._held(tilt, rotation)
         return Statics(
             vertical_displacement=rise,
@@ -147,6 +146,26 @@ class StackedSetting:
                 "cap_rotation": tilt,
             },
         )
+
+    def _tilt_under(self, rotation: float) -> float:
+        """Give the least rotation of the cap at which it is in balance under the held block."""
+        from scipy.optimize import root_scalar
+
+        def lack(tilt: float) -> float:
+            return math.copysign(1.0, rotation) * self._held(tilt, rotation)[0]
+
+        if rotation == 0.0:
+            return 0.0
+        # a far held block leaves the cap a second, larger tilt, which is not stable
+        steps = np.linspace(0.0, rotation, STATIC_STEPS + 1).tolist()
+        for low, high in pairwise(steps):
+            if lack(low) <= 0.0 < lack(high):
+                return root_scalar(lack, bracket=(low, high), xtol=1e-15, rtol=1e-14).root
+        msg = (
+            f"no equilibrium of cap and soil was found with the block held at {rotation:.6g} rad: "
+            "the soil cannot carry the moment"
+        )
+        raise SolverError(msg)
 
     def _held(
         self, tilt: float, rotation: float
