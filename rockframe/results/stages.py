@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from rockframe.dynamics.protocol import ROTATION_LIMIT, EventKind
+from rockframe.dynamics.protocol import EventKind
 from rockframe.results.outcome import (
     Array,
     Generic,
@@ -14,6 +14,7 @@ from rockframe.results.outcome import (
 )
 from rockframe.solve.cascade import Cascade, CascadeRun
 from rockframe.solve.ground_table import ground_at
+from rockframe.solve.total import Reach
 from rockframe.solve.trajectory import Trajectory
 
 SUMMED = (
@@ -74,8 +75,8 @@ def cascade_events(cascade: Cascade, run: CascadeRun) -> dict[str, Generic]:
         first[name] = _state_at(cascade.second.contact, run.second, first["event_time"])
         second[f"soil_{name}"] = _state_at(cascade.first.contact, run.first, second["event_time"])
     merged = {name: np.concatenate([first[name], second[name]]) for name in second}
-    if not np.isnan(run.summary.overturning_time):
-        _add_overturning(merged, cascade, run)
+    for reach in run.reaches:
+        _add_reach(merged, reach, cascade, run)
     order = np.argsort(merged["event_time"], kind="stable")
     return {name: column[order] for name, column in merged.items()}
 
@@ -93,22 +94,20 @@ def _state_at(contact: Generic, run: Trajectory, time: Generic) -> Generic:
     return contact[modes[np.searchsorted(run.events.time, time, side="right")]].astype(np.int8)
 
 
-def _add_overturning(events: dict[str, Generic], cascade: Cascade, run: CascadeRun) -> None:
-    time = np.array([run.summary.overturning_time])
+def _add_reach(events: dict[str, Generic], reach: Reach, cascade: Cascade, run: CascadeRun) -> None:
+    time = np.array([reach.time])
     block = _state_at(cascade.second.contact, run.second, time)
     soil = _state_at(cascade.first.contact, run.first, time)
     row = {
         "event_time": time,
-        "event_kind": np.array([int(EventKind.OVERTURNING)], np.int8),
+        "event_kind": np.array([int(reach.kind)], np.int8),
         "contact_state_before": block,
         "contact_state_after": block,
         "soil_contact_state_before": soil,
         "soil_contact_state_after": soil,
-        "event_rotation": np.array(
-            [run.summary.overturning_direction * cascade.second.parameters[ROTATION_LIMIT]]
-        ),
-        "angular_velocity_before": np.array([run.overturning_rate]),
-        "angular_velocity_after": np.array([run.overturning_rate]),
+        "event_rotation": np.array([reach.rotation]),
+        "angular_velocity_before": np.array([reach.rate]),
+        "angular_velocity_after": np.array([reach.rate]),
     }
     for name in events:
         events[name] = np.concatenate([events[name], row[name]])

@@ -129,7 +129,7 @@ def _respond(
         values |= relative_histories(values, scales)
         values |= ground_histories(shaking, has_vertical_motion=len(ground.vertical) > 0)
         values["time"] = time
-        _warn_of_pulling(system, values)
+        _warn_of_pulling(system, values, summary.overturning_time)
     values |= {name: energies[name] for name in plan.energies}
     return values | events, summary
 
@@ -169,10 +169,13 @@ def _warn_of_lost_weight(system: Assembly, ground: Ground) -> None:
                          "gravity")  # fmt: skip
 
 
-def _warn_of_pulling(system: Assembly, values: Mapping[str, Generic]) -> None:
-    if system.setting.settlement is not None or "left_reaction" not in values:
+def _warn_of_pulling(
+    system: Assembly, values: Mapping[str, Generic], overturning_time: float
+) -> None:
+    if system.setting.settlement is not None:
         return
-    reaction = values["left_reaction"] + values["right_reaction"]
+    stands = ~(values["time"] > overturning_time)  # how a block falls is another matter
+    reaction = (values["left_reaction"] + values["right_reaction"])[stands]
     lowest = float(np.min(reaction))
     if lowest < -TENSION * float(np.max(np.abs(reaction))):
         when = float(values["time"][np.argmin(reaction)])

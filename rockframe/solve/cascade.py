@@ -13,7 +13,7 @@ from rockframe.solve.carrying import HALVES, carry, carrying_step
 from rockframe.solve.ground_table import Ground
 from rockframe.solve.integrate import integrate
 from rockframe.solve.layout import Status
-from rockframe.solve.total import summarise
+from rockframe.solve.total import Reach, summarise
 from rockframe.solve.trajectory import Summary, Trajectory
 
 
@@ -48,15 +48,15 @@ class CascadeRun:
         Absolute acceleration of the cap's top, the ground of the second stage.
     summary : Summary
         Of the total rotation, and of the second stage's contact.
-    overturning_rate : float
-        Rate of the total rotation at overturning; NaN if it does not overturn [rad s^-1].
+    reaches : list of Reach
+        Overturning and the fall that ends a run, of the total rotation.
     """
 
     first: Trajectory
     second: Trajectory
     carried: Ground
     summary: Summary
-    overturning_rate: float
+    reaches: list[Reach]
 
 
 def integrate_cascade(
@@ -85,7 +85,13 @@ def integrate_cascade(
     whole = step * math.ceil(duration / step - 1e-9)
 
     def run(
-        model: ContactModel, begin: Start, shaking: Ground, length: float, every: float | None
+        model: ContactModel,
+        begin: Start,
+        shaking: Ground,
+        length: float,
+        every: float | None,
+        *,
+        keep_end: bool = False,
     ) -> Trajectory:
         return integrate(
             model,
@@ -96,21 +102,26 @@ def integrate_cascade(
             output_step=every,
             stop_at_overturning=False,
             with_work=with_work and every is not None,
-            keep_end=True,
+            keep_end=keep_end,
         )
 
     first = run(cascade.first, Start(), ground, whole, fine)
     carried = carry(cascade.first, first, ground, cascade.top, step)
-    second = run(cascade.second, start, carried, min(duration, first.end_time), fine)
-    summary, rate = summarise(cascade, first, second, stop_at_overturning=stop_at_overturning)
-    end = summary.end_time
+    length = whole if first.status is Status.COMPLETED else first.end_time
+    second = run(cascade.second, start, carried, length, fine)
+    summary, reaches = summarise(
+        cascade, first, second, duration=duration, stop_at_overturning=stop_at_overturning
+    )
+    end, completed = summary.end_time, summary.status is Status.COMPLETED
     every = 0 if output_step is None else round(output_step / fine)
     if output_step is None:
         first, second = first.without_histories(), second.without_histories()
-    elif summary.status is Status.COMPLETED and math.isclose(every * fine, output_step):
+    elif completed and math.isclose(every * fine, output_step):
         last = math.floor(end / output_step * (1.0 + 1e-12))
-        first, second = first.thinned(every, last), second.thinned(every, last)
+        first = first.thinned(every, last, output_step)
+        second = second.thinned(every, last, output_step)
     else:  # once more, at the output times and up to the end
-        first = run(cascade.first, Start(), ground, end, output_step)
-        second = run(cascade.second, start, carried, end, output_step)
-    return CascadeRun(first, second, carried, summary, rate)
+        keep = not completed
+        first = run(cascade.first, Start(), ground, end, output_step, keep_end=keep)
+        second = run(cascade.second, start, carried, end, output_step, keep_end=keep)
+    return CascadeRun(first, second, carried, summary, reaches)

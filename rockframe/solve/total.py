@@ -1,17 +1,30 @@
 """What becomes of the sum of two rotations, from samples of both and their rates."""
 
 import math
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rockframe.compiled import Vector
-from rockframe.dynamics.protocol import IMPACT, ROTATION_LIMIT, ContactModel
+from rockframe.dynamics.protocol import IMPACT, ROTATION_LIMIT, ContactModel, EventKind
+from rockframe.solve.books import FLIGHT, ON_SAMPLE, RIGHT_ANGLE
 from rockframe.solve.layout import Status
 from rockframe.solve.trajectory import Summary, Trajectory
 
 if TYPE_CHECKING:
     from rockframe.solve.cascade import Cascade
+
+
+@dataclass(frozen=True)
+class Reach:
+    """When a rotation first reaches a limit, on which side, and its rate there."""
+
+    kind: EventKind
+    time: float
+    side: int
+    rotation: float
+    rate: float
 
 
 def rotation_of(model: ContactModel, run: Trajectory) -> tuple[Vector, Vector]:
@@ -23,20 +36,27 @@ def rotation_of(model: ContactModel, run: Trajectory) -> tuple[Vector, Vector]:
 
 
 def summarise(
-    cascade: "Cascade", first: Trajectory, second: Trajectory, *, stop_at_overturning: bool
-) -> tuple[Summary, float]:
+    cascade: "Cascade",
+    first: Trajectory,
+    second: Trajectory,
+    *,
+    duration: float,
+    stop_at_overturning: bool,
+) -> tuple[Summary, list[Reach]]:
     """Judge the total rotation of two stages with the same output times.
 
     Between the samples the rotation is the cubic through both values and rates.
+    Samples may go on beyond the duration; what happens there does not count.
 
     Returns
     -------
     summary : Summary
         Of the total.
-    overturning_rate : float
-        Rate of the total rotation at overturning, NaN if it does not overturn [rad s^-1].
+    reaches : list of Reach
+        Overturning and the fall that ends a run, as far as they happen.
     """
-    count = min(len(first.time), len(second.time))
+    finished = max(first.status, second.status) is Status.COMPLETED
+    count = min(_on_grid(first), _on_grid(second))
     time = second.time[:count]
     rotation, rate = (
         one[:count] + other[:count]
@@ -45,32 +65,66 @@ def summarise(
         )
     )
     limit = float(cascade.second.parameters[ROTATION_LIMIT])
-    place, extreme = _extremes(time, rotation, rate)
-    crossing, side, overturning_rate = _first_reach(time, rotation, rate, place, extreme, limit)
-    status = max(first.status, second.status)
-    end = float(time[-1])
-    if not math.isnan(crossing) and stop_at_overturning:
-        status, end = Status.OVERTURNED, crossing
-    before = time <= end
+    history = (time, rotation, rate, *_extremes(time, rotation, rate))
+    status = Status.COMPLETED if finished else Status(max(first.status, second.status))
+    end = min(duration, float(time[-1]))
+    reaches: list[Reach] = []
+    overturned = _first_reach(*history, limit, EventKind.OVERTURNING)
+    if overturned is not None and overturned.time <= end:
+        reaches.append(overturned)
+        fallen = _first_reach(*history, RIGHT_ANGLE, EventKind.TOPPLED)
+        if stop_at_overturning:
+            status, end = Status.OVERTURNED, overturned.time
+        elif fallen is not None and fallen.time <= end:
+            reaches.append(fallen)
+            status, end = Status.TOPPLED, fallen.time
     events = second.events
-    peaks = [np.abs(rotation[before]).max(), *np.abs(extreme[place <= end])]
-    if status is Status.OVERTURNED:
-        peaks = [limit]
+    flight_time, flight_count = _flights(cascade.second, second, end)
     summary = Summary(
-        status=Status(status),
+        status=status,
         end_time=end,
-        peak_rotation=float(max(peaks)),
-        overturning_time=crossing,
-        overturning_direction=side,
+        peak_rotation=_peak(history, end),
+        overturning_time=reaches[0].time if reaches else math.nan,
+        overturning_direction=reaches[0].side if reaches else 0,
         first_uplift_time=second.first_uplift_time if second.first_uplift_time <= end else math.nan,
-        flight_time=second.flight_time,
+        flight_time=flight_time,
         impact_count=int(np.sum((events.kind == IMPACT) & (events.time <= end))),
-        flight_count=second.flight_count,
+        flight_count=flight_count,
         step_count=first.step_count + second.step_count,
         rejected_count=first.rejected_count + second.rejected_count,
         energy_residual=max(first.energy_residual, second.energy_residual),
     )
-    return summary, overturning_rate
+    return summary, reaches
+
+
+def _on_grid(run: Trajectory) -> int:
+    """Give the number of evenly spaced samples: the end of a run may stand after them."""
+    if len(run.time) < 3:
+        return len(run.time)
+    step = run.time[1]
+    uneven = abs(run.time[-1] - (len(run.time) - 1) * step) > 0.5 * ON_SAMPLE * step * len(run.time)
+    return len(run.time) - int(uneven)
+
+
+def _flights(model: ContactModel, run: Trajectory, end: float) -> tuple[float, int]:
+    """Give time and number of a run's flights up to an end."""
+    before = run.events.time <= end
+    modes = np.concatenate([[run.start_mode], run.events.mode_after[before]])
+    flying = model.contact[modes] == FLIGHT
+    spans = np.diff(np.concatenate([[0.0], run.events.time[before], [end]]))
+    entries = flying & ~np.concatenate([[False], flying[:-1]])
+    return float(spans[flying].sum()), int(entries.sum())
+
+
+def _peak(history: tuple[Vector, Vector, Vector, Vector, Vector], end: float) -> float:
+    """Give the largest absolute rotation up to an end, which may lie between samples."""
+    time, value, rate, place, extreme = history
+    largest = [np.abs(value[time <= end]).max(), *np.abs(extreme[place <= end])]
+    i = int(np.searchsorted(time, end, side="right")) - 1
+    if i + 1 < len(time):
+        part = (end - time[i]) / (time[i + 1] - time[i])
+        largest.append(abs(_cubic(time, value, rate, i)(part)))
+    return float(max(largest))
 
 
 def _cubic(time: Vector, value: Vector, rate: Vector, i: int) -> np.polynomial.Polynomial:
@@ -98,9 +152,15 @@ def _extremes(time: Vector, value: Vector, rate: Vector) -> tuple[Vector, Vector
 
 
 def _first_reach(
-    time: Vector, value: Vector, rate: Vector, place: Vector, extreme: Vector, limit: float
-) -> tuple[float, int, float]:
-    """Give when the value first reaches the limit, on which side, and its rate there."""
+    time: Vector,
+    value: Vector,
+    rate: Vector,
+    place: Vector,
+    extreme: Vector,
+    limit: float,
+    kind: EventKind,
+) -> Reach | None:
+    """Give when, on which side and how fast the value first reaches a limit."""
     from scipy.optimize import root_scalar
 
     over = np.flatnonzero(np.abs(value) >= limit)
@@ -108,7 +168,7 @@ def _first_reach(
     candidates = [float(time[over[0]])] if len(over) else []
     candidates += [float(beyond[0])] if len(beyond) else []
     if not candidates:
-        return math.nan, 0, math.nan
+        return None
     end = min(candidates)
     i = max(int(np.searchsorted(time, end, side="left")) - 1, 0)
     cubic = _cubic(time, value, rate, i)
@@ -118,4 +178,4 @@ def _first_reach(
     u = last
     if side * cubic(0.0) < limit <= side * cubic(last):
         u = root_scalar(lambda u: side * cubic(u) - limit, bracket=(0.0, last), xtol=1e-14).root
-    return float(time[i]) + u * h, side, float(cubic.deriv()(u)) / h
+    return Reach(kind, float(time[i]) + u * h, side, side * limit, float(cubic.deriv()(u)) / h)

@@ -3,6 +3,8 @@
 from dataclasses import dataclass, replace
 from typing import Self
 
+import numpy as np
+
 from rockframe.compiled import Codes, Integers, Matrix, Vector
 from rockframe.solve.layout import Status
 
@@ -100,12 +102,12 @@ class Trajectory(Summary):
     events: Events
     start_energy: float
 
-    def thinned(self, every: int, last: int) -> Self:
-        """Give the run with one in `every` of its samples, up to number `last` of these."""
+    def thinned(self, every: int, last: int, step: float) -> Self:
+        """Give the run with one in `every` of its samples, `step` apart, up to number `last`."""
         rows = slice(0, every * last + 1, every)
         return replace(
             self,
-            time=self.time[rows],
+            time=np.arange(len(self.time[rows]), dtype=np.float64) * step,
             state=self.state[rows],
             mode=self.mode[rows],
             work=self.work[rows],
@@ -113,4 +115,4 @@ class Trajectory(Summary):
 
     def without_histories(self) -> Self:
         """Give the run without samples."""
-        return self.thinned(1, -1)
+        return self.thinned(1, -1, 1.0)
