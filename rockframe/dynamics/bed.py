@@ -260,7 +260,8 @@ def start_bed(ends: Ends, bed: Bed) -> tuple[int, int, int]:
     left = end_state(ends.u_left)
     right = end_state(ends.u_right)
     loose = 0
-    if bed.by_pressure != 0.0 and (left == DOWN or right == DOWN) and grip(ends, bed) <= 0.0:
+    tears = bed.by_pressure != 0.0 and bed.damping > 0.0
+    if tears and (left == DOWN or right == DOWN) and grip(ends, bed) <= 0.0:
         loose = LOOSE
     return left, right, loose
 

@@ -1,5 +1,6 @@
 """Every scene that can be assembled, small enough to run the whole battery over each."""
 
+import math
 from itertools import product
 
 import numpy as np
@@ -17,6 +18,15 @@ def pads(**changed):
     return rf.TwoSpringSupport(**{"frequency_ratio": 20, "damping_ratio": 0.1, **changed})
 
 
+def cap(**changed):
+    return rf.CushionCap(**{"width": "3.2 m", "height": "0.4 m", "mass": "10 t", **changed})
+
+
+def soil(separation="displacement", **changed):
+    given = {"stiffness": "30 MPa", "damping_ratio": 0.1, "separation": separation}
+    return rf.WinklerSoil(**{**given, **changed})
+
+
 def two_spring(rule, rotation):
     return lambda **options: rf.System(
         block(), pads(), restraint=rule, rotation=rotation, **options
@@ -29,16 +39,64 @@ def rigid_ground(rotation):
     )
 
 
+def on_soil(rule, rotation, separation):
+    return lambda **options: rf.System(
+        block(), soil(separation), restraint=rule, rotation=rotation, **options
+    )
+
+
+def one_body(rule, rotation, separation):
+    return lambda **options: rf.System(
+        block(), cap(), soil(separation), restraint=rule, rotation=rotation, **options
+    )
+
+
+def stacked(coupling, rule, rotation, separation):
+    return lambda **options: rf.System(
+        block(), pads(), cap(), soil(separation),
+        coupling=coupling, restraint=rule, rotation=rotation, **options,
+    )  # fmt: skip
+
+
+# each rule, each kinematics and each separation stands in some scene of each model
+_SOIL = (
+    ("contact-state", "finite", "displacement"),
+    ("leading-corner", "finite", "pressure"),
+    ("centre", "small", "displacement"),
+)
+
 SCENES = {
     **{f"rigid ground, {rotation}": rigid_ground(rotation) for rotation in ("finite", "small")},
     **{
         f"two-spring, {rule}, {rotation}": two_spring(rule, rotation)
         for rule, rotation in product(RULES, ("finite", "small"))
     },
+    **{f"Winkler, {', '.join(kind)}": on_soil(*kind) for kind in _SOIL},
+    "Winkler, contact-state, finite, pressure, cap": one_body(
+        "contact-state", "finite", "pressure"
+    ),
+    **{f"coupled, {', '.join(kind)}": stacked("coupled", *kind) for kind in _SOIL},
+    **{f"cascade, {', '.join(kind)}": stacked("cascade", *kind) for kind in _SOIL[:2]},
 }
 """Makers of systems by name; each takes further options."""
 
 MODELS = {name: name.split(",")[0] for name in SCENES}
+ON_PADS = ("two-spring", "coupled", "cascade")
+"""Models of a block on two pads."""
+ON_SOIL = ("Winkler", "coupled", "cascade")
+STACKED = ("coupled", "cascade")
+"""Models of a block on pads on a cap on soil."""
+
+
+def has_cap(scene):
+    return MODELS[scene] in STACKED or scene.endswith(", cap")
+
+
+def overturning_angle(scene):
+    """Of the block; of block and cap where they are one body [rad]."""
+    if not scene.endswith(", cap"):
+        return math.atan(0.25)
+    return math.atan(1.6 / ((50.0 * (0.4 + 4.8) + 10.0 * 0.2) / 60.0))
 
 
 def pulse(vertical=False):

@@ -26,6 +26,16 @@ DIMENSIONS = {
     "vertical_ground_acceleration": (0, 1, -2, 0),
     "left_reaction": (1, 1, -2, 0),
     "right_reaction": (1, 1, -2, 0),
+    "soil_reaction": (1, 1, -2, 0),
+    "contact_length": (0, 1, 0, 0),
+    "cap_rotation": (0, 0, 0, 1),
+    "cap_angular_velocity": (0, 0, -1, 1),
+    "cap_vertical_displacement": (0, 1, 0, 0),
+    "cap_vertical_velocity": (0, 1, -1, 0),
+    "cap_acceleration": (0, 1, -2, 0),
+    "cap_vertical_acceleration": (0, 1, -2, 0),
+    "rotation_on_cap": (0, 0, 0, 1),
+    "vertical_displacement_on_cap": (0, 1, 0, 0),
     "kinetic_energy": (1, 2, -2, 0),
     "potential_energy": (1, 2, -2, 0),
     "elastic_energy": (1, 2, -2, 0),
@@ -46,10 +56,38 @@ DIMENSIONS = {
     "energy_residual": (0, 0, 0, 0),
     "overturning_angle": (0, 0, 0, 1),
     "uplift_angle": (0, 0, 0, 1),
+    "angle": (0, 0, 0, 1),
+    "restoring_moment": (1, 2, -2, 0),
+    "base_moment": (1, 2, -2, 0),
+    "held_vertical_displacement": (0, 1, 0, 0),
+    "held_left_reaction": (1, 1, -2, 0),
+    "held_right_reaction": (1, 1, -2, 0),
+    "held_soil_reaction": (1, 1, -2, 0),
+    "held_contact_length": (0, 1, 0, 0),
+    "held_cap_rotation": (0, 0, 0, 1),
+    "pad_settlement": (0, 1, 0, 0),
+    "soil_settlement": (0, 1, 0, 0),
+    "static_left_reaction": (1, 1, -2, 0),
+    "static_right_reaction": (1, 1, -2, 0),
+    "static_soil_reaction": (1, 1, -2, 0),
+    "uplift_moment": (1, 2, -2, 0),
+    "soil_uplift_moment": (1, 2, -2, 0),
+    "mode": (0, 0, 0, 0),
+    "angular_frequency": (0, 0, -1, 1),
+    "frequency": (0, 0, -1, 0),
+    "period": (0, 0, 1, 0),
+    "damping_ratio": (0, 0, 0, 0),
 }
 DIMENSION_NAMES = {"time", "event", "angle", "mode"}
 PLAIN = pint.UnitRegistry(cache_folder=None)
-FLAGS = {"contact_state", "event_kind", "overturning_direction", "status"}
+FLAGS = {
+    "contact_state",
+    "soil_contact_state",
+    "held_contact_state",
+    "event_kind",
+    "overturning_direction",
+    "status",
+}
 
 with_unit = pytest.mark.parametrize(
     "row", [row for row in SCHEMA.values() if row.unit is not None], ids=lambda row: row.name
@@ -133,9 +171,24 @@ def test_flags_follow_cf(row):
     assert all(re.fullmatch(r"[A-Za-z0-9_.+@-]+", meaning) for meaning in meanings)
 
 
-def test_contact_states_have_the_agreed_names():
-    row = SCHEMA["contact_state"]
-    assert row.dims == ("time",)
+@pytest.mark.parametrize(
+    ("name", "dims"),
+    [
+        ("contact_state", ("time",)),
+        ("soil_contact_state", ("time",)),
+        ("contact_state_before", ("event",)),
+        ("soil_contact_state_after", ("event",)),
+        ("held_contact_state", ("angle",)),
+    ],
+)
+def test_contact_states_have_the_agreed_names(name, dims):
+    row = SCHEMA[name]
+    assert row.dims == dims
     attributes = row.attributes()
     assert attributes["flag_meanings"] == "full left right flight"
     assert attributes["flag_values"].tolist() == [0, 1, 2, 3]
+
+
+def test_events_on_the_soil_have_names_of_their_own():
+    meanings = SCHEMA["event_kind"].attributes()["flag_meanings"].split()
+    assert {"soil_separation", "soil_contact", "soil_pivot_change"} <= set(meanings)

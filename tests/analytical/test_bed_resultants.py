@@ -1,0 +1,393 @@
+"""Resultants of the bed against numerical quadrature, at random states of the base."""
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+
+from rockframe.dynamics import bed as b
+from rockframe.dynamics import winkler as w
+from rockframe.dynamics.kinematics import sine_cosine_rise
+from rockframe.system.options import Restraint
+from rockframe.system.restraints import restraint_code
+
+pytestmark = pytest.mark.analytical
+
+SETTLEMENT, STIFFNESS, WIDTH, HEIGHT = 0.013, 710.0, 2.6, 4.1
+POINTS, WEIGHTS = np.polynomial.legendre.leggauss(3)
+DAMPINGS = (0.0, 45.0)
+SEPARATIONS = (0.0, 1.0)  # of `Bed.by_pressure`
+
+
+def plain(function):
+    """Give the Python source of a compiled helper."""
+    return getattr(function, "py_func", function)
+
+
+def make_bed(damping, by_pressure):
+    return b.Bed(STIFFNESS, damping, SETTLEMENT, by_pressure)
+
+
+def states(count, seed):
+    """Random heights and speeds of both ends: down, raised, grazing, level, all of these."""
+    rng = np.random.default_rng(seed)
+    special = [0.0, 1e-15, -1e-15, 1e-300, SETTLEMENT, 1e-9 * SETTLEMENT, -1e-9 * SETTLEMENT]
+    for i in range(count):
+        u = SETTLEMENT * rng.normal(size=2) * 10.0 ** rng.uniform(-3.0, 1.0)
+        v = rng.normal(size=2) * 10.0 ** rng.uniform(-4.0, 0.0)
+        if i % 5 == 0:
+            u[rng.integers(2)] = special[rng.integers(len(special))]
+        if i % 7 == 0:
+            u[1] = u[0] + special[rng.integers(3)]
+        if i % 11 == 0:
+            v[1] = v[0]
+        if i % 13 == 0:
+            v[:] = 0.0
+        yield b.Ends(*map(float, (*u, *v)))
+
+
+def modes(ends, bed):
+    """Give the states of the ends and of the grip that belong to a state of the base."""
+    left, right, loose = plain(b.start_bed)(ends, bed)
+    return int(left), int(right), int(loose)
+
+
+def resultants(ends, bed, lever_left, lever_right):
+    left, right, loose = modes(ends, bed)
+    return b.bed_resultants(left, right, loose, ends, bed, WIDTH, lever_left, lever_right)
+
+
+def by_quadrature(ends, bed, lever_left, lever_right):
+    """Integrate strip by strip between all places where something may begin or end."""
+    u = np.polynomial.Polynomial([ends.u_left, ends.u_right - ends.u_left])
+    v = np.polynomial.Polynomial([ends.v_left, ends.v_right - ends.v_left])
+    lever = np.polynomial.Polynomial([lever_left, lever_right - lever_left])
+    p = bed.stiffness * u - bed.damping * v
+    kinks = {0.0, 1.0}
+    for line in (u, p):
+        if line(0.0) * line(1.0) < 0.0:
+            kinks.add(line(0.0) / (line(0.0) - line(1.0)))
+    force = moment = burnt = stored = length = 0.0
+    edges = sorted(kinks)
+    for start, end in itertools.pairwise(edges):
+        middle = 0.5 * (start + end)
+        if u(middle) <= 0.0:
+            continue
+        s = middle + 0.5 * (end - start) * POINTS
+        ds = 0.5 * (end - start) * WIDTH * WEIGHTS
+        stored += np.sum(0.5 * bed.stiffness * u(s) ** 2 * ds)
+        if bed.by_pressure and p(middle) <= 0.0:
+            # held back by its own dashpot, the spring relaxes: all it gives is burnt
+            burnt += np.sum(bed.stiffness * u(s) * v(s) * ds)
+            continue
+        length += WIDTH * (end - start)
+        force += np.sum(p(s) * ds)
+        moment += np.sum(p(s) * lever(s) * ds)
+        burnt += np.sum(bed.damping * v(s) ** 2 * ds)
+    return force, moment, burnt, stored, length
+
+
+def scales(ends, bed):
+    pressed = bed.stiffness * max(abs(ends.u_left), abs(ends.u_right))
+    pressed += bed.damping * max(abs(ends.v_left), abs(ends.v_right))
+    return WIDTH * pressed, WIDTH * pressed * max(abs(ends.v_left), abs(ends.v_right))
+
+
+@pytest.mark.parametrize("by_pressure", SEPARATIONS)
+@pytest.mark.parametrize("damping", DAMPINGS)
+def test_resultants_are_exact(damping, by_pressure):
+    bed = make_bed(damping, by_pressure)
+    rng = np.random.default_rng(7)
+    seen = set()
+    for ends in states(3000, seed=1):
+        levers = rng.normal(size=2)
+        force, moment, burnt = resultants(ends, bed, *levers)
+        exact = by_quadrature(ends, bed, *levers)
+        size, power = scales(ends, bed)
+        assert abs(force - exact[0]) <= 1e-12 * size
+        assert abs(moment - exact[1]) <= 1e-12 * size * np.abs(levers).max()
+        assert abs(burnt - exact[2]) <= 1e-12 * power
+        stored, change = b.bed_energy(ends, bed, WIDTH)
+        energy = WIDTH * STIFFNESS * max(ends.u_left**2, ends.u_right**2)
+        assert abs(stored - exact[3]) <= 1e-12 * energy
+        at_rest = 0.5 * WIDTH * STIFFNESS * SETTLEMENT**2
+        assert abs(change - (exact[3] - at_rest)) <= 1e-12 * (energy + at_rest)
+        start, end = b.bearing_part(*modes(ends, bed), ends, bed)
+        assert 0.0 <= start <= end <= 1.0
+        assert abs(WIDTH * (end - start) - exact[4]) <= 1e-12 * WIDTH
+        if by_pressure:
+            assert force >= -1e-15 * size
+            assert burnt >= -1e-15 * power
+        seen.add(modes(ends, bed))
+    assert {mode[:2] for mode in seen} == {(0, 0), (0, 1), (1, 0), (1, 1)}
+    assert any(mode[2] for mode in seen) == (by_pressure == 1.0 and damping > 0.0)
+
+
+@pytest.mark.parametrize("by_pressure", SEPARATIONS)
+@pytest.mark.parametrize("damping", DAMPINGS)
+def test_work_of_the_bed_is_what_its_springs_and_dashpots_take(damping, by_pressure):
+    """dE/dt + burnt + power on the base = 0; the springs' power by finite differences."""
+    bed = make_bed(damping, by_pressure)
+    for ends in states(1500, seed=2):
+        # the base's motion at its left and right end, as its middle's and a rotation's
+        force, moment, burnt = resultants(ends, bed, 0.5 * WIDTH, -0.5 * WIDTH)
+        rise = 0.5 * (ends.v_left + ends.v_right)
+        spin = (ends.v_left - ends.v_right) / WIDTH
+        speed = max(abs(ends.v_left), abs(ends.v_right))
+        if speed == 0.0:
+            continue
+        step = 1e-6 * max(abs(ends.u_left), abs(ends.u_right)) / speed
+
+        def stored(t, ends=ends):
+            u_left, u_right = ends.u_left - t * ends.v_left, ends.u_right - t * ends.v_right
+            moved = b.Ends(u_left, u_right, ends.v_left, ends.v_right)
+            return b.bed_energy(moved, bed, WIDTH)[1]
+
+        rate = (stored(step) - stored(-step)) / (2.0 * step)
+        _, power = scales(ends, bed)
+        noise = 1e-14 * WIDTH * STIFFNESS * SETTLEMENT**2 / step
+        assert abs(rate + burnt + force * rise + moment * spin) <= 1e-8 * power + noise
+
+
+# special states of a body ---------------------------------------------------------------------
+
+
+def body(alpha, y, spin, speed, *, small, damping=45.0, by_pressure=0.0, rule=Restraint.CENTRE):
+    """Give a model's parameters, its state and the mode that belongs to it."""
+    from rockframe.dynamics.winkler_model import winkler
+
+    model = winkler(
+        half_width=0.5 * WIDTH,
+        centre_height=HEIGHT,
+        inertia=7.0,
+        mass=1.0,
+        stiffness=STIFFNESS,
+        damping=damping,
+        by_pressure=bool(by_pressure),
+        restraint=restraint_code(rule),
+        small_rotation=small,
+        gravity=9.81,
+    )
+    from rockframe.dynamics.protocol import Start
+
+    mode, state, _ = model.initial(Start(alpha, spin, y, speed))
+    return model, mode, state
+
+
+def by_strips(model, state, alpha, small, *, by_pressure, damping):
+    """The acceleration of a body from pressures along its base, of the theory's definition."""
+    p = model.parameters
+    sine, cosine = (alpha, 1.0) if small else (math.sin(alpha), math.cos(alpha))
+    rise = HEIGHT * (0.5 * alpha**2 if small else 2.0 * math.sin(0.5 * alpha) ** 2)
+    spin, speed = state[3], state[4]
+    half = 0.5 * WIDTH
+
+    def w_of(s):
+        return state[1] + rise - s * sine
+
+    def rate_of(s):
+        return speed + HEIGHT * sine * spin - s * cosine * spin
+
+    def p_of(s):
+        return STIFFNESS * (p[w.SETTLEMENT] - w_of(s)) - damping * rate_of(s)
+
+    edges = {-half, half}
+    for line in (lambda s: p[w.SETTLEMENT] - w_of(s), p_of):
+        if line(-half) * line(half) < 0.0:
+            edges.add(half * (line(-half) + line(half)) / (line(-half) - line(half)))
+    edges = sorted(edges)
+    force = moment = 0.0
+    for start, end in itertools.pairwise(edges):
+        s = 0.5 * (start + end) + 0.5 * (end - start) * POINTS
+        ds = 0.5 * (end - start) * WEIGHTS
+        middle = 0.5 * (start + end)
+        if w_of(middle) >= p[w.SETTLEMENT] or (by_pressure and p_of(middle) <= 0.0):
+            continue
+        force += np.sum(p_of(s) * ds)
+        moment += np.sum(p_of(s) * (HEIGHT * sine - s * cosine) * ds)
+    return force, moment
+
+
+ALPHAS = (0.0, 1e-15, -1e-15, 1e-9, 3e-3, -0.011, 0.05, -0.3)
+
+
+@pytest.mark.parametrize("small", [False, True])
+@pytest.mark.parametrize("by_pressure", SEPARATIONS)
+@pytest.mark.parametrize("alpha", ALPHAS)
+def test_accelerations_of_a_body_are_those_of_its_pressures(alpha, by_pressure, small):
+    rng = np.random.default_rng(5)
+    for _ in range(60):
+        y = SETTLEMENT * rng.normal() * 2.0 - 0.5 * HEIGHT * alpha**2
+        spin, speed = 0.3 * rng.normal(), 0.3 * rng.normal()
+        model, mode, state = body(alpha, y, spin, speed, small=small, by_pressure=by_pressure)
+        out = np.zeros(5)
+        accelerate = getattr(model.accelerate, "__wrapped__", model.accelerate)
+        accelerate(mode, state, 0.4, -0.2, model.parameters, out)
+        force, moment = by_strips(model, state, alpha, small, by_pressure=by_pressure, damping=45.0)
+        gravity = 9.81
+        size = 1e-12 * (abs(force) + gravity + STIFFNESS * WIDTH * (abs(y) + abs(alpha)))
+        assert abs(out[1] - (force - gravity + 0.2)) <= size
+        if model.contact[mode] == 3:
+            assert out[0] == 0.0
+            assert out[2] == -0.4
+            continue
+        reach = HEIGHT if small else HEIGHT * math.cos(alpha)
+        bend = 0.0 if small else -HEIGHT * math.sin(alpha)
+        expected = (moment - reach * (0.4 + bend * spin**2)) / (7.0 + reach**2)
+        assert abs(out[0] - expected) <= size
+
+
+def test_the_resultants_are_continuous_through_the_level_base():
+    """No division by the rotation: nothing blows up, nothing jumps, from either side."""
+    bed = make_bed(45.0, 0.0)
+    for level in (SETTLEMENT, 0.1 * SETTLEMENT, 1e-12):
+        base = b.bed_resultants(0, 0, 0, b.Ends(level, level, 0.1, 0.1), bed, WIDTH, 1.3, -1.3)
+        for tilt in (1e-18, -1e-18, 1e-15, -1e-15, 5e-324):
+            ends = b.Ends(level + tilt, level - tilt, 0.1, 0.1)
+            near = b.bed_resultants(0, 0, 0, ends, bed, WIDTH, 1.3, -1.3)
+            # k b^2 (2/3) tilt and rounding
+            room = 1e-14 * WIDTH * (STIFFNESS * level + 4.5) + 2.0 * STIFFNESS * WIDTH * abs(tilt)
+            np.testing.assert_allclose(near, base, atol=room)
+
+
+@pytest.mark.parametrize("tilt", [0.0, 1e-15, -1e-15])
+@pytest.mark.parametrize("by_pressure", SEPARATIONS)
+def test_a_base_that_grazes_the_bed_bears_nothing(by_pressure, tilt):
+    bed = make_bed(0.0, by_pressure)
+    for level in (0.0, -1e-15, -1e-300):
+        ends = b.Ends(level + tilt, level - tilt, 0.2, -0.1)
+        force, moment, burnt = resultants(ends, bed, 1.0, -1.0)
+        assert abs(force) <= 1e-14 * STIFFNESS * WIDTH
+        assert abs(moment) <= 1e-14 * STIFFNESS * WIDTH
+        assert abs(burnt) <= 1e-14 * STIFFNESS * WIDTH
+        assert b.bed_energy(ends, bed, WIDTH)[0] <= 1e-25
+
+
+@pytest.mark.parametrize("by_pressure", SEPARATIONS)
+@pytest.mark.parametrize("damping", DAMPINGS)
+def test_in_flight_nothing_bears_burns_or_is_stored(damping, by_pressure):
+    bed = make_bed(damping, by_pressure)
+    for ends in (b.Ends(-1e-300, -0.1, -3.0, -4.0), b.Ends(-0.2, -0.2, 1.0, 1.0)):
+        assert resultants(ends, bed, 1.0, -1.0) == (0.0, 0.0, 0.0)
+        stored, change = b.bed_energy(ends, bed, WIDTH)
+        assert stored == 0.0
+        assert change == pytest.approx(-0.5 * STIFFNESS * WIDTH * SETTLEMENT**2, rel=1e-14)
+        assert plain(b.nothing_bears)(*modes(ends, bed))
+
+
+def test_where_the_springs_alone_hold_both_rules_are_one():
+    for ends in states(500, seed=4):
+        one, other = (resultants(ends, make_bed(0.0, rule), 1.1, -1.2) for rule in SEPARATIONS)
+        size, power = scales(ends, make_bed(0.0, 0.0))
+        np.testing.assert_allclose(one[:2], other[:2], atol=1e-14 * size)
+        assert abs(one[2] - other[2]) <= 1e-14 * power
+
+
+@pytest.mark.parametrize("by_pressure", SEPARATIONS)
+def test_the_mirror_image_bears_the_mirror_image(by_pressure):
+    bed = make_bed(45.0, by_pressure)
+    for ends in states(500, seed=6):
+        turned = b.Ends(ends.u_right, ends.u_left, ends.v_right, ends.v_left)
+        one = resultants(ends, bed, 1.1, -1.1)
+        other = resultants(turned, bed, 1.1, -1.1)
+        size, power = scales(ends, bed)
+        assert abs(one[0] - other[0]) <= 1e-14 * size
+        assert abs(one[1] + other[1]) <= 2e-14 * size
+        assert abs(one[2] - other[2]) <= 1e-14 * power
+
+
+# guards -------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("by_pressure", SEPARATIONS)
+def test_guards_change_as_their_rates_say(by_pressure):
+    bed = make_bed(45.0, by_pressure)
+    rng = np.random.default_rng(8)
+    checked = 0
+    for ends in states(1500, seed=9):
+        a_left, a_right = rng.normal(size=2)
+        left, right, loose = modes(ends, bed)
+        speed = max(abs(ends.v_left), abs(ends.v_right), 1e-3)
+        nearest = min(abs(ends.u_left), abs(ends.u_right), abs(ends.u_left - ends.u_right))
+        step = 1e-5 * SETTLEMENT / speed
+        pressures = [
+            bed.stiffness * u - bed.damping * v
+            for u, v in ((ends.u_left, ends.v_left), (ends.u_right, ends.v_right))
+        ]
+        if nearest < 0.05 * SETTLEMENT or abs(pressures[0] - pressures[1]) < 0.1:
+            continue  # where the place of the largest pressure changes, or an end grazes
+
+        def moved(t, ends=ends, a_left=a_left, a_right=a_right):
+            return b.Ends(
+                ends.u_left - ends.v_left * t - 0.5 * a_left * t * t,
+                ends.u_right - ends.v_right * t - 0.5 * a_right * t * t,
+                ends.v_left + a_left * t,
+                ends.v_right + a_right * t,
+            )
+
+        values = b.bed_guards(left, right, loose, ends, a_left, a_right, bed)
+        ahead, behind = (
+            b.bed_guards(left, right, loose, moved(t), a_left, a_right, bed) for t in (step, -step)
+        )
+        slopes = (np.array(ahead[:3]) - np.array(behind[:3])) / (2.0 * step)
+        size = (speed + 1.0) / SETTLEMENT
+        np.testing.assert_allclose(slopes, values[3:], atol=1e-5 * size)
+        assert values[0] >= 0.0
+        assert values[1] >= 0.0
+        checked += 1
+    assert checked > 300
+
+
+def test_kinematics_at_small_and_finite_rotation_agree_to_second_order():
+    for alpha in (1e-3, 1e-4):
+        finite = sine_cosine_rise(HEIGHT, 0.0, alpha)
+        small = sine_cosine_rise(HEIGHT, 1.0, alpha)
+        np.testing.assert_allclose(finite, small, atol=5.0 * alpha**2 * (alpha + 0.2))
+
+
+# many springs -----------------------------------------------------------------------------------
+
+
+def springs(ends, bed, levers, count):
+    """Sum over equal springs and dashpots in the middle of equal strips of the base."""
+    s = (np.arange(count) + 0.5) / count
+    u = ends.u_left + s * (ends.u_right - ends.u_left)
+    v = ends.v_left + s * (ends.v_right - ends.v_left)
+    p = bed.stiffness * u - bed.damping * v
+    p = np.where((u > 0.0) & ((p > 0.0) | (bed.by_pressure == 0.0)), p, 0.0) * WIDTH / count
+    return p.sum(), (p * (levers[0] + s * (levers[1] - levers[0]))).sum()
+
+
+COUNTS = np.array([10, 32, 100, 316, 1000, 3162])
+
+
+@pytest.mark.parametrize("by_pressure", SEPARATIONS)
+@pytest.mark.parametrize(("damping", "order"), [(0.0, 2), (45.0, 1)])
+def test_many_springs_tend_to_the_bed(damping, order, by_pressure):
+    """As 1/N^2 where the pressure ends in zero, as 1/N where dashpots make it end in a step."""
+    bed = make_bed(damping, by_pressure)
+    levers = (1.3, -1.3)
+    errors = np.zeros((len(COUNTS), 2))
+    cases = [ends for ends in states(600, seed=10) if modes(ends, bed)[:2] in ((0, 1), (1, 0))]
+    for ends in cases:
+        exact = resultants(ends, bed, *levers)[:2]
+        size, _ = scales(ends, bed)
+        for row, count in enumerate(COUNTS):
+            errors[row] += np.abs(np.subtract(springs(ends, bed, levers, count), exact)) / size
+    errors /= len(cases)
+    assert len(cases) > 150
+    slopes = np.polyfit(np.log(COUNTS), np.log(errors), 1)[0]
+    assert slopes == pytest.approx([-order, -order], abs=0.1)
+    assert (errors[COUNTS == 1000] < {1: 1e-3, 2: 1e-6}[order]).all()
+
+
+def test_many_springs_under_a_whole_base_differ_in_the_moment_alone():
+    """The midpoint rule is exact for the force; of b^3/3 it misses the share 1/N^2."""
+    bed = make_bed(45.0, 0.0)
+    ends = b.Ends(1.4 * SETTLEMENT, 0.6 * SETTLEMENT, 0.01, -0.02)
+    force, moment, _ = resultants(ends, bed, 1.3, -1.3)
+    for count in COUNTS:
+        summed, turning = springs(ends, bed, (1.3, -1.3), count)
+        assert summed == pytest.approx(force, rel=1e-13)
+        assert turning == pytest.approx(moment * (1.0 - 1.0 / count**2), rel=1e-12)

@@ -1,0 +1,251 @@
+"""The cascade against its definition, Eq. (20): two runs by hand, and their sum."""
+
+import math
+
+import numpy as np
+import pytest
+
+import rockframe as rf
+
+pytestmark = pytest.mark.analytical
+
+RULES = ("contact-state", "leading-corner", "centre")
+FULL, FLIGHT = 0, 3
+
+
+def block():
+    return rf.Block(width="2.4 m", height="9.6 m", mass="50 t")
+
+
+def pads(**changed):
+    return rf.TwoSpringSupport(**{"frequency_ratio": 20, "damping_ratio": 0.1, **changed})
+
+
+CAP = rf.CushionCap(width="3.2 m", height="0.4 m", mass="10 t")
+SOIL = rf.WinklerSoil(stiffness="30 MPa", damping="300 kPa*s")
+# block and cap as one body: heights above the soil, inertia about the common centre of mass
+MASS, CENTRE = 60e3, (50e3 * 5.2 + 10e3 * 0.2) / 60e3
+INERTIA = (
+    50e3 * (2.4**2 + 9.6**2) / 12.0 + 50e3 * (5.2 - CENTRE) ** 2
+    + 10e3 * (3.2**2 + 0.4**2) / 12.0 + 10e3 * (CENTRE - 0.2) ** 2
+)  # fmt: skip
+TOP = 0.4 - CENTRE
+"""Height of the cap's top above the common centre of mass [m]."""
+
+
+def cascade(**options):
+    return rf.System(block(), pads(), CAP, SOIL, coupling="cascade", **options)
+
+
+def body_on_soil(**options):
+    body = rf.Block(
+        width="3.2 m",
+        height=f"{2.0 * CENTRE!r} m",
+        mass=f"{MASS!r} kg",
+        inertia=f"{INERTIA!r} kg*m^2",
+    )
+    return rf.System(body, SOIL, **options)
+
+
+def pulse(peak=-3.0, vertical=0.0):
+    motion = rf.GroundMotion.sine_pulse(f"{peak} m/s^2", "1 Hz")
+    if not vertical:
+        return motion
+    return motion.with_vertical(rf.GroundMotion.sine_pulse(f"{vertical} m/s^2", "1 Hz"))
+
+
+RUN = {"free_vibration": "1 s", "accuracy": "reference"}
+
+
+# stage 1 ----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("rotation", ["finite", "small"])
+@pytest.mark.parametrize("rule", RULES)
+def test_the_first_stage_is_block_and_cap_as_one_body_on_the_soil(rule, rotation):
+    options = {"restraint": rule, "rotation": rotation}
+    run = {**RUN, "output_step": "5 ms"}
+    whole = cascade(**options).simulate(pulse(vertical=2.0), **run)
+    first = body_on_soil(**options).simulate(pulse(vertical=2.0), overturning="continue", **run)
+    assert int((first.contact_state != FULL).sum()) > 20
+    size = np.abs(first.rotation.values).max()
+    sine, versine = np.sin(first.rotation), 2.0 * np.sin(0.5 * first.rotation) ** 2
+    if rotation == "small":
+        sine, versine = first.rotation, 0.5 * first.rotation**2
+    offset = 0.2 - CENTRE
+    lift = first.vertical_displacement - offset * versine
+    for name, expected in {
+        "cap_rotation": first.rotation,
+        "cap_angular_velocity": first.angular_velocity,
+        "cap_vertical_displacement": lift,
+        "cap_vertical_velocity": first.vertical_velocity - offset * sine * first.angular_velocity,
+        "contact_length": first.contact_length,
+    }.items():
+        scale = max(np.abs(expected.values).max(), size)
+        np.testing.assert_allclose(whole[name] / scale, expected / scale, atol=1e-8, err_msg=name)
+    np.testing.assert_allclose(whole.soil_reaction, first.soil_reaction, atol=1e-8 * MASS * 9.8)
+    np.testing.assert_array_equal(whole.soil_contact_state, first.contact_state)
+    soil_events = whole.event_kind.values >= 9
+    np.testing.assert_allclose(whole.event_time[soil_events], first.event_time, rtol=1e-9)
+
+
+def test_the_ground_of_the_second_stage_is_the_motion_of_the_cap_s_top():
+    """Second differences of where the top is: away from jumps they are its acceleration."""
+    step = 1e-3
+    response = cascade(restraint="centre").simulate(
+        pulse(vertical=2.0), output_step=f"{step} s", **RUN
+    )
+    first = body_on_soil(restraint="centre").simulate(
+        pulse(vertical=2.0), output_step=f"{step} s", overturning="continue", **RUN
+    )
+    angle = first.rotation.values
+    x = first.horizontal_displacement.values + TOP * np.sin(angle)
+    y = first.vertical_displacement.values - TOP * 2.0 * np.sin(0.5 * angle) ** 2
+    for place, ground, name in (
+        (x, first.ground_acceleration.values, "cap_acceleration"),
+        (y, first.vertical_ground_acceleration.values, "cap_vertical_acceleration"),
+    ):
+        expected = np.diff(place, 2) / step**2 + ground[1:-1]
+        found = response[name].values[1:-1]
+        # the soil's dashpots begin and end to push in steps; away from these
+        bend = np.abs(np.diff(found, prepend=found[0]))
+        calm = bend < 10.0 * np.median(bend)
+        assert calm.mean() > 0.9
+        assert np.abs(found - expected)[calm].max() < 2e-2 * np.abs(found).max(), name
+
+
+# stage 2 ----------------------------------------------------------------------------------------
+
+
+def second_by_hand(step, rule):
+    whole = cascade(restraint=rule).simulate(pulse(), output_step=f"{step!r} s", **RUN)
+    carried = rf.GroundMotion.from_arrays(
+        (whole.cap_acceleration.values, "m/s^2"),
+        f"{step!r} s",
+        vertical=(whole.cap_vertical_acceleration.values, "m/s^2"),
+    )
+    return whole, rf.System(block(), pads(), restraint=rule).simulate(carried, accuracy="reference")
+
+
+@pytest.mark.parametrize("rule", RULES)
+def test_the_second_stage_is_the_block_on_its_pads_on_the_moving_cap(rule):
+    """Straight lines between samples of the cap's motion: an error that falls with the step."""
+    steps = (4e-3, 1e-3, 2.5e-4)
+    errors = []
+    for step in steps:
+        whole, second = second_by_hand(step, rule)
+        assert second.impact_count.item() > 0
+        scale = np.abs(second.rotation.values).max()
+        errors.append(np.abs(whole.rotation_on_cap - second.rotation).max().item() / scale)
+    assert errors[0] > errors[1] > errors[2]
+    assert errors[0] > 32.0 * errors[2]
+    assert errors[2] < 3e-5
+    # all of the second stage is that of the run by hand, the totals are sums
+    for name in ("left_reaction", "right_reaction"):
+        near = np.abs(whole[name].values - second[name].values) < 1e-2 * 50e3 * 9.8
+        assert near.mean() > 0.99, name
+    assert np.mean(whole.contact_state.values == second.contact_state.values) > 0.999
+    assert whole.impact_count == second.impact_count
+    first = body_on_soil(restraint=rule).simulate(
+        pulse(), output_step=f"{steps[-1]!r} s", overturning="continue", **RUN
+    )
+    for name in ("rotation", "vertical_displacement", "horizontal_displacement"):
+        total = first[name].values + second[name].values
+        scale = np.abs(total).max()
+        np.testing.assert_allclose(whole[name].values / scale, total / scale, atol=1e-4)
+
+
+@pytest.mark.parametrize("rule", RULES)
+def test_an_initial_rotation_is_given_to_the_second_stage(rule):
+    initial = rf.InitialState(rotation="0.1 rad", angular_velocity="-0.02 rad/s")
+    run = {"duration": "4 s", "output_step": "5 ms", "accuracy": "reference", "initial": initial}
+    whole = cascade(restraint=rule).simulate(**run)
+    alone = rf.System(block(), pads(), restraint=rule).simulate(**run)
+    assert alone.impact_count.item() > 1
+    assert (whole.cap_rotation.values == 0.0).all()
+    assert (whole.soil_contact_state.values == 0).all()
+    np.testing.assert_allclose(whole.rotation, alone.rotation, atol=1e-9)
+    np.testing.assert_allclose(whole.soil_reaction, MASS * 9.80665, rtol=1e-12)
+    np.testing.assert_allclose(whole.cap_acceleration, 0.0, atol=1e-12)
+    np.testing.assert_allclose(whole.event_time, alone.event_time, rtol=1e-9)
+
+
+# the total ----------------------------------------------------------------------------------------
+
+
+def test_overturning_is_that_of_the_total_rotation():
+    """Neither stage reaches theta: their sum does."""
+    fine = {"output_step": "0.2 ms", "free_vibration": "2 s", "accuracy": "reference"}
+    motion = pulse(-6.5)
+    stopped = cascade().simulate(motion, **fine)
+    longer = cascade().simulate(motion, overturning="continue", **fine)
+    theta = math.atan(0.25)
+    time = stopped.overturning_time.item()
+    assert stopped.overturned.item()
+    assert stopped.overturning_angle.item() == pytest.approx(theta, rel=1e-14)
+    assert stopped.time.values[-1] == time == stopped.attrs["solver_end_time"]
+    assert abs(stopped.rotation.values[-1]) == pytest.approx(theta, rel=1e-10)
+    assert (np.abs(stopped.rotation.values[:-1]) < theta).all()
+    for name in ("cap_rotation", "rotation_on_cap"):
+        assert 0.01 * theta < np.abs(stopped[name].values).max() < theta, name
+    rows = np.flatnonzero(np.abs(longer.rotation.values) >= theta)
+    assert longer.time.values[rows[0] - 1] <= time <= longer.time.values[rows[0]]
+    assert longer.overturning_time.item() == pytest.approx(time, abs=1e-10)
+    coarse = cascade().simulate(motion, free_vibration="2 s", output_step="37 ms", outputs=None)
+    assert coarse.overturning_time.item() == pytest.approx(time, abs=1e-6)
+    kinds = stopped.event_kind.values
+    assert kinds[-1] == 7
+    assert (kinds[:-1] != 7).all()
+    assert stopped.event_time.values[-1] == time
+    assert stopped.event_rotation.values[-1] == pytest.approx(stopped.rotation.values[-1], rel=1e-9)
+    rate = stopped.angular_velocity.values[-1]
+    assert stopped.angular_velocity_before.values[-1] == pytest.approx(rate, rel=1e-6)
+
+
+def test_after_the_end_nothing_counts_any_more():
+    """What the stages would do after the total has overturned is no part of the run."""
+    t = np.arange(401) * 0.01
+    across = np.where(t <= 2.0, -9.0 * np.sin(math.pi * t), 0.0)
+    upwards = np.where(t >= 1.0, 25.0 * np.sin(2.0 * math.pi * t), 0.0)
+    motion = rf.GroundMotion.from_arrays((across, "m/s^2"), "10 ms", vertical=(upwards, "m/s^2"))
+    longer = cascade().simulate(motion, overturning="continue")
+    stopped = cascade().simulate(motion)
+    assert stopped.overturned.item()
+    end = stopped.overturning_time.item()
+    assert longer.flight_count.item() > 0
+    time = np.concatenate([[0.0], stopped.event_time.values, [end]])
+    state = np.concatenate([[FULL], stopped.contact_state_after.values])
+    flying = np.diff(time)[state == FLIGHT].sum()
+    assert longer.flight_time.item() > flying + 0.01  # there is something to leave out
+    assert stopped.flight_time.item() == pytest.approx(flying, abs=1e-9)
+    into = (state[1:] == FLIGHT) & (state[:-1] != FLIGHT)
+    assert stopped.flight_count.item() == into.sum()
+    assert stopped.impact_count.item() == (stopped.event_kind.values == 2).sum()
+
+
+@pytest.mark.parametrize("duration", [0.4, 0.4001, 0.403, 0.404])
+def test_both_stages_end_at_the_same_instant(duration):
+    """While the rotation grows, its peak is its last value."""
+    run = {"duration": f"{duration} s", "accuracy": "reference"}
+    response = cascade().simulate(pulse(), output_step="0.1 ms", **run)
+    assert 0.0 <= duration - response.time.values[-1] < 1e-4 * (1.0 - 1e-9)
+    last = response.rotation.values[-1]
+    assert response.angular_velocity.values[-1] > 0.1
+    assert response.peak_rotation.item() == pytest.approx(last, rel=1e-9)
+
+
+def test_no_run_overturns_before_its_total_does():
+    motion = pulse(-6.5)
+    end = cascade().simulate(motion, free_vibration="2 s").overturning_time.item()
+    shorter = cascade().simulate(motion, duration=f"{end - 1e-4!r} s")
+    assert not shorter.overturned.item()
+    assert shorter.time.values[-1] <= end
+
+
+def test_the_peak_is_that_of_the_total_between_the_samples():
+    response = cascade().simulate(pulse(), output_step="0.1 ms", **RUN)
+    coarse = cascade().simulate(pulse(), output_step="50 ms", **RUN)
+    largest = np.abs(response.rotation.values).max()
+    for run in (response, coarse):
+        assert run.peak_rotation.item() == pytest.approx(largest, rel=1e-6)
+        assert run.peak_rotation.item() >= np.abs(run.rotation.values).max() * (1.0 - 1e-9)

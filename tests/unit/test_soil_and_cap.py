@@ -1,0 +1,355 @@
+"""Soil and cap as values: what they hold, what they refuse, the way to text and back."""
+
+import copy
+import json
+import math
+import pickle
+
+import pint
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import rockframe as rf
+from rockframe.components import component_from_dict
+
+pytestmark = pytest.mark.unit
+
+SOIL = {"stiffness": "9 MPa", "damping_ratio": 0.2}
+CAP = {"height": "0.9 m", "mass": "36 t"}
+
+
+def examples():
+    return {
+        "soil": rf.WinklerSoil(**SOIL),
+        "soil with a damping constant": rf.WinklerSoil(stiffness="9 MPa", damping="400 kN*s/m^2"),
+        "soil without damping": rf.WinklerSoil(stiffness="9 MPa", damping_ratio=0),
+        "soil that lets go by pressure": rf.WinklerSoil(**SOIL, separation="pressure"),
+        "soil from a subgrade modulus": rf.WinklerSoil.from_subgrade_modulus(
+            "20 MN/m^3", depth="4 m", damping_ratio=0.2
+        ),
+        "cap": rf.CushionCap(**CAP),
+        "cap with a width": rf.CushionCap(**CAP, width="5 m"),
+        "cap from its density": rf.CushionCap(
+            height="0.9 m", density="2500 kg/m^3", depth="4 m", width="5 m"
+        ),
+        "cap from its density, as wide as the building": rf.CushionCap(
+            height="0.9 m", density="2500 kg/m^3", depth="4 m"
+        ),
+        "plate": rf.CushionCap(height="0 m", mass="0 kg"),
+    }
+
+
+EXAMPLES = examples()
+
+
+@pytest.fixture(params=list(EXAMPLES))
+def name(request):
+    return request.param
+
+
+@pytest.fixture
+def component(name):
+    return EXAMPLES[name]
+
+
+class TestEverySoilAndCap:
+    def test_it_is_immutable(self, component):
+        before = repr(component)
+        public = [word for word in dir(component) if not word.startswith("__")]
+        for attribute in [*public, "brand_new"]:
+            with pytest.raises(AttributeError):
+                setattr(component, attribute, 1.0)
+            with pytest.raises(AttributeError):
+                delattr(component, attribute)
+        field = next(iter(vars(component.si)))
+        with pytest.raises(AttributeError):
+            setattr(component.si, field, 1.0)
+        assert repr(component) == before
+
+    def test_what_it_gives_away_does_not_lead_back_in(self, component):
+        description = component.to_dict()
+        description.clear()
+        assert component == copy.deepcopy(component)
+        assert component.to_dict()["type"] == type(component).__name__
+
+    def test_it_equals_its_like_and_nothing_else(self, name, component):
+        assert component == examples()[name]
+        assert hash(component) == hash(examples()[name])
+        others = [other for key, other in EXAMPLES.items() if key != name]
+        assert all(component != other for other in others)
+        assert component != component.to_dict()
+        assert component != repr(component)
+        assert component != rf.Block(width="2 m", height="8 m", mass="50 t")
+        assert len({component, examples()[name], *others}) == len(EXAMPLES)
+
+    @pytest.mark.parametrize("protocol", range(pickle.HIGHEST_PROTOCOL + 1))
+    def test_it_survives_pickling(self, component, protocol):
+        again = pickle.loads(pickle.dumps(component, protocol))  # noqa: S301
+        assert type(again) is type(component)
+        assert again == component
+        assert again.si == component.si
+        with pytest.raises(AttributeError):
+            again.si = None
+
+    def test_it_survives_copying(self, component):
+        assert copy.copy(component) == component
+        assert copy.deepcopy(component).si == component.si
+
+    def test_it_survives_the_way_through_text_bit_for_bit(self, component):
+        description = component.to_dict()
+        assert all(isinstance(value, str | float) for value in description.values())
+        text = json.dumps(description, allow_nan=False)
+        again = component_from_dict(json.loads(text))
+        assert again == component
+        assert again.si == component.si
+        assert json.dumps(again.to_dict()) == text
+        arguments = {key: value for key, value in description.items() if key != "type"}
+        assert type(component).from_dict(arguments) == component
+
+    def test_its_repr_builds_it_again(self, component):
+        space = {type(component).__name__: type(component)}
+        assert eval(repr(component), space) == component  # noqa: S307
+
+    def test_it_says_what_it_is_for(self, component):
+        assert component.noun
+        assert type(component).__doc__
+
+
+# values ------------------------------------------------------------------------------------------
+
+_size = st.floats(1e-3, 1e9)
+
+
+@given(_size, _size, st.floats(0.0, 10.0), st.sampled_from(["displacement", "pressure"]))
+@settings(max_examples=100, deadline=None)
+def test_soil_is_kept_bit_for_bit(stiffness, damping, ratio, separation):
+    for soil in (
+        rf.WinklerSoil(
+            stiffness=f"{stiffness!r} kN/m^2", damping=f"{damping!r} Pa*s", separation=separation
+        ),
+        rf.WinklerSoil(
+            stiffness=f"{stiffness!r} Pa", damping_ratio=ratio, separation=separation
+        ),
+    ):  # fmt: skip
+        again = component_from_dict(json.loads(json.dumps(soil.to_dict())))
+        assert again.si == soil.si
+        assert again == soil
+    assert soil.si.stiffness == stiffness
+    assert soil.si.damping_ratio == ratio
+    assert str(soil.separation) == separation
+
+
+@given(st.floats(0.0, 1e3), st.floats(0.0, 1e9), st.none() | st.floats(1e-3, 1e3))
+@settings(max_examples=100, deadline=None)
+def test_a_cap_is_kept_bit_for_bit(height, mass, width):
+    wide = None if width is None else f"{width!r} m"
+    cap = rf.CushionCap(height=f"{height!r} m", mass=f"{mass!r} kg", width=wide)
+    assert (cap.si.height, cap.si.mass, cap.si.width) == (height, mass, width)
+    again = component_from_dict(json.loads(json.dumps(cap.to_dict())))
+    assert again.si == cap.si
+    assert again == cap
+
+
+def test_units_of_all_kinds_say_the_same():
+    for text in ("9 MPa", "9e6 N/m^2", "9000 kN/m^2", "9 N/mm^2", "9e6 kg/m/s^2"):
+        soil = rf.WinklerSoil(stiffness=text, damping_ratio="20 %")
+        assert soil.si.stiffness == pytest.approx(9e6, rel=1e-15)
+        assert soil.si.damping_ratio == pytest.approx(0.2, rel=1e-15)
+    for text in ("400 kPa*s", "400 kN*s/m^2", "0.4 N*s/mm^2"):
+        soil = rf.WinklerSoil(stiffness="9 MPa", damping=text)
+        assert soil.si.damping == pytest.approx(4e5, rel=1e-14)
+    unit = pint.get_application_registry()
+    assert rf.WinklerSoil(stiffness=9.0 * unit.megapascal, damping_ratio=0.2) == rf.WinklerSoil(
+        **SOIL
+    )
+    cap = rf.CushionCap(height="900 mm", mass="36e3 kg", width=500.0 * unit.centimetre)
+    assert cap.si == rf.CushionCap(**CAP, width="5 m").si
+
+
+def test_a_subgrade_modulus_is_spread_over_the_depth():
+    soil = rf.WinklerSoil.from_subgrade_modulus(
+        "20 MN/m^3", depth="400 cm", damping="80 kPa*s", separation="pressure"
+    )
+    assert soil.si.stiffness == pytest.approx(8e7, rel=1e-15)
+    assert soil.si.damping == 8e4
+    assert soil.si.damping_ratio is None
+    assert str(soil.separation) == "pressure"
+    assert isinstance(soil, rf.WinklerSoil)
+    for text in ("20 kPa/mm", "20e3 kN/m^3", "20 N/cm^3"):
+        other = rf.WinklerSoil.from_subgrade_modulus(text, depth="4 m", damping_ratio=0.2)
+        assert other.si.stiffness == pytest.approx(8e7, rel=1e-14)
+
+
+def test_soil_lets_go_by_displacement_unless_told_otherwise():
+    assert rf.WinklerSoil(**SOIL).separation == "displacement"
+    assert rf.WinklerSoil(**SOIL) == rf.WinklerSoil(**SOIL, separation="displacement")
+    assert "separation" not in repr(rf.WinklerSoil(**SOIL))
+    pulling = rf.WinklerSoil(**SOIL, separation="pressure")
+    assert pulling.separation == "pressure"
+    assert rf.WinklerSoil(**SOIL, separation=pulling.separation) == pulling
+    assert "separation='pressure'" in repr(pulling)
+
+
+def test_a_cap_is_as_wide_as_the_building_unless_told_otherwise():
+    block = rf.Block(width="2.4 m", height="9.6 m", mass="50 t")
+    soil = rf.WinklerSoil(**SOIL)
+    own = rf.System(block, rf.CushionCap(**CAP), soil)
+    told = rf.System(block, rf.CushionCap(**CAP, width="2.4 m"), soil)
+    assert own.equilibrium().drop_attrs().identical(told.equilibrium().drop_attrs())
+    wider = rf.System(block, rf.CushionCap(**CAP, width="3 m"), soil)
+    assert wider.equilibrium().soil_settlement < own.equilibrium().soil_settlement
+
+
+def test_mass_and_inertia_of_a_solid_cap():
+    by_mass = rf.CushionCap(height="0.9 m", mass="45 t", width="5 m").si
+    by_density = rf.CushionCap(height="0.9 m", density="2.5 t/m^3", depth="4 m").si
+    assert by_density.mass_at(5.0) == pytest.approx(45e3, rel=1e-15)
+    assert by_density.mass_at(2.0) == pytest.approx(18e3, rel=1e-15)
+    assert by_mass.mass_at(2.0) == 45e3
+    for cap in (by_mass, by_density):
+        inertia = 45e3 * (5.0**2 + 0.9**2) / 12.0
+        assert cap.inertia_at(5.0) == pytest.approx(inertia, rel=1e-14)
+
+
+# what is refused -----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("bad", ["9 MN/m", "9e6 N/m", "9 MN/m^3", "9 N", "9 kg/m^2", "9 m", "9"])
+def test_a_stiffness_of_another_kind_is_refused(bad):
+    with pytest.raises(rf.UnitsError, match="stiffness needs") as caught:
+        rf.WinklerSoil(stiffness=bad, damping_ratio=0.2)
+    assert repr(bad) in str(caught.value)
+    assert "per length of base" in str(caught.value)
+    assert "Pa" in str(caught.value)
+
+
+@pytest.mark.parametrize("bad", ["80 kN*s/m", "400 kPa", "400 kPa/s", "400 kN*s/m^3", "400"])
+def test_a_damping_of_another_kind_is_refused(bad):
+    with pytest.raises(rf.UnitsError, match="damping needs") as caught:
+        rf.WinklerSoil(stiffness="9 MPa", damping=bad)
+    assert repr(bad) in str(caught.value)
+
+
+@pytest.mark.parametrize("bad", ["20 MPa", "20 MN/m^2", "20 MN/m", "20 MN/m^4", "20"])
+def test_a_subgrade_modulus_of_another_kind_is_refused(bad):
+    with pytest.raises(rf.UnitsError, match="modulus needs"):
+        rf.WinklerSoil.from_subgrade_modulus(bad, depth="4 m", damping_ratio=0.2)
+
+
+def test_bare_numbers_are_refused_by_name():
+    with pytest.raises(rf.UnitsError, match=r"stiffness needs.*9000000"):
+        rf.WinklerSoil(stiffness=9_000_000, damping_ratio=0.2)
+    with pytest.raises(rf.UnitsError, match="damping needs"):
+        rf.WinklerSoil(stiffness="9 MPa", damping=4e5)
+    with pytest.raises(rf.UnitsError, match="depth needs"):
+        rf.WinklerSoil.from_subgrade_modulus("20 MN/m^3", depth=4.0, damping_ratio=0.2)
+    sizes = {"height": "0.9 m", "density": "2500 kg/m^3", "depth": "4 m", "width": "5 m"}
+    for name in sizes:
+        with pytest.raises(rf.UnitsError, match=f"{name} needs"):
+            rf.CushionCap(**{**sizes, name: 3.0})
+    with pytest.raises(rf.UnitsError, match="mass needs"):
+        rf.CushionCap(height="0.9 m", mass=36_000)
+    with pytest.raises(rf.UnitsError, match="damping_ratio"):
+        rf.WinklerSoil(stiffness="9 MPa", damping_ratio="0.2 m")
+    for bad in (True, None, [0.2], "much"):
+        with pytest.raises(rf.RockframeError):
+            rf.WinklerSoil(stiffness="9 MPa", damping_ratio=bad)
+
+
+@pytest.mark.parametrize(
+    ("name", "bad"),
+    [
+        ("stiffness", "0 MPa"),
+        ("stiffness", "-9 MPa"),
+        ("stiffness", "nan MPa"),
+        ("stiffness", "inf Pa"),
+        ("damping_ratio", -0.1),
+        ("damping_ratio", math.nan),
+        ("damping_ratio", math.inf),
+    ],
+)
+def test_soil_out_of_range_is_refused(name, bad):
+    with pytest.raises(rf.ComponentError, match=name) as caught:
+        rf.WinklerSoil(**{**SOIL, name: bad})
+    assert "WinklerSoil" in str(caught.value)
+
+
+def test_more_of_soil_out_of_range_is_refused():
+    for bad in ("-1 kPa*s", "nan kPa*s", "inf Pa*s"):
+        with pytest.raises(rf.ComponentError, match="damping"):
+            rf.WinklerSoil(stiffness="9 MPa", damping=bad)
+    for arguments in ({"depth": "0 m"}, {"depth": "-4 m"}, {"depth": "nan m"}):
+        with pytest.raises(rf.ComponentError, match="depth"):
+            rf.WinklerSoil.from_subgrade_modulus("20 MN/m^3", **arguments, damping_ratio=0.2)
+    for modulus in ("0 MN/m^3", "-20 MN/m^3"):
+        with pytest.raises(rf.ComponentError, match="modulus"):
+            rf.WinklerSoil.from_subgrade_modulus(modulus, depth="4 m", damping_ratio=0.2)
+    rf.WinklerSoil(stiffness="9 MPa", damping="0 Pa*s")
+
+
+@pytest.mark.parametrize(
+    ("name", "bad"),
+    [
+        ("height", "-0.1 m"),
+        ("height", "nan m"),
+        ("mass", "-1 kg"),
+        ("mass", "inf t"),
+        ("width", "0 m"),
+        ("width", "-5 m"),
+    ],
+)
+def test_a_cap_out_of_range_is_refused(name, bad):
+    with pytest.raises(rf.ComponentError, match=name) as caught:
+        rf.CushionCap(**{**CAP, name: bad})
+    assert "CushionCap" in str(caught.value)
+
+
+def test_a_cap_of_no_density_or_depth_is_refused():
+    sizes = {"height": "0.9 m", "density": "2500 kg/m^3", "depth": "4 m"}
+    for name, bad in (("density", "0 kg/m^3"), ("density", "-1 t/m^3"), ("depth", "0 m")):
+        with pytest.raises(rf.ComponentError, match=name):
+            rf.CushionCap(**{**sizes, name: bad})
+
+
+def test_what_goes_together_must_come_together():
+    for arguments, words in (
+        ({}, "damping or damping_ratio; neither"),
+        ({"damping": "4 kPa*s", "damping_ratio": 0.1}, "damping or damping_ratio; both"),
+    ):
+        with pytest.raises(rf.ComponentError, match=words):
+            rf.WinklerSoil(stiffness="9 MPa", **arguments)
+    for arguments, words in (
+        ({}, "mass or density; neither"),
+        ({"mass": "1 t", "density": "2 t/m^3", "depth": "1 m"}, "mass or density; both"),
+        ({"density": "2 t/m^3"}, "only density was given"),
+        ({"mass": "1 t", "depth": "1 m"}, "only depth was given"),
+        ({"depth": "1 m"}, "neither"),
+    ):
+        with pytest.raises(rf.ComponentError, match=words):
+            rf.CushionCap(height="0.9 m", **arguments)
+
+
+@pytest.mark.parametrize("bad", ["", "Pressure", "force", None, True, 1, []])
+def test_other_rules_of_separation_are_refused(bad):
+    with pytest.raises(rf.ComponentError, match="'displacement' or 'pressure'") as caught:
+        rf.WinklerSoil(**SOIL, separation=bad)
+    assert repr(bad) in str(caught.value)
+
+
+def test_arguments_are_by_keyword_and_none_is_forgotten():
+    with pytest.raises(TypeError):
+        rf.WinklerSoil("9 MPa", 0.2)
+    with pytest.raises(TypeError):
+        rf.WinklerSoil(damping_ratio=0.2)
+    with pytest.raises(TypeError):
+        rf.CushionCap("0.9 m", "36 t")
+    with pytest.raises(TypeError):
+        rf.CushionCap(mass="36 t")
+    with pytest.raises(TypeError):
+        rf.WinklerSoil.from_subgrade_modulus("20 MN/m^3", damping_ratio=0.2)
+    for missing in (None, [], object()):
+        with pytest.raises(rf.UnitsError, match="stiffness"):
+            rf.WinklerSoil(stiffness=missing, damping_ratio=0.2)
+        with pytest.raises(rf.UnitsError, match="height"):
+            rf.CushionCap(height=missing, mass="1 t")
