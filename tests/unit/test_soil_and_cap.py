@@ -353,3 +353,21 @@ def test_arguments_are_by_keyword_and_none_is_forgotten():
             rf.WinklerSoil(stiffness=missing, damping_ratio=0.2)
         with pytest.raises(rf.UnitsError, match="height"):
             rf.CushionCap(height=missing, mass="1 t")
+
+
+@pytest.mark.parametrize("size", ["1e200 m", "1e308 m", "1e-200 m"])
+def test_absurd_caps_are_refused_or_make_a_sound_scene(size):
+    block = rf.Block(width="2.4 m", height="9.6 m", mass="50 t")
+    soil = rf.WinklerSoil(**SOIL)
+    for arguments in (
+        {"height": size, "mass": "1 t"},
+        {"height": "1 m", "mass": "1 t", "width": size},
+        {"height": size, "density": "1e200 kg/m^3", "depth": "1 m"},
+    ):
+        try:
+            rest = rf.System(block, rf.CushionCap(**arguments), soil).equilibrium()
+        except rf.RockframeError:
+            continue
+        for name in ("soil_settlement", "static_soil_reaction", "overturning_angle"):
+            assert math.isfinite(rest[name].item()), name
+            assert rest[name].item() > 0.0, name
