@@ -33,7 +33,8 @@ class CushionCapSI:
 
     def inertia_at(self, width: float) -> float:
         """Give the inertia of a solid cap about its centre [kg m^2]."""
-        return self.mass_at(width) * math.hypot(width, self.height) ** 2 / 12.0
+        diagonal = math.hypot(width, self.height)
+        return self.mass_at(width) * diagonal * diagonal / 12.0
 
 
 class CushionCap(Component[CushionCapSI]):

@@ -1,5 +1,7 @@
 """Whether parts fit one another."""
 
+import math
+
 from rockframe.system.bodies import cap_under
 from rockframe.system.parts import Parts
 
@@ -38,7 +40,13 @@ def misfits(parts: Parts) -> list[str]:
             "carries the pads and spreads their reactions over the soil"
         )
     if block is not None and cap is not None:
-        width = 2.0 * cap_under(block.si, cap.si).half_width
+        body = cap_under(block.si, cap.si)
+        width = 2.0 * body.half_width
+        if not math.isfinite(body.inertia + block.si.mass * body.half_height * body.half_height):
+            faults.append(
+                f"a CushionCap of {width:.12g} m by {cap.si.height:.12g} m under the building has "
+                "a moment of inertia that a computer's numbers cannot hold"
+            )
         if width < block.si.width * (1.0 - _ROUNDING):
             faults.append(
                 f"the CushionCap is {width:.12g} m wide, narrower than the {block.si.width:.12g} m "
