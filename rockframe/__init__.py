@@ -29,6 +29,10 @@ if TYPE_CHECKING:
     from rockframe.errors import SchemaError as SchemaError
     from rockframe.errors import SolverError as SolverError
     from rockframe.errors import UnitsError as UnitsError
+    from rockframe.measures import fourier_spectrum as fourier_spectrum
+    from rockframe.measures import intensity_measures as intensity_measures
+    from rockframe.measures import response_spectrum as response_spectrum
+    from rockframe.measures import velocity_and_displacement as velocity_and_displacement
     from rockframe.motion import GroundMotion as GroundMotion
     from rockframe.simulation.system import System as System
     from rockframe.solve.accuracy import Accuracy as Accuracy
@@ -58,6 +62,12 @@ _HOMES = {
         "SchemaError",
         "SolverError",
         "UnitsError",
+    ),
+    "rockframe.measures": (
+        "fourier_spectrum",
+        "intensity_measures",
+        "response_spectrum",
+        "velocity_and_displacement",
     ),
     "rockframe.motion": ("GroundMotion",),
     "rockframe.simulation.system": ("System",),
@@ -89,7 +99,11 @@ __all__ = [
     "UnitsError",
     "WinklerSoil",
     "__version__",
+    "fourier_spectrum",
+    "intensity_measures",
     "plot",
+    "response_spectrum",
+    "velocity_and_displacement",
 ]
 
 

@@ -7,7 +7,14 @@ from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
 from rockframe.dynamics.protocol import ContactState, EventKind
-from rockframe.results.schema import ENERGIES, SCHEMA, Direction
+from rockframe.results.variables.runs import (
+    ENERGY_HISTORIES,
+    EVENTS_AND_SCALARS,
+    HISTORIES,
+    Direction,
+)
+from rockframe.results.variables.statics import HELD, MODES, REST
+from rockframe.results.variables.variable import EVENT, Variable
 from rockframe.solve.accuracy import LEVELS
 from rockframe.solve.layout import Status
 from rockframe.system.options import Restraint, Rotation
@@ -16,23 +23,11 @@ from rockframe.units import Unit
 
 Rows = Iterable[tuple[str, ...]]
 
-REST = (
-    "pad_settlement",
-    "soil_settlement",
-    "static_left_reaction",
-    "static_right_reaction",
-    "static_soil_reaction",
-    "uplift_moment",
-    "soil_uplift_moment",
-)
-"""Scalars of a system at rest; all others are those of a run."""
 
-
-def _variables(dims: tuple[str, ...], *, energies: bool = False, rest: bool = False) -> Rows:
+def _variables(rows: Iterable[Variable], dims: tuple[str, ...] | None = None) -> Rows:
     yield "name", "unit", "type", "meaning"
-    for row in SCHEMA.values():
-        chosen = (row.name in ENERGIES) is energies and (row.name in REST) is rest
-        if row.dims == dims and chosen:
+    for row in rows:
+        if dims is None or row.dims == dims:
             unit = "flag" if row.flags else "" if row.unit is None else str(row.unit)
             yield row.name, unit, row.dtype, row.long_name
 
@@ -65,13 +60,13 @@ def _units() -> Rows:
 
 
 TABLES: dict[str, Callable[[], Rows]] = {
-    "histories": lambda: _variables(("time",)),
-    "energies": lambda: _variables(("time",), energies=True),
-    "events": lambda: _variables(("event",)),
-    "scalars": lambda: _variables(()),
-    "rest": lambda: _variables((), rest=True),
-    "held": lambda: _variables(("angle",)),
-    "modes": lambda: _variables(("mode",)),
+    "histories": lambda: _variables(HISTORIES),
+    "energies": lambda: _variables(ENERGY_HISTORIES),
+    "events": lambda: _variables(EVENTS_AND_SCALARS, EVENT),
+    "scalars": lambda: _variables(EVENTS_AND_SCALARS, ()),
+    "rest": lambda: _variables(REST),
+    "held": lambda: _variables(HELD),
+    "modes": lambda: _variables(MODES),
     "contact-states": lambda: _flags(ContactState),
     "event-kinds": lambda: _flags(EventKind),
     "directions": lambda: _flags(Direction),

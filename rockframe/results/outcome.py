@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockframe.dynamics.protocol import IMPACT_LOSS, REPINNING_LOSS, SILENT, ContactModel
-from rockframe.results.schema import Direction
+from rockframe.results.variables.runs import Direction
 from rockframe.solve.layout import Status
 from rockframe.solve.observe import energies_of, memory_at_outputs, observe_trajectory
 from rockframe.solve.trajectory import Summary, Trajectory

@@ -24,7 +24,7 @@ from rockframe.results.outcome import (
     scalars,
     verdict,
 )
-from rockframe.results.schema import Direction
+from rockframe.results.variables.runs import Direction
 from rockframe.results.stages import cascade_energies, cascade_events, cascade_histories
 from rockframe.simulation.plan import Plan
 from rockframe.simulation.provenance import motion_attributes

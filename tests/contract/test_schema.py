@@ -77,8 +77,36 @@ DIMENSIONS = {
     "frequency": (0, 0, -1, 0),
     "period": (0, 0, 1, 0),
     "damping_ratio": (0, 0, 0, 0),
+    "ground_velocity": (0, 1, -1, 0),
+    "ground_displacement": (0, 1, 0, 0),
+    "vertical_ground_velocity": (0, 1, -1, 0),
+    "vertical_ground_displacement": (0, 1, 0, 0),
+    "peak_ground_acceleration": (0, 1, -2, 0),
+    "peak_ground_velocity": (0, 1, -1, 0),
+    "peak_ground_displacement": (0, 1, 0, 0),
+    "arias_intensity": (0, 1, -1, 0),
+    "cumulative_absolute_velocity": (0, 1, -1, 0),
+    "standardized_cumulative_absolute_velocity": (0, 1, -1, 0),
+    "significant_duration_5_75": (0, 0, 1, 0),
+    "significant_duration_5_95": (0, 0, 1, 0),
+    "bracketed_duration": (0, 0, 1, 0),
+    "housner_spectrum_intensity": (0, 1, 0, 0),
+    "mean_period": (0, 0, 1, 0),
+    "predominant_pulse_period": (0, 0, 1, 0),
+    "uplift_acceleration": (0, 1, -2, 0),
+    "uplift_duration": (0, 0, 1, 0),
+    "relative_peak_ground_acceleration": (0, 0, 0, 0),
+    "relative_peak_ground_velocity": (0, 0, 0, 0),
+    "relative_pulse_frequency": (0, 0, 0, 0),
+    "spectral_displacement": (0, 1, 0, 0),
+    "spectral_velocity": (0, 1, -1, 0),
+    "absolute_spectral_acceleration": (0, 1, -2, 0),
+    "pseudo_spectral_velocity": (0, 1, -1, 0),
+    "pseudo_spectral_acceleration": (0, 1, -2, 0),
+    "fourier_amplitude": (0, 1, -1, 0),
+    "fourier_phase": (0, 0, 0, 1),
 }
-DIMENSION_NAMES = {"time", "event", "angle", "mode"}
+DIMENSION_NAMES = {"time", "event", "angle", "mode", "damping_ratio", "period", "frequency"}
 PLAIN = pint.UnitRegistry(cache_folder=None)
 FLAGS = {
     "contact_state",
@@ -140,7 +168,7 @@ def test_the_spelling_is_the_agreed_one(row):
 
 @every_row
 def test_names_are_full_words(row):
-    assert re.fullmatch(r"[a-z]+(_[a-z]+)*", row.name)
+    assert re.fullmatch(r"[a-z]+(_[a-z]+|_\d+)*", row.name)
     assert row.long_name
     assert row.long_name == row.long_name.strip()
     assert not row.long_name.endswith(".")

@@ -1,0 +1,158 @@
+"""The same oscillators without a compiler: their recurrence as a filter.
+
+The matrices of a step and the extremum inside it are those of
+:mod:`rockframe.measures.oscillator`; only the march from step to step is SciPy's.
+"""
+
+from collections.abc import Callable
+from typing import Any, Final, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import signal
+
+from rockframe.measures.oscillator import (
+    QUANTITIES,
+    STEPS_PER_PERIOD,
+    fill_step,
+    shift_piece,
+    turning_value,
+)
+from rockframe.measures.polynomials import knots_of, slopes_of
+from rockframe.measures.shaking import Array
+
+Rows: TypeAlias = NDArray[np.intp]
+
+
+_STEPS_AT_ONCE: Final = 250_000
+
+
+class _Steps:
+    """Steps of equal length, and what they share for all oscillators."""
+
+    def __init__(self, length: float, pieces: Array) -> None:
+        self.length = length
+        self.pieces = pieces
+        self.knots = length**2 * knots_of(pieces)
+        slopes = slopes_of(pieces)
+        self.slopes = length**2 * slopes[:, 0], length**2 * slopes.sum(axis=1)
+
+
+def filter_all(pieces: Array, time_step: float, damping: float, periods: Array) -> Array:
+    """Find the peaks of all oscillators, like :func:`oscillator.march_all`.
+
+    Parameters
+    ----------
+    pieces : ndarray, shape (n, m)
+        Acceleration of the ground in every interval [m s^-2].
+    time_step : float
+        Length of an interval [s].
+    damping : float
+        Damping ratio [1].
+    periods : ndarray, shape (k,)
+        Periods, greater than zero [s].
+
+    Returns
+    -------
+    ndarray, shape (k, 3)
+        Greatest relative displacement [m], relative velocity [m s^-1] and absolute
+        acceleration [m s^-2].
+    """
+    found = np.zeros((periods.size, QUANTITIES))
+    state = np.zeros((periods.size, 2))
+    parts = np.ceil(STEPS_PER_PERIOD * time_step / periods).astype(int)
+    for count in np.unique(parts).tolist():
+        oscillators = np.flatnonzero(parts == count).tolist()
+        rows = max(1, _STEPS_AT_ONCE // count)
+        for first in range(0, len(pieces), rows):
+            steps = _Steps(time_step / count, _split(pieces[first : first + rows], count))
+            for k in oscillators:
+                _follow(steps, float(periods[k]), damping, state[k], found[k])
+    still = np.zeros((STEPS_PER_PERIOD, pieces.shape[1]))
+    for k in np.flatnonzero(_may_swing_higher(periods, damping, state, found)).tolist():
+        rest = _Steps(float(periods[k]) / STEPS_PER_PERIOD, still)
+        _follow(rest, float(periods[k]), damping, state[k], found[k])
+    return found
+
+
+def _may_swing_higher(periods: Array, damping: float, state: Array, found: Array) -> Any:
+    """Tell which oscillators may pass their peaks when left alone: their energy only falls."""
+    frequency = 2.0 * np.pi / periods
+    speed = np.hypot(frequency * state[:, 0], state[:, 1])
+    bounds = speed[:, None] * np.column_stack(
+        [1.0 / frequency, np.ones_like(frequency), (1.0 + 2.0 * damping) * frequency]
+    )
+    return (bounds > found).any(axis=1)
+
+
+def _split(pieces: Array, parts: int) -> Array:
+    if parts == 1:
+        return pieces
+    powers = pieces.shape[1]
+    shift, column = np.empty((powers, powers)), np.empty(powers)
+    split = np.empty((len(pieces), parts, powers))
+    for part in range(parts):
+        for j in range(powers):
+            shift_piece(np.eye(powers), j, part, parts, column)
+            shift[j] = column
+        split[:, part] = pieces @ shift
+    return split.reshape(-1, powers)
+
+
+def _follow(steps: _Steps, period: float, damping: float, state: Array, greatest: Array) -> None:
+    """Follow one oscillator; update displacement and velocity, and their greatest (SI)."""
+    length = steps.length
+    kappa = 2.0 * np.pi * length / period
+    step = np.empty((2, 2 + steps.pieces.shape[1]))
+    fill_step(kappa, damping, step)
+    u, v = _march(step, length**2 * step[:, 2:] @ steps.pieces.T, state * [1.0, length])
+    stiffness, drag = kappa**2, 2.0 * damping * kappa
+    pull = drag * v + stiffness * u
+    w = -pull - steps.knots
+    rate = drag * w + stiffness * v
+
+    def jerk(rows: Rows) -> tuple[Array, Array]:
+        start, end = steps.slopes
+        return -rate[rows] - start[rows], -rate[rows + 1] - end[rows]
+
+    def bend(rows: Rows) -> tuple[Array, Array]:
+        start, end = jerk(rows)
+        return drag * start + stiffness * w[rows], drag * end + stiffness * w[rows + 1]
+
+    found = (
+        _peak(u, v, lambda rows: (w[rows], w[rows + 1])),
+        _peak(v, w, jerk),
+        _peak(pull, rate, bend),
+    )
+    greatest[:] = np.maximum(greatest, found / length ** np.arange(QUANTITIES))
+    state[:] = u[-1], v[-1] / length
+
+
+def _march(step: Array, driven: Array, start: Array) -> tuple[Array, Array]:
+    """Solve z(k+1) = A z(k) + d(k), a two-by-two recurrence, one line at a time."""
+    (uu, uv), (vu, vv) = step[:, :2].tolist()
+    # each line alone, by Cayley and Hamilton: z(k+2) = tr A z(k+1) - det A z(k) + ...
+    denominator = [1.0, -(uu + vv), uu * vv - uv * vu]
+    crossed = np.array([[-vv, uv], [vu, -uu]])
+    inputs = driven.copy()
+    inputs[:, 1:] += crossed @ driven[:, :-1]
+    first = step[:, :2] @ start
+    inputs[:, 0] += first
+    inputs[:, 1:2] += (crossed @ first)[:, None]
+    lines: Any = signal.lfilter([1.0], denominator, inputs)
+    u, v = np.concatenate([start[:, None], lines], axis=1)
+    return u, v
+
+
+def _peak(value: Array, slope: Array, bends: Callable[[Rows], tuple[Array, Array]]) -> float:
+    """Find the greatest absolute value from knots to knots and between them."""
+    peak = max(float(value.max()), -float(value.min()))
+    rows = np.flatnonzero(slope[:-1] * slope[1:] < 0.0)
+    rows = rows[np.abs(value[rows + 1]) + np.abs(slope[rows + 1]) > peak]
+    if rows.size == 0:
+        return peak
+    start, end = bends(rows)
+    inside: Any = turning_value(
+        value[rows], slope[rows], start, value[rows + 1], slope[rows + 1], end
+    )
+    return max(peak, float(np.max(np.abs(inside))))

@@ -1,0 +1,101 @@
+"""Velocity and displacement of the ground."""
+
+from typing import TYPE_CHECKING
+
+from rockframe.measures.about import about
+from rockframe.measures.polynomials import integral_of, knots_of
+from rockframe.measures.shaking import (
+    Array,
+    GroundComponent,
+    Shaking,
+    component_of,
+    shaking_of,
+)
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from rockframe.motion import GroundMotion
+
+_PREFIX = {GroundComponent.HORIZONTAL: "", GroundComponent.VERTICAL: "vertical_"}
+
+
+def ground_path(shaking: Shaking) -> tuple[Array, Array]:
+    """Integrate the acceleration of ground that starts from rest.
+
+    Parameters
+    ----------
+    shaking : Shaking
+        The acceleration.
+
+    Returns
+    -------
+    velocity : ndarray, shape (n, m + 1)
+        Polynomials from sample to sample [m s^-1].
+    displacement : ndarray, shape (n, m + 2)
+        Polynomials from sample to sample [m].
+    """
+    velocity = integral_of(shaking.pieces, shaking.time_step)
+    return velocity, integral_of(velocity, shaking.time_step)
+
+
+def velocity_and_displacement(
+    motion: "GroundMotion", *, component: str = "horizontal"
+) -> "xr.Dataset":
+    """Integrate a motion to velocity and displacement of the ground.
+
+    Parameters
+    ----------
+    motion : GroundMotion
+        The motion. The ground starts from rest.
+    component : {"horizontal", "vertical"}, optional
+        Which acceleration.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``ground_acceleration`` [m s^-2], ``ground_velocity`` [m s^-1] and
+        ``ground_displacement`` [m] over ``time`` [s], at the samples; of the vertical
+        component ``vertical_ground_acceleration`` and so on.
+
+    Raises
+    ------
+    ComponentError
+        The motion lacks the component.
+
+    Notes
+    -----
+    Exact for the motion that a simulation sees, :eq:`eq-ground-velocity` and
+    :eq:`eq-ground-displacement`: straight lines between the samples of a record, the
+    polynomials of an analytic pulse. Nothing is corrected: a record whose acceleration
+    has an offset drifts. See :meth:`GroundMotion.baseline_corrected` and
+    :meth:`GroundMotion.filtered`.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> pulse = rf.GroundMotion.sine_pulse("1 m/s^2", "0.5 Hz", cycles=0.5)
+    >>> path = velocity_and_displacement(pulse)
+    >>> round(float(path.ground_velocity[-1]), 6)
+    0.63662
+    """
+    # imported here, because the schema of results loads the compiler
+    from rockframe.results.dataset import build_dataset
+
+    owner = "velocity_and_displacement"
+    shaking = shaking_of(motion, component, owner=owner)
+    velocity, displacement = ground_path(shaking)
+    which = component_of(component, owner=owner)
+    prefix = _PREFIX[which]
+    values = {
+        "time": shaking.times,
+        f"{prefix}ground_acceleration": shaking.samples,
+        f"{prefix}ground_velocity": knots_of(velocity),
+        f"{prefix}ground_displacement": knots_of(displacement),
+    }
+    return build_dataset(
+        {name: array.copy() for name, array in values.items()},
+        about(motion, which),
+        title="Ground motion",
+        source="integration from sample to sample",
+    )

@@ -1,0 +1,190 @@
+"""Intensity measures of a motion, and what it is to a given block."""
+
+import math
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from rockframe.components import Block
+from rockframe.constants import STANDARD_GRAVITY
+from rockframe.errors import ComponentError
+from rockframe.measures.about import about
+from rockframe.measures.accumulation import (
+    absolute_velocity_history,
+    arias_history,
+    standardized_absolute_velocity,
+)
+from rockframe.measures.durations import exceedance, time_between_shares
+from rockframe.measures.histories import ground_path
+from rockframe.measures.periods import (
+    HOUSNER_PERIODS,
+    PULSE_PERIODS,
+    housner_intensity,
+    mean_period,
+    pulse_period,
+)
+from rockframe.measures.polynomials import greatest
+from rockframe.measures.shaking import GroundComponent, Shaking, component_of, shaking_of
+from rockframe.measures.spectra import DAMPING_RATIO, check_cost
+from rockframe.units import ACCELERATION, POSITIVE, to_ratio, to_si
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from rockframe.motion import GroundMotion
+    from rockframe.motion.quantities import QuantityLike, RatioLike
+
+_OWNER: Final = "intensity_measures"
+_STANDARDIZED_THRESHOLD: Final = 0.025  # g, EPRI (1991)
+
+
+def intensity_measures(
+    motion: "GroundMotion",
+    *,
+    block: Block | None = None,
+    component: str = "horizontal",
+    threshold: "QuantityLike" = "0.05 g_0",
+    damping_ratio: "RatioLike" = 0.05,
+    gravity: "QuantityLike | None" = None,
+) -> "xr.Dataset":
+    """Compute the intensity measures of a motion.
+
+    Parameters
+    ----------
+    motion : GroundMotion
+        The motion.
+    block : Block, optional
+        The block, or FrameEquivalent, that the motion is to rock; adds the measures that
+        depend on it.
+    component : {"horizontal", "vertical"}, optional
+        Which acceleration.
+    threshold : str or Quantity, optional
+        Of the bracketed duration [m s^-2].
+    damping_ratio : float, optional
+        Of the velocity spectrum behind the Housner intensity and the pulse period [1].
+    gravity : str or Quantity, optional
+        Standard gravity unless given [m s^-2].
+
+    Returns
+    -------
+    xarray.Dataset
+        Scalars: ``peak_ground_acceleration`` [m s^-2], ``peak_ground_velocity`` [m s^-1],
+        ``peak_ground_displacement`` [m]; ``arias_intensity``,
+        ``cumulative_absolute_velocity`` and ``standardized_cumulative_absolute_velocity``
+        [m s^-1]; ``significant_duration_5_75``, ``significant_duration_5_95``,
+        ``bracketed_duration`` [s]; ``housner_spectrum_intensity`` [m]; ``mean_period``,
+        ``predominant_pulse_period`` [s].
+        With a block ``overturning_angle`` [rad], ``uplift_acceleration`` [m s^-2],
+        ``uplift_duration`` [s], ``relative_peak_ground_acceleration``,
+        ``relative_peak_ground_velocity`` and ``relative_pulse_frequency`` [1].
+
+    Raises
+    ------
+    UnitsError
+        An argument has no unit, or one of another kind.
+    ComponentError
+        The motion lacks the component, an argument is out of range, or a block is given
+        with the vertical component.
+
+    Notes
+    -----
+    Peaks and durations are those of the motion that a simulation sees, between the samples
+    too. Squares and absolute values of a record are summed over its samples by the
+    trapezoidal rule. The ground starts from rest and nothing is corrected: an offset of the
+    acceleration spoils ``peak_ground_velocity`` and all the more
+    ``peak_ground_displacement``. The measures of the block hold on rigid ground,
+    :eq:`eq-rocking-measures`.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> block = rf.Block(width="1 m", height="5 m", mass="10 t")
+    >>> measures = intensity_measures(rf.GroundMotion.sine_pulse("4 m/s^2", "1 Hz"), block=block)
+    >>> round(float(measures.peak_ground_velocity), 4)
+    1.2732
+    >>> round(float(measures.relative_peak_ground_acceleration), 4)
+    2.0394
+    """
+    # imported here, because the schema of results loads the compiler
+    from rockframe.results.dataset import build_dataset
+
+    shaking = shaking_of(motion, component, owner=_OWNER)
+    which = component_of(component, owner=_OWNER)
+    accelerations = {
+        "threshold": threshold,
+        "gravity": f"{STANDARD_GRAVITY!r} m/s^2" if gravity is None else gravity,
+    }
+    level, g = (
+        to_si(value, ACCELERATION, owner=_OWNER, name=name, condition=POSITIVE)
+        for name, value in accelerations.items()
+    )
+    damping = to_ratio(damping_ratio, owner=_OWNER, name="damping_ratio", condition=DAMPING_RATIO)
+    check_cost(shaking, np.concatenate([HOUSNER_PERIODS, PULSE_PERIODS]), owner=_OWNER)
+    values = _of_ground(shaking, threshold=level, damping_ratio=damping, gravity=g)
+    if block is not None:
+        _check_block(block, which)
+        values |= _of_block(shaking, block, values, gravity=g)
+    return build_dataset(
+        values,
+        {
+            **about(motion, which),
+            "threshold": f"{level!r} {ACCELERATION.unit}",
+            "gravity": f"{g!r} {ACCELERATION.unit}",
+            "damping_ratio": damping,
+            **({} if block is None else {"block": repr(block)}),
+        },
+        title="Intensity measures",
+        source="integration from sample to sample",
+    )
+
+
+def _of_ground(
+    shaking: Shaking, *, threshold: float, damping_ratio: float, gravity: float
+) -> dict[str, float]:
+    velocity, displacement = ground_path(shaking)
+    arias = arias_history(shaking, gravity)
+    step = shaking.time_step
+    return {
+        "peak_ground_acceleration": greatest(shaking.pieces),
+        "peak_ground_velocity": greatest(velocity),
+        "peak_ground_displacement": greatest(displacement),
+        "arias_intensity": float(arias[-1]),
+        "cumulative_absolute_velocity": float(absolute_velocity_history(shaking)[-1]),
+        "standardized_cumulative_absolute_velocity": standardized_absolute_velocity(
+            shaking, _STANDARDIZED_THRESHOLD * gravity
+        ),
+        "significant_duration_5_75": time_between_shares(arias, step, 0.05, 0.75),
+        "significant_duration_5_95": time_between_shares(arias, step, 0.05, 0.95),
+        "bracketed_duration": exceedance(shaking, threshold)[0],
+        "housner_spectrum_intensity": housner_intensity(shaking, damping_ratio),
+        "mean_period": mean_period(shaking),
+        "predominant_pulse_period": pulse_period(shaking, damping_ratio),
+    }
+
+
+def _of_block(
+    shaking: Shaking, block: Block, of_ground: dict[str, float], *, gravity: float
+) -> dict[str, float]:
+    """Compute :eq:`eq-rocking-measures`."""
+    uplift = gravity * math.tan(block.si.overturning_angle)
+    frequency = block.si.frequency_at(gravity)
+    pulse = 2.0 * math.pi / of_ground["predominant_pulse_period"]
+    return {
+        "overturning_angle": block.si.overturning_angle,
+        "uplift_acceleration": uplift,
+        "uplift_duration": exceedance(shaking, uplift)[1],
+        "relative_peak_ground_acceleration": of_ground["peak_ground_acceleration"] / uplift,
+        "relative_peak_ground_velocity": frequency * of_ground["peak_ground_velocity"] / uplift,
+        "relative_pulse_frequency": pulse / frequency,
+    }
+
+
+def _check_block(block: object, component: GroundComponent) -> None:
+    if not isinstance(block, Block):
+        msg = f"{_OWNER}: block needs a Block or a FrameEquivalent, got {block!r}"
+        raise ComponentError(msg)
+    if component is GroundComponent.VERTICAL:
+        msg = (
+            f"{_OWNER}: a block is rocked by the horizontal component; leave out block or component"
+        )
+        raise ComponentError(msg)

@@ -1,0 +1,266 @@
+"""The linear oscillator under a ground that is a polynomial in every step.
+
+All functions here work in the step's own scale: x = t/h from 0 to 1, displacement
+u, velocity V = h du/dt, acceleration W = h^2 d2u/dt2. The oscillator is then
+:eq:`eq-oscillator-step`, with the one number kappa = 2 pi h/T. Compiled where numba is
+installed; this file calls no kernel of another one.
+"""
+
+from typing import Any, Final
+
+import numpy as np
+
+from rockframe.compiled import Matrix, Vector, kernel
+
+STEPS_PER_PERIOD: Final = 12
+"""Steps are split until a period has that many: kappa is at most 0.52."""
+
+TERMS: Final = 24
+"""Terms of the power series; 0.52^24/24! is 3e-31."""
+
+QUANTITIES: Final = 3
+"""Relative displacement, relative velocity, absolute acceleration (without sign)."""
+
+_NEWTON_STEPS: Final = 3
+_TINY: Final = 1e-300
+
+
+@kernel
+def fill_step(kappa: float, damping: float, step: Matrix) -> None:
+    """Compute the matrices of one step, :eq:`eq-step-matrices`, by :eq:`eq-step-series`.
+
+    Parameters
+    ----------
+    kappa : float
+        2 pi h/T [1].
+    damping : float
+        Damping ratio [1].
+    step : ndarray, shape (2, 2 + m)
+        Filled: displacement and velocity at the step's end for a unit of, by column,
+        displacement and velocity at its start, and force h^2 a = x^0, x^1, ...
+    """
+    for column in range(step.shape[1]):
+        term = 1.0 if column == 0 else 0.0
+        following = 1.0 if column == 1 else 0.0
+        value, slope = term + following, following
+        for n in range(TERMS):
+            new = -2.0 * damping * kappa * (n + 1) * following - kappa * kappa * term
+            if n == column - 2:
+                new -= 1.0
+            new /= (n + 1) * (n + 2)
+            value += new
+            slope += (n + 2) * new
+            term, following = following, new
+        step[0, column], step[1, column] = value, slope
+
+
+@kernel
+def turning_value(
+    value: Any, slope: Any, bend: Any, end_value: Any, end_slope: Any, end_bend: Any
+) -> Any:
+    """Find the extremum inside a step whose slopes differ in sign, :eq:`eq-step-extremum`.
+
+    Parameters
+    ----------
+    value, slope, bend : float or ndarray
+        Value and derivatives by x at the step's start.
+    end_value, end_slope, end_bend : float or ndarray
+        The same at its end.
+
+    Returns
+    -------
+    float or ndarray
+        Value of the quintic through them where it turns.
+    """
+    rise = end_value - value - slope - 0.5 * bend
+    turn = end_slope - slope - bend
+    twist = end_bend - bend
+    third = 10.0 * rise - 4.0 * turn + 0.5 * twist
+    fourth = -15.0 * rise + 7.0 * turn - twist
+    fifth = 6.0 * rise - 3.0 * turn + 0.5 * twist
+    x = slope / (slope - end_slope)
+    for _ in range(_NEWTON_STEPS):
+        rate = slope + x * (bend + x * (3.0 * third + x * (4.0 * fourth + x * 5.0 * fifth)))
+        change = bend + x * (6.0 * third + x * (12.0 * fourth + x * 20.0 * fifth))
+        x = np.minimum(1.0, np.maximum(0.0, x - rate * change / (change * change + _TINY)))
+    return value + x * (slope + x * (0.5 * bend + x * (third + x * (fourth + x * fifth))))
+
+
+@kernel
+def shift_piece(pieces: Matrix, row: int, part: int, parts: int, shifted: Vector) -> None:
+    """Write a part of an interval's polynomial in the part's own x.
+
+    Parameters
+    ----------
+    pieces : ndarray, shape (n, m)
+        Polynomials of the intervals.
+    row : int
+        Which interval.
+    part, parts : int
+        Which of how many equal parts.
+    shifted : ndarray, shape (m,)
+        Filled.
+    """
+    powers = pieces.shape[1]
+    for j in range(powers):
+        shifted[j] = pieces[row, j]
+    start = part / parts
+    for j in range(powers - 1):  # synthetic division: Taylor's expansion about the start
+        for k in range(powers - 2, j - 1, -1):
+            shifted[k] += start * shifted[k + 1]
+    scale = 1.0
+    for j in range(powers):
+        shifted[j] *= scale
+        scale /= parts
+
+
+@kernel
+def march(
+    pieces: Matrix,
+    parts: int,
+    force: float,
+    kappa: float,
+    damping: float,
+    step: Matrix,
+    shifted: Vector,
+    state: Vector,
+    peaks: Vector,
+) -> None:
+    """Follow one oscillator from interval to interval.
+
+    Parameters
+    ----------
+    pieces : ndarray, shape (n, m)
+        Acceleration of the ground in every interval [m s^-2].
+    parts : int
+        Steps in an interval.
+    force : float
+        h^2, by which the acceleration becomes a force [s^2].
+    kappa, damping : float
+        2 pi h/T and the damping ratio [1].
+    step : ndarray, shape (2, 2 + m)
+        As filled by :func:`fill_step`.
+    shifted : ndarray, shape (m,)
+        Scratch.
+    state : ndarray, shape (2,)
+        Displacement and velocity V; from the start to the end [m].
+    peaks : ndarray, shape (3,)
+        Greatest absolute u, V and 2 xi kappa V + kappa^2 u; raised [m].
+    """
+    stiffness, drag = kappa * kappa, 2.0 * damping * kappa
+    powers = pieces.shape[1]
+    uu, uv, u0, u1 = step[0, 0], step[0, 1], force * step[0, 2], force * step[0, 3]
+    vu, vv, v0, v1 = step[1, 0], step[1, 1], force * step[1, 2], force * step[1, 3]
+    u, v = state[0], state[1]
+    pull = drag * v + stiffness * u
+    w = -pull - force * pieces[0, 0]
+    rate = drag * w + stiffness * v
+    share = 1.0 / parts
+    most_u, most_v, most_pull = abs(u), abs(v), abs(pull)
+    for row in range(pieces.shape[0]):
+        for part in range(parts):
+            if powers == 2:
+                slope = end_slope = share * pieces[row, 1]
+                ground = pieces[row, 0] + part * slope
+                end_ground = ground + slope
+                next_u = uu * u + uv * v + (u0 * ground + u1 * slope)
+                next_v = vu * u + vv * v + (v0 * ground + v1 * slope)
+            else:
+                shift_piece(pieces, row, part, parts, shifted)
+                ground, slope = shifted[0], shifted[1]
+                end_ground, end_slope = ground, 0.0
+                next_u, next_v = uu * u + uv * v + u0 * ground, vu * u + vv * v + v0 * ground
+                for j in range(1, powers):
+                    end_ground += shifted[j]
+                    end_slope += j * shifted[j]
+                    next_u += force * step[0, 2 + j] * shifted[j]
+                    next_v += force * step[1, 2 + j] * shifted[j]
+            next_pull = drag * next_v + stiffness * next_u
+            next_w = -next_pull - force * end_ground
+            next_rate = drag * next_w + stiffness * next_v
+            # a turn inside the step lies no higher than the end and the slope there
+            if abs(next_u) + abs(next_v) > most_u:
+                most_u = max(most_u, abs(next_u))
+                if v * next_v < 0.0:
+                    most_u = max(most_u, abs(turning_value(u, v, w, next_u, next_v, next_w)))
+            if abs(next_v) + abs(next_w) > most_v:
+                most_v = max(most_v, abs(next_v))
+                if w * next_w < 0.0:
+                    jerk, next_jerk = -rate - force * slope, -next_rate - force * end_slope
+                    inside = turning_value(v, w, jerk, next_v, next_w, next_jerk)
+                    most_v = max(most_v, abs(inside))
+            if abs(next_pull) + abs(next_rate) > most_pull:
+                most_pull = max(most_pull, abs(next_pull))
+                if rate * next_rate < 0.0:
+                    jerk, next_jerk = -rate - force * slope, -next_rate - force * end_slope
+                    bend, next_bend = (
+                        drag * jerk + stiffness * w,
+                        drag * next_jerk + stiffness * next_w,
+                    )
+                    inside = turning_value(pull, rate, bend, next_pull, next_rate, next_bend)
+                    most_pull = max(most_pull, abs(inside))
+            u, v, w, pull, rate = next_u, next_v, next_w, next_pull, next_rate
+    state[0], state[1] = u, v
+    peaks[0] = max(peaks[0], most_u)
+    peaks[1] = max(peaks[1], most_v)
+    peaks[2] = max(peaks[2], most_pull)
+
+
+@kernel
+def march_all(
+    pieces: Matrix,
+    still: Matrix,
+    time_step: float,
+    damping: float,
+    periods: Vector,
+    step: Matrix,
+    free_step: Matrix,
+    shifted: Vector,
+    state: Vector,
+    peaks: Vector,
+    found: Matrix,
+) -> None:
+    """Find the peaks of all oscillators, during the motion and in the period after it.
+
+    Parameters
+    ----------
+    pieces : ndarray, shape (n, m)
+        Acceleration of the ground in every interval [m s^-2].
+    still : ndarray, shape (12, m)
+        Zeros: the ground during a period after the motion.
+    time_step : float
+        Length of an interval [s].
+    damping : float
+        Damping ratio [1].
+    periods : ndarray, shape (k,)
+        Periods, greater than zero [s].
+    step, free_step : ndarray, shape (2, 2 + m)
+        Scratch.
+    shifted : ndarray, shape (m,)
+        Scratch.
+    state, peaks : ndarray, shape (2,) and (3,)
+        Scratch.
+    found : ndarray, shape (k, 3)
+        Filled: greatest relative displacement [m], relative velocity [m s^-1] and absolute
+        acceleration [m s^-2].
+    """
+    free = 2.0 * np.pi / STEPS_PER_PERIOD
+    fill_step(free, damping, free_step)
+    for k in range(periods.shape[0]):
+        period = periods[k]
+        parts = int(np.ceil(STEPS_PER_PERIOD * time_step / period))
+        length, free_length = time_step / parts, period / STEPS_PER_PERIOD
+        kappa = 2.0 * np.pi * length / period
+        fill_step(kappa, damping, step)
+        state[:] = 0.0
+        peaks[:] = 0.0
+        march(
+            pieces, parts, length * length, kappa, damping, step, shifted, state, peaks
+        )  # fmt: skip
+        for j in range(QUANTITIES):
+            found[k, j] = peaks[j] / length**j
+        state[1] *= free_length / length
+        peaks[:] = 0.0
+        march(still, 1, 0.0, free, damping, free_step, shifted, state, peaks)
+        for j in range(QUANTITIES):
+            found[k, j] = max(found[k, j], peaks[j] / free_length**j)

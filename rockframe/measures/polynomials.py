@@ -1,0 +1,144 @@
+"""Functions of time that are a polynomial in every interval.
+
+A row of coefficients, lowest power first, is a polynomial in x, from 0 to 1 over
+one time step.
+"""
+
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockframe.measures.shaking import Array
+
+_HALVINGS: Final = 54  # to the last bit of x
+
+
+def values_at(pieces: Array, place: Array | float) -> Array:
+    """Evaluate every row, each at its own place.
+
+    Parameters
+    ----------
+    pieces : ndarray, shape (n, m)
+        Coefficients.
+    place : ndarray, shape (n,), or float
+        x [1].
+
+    Returns
+    -------
+    ndarray, shape (n,)
+    """
+    values = np.zeros(len(pieces))
+    for power in reversed(range(pieces.shape[1])):
+        values = values * place + pieces[:, power]
+    return values
+
+
+def slopes_of(pieces: Array) -> Array:
+    """Differentiate by x.
+
+    Parameters
+    ----------
+    pieces : ndarray, shape (n, m)
+        Coefficients.
+
+    Returns
+    -------
+    ndarray, shape (n, m - 1)
+    """
+    return pieces[:, 1:] * np.arange(1.0, pieces.shape[1])
+
+
+def integral_of(pieces: Array, time_step: float) -> Array:
+    """Integrate over time, from zero on, :eq:`eq-ground-velocity`.
+
+    Parameters
+    ----------
+    pieces : ndarray, shape (n, m)
+        Coefficients.
+    time_step : float
+        Length of an interval [s].
+
+    Returns
+    -------
+    ndarray, shape (n, m + 1)
+        Continuous from row to row.
+    """
+    rising = pieces * (time_step / np.arange(1.0, pieces.shape[1] + 1.0))
+    start = np.concatenate([[0.0], np.cumsum(rising.sum(axis=1))[:-1]])
+    return np.column_stack([start, rising])
+
+
+def knots_of(pieces: Array) -> Array:
+    """Give the values at both ends of all intervals.
+
+    Parameters
+    ----------
+    pieces : ndarray, shape (n, m)
+        Coefficients of a continuous function.
+
+    Returns
+    -------
+    ndarray, shape (n + 1,)
+    """
+    return np.append(pieces[:, 0], pieces[-1].sum())
+
+
+def roots_of(pieces: Array) -> Array:
+    """Find where every row crosses zero; its ends have different signs.
+
+    Parameters
+    ----------
+    pieces : ndarray, shape (n, m)
+        Coefficients.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        x [1].
+    """
+    low, high = np.zeros(len(pieces)), np.ones(len(pieces))
+    if pieces.shape[1] == 2:
+        return -pieces[:, 0] / pieces[:, 1]
+    rising = pieces[:, 0] < 0.0
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (low + high)
+        before = (values_at(pieces, middle) < 0.0) == rising
+        low, high = np.where(before, middle, low), np.where(before, high, middle)
+    return 0.5 * (low + high)
+
+
+def turning_points(pieces: Array) -> tuple[NDArray[np.intp], Array]:
+    """Find the extrema inside the intervals at whose ends the slopes differ in sign.
+
+    Parameters
+    ----------
+    pieces : ndarray, shape (n, m)
+        Coefficients.
+
+    Returns
+    -------
+    rows : ndarray of int, shape (k,)
+        The intervals.
+    values : ndarray, shape (k,)
+        The values there.
+    """
+    slopes = slopes_of(pieces)
+    rows = np.flatnonzero(slopes[:, 0] * slopes.sum(axis=1) < 0.0)
+    return rows, values_at(pieces[rows], roots_of(slopes[rows]))
+
+
+def greatest(pieces: Array) -> float:
+    """Find the greatest absolute value, between the knots too.
+
+    Parameters
+    ----------
+    pieces : ndarray, shape (n, m)
+        Coefficients of a continuous function.
+
+    Returns
+    -------
+    float
+    """
+    _, between = turning_points(pieces)
+    return float(np.max(np.abs(np.concatenate([knots_of(pieces), between]))))

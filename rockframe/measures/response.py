@@ -1,0 +1,126 @@
+"""Response spectra of linear oscillators."""
+
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from rockframe.errors import ComponentError
+from rockframe.measures.about import about
+from rockframe.measures.labels import build_over
+from rockframe.measures.shaking import Array, component_of, shaking_of
+from rockframe.measures.spectra import DAMPING_RATIO, check_cost, pseudo_spectra, spectral_peaks
+from rockframe.units import TIME, to_ratio, to_si_values
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    import xarray as xr
+
+    from rockframe.motion import GroundMotion
+    from rockframe.motion.quantities import ArrayLike, QuantityLike, RatioLike
+
+_PERIODS_PER_DECADE: Final = 100
+_OWNER: Final = "response_spectrum"
+
+
+def response_spectrum(
+    motion: "GroundMotion",
+    periods: "ArrayLike | Iterable[QuantityLike] | None" = None,
+    damping_ratios: "Iterable[RatioLike] | RatioLike" = (0.05,),
+    *,
+    component: str = "horizontal",
+) -> "xr.Dataset":
+    """Compute the response spectra of a motion.
+
+    Parameters
+    ----------
+    motion : GroundMotion
+        The motion. The ground stands still before and after it.
+    periods : (sequence, unit), Quantity or sequence of str, optional
+        Undamped natural periods, increasing; 0 stands for a rigid oscillator. 100 per
+        decade from 0.01 s to 10 s unless given [s].
+    damping_ratios : sequence of float, or float, optional
+        Shares of critical damping, from 0 to 1 [1].
+    component : {"horizontal", "vertical"}, optional
+        Which acceleration.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``damping_ratio`` and ``period``: the greatest absolute relative displacement
+        ``spectral_displacement`` [m], relative velocity ``spectral_velocity`` [m s^-1] and
+        absolute acceleration ``absolute_spectral_acceleration`` [m s^-2]; and, from the
+        first, ``pseudo_spectral_velocity`` [m s^-1] and ``pseudo_spectral_acceleration``
+        [m s^-2], :eq:`eq-pseudo-spectra`.
+
+    Raises
+    ------
+    UnitsError
+        Periods without a unit, or with one of another kind.
+    ComponentError
+        The motion lacks the component, periods do not increase or are so short that they
+        need too many steps, or a damping ratio is out of range or given twice.
+
+    Notes
+    -----
+    The recurrence of Nigam and Jennings (1969), exact for a motion of straight lines, and
+    as exact for the polynomials of an analytic pulse; an interval is split until a period
+    has twelve steps. Peaks are those of the solution between the steps too, and include
+    the free vibration after the motion.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> pulse = rf.GroundMotion.sine_pulse("1 m/s^2", "1 Hz", cycles=0.5)
+    >>> spectrum = response_spectrum(pulse, ["0 s", "0.5 s", "5 s"], 0)
+    >>> spectrum.pseudo_spectral_acceleration.values.round(4).tolist()
+    [[1.0, 1.7321, 0.3963]]
+    """
+    shaking = shaking_of(motion, component, owner=_OWNER)
+    seconds = _periods(periods)
+    ratios = _damping_ratios(damping_ratios)
+    check_cost(shaking, seconds, owner=_OWNER)
+    found = np.array([spectral_peaks(shaking, seconds, ratio) for ratio in ratios.tolist()])
+    pseudo_velocity, pseudo_acceleration = pseudo_spectra(shaking, seconds, found[:, :, 0])
+    values = {
+        "spectral_displacement": found[:, :, 0],
+        "spectral_velocity": found[:, :, 1],
+        "absolute_spectral_acceleration": found[:, :, 2],
+        "pseudo_spectral_velocity": pseudo_velocity,
+        "pseudo_spectral_acceleration": pseudo_acceleration,
+    }
+    return build_over(
+        {
+            "damping_ratio": (ratios, "damping ratio of the oscillator"),
+            "period": (seconds, "undamped period of the oscillator"),
+        },
+        values,
+        about(motion, component_of(component, owner=_OWNER)),
+        title="Response spectra",
+        source="recurrence of Nigam and Jennings",
+    )
+
+
+def _periods(given: object) -> Array:
+    if given is None:
+        decades = np.arange(-2 * _PERIODS_PER_DECADE, _PERIODS_PER_DECADE + 1)
+        return 10.0 ** (decades / _PERIODS_PER_DECADE)
+    seconds = np.array(to_si_values(given, TIME, owner=_OWNER, name="periods"))
+    if seconds.size == 0 or seconds[0] < 0.0 or not (np.diff(seconds) > 0.0).all():
+        msg = f"{_OWNER}: periods must be one or more, from zero up and increasing, got {given!r}"
+        raise ComponentError(msg)
+    return seconds
+
+
+def _damping_ratios(given: Any) -> Array:
+    if isinstance(given, np.ndarray):
+        given = np.atleast_1d(given)
+    values: list[Any] = list(given) if isinstance(given, list | tuple | np.ndarray) else [given]
+    ratios = [
+        to_ratio(value, owner=_OWNER, name="damping_ratios", condition=DAMPING_RATIO)
+        for value in values
+    ]
+    if not ratios or len(set(ratios)) < len(ratios):
+        msg = f"{_OWNER}: damping_ratios must be one or more, each once, got {given!r}"
+        raise ComponentError(msg)
+    return np.array(ratios)

@@ -1,0 +1,138 @@
+"""Peaks of linear oscillators in SI units."""
+
+from typing import Final
+
+import numpy as np
+
+from rockframe.errors import ComponentError
+from rockframe.measures.polynomials import greatest
+from rockframe.measures.shaking import Array, Shaking
+from rockframe.units import Condition
+
+DAMPING_RATIO: Final = Condition("from 0 to 1", lambda value: 0.0 <= value <= 1.0)
+"""What a damping ratio of an oscillator may be."""
+
+MAXIMUM_STEPS: Final = 2_000_000_000
+"""Steps of all oscillators together beyond which a spectrum is refused."""
+
+MAXIMUM_PARTS: Final = 1_000_000
+"""Steps in one interval of the motion beyond which a period is refused."""
+
+
+def check_cost(shaking: Shaking, periods: Array, *, owner: str) -> None:
+    """Refuse a spectrum that would take minutes.
+
+    Parameters
+    ----------
+    shaking : Shaking
+        Acceleration of the ground.
+    periods : ndarray, shape (k,)
+        Periods, zero or more [s].
+    owner : str
+        Function, for the message.
+
+    Raises
+    ------
+    ComponentError
+        Too many steps.
+    """
+    # imported here, because it loads the compiler
+    from rockframe.measures.oscillator import STEPS_PER_PERIOD
+
+    moving = periods[periods > 0.0]
+    if moving.size == 0:
+        return
+    count = len(shaking.pieces)
+    parts = np.ceil(STEPS_PER_PERIOD * shaking.time_step / moving)
+    if parts.max() > MAXIMUM_PARTS or parts.sum() * count > MAXIMUM_STEPS:
+        msg = (
+            f"{owner}: {moving.size} periods from {moving.min():.4g} s on need "
+            f"{parts.sum() * count:.2g} steps on a motion of {count} intervals of "
+            f"{shaking.time_step:.4g} s; give fewer or longer periods, or a shorter motion"
+        )
+        raise ComponentError(msg)
+
+
+def spectral_peaks(shaking: Shaking, periods: Array, damping_ratio: float) -> Array:
+    """Find the peaks of oscillators of one damping ratio.
+
+    Parameters
+    ----------
+    shaking : Shaking
+        Acceleration of the ground.
+    periods : ndarray, shape (k,)
+        Periods, zero or more [s].
+    damping_ratio : float
+        Damping ratio [1].
+
+    Returns
+    -------
+    ndarray, shape (k, 3)
+        Greatest relative displacement [m], relative velocity [m s^-1] and absolute
+        acceleration [m s^-2].
+    """
+    # on the first spectrum, not at the import: it loads the compiler
+    from rockframe.compiled import COMPILED
+
+    found = np.zeros((periods.size, 3))
+    found[:, 2] = greatest(shaking.pieces)  # a rigid oscillator moves with the ground
+    moving = np.flatnonzero(periods > 0.0)
+    if COMPILED:
+        found[moving] = _march(shaking, periods[moving], damping_ratio)
+    else:
+        from rockframe.measures.filtering import filter_all
+
+        found[moving] = filter_all(
+            shaking.pieces, shaking.time_step, damping_ratio, periods[moving]
+        )
+    return found
+
+
+def pseudo_spectra(
+    shaking: Shaking, periods: Array, spectral_displacement: Array
+) -> tuple[Array, Array]:
+    """Compute the pseudo spectra, :eq:`eq-pseudo-spectra`.
+
+    Parameters
+    ----------
+    shaking : Shaking
+        Acceleration of the ground.
+    periods : ndarray, shape (k,)
+        Periods, zero or more [s].
+    spectral_displacement : ndarray, shape (..., k)
+        Greatest relative displacement [m].
+
+    Returns
+    -------
+    velocity : ndarray, shape (..., k)
+        [m s^-1]
+    acceleration : ndarray, shape (..., k)
+        [m s^-2]
+    """
+    rigid = periods == 0.0
+    frequency = 2.0 * np.pi / np.where(rigid, 1.0, periods)
+    velocity = np.where(rigid, 0.0, frequency * spectral_displacement)
+    acceleration = np.where(rigid, greatest(shaking.pieces), frequency * velocity)
+    return velocity, acceleration
+
+
+def _march(shaking: Shaking, periods: Array, damping_ratio: float) -> Array:
+    from rockframe.measures.oscillator import QUANTITIES, STEPS_PER_PERIOD, march_all
+
+    pieces = np.array(shaking.pieces, order="C")
+    powers = pieces.shape[1]
+    found = np.empty((periods.size, QUANTITIES))
+    march_all(
+        pieces,
+        np.zeros((STEPS_PER_PERIOD, powers)),
+        shaking.time_step,
+        float(damping_ratio),
+        periods,
+        np.empty((2, 2 + powers)),
+        np.empty((2, 2 + powers)),
+        np.empty(powers),
+        np.empty(2),
+        np.empty(QUANTITIES),
+        found,
+    )
+    return found

@@ -1,0 +1,1 @@
+"""The rows of the table of variables, by what they describe."""

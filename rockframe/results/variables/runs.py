@@ -1,0 +1,160 @@
+"""Variables of a run: histories, energies, events and scalars."""
+
+from enum import IntEnum
+from typing import Final
+
+from rockframe.dynamics.protocol import ContactState, EventKind
+from rockframe.results.variables.variable import EVENT, TIME, Variable, count, flag
+from rockframe.solve.layout import Status
+from rockframe.units import Unit
+
+
+class Direction(IntEnum):
+    """Side towards which a block overturned; clockwise is right."""
+
+    LEFT = -1
+    NONE = 0
+    RIGHT = 1
+
+
+HISTORIES: Final = (
+    Variable("time", TIME, Unit.SECOND, "time from the start of the run"),
+    # response
+    Variable("rotation", TIME, Unit.RADIAN, "rotation of the block, clockwise positive"),
+    Variable("angular_velocity", TIME, Unit.RADIAN_PER_SECOND, "rate of the rotation"),
+    Variable(
+        "vertical_displacement",
+        TIME,
+        Unit.METRE,
+        "vertical displacement of the centre of mass from rest, relative to the ground, upwards",
+    ),
+    Variable("vertical_velocity", TIME, Unit.METRE_PER_SECOND, "rate of the vertical displacement"),
+    Variable(
+        "horizontal_displacement",
+        TIME,
+        Unit.METRE,
+        "horizontal displacement of the centre of mass relative to the ground, to the right",
+    ),
+    Variable("relative_rotation", TIME, Unit.ONE, "rotation over the overturning angle"),
+    Variable(
+        "relative_vertical_displacement",
+        TIME,
+        Unit.ONE,
+        "vertical displacement over the settlement under the weight",
+    ),
+    flag("contact_state", TIME, "corner that bears", ContactState),
+    Variable(
+        "ground_acceleration", TIME, Unit.METRE_PER_SECOND_SQUARED, "horizontal ground acceleration"
+    ),
+    Variable(
+        "vertical_ground_acceleration",
+        TIME,
+        Unit.METRE_PER_SECOND_SQUARED,
+        "vertical ground acceleration, upwards",
+    ),
+    Variable("left_reaction", TIME, Unit.NEWTON, "reaction of the base at the left corner"),
+    Variable("right_reaction", TIME, Unit.NEWTON, "reaction of the base at the right corner"),
+    # soil and cap
+    Variable("soil_reaction", TIME, Unit.NEWTON, "vertical reaction of the soil"),
+    Variable("contact_length", TIME, Unit.METRE, "length of the base that bears on the soil"),
+    Variable("cap_rotation", TIME, Unit.RADIAN, "rotation of the cap, clockwise positive"),
+    Variable("cap_angular_velocity", TIME, Unit.RADIAN_PER_SECOND, "rate of the cap's rotation"),
+    Variable(
+        "cap_vertical_displacement",
+        TIME,
+        Unit.METRE,
+        "vertical displacement of the cap's centre from rest, relative to the ground, upwards",
+    ),
+    Variable(
+        "cap_vertical_velocity",
+        TIME,
+        Unit.METRE_PER_SECOND,
+        "rate of the cap's vertical displacement",
+    ),
+    flag("soil_contact_state", TIME, "end of the base that bears on the soil", ContactState),
+    Variable("rotation_on_cap", TIME, Unit.RADIAN, "rotation of the block relative to the cap"),
+    Variable(
+        "vertical_displacement_on_cap",
+        TIME,
+        Unit.METRE,
+        "displacement of the block's centre of mass from rest relative to the cap, along its axis",
+    ),
+    Variable(
+        "cap_acceleration",
+        TIME,
+        Unit.METRE_PER_SECOND_SQUARED,
+        "absolute horizontal acceleration of the middle of the cap's top",
+    ),
+    Variable(
+        "cap_vertical_acceleration",
+        TIME,
+        Unit.METRE_PER_SECOND_SQUARED,
+        "absolute vertical acceleration of the middle of the cap's top",
+    ),
+)
+"""Over time, wherever the scene has them."""
+
+ENERGY_HISTORIES: Final = (
+    Variable("kinetic_energy", TIME, Unit.JOULE, "kinetic energy relative to the ground"),
+    Variable("potential_energy", TIME, Unit.JOULE, "gravity energy from rest"),
+    Variable("elastic_energy", TIME, Unit.JOULE, "energy of the compressed springs"),
+    Variable("dissipated_energy", TIME, Unit.JOULE, "energy burnt by the dashpots so far"),
+    Variable("impact_energy", TIME, Unit.JOULE, "energy lost in impacts so far"),
+    Variable(
+        "repinning_energy",
+        TIME,
+        Unit.JOULE,
+        "energy lost in changes of the horizontal restraint so far",
+    ),
+    Variable("input_energy", TIME, Unit.JOULE, "relative energy put in by the ground so far"),
+)
+"""Over time, only on request."""
+
+EVENTS_AND_SCALARS: Final = (
+    # events
+    Variable("event_time", EVENT, Unit.SECOND, "time of the event"),
+    flag("event_kind", EVENT, "kind of the event", EventKind),
+    flag("contact_state_before", EVENT, "corner that bore before the event", ContactState),
+    flag("contact_state_after", EVENT, "corner that bears after the event", ContactState),
+    flag("soil_contact_state_before", EVENT, "end that bore on the soil before", ContactState),
+    flag("soil_contact_state_after", EVENT, "end that bears on the soil after", ContactState),
+    Variable("event_rotation", EVENT, Unit.RADIAN, "rotation at the event"),
+    Variable(
+        "angular_velocity_before",
+        EVENT,
+        Unit.RADIAN_PER_SECOND,
+        "rate of the rotation before the event",
+    ),
+    Variable(
+        "angular_velocity_after",
+        EVENT,
+        Unit.RADIAN_PER_SECOND,
+        "rate of the rotation after the event",
+    ),
+    # scalars
+    Variable(
+        "overturned", (), None, "whether the rotation reached the overturning angle", dtype="bool"
+    ),
+    Variable("overturning_time", (), Unit.SECOND, "time of overturning, NaN if none"),
+    flag("overturning_direction", (), "side towards which the block overturned", Direction),
+    Variable("peak_rotation", (), Unit.RADIAN, "largest absolute rotation"),
+    Variable(
+        "peak_relative_rotation", (), Unit.ONE, "largest absolute rotation over overturning angle"
+    ),
+    Variable("first_uplift_time", (), Unit.SECOND, "time contact is first lost, NaN if never"),
+    count("impact_count", "number of impacts"),
+    Variable("flight_time", (), Unit.SECOND, "time without any contact"),
+    count("flight_count", "number of flights"),
+    Variable(
+        "energy_residual", (), Unit.ONE, "largest energy imbalance over the largest energy term"
+    ),
+    flag("status", (), "how the run ended", Status),
+    Variable("overturning_angle", (), Unit.RADIAN, "rotation of unstable equilibrium, theta"),
+    Variable(
+        "uplift_angle",
+        (),
+        Unit.RADIAN,
+        "rotation of the block on its base at which contact is first lost at rest",
+    ),
+)
+"""Over events, and one for the run."""

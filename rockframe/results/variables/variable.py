@@ -1,0 +1,70 @@
+"""A row of the table of variables, and the shapes that rows have."""
+
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import Any, Final
+
+import numpy as np
+
+from rockframe.units import Unit
+
+TIME: Final = ("time",)
+EVENT: Final = ("event",)
+ANGLE: Final = ("angle",)
+MODE: Final = ("mode",)
+OSCILLATOR: Final = ("damping_ratio", "period")
+FREQUENCY: Final = ("frequency",)
+
+
+@dataclass(frozen=True)
+class Variable:
+    """A row of the table.
+
+    Parameters
+    ----------
+    name : str
+        Name in the dataset.
+    dims : tuple of str
+        Dimensions, such as ``("time",)``; none for a scalar.
+    unit : Unit or None
+        None for flags and truth values.
+    long_name : str
+        Meaning.
+    flags : type of IntEnum, optional
+        Values and meanings of an integer flag.
+    dtype : str
+        Type in the dataset.
+    """
+
+    name: str
+    dims: tuple[str, ...]
+    unit: Unit | None
+    long_name: str
+    flags: type[IntEnum] | None = None
+    dtype: str = "float64"
+
+    def attributes(self) -> dict[str, Any]:
+        """Give the CF attributes."""
+        attributes: dict[str, Any] = {"long_name": self.long_name}
+        if self.unit is not None:
+            attributes["units"] = str(self.unit)
+        if self.flags is not None:
+            members = sorted(self.flags, key=int)
+            attributes["flag_values"] = np.array([int(m) for m in members], dtype=self.dtype)
+            attributes["flag_meanings"] = " ".join(m.name.lower() for m in members)
+        return attributes
+
+
+def flag(name: str, dims: tuple[str, ...], words: str, kind: type[IntEnum]) -> Variable:
+    """Make the row of a flag."""
+    return Variable(name, dims, None, words, kind, "int8")
+
+
+def count(name: str, words: str) -> Variable:
+    """Make the row of a scalar count."""
+    return Variable(name, (), Unit.ONE, words, dtype="int64")
+
+
+def number(name: str, words: str) -> Variable:
+    """Make the row of a coordinate that counts."""
+    return Variable(name, (name,), Unit.ONE, words, dtype="int64")

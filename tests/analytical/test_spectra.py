@@ -1,0 +1,327 @@
+"""Spectra and intensity measures against closed forms, brute force and another library."""
+
+import math
+import warnings
+
+import numpy as np
+import pytest
+from records import record_path
+from scipy.linalg import expm
+
+import rockframe as rf
+from rockframe.measures import (
+    fourier_spectrum,
+    intensity_measures,
+    response_spectrum,
+    velocity_and_displacement,
+)
+
+pytestmark = pytest.mark.analytical
+
+HALF = 0.8  # length of the half-sine [s]
+PERIODS = np.geomspace(0.05, 10.0, 40)
+RECORDS = ("PEERSMD_CHICHI_TCU128-N.AT2", "NIS090.AT2", "RSN763_LOMAP_GIL067.AT2")
+
+
+def spectrum(motion, periods, damping_ratio, name):
+    found = response_spectrum(motion, (periods, "s"), damping_ratio)
+    return found[name].values[0]
+
+
+# the half-sine, undamped ---------------------------------------------------------------------
+
+
+def half_sine_factor(period):
+    """Give the greatest displacement over the static one (Chopra, Dynamics of Structures, 4.8)."""
+    ratio = HALF / period
+    if ratio == 0.5:
+        return 0.5 * math.pi
+    beta = 0.5 / ratio
+    free = abs(2.0 * beta * math.cos(math.pi * ratio) / (beta**2 - 1.0))
+    if ratio < 0.5:
+        return free
+    peaks = [
+        abs(math.sin(2.0 * math.pi * k / (1.0 + 2.0 * ratio)) / (1.0 - beta))
+        for k in range(1, math.ceil(ratio + 0.5))
+    ]
+    return max([*peaks, free])
+
+
+@pytest.fixture(scope="module")
+def half_sine():
+    return rf.GroundMotion.sine_pulse("2 m/s^2", f"{0.5 / HALF!r} Hz", cycles=0.5)
+
+
+def test_half_sine_on_an_undamped_oscillator(half_sine):
+    periods = HALF / np.array([60.0, 20.0, 7.3, 3.0, 2.1, 1.0, 0.7, 0.5, 0.3, 0.1, 0.02])
+    expected = 2.0 * np.array([half_sine_factor(period) for period in periods])
+    for name in ("pseudo_spectral_acceleration", "absolute_spectral_acceleration"):
+        found = spectrum(half_sine, periods, 0.0, name)
+        np.testing.assert_allclose(found, expected, rtol=1e-6)
+
+
+def test_after_a_short_pulse_an_oscillator_swings_with_its_impulse(half_sine):
+    """Peak velocity of the relative motion is the ground's velocity step."""
+    (found,) = spectrum(half_sine, [2000.0], 0.0, "spectral_velocity")
+    assert found == pytest.approx(2.0 * 2.0 * HALF / math.pi, rel=1e-6)
+
+
+# the harmonic --------------------------------------------------------------------------------
+
+
+def harmonic_response(time, rate, omega, xi):
+    """Give u, v and -(absolute acceleration) from rest under sin(rate t)."""
+    gap, drag = omega**2 - rate**2, 2.0 * xi * omega * rate
+    size = gap**2 + drag**2
+    sine, cosine = -gap / size, drag / size
+    damped = omega * math.sqrt(1.0 - xi**2)
+    c = -cosine
+    s = (xi * omega * c - rate * sine) / damped
+    fade = np.exp(-xi * omega * time)
+    u = (
+        sine * np.sin(rate * time)
+        + cosine * np.cos(rate * time)
+        + fade * (c * np.cos(damped * time) + s * np.sin(damped * time))
+    )
+    v = rate * (sine * np.cos(rate * time) - cosine * np.sin(rate * time)) + fade * (
+        (damped * s - xi * omega * c) * np.cos(damped * time)
+        - (damped * c + xi * omega * s) * np.sin(damped * time)
+    )
+    return u, v, 2.0 * xi * omega * v + omega**2 * u
+
+
+@pytest.mark.parametrize("xi", [0.0, 0.02, 0.05, 0.4])
+@pytest.mark.parametrize("ratio", [0.13, 0.6, 0.9, 1.4, 3.7])
+def test_harmonic_from_rest_with_its_transient(ratio, xi):
+    rate = 2.0 * math.pi
+    omega = rate / ratio
+    motion = rf.GroundMotion.harmonic("1 m/s^2", "1 Hz", duration="12 s")
+    time = np.linspace(0.0, 12.0, 200_001)
+    u, v, pull = harmonic_response(time, rate, omega, xi)
+    found = response_spectrum(motion, ([2.0 * math.pi / omega], "s"), xi)
+    # the free vibration after the motion may go higher; its energy bounds it
+    energy = math.hypot(omega * u[-1], v[-1])
+    for name, history, bound in (
+        ("spectral_displacement", u, energy / omega),
+        ("spectral_velocity", v, energy),
+        ("absolute_spectral_acceleration", pull, energy * omega * math.hypot(1.0, 2.0 * xi)),
+    ):
+        peak = np.abs(history).max()
+        value = found[name].item()
+        if bound < peak:
+            assert value == pytest.approx(peak, rel=2e-6), name
+        else:
+            assert peak * (1.0 - 2e-6) <= value <= bound * (1.0 + 2e-6), name
+
+
+@pytest.mark.parametrize("xi", [0.05, 0.2])
+@pytest.mark.parametrize("ratio", [0.5, 1.0, 2.0])
+def test_harmonic_in_steady_state(ratio, xi):
+    """Faded in and out over many cycles, so that no transient is left."""
+    count, dt = 48_001, 0.0025
+    time = np.arange(count) * dt
+    grown = np.sin(0.5 * math.pi * np.minimum(1.0, np.minimum(time, 120.0 - time) / 35.0)) ** 2
+    motion = rf.GroundMotion.from_arrays((grown * np.sin(2.0 * math.pi * time), "m/s^2"), f"{dt} s")
+    omega = 2.0 * math.pi / ratio
+    factor = 1.0 / math.hypot(1.0 - ratio**2, 2.0 * xi * ratio)
+    found = response_spectrum(motion, ([ratio], "s"), xi)
+    assert found.spectral_displacement.item() == pytest.approx(factor / omega**2, rel=1e-3)
+    transmitted = factor * math.hypot(1.0, 2.0 * xi * ratio)
+    assert found.absolute_spectral_acceleration.item() == pytest.approx(transmitted, rel=1e-3)
+
+
+def test_resonance_grows_to_its_limit():
+    motion = rf.GroundMotion.harmonic("1 m/s^2", "2 Hz", duration="30 s")
+    (found,) = spectrum(motion, [0.5], 0.05, "spectral_displacement")
+    assert found == pytest.approx(1.0 / (0.1 * (4.0 * math.pi) ** 2), rel=1e-6)
+
+
+# straight lines ------------------------------------------------------------------------------
+
+
+def brute_force(samples, dt, period, xi, fine):
+    """Evaluate exact states at many points of every step, by matrix exponentials."""
+    omega = 2.0 * math.pi / period
+    generator = np.zeros((4, 4))
+    generator[0, 1] = generator[2, 3] = 1.0
+    generator[1] = [-(omega**2), -2.0 * xi * omega, -1.0, 0.0]
+    inside = expm(generator * (np.arange(1, fine + 1) / fine * dt)[:, None, None])[:, :2]
+    padded = np.concatenate([samples, [0.0], np.zeros(math.ceil(1.2 * period / dt))])
+    slopes = np.diff(padded) / dt
+    slopes[samples.size - 1] = 0.0  # the ground stops at once after its last sample
+    state, peaks = np.zeros(2), np.zeros(3)
+    for k, slope in enumerate(slopes):
+        start = padded[k] if k != samples.size - 1 else 0.0
+        path = inside @ [*state, start, slope]
+        pull = 2.0 * xi * omega * path[:, 1] + omega**2 * path[:, 0]
+        peaks = np.maximum(peaks, [*np.abs(path).max(axis=0), np.abs(pull).max()])
+        state = path[-1]
+    return peaks
+
+
+@pytest.mark.parametrize("xi", [0.0, 0.05, 0.5])
+@pytest.mark.parametrize("period", [0.004, 0.011, 0.03, 0.1, 0.37, 1.3, 8.0])
+def test_peaks_between_samples(period, xi):
+    dt = 0.02
+    samples = np.convolve(np.random.default_rng(4).normal(size=80), np.ones(3) / 2.0)
+    motion = rf.GroundMotion.from_arrays((samples, "m/s^2"), f"{dt} s")
+    fine = max(20, math.ceil(600 * dt / period))
+    expected = brute_force(samples, dt, period, xi, fine)
+    found = response_spectrum(motion, ([period], "s"), xi)
+    values = [
+        found[name].item()
+        for name in (
+            "spectral_displacement",
+            "spectral_velocity",
+            "absolute_spectral_acceleration",
+        )
+    ]
+    # brute force misses up to (2 pi/600)^2/8 between its points
+    np.testing.assert_allclose(values, expected, rtol=5e-5)
+
+
+def test_limits_of_very_short_and_very_long_periods():
+    rng = np.random.default_rng(1)
+    samples = np.convolve(rng.normal(size=400), np.hanning(60), "same")
+    samples[:60] *= np.linspace(0.0, 1.0, 60)
+    motion = rf.GroundMotion.from_arrays((samples, "m/s^2"), "0.01 s")
+    rigid = response_spectrum(motion, ["0 s", "0.002 s", "10000 s"], 0.05)
+    measures = intensity_measures(motion)
+    peak = measures.peak_ground_acceleration.item()
+    for name in ("pseudo_spectral_acceleration", "absolute_spectral_acceleration"):
+        assert rigid[name].values[0, 0] == peak
+        assert rigid[name].values[0, 1] == pytest.approx(peak, rel=1e-2)
+    for name in ("spectral_displacement", "spectral_velocity", "pseudo_spectral_velocity"):
+        assert rigid[name].values[0, 0] == 0.0
+    # an oscillator that hardly moves sees the ground move under it
+    speed = measures.peak_ground_velocity.item()
+    assert rigid.spectral_velocity.values[0, 2] == pytest.approx(speed, rel=1e-2)
+
+
+def test_path_of_the_ground_is_exact_for_straight_lines():
+    samples = np.random.default_rng(2).normal(size=50)
+    path = velocity_and_displacement(rf.GroundMotion.from_arrays((samples, "m/s^2"), "0.1 s"))
+    velocity = displacement = 0.0
+    for k in range(samples.size - 1):
+        start, end = samples[k], samples[k + 1]
+        displacement += 0.1 * velocity + 0.01 * (2.0 * start + end) / 6.0
+        velocity += 0.05 * (start + end)
+        assert path.ground_velocity.values[k + 1] == pytest.approx(velocity, abs=1e-14)
+        assert path.ground_displacement.values[k + 1] == pytest.approx(displacement, abs=1e-13)
+
+
+# a sine pulse --------------------------------------------------------------------------------
+
+
+def test_measures_of_a_sine_pulse():
+    amplitude, frequency, cycles, g = 3.0, 0.8, 2, 9.81
+    rate, length = 2.0 * math.pi * frequency, cycles / frequency
+    pulse = rf.GroundMotion.sine_pulse("3 m/s^2", "0.8 Hz", cycles=cycles)
+    block = rf.Block(width="1 m", height="6 m", mass="5 t")
+    found = intensity_measures(pulse, block=block, threshold="1 m/s^2", gravity=f"{g} m/s^2")
+    tangent = 1.0 / 6.0
+    uplift = g * tangent
+    p = math.sqrt(0.75 * g / math.hypot(0.5, 3.0))
+    below = math.asin(1.0 / amplitude) / rate
+    expected = {
+        "peak_ground_acceleration": amplitude,
+        "peak_ground_velocity": 2.0 * amplitude / rate,
+        "peak_ground_displacement": amplitude / rate * length,
+        "arias_intensity": math.pi / (2.0 * g) * amplitude**2 * length / 2.0,
+        "cumulative_absolute_velocity": 2.0 * amplitude / math.pi * length,
+        "bracketed_duration": length - 2.0 * below,
+        "uplift_acceleration": uplift,
+        "uplift_duration": length * (1.0 - 2.0 * math.asin(uplift / amplitude) / math.pi),
+        "relative_peak_ground_acceleration": amplitude / uplift,
+        "relative_peak_ground_velocity": p * 2.0 * amplitude / rate / uplift,
+        "relative_pulse_frequency": 2.0 * math.pi / found.predominant_pulse_period.item() / p,
+    }
+    for name, value in expected.items():
+        assert found[name].item() == pytest.approx(value, rel=1e-9), name
+    # D5-95: Arias intensity grows as t - sin(2 rate t)/(2 rate)
+    time = np.linspace(0.0, length, 400_001)
+    share = (time - np.sin(2.0 * rate * time) / (2.0 * rate)) / length
+    for start, end in ((0.05, 0.75), (0.05, 0.95)):
+        reached = np.interp([start, end], share, time)
+        name = f"significant_duration_5_{100 * end:.0f}"
+        assert found[name].item() == pytest.approx(reached[1] - reached[0], rel=1e-4)
+
+
+def test_fourier_transform_of_a_sine_pulse():
+    amplitude, own, cycles = 2.0, 1.5, 3
+    pulse = rf.GroundMotion.sine_pulse("2 m/s^2", "1.5 Hz", cycles=cycles)
+    found = fourier_spectrum(pulse, resolution="0.01 Hz")
+    frequency = found.frequency.values
+    assert frequency[1] <= 0.01
+    assert frequency[-1] == pytest.approx(0.5 * 128 * own, rel=0.02)
+    angle, rate = 2.0 * math.pi * frequency, 2.0 * math.pi * own
+    with np.errstate(invalid="ignore", divide="ignore"):
+        exact = amplitude * rate * (1.0 - np.exp(-1j * angle * cycles / own)) / (rate**2 - angle**2)
+    exact[np.isclose(frequency, own, rtol=1e-12)] = -0.5j * amplitude * cycles / own
+    transform = found.fourier_amplitude.values * np.exp(1j * found.fourier_phase.values)
+    np.testing.assert_allclose(transform, exact, atol=1e-9)
+
+
+def test_power_of_a_record_is_the_same_in_time_and_frequency():
+    samples = np.random.default_rng(5).normal(size=512)
+    motion = rf.GroundMotion.from_arrays((samples, "m/s^2"), "0.01 s")
+    found = fourier_spectrum(motion)
+    power = found.fourier_amplitude.values**2
+    sides = 2.0 * power.sum() - power[0] - power[-1]
+    spacing = found.frequency.values[1]
+    assert sides * spacing == pytest.approx(0.01 * np.sum(samples**2), rel=1e-12)
+
+
+def test_mean_and_predominant_period_of_a_long_harmonic():
+    motion = rf.GroundMotion.harmonic("1 m/s^2", "1.25 Hz", duration="200 s")
+    found = intensity_measures(motion)
+    assert found.mean_period.item() == pytest.approx(0.8, rel=2e-3)
+    assert found.predominant_pulse_period.item() == pytest.approx(0.8, rel=5e-3)
+
+
+# records against another library -------------------------------------------------------------
+
+
+@pytest.fixture(scope="module", params=RECORDS)
+def record(request):
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", rf.RockframeWarning)
+        motion = rf.GroundMotion.read(record_path(request.param))
+    return motion.window("20 s", "60 s") if motion.si.duration > 60.0 else motion
+
+
+def test_records_have_the_intensities_of_another_library(record):
+    pytest.importorskip("eqsig")
+    from eqsig import AccSignal, im
+
+    signal = AccSignal(record.si.acceleration, record.si.time_step)
+    found = intensity_measures(record, gravity="9.81 m/s^2")
+    assert found.arias_intensity.item() == pytest.approx(
+        im.calc_arias_intensity(signal)[-1], rel=1e-12
+    )
+    assert found.cumulative_absolute_velocity.item() == pytest.approx(
+        im.calc_cav(signal)[-1], rel=1e-12
+    )
+    # it counts whole samples
+    within = {"abs": 3.0 * record.si.time_step}
+    durations = im.calc_sig_dur_vals(record.si.acceleration, record.si.time_step)
+    assert found.significant_duration_5_95.item() == pytest.approx(durations, **within)
+    bracketed = im.calc_brac_dur(signal, 0.05 * 9.80665)
+    assert found.bracketed_duration.item() == pytest.approx(bracketed, **within)
+
+
+def test_records_have_the_spectra_of_another_library(record):
+    """It sees peaks at samples only: give it the same straight lines, sampled eight times."""
+    pytest.importorskip("eqsig")
+    from eqsig import sdof
+
+    fine = record.resampled(f"{record.si.time_step / 8.0!r} s").si
+    histories = sdof.nigam_and_jennings_response(fine.acceleration, fine.time_step, PERIODS, 0.05)
+    found = response_spectrum(record, (PERIODS, "s"))
+    for name, history in zip(
+        ("spectral_displacement", "spectral_velocity", "absolute_spectral_acceleration"),
+        histories,
+        strict=True,
+    ):
+        expected = np.abs(history).max(axis=1)
+        np.testing.assert_allclose(found[name].values[0], expected, rtol=1e-3, err_msg=name)

@@ -1,0 +1,152 @@
+"""What the functions take, and what they refuse."""
+
+import numpy as np
+import pint
+import pytest
+
+import rockframe as rf
+from rockframe.measures import (
+    fourier_spectrum,
+    intensity_measures,
+    response_spectrum,
+    velocity_and_displacement,
+)
+
+ALL = (intensity_measures, response_spectrum, fourier_spectrum, velocity_and_displacement)
+PULSE = rf.GroundMotion.sine_pulse("1 m/s^2", "1 Hz")
+BLOCK = rf.Block(width="1 m", height="4 m", mass="1 t")
+
+
+@pytest.mark.parametrize("function", ALL)
+@pytest.mark.parametrize("given", [None, 3.0, "record.AT2", np.zeros(5), BLOCK])
+def test_only_a_motion_is_measured(function, given):
+    with pytest.raises(rf.ComponentError, match=rf"{function.__name__}: motion needs a Ground"):
+        function(given)
+
+
+@pytest.mark.parametrize("function", ALL)
+def test_a_component_must_be_there(function):
+    with pytest.raises(rf.ComponentError, match="has no vertical acceleration"):
+        function(PULSE, component="vertical")
+    with pytest.raises(rf.ComponentError, match="'horizontal' or 'vertical', got 'up'"):
+        function(PULSE, component="up")
+
+
+@pytest.mark.parametrize("function", ALL)
+def test_the_vertical_component_is_measured_like_the_horizontal_one(function):
+    rng = np.random.default_rng(3)
+    across, upwards = (np.convolve(rng.normal(size=200), np.ones(5)) for _ in range(2))
+    both = rf.GroundMotion.from_arrays(
+        (across, "m/s^2"), "0.02 s", vertical=(upwards, "m/s^2"), name="both"
+    )
+    alone = rf.GroundMotion.from_arrays((upwards, "m/s^2"), "0.02 s")
+    found, expected = function(both, component="vertical"), function(alone)
+    assert found.attrs["component"] == "vertical"
+    assert found.attrs["motion"] == "both"
+    for name in expected.data_vars:
+        mine = name if name in found else f"vertical_{name}"
+        np.testing.assert_array_equal(found[mine].values, expected[name].values)
+
+
+@pytest.mark.parametrize(
+    ("argument", "given"),
+    [
+        ("periods", [0.1, 0.2]),
+        ("periods", np.linspace(0.1, 1.0, 4)),
+        ("periods", 1.0),
+        ("periods", ["0.1 s", "1 m"]),
+        ("periods", ([0.1, 0.2], "Hz")),
+        ("damping_ratios", "2 m"),
+        ("damping_ratios", None),
+    ],
+)
+def test_spectra_refuse_numbers_of_another_kind(argument, given):
+    with pytest.raises(rf.UnitsError, match=f"response_spectrum: {argument}"):
+        response_spectrum(PULSE, **{argument: given})
+
+
+@pytest.mark.parametrize(
+    ("argument", "given"),
+    [
+        ("periods", ([0.2, 0.1], "s")),
+        ("periods", ([0.1, 0.1], "s")),
+        ("periods", ([-0.1, 0.1], "s")),
+        ("periods", ([], "s")),
+        ("periods", (["nan", 0.1], "s")),
+        ("damping_ratios", -0.01),
+        ("damping_ratios", 1.01),
+        ("damping_ratios", (0.05, 0.05)),
+        ("damping_ratios", ()),
+    ],
+)
+def test_spectra_refuse_values_out_of_range(argument, given):
+    with pytest.raises(rf.ComponentError, match=f"response_spectrum: {argument}"):
+        response_spectrum(PULSE, **{argument: given})
+
+
+def test_spectra_that_would_take_minutes_are_refused():
+    with pytest.raises(rf.ComponentError, match=r"need .* steps .* give fewer or longer periods"):
+        response_spectrum(PULSE, ["1e-9 s"])
+    slow = rf.GroundMotion.sine_pulse("1 m/s^2", "1e-9 Hz")
+    with pytest.raises(rf.ComponentError, match="intensity_measures"):
+        intensity_measures(slow)
+    assert response_spectrum(slow, "0 s").sizes == {"damping_ratio": 1, "period": 1}
+
+
+def test_periods_and_damping_come_in_many_forms():
+    expected = response_spectrum(PULSE, (["0.1", "0.5"], "s"), (0.05, 0.1))
+    registry = pint.get_application_registry()
+    for periods, ratios in (
+        (["100 ms", "0.5 s"], ["5 %", 0.1]),
+        (registry.Quantity([100.0, 500.0], "ms"), np.array([0.05, 0.1])),
+        (([100, 500], "ms"), [registry.Quantity(5.0, "percent"), "10 %"]),
+    ):
+        found = response_spectrum(PULSE, periods, ratios)
+        np.testing.assert_allclose(found.period, [0.1, 0.5], rtol=1e-15)
+        np.testing.assert_allclose(found.damping_ratio, [0.05, 0.1], rtol=1e-15)
+        np.testing.assert_allclose(
+            found.spectral_displacement, expected.spectral_displacement, rtol=1e-12
+        )
+
+
+def test_default_periods():
+    period = response_spectrum(PULSE).period.values
+    assert period.size == 301
+    assert period[0] == 0.01
+    assert period[200] == 1.0
+    assert period[-1] == 10.0
+
+
+@pytest.mark.parametrize(
+    ("argument", "given", "error"),
+    [
+        ("threshold", 0.05, rf.UnitsError),
+        ("threshold", "0.05 g", rf.UnitsError),
+        ("threshold", "0 m/s^2", rf.ComponentError),
+        ("gravity", 9.81, rf.UnitsError),
+        ("gravity", "-9.81 m/s^2", rf.ComponentError),
+        ("damping_ratio", "5 m", rf.UnitsError),
+        ("damping_ratio", 2.0, rf.ComponentError),
+        ("block", rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1), rf.ComponentError),
+    ],
+)
+def test_intensity_measures_refuse(argument, given, error):
+    with pytest.raises(error, match=f"intensity_measures: {argument}"):
+        intensity_measures(PULSE, **{argument: given})
+
+
+def test_a_block_is_not_rocked_by_the_vertical_component():
+    motion = PULSE.with_vertical(PULSE)
+    with pytest.raises(rf.ComponentError, match="leave out block or component"):
+        intensity_measures(motion, block=BLOCK, component="vertical")
+
+
+def test_fourier_resolution():
+    assert fourier_spectrum(PULSE).frequency.values[1] == pytest.approx(128.0 / 129.0)
+    fine = fourier_spectrum(PULSE, resolution="0.1 Hz")
+    assert fine.frequency.values[1] <= 0.1
+    for given, error in (("0 Hz", rf.ComponentError), (0.1, rf.UnitsError)):
+        with pytest.raises(error, match="fourier_spectrum: resolution"):
+            fourier_spectrum(PULSE, resolution=given)
+    with pytest.raises(rf.ComponentError, match="too many samples"):
+        fourier_spectrum(PULSE, resolution="1e-300 Hz")

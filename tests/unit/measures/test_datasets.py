@@ -1,0 +1,132 @@
+"""The answers as datasets: names, units, meanings, files."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import rockframe as rf
+from rockframe.measures import (
+    fourier_spectrum,
+    intensity_measures,
+    response_spectrum,
+    velocity_and_displacement,
+)
+from rockframe.results.schema import SCHEMA
+
+BLOCK = rf.Block(width="1 m", height="4 m", mass="1 t")
+GUIDE = Path(__file__).resolve().parents[3] / "docs" / "guide" / "intensity_measures.md"
+ANSWERS = {
+    "measures": lambda motion: intensity_measures(motion, block=BLOCK),
+    "path": velocity_and_displacement,
+    "vertical path": lambda motion: velocity_and_displacement(motion, component="vertical"),
+    "response": lambda motion: response_spectrum(motion, (["0", "0.5"], "s"), (0.02, 0.05)),
+    "fourier": fourier_spectrum,
+}
+AXES = {"response": ["damping_ratio", "period"], "fourier": ["frequency"]}
+
+
+@pytest.fixture(scope="module")
+def motion():
+    rng = np.random.default_rng(7)
+    across, upwards = (np.convolve(rng.normal(size=300), np.ones(5)) for _ in range(2))
+    return rf.GroundMotion.from_arrays(
+        (across, "m/s^2"), "0.02 s", vertical=(upwards, "m/s^2"), name="noise"
+    )
+
+
+@pytest.fixture(params=ANSWERS)
+def answer(request, motion):
+    return request.param, ANSWERS[request.param](motion)
+
+
+def test_every_variable_is_one_of_the_table(answer):
+    kind, dataset = answer
+    for name, variable in dataset.data_vars.items():
+        row = SCHEMA[name]
+        assert variable.dims == row.dims
+        assert variable.dtype == np.float64
+        assert variable.attrs == row.attributes()
+        assert np.isfinite(variable.values).all()
+    assert list(dataset.coords) == AXES.get(kind, ["time"] if "path" in kind else [])
+    for name, axis in dataset.coords.items():
+        assert axis.dims == (name,)
+        assert axis.attrs["units"] == SCHEMA[name].attributes()["units"]
+        assert axis.attrs["long_name"]
+
+
+def test_it_says_what_it_belongs_to(answer, motion):
+    _, dataset = answer
+    assert dataset.attrs["Conventions"] == "CF-1.11"
+    assert dataset.attrs["motion"] == "noise"
+    assert dataset.attrs["motion_sha256"] == motion.sha256
+    assert dataset.attrs["component"] in ("horizontal", "vertical")
+    assert all(isinstance(value, str | int | float) for value in dataset.attrs.values())
+
+
+def test_it_is_written_and_read(answer, tmp_path):
+    _, dataset = answer
+    dataset.to_netcdf(tmp_path / "answer.nc")
+    with xr.open_dataset(tmp_path / "answer.nc") as again:
+        xr.testing.assert_identical(again.load(), dataset)
+        for name in dataset.coords:
+            assert "_FillValue" not in again[name].encoding
+
+
+def test_answers_are_the_callers_own(motion):
+    path = velocity_and_displacement(motion)
+    path.ground_acceleration[:] = 0.0
+    assert np.abs(motion.si.acceleration).max() > 0.0
+
+
+def test_the_guide_tells_of_every_variable():
+    text = GUIDE.read_text(encoding="utf-8")
+    motion = rf.GroundMotion.sine_pulse().with_vertical(rf.GroundMotion.sine_pulse())
+    for make in ANSWERS.values():
+        dataset = make(motion)
+        for name in (*dataset.data_vars, *dataset.coords):
+            assert f"`{name}`" in text, name
+
+
+def test_measures_of_a_block_come_with_a_block_only(motion):
+    plain, with_block = intensity_measures(motion), intensity_measures(motion, block=BLOCK)
+    assert set(plain.data_vars) < set(with_block.data_vars)
+    assert "block" not in plain.attrs
+    for name in plain.data_vars:
+        assert plain[name].item() == with_block[name].item()
+    assert with_block.overturning_angle.item() == math.atan(0.25)
+
+
+def test_a_frame_stands_for_a_block(motion):
+    frame = rf.FrameEquivalent(width="4 m", height="18 m", mass="99 t", shape_factor=1.4)
+    measures = intensity_measures(motion, block=frame)
+    p = math.sqrt(1.4 / 2.4 * 9.80665 / math.hypot(2.0, 9.0))
+    assert measures.relative_peak_ground_velocity.item() == pytest.approx(
+        p * measures.peak_ground_velocity.item() / (9.80665 * 4.0 / 18.0)
+    )
+
+
+def test_ground_that_stands_still():
+    still = rf.GroundMotion.from_arrays((np.zeros(100), "m/s^2"), "0.01 s")
+    measures = intensity_measures(still, block=BLOCK)
+    undefined = {"mean_period", "predominant_pulse_period", "relative_pulse_frequency"}
+    of_the_block = {"overturning_angle", "uplift_acceleration"}
+    for name, value in measures.data_vars.items():
+        if name in undefined:
+            assert math.isnan(value.item()), name
+        elif name not in of_the_block:
+            assert value.item() == 0.0, name
+    assert (response_spectrum(still).spectral_displacement == 0.0).all()
+    assert (fourier_spectrum(still).fourier_amplitude == 0.0).all()
+
+
+def test_standardized_absolute_velocity_leaves_out_weak_seconds():
+    samples = np.concatenate([np.full(110, 0.2), np.full(80, 1.0), np.full(161, 0.1)])
+    motion = rf.GroundMotion.from_arrays((samples, "m/s^2"), "0.01 s")
+    measures = intensity_measures(motion, gravity="10 m/s^2")  # threshold 0.25 m/s^2
+    total = 0.01 * (samples.sum() - 0.5 * (samples[0] + samples[-1]))
+    assert measures.cumulative_absolute_velocity.item() == pytest.approx(total)
+    second = 0.01 * (samples[100:200].sum() + 0.5 * (samples[200] - samples[100]))
+    assert measures.standardized_cumulative_absolute_velocity.item() == pytest.approx(second)
