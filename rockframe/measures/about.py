@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from rockframe.measures.shaking import GroundComponent
+from rockframe.measures.component import GroundComponent
 
 if TYPE_CHECKING:
     from rockframe.motion import GroundMotion

@@ -1,15 +1,13 @@
 """Fourier spectra."""
 
-import math
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from rockframe.errors import ComponentError
 from rockframe.measures.about import about
+from rockframe.measures.component import component_of, shaking_of
 from rockframe.measures.labels import build_over
-from rockframe.measures.shaking import Array, Shaking, component_of, shaking_of
-from rockframe.motion.samples import MAXIMUM_SAMPLES
+from rockframe.shaking.fourier import transform_of
 from rockframe.units import FREQUENCY, POSITIVE, to_si
 
 if TYPE_CHECKING:
@@ -18,7 +16,6 @@ if TYPE_CHECKING:
     from rockframe.motion import GroundMotion
     from rockframe.motion.quantities import QuantityLike
 
-_TERMS: Final = 40
 _OWNER: Final = "fourier_spectrum"
 
 
@@ -79,47 +76,3 @@ def fourier_spectrum(
         title="Fourier spectrum",
         source="fast Fourier transform",
     )
-
-
-def transform_of(shaking: Shaking, resolution: float) -> tuple[Array, Any]:
-    """Compute the Fourier transform, :eq:`eq-fourier`.
-
-    Parameters
-    ----------
-    shaking : Shaking
-        Acceleration of the ground.
-    resolution : float
-        Greatest distance between frequencies; 0 for one over the length [Hz].
-
-    Returns
-    -------
-    frequency : ndarray, shape (k,)
-        [Hz]
-    transform : ndarray of complex, shape (k,)
-        [m s^-1]
-    """
-    dt, count = shaking.time_step, shaking.samples.size
-    if resolution > 0.0:
-        count = max(count, math.ceil(min(1.0 / resolution / dt, 2.0 * MAXIMUM_SAMPLES)))
-    if count > MAXIMUM_SAMPLES:
-        msg = (
-            f"{_OWNER}: a resolution of {resolution:.4g} Hz needs too many samples at "
-            f"{dt:.4g} s; give a coarser one"
-        )
-        raise ComponentError(msg)
-    frequency = np.arange(float(count // 2 + 1)) / (count * dt)
-    if not shaking.analytic:
-        return frequency, dt * np.fft.rfft(shaking.samples, count)
-    by_power = np.fft.rfft(shaking.pieces, count, axis=0)
-    moments = _moments(2.0 * np.pi * frequency * dt, by_power.shape[1])
-    return frequency, dt * (by_power * moments).sum(axis=1)
-
-
-def _moments(angle: Array, powers: int) -> Any:
-    """Integrate x^j exp(-i angle x) from 0 to 1, for j = 0, 1, ...; angle up to pi."""
-    moments = np.zeros((angle.size, powers), dtype=complex)
-    term = np.ones(angle.size, dtype=complex)
-    for n in range(_TERMS):
-        moments += term[:, None] / (n + 1 + np.arange(powers))
-        term *= -1j * angle / (n + 1)
-    return moments

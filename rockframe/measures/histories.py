@@ -3,14 +3,9 @@
 from typing import TYPE_CHECKING
 
 from rockframe.measures.about import about
-from rockframe.measures.polynomials import integral_of, knots_of
-from rockframe.measures.shaking import (
-    Array,
-    GroundComponent,
-    Shaking,
-    component_of,
-    shaking_of,
-)
+from rockframe.measures.component import GroundComponent, component_of, shaking_of
+from rockframe.shaking.path import ground_path
+from rockframe.shaking.polynomials import knots_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -18,25 +13,6 @@ if TYPE_CHECKING:
     from rockframe.motion import GroundMotion
 
 _PREFIX = {GroundComponent.HORIZONTAL: "", GroundComponent.VERTICAL: "vertical_"}
-
-
-def ground_path(shaking: Shaking) -> tuple[Array, Array]:
-    """Integrate the acceleration of ground that starts from rest.
-
-    Parameters
-    ----------
-    shaking : Shaking
-        The acceleration.
-
-    Returns
-    -------
-    velocity : ndarray, shape (n, m + 1)
-        Polynomials from sample to sample [m s^-1].
-    displacement : ndarray, shape (n, m + 2)
-        Polynomials from sample to sample [m].
-    """
-    velocity = integral_of(shaking.pieces, shaking.time_step)
-    return velocity, integral_of(velocity, shaking.time_step)
 
 
 def velocity_and_displacement(

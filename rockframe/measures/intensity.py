@@ -9,23 +9,24 @@ from rockframe.components import Block
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError
 from rockframe.measures.about import about
-from rockframe.measures.accumulation import (
+from rockframe.measures.component import GroundComponent, component_of, shaking_of
+from rockframe.shaking.accumulation import (
     absolute_velocity_history,
     arias_history,
     standardized_absolute_velocity,
 )
-from rockframe.measures.durations import exceedance, time_between_shares
-from rockframe.measures.histories import ground_path
-from rockframe.measures.periods import (
+from rockframe.shaking.durations import exceedance, time_between_shares
+from rockframe.shaking.path import ground_path
+from rockframe.shaking.periods import (
     HOUSNER_PERIODS,
     PULSE_PERIODS,
     housner_intensity,
     mean_period,
     pulse_period,
 )
-from rockframe.measures.polynomials import greatest
-from rockframe.measures.shaking import GroundComponent, Shaking, component_of, shaking_of
-from rockframe.measures.spectra import DAMPING_RATIO, check_cost
+from rockframe.shaking.polynomials import greatest
+from rockframe.shaking.shaking import Shaking
+from rockframe.shaking.spectra import DAMPING_RATIO, check_cost
 from rockframe.units import ACCELERATION, POSITIVE, to_ratio, to_si
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     import xarray as xr
 
-    from rockframe.measures.shaking import Array
+    from rockframe.shaking.shaking import Array
 
 
 def build_over(

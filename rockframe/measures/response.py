@@ -6,9 +6,10 @@ import numpy as np
 
 from rockframe.errors import ComponentError
 from rockframe.measures.about import about
+from rockframe.measures.component import component_of, shaking_of
 from rockframe.measures.labels import build_over
-from rockframe.measures.shaking import Array, component_of, shaking_of
-from rockframe.measures.spectra import DAMPING_RATIO, check_cost, pseudo_spectra, spectral_peaks
+from rockframe.shaking.shaking import Array
+from rockframe.shaking.spectra import DAMPING_RATIO, check_cost, pseudo_spectra, spectral_peaks
 from rockframe.units import TIME, to_ratio, to_si_values
 
 if TYPE_CHECKING:

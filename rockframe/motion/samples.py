@@ -6,20 +6,18 @@ import hashlib
 import math
 import struct
 from dataclasses import dataclass
-from typing import Any, Final, TypeAlias
+from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
 
 from rockframe.errors import ComponentError
-
-Array: TypeAlias = npt.NDArray[np.float64]
-
-MAXIMUM_SAMPLES: Final = 50_000_000
-"""A motion that would be longer than this is taken for a slip of the pen."""
+from rockframe.shaking.shaking import MAXIMUM_SAMPLES as MAXIMUM_SAMPLES
+from rockframe.shaking.shaking import Array as Array
 
 _OWNER: Final = "GroundMotion"
-_COEFFICIENTS: Final = 6
+COEFFICIENTS: Final = 6
+"""Of a polynomial between two samples of an analytic motion."""
 _ROUNDING: Final = 1e-14
 
 
@@ -68,8 +66,8 @@ class MotionSI:
             raise ComponentError(msg)
         shapes = {
             "vertical": (samples.size,),
-            "pieces": (samples.size - 1, _COEFFICIENTS),
-            "vertical_pieces": (samples.size - 1, _COEFFICIENTS),
+            "pieces": (samples.size - 1, COEFFICIENTS),
+            "vertical_pieces": (samples.size - 1, COEFFICIENTS),
         }
         for name, shape in shapes.items():
             values = getattr(self, name)
@@ -158,7 +156,7 @@ def value_at(dt: float, samples: Array, pieces: Array | None, time: npt.ArrayLik
         values = samples[interval] * (1.0 - u) + samples[interval + 1] * u
     else:
         values = np.zeros_like(u)
-        for power in reversed(range(_COEFFICIENTS)):
+        for power in reversed(range(COEFFICIENTS)):
             values = values * u + pieces[interval, power]
     return np.where((place >= 0.0) & (place <= last * (1.0 + _ROUNDING)), values, 0.0)
 
@@ -181,7 +179,7 @@ def peak_of(samples: Array, pieces: Array | None) -> float:
     highest = float(np.max(np.abs(samples)))
     if pieces is None:
         return highest
-    powers = np.arange(1.0, _COEFFICIENTS)
+    powers = np.arange(1.0, COEFFICIENTS)
     slopes = pieces[:, 1:] * powers
     turning = np.flatnonzero(slopes[:, 0] * slopes.sum(axis=1) < 0.0)
     polynomial: Any = np.polynomial.polynomial

@@ -24,8 +24,8 @@ from rockframe.results.outcome import (
     scalars,
     verdict,
 )
-from rockframe.results.variables.runs import Direction
 from rockframe.results.stages import cascade_energies, cascade_events, cascade_histories
+from rockframe.results.variables.runs import Direction
 from rockframe.simulation.plan import Plan
 from rockframe.simulation.provenance import motion_attributes
 from rockframe.solve.cascade import Cascade, integrate_cascade

@@ -112,7 +112,7 @@ def test_a_slower_and_weaker_motion_is_the_same_to_a_larger_block():
 
 
 def test_the_same_straight_lines_in_finer_steps():
-    coarse, fine = motion(), motion().resampled(f"{STEP / 7.0!r} s")
+    coarse, fine = motion(), motion().resampled(f"{STEP / 7.0!r} s", interpolation="linear")
     one, other = spectra(coarse), spectra(fine)
     for name in one.data_vars:
         np.testing.assert_allclose(other[name], one[name], rtol=3e-6)

@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from rockframe.measures.shaking import Array
+from rockframe.shaking.shaking import Array
 
 _HALVINGS: Final = 54  # to the last bit of x
 
@@ -134,11 +134,12 @@ def greatest(pieces: Array) -> float:
     Parameters
     ----------
     pieces : ndarray, shape (n, m)
-        Coefficients of a continuous function.
+        Coefficients; the function may jump from piece to piece.
 
     Returns
     -------
     float
     """
     _, between = turning_points(pieces)
-    return float(np.max(np.abs(np.concatenate([knots_of(pieces), between]))))
+    ends = np.concatenate([pieces[:, 0], pieces.sum(axis=1), between])
+    return float(np.max(np.abs(ends)))

@@ -1,4 +1,4 @@
-"""Processing of sampled motions: plain functions on SI arrays."""
+"""Other time steps and lengths for the same motion."""
 
 from __future__ import annotations
 
@@ -10,10 +10,12 @@ import numpy as np
 from rockframe.motion.samples import Array, value_at
 
 _INTEGER_RATIO: Final = 1e-9
-_PADDING_PERIODS: Final = 1.5
 _ANTI_ALIAS_ORDER: Final = 8
 _ANTI_ALIAS_RIPPLE: Final = 0.05
 _ANTI_ALIAS_EDGE: Final = 0.8
+_SINC_REACH: Final = 64
+_SINC_WINDOW: Final = 12.0
+_OVERSAMPLING: Final = 8
 
 
 def sample_count(duration: float, time_step: float) -> int:
@@ -49,6 +51,54 @@ def refined(dt: float, samples: Array, pieces: Array | None, time_step: float) -
     duration = (samples.size - 1) * dt
     instants = np.minimum(np.arange(sample_count(duration, time_step)) * time_step, duration)
     return value_at(dt, samples, pieces, instants)
+
+
+def band_limited(dt: float, samples: Array, time_step: float) -> Array:
+    """Sample more finely the motion without frequencies beyond the old Nyquist frequency.
+
+    Parameters
+    ----------
+    dt : float
+        Present time step [s].
+    samples : ndarray, shape (n,)
+        Present samples [m s^-2].
+    time_step : float
+        New, smaller time step [s].
+
+    Returns
+    -------
+    ndarray
+        The old samples are among the new ones if the ratio is an integer.
+
+    Notes
+    -----
+    A sinc of 64 old samples to each side under a Kaiser window, whose zeros fall on the old
+    samples. Beyond its ends the motion is taken to go on along the straight line
+    through its first and last sample, from which it differs by nothing there. A ratio that
+    is no integer is read off a quintic spline through samples at least eight times finer.
+    """
+    from scipy import signal as module
+
+    signal: Any = module
+    ratio = dt / time_step
+    times = round(ratio)
+    whole = abs(ratio - times) <= _INTEGER_RATIO * ratio
+    if not whole:
+        times = math.ceil(_OVERSAMPLING * ratio)
+    sinc = np.sinc(np.arange(-_SINC_REACH * times, _SINC_REACH * times + 1) / times)
+    taps = sinc * signal.windows.kaiser(sinc.size, _SINC_WINDOW)
+    # without division by the sum, so that the old samples stay as they are
+    fine: Array = signal.resample_poly(samples, times, 1, window=taps / times, padtype="line")
+    fine = fine[: (samples.size - 1) * times + 1]
+    if whole:
+        fine[::times] = samples
+        return fine
+    from scipy import interpolate as splines
+
+    spline: Any = splines
+    duration = (samples.size - 1) * dt
+    instants = np.minimum(np.arange(sample_count(duration, time_step)) * time_step, duration)
+    return spline.make_interp_spline(np.arange(fine.size) * (dt / times), fine, k=5)(instants)
 
 
 def coarsened(dt: float, samples: Array, time_step: float) -> Array:
@@ -93,71 +143,6 @@ def coarsened(dt: float, samples: Array, time_step: float) -> Array:
     return spline.make_interp_spline(np.arange(samples.size) * dt, smooth, k=degree)(instants)
 
 
-def filtered(
-    dt: float, samples: Array, *, low: float | None, high: float | None, order: int
-) -> Array:
-    """Run a Butterworth filter forwards and backwards over the zero-padded samples.
-
-    Parameters
-    ----------
-    dt : float
-        Time step [s].
-    samples : ndarray, shape (n,)
-        Samples [m s^-2].
-    low, high : float or None
-        Corners of the pass band; at least one [Hz].
-    order : int
-        Of each of the two passes.
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        Padding removed.
-    """
-    from scipy import signal as module
-
-    signal: Any = module
-    if low is None:
-        corners: Any = high
-        kind = "lowpass"
-    elif high is None:
-        corners, kind = low, "highpass"
-    else:
-        corners, kind = [low, high], "bandpass"
-    sos = signal.butter(order, corners, btype=kind, fs=1.0 / dt, output="sos")
-    lowest = min(corner for corner in (low, high) if corner is not None)
-    padding = padding_samples(dt, lowest, order)
-    rest = np.zeros(padding)
-    padded = np.concatenate([rest, samples, rest])
-    result: Array = signal.sosfiltfilt(sos, padded, padtype=None)
-    return result[padding : padding + samples.size]
-
-
-def padding_samples(dt: float, lowest: float, order: int) -> int:
-    """Count the zeros to put at each end: 1.5 order/f of the lowest corner."""
-    return math.ceil(_PADDING_PERIODS * order / (lowest * dt))
-
-
-def without_baseline(samples: Array, order: int) -> Array:
-    """Subtract the polynomial of degree `order` that fits best (least squares).
-
-    Parameters
-    ----------
-    samples : ndarray, shape (n,)
-        Samples [m s^-2].
-    order : int
-        Degree; 0 takes the mean away.
-
-    Returns
-    -------
-    ndarray, shape (n,)
-    """
-    place = np.linspace(-1.0, 1.0, samples.size)
-    basis = np.polynomial.legendre.legvander(place, order)
-    coefficients = np.linalg.lstsq(basis, samples, rcond=None)[0]
-    return samples - basis @ coefficients
-
-
 def padded(samples: Array, pieces: Array | None, count: int) -> tuple[Array, Array | None]:
     """Append zeros (a still ground) up to `count` samples.
 
@@ -173,12 +158,11 @@ def padded(samples: Array, pieces: Array | None, count: int) -> tuple[Array, Arr
     Returns
     -------
     tuple of ndarray
-        Samples and pieces.
+        Samples and pieces. With pieces the ground stops at once, without them by a
+        straight line over one time step.
     """
     missing = count - samples.size
     longer = np.concatenate([samples, np.zeros(missing)])
     if pieces is None or missing == 0:
         return longer, pieces
-    rest = np.zeros((missing, pieces.shape[1]))
-    rest[0, :2] = samples[-1], -samples[-1]
-    return longer, np.concatenate([pieces, rest])
+    return longer, np.concatenate([pieces, np.zeros((missing, pieces.shape[1]))])

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from rockframe.measures.polynomials import roots_of
-from rockframe.measures.shaking import Array, Shaking
+from rockframe.shaking.polynomials import roots_of
+from rockframe.shaking.shaking import Array, Shaking
 
 
 def time_between_shares(history: Array, time_step: float, start: float, end: float) -> float:

@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 
-from rockframe.measures.polynomials import integral_of, knots_of, turning_points
-from rockframe.measures.shaking import Array, Shaking
+from rockframe.shaking.polynomials import integral_of, knots_of, turning_points
+from rockframe.shaking.shaking import Array, Shaking
 
 
 def arias_history(shaking: Shaking, gravity: float) -> Array:

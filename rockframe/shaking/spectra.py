@@ -5,8 +5,8 @@ from typing import Final
 import numpy as np
 
 from rockframe.errors import ComponentError
-from rockframe.measures.polynomials import greatest
-from rockframe.measures.shaking import Array, Shaking
+from rockframe.shaking.polynomials import greatest
+from rockframe.shaking.shaking import Array, Shaking
 from rockframe.units import Condition
 
 DAMPING_RATIO: Final = Condition("from 0 to 1", lambda value: 0.0 <= value <= 1.0)
@@ -37,7 +37,7 @@ def check_cost(shaking: Shaking, periods: Array, *, owner: str) -> None:
         Too many steps.
     """
     # imported here, because it loads the compiler
-    from rockframe.measures.oscillator import STEPS_PER_PERIOD
+    from rockframe.shaking.oscillator import STEPS_PER_PERIOD
 
     moving = periods[periods > 0.0]
     if moving.size == 0:
@@ -80,7 +80,7 @@ def spectral_peaks(shaking: Shaking, periods: Array, damping_ratio: float) -> Ar
     if COMPILED:
         found[moving] = _march(shaking, periods[moving], damping_ratio)
     else:
-        from rockframe.measures.filtering import filter_all
+        from rockframe.shaking.filtering import filter_all
 
         found[moving] = filter_all(
             shaking.pieces, shaking.time_step, damping_ratio, periods[moving]
@@ -117,7 +117,7 @@ def pseudo_spectra(
 
 
 def _march(shaking: Shaking, periods: Array, damping_ratio: float) -> Array:
-    from rockframe.measures.oscillator import QUANTITIES, STEPS_PER_PERIOD, march_all
+    from rockframe.shaking.oscillator import QUANTITIES, STEPS_PER_PERIOD, march_all
 
     pieces = np.array(shaking.pieces, order="C")
     powers = pieces.shape[1]

@@ -5,9 +5,9 @@ from typing import Final
 
 import numpy as np
 
-from rockframe.measures.fourier import transform_of
-from rockframe.measures.shaking import Array, Shaking
-from rockframe.measures.spectra import spectral_peaks
+from rockframe.shaking.fourier import transform_of
+from rockframe.shaking.shaking import Array, Shaking
+from rockframe.shaking.spectra import spectral_peaks
 
 MEAN_PERIOD_BAND: Final = (0.25, 20.0)
 """Frequencies that the mean period looks at [Hz] (Rathje et al. 1998)."""

@@ -1,0 +1,1 @@
+"""Processing of sampled motions: plain functions on SI arrays."""

@@ -1,0 +1,68 @@
+"""Butterworth filters."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Final
+
+import numpy as np
+
+from rockframe.motion.samples import Array
+
+_PADDING_PERIODS: Final = 1.5
+
+
+def butterworth(
+    dt: float,
+    samples: Array,
+    *,
+    low: float | None,
+    high: float | None,
+    order: int,
+    causal: bool = False,
+) -> Array:
+    """Run a Butterworth filter over the zero-padded samples.
+
+    Parameters
+    ----------
+    dt : float
+        Time step [s].
+    samples : ndarray, shape (n,)
+        Samples [m s^-2].
+    low, high : float or None
+        Corners of the pass band; at least one [Hz].
+    order : int
+        Of each pass.
+    causal : bool, optional
+        Run it forwards only, instead of forwards and backwards.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        Padding removed.
+    """
+    from scipy import signal as module
+
+    signal: Any = module
+    if low is None:
+        corners: Any = high
+        kind = "lowpass"
+    elif high is None:
+        corners, kind = low, "highpass"
+    else:
+        corners, kind = [low, high], "bandpass"
+    sos = signal.butter(order, corners, btype=kind, fs=1.0 / dt, output="sos")
+    lowest = min(corner for corner in (low, high) if corner is not None)
+    padding = padding_samples(dt, lowest, order)
+    if causal:  # at rest before the motion, which zeros would not change
+        once: Array = signal.sosfilt(sos, samples)
+        return once
+    rest = np.zeros(padding)
+    padded = np.concatenate([rest, samples, rest])
+    result: Array = signal.sosfiltfilt(sos, padded, padtype=None)
+    return result[padding : padding + samples.size]
+
+
+def padding_samples(dt: float, lowest: float, order: int) -> int:
+    """Count the zeros to put at each end: 1.5 order/f of the lowest corner."""
+    return math.ceil(_PADDING_PERIODS * order / (lowest * dt))

@@ -1,0 +1,1 @@
+"""Ground motions in numbers: integrals, durations, oscillators, transforms; SI arrays only."""

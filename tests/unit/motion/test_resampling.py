@@ -1,0 +1,156 @@
+"""Resampling: the same function, a band-limited one, or a smoothed one."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from rockframe.errors import ComponentError, UnitsError
+from rockframe.motion import GroundMotion
+
+RNG = np.random.default_rng(20)
+NOISE = RNG.normal(size=400)
+STEP = 0.01
+
+
+def motion(values=NOISE, step=STEP):
+    return GroundMotion.from_arrays((values, "m/s^2"), f"{step!r} s", name="noise")
+
+
+def tone(frequency, step=STEP, count=4001):
+    """A tone that swells and fades, so that its ends do not matter."""
+    time = np.arange(count) * step
+    swell = np.sin(np.pi * time / time[-1]) ** 2
+    return swell * np.sin(2.0 * np.pi * frequency * time)
+
+
+@pytest.mark.parametrize("times", [2, 3, 5, 16])
+def test_refining_by_a_whole_number_keeps_the_function(times):
+    fine = motion().resampled(f"{STEP / times!r} s", interpolation="linear")
+    assert len(fine) == 399 * times + 1
+    assert fine.si.acceleration[::times].tolist() == NOISE.tolist()
+    time = RNG.uniform(0.0, 3.99, 2000)
+    assert fine.si.at(time) == pytest.approx(motion().si.at(time), abs=1e-12)
+
+
+def test_refining_by_another_number_reads_off_the_straight_lines():
+    fine = motion().resampled("0.003 s", interpolation="linear")
+    time = np.arange(len(fine)) * 0.003
+    assert time[-1] == pytest.approx(3.99)
+    expected = np.interp(time, np.arange(400) * STEP, NOISE)
+    assert fine.si.acceleration == pytest.approx(expected, abs=1e-12)
+
+
+def test_refining_says_what_is_left_out():
+    fine = motion().resampled("0.007 s")
+    assert fine.si.duration == pytest.approx(570 * 0.007)
+    assert motion().resampled("0.0071 s").history[-1] == (
+        "the last 0.0069 s, less than one new time step, are left out"
+    )
+
+
+def test_resampling_to_the_same_step_changes_nothing():
+    assert motion().resampled("10 ms").sha256 == motion().sha256
+
+
+@pytest.mark.parametrize("step", [0.02, 0.05, 0.025, 0.0333])
+def test_coarsening_keeps_slow_and_removes_fast_motion_without_delay(step):
+    slow, fast = tone(0.1 / step), tone(0.7 / step)  # 0.2 and 1.4 of the new Nyquist frequency
+    coarse = motion(slow).resampled(f"{step} s")
+    assert coarse.si.time_step == step
+    time = np.arange(len(coarse)) * step
+    swell = np.sin(np.pi * time / 40.0) ** 2
+    exact = swell * np.sin(2.0 * np.pi * 0.1 / step * time)
+    assert coarse.si.acceleration == pytest.approx(exact, abs=0.02)
+    assert motion(fast).resampled(f"{step} s").si.peak < 1e-3
+    assert "anti-alias" in coarse.history[-1] or "anti-alias" in coarse.history[-2]
+
+
+def test_coarsening_by_picking_samples_would_alias():
+    assert np.max(np.abs(tone(0.7 / 0.05)[::5])) > 0.5
+
+
+def test_coarsening_keeps_a_constant():
+    assert motion(np.full(400, 2.0)).resampled("0.03 s").si.acceleration == pytest.approx(
+        2.0, rel=0.02
+    )
+
+
+@pytest.mark.parametrize(
+    ("step", "error", "words"),
+    [
+        ("0 s", ComponentError, "greater than zero"),
+        ("-1 s", ComponentError, "greater than zero"),
+        ("4 s", ComponentError, "exceeds the duration"),
+        ("1e-9 s", ComponentError, "more than 50000000 samples"),
+        (0.01, UnitsError, "time_step needs a time"),
+    ],
+)
+def test_resampling_that_is_refused(step, error, words):
+    with pytest.raises(error, match=words):
+        motion().resampled(step)
+
+
+@pytest.mark.parametrize("count", [2, 3, 5, 12])
+def test_short_motions_can_be_coarsened(count):
+    coarse = motion(NOISE[:count]).resampled(f"{STEP * (count - 1)!r} s")
+    assert len(coarse) == 2
+    assert np.isfinite(coarse.si.acceleration).all()
+
+
+@pytest.mark.parametrize("times", [2, 5, 16])
+def test_band_limited_samples_keep_the_old_ones(times):
+    fine = motion().resampled(f"{STEP / times!r} s")
+    assert fine.si.acceleration[::times].tolist() == NOISE.tolist()
+
+
+@pytest.mark.parametrize("step", [0.005, 0.001, 0.003, 0.0071])
+@pytest.mark.parametrize("frequency", [1.0, 20.0, 40.0])
+def test_band_limited_samples_are_those_of_the_tone(step, frequency):
+    """Up to 0.8 of the Nyquist frequency, where straight lines are far off."""
+    fine = motion(tone(frequency)).resampled(f"{step} s")
+    time = np.arange(len(fine)) * step
+    swell = np.sin(np.pi * time / 40.0) ** 2
+    exact = swell * np.sin(2.0 * np.pi * frequency * time)
+    assert fine.si.acceleration == pytest.approx(exact, abs=3e-5)
+    if frequency > 10.0:
+        lines = motion(tone(frequency)).resampled(f"{step} s", interpolation="linear")
+        assert np.abs(lines.si.acceleration - exact).max() > 0.1
+
+
+def test_band_limited_samples_of_a_straight_line_are_on_it():
+    line = np.linspace(2.0, 5.0, 301)
+    fine = motion(line).resampled("0.002 s")
+    assert fine.si.acceleration == pytest.approx(np.linspace(2.0, 5.0, 1501), abs=1e-5)
+
+
+def test_fine_samples_have_nothing_beyond_the_old_nyquist_frequency():
+    steep = RNG.normal(size=4000) * np.sin(np.pi * np.arange(4000) / 3999.0) ** 2
+    fine = motion(steep).resampled("0.0025 s").si.acceleration
+    power = np.abs(np.fft.rfft(fine)) ** 2
+    frequency = np.fft.rfftfreq(fine.size, 0.0025)
+    assert power[frequency > 56.0].sum() < 1e-10 * power.sum()
+
+
+def test_an_unknown_interpolation_is_refused():
+    with pytest.raises(ComponentError, match="interpolation must be 'band-limited' or 'linear'"):
+        motion().resampled("0.005 s", interpolation="cubic")
+
+
+def test_refined_pulse_is_sampled_from_the_function():
+    fine = GroundMotion.sine_pulse("1 m/s^2", "1 Hz").resampled("0.001 s")
+    exact = np.sin(2.0 * np.pi * 0.001 * np.arange(1001))
+    assert fine.si.acceleration == pytest.approx(exact, abs=1e-12)
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    values=st.lists(st.floats(-50.0, 50.0), min_size=2, max_size=40),
+    times=st.integers(1, 6),
+)
+def test_refining_never_changes_the_function(values, times):
+    coarse = motion(values)
+    fine = coarse.resampled(f"{STEP / times!r} s", interpolation="linear")
+    time = np.linspace(0.0, coarse.si.duration, 97)
+    assert fine.si.at(time) == pytest.approx(coarse.si.at(time), abs=1e-9)
+    assert fine.si.peak == pytest.approx(coarse.si.peak, rel=1e-14, abs=1e-300)
