@@ -1,37 +1,38 @@
-"""Analytic motions, sampled so finely that a simulation cannot tell the difference."""
+"""From a function of time to samples, with a quintic polynomial between each two."""
 
 from __future__ import annotations
 
 import math
-from typing import Final
+from collections.abc import Callable
+from typing import TypeAlias
 
 import numpy as np
 
 from rockframe.errors import ComponentError
 from rockframe.motion.samples import MAXIMUM_SAMPLES, Array, MotionSI
 
-INTERVALS_PER_CYCLE: Final = 128
-"""Quintic pieces per cycle: (2 pi/128)^6/(64 * 720) = 3.0e-13 of the amplitude."""
+Shape: TypeAlias = Callable[[Array, float], tuple[Array, Array, Array]]
+"""Gives a, a' h and a'' h^2 [m s^-2] at some places, and for the step h between them.
 
-_HALF: Final = 0.5
-_QUARTER: Final = 0.25
+Places and step count periods; the derivatives are those by the place.
+"""
 
 
-def sine(
-    *, amplitude: float, frequency: float, cycles: float, phase: float = 0.0, owner: str
+def sampled(
+    shape: Shape, *, length: float, frequency: float, intervals: int, owner: str
 ) -> MotionSI:
-    """Build ``a(t) = amplitude sin(2 pi frequency t + phase)``.
+    """Sample a function that is smooth from the start to the end of the motion.
 
     Parameters
     ----------
-    amplitude : float
-        [m s^-2]
-    frequency : float
-        Cyclic frequency f [Hz].
-    cycles : float
+    shape : callable
+        The function.
+    length : float
         Length over the period [1].
-    phase : float, optional
-        Phase at the start [rad].
+    frequency : float
+        One over the period [Hz].
+    intervals : int
+        Least number of polynomials per period.
     owner : str
         Constructor, for the message.
 
@@ -44,42 +45,22 @@ def sine(
     Raises
     ------
     ComponentError
-        More samples than can be meant.
+        More samples than can be meant, or values that are not finite.
     """
-    if cycles * INTERVALS_PER_CYCLE > MAXIMUM_SAMPLES:
-        msg = f"{owner}: {cycles:.6g} cycles are more than can be sampled; shorten the motion"
+    if length * intervals > MAXIMUM_SAMPLES:
+        msg = f"{owner}: {length:.6g} cycles are more than can be sampled; shorten the motion"
         raise ComponentError(msg)
-    count = max(1, math.ceil(cycles * INTERVALS_PER_CYCLE))
-    turns_per_step = cycles / count
-    time_step = turns_per_step / frequency
+    count = max(1, math.ceil(length * intervals))
+    step = length / count
+    time_step = step / frequency
     if not (math.isfinite(time_step) and time_step > 0.0):
         msg = f"{owner}: a frequency of {frequency!r} Hz is outside what can be sampled"
         raise ComponentError(msg)
-    turns = np.arange(count + 1) * cycles / count + phase / (2.0 * math.pi)
+    places = np.arange(count + 1) * length / count
     with np.errstate(over="ignore", invalid="ignore"):
-        value = amplitude * sine_of_turns(turns)
-        angle = 2.0 * math.pi * turns_per_step  # omega dt
-        slope = amplitude * sine_of_turns(turns + _QUARTER) * angle
-        curvature = -value * angle**2
+        value, slope, curvature = shape(places, step)
         pieces = hermite_pieces(value, slope, curvature)
     return MotionSI(time_step=time_step, acceleration=value, pieces=pieces)
-
-
-def sine_of_turns(turns: Array) -> Array:
-    """Compute sin(2 pi x), exactly zero at every half turn.
-
-    Parameters
-    ----------
-    turns : ndarray
-        x, in full turns [1].
-
-    Returns
-    -------
-    ndarray
-    """
-    rest = turns - np.round(turns)
-    folded = np.where(np.abs(rest) > _QUARTER, np.copysign(_HALF, rest) - rest, rest)
-    return np.sin(2.0 * math.pi * folded)
 
 
 def hermite_pieces(value: Array, slope: Array, curvature: Array) -> Array:

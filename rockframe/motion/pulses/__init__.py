@@ -1,0 +1,1 @@
+"""Analytic motions, sampled so finely that a simulation cannot tell the difference."""

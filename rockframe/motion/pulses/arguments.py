@@ -1,0 +1,143 @@
+"""The arguments of an analytic motion: read once, then told in name, history and recipe."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final, TypedDict
+
+from rockframe.errors import ComponentError
+from rockframe.units import ANGLE, Condition, Measure, Unit, to_ratio, to_si
+
+if TYPE_CHECKING:
+    from rockframe.motion.quantities import QuantityLike, RatioLike
+
+_SPELLED: Final = {
+    Unit.METRE_PER_SECOND_SQUARED: "m/s^2",
+    Unit.METRE_PER_SECOND: "m/s",
+}
+
+
+class Labels(TypedDict):
+    """What a motion is told about itself besides its samples."""
+
+    name: str
+    history: tuple[str, ...]
+    recipe: dict[str, Any]
+
+
+class Arguments:
+    """Reader of the arguments of one constructor; remembers what it read.
+
+    Parameters
+    ----------
+    kind : type
+        Class whose constructor it is, for the messages.
+    constructor : str
+        Name of the constructor.
+    title : str
+        What it builds, in words.
+    """
+
+    def __init__(self, kind: type, constructor: str, title: str) -> None:
+        self.owner = f"{kind.__name__}.{constructor}"
+        self._title = title
+        self._recipe: dict[str, Any] = {"constructor": constructor}
+        self._short: list[str] = []
+        self._exact: list[str] = []
+
+    def quantity(
+        self,
+        name: str,
+        value: QuantityLike,
+        measure: Measure,
+        condition: Condition | None = None,
+        *,
+        label: str = "",
+    ) -> float:
+        """Read a quantity.
+
+        Parameters
+        ----------
+        name : str
+            Argument.
+        value : str or Quantity
+            What the user gave.
+        measure : Measure
+            What the argument needs.
+        condition : Condition, optional
+            Range that it must lie in.
+        label : str, optional
+            Words for it in name and history, where its unit does not tell what it is.
+
+        Returns
+        -------
+        float
+            In the SI unit of `measure`.
+
+        Raises
+        ------
+        UnitsError
+            A wrong unit, or none.
+        ComponentError
+            Not finite, or outside `condition`.
+        """
+        number = to_si(value, measure, owner=self.owner, name=name, condition=condition)
+        return self.settled(name, number, measure, label=label)
+
+    def settled(self, name: str, number: float, measure: Measure, *, label: str = "") -> float:
+        """Remember a quantity that is in SI units already; parameters as of :meth:`quantity`."""
+        unit = _SPELLED.get(measure.unit, str(measure.unit))
+        words = f"{label} " if label else ""
+        self._remember(
+            name,
+            f"{number!r} {measure.unit}",
+            f"{words}{number:.6g} {unit}",
+            f"{words}{number!r} {unit}",
+        )
+        return number
+
+    def phase(self, value: QuantityLike | None) -> float:
+        """Read the argument ``phase``, an angle; zero, and not told, if it is None [rad]."""
+        return 0.0 if value is None else self.quantity("phase", value, ANGLE, label="phase")
+
+    def ratio(self, name: str, value: RatioLike, condition: Condition) -> float:
+        """Read a pure ratio; parameters and errors as of :meth:`quantity`."""
+        number = to_ratio(value, owner=self.owner, name=name, condition=condition)
+        self._remember(name, number, f"{name}: {number:.6g}", f"{name}: {number!r}")
+        return number
+
+    def whole(self, name: str, value: object, highest: int) -> int:
+        """Read a whole number from 1 to `highest`; ComponentError if it is none."""
+        if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= highest:
+            msg = f"{self.owner}: {name} must be a whole number from 1 to {highest}, got {value!r}"
+            raise ComponentError(msg)
+        self._remember(name, value, f"{name}: {value}", f"{name}: {value}")
+        return value
+
+    def switch(self, name: str, value: object) -> bool:
+        """Read True or False; ComponentError if it is neither."""
+        if not isinstance(value, bool):
+            msg = f"{self.owner}: {name} must be True or False, got {value!r}"
+            raise ComponentError(msg)
+        words = name if value else f"not {name}"
+        self._remember(name, value, words, words)
+        return value
+
+    def labels(self) -> Labels:
+        """Tell what was read.
+
+        Returns
+        -------
+        Labels
+            Keyword arguments of the motion: a name with rounded numbers, a sentence
+            for its history and the recipe with exact ones.
+        """
+        return {
+            "name": ", ".join([self._title, *self._short]),
+            "history": (f"{self._title}: {', '.join(self._exact)}",),
+            "recipe": self._recipe,
+        }
+
+    def _remember(self, name: str, kept: str | float, short: str, exact: str) -> None:
+        self._recipe[name] = kept
+        self._short.append(short)
+        self._exact.append(exact)

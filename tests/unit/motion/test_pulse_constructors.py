@@ -1,0 +1,258 @@
+"""Constructors of analytic motions: arguments, names, recipes."""
+
+import json
+import math
+
+import pytest
+
+from rockframe.errors import ComponentError, SchemaError, UnitsError
+from rockframe.motion import GroundMotion
+from rockframe.motion.analytic import ANALYTIC
+from rockframe.motion.cycloidal import CycloidalMotions
+from rockframe.motion.wavelets import WaveletMotions
+
+MOTIONS = {
+    "sine_pulse": GroundMotion.sine_pulse("0.3 g_0", "1.7 Hz", "130 %"),
+    "cosine_pulse": GroundMotion.cosine_pulse("1.1 m/s^2", "1.7 Hz", 0.7),
+    "half_sine_pulse": GroundMotion.half_sine_pulse("0.3 g_0", "370 ms"),
+    "harmonic": GroundMotion.harmonic("10 cm/s^2", "0.3 Hz", "7.1 s", "31 deg"),
+    "type_a_pulse": GroundMotion.type_a_pulse("73 cm/s", "1.1 s"),
+    "type_b_pulse": GroundMotion.type_b_pulse("-73 cm/s", "1.1 s"),
+    "type_c_pulse": GroundMotion.type_c_pulse("73 cm/s", "1.1 s", 3),
+    "ricker_wavelet": GroundMotion.ricker_wavelet("0.31 g_0", "1.1 s", antisymmetric=True),
+    "mavroeidis_papageorgiou_pulse": GroundMotion.mavroeidis_papageorgiou_pulse(
+        "73 cm/s", "0.7 Hz", 1.9, "31 deg"
+    ),
+    "double_impulse": GroundMotion.double_impulse("73 cm/s", "0.37 s", "0.011 s"),
+}
+DEFAULTS = [
+    GroundMotion.cosine_pulse("1 m/s^2", "1 Hz"),
+    GroundMotion.harmonic("1 m/s^2", "1 Hz", "1 s"),
+    GroundMotion.type_c_pulse("1 m/s", "1 s"),
+    GroundMotion.ricker_wavelet("1 m/s^2", "1 s"),
+    GroundMotion.mavroeidis_papageorgiou_pulse("1 m/s", "1 Hz", 2),
+    GroundMotion.double_impulse("1 m/s", "0.7 s"),
+]
+
+
+def test_every_constructor_may_stand_in_a_recipe():
+    built = {
+        name
+        for kind in (CycloidalMotions, WaveletMotions)
+        for name, member in vars(kind).items()
+        if isinstance(member, classmethod)
+    }
+    assert built == set(ANALYTIC)
+    assert set(MOTIONS) == set(ANALYTIC)
+
+
+@pytest.mark.parametrize("motion", [*MOTIONS.values(), *DEFAULTS])
+def test_a_description_builds_the_motion_again(motion):
+    description = json.loads(json.dumps(motion.to_dict()))
+    again = GroundMotion.from_dict(description)
+    assert again == motion
+    assert again.to_dict() == motion.to_dict()
+
+
+@pytest.mark.parametrize("motion", [*MOTIONS.values(), *DEFAULTS])
+def test_through_a_file_bit_for_bit(motion, tmp_path):
+    import xarray as xr
+
+    motion.to_dataset().to_netcdf(tmp_path / "motion.nc")
+    with xr.open_dataset(tmp_path / "motion.nc") as stored:
+        again = GroundMotion.from_dataset(stored)
+    assert again == motion
+    assert GroundMotion.from_dict(again.to_dict()) == motion
+
+
+@pytest.mark.parametrize("constructor", ANALYTIC)
+def test_what_was_done_to_a_motion_is_described_too(constructor):
+    motion = MOTIONS[constructor].scaled(peak="0.2 g_0").window("0.1 s", "0.3 s")
+    again = GroundMotion.from_dict(json.loads(json.dumps(motion.to_dict())))
+    assert again.sha256 == motion.sha256
+    assert motion.si.pieces is not None
+
+
+NAMES = {
+    "sine_pulse": "sine pulse, 2.94199 m/s^2, 1.7 Hz, cycles: 1.3",
+    "cosine_pulse": "cosine pulse, 1.1 m/s^2, 1.7 Hz, cycles: 0.7",
+    "half_sine_pulse": "half-sine pulse, 2.94199 m/s^2, 0.37 s",
+    "harmonic": "harmonic motion, 0.1 m/s^2, 0.3 Hz, 7.1 s, phase 0.541052 rad",
+    "type_a_pulse": "type A pulse, 0.73 m/s, 1.1 s",
+    "type_b_pulse": "type B pulse, -0.73 m/s, 1.1 s",
+    "type_c_pulse": "type C pulse, 0.73 m/s, 1.1 s, order: 3",
+    "ricker_wavelet": "Ricker wavelet, 3.04006 m/s^2, 1.1 s, antisymmetric",
+    "mavroeidis_papageorgiou_pulse": (
+        "pulse of Mavroeidis and Papageorgiou, 0.73 m/s, 0.7 Hz, cycles: 1.9, phase 0.541052 rad"
+    ),
+    "double_impulse": ("double impulse, 0.73 m/s, interval 0.37 s, impulses of 0.0108824 s"),
+}
+
+
+@pytest.mark.parametrize(("constructor", "name"), NAMES.items())
+def test_names(constructor, name):
+    motion = MOTIONS[constructor]
+    assert motion.name == name
+    (sentence,) = motion.history
+    assert sentence.startswith(name.split(",")[0] + ": ")
+
+
+def test_history_and_recipe_have_every_digit():
+    motion = GroundMotion.type_a_pulse("0.1234567890123 m/s", "1.1 s")
+    assert motion.history == ("type A pulse: 0.1234567890123 m/s, 1.1 s",)
+    assert motion.to_dict() == {
+        "type": "GroundMotion",
+        "constructor": "type_a_pulse",
+        "velocity": "0.1234567890123 m s^-1",
+        "period": "1.1 s",
+    }
+    plain = GroundMotion.ricker_wavelet("1 m/s^2", "1 s")
+    assert plain.name == "Ricker wavelet, 1 m/s^2, 1 s, not antisymmetric"
+    assert plain.to_dict()["antisymmetric"] is False
+
+
+def test_a_subclass_builds_itself_and_signs_its_errors():
+    class Shaking(GroundMotion):
+        __slots__ = ()
+
+    assert type(Shaking.type_b_pulse("1 m/s", "1 s")) is Shaking
+    with pytest.raises(UnitsError, match=r"^Shaking\.type_b_pulse: velocity"):
+        Shaking.type_b_pulse(1.0, "1 s")
+
+
+# one pulse under several names -------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("duration", [0.37, 0.5, 2.0])
+def test_half_sine_is_half_a_cycle(duration):
+    half = GroundMotion.half_sine_pulse("2 m/s^2", f"{duration!r} s")
+    assert (
+        half.si.digest()
+        == GroundMotion.sine_pulse("2 m/s^2", f"{0.5 / duration!r} Hz", 0.5).si.digest()
+    )
+    assert half.si.duration == pytest.approx(duration, rel=1e-15)
+    assert half.si.acceleration[[0, -1]].tolist() == [0.0, 0.0]
+
+
+@pytest.mark.parametrize("period", [0.37, 0.5, 2.0])
+def test_type_a_is_one_sine_and_type_b_one_cosine(period):
+    frequency = f"{1.0 / period!r} Hz"
+    velocity = f"{period / math.pi!r} m/s"
+    for made, known, size in (
+        (GroundMotion.type_a_pulse, GroundMotion.sine_pulse, 1.0),
+        (GroundMotion.type_b_pulse, GroundMotion.cosine_pulse, 2.0),
+    ):
+        ours = made(velocity, f"{period!r} s").si
+        theirs = known(f"{size} m/s^2", frequency, 1).si
+        assert ours.time_step == theirs.time_step
+        assert ours.acceleration == pytest.approx(theirs.acceleration, abs=1e-15 * size)
+        assert ours.pieces == pytest.approx(theirs.pieces, abs=1e-14 * size)
+
+
+def test_cosine_is_a_harmonic_of_a_quarter_turn():
+    cosine = GroundMotion.cosine_pulse("2 m/s^2", "1.5 Hz", 3)
+    assert (
+        cosine.si.digest()
+        == GroundMotion.harmonic("2 m/s^2", "1.5 Hz", "2 s", "90 deg").si.digest()
+    )
+    assert cosine.si.acceleration[[0, 64, -1]].tolist() == [2.0, -2.0, 2.0]
+
+
+@pytest.mark.parametrize("constructor", ANALYTIC)
+def test_the_opposite_amplitude_is_the_opposite_motion(constructor):
+    recipe = MOTIONS[constructor].to_dict()
+    first = "velocity" if "velocity" in recipe else "amplitude"
+    number, unit = recipe[first].split(" ", 1)
+    turned = GroundMotion.from_dict({**recipe, first: f"{-float(number)!r} {unit}"})
+    assert turned.si.acceleration.tolist() == (-MOTIONS[constructor].si.acceleration).tolist()
+
+
+# what is refused ---------------------------------------------------------------------------------
+
+LEAST = {
+    "cosine_pulse": {"amplitude": "1 m/s^2", "frequency": "1 Hz"},
+    "half_sine_pulse": {"amplitude": "1 m/s^2", "duration": "1 s"},
+    "type_a_pulse": {"velocity": "1 m/s", "period": "1 s"},
+    "type_b_pulse": {"velocity": "1 m/s", "period": "1 s"},
+    "type_c_pulse": {"velocity": "1 m/s", "period": "1 s"},
+    "ricker_wavelet": {"amplitude": "1 m/s^2", "period": "1 s"},
+    "mavroeidis_papageorgiou_pulse": {"velocity": "1 m/s", "frequency": "1 Hz", "cycles": 2},
+    "double_impulse": {"velocity": "1 m/s", "interval": "1 s"},
+}
+KINDS = {
+    "amplitude": "an acceleration",
+    "velocity": "a velocity",
+    "frequency": "a cyclic frequency",
+    "period": "a time",
+    "duration": "a time",
+    "interval": "a time",
+    "cycles": "a pure ratio",
+}
+ARGUMENTS = [(constructor, name) for constructor, given in LEAST.items() for name in given]
+
+
+@pytest.mark.parametrize(("constructor", "name"), ARGUMENTS)
+@pytest.mark.parametrize("wrong", ["1 kg", None])
+def test_wrong_units(constructor, name, wrong):
+    words = rf"^GroundMotion\.{constructor}: {name} needs {KINDS[name]}"
+    with pytest.raises(UnitsError, match=words):
+        getattr(GroundMotion, constructor)(**{**LEAST[constructor], name: wrong})
+
+
+@pytest.mark.parametrize(("constructor", "name"), ARGUMENTS)
+@pytest.mark.parametrize("number", ["nan", "inf", "-1", "0"])
+def test_numbers_out_of_range(constructor, name, number):
+    unit = LEAST[constructor][name].split(" ", 1)[1] if name != "cycles" else ""
+    arguments = {**LEAST[constructor], name: f"{number} {unit}".strip()}
+    if name in ("amplitude", "velocity") and number in ("-1", "0"):
+        getattr(GroundMotion, constructor)(**arguments)
+        return
+    with pytest.raises(ComponentError, match=rf"^GroundMotion\.{constructor}: {name} must be"):
+        getattr(GroundMotion, constructor)(**arguments)
+
+
+@pytest.mark.parametrize(
+    ("constructor", "arguments", "words"),
+    [
+        ("cosine_pulse", {"cycles": 1e12}, "more than can be sampled"),
+        ("type_a_pulse", {"period": "1e-320 s"}, "outside what can be sampled"),
+        ("type_b_pulse", {"velocity": "1e308 m/s"}, "must be finite"),
+        ("type_c_pulse", {"order": 0}, "order must be a whole number from 1 to 1000, got 0"),
+        ("type_c_pulse", {"order": 1001}, "order must be a whole number"),
+        ("type_c_pulse", {"order": 1.5}, "order must be a whole number"),
+        ("type_c_pulse", {"order": True}, "order must be a whole number"),
+        ("type_c_pulse", {"order": "2"}, "order must be a whole number"),
+        ("ricker_wavelet", {"antisymmetric": 1}, "antisymmetric must be True or False, got 1"),
+        ("ricker_wavelet", {"antisymmetric": "no"}, "antisymmetric must be True or False"),
+        ("ricker_wavelet", {"period": "1e-320 s"}, "outside what can be sampled"),
+        ("mavroeidis_papageorgiou_pulse", {"cycles": 0.99}, "cycles must be at least 1"),
+        ("mavroeidis_papageorgiou_pulse", {"cycles": 1e9}, "more than can be sampled"),
+        ("double_impulse", {"pulse_duration": "1.01 s"}, "must not exceed interval = 1 s"),
+        ("double_impulse", {"pulse_duration": "1e-12 s"}, "too short to be sampled"),
+        ("double_impulse", {"pulse_duration": "1e-320 s"}, "too short to be sampled"),
+        ("double_impulse", {"pulse_duration": "0 s"}, "pulse_duration must be greater than zero"),
+        ("double_impulse", {"velocity": "1e308 m/s"}, "must be finite"),
+    ],
+)
+def test_values_that_mean_nothing(constructor, arguments, words):
+    with pytest.raises(ComponentError, match=words):
+        getattr(GroundMotion, constructor)(**{**LEAST[constructor], **arguments})
+
+
+def test_an_impulse_has_a_time_for_its_length():
+    with pytest.raises(UnitsError, match="pulse_duration needs a time"):
+        GroundMotion.double_impulse("1 m/s", "1 s", 0.01)
+    with pytest.raises(UnitsError, match="phase needs an angle"):
+        GroundMotion.mavroeidis_papageorgiou_pulse("1 m/s", "1 Hz", 2, 0.5)
+
+
+def test_a_recipe_of_another_constructor_is_refused():
+    with pytest.raises(SchemaError, match=r"expected one of .*type_c_pulse"):
+        GroundMotion.from_dict({"constructor": "square_pulse"})
+
+
+@pytest.mark.parametrize("parts", [*range(1, 60), 333, 1000])
+def test_the_length_of_an_impulse_survives_its_own_rounding(parts):
+    made = GroundMotion.double_impulse("1 m/s", "0.37 s", f"{0.37 / parts!r} s")
+    assert len(made) == 16 * (parts + 1) + 1
+    assert GroundMotion.from_dict(made.to_dict()) == made
