@@ -1,0 +1,43 @@
+"""The figure of the stochastic motions, drawn when the manual is built."""
+
+import numpy as np
+from matplotlib.figure import Figure
+
+import rockframe as rf
+from rockframe.motion.stochastic import PointSource
+
+COLOURS = {5.0: "#88aacc", 6.0: "#cc6677", 7.0: "#1f3a5f"}
+SEEDS = range(1, 21)
+
+
+def stochastic_motions() -> Figure:
+    """Draw spectra of three earthquakes at 20 km, and one motion of each."""
+    figure = Figure(figsize=(9.0, 3.8), layout="constrained")
+    layout = figure.add_gridspec(3, 2)
+    spectra = figure.add_subplot(layout[:, 0])
+    target = np.geomspace(0.03, 50.0, 400)
+    for row, (magnitude, colour) in enumerate(COLOURS.items()):
+        motions = [rf.GroundMotion.stochastic(magnitude, "20 km", seed) for seed in SEEDS]
+        drawn = [rf.fourier_spectrum(motion) for motion in motions]
+        frequency = drawn[0].frequency.values[1:]
+        powers = [one.fourier_amplitude.values.ravel()[1:] ** 2 for one in drawn]
+        mean = np.sqrt(np.mean(powers, axis=0))
+        spectra.loglog(frequency, mean, color=colour, lw=0.5, alpha=0.6)
+        curve = PointSource(magnitude, 20e3).acceleration_spectrum(target)
+        spectra.loglog(target, curve, color=colour, lw=1.8, label=f"magnitude {magnitude:g}")
+        history = figure.add_subplot(layout[row, 1])
+        samples = motions[0].si.acceleration
+        time = motions[0].si.time_step * np.arange(samples.size)
+        history.plot(time, samples, color=colour, lw=0.6)
+        history.set(xlim=(0.0, 48.0), ylabel="[m/s²]")
+        if row < 2:
+            history.tick_params(labelbottom=False)
+    history.set_xlabel("time [s]")
+    spectra.set(
+        xlim=(0.03, 50.0),
+        ylim=(1e-4, 1.0),
+        xlabel="frequency [Hz]",
+        ylabel="Fourier amplitude [m/s]",
+    )
+    spectra.legend(frameon=False)
+    return figure

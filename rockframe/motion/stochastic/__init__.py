@@ -1,0 +1,7 @@
+"""Accelerograms of an earthquake that nobody recorded: the stochastic point source."""
+
+from rockframe.motion.stochastic.point_source import PointSource
+from rockframe.motion.stochastic.site import Site
+from rockframe.motion.stochastic.synthesis import accelerogram
+
+__all__ = ["PointSource", "Site", "accelerogram"]

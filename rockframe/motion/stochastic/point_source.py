@@ -1,0 +1,112 @@
+"""The spectrum and the duration that a motion has on the average."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from rockframe.motion.stochastic import path, site, source
+
+if TYPE_CHECKING:
+    from rockframe.motion.samples import Array
+
+
+@dataclass(frozen=True)
+class PointSource:
+    """An earthquake, seen from a site: all that the stochastic model knows of both.
+
+    The defaults are those of Boore and Thompson (2015) for active crustal regions.
+
+    Parameters
+    ----------
+    magnitude : float
+        Moment magnitude [1].
+    distance : float
+        Closest distance to the rupture [m].
+    stress_drop : float
+        Stress drop [Pa].
+    shear_wave_velocity : float
+        Of the crust at the source [m s^-1].
+    density : float
+        Of the crust at the source [kg m^-3].
+    quality_factor : float
+        Q0 of the crust, at 1 Hz [1].
+    quality_exponent : float
+        n of Q(f) = Q0 (f/Hz)^n [1].
+    kappa : float
+        Loss of high frequencies at the site [s].
+    site : Site
+        Ground of the site.
+    """
+
+    magnitude: float
+    distance: float
+    stress_drop: float = 10e6
+    shear_wave_velocity: float = 3_500.0
+    density: float = 2_720.0
+    quality_factor: float = 180.0
+    quality_exponent: float = 0.45
+    kappa: float = 0.035
+    site: site.Site = site.Site.ROCK_760
+
+    @property
+    def moment(self) -> float:
+        """Seismic moment [N m]."""
+        return source.seismic_moment(self.magnitude)
+
+    @property
+    def corner_frequency(self) -> float:
+        """Corner frequency of the source [Hz]."""
+        return source.corner_frequency(self.moment, self.stress_drop, self.shear_wave_velocity)
+
+    @property
+    def effective_distance(self) -> float:
+        """Distance of the point source that stands for the rupture [m]."""
+        return path.effective_distance(self.distance, self.magnitude)
+
+    @property
+    def duration(self) -> float:
+        """Duration of source and path together, :eq:`eq-duration` [s]."""
+        return 1.0 / self.corner_frequency + path.path_duration(self.effective_distance)
+
+    def displacement_spectrum(self, frequency: Array) -> Array:
+        """Compute the Fourier amplitude of the displacement, :eq:`eq-target-spectrum`.
+
+        Parameters
+        ----------
+        frequency : ndarray
+            From 0 on [Hz].
+
+        Returns
+        -------
+        ndarray
+            Root of the mean square over many motions [m s].
+        """
+        level = source.displacement_level(self.moment, self.shear_wave_velocity, self.density)
+        distance = self.effective_distance
+        return (
+            level
+            * source.source_shape(frequency, self.corner_frequency)
+            * path.geometric_spreading(distance)
+            * path.crustal_attenuation(
+                frequency, distance, self.quality_factor, self.quality_exponent
+            )
+            * site.amplification(frequency, self.site)
+            * site.diminution(frequency, self.kappa)
+        )
+
+    def acceleration_spectrum(self, frequency: Array) -> Array:
+        """Compute the Fourier amplitude of the acceleration, like :meth:`displacement_spectrum`.
+
+        Parameters
+        ----------
+        frequency : ndarray
+            From 0 on [Hz].
+
+        Returns
+        -------
+        ndarray
+            [m s^-1]
+        """
+        return (2.0 * math.pi * frequency) ** 2 * self.displacement_spectrum(frequency)
