@@ -9,7 +9,9 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Arc, Polygon, Rectangle
+from pulse_figures import cycloidal_pulses, wavelets
 from sphinx.application import Sphinx
+from stochastic_figure import stochastic_motions
 
 import rockframe as rf
 
@@ -18,10 +20,14 @@ INK = "#1f3a5f"
 
 def quickstart() -> Figure:
     """Draw the response of the quick start."""
-    block = rf.Block(width="4.85 m", height="19.4 m", mass="600 t")
-    pads = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.10)
-    motion = rf.GroundMotion.sine_pulse()
-    return rf.plot.response(rf.System(block, pads).simulate(motion, free_vibration="5 s"))
+    system = rf.System(
+        rf.FrameEquivalent(width="4 m", height="18 m", mass="99 t", shape_factor=2.92),
+        rf.TwoSpringSupport(frequency_ratio=40, damping_ratio=0.10),
+        rf.CushionCap(height="0.9 m", mass="36 t"),
+        rf.WinklerSoil(stiffness="9 MPa", damping_ratio=0.20),
+    )
+    motion = rf.GroundMotion.stochastic(6.8, "5 km", seed=29, stress_drop="20 MPa")
+    return rf.plot.response(system.simulate(motion, free_vibration="10 s"))
 
 
 def conventions() -> Figure:
@@ -132,7 +138,15 @@ def draw(app: Sphinx) -> None:
     """Draw all figures."""
     folder = Path(app.srcdir) / "reference" / "generated"
     folder.mkdir(parents=True, exist_ok=True)
-    for figure in (quickstart, conventions, three_storeys_released, six_storeys_released):
+    for figure in (
+        quickstart,
+        conventions,
+        three_storeys_released,
+        six_storeys_released,
+        cycloidal_pulses,
+        wavelets,
+        stochastic_motions,
+    ):
         figure().savefig(folder / f"{figure.__name__}.png", dpi=130)
 
 

@@ -10,39 +10,35 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 
 from rockframe.errors import ComponentError, RecordWarning, SchemaError
-from rockframe.motion.formats import read_record
-from rockframe.motion.formats.source import Request
-from rockframe.motion.operations import MotionOperations
-from rockframe.motion.pulses import sine
+from rockframe.motion.analytic import ANALYTIC, AnalyticMotions
+from rockframe.motion.operations import OPERATIONS
 from rockframe.motion.quantities import accelerations_to_si, argument_unit, declared_step
+from rockframe.motion.readers.components import component_names
+from rockframe.motion.readers.reading import read_record
+from rockframe.motion.readers.source import Request
 from rockframe.motion.samples import MotionSI
+from rockframe.motion.synthetic import SYNTHETIC, SyntheticMotions
 from rockframe.motion.value import UNNAMED
-from rockframe.units import ACCELERATION, ANGLE, FREQUENCY, POSITIVE, TIME, to_ratio, to_si
+from rockframe.units import POSITIVE, TIME, to_si
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from rockframe.motion.formats.source import PathLike
-    from rockframe.motion.quantities import ArrayLike, QuantityLike, RatioLike
+    from rockframe.motion.quantities import ArrayLike, QuantityLike
+    from rockframe.motion.readers.source import PathLike
 
-_ANALYTIC = ("sine_pulse", "harmonic")
-_OPERATIONS = (
-    "window",
-    "scaled",
-    "resampled",
-    "filtered",
-    "baseline_corrected",
-    "with_vertical",
-)
+_CONSTRUCTORS = (*ANALYTIC, *SYNTHETIC)
 _SAME_STEP = 1e-6
 
 
-class GroundMotion(MotionOperations):
+class GroundMotion(AnalyticMotions, SyntheticMotions):
     """Acceleration of the ground over time; immutable.
 
-    Build one with :meth:`read`, :meth:`from_arrays`, :meth:`sine_pulse`,
-    :meth:`harmonic` or :meth:`from_dataset`. Every processing step returns a
-    new motion and adds a sentence to its `history`.
+    Build one with :meth:`read`, :meth:`from_arrays`, :meth:`from_dataset`, or as
+    an analytic pulse: :meth:`sine_pulse`, :meth:`type_a_pulse`,
+    :meth:`ricker_wavelet` and others, or as a synthetic earthquake with
+    :meth:`stochastic`. Every processing step returns a new motion
+    and adds a sentence to its `history`.
 
     Parameters
     ----------
@@ -71,10 +67,11 @@ class GroundMotion(MotionOperations):
         cls,
         path: PathLike,
         format: str | None = None,  # noqa: A002
-        component: str | None = None,
+        component: str | tuple[str, str] | None = None,
         unit: str | None = None,
         *,
         time_step: QuantityLike | None = None,
+        response: PathLike | None = None,
     ) -> Self:
         """Read a record file.
 
@@ -85,50 +82,65 @@ class GroundMotion(MotionOperations):
         format : str, optional
             A name of :func:`rockframe.motion.formats`; recognised from the
             file unless given.
-        component : str, optional
-            Component that is expected; a file of another one is refused.
+        component : str or pair of str, optional
+            Component by its name in the file (``"HNE"``, ``"S16W"``), by its
+            direction (``"N"``, ``"090"``, ``"U"``) or by its number
+            (``"channel 3"``); a pair takes a horizontal component and sets the
+            vertical one beside it. Needed where a file has more than one
+            horizontal component.
         unit : str, optional
             Unit of the samples, where the file does not say: ``"g"``,
             ``"gal"``, ``"cm/s^2"``, ... Here ``g`` is the acceleration of gravity.
         time_step : str or Quantity, optional
             For a column of samples without times [s].
+        response : str or path-like, optional
+            StationXML with the response of the instrument, for counts in
+            miniSEED; looked for beside the file unless given.
 
         Returns
         -------
         GroundMotion
+            Its metadata name the file and its digest, and what the file says of
+            event, station, component and unit; what was done is in its history.
 
         Raises
         ------
         RecordError
-            The file cannot be read as a ground-motion record.
+            The file cannot be read as a ground-motion record, or has no such
+            component; the message lists those that it has.
         UnitsError
             `unit` is not an acceleration, or `time_step` not a time.
         ComponentError
-            `format` is unknown, or `time_step` is not positive.
+            `format` is unknown, `component` neither a name nor a pair of names,
+            or `time_step` is not positive.
 
         Warns
         -----
         RecordWarning
-            The file contradicts itself or an argument a little, or its peak or
-            time step is unusual.
+            The file contradicts itself or an argument a little, its peak or time
+            step is unusual, or its only component is vertical.
         """
         owner = f"{cls.__name__}.read"
+        horizontal, vertical = component_names(component, owner=owner)
         request = Request(
             unit=None if unit is None else argument_unit(unit, owner=owner),
             unit_name=None if unit is None else str(unit),
             time_step=None
             if time_step is None
             else to_si(time_step, TIME, owner=owner, name="time_step", condition=POSITIVE),
-            component=None if component is None else str(component),
+            component=horizontal,
+            vertical=vertical,
+            response=None if response is None else str(response),
         )
         reading = read_record(path, format, request)
         for message in reading.warnings:
             warnings.warn(message, RecordWarning, stacklevel=2)
         return cls(
             reading.si,
-            name=PurePath(path).stem,
+            name=reading.name or PurePath(path).stem,
             metadata=reading.metadata,
             history=reading.history,
+            recipe=reading.recipe,
         )
 
     @classmethod
@@ -188,104 +200,6 @@ class GroundMotion(MotionOperations):
         words = f"built from arrays: {across.size} samples at {step!r} s"
         si = MotionSI(time_step=step, acceleration=across, vertical=upwards)
         return cls(si, name=name or UNNAMED, history=(words,))
-
-    @classmethod
-    def sine_pulse(
-        cls,
-        amplitude: QuantityLike = "-9.81 m/s^2",
-        frequency: QuantityLike = "1 Hz",
-        cycles: RatioLike = 1,
-    ) -> Self:
-        """Build ``amplitude sin(2 pi frequency t)`` over some cycles, then nothing.
-
-        Parameters
-        ----------
-        amplitude : str or Quantity, optional
-            Amplitude; the defaults are those of Eq. (17) [m s^-2].
-        frequency : str or Quantity, optional
-            Cyclic frequency [Hz].
-        cycles : float, optional
-            Length over the period [1].
-
-        Returns
-        -------
-        GroundMotion
-            With polynomial pieces between samples: exact to 3e-13 of the amplitude.
-
-        Raises
-        ------
-        UnitsError
-            A wrong unit, or none.
-        ComponentError
-            Not finite, or a frequency or length that is not positive.
-        """
-        owner = f"{cls.__name__}.sine_pulse"
-        peak = to_si(amplitude, ACCELERATION, owner=owner, name="amplitude")
-        hertz = to_si(frequency, FREQUENCY, owner=owner, name="frequency", condition=POSITIVE)
-        count = to_ratio(cycles, owner=owner, name="cycles", condition=POSITIVE)
-        return cls(
-            sine(amplitude=peak, frequency=hertz, cycles=count, owner=owner),
-            name=f"sine pulse, {peak:.6g} m/s^2, {hertz:.6g} Hz, cycles: {count:.6g}",
-            history=(f"sine pulse: {peak!r} m/s^2, {hertz!r} Hz, cycles: {count!r}",),
-            recipe={
-                "constructor": "sine_pulse",
-                "amplitude": f"{peak!r} {ACCELERATION.unit}",
-                "frequency": f"{hertz!r} {FREQUENCY.unit}",
-                "cycles": count,
-            },
-        )
-
-    @classmethod
-    def harmonic(
-        cls,
-        amplitude: QuantityLike,
-        frequency: QuantityLike,
-        duration: QuantityLike,
-        phase: QuantityLike | None = None,
-    ) -> Self:
-        """Build ``amplitude sin(2 pi frequency t + phase)`` for some time.
-
-        Parameters
-        ----------
-        amplitude : str or Quantity
-            Amplitude [m s^-2].
-        frequency : str or Quantity
-            Cyclic frequency [Hz].
-        duration : str or Quantity
-            Length [s].
-        phase : str or Quantity, optional
-            Phase at the start; zero unless given [rad].
-
-        Returns
-        -------
-        GroundMotion
-            With polynomial pieces between samples: exact to 3e-13 of the amplitude.
-
-        Raises
-        ------
-        UnitsError
-            A wrong unit, or none.
-        ComponentError
-            Not finite, or a frequency or duration that is not positive.
-        """
-        owner = f"{cls.__name__}.harmonic"
-        peak = to_si(amplitude, ACCELERATION, owner=owner, name="amplitude")
-        hertz = to_si(frequency, FREQUENCY, owner=owner, name="frequency", condition=POSITIVE)
-        length = to_si(duration, TIME, owner=owner, name="duration", condition=POSITIVE)
-        shift = 0.0 if phase is None else to_si(phase, ANGLE, owner=owner, name="phase")
-        start = "" if phase is None else f", phase {shift!r} rad"
-        return cls(
-            sine(amplitude=peak, frequency=hertz, cycles=length * hertz, phase=shift, owner=owner),
-            name=f"harmonic motion, {peak:.6g} m/s^2, {hertz:.6g} Hz, {length:.6g} s",
-            history=(f"harmonic motion: {peak!r} m/s^2, {hertz!r} Hz, {length!r} s{start}",),
-            recipe={
-                "constructor": "harmonic",
-                "amplitude": f"{peak!r} {ACCELERATION.unit}",
-                "frequency": f"{hertz!r} {FREQUENCY.unit}",
-                "duration": f"{length!r} {TIME.unit}",
-                **({} if phase is None else {"phase": f"{shift!r} {ANGLE.unit}"}),
-            },
-        )
 
     def to_dataset(self) -> xr.Dataset:
         """Write the motion as a dataset that plain xarray can store.
@@ -365,18 +279,19 @@ class GroundMotion(MotionOperations):
             )
             msg = f"found only {known or 'a description'} of a record; supply the record itself"
             raise SchemaError(msg)
-        if constructor not in _ANALYTIC:
-            msg = f"found the constructor {constructor!r}; expected one of {', '.join(_ANALYTIC)}"
+        if constructor not in _CONSTRUCTORS:
+            known = ", ".join(_CONSTRUCTORS)
+            msg = f"found the constructor {constructor!r}; expected one of {known}"
             raise SchemaError(msg)
         try:
             motion = getattr(cls, constructor)(**arguments)
             for operation in operations:
                 ((name, given),) = operation.items()
-                if name not in _OPERATIONS:
-                    msg = f"found the operation {name!r}; expected one of {', '.join(_OPERATIONS)}"
+                if name not in OPERATIONS:
+                    msg = f"found the operation {name!r}; expected one of {', '.join(OPERATIONS)}"
                     raise SchemaError(msg)
-                if name == "with_vertical":
-                    given = {"other": cls.from_dict(given["other"])}
+                if "other" in given:
+                    given = {**given, "other": cls.from_dict(given["other"])}
                 motion = getattr(motion, name)(**given)
         except TypeError as problem:
             msg = f"found arguments that do not fit {constructor} or what was done to it: {problem}"

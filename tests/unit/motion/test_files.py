@@ -75,14 +75,14 @@ def test_pipe_is_refused_without_waiting(tmp_path):
 
 
 def test_formats_are_listed_and_can_be_named(write):
-    assert set(formats()) == {"peer-at2", "text"}
+    assert {"peer-at2", "text"} <= {entry.name for entry in formats()}
     motion = GroundMotion.read(write(AT2, "record.unknown"), format="peer-at2")
     assert motion == GroundMotion.read(write(AT2, "record.unknown"))
     assert motion.metadata["format"] == "peer-at2"
 
 
 def test_unknown_format(write):
-    with pytest.raises(ComponentError, match="format must be one of 'peer-at2', 'text', got 'xls'"):
+    with pytest.raises(ComponentError, match=r"one of 'peer-at2', .*'text', got 'xls'"):
         GroundMotion.read(write(AT2), format="xls")
 
 

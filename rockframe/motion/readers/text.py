@@ -6,16 +6,16 @@ import math
 import re
 from typing import TYPE_CHECKING, Final
 
-from rockframe.motion.formats.checks import (
+from rockframe.motion.readers.checks import (
     check_asked_time_step,
-    check_component,
     check_time_step,
     choose_unit,
 )
-from rockframe.motion.formats.columns import HEADER_LINES, Table, read_table, split_header
-from rockframe.motion.formats.numbers import ends_inside_number
-from rockframe.motion.formats.source import Metadata, Record, Request, Source, shown
-from rockframe.motion.formats.timing import uniform_step
+from rockframe.motion.readers.columns import HEADER_LINES, Table, read_table, split_header
+from rockframe.motion.readers.components import Component, choose_component
+from rockframe.motion.readers.numbers import ends_inside_number
+from rockframe.motion.readers.source import Metadata, Record, Request, Source, shown
+from rockframe.motion.readers.timing import uniform_step
 from rockframe.motion.unit_names import acceleration_unit, other_quantity
 
 if TYPE_CHECKING:
@@ -30,7 +30,8 @@ TIME_UNITS: Final = {
     **dict.fromkeys(("ms", "msec", "millisecond", "milliseconds"), 1e-3),
 }
 
-_BRACKETED: Final = re.compile(r"[(\[{]\s*([^()\[\]{}]*(?:\([^()]*\))?[^()\[\]{}]*?)\s*[)\]}]")
+# brackets inside brackets once, as in [1/(s^2)]; no blank can be matched in two ways
+_BRACKETED: Final = re.compile(r"[(\[{]([^()\[\]{}]*(?:\([^()]*\)[^()\[\]{}]*)?)[)\]}]")
 _STATED: Final = re.compile(
     r"\bunits?\s*(?:\bof\b|\bare\b|\bis\b|[:=])\s*[(\[]?\s*([^\s()\[\],;]+)", re.IGNORECASE
 )
@@ -41,7 +42,7 @@ _OTHER_KIND: Final = re.compile(r"(?<![a-z])(vel|disp)", re.IGNORECASE)
 
 def recognises(source: Source) -> bool:
     """Tell whether a row of numbers stands near the top."""
-    return any(re.match(r"\s*[-+.\d]", line) for line in source.lines[: 4 * HEADER_LINES])
+    return any(re.match(r"\s*[-+.\d]", line) for line in source.top(4 * HEADER_LINES))
 
 
 def read(source: Source, request: Request) -> Record:
@@ -63,20 +64,15 @@ def read(source: Source, request: Request) -> Record:
     RecordError
         Not one or two columns of numbers, an uneven time step, or no unit.
     """
-    table = read_table(source)
+    table = read_table(source, most_columns=2)
     rows, columns = table.values.shape
-    if columns > 2:
-        found = f"{columns} columns"
-        expected = "one (acceleration) or two (time, acceleration)"
-        raise source.refuse(found=found, expected=expected, line=table.lines[0])
     if rows < 2:
         found = "one row of numbers"
         raise source.refuse(found=found, expected="at least two samples", line=table.lines[0])
-    if ends_inside_number(source.text, [row[-1] for row in table.fields[-50:]]):
+    if ends_inside_number(source, table.last_fields):
         found = f"the end of the file inside a number ({rows} samples)"
         raise source.refuse(found=found, expected="a complete file", line=table.lines[-1])
     names = _column_names(source, table)
-    check_component(source, request, None)
     unit_name, unit_line = _acceleration_unit(source, table, asked=request.unit is not None)
     unit, as_read, warnings = choose_unit(source, request, unit_name, unit_line)
     metadata: Metadata = {"unit_as_read": as_read}
@@ -92,7 +88,8 @@ def read(source: Source, request: Request) -> Record:
         if start != 0.0:
             metadata["start_time"] = start
     samples = table.values[:, -1].copy()
-    return Record(time_step, samples, unit, metadata, warnings=tuple(warnings))
+    record = Record(time_step, samples, unit, metadata, warnings=tuple(warnings))
+    return choose_component(source, request, [Component(None, lambda: record)])
 
 
 def _asked_step(source: Source, request: Request) -> float:
@@ -106,9 +103,9 @@ def _asked_step(source: Source, request: Request) -> float:
 
 
 def _step(source: Source, table: Table, scale: float) -> float:
-    step, misfit = uniform_step(table.values[:, 0], [row[0] for row in table.fields])
+    step, misfit = uniform_step(table.values[:, 0], table.first_fields)
     if misfit is not None:
-        before, after = table.fields[misfit - 1][0], table.fields[misfit][0]
+        before, after = table.first_fields[misfit - 1 : misfit + 1]
         found = f"the time {after} after {before}"
         expected = f"a uniform time step (here about {step:.6g}); resample the record first"
         raise source.refuse(found=found, expected=expected, line=table.lines[misfit])
@@ -140,7 +137,7 @@ def _column_names(source: Source, table: Table) -> list[str]:
 
 def _time_scale(source: Source, table: Table, names: list[str]) -> float:
     for name in names[:1]:
-        for unit in _BRACKETED.findall(name):
+        for unit in _in_brackets(name):
             known = TIME_UNITS.get(unit.casefold())
             if known is None:
                 line = table.header[-1][0]
@@ -154,7 +151,7 @@ def _time_scale(source: Source, table: Table, names: list[str]) -> float:
     units = {
         TIME_UNITS[unit.casefold()]
         for _, text in table.header
-        for unit in _BRACKETED.findall(text)
+        for unit in _in_brackets(text)
         if unit.casefold() in TIME_UNITS
     }
     return units.pop() if len(units) == 1 else 1.0
@@ -197,9 +194,13 @@ def _unit_candidates(table: Table) -> Iterator[tuple[int, str, bool]]:
                 yield line, field, True
         for name in _STATED.findall(text):
             yield line, name.rstrip("."), True
-        in_brackets: list[str] = _BRACKETED.findall(text)
+        in_brackets = _in_brackets(text)
         for name in in_brackets:
             yield line, name, position == 0 and name == in_brackets[-1]
+
+
+def _in_brackets(text: str) -> list[str]:
+    return [name.strip() for name in _BRACKETED.findall(text)]
 
 
 def _is_unit(name: str) -> bool:

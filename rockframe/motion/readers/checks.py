@@ -11,7 +11,7 @@ from rockframe.constants import STANDARD_GRAVITY
 from rockframe.motion.unit_names import RecordUnit, acceleration_unit, other_quantity
 
 if TYPE_CHECKING:
-    from rockframe.motion.formats.source import Request, Source
+    from rockframe.motion.readers.source import Request, Source
     from rockframe.motion.samples import Array
 
 TIME_STEP_LIMITS: Final = (1e-6, 10.0)
@@ -58,8 +58,9 @@ def choose_unit(
     if request.unit is not None and request.unit_name is not None:
         warnings: list[str] = []
         if known is not None and not math.isclose(known.factor, request.unit.factor):
+            where = source.path if line is None else f"{source.path}, line {line}"
             warnings.append(
-                f"{source.path}, line {line}: the file names the unit {name!r}, but "
+                f"{where}: the unit of the file is {name!r}, but "
                 f"unit={request.unit_name!r} was asked for and is used"
             )
         return request.unit, request.unit_name, warnings
@@ -110,38 +111,6 @@ def check_asked_time_step(
         )
 
 
-def check_component(
-    source: Source, request: Request, named: str | None, line: int | None = None
-) -> None:
-    """Refuse a file that holds another component than the one asked for.
-
-    Parameters
-    ----------
-    source : Source
-        File.
-    request : Request
-        What the caller asked for.
-    named : str or None
-        Component that the file names, if any.
-    line : int, optional
-        Where it does, from 1.
-
-    Raises
-    ------
-    RecordError
-        The names differ, or the file gives none.
-    """
-    asked = request.component
-    if asked is None:
-        return
-    if named is None:
-        raise source.refuse(found="no name of the component", expected=f"the component {asked!r}")
-    if _component_key(named) != _component_key(asked):
-        raise source.refuse(
-            found=f"the component {named!r}", expected=f"the component {asked!r}", line=line
-        )
-
-
 def plausibility(source: Source, time_step: float, samples: Array, unit: RecordUnit) -> list[str]:
     """Say what looks like a wrong unit or a wrong time step.
 
@@ -176,8 +145,3 @@ def plausibility(source: Source, time_step: float, samples: Array, unit: RecordU
             f"{source.path}: the time step is {time_step:.4g} s (usual: {short:g} s to {long:g} s)"
         )
     return warnings
-
-
-def _component_key(name: str) -> str:
-    key = name.split("(")[0].strip().casefold()
-    return key.lstrip("0") if key.isdigit() else key

@@ -17,6 +17,9 @@ _TIES: Final = 1.0 + 1e-6
 _COARSEST_DIGIT: Final = 0.5
 _ROUNDED_AT_ALL: Final = 0.05
 _PLAIN_DIGITS: Final = 4
+_SMALLEST: Final = 1e-9
+_LARGEST: Final = 1e9
+_LONGEST_EXPONENT: Final = 5
 
 
 def uniform_step(times: Array, fields: Sequence[str]) -> tuple[float, int | None]:
@@ -44,10 +47,16 @@ def uniform_step(times: Array, fields: Sequence[str]) -> tuple[float, int | None
     1e-6 dt. A missing sample or one wrong last digit is not taken for rounding:
     a last digit of more than dt/2 allows none.
     """
-    rises = np.diff(times)
+    with np.errstate(over="ignore"):
+        rises = np.diff(times)
+    beyond = np.flatnonzero(~np.isfinite(rises))
+    if beyond.size:
+        return float(rises[beyond[0]]), int(beyond[0]) + 1
     typical = float(np.median(rises))
     if typical <= 0.0 or np.any(rises <= 0.0):
         return typical, _first_misfit(rises, typical)
+    if not _SMALLEST < typical < _LARGEST:
+        return typical, None  # of no record, in whatever unit: the caller refuses it
     digit = _last_digits(times, fields)
     digit = np.where(digit > _COARSEST_DIGIT * typical, 0.0, digit)
     noise = _JITTER * typical + _FLOAT_ULPS * np.finfo(float).eps * float(np.max(np.abs(times)))
@@ -93,11 +102,16 @@ def _last_digits(times: Array, fields: Sequence[str]) -> Array:
     # Printed with a fixed number of decimals, all times share the last digit;
     # printed with a fixed number of significant digits, it grows with the time.
     decimals, significant = -400, 1
-    for field in fields:
-        mantissa, _, exponent = field.upper().replace("D", "E").partition("E")
-        whole, _, fraction = mantissa.partition(".")
-        decimals = max(decimals, len(fraction) - int(exponent or 0))
-        significant = max(significant, len((whole + fraction).lstrip("+-0")))
+    if any("e" in field or "E" in field or "d" in field or "D" in field for field in fields):
+        for field in fields:
+            mantissa, _, exponent = field.upper().replace("D", "E").partition("E")
+            # a longer exponent is that of a zero, whose digits tell nothing
+            power = int(exponent) if 0 < len(exponent) <= _LONGEST_EXPONENT else 0
+            decimals = max(decimals, len(mantissa.partition(".")[2]) - power)
+            significant = max(significant, len(mantissa.replace(".", "").lstrip("+-0")))
+    else:
+        decimals = max(len(field.partition(".")[2]) for field in fields)
+        significant = max(1, *(len(field.replace(".", "").lstrip("+-0")) for field in fields))
     size = np.abs(times)
     leading = np.floor(np.log10(np.where(size > 0.0, size, 1.0))) + 1.0 - significant
     return 10.0 ** np.where(size > 0.0, np.maximum(-decimals, leading), -float(decimals))

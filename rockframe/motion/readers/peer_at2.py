@@ -13,14 +13,21 @@ from __future__ import annotations
 import re
 from typing import Final
 
-from rockframe.motion.formats.checks import (
+from rockframe.motion.readers.checks import (
     check_asked_time_step,
-    check_component,
     check_time_step,
     choose_unit,
 )
-from rockframe.motion.formats.numbers import NUMBER, ends_inside_number, free_format
-from rockframe.motion.formats.source import Metadata, Record, Request, Source, shown
+from rockframe.motion.readers.components import Component, choose_component
+from rockframe.motion.readers.declared import settle_count
+from rockframe.motion.readers.numbers import (
+    NUMBER,
+    ends_inside_number,
+    free_format,
+    last_fields,
+)
+from rockframe.motion.readers.orientation import UNKNOWN, orientation_of
+from rockframe.motion.readers.source import Metadata, Record, Request, Source, shown
 
 NAME: Final = "peer-at2"
 TITLE: Final = "PEER acceleration file (AT2)"
@@ -34,14 +41,13 @@ _UNIT: Final = re.compile(
     r"\bunits?\s*(?:\bof\b|\bare\b|\bis\b|[:=])\s*\(?\s*([^\s(),;]+)", re.IGNORECASE
 )
 _OTHER_KIND: Final = re.compile(r"\b(VELOCITY|DISPLACEMENT)\b", re.IGNORECASE)
+_SHOWN_DIGITS: Final = 40
 _DATE: Final = re.compile(r"\d{1,4}[/-]\d{1,2}[/-]\d{1,4}")
-_FEWEST_SHARE: Final = 0.9
-_FEWEST_MISSING: Final = 5
 
 
 def recognises(source: Source) -> bool:
     """Tell whether a line with NPTS stands near the top, or the name says AT2."""
-    top = source.lines[:HEADER_LINES]
+    top = source.top(HEADER_LINES)
     other_motion = source.suffix in {*SUFFIXES, ".vt2", ".dt2"}
     return other_motion or any(_POINTS.search(line) or _WEST1.match(line) for line in top)
 
@@ -79,44 +85,39 @@ def read(source: Source, request: Request) -> Record:
     unit_name, unit_line = _unit(source, index)
     unit, as_read, warnings = choose_unit(source, request, unit_name, unit_line)
     metadata = _description(source, index)
-    component = metadata.get("component")
-    check_component(source, request, None if component is None else str(component))
-    samples = free_format(source, index + 1)
     metadata["unit_as_read"] = as_read
-    count = int(samples.size)
-    last = len(source.text.rstrip().split("\n"))
-    if ends_inside_number(source.text, source.text[-2000:].split()[1:]):
-        found = f"the end of the file inside a number ({count} of {declared} samples)"
-        raise source.refuse(found=found, expected="a complete file", line=last)
-    missing = declared - count
-    if count < 2 or missing > max(_FEWEST_MISSING, (1.0 - _FEWEST_SHARE) * declared):
-        found = f"the end of the file after {count} samples"
-        raise source.refuse(
-            found=found, expected=f"{declared} samples (NPTS in line {index + 1})", line=last
+    given = metadata.get("component")
+    name = None if given is None else str(given)
+
+    def samples() -> Record:
+        values = free_format(source, index + 1)
+        if ends_inside_number(source, last_fields(source, index + 1)):
+            found = f"the end of the file inside a number ({values.size} of {declared} samples)"
+            raise source.refuse(found=found, expected="a complete file", line=source.last_line)
+        counts, differing = settle_count(
+            source, declared=declared, counted=int(values.size), what="NPTS", line=index + 1
         )
-    if missing:
-        metadata |= {"declared_samples": declared, "counted_samples": count}
-        warnings.append(
-            f"{source.path}, line {index + 1}: NPTS declares {declared} samples, but the file "
-            f"holds {count}; the {count} are used"
-        )
-    return Record(time_step, samples, unit, metadata, warnings=tuple(warnings))
+        said = (*warnings, *differing)
+        return Record(time_step, values, unit, {**metadata, **counts}, warnings=said)
+
+    direction = UNKNOWN if name is None else orientation_of(name)
+    return choose_component(source, request, [Component(name, samples, direction)])
 
 
 def _points_line(source: Source) -> int:
-    for index, line in enumerate(source.lines[:HEADER_LINES]):
+    for index, line in enumerate(source.top(HEADER_LINES)):
         if "NPTS" in line.upper():
             return index
     raise source.refuse(
         found=f"no number of points (NPTS) in the first {HEADER_LINES} lines, "
-        f"which begin with {shown(source.text)}",
+        f"which begin with {shown(source.start)}",
         expected="a PEER header with a line such as 'NPTS=  7999, DT=   .0050 SEC'",
         line=1,
     )
 
 
 def _points_and_step(source: Source, index: int) -> tuple[int, float]:
-    line = source.lines[index]
+    line = source.top(1, index)[0]
     west1 = _WEST1.match(line)
     points, step = _POINTS.search(line), _STEP.search(line)
     if points is not None and step is not None:
@@ -128,10 +129,10 @@ def _points_and_step(source: Source, index: int) -> tuple[int, float]:
         raise source.refuse(found=shown(line), expected=expected, line=index + 1)
     try:
         count = int(count_text.rstrip("."))
-    except ValueError:
+    except ValueError:  # a fraction, or thousands of digits
         count = 0
     if count < 1:
-        found = f"a number of points of {count_text}"
+        found = f"a number of points of {count_text[:_SHOWN_DIGITS]}"
         raise source.refuse(
             found=found, expected="a whole number of points above zero", line=index + 1
         )
@@ -139,7 +140,7 @@ def _points_and_step(source: Source, index: int) -> tuple[int, float]:
 
 
 def _check_kind(source: Source, index: int) -> None:
-    for number, line in enumerate(source.lines[:index], start=1):
+    for number, line in enumerate(source.top(index), start=1):
         kind = _OTHER_KIND.search(line)
         if kind is not None and "ACCELERATION" not in line.upper():
             found = f"a {kind.group(1).lower()} ({shown(line)})"
@@ -149,7 +150,7 @@ def _check_kind(source: Source, index: int) -> None:
 
 
 def _unit(source: Source, index: int) -> tuple[str | None, int | None]:
-    for number, line in enumerate(source.lines[:index], start=1):
+    for number, line in enumerate(source.top(index), start=1):
         match = _UNIT.search(line)
         if match is not None:
             return match.group(1).rstrip("."), number
@@ -157,7 +158,7 @@ def _unit(source: Source, index: int) -> tuple[str | None, int | None]:
 
 
 def _description(source: Source, index: int) -> Metadata:
-    header = [line.strip() for line in source.lines[:index] if line.strip()]
+    header = [line.strip() for line in source.top(index) if line.strip()]
     if not header:
         return {}
     if "PEER" not in header[0].upper() or len(header) < 3:

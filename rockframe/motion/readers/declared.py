@@ -1,0 +1,54 @@
+"""What to do when a file holds another number of samples than it announces."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+if TYPE_CHECKING:
+    from rockframe.motion.readers.source import Metadata, Source
+
+_FEWEST_SHARE: Final = 0.9
+_FEWEST_MISSING: Final = 5
+
+
+def settle_count(
+    source: Source, *, declared: int, counted: int, what: str, line: int
+) -> tuple[Metadata, list[str]]:
+    """Compare the announced number of samples with the data; the data count.
+
+    Parameters
+    ----------
+    source : Source
+        File.
+    declared, counted : int
+        Announced in the header, and there.
+    what : str
+        How the header calls the number.
+    line : int
+        Where it does, from 1.
+
+    Returns
+    -------
+    tuple of dict, list of str
+        Both numbers for the metadata, and a warning, if they differ.
+
+    Raises
+    ------
+    RecordError
+        More than a tenth (and more than five, one line) are missing: the file
+        was cut short; or fewer than two samples.
+    """
+    missing = declared - counted
+    if counted < 2 or missing > max(_FEWEST_MISSING, (1.0 - _FEWEST_SHARE) * declared):
+        raise source.refuse(
+            found=f"the end of the file after {counted} samples",
+            expected=f"{declared} samples ({what} in line {line})",
+            line=source.last_line,
+        )
+    if not missing:
+        return {}, []
+    words = (
+        f"{source.path}, line {line}: {what} declares {declared} samples, but the file "
+        f"holds {counted}; the {counted} are used"
+    )
+    return {"declared_samples": declared, "counted_samples": counted}, [words]

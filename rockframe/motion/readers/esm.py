@@ -1,0 +1,128 @@
+"""ESM and ITACA files (DYNA 1.2 ASCII): lines ``KEY: value``, then one number per line.
+
+Reference: Engineering Strong-Motion Database (ESM) and Italian Accelerometric
+Archive (ITACA), ASCII format ``HEADER_FORMAT: DYNA 1.2``, 64 header lines.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Final
+
+from rockframe.motion.readers.checks import (
+    check_asked_time_step,
+    check_time_step,
+    choose_unit,
+)
+from rockframe.motion.readers.components import Component, choose_component
+from rockframe.motion.readers.declared import settle_count
+from rockframe.motion.readers.fixed import whole
+from rockframe.motion.readers.keys import Keys, kept, needed
+from rockframe.motion.readers.numbers import (
+    ends_inside_number,
+    free_format,
+    last_fields,
+    number,
+)
+from rockframe.motion.readers.orientation import orientation_of
+from rockframe.motion.readers.source import Metadata, Record, Request, Source, shown
+
+NAME: Final = "esm"
+TITLE: Final = "ESM or ITACA file (DYNA 1.2 ASCII)"
+SUFFIXES: Final = (".asc",)
+
+_KEY: Final = re.compile(r"^([A-Z][A-Z0-9_/^ ]{2,60}?)\s*:\s*(.*?)\s*$")
+_MARKS: Final = frozenset(("SAMPLING_INTERVAL_S", "NDATA", "STREAM", "DATABASE_VERSION"))
+_LONGEST_HEADER: Final = 120
+_KEPT: Final = {
+    "EVENT_NAME": "event",
+    "EVENT_ID": "event_id",
+    "NETWORK": "network",
+    "STATION_CODE": "station",
+    "STATION_NAME": "station_name",
+    "DATE_TIME_FIRST_SAMPLE_YYYYMMDD_HHMMSS": "record_time",
+    "BASELINE_CORRECTION": "baseline_correction",
+    "PROCESSING": "processing",
+}
+
+
+def recognises(source: Source) -> bool:
+    """Tell whether the keys that the format needs stand near the top."""
+    keys = {match.group(1) for line in source.top(_LONGEST_HEADER) if (match := _KEY.match(line))}
+    return len(_MARKS & keys) >= 2
+
+
+def read(source: Source, request: Request) -> Record:
+    """Read an acceleration.
+
+    Parameters
+    ----------
+    source : Source
+        File.
+    request : Request
+        What the caller asked for.
+
+    Returns
+    -------
+    Record
+
+    Raises
+    ------
+    RecordError
+        Not an ESM file, not an acceleration, no sampling interval, or cut short.
+    """
+    header, first = _header(source)
+    kind, kind_line = header.get("DATA_TYPE", ("", 0))
+    if kind and kind.casefold() != "acceleration":
+        found = f"DATA_TYPE {shown(kind)}"
+        raise source.refuse(found=found, expected="an acceleration", line=kind_line)
+    interval, line = needed(source, header, "SAMPLING_INTERVAL_S")
+    time_step = number(interval, source, line)
+    check_time_step(source, time_step, line)
+    check_asked_time_step(source, request, time_step, line)
+    unit_name, unit_line = header.get("UNITS", ("", 0))
+    unit, as_read, warnings = choose_unit(source, request, unit_name or None, unit_line or None)
+    announced, count_line = needed(source, header, "NDATA")
+    declared = whole(announced)
+    if declared is None or declared < 1:
+        found = f"NDATA {shown(announced)}"
+        expected = "a whole number above zero"
+        raise source.refuse(found=found, expected=expected, line=count_line)
+    metadata = {**_description(header), "unit_as_read": as_read}
+    name, name_line = header.get("STREAM", ("", 0))
+
+    def samples() -> Record:
+        values = free_format(source, first)
+        if ends_inside_number(source, last_fields(source, first)):
+            found = f"the end of the file inside a number ({values.size} of {declared} samples)"
+            raise source.refuse(found=found, expected="a complete file", line=source.last_line)
+        counts, differing = settle_count(
+            source, declared=declared, counted=int(values.size), what="NDATA", line=count_line
+        )
+        said = (*warnings, *differing)
+        return Record(time_step, values, unit, {**metadata, **counts}, warnings=said)
+
+    component = Component(name or None, samples, orientation_of(name), line=name_line or None)
+    return choose_component(source, request, [component])
+
+
+def _header(source: Source) -> tuple[Keys, int]:
+    header: Keys = {}
+    for line, text in enumerate(source.top(_LONGEST_HEADER), start=1):
+        match = _KEY.match(text)
+        if match is not None:
+            header.setdefault(match.group(1), (match.group(2), line))
+        elif text.strip():
+            return header, line - 1
+    found = f"no data in the first {_LONGEST_HEADER} lines"
+    expected = "numbers below a header of 64 lines"
+    raise source.refuse(found=found, expected=expected, line=source.last_line)
+
+
+def _description(header: Keys) -> Metadata:
+    metadata = kept(header, _KEPT)
+    day = header.get("EVENT_DATE_YYYYMMDD", ("", 0))[0]
+    clock = header.get("EVENT_TIME_HHMMSS", ("", 0))[0]
+    if day:
+        metadata["event_time"] = f"{day}_{clock}" if clock else day
+    return metadata

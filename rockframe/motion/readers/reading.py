@@ -1,0 +1,172 @@
+"""From a file to a record in SI units: format, reader, checks, provenance."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+
+from rockframe.errors import RockframeError
+from rockframe.motion.readers import miniseed
+from rockframe.motion.readers.checks import check_time_step, plausibility
+from rockframe.motion.readers.registry import added_failed, by_name, recognised
+from rockframe.motion.readers.source import (
+    MAXIMUM_SAMPLES,
+    Metadata,
+    PathLike,
+    Record,
+    Request,
+    Source,
+    StoredMotion,
+    base_name,
+    load,
+)
+from rockframe.motion.samples import MotionSI
+from rockframe.motion.unit_names import RecordUnit
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from rockframe.motion.readers.registry import Format
+    from rockframe.motion.samples import Array
+
+
+@dataclass(frozen=True)
+class Reading:
+    """A record that was read, converted and checked.
+
+    Parameters
+    ----------
+    si : MotionSI
+        In SI units.
+    metadata : dict
+        What the file says about itself, and which file it was.
+    history : tuple of str
+        One sentence, or more if something was done.
+    warnings : tuple of str
+        To be issued by the caller.
+    name : str, optional
+        Of a motion that was stored with its name.
+    recipe : mapping, optional
+        Of an analytic motion that was stored.
+    """
+
+    si: MotionSI
+    metadata: Metadata
+    history: tuple[str, ...]
+    warnings: tuple[str, ...] = ()
+    name: str | None = None
+    recipe: Mapping[str, Any] | None = None
+
+
+def read_record(path: PathLike, format_name: str | None, request: Request) -> Reading:
+    """Read a record file.
+
+    Parameters
+    ----------
+    path : str or path-like
+        File.
+    format_name : str or None
+        A name of :func:`formats`; recognised from the file if None.
+    request : Request
+        What the caller asked for.
+
+    Returns
+    -------
+    Reading
+
+    Raises
+    ------
+    RecordError
+        The file cannot be read as a ground-motion record.
+    ComponentError
+        No such format.
+    """
+    chosen = None if format_name is None else by_name(str(format_name))
+    source = load(path)
+    entry = chosen or recognised(source)
+    if request.response is not None and entry.own and entry.name != miniseed.NAME:
+        expected = f"a {miniseed.TITLE}, which the argument response goes with"
+        raise source.refuse(found=f"a {entry.title}", expected=expected)
+    record = _read(entry, source, request)
+    if isinstance(record, StoredMotion):
+        return Reading(
+            record.si, record.metadata, record.history, name=record.name, recipe=record.recipe
+        )
+    check_time_step(source, record.time_step, None)
+    si = MotionSI(
+        time_step=record.time_step,
+        acceleration=_in_si(source, record.samples, record.unit),
+        vertical=None if record.vertical is None else _in_si(source, record.vertical, record.unit),
+    )
+    base = base_name(source.path)
+    metadata = {
+        **record.metadata,
+        "format": entry.name,
+        "source_file": base,
+        "source_sha256": source.sha256,
+    }
+    step = (
+        f"read {base} ({entry.title}, unit {record.metadata.get('unit_as_read', '')}): "
+        f"{record.samples.size} samples at {record.time_step!r} s"
+    )
+    usual = plausibility(source, record.time_step, record.samples, record.unit)
+    return Reading(si, metadata, (step, *record.history), (*record.warnings, *usual))
+
+
+def _read(entry: Format, source: Source, request: Request) -> Record | StoredMotion:
+    if entry.own:
+        return entry.read(source, request)
+    try:
+        record = entry.read(source, request)
+        return _checked(record)
+    except RockframeError:
+        raise
+    except Exception as problem:
+        # code of others: whatever it does not foresee is a file that it cannot read
+        raise added_failed(source, entry, problem) from problem
+
+
+def _checked(record: object) -> Record:
+    if not isinstance(record, Record):
+        msg = f"it returned {type(record).__name__}, not a Record"
+        raise TypeError(msg)
+    if not isinstance(cast("object", record.unit), RecordUnit) or not record.unit.factor > 0.0:
+        msg = f"its unit is {record.unit!r}"
+        raise TypeError(msg)
+    step = cast("object", record.time_step)
+    if isinstance(step, bool) or not isinstance(step, int | float):
+        msg = f"its time_step is {step!r}"
+        raise TypeError(msg)
+    samples = _checked_samples(record.samples)
+    vertical = None if record.vertical is None else _checked_samples(record.vertical)
+    if vertical is not None and vertical.size != samples.size:
+        msg = f"its components have {samples.size} and {vertical.size} samples"
+        raise ValueError(msg)
+    for key, value in record.metadata.items():
+        plain = isinstance(cast("object", value), str | int | float)
+        if not plain or (isinstance(value, float) and not math.isfinite(value)):
+            msg = f"its metadata {key!r} is neither a string nor a number"
+            raise TypeError(msg)
+    return replace(record, samples=samples, vertical=vertical)
+
+
+def _checked_samples(given: object) -> Array:
+    samples = np.asarray(given, dtype=np.float64)
+    if samples.ndim != 1 or not 2 <= samples.size <= MAXIMUM_SAMPLES:
+        msg = f"its samples have the shape {samples.shape}"
+        raise ValueError(msg)
+    if not np.isfinite(samples).all():
+        msg = "its samples are not all finite"
+        raise ValueError(msg)
+    return samples
+
+
+def _in_si(source: Source, samples: Array, unit: RecordUnit) -> Array:
+    with np.errstate(over="ignore"):
+        acceleration = samples * unit.factor
+    if not np.isfinite(acceleration).all():
+        raise source.refuse(found="accelerations that overflow", expected="finite accelerations")
+    return acceleration

@@ -1,0 +1,200 @@
+"""USGS SMC files: 11 lines of text, 48 integers, 50 reals, comments, data; fixed width.
+
+Integers are eight in a line, 10 characters each, reals five of 15, data eight of 10.
+Integer 16 is the number of comment lines, integer 17 the number of samples, real 2
+the sampling rate; what is not known is -32768 or 1.7E38 (integer 1 and real 1 repeat
+these marks). Without a sampling rate the data are pairs of time and acceleration.
+
+Reference: U.S. Geological Survey, National Strong-Motion Program, "SMC- and
+BBF-format Data Files" (smcfmt.txt), sections 3 and 4.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import Final
+
+from rockframe.motion.readers.checks import (
+    check_asked_time_step,
+    check_time_step,
+    choose_unit,
+)
+from rockframe.motion.readers.components import Component, choose_component
+from rockframe.motion.readers.fixed import (
+    cell,
+    fixed_width,
+    header_count,
+    header_number,
+    whole,
+)
+from rockframe.motion.readers.orientation import (
+    DOWNWARDS,
+    UNKNOWN,
+    UPWARDS,
+    Orientation,
+    azimuth_of,
+    orientation_of,
+)
+from rockframe.motion.readers.source import Metadata, Record, Request, Source, shown
+
+NAME: Final = "smc"
+TITLE: Final = "USGS SMC file"
+SUFFIXES: Final = (".smc",)
+
+UNIT: Final = "cm/sec/sec"
+"""Of the data, by the specification."""
+
+_KIND: Final = re.compile(
+    r"^\s*([0-6])\s+((?:UN)?CORRECTED ACCELEROGRAM|VELOCITY|DISPLACEMENT|"
+    r"RESPONSE SPECTRA|FOURIER\b.{0,40}|UNKNOWN)",
+    re.IGNORECASE,
+)
+_NAMED: Final = re.compile(r"\bcomponent[ \t]*=[ \t]*(\S{1,12})", re.IGNORECASE)
+_STATION: Final = re.compile(r"\bstation\s*=\s*(.{0,60}?)\s*(?:\bcomponent\s*=|$)", re.IGNORECASE)
+_EVENT: Final = re.compile(r"^\s*(\d{4})\s+(\d{1,2})\s+(\d{1,2})\s+(\d{1,4})?\s*(.{0,60})$")
+_INTEGERS: Final = 11
+_REALS: Final = 17
+_COMMENTS: Final = 27
+_INTEGER_LAYOUT: Final = {"width": 10, "per_line": 8}
+_REAL_LAYOUT: Final = {"width": 15, "per_line": 5}
+_DATA_LAYOUT: Final = {"width": 10, "per_line": 8}
+_UNKNOWN_INTEGER: Final = -32768
+_UNKNOWN_REAL: Final = 1.7e38
+_FASTEST: Final = 1e5
+_HORIZONTAL: Final = 90
+_DOWN: Final = 180
+
+
+def recognises(source: Source) -> bool:
+    """Tell whether the first line is one of the format's own."""
+    return _KIND.match(source.top(1)[0]) is not None
+
+
+def read(source: Source, request: Request) -> Record:
+    """Read an accelerogram.
+
+    Parameters
+    ----------
+    source : Source
+        File.
+    request : Request
+        What the caller asked for.
+
+    Returns
+    -------
+    Record
+
+    Raises
+    ------
+    RecordError
+        Not an SMC file, a velocity, displacement or spectrum, no sampling rate,
+        or cut short.
+    """
+    _check_kind(source)
+    name, direction = _component(source)
+
+    def samples() -> Record:
+        return _samples(source, request)
+
+    component = Component(name, samples, direction, aliases=_aliases(direction), line=6)
+    return choose_component(source, request, [component])
+
+
+def _check_kind(source: Source) -> None:
+    match = _KIND.match(source.top(1)[0])
+    if match is None:
+        expected = "a first line such as '2 CORRECTED ACCELEROGRAM'"
+        raise source.refuse(found=shown(source.start), expected=expected, line=1)
+    if "ACCELEROGRAM" not in match.group(2).upper():
+        found = f"{shown(match.group(0))}, which is no accelerogram"
+        raise source.refuse(found=found, expected="an acceleration", line=1)
+
+
+def _component(source: Source) -> tuple[str | None, Orientation]:
+    said = _NAMED.search("\n".join(source.top(_INTEGERS)))
+    name = said.group(1) if said else None
+    direction = orientation_of(name or "")
+    if direction != UNKNOWN:
+        return name, direction
+    # where the text does not tell: integer 13 is the angle from the vertical, 14 the azimuth
+    slope = whole(cell(source, _INTEGERS, 13, **_INTEGER_LAYOUT))
+    azimuth = whole(cell(source, _INTEGERS, 14, **_INTEGER_LAYOUT))
+    if slope == 0:
+        return name or "UP", Orientation(vertical=UPWARDS)
+    if slope == _DOWN:
+        return name or "DOWN", Orientation(vertical=DOWNWARDS)
+    if slope == _HORIZONTAL and azimuth is not None:
+        return name or str(azimuth), azimuth_of(float(azimuth))
+    return name, UNKNOWN
+
+
+def _aliases(direction: Orientation) -> tuple[str, ...]:
+    return () if direction.azimuth is None else (f"{direction.azimuth:g}",)
+
+
+def _samples(source: Source, request: Request) -> Record:
+    comments = header_count(
+        source, _INTEGERS, 16, **_INTEGER_LAYOUT, what="number of comment lines (integer 16)"
+    )
+    count = header_count(
+        source, _INTEGERS, 17, **_INTEGER_LAYOUT, what="number of samples (integer 17)"
+    )
+    if comments == _UNKNOWN_INTEGER:
+        comments = 0
+    first = _COMMENTS + comments
+    if comments < 0 or first >= len(source.lines):
+        found = f"{comments} comment lines announced in a file of {len(source.lines)} lines"
+        expected = "a header of 27 lines, the comments, then the data"
+        raise source.refuse(found=found, expected=expected, line=13)
+    for index, line in enumerate(source.top(comments, _COMMENTS), start=_COMMENTS + 1):
+        if not line.startswith("|"):
+            found = f"{shown(line)} among {comments} comment lines"
+            raise source.refuse(found=found, expected="a line that begins with '|'", line=index)
+    time_step = _time_step(source)
+    check_asked_time_step(source, request, time_step, _REALS + 1)
+    unit, as_read, warnings = choose_unit(source, request, UNIT, None)
+    values = fixed_width(source, first, count, **_DATA_LAYOUT)
+    problem = whole(cell(source, _INTEGERS, 18, **_INTEGER_LAYOUT))
+    if problem == 1:
+        words = f"{source.path}, line 14: the file marks a problem (integer 18); see its comments"
+        warnings.append(words)
+    metadata = {**_description(source), "unit_as_read": as_read}
+    return Record(time_step, values, unit, metadata, warnings=tuple(warnings))
+
+
+def _time_step(source: Source) -> float:
+    line = _REALS + 1
+    rate = header_number(source, _REALS, 2, **_REAL_LAYOUT, what="sampling rate (real 2)")
+    if math.isclose(rate, _UNKNOWN_REAL):
+        found = "no sampling rate (real 2): pairs of time and acceleration, unevenly sampled"
+        expected = "an evenly sampled record, such as the corrected one of the set"
+        raise source.refuse(found=found, expected=expected, line=line)
+    if not 0.0 < rate <= _FASTEST:
+        found = f"a sampling rate of {rate!r} per second"
+        expected = f"a rate above zero, at most {_FASTEST:g} per second"
+        raise source.refuse(found=found, expected=expected, line=line)
+    time_step = 1.0 / rate
+    check_time_step(source, time_step, line)
+    return time_step
+
+
+def _description(source: Source) -> Metadata:
+    lines = source.top(_INTEGERS)
+    match = _KIND.match(lines[0])
+    metadata: Metadata = {"description": match.group(2).casefold() if match else ""}
+    code = lines[2].strip().rstrip("*").strip() if len(lines) > 2 else ""
+    if code:
+        metadata["station"] = code
+    for line in lines[3:]:
+        event = _EVENT.match(line.rstrip())
+        if event is not None and "event" not in metadata:
+            year, month, day, clock, name = event.groups()
+            if name:
+                metadata["event"] = name.strip()
+            time = f"T{clock.zfill(4)[:2]}:{clock.zfill(4)[2:]}" if clock else ""
+            metadata["event_time"] = f"{year}-{month.zfill(2)}-{day.zfill(2)}{time}"
+        station = _STATION.search(line)
+        if station is not None and station.group(1):
+            metadata["station_name"] = station.group(1)
+    return metadata

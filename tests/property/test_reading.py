@@ -1,0 +1,254 @@
+"""Whatever bytes a file holds: a motion or a RecordError, soon and with little memory.
+
+``ROCKFRAME_FUZZ=20`` runs twenty times as many examples; with
+``--hypothesis-show-statistics`` pytest says how many were read and how many refused.
+"""
+
+import importlib.util
+import os
+import re
+import sys
+import time
+import tracemalloc
+
+import netCDF4
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, event, given, settings
+from hypothesis import strategies as st
+from property.damaged_files import DAMAGE, damaged
+from records import record_path
+from unit.motion.binary_samples import miniseed, netcdf, station_xml
+from unit.motion.format_samples import SAMPLES, cosmos, knet
+
+from rockframe.errors import RecordError
+from rockframe.motion import GroundMotion, formats
+
+if sys.platform != "win32":
+    import resource
+
+pytestmark = pytest.mark.filterwarnings("ignore::rockframe.errors.RecordWarning")
+
+TIMES = float(os.environ.get("ROCKFRAME_FUZZ", "1"))
+LONGEST = 1.0  # s of processor time for one file
+MOST_MEMORY = 200e6  # byte
+MOST_NUMBERS = 60
+REAL = {  # and how to ask for it
+    "NIS090.AT2": {},
+    "COSMOS_AK.BMR.BNZ_2018_us1000hyfh.V2c": {},
+    "CSMIP_IV1979_ce01336p_CHAN01.V2": {},
+    "SMC_LomaPrieta1989_0111a.smc": {},
+    "ESM_HI.ARS1..HNE.D.20190728.160908.C.ACC.ASC": {},
+    "CWA_20180206_1-EAS.dat": {"component": ("E", "U")},
+    "GEONET_20180212_211557_WPWS_20.V2A": {"component": ("S16W", "Up")},
+    "MSEED_TA.M04C..HNE_20140824.mseed": {"unit": "gal"},
+    "MSEED_TA.M04C.StationXML.xml": {},
+}
+NAMES = sorted(entry.name for entry in formats())
+ODD_ARGUMENTS = st.fixed_dictionaries(
+    {},
+    optional={
+        "format": st.sampled_from(NAMES),
+        "unit": st.sampled_from(["g", "gal"]),
+        "component": st.sampled_from(
+            ["N", "E", "U", "2", "channel 1", "HNE", ("N", "U"), ("E", "Up")]
+        ),
+        "time_step": st.just("0.01 s"),
+    },
+)
+# half of the files as they should be asked for, so that the reader comes to its numbers
+ARGUMENTS = st.just({}) | ODD_ARGUMENTS
+
+
+def examples(count: int) -> settings:
+    return settings(
+        max_examples=int(count * TIMES), deadline=None, suppress_health_check=list(HealthCheck)
+    )
+
+
+def resident_peak() -> float:
+    """The most memory that the process ever had [byte]; 0 where the system does not tell."""
+    if sys.platform == "win32":
+        return 0.0
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return float(peak) if sys.platform == "darwin" else 1024.0 * peak
+
+
+def check(path, data: bytes, **given) -> str:
+    """Read it and see that nothing but a motion or a RecordError comes of it; say which."""
+    path.write_bytes(data)
+    before, start = resident_peak(), time.process_time()
+    error = motion = None
+    try:
+        motion = GroundMotion.read(path, **given)
+    except RecordError as refusal:
+        error = refusal
+    assert time.process_time() - start < LONGEST
+    assert resident_peak() - before < MOST_MEMORY
+    if error is not None:
+        assert str(path.parent) in str(error)  # of the record, or of the response beside it
+        assert len(str(error)) < 2_500
+        lines = data.count(b"\n") + data.count(b"\r") + 1
+        assert error.line is None or error.path != str(path) or 1 <= error.line <= lines
+        return "refused"
+    assert len(motion) >= 2
+    assert abs(motion.si.acceleration).max() < float("inf")
+    assert motion.history
+    if path.suffix != ".nc":  # what is stored is what was stored
+        assert 1e-6 <= motion.si.time_step <= 10.0
+        assert motion.metadata["source_file"] == path.name
+    return "read"
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """With the libraries loaded, which takes longer than any file."""
+    path = tmp_path_factory.mktemp("fuzz")
+    (path / "s.xml").write_text(station_xml(), encoding="utf-8")
+    for name, data in (("s.nc", netcdf(path)), ("s.mseed", miniseed())):
+        (path / name).write_bytes(data)
+        if name == "s.nc" or importlib.util.find_spec("obspy") is not None:
+            GroundMotion.read(path / name)
+    return path
+
+
+@pytest.fixture(scope="module")
+def undamaged(folder):
+    """Name, bytes and a component of a file of every format."""
+    held = {key: (entry.name, entry.data, entry.component) for key, entry in SAMPLES.items()}
+    binary = {
+        "netcdf": ("d.nc", netcdf(folder), None),
+        "miniseed": ("s.mseed", miniseed(), None),
+    }
+    return held | binary
+
+
+@pytest.mark.parametrize("key", [*SAMPLES, "netcdf", "miniseed"])
+@examples(150)
+@given(damage=DAMAGE, arguments=ARGUMENTS)
+def test_damaged_files_of_every_format(folder, undamaged, key, damage, arguments):
+    name, data, component = undamaged[key]
+    asked = {"component": component, **arguments}
+    event(check(folder / name, damaged(data, damage), **asked))
+
+
+@pytest.mark.parametrize("name", REAL)
+@examples(25)
+@given(damage=DAMAGE, arguments=ARGUMENTS)
+def test_damaged_files_as_published(folder, name, damage, arguments):
+    asked = {**REAL[name], **arguments}
+    data = record_path(name).read_bytes()
+    event(check(folder / name, damaged(data, damage), **asked))
+
+
+@examples(150)
+@given(
+    data=st.one_of(st.binary(max_size=300), st.text(max_size=300).map(str.encode)),
+    name=st.sampled_from(["r.AT2", "r.csv", "r.V2", "r.nc", "r.mseed", "r"]),
+    arguments=ARGUMENTS,
+)
+def test_any_bytes(folder, data, name, arguments):
+    event(check(folder / name, data, **arguments))
+
+
+@pytest.mark.skipif(importlib.util.find_spec("obspy") is None, reason="ObsPy is not installed")
+@examples(100)
+@given(damage=DAMAGE)
+def test_damaged_responses(folder, damage):
+    response = folder / "response"
+    response.write_bytes(damaged(station_xml().encode(), damage))
+    event(check(folder / "r.mseed", miniseed(), response=response))
+
+
+KINDS = st.sampled_from(["f8", "f4", "i1", "i8", "S1", str])
+SHAPES = st.sampled_from(
+    [(), ("time",), ("time", "power"), ("interval", "power"), ("power",), ("time", "time")]
+)
+ATTRIBUTES = st.dictionaries(
+    st.sampled_from(
+        [
+            *("units", "time_step", "motion_name", "motion_sha256", "metadata"),
+            *("history", "recipe", "scale_factor", "calendar"),
+        ]
+    ),
+    st.sampled_from(["m s^-2", "s", "", "{}", "[]", "x\ny", "nan", 0.01, -1, 0, 1e308])
+    | st.just(np.arange(3.0)),
+    max_size=4,
+)
+
+
+@examples(80)
+@given(
+    sizes=st.tuples(*[st.integers(0, 9)] * 3),
+    variables=st.dictionaries(
+        st.sampled_from(["time", "acceleration", "vertical_acceleration", "acceleration_pieces"]),
+        st.tuples(KINDS, SHAPES, ATTRIBUTES),
+    ),
+    attributes=ATTRIBUTES,
+)
+def test_netcdf_files_of_any_make(folder, sizes, variables, attributes):
+    path = folder / "made.nc"
+    with netCDF4.Dataset(path, "w") as file:
+        for name, size in zip(("time", "interval", "power"), sizes, strict=True):
+            file.createDimension(name, size)  # none is an unlimited one
+        file.setncatts(attributes)
+        for name, (kind, shape, about) in variables.items():
+            variable = file.createVariable(name, kind, shape)
+            variable.setncatts(about)
+            variable.set_auto_maskandscale(False)
+            if kind in ("f8", "f4", "i1", "i8") and variable.size:
+                variable[...] = np.arange(variable.size).reshape(variable.shape) % 100
+    event(check(path, path.read_bytes()))
+
+
+@pytest.mark.parametrize("key", [key for key in SAMPLES if key != "cwa pair"])
+def test_no_number_of_a_header_makes_it_allocate(folder, key):
+    # the numbers of the header in turn become as large as their field allows
+    sample = SAMPLES[key]
+    head = sample.data[:3_500]
+    path = folder / sample.name
+    numbers = list(re.finditer(rb"\d+", head))
+    tracemalloc.start()
+    try:
+        for match in numbers[:: max(1, len(numbers) // MOST_NUMBERS)]:
+            width = max(len(match.group()), 8)
+            data = sample.data[: match.start()] + b"9" * width + sample.data[match.end() :]
+            check(path, data, component=sample.component)
+        assert tracemalloc.get_traced_memory()[1] < MOST_MEMORY / 10
+    finally:
+        tracemalloc.stop()
+
+
+COSMOS_FIRST = cosmos().encode().split(b"\n")[0]
+LONG = {
+    "line ends": b"\n" * 2**21,
+    "blanks": b" " * 2**22,
+    "long lines": (b" " * 999_999 + b"\n") * 4,
+    "samples": b"1\n" * 350_000,
+    "comments": b"# comment\n" * 300_000,
+    "brackets": b"(" * 2**20,
+    "zeros": b"\x00" * 2**22,
+    "one number": b"1" * 2**22,
+    "units": b"units of " * 2**17,
+    "numbers in a line": SAMPLES["at2"].data + b"11 " * 2**20,
+    "numbers run together": SAMPLES["at2"].data + b"-1.0" * 2**16,
+    "first lines in a line": COSMOS_FIRST * 2**12,
+    "first lines": (COSMOS_FIRST + b"\n") * 2**16,
+    "channels": SAMPLES["csmip2"].data * 2**9,
+    "components": SAMPLES["geonet2"].data * 2**8,
+    "counts": knet().encode() + b" 1" * 2**19,
+}
+
+
+@pytest.mark.parametrize("data", LONG.values(), ids=LONG)
+def test_long_files_neither_take_long_nor_much(folder, data):
+    path = folder / "long"
+    path.write_bytes(data)
+    tracemalloc.start()
+    try:
+        with pytest.raises(RecordError):
+            GroundMotion.read(path, unit="g", time_step="0.01 s")
+        assert tracemalloc.get_traced_memory()[1] < MOST_MEMORY
+    finally:
+        tracemalloc.stop()
+    check(path, data)

@@ -1,0 +1,49 @@
+"""Small made-up files of the formats that are not text, and StationXML to go with them."""
+
+import struct
+from pathlib import Path
+
+from unit.motion.format_samples import COUNTS, VALUES
+
+from rockframe.motion import GroundMotion
+
+
+def miniseed(counts=COUNTS, *, channel: str = "HNE", rate: int = 100, start: int = 0) -> bytes:
+    """One 512-byte record of 32-bit integers (SEED manual 2.4, chapter 8)."""
+    head = b"000001D " + b"MADE ".ljust(5) + b"  " + channel.encode() + b"XX"
+    head += struct.pack(">HHBBBBH", 2018, 24, 10, 51, start, 0, 0)
+    head += struct.pack(">HhhBBBBiHH", len(counts), rate, 1, 0, 0, 0, 1, 0, 64, 48)
+    head += struct.pack(">HHBBBB", 1000, 0, 3, 1, 9, 0)
+    body = head.ljust(64, b"\x00") + struct.pack(f">{len(counts)}i", *counts.tolist())
+    return body.ljust(512, b"\x00")
+
+
+def station_xml(units: str = "M/S**2", sensitivity: float = 4e5, channels=(("HNE", 90, 0),)) -> str:
+    """The response of some channels."""
+    described = "".join(
+        f'<Channel code="{code}" locationCode="" startDate="2010-01-01T00:00:00">'
+        "<Latitude>0</Latitude><Longitude>0</Longitude><Elevation>0</Elevation><Depth>0</Depth>"
+        f"<Azimuth>{azimuth}</Azimuth><Dip>{dip}</Dip><SampleRate>100</SampleRate>"
+        f"<Response><InstrumentSensitivity><Value>{sensitivity}</Value><Frequency>1</Frequency>"
+        f"<InputUnits><Name>{units}</Name></InputUnits>"
+        "<OutputUnits><Name>COUNTS</Name></OutputUnits>"
+        "</InstrumentSensitivity></Response></Channel>"
+        for code, azimuth, dip in channels
+    )
+    return (
+        '<?xml version="1.0" encoding="UTF-8"?>\n'
+        '<FDSNStationXML xmlns="http://www.fdsn.org/xml/station/1" schemaVersion="1.1">'
+        "<Source>made up</Source><Created>2020-01-01T00:00:00</Created>"
+        '<Network code="XX"><Station code="MADE" startDate="2010-01-01T00:00:00">'
+        "<Latitude>0</Latitude><Longitude>0</Longitude><Elevation>0</Elevation>"
+        f"<Site><Name>made up</Name></Site>{described}</Station></Network></FDSNStationXML>\n"
+    )
+
+
+def netcdf(folder: Path) -> bytes:
+    """A stored motion."""
+    path = folder / "stored.nc"
+    level, upwards = (VALUES[key] / 100.0 for key in ("N", "U"))
+    motion = GroundMotion.from_arrays((level, "m/s^2"), "0.01 s", (upwards, "m/s^2"), name="stored")
+    motion.scaled(0.5).to_dataset().to_netcdf(path)
+    return path.read_bytes()

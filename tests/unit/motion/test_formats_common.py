@@ -1,0 +1,117 @@
+"""What must hold for a file of every format."""
+
+import hashlib
+import re
+import warnings
+from pathlib import Path
+
+import numpy as np
+import pytest
+from unit.motion.format_samples import SAMPLES
+
+from rockframe.errors import RecordError
+from rockframe.motion import GroundMotion, formats
+
+KNOWN = [entry.name for entry in formats()]
+
+
+@pytest.fixture(params=SAMPLES)
+def sample(request):
+    return SAMPLES[request.param]
+
+
+def test_it_is_recognised_and_read(sample, tmp_path):
+    motion = GroundMotion.read(sample.write(tmp_path), component=sample.component)
+    assert motion.metadata["format"] == sample.format
+    assert motion.si.time_step == sample.time_step
+    np.testing.assert_allclose(motion.si.acceleration, sample.samples, rtol=1e-12, atol=1e-12)
+    assert motion.metadata.get("component") == sample.named
+    assert motion.name == Path(sample.name).stem
+
+
+def test_it_is_recognised_whatever_its_name(sample, tmp_path):
+    path = tmp_path / "record"
+    path.write_bytes(sample.data)
+    assert GroundMotion.read(path, component=sample.component).metadata["format"] == sample.format
+
+
+def test_it_says_where_it_comes_from(sample, tmp_path):
+    path = sample.write(tmp_path)
+    motion = GroundMotion.read(path, component=sample.component)
+    assert motion.metadata["source_file"] == sample.name
+    assert motion.metadata["source_sha256"] == hashlib.sha256(sample.data).hexdigest()
+    assert motion.metadata["unit_as_read"]
+    assert motion.history[0].startswith(f"read {sample.name} (")
+    if sample.format not in {"text", "peer-at2"}:
+        assert motion.metadata["event"]
+        assert motion.metadata["station"]
+
+
+def test_naming_its_format_changes_nothing(sample, tmp_path):
+    path = sample.write(tmp_path)
+    named = GroundMotion.read(path, format=sample.format, component=sample.component)
+    assert named == GroundMotion.read(path, component=sample.component)
+
+
+@pytest.mark.parametrize("change", [b"\r\n", b"\r", b"\xef\xbb\xbf"])
+def test_line_ends_and_byte_order_marks_do_not_matter(sample, change, tmp_path):
+    changed = sample.data.replace(b"\n", change) if b"\r" in change else change + sample.data
+    path = tmp_path / sample.name
+    path.write_bytes(changed)
+    motion = GroundMotion.read(path, component=sample.component)
+    np.testing.assert_allclose(motion.si.acceleration, sample.samples, rtol=1e-12, atol=1e-12)
+
+
+@pytest.mark.parametrize("other", KNOWN)
+def test_any_other_format_is_refused(sample, other, tmp_path):
+    if other == sample.format:
+        return
+    with pytest.raises(RecordError):
+        GroundMotion.read(sample.write(tmp_path), format=other, component=sample.component)
+
+
+def test_a_component_that_it_has_not_is_refused(sample, tmp_path):
+    with pytest.raises(RecordError, match="the component 'nowhere'"):
+        GroundMotion.read(sample.write(tmp_path), component="nowhere")
+
+
+def test_another_time_step_than_asked_for_is_refused(sample, tmp_path):
+    path = sample.write(tmp_path)
+    GroundMotion.read(path, component=sample.component, time_step=f"{sample.time_step} s")
+    with pytest.raises(RecordError, match=r"expected the 0\.5 s asked for"):
+        GroundMotion.read(path, component=sample.component, time_step="0.5 s")
+
+
+def test_another_unit_than_its_own_is_used_and_warned_about(sample, tmp_path):
+    path = sample.write(tmp_path)
+    own = GroundMotion.read(path, component=sample.component)
+    words = r"(, line \d+)?: the unit of the file is '.*', but unit='mm/s\^2' was asked for"
+    if sample.format == "geonet":
+        assert GroundMotion.read(path, component=sample.component, unit="mm/s^2") == own
+        return
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        other = GroundMotion.read(path, component=sample.component, unit="mm/s^2")
+    assert re.search(re.escape(str(path)) + words, str(caught[0].message))
+    assert other.metadata["unit_as_read"] == "mm/s^2"
+    ratios = own.si.acceleration[1:] / other.si.acceleration[1:]
+    np.testing.assert_allclose(ratios, ratios[0], rtol=1e-9)
+    assert ratios[0] > 5.0
+
+
+@pytest.mark.parametrize("share", [0.1, 0.3, 0.5, 0.8, 0.95])
+def test_of_a_part_of_it_nothing_wrong_is_read(sample, share, tmp_path):
+    path = tmp_path / sample.name
+    path.write_bytes(sample.data[: int(share * len(sample.data))])
+    if sample.format == "text":
+        return  # nothing announces how many rows there are
+    try:
+        motion = GroundMotion.read(path, component=sample.component)
+    except RecordError:
+        return
+    # the component that was asked for may stand before the cut, all of it
+    np.testing.assert_allclose(motion.si.acceleration, sample.samples, rtol=1e-12, atol=1e-12)
+
+
+def test_there_is_a_sample_of_every_text_format():
+    assert {sample.format for sample in SAMPLES.values()} | {"netcdf", "miniseed"} == set(KNOWN)

@@ -1,0 +1,197 @@
+"""miniSEED: refused with advice without ObsPy, read with the response if it is there."""
+
+import importlib.util
+import itertools
+import sys
+
+import numpy as np
+import pytest
+from unit.motion.binary_samples import miniseed, station_xml
+from unit.motion.format_samples import COUNT, COUNTS
+
+from rockframe.errors import RecordError
+from rockframe.motion import GroundMotion
+
+needs_obspy = pytest.mark.skipif(
+    importlib.util.find_spec("obspy") is None, reason="ObsPy is not installed"
+)
+
+
+@pytest.mark.parametrize("name", ["r.mseed", "r.txt", "r"])
+@pytest.mark.parametrize("given", [{}, {"unit": "g"}, {"format": "miniseed"}])
+def test_without_obspy_the_extra_to_install_is_named(write, monkeypatch, name, given):
+    monkeypatch.setitem(sys.modules, "obspy", None)
+    with pytest.raises(RecordError, match=r"no ObsPy.*pip install 'rockframe\[records\]'"):
+        GroundMotion.read(write(miniseed(), name), **given)
+
+
+def test_text_is_no_miniseed(write):
+    with pytest.raises(RecordError, match=r"begins with b'time,a'"):
+        GroundMotion.read(write("time,a", "r.mseed"), format="miniseed")
+
+
+def test_station_xml_is_not_the_record(write):
+    with pytest.raises(RecordError, match="StationXML, which describes an instrument"):
+        GroundMotion.read(write(station_xml(), "r.xml"))
+
+
+def test_obspy_is_not_imported_for_other_formats(write):
+    before = "obspy" in sys.modules
+    GroundMotion.read(write("0.00,1\n0.01,2\n", "r.csv"), unit="m/s^2")
+    assert ("obspy" in sys.modules) == before
+
+
+@needs_obspy
+class TestWithObspy:
+    def test_counts_become_accelerations_by_the_response_beside_the_file(self, write):
+        write(station_xml(), "r.xml")
+        motion = GroundMotion.read(write(miniseed(), "r.mseed"))
+        expected = (COUNTS - COUNTS.mean()) / 4e5
+        np.testing.assert_allclose(motion.si.acceleration, expected, rtol=1e-12, atol=1e-18)
+        assert motion.si.time_step == 0.01
+        assert motion.metadata["component"] == "HNE"
+        assert motion.metadata["azimuth"] == 90.0
+        assert motion.metadata["sensitivity"] == 4e5
+        assert motion.metadata["offset_removed"] == pytest.approx(COUNTS.mean())
+        assert motion.metadata["response_file"] == "r.xml"
+        assert motion.metadata["unit_as_read"] == "counts"
+        assert (motion.metadata["network"], motion.metadata["station"]) == ("XX", "MADE")
+        assert "divided by the sensitivity of 400000 counts per m/s^2 (r.xml)" in motion.history[1]
+
+    @pytest.mark.parametrize("name", ["r.StationXML.xml", "XX.MADE.xml", "all-XX.MADE.2018.XML"])
+    def test_names_of_a_response_beside_the_file(self, write, name):
+        write(station_xml(), name)
+        assert len(GroundMotion.read(write(miniseed(), "r.mseed"))) == COUNT
+
+    def test_other_files_beside_it_are_left_alone(self, write):
+        write(station_xml(), "other.xml")
+        with pytest.raises(RecordError, match="counts, and no response"):
+            GroundMotion.read(write(miniseed(), "r.mseed"))
+
+    def test_two_responses_beside_the_file(self, write):
+        write(station_xml(), "r.xml")
+        other = write(station_xml(sensitivity=1e5), "XX.MADE.xml")
+        path = write(miniseed(), "r.mseed")
+        with pytest.raises(
+            RecordError, match=r"several files with the response: XX\.MADE\.xml, r\.xml"
+        ):
+            GroundMotion.read(path)
+        motion = GroundMotion.read(path, response=other)
+        assert motion.metadata["sensitivity"] == 1e5
+
+    def test_a_response_that_is_given(self, write, tmp_path):
+        folder = tmp_path / "elsewhere"
+        folder.mkdir()
+        given = folder / "anything"
+        given.write_text(station_xml(), encoding="utf-8")
+        path = write(miniseed(), "r.mseed")
+        assert len(GroundMotion.read(path, response=given)) == COUNT
+        given.write_text("no xml", encoding="utf-8")
+        with pytest.raises(RecordError, match="no StationXML that can be read"):
+            GroundMotion.read(path, response=given)
+        given.write_text(station_xml(channels=(("HNZ", 0, -90),)), encoding="utf-8")
+        with pytest.raises(RecordError, match=r"the response of XX\.MADE\.\.HNE"):
+            GroundMotion.read(path, response=given)
+        with pytest.raises(RecordError, match="no such file"):
+            GroundMotion.read(path, response=folder / "nothing")
+
+    def test_counts_without_response_or_unit_are_refused(self, write):
+        with pytest.raises(RecordError, match=r"counts, and no response.*argument unit"):
+            GroundMotion.read(write(miniseed(), "r.mseed"))
+
+    def test_samples_with_a_unit_are_taken_as_they_are(self, write):
+        write(station_xml(), "r.xml")
+        motion = GroundMotion.read(write(miniseed(COUNTS // 100), "r.mseed"), unit="gal")
+        assert motion.si.acceleration.tolist() == pytest.approx((COUNTS // 100 * 0.01).tolist())
+        assert "as asked for" in motion.history[1]
+
+    def test_unit_and_response_exclude_each_other(self, write):
+        response = write(station_xml(), "r.xml")
+        with pytest.raises(RecordError, match="the arguments unit and response"):
+            GroundMotion.read(write(miniseed(), "r.mseed"), unit="g", response=response)
+
+    @pytest.mark.parametrize(
+        ("xml", "words"),
+        [
+            (station_xml(units="M/S"), "input unit 'M/S'; expected .* accelerometer"),
+            (station_xml(sensitivity=0.0), "sensitivity of 0.0"),
+        ],
+    )
+    def test_responses_that_give_no_acceleration(self, write, xml, words):
+        write(xml, "r.xml")
+        with pytest.raises(RecordError, match=words):
+            GroundMotion.read(write(miniseed(), "r.mseed"))
+
+    def test_a_seismometer_beside_the_accelerometer_is_of_no_matter(self, write):
+        channels = (("HNE", 90, 0), ("HHE", 90, 0))
+        xml = station_xml(channels=channels)
+        before, after = xml.split('code="HHE"')
+        write(before + 'code="HHE"' + after.replace("M/S**2", "M/S"), "r.xml")
+        data = b"".join(miniseed(channel=name) for name, *_ in channels)
+        path = write(data, "r.mseed")
+        assert GroundMotion.read(path, component="HNE").metadata["component"] == "HNE"
+        with pytest.raises(RecordError, match="input unit 'M/S'"):
+            GroundMotion.read(path, component="HHE")
+
+    def test_a_response_of_another_time_is_none(self, write):
+        write(station_xml().replace("2010-01-01", "2020-01-01"), "r.xml")
+        with pytest.raises(RecordError, match="counts, and no response"):
+            GroundMotion.read(write(miniseed(), "r.mseed"))
+
+    def test_entities_are_left_alone(self, write, tmp_path):
+        secret = tmp_path / "secret"
+        secret.write_text("7", encoding="ascii")
+        head, body = station_xml().split("\n", 1)
+        entity = f'<!DOCTYPE z [<!ENTITY a SYSTEM "{secret.as_uri()}">]>'
+        write(f"{head}\n{entity}\n{body.replace('400000.0', '&a;')}", "r.xml")
+        with pytest.raises(RecordError, match=r"with a sensitivity of +counts"):
+            GroundMotion.read(write(miniseed(), "r.mseed"))
+
+    def test_responses_larger_than_any_station_are_refused(self, write):
+        given = write(station_xml().ljust(9 * 2**20), "given")
+        with pytest.raises(RecordError, match="found 9 MiB; expected StationXML of at most 8 MiB"):
+            GroundMotion.read(write(miniseed(), "r.mseed"), response=given)
+
+    def test_channels_of_one_file(self, write):
+        channels = (("HNE", 90, 0), ("HNZ", 0, -90), ("HN1", 30, 0))
+        write(station_xml(channels=channels), "r.xml")
+        data = b"".join(
+            miniseed(COUNTS + 7 * k, channel=name) for k, (name, *_) in enumerate(channels)
+        )
+        path = write(data, "r.mseed")
+        with pytest.raises(RecordError, match=r"3 components: .*'HN1' \(30 degrees\)"):
+            GroundMotion.read(path)
+        assert GroundMotion.read(path, component="30").metadata["component"] == "HN1"
+        both = GroundMotion.read(path, component=("XX.MADE..HNE", "Z"))
+        assert both.metadata["vertical_component"] == "HNZ"
+        np.testing.assert_allclose(both.si.vertical, both.si.acceleration, atol=1e-15)
+
+    def test_records_that_follow_one_another(self, write):
+        write(station_xml(), "r.xml")
+        data = miniseed(COUNTS[:50].repeat(2)) + miniseed(COUNTS, start=1)
+        assert len(GroundMotion.read(write(data, "r.mseed"))) == 100 + COUNT
+
+    def test_a_gap_is_refused(self, write):
+        write(station_xml(), "r.xml")
+        data = miniseed() + miniseed(start=2)
+        with pytest.raises(RecordError, match=r"a gap of 1\.39 s before 2018"):
+            GroundMotion.read(write(data, "r.mseed"))
+
+    def test_two_sampling_rates_are_refused(self, write):
+        write(station_xml(), "r.xml")
+        data = miniseed() + miniseed(start=2, rate=50)
+        with pytest.raises(RecordError, match="sampling rates of 100 Hz and 50 Hz"):
+            GroundMotion.read(write(data, "r.mseed"))
+
+    @pytest.mark.parametrize("cut", [40, 100, 300])
+    def test_a_part_of_a_record_is_refused(self, write, cut):
+        write(station_xml(), "r.xml")
+        with pytest.raises(RecordError):
+            GroundMotion.read(write(miniseed()[:cut], "r.mseed"))
+
+    def test_more_channels_than_any_file_has_are_refused(self, write):
+        letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
+        codes = ["".join(code) for code in itertools.product(letters[:5], letters, letters)]
+        data = b"".join(miniseed(channel=code) for code in codes[:1001])
+        with pytest.raises(RecordError, match="1001 channels; expected at most 1000"):
+            GroundMotion.read(write(data, "r.mseed"), unit="gal")

@@ -1,0 +1,215 @@
+"""The list of formats, and readers of others in it."""
+
+import doctest
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from unit.motion.motion_files import numbers
+
+import rockframe.motion.readers
+from rockframe.errors import ComponentError, RecordError
+from rockframe.motion import GroundMotion, formats
+from rockframe.motion.readers import (
+    Component,
+    Record,
+    choose_component,
+    choose_unit,
+    register,
+    registry,
+    unregister,
+)
+from rockframe.motion.unit_names import acceleration_unit
+
+VALUES = numbers(9)
+FILE = "MADE UP FORMAT\nGAL\n" + "".join(f"{value:.7f}\n" for value in VALUES)
+GAL = acceleration_unit("gal")
+
+
+def read(source, request):
+    unit, name, warnings = choose_unit(source, request, source.lines[1], 2)
+    values = np.array([float(line) for line in source.lines[2:] if line])
+    record = Record(0.01, values, unit, {"unit_as_read": name}, warnings=tuple(warnings))
+    return choose_component(source, request, [Component("N", lambda: record)])
+
+
+def reader(**changed):
+    given = {
+        "NAME": "made-up",
+        "TITLE": "file made up for a test",
+        "SUFFIXES": (".mup",),
+        "recognises": lambda source: source.lines[0] == "MADE UP FORMAT",
+        "read": read,
+    }
+    return SimpleNamespace(**{**given, **changed})
+
+
+@pytest.fixture
+def registered():
+    added = []
+
+    def _register(**changed):
+        register(reader(**changed))
+        added.append(changed.get("NAME", "made-up"))
+
+    yield _register
+    for name in added:
+        unregister(name)
+
+
+def test_formats_are_listed_with_name_title_and_suffixes():
+    listed = formats()
+    assert [entry.name for entry in listed] == [
+        "peer-at2",
+        "cosmos",
+        "csmip",
+        "smc",
+        "esm",
+        "k-net",
+        "geonet",
+        "cwa",
+        "netcdf",
+        "miniseed",
+        "text",
+    ]
+    for entry in listed:
+        assert entry.title
+        assert all(suffix.startswith(".") for suffix in entry.suffixes)
+
+
+def test_a_list_of_formats_can_be_printed():
+    shown = repr(formats()[0])
+    expected = "name='peer-at2', title='PEER acceleration file (AT2)', suffixes=('.at2',)"
+    assert shown == f"Format({expected})"
+
+
+def test_the_example_runs():
+    assert doctest.testmod(registry).attempted
+    assert not doctest.testmod(registry).failed
+
+
+def test_the_list_and_the_readers_are_found_by_both_names():
+    assert rockframe.motion.formats is rockframe.motion.readers.formats
+    assert rockframe.motion.register is rockframe.motion.readers.register
+    assert rockframe.motion.unregister is rockframe.motion.readers.unregister
+
+
+def test_a_format_can_be_named_in_capitals(write):
+    with pytest.raises(RecordError):
+        GroundMotion.read(write("x", "r"), format="K_NET")
+
+
+def test_an_unknown_format_is_refused_and_the_others_listed(write):
+    with pytest.raises(ComponentError, match=r"one of 'peer-at2', .*'text', got 'xls'"):
+        GroundMotion.read(write("x", "r"), format="xls")
+
+
+@pytest.mark.parametrize("name", ["r.mup", "r.txt"])
+@pytest.mark.parametrize("given", [None, "made-up"])
+def test_an_added_format_is_recognised_and_read(write, registered, name, given):
+    registered()
+    motion = GroundMotion.read(write(FILE, name), format=given, component="N")
+    assert motion.si.acceleration.tolist() == pytest.approx((0.01 * VALUES).tolist(), abs=1e-9)
+    assert motion.metadata["format"] == "made-up"
+    assert motion.metadata["component"] == "N"
+    assert formats()[-2].title == "file made up for a test"
+
+
+def test_an_added_format_may_read_bytes(write, registered):
+    registered(
+        BINARY=True,
+        recognises=lambda source: source.data.startswith(b"\x00MUP"),
+        read=lambda source, request: Record(0.01, [1, 2.5], GAL, {"unit_as_read": "gal"}),
+    )
+    motion = GroundMotion.read(write(b"\x00MUP\xff", "r.bin"))
+    assert motion.si.acceleration.tolist() == [0.01, 0.025]
+
+
+def test_it_can_be_taken_away_again(write, registered):
+    register(reader())
+    unregister("made-up")
+    assert "made-up" not in {entry.name for entry in formats()}
+    with pytest.raises(ComponentError, match=r"no added format is called 'made-up'"):
+        unregister("made-up")
+    with pytest.raises(ComponentError, match="'peer-at2'"):
+        unregister("peer-at2")
+
+
+@pytest.mark.parametrize(
+    ("changed", "words"),
+    [
+        ({"NAME": "Made Up"}, "NAME must be small letters"),
+        ({"NAME": 3}, "NAME must be"),
+        ({"TITLE": "  "}, "TITLE must be one line"),
+        ({"SUFFIXES": [".mup"]}, "SUFFIXES must be a tuple"),
+        ({"SUFFIXES": ("mup",)}, "SUFFIXES must be a tuple"),
+        ({"recognises": None}, "recognises must be a function of source"),
+        ({"read": lambda source: None}, "read must be a function of source and request"),
+        ({"BINARY": 1}, "BINARY must be True or False"),
+        ({"NAME": "text"}, "the format 'text' is there already"),
+    ],
+)
+def test_what_is_no_reader_is_refused(changed, words):
+    before = formats()
+    with pytest.raises(ComponentError, match=words):
+        register(reader(**changed))
+    assert formats() == before
+
+
+def test_all_faults_are_listed():
+    with pytest.raises(ComponentError, match=r"NAME.*; TITLE.*; SUFFIXES.*; recognises.*; read"):
+        register(object())
+
+
+def test_the_same_name_twice(registered):
+    registered()
+    with pytest.raises(ComponentError, match="there already"):
+        register(reader())
+
+
+def failing(source, request):
+    return {}["whatever"]
+
+
+@pytest.mark.parametrize(
+    ("changed", "words"),
+    [
+        ({"read": failing}, r"fails at \(KeyError: 'whatever'\)"),
+        ({"read": lambda source, request: None}, "returned NoneType, not a Record"),
+        (
+            {"read": lambda source, request: Record(0.01, [1.0, np.nan], GAL, {})},
+            "samples are not all finite",
+        ),
+        ({"read": lambda source, request: Record(0.01, [[1.0, 2.0]], GAL, {})}, r"shape \(1, 2\)"),
+        ({"read": lambda source, request: Record(0.01, [1.0], GAL, {})}, r"shape \(1,\)"),
+        ({"read": lambda source, request: Record("1", [1.0, 2.0], GAL, {})}, "time_step is '1'"),
+        (
+            {"read": lambda source, request: Record(0.01, [1.0, 2.0], GAL, {"a": [1]})},
+            "metadata 'a' is neither",
+        ),
+        (
+            {"read": lambda source, request: Record(0.01, [1.0, 2.0], GAL, {}, vertical=[1, 2, 3])},
+            "2 and 3 samples",
+        ),
+        ({"read": lambda source, request: Record(0.01, [1.0, 2.0], "gal", {})}, "unit is 'gal'"),
+        ({"recognises": lambda source: 1 / 0}, r"fails at \(ZeroDivisionError"),
+    ],
+)
+def test_what_an_added_reader_gets_wrong_becomes_a_record_error(write, registered, changed, words):
+    registered(**changed)
+    with pytest.raises(RecordError, match=words):
+        GroundMotion.read(write(FILE, "r.mup"))
+
+
+def test_what_an_added_reader_refuses_stays_as_it_is(write, registered):
+    def refusing(source, request):
+        raise source.refuse(found="this", expected="that", line=2)
+
+    registered(read=refusing)
+    with pytest.raises(RecordError, match="line 2: found this; expected that"):
+        GroundMotion.read(write(FILE, "r.mup"))
+
+
+def test_a_response_goes_with_miniseed_only(write):
+    with pytest.raises(RecordError, match="which the argument response goes with"):
+        GroundMotion.read(write("0,1\n1,2\n", "r.csv"), unit="g", response="response.xml")
