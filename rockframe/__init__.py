@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from rockframe.measures import response_spectrum as response_spectrum
     from rockframe.measures import velocity_and_displacement as velocity_and_displacement
     from rockframe.motion import GroundMotion as GroundMotion
+    from rockframe.simulation.certification import Certification as Certification
     from rockframe.simulation.system import System as System
     from rockframe.solve.accuracy import Accuracy as Accuracy
 
@@ -70,6 +71,7 @@ _HOMES = {
         "velocity_and_displacement",
     ),
     "rockframe.motion": ("GroundMotion",),
+    "rockframe.simulation.certification": ("Certification",),
     "rockframe.simulation.system": ("System",),
     "rockframe.solve.accuracy": ("Accuracy",),
 }
@@ -79,6 +81,7 @@ __all__ = [
     "Accuracy",
     "AssemblyError",
     "Block",
+    "Certification",
     "ComponentError",
     "CushionCap",
     "FrameEquivalent",

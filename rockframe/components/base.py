@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any, ClassVar, Generic, Self, TypeVar
 
-from rockframe.errors import SchemaError
+from rockframe.errors import ComponentError, SchemaError
 from rockframe.units import Measure, quantity
 
 SI = TypeVar("SI")
@@ -67,6 +67,44 @@ class Component(Generic[SI]):
         """
         return {"type": type(self).__name__, **self._arguments}
 
+    def parameters(self) -> tuple[str, ...]:
+        """Name the arguments that are numbers other than zero, with a unit or without.
+
+        Returns
+        -------
+        tuple of str
+        """
+        return tuple(name for name, value in self._arguments.items() if _number_in(value))
+
+    def with_scaled(self, name: str, factor: float) -> Self:
+        """Build a component of which one argument is larger or smaller.
+
+        Parameters
+        ----------
+        name : str
+            One of :meth:`parameters`.
+        factor : float
+            New value over old [1].
+
+        Returns
+        -------
+        Component
+
+        Raises
+        ------
+        ComponentError
+            No such parameter, or its new value is out of range.
+        """
+        if name not in self.parameters():
+            known = ", ".join(self.parameters())
+            msg = f"{type(self).__name__}: no parameter is called {name!r} (it has {known})"
+            raise ComponentError(msg)
+        value = self._arguments[name]
+        number = factor * _number_in(value)
+        unit = value.partition(" ")[2] if isinstance(value, str) else ""
+        changed = f"{number!r} {unit}" if isinstance(value, str) else number
+        return self.from_dict({**self._arguments, name: changed})
+
     @classmethod
     def from_dict(cls, arguments: Mapping[str, float | str]) -> Self:
         """Build the component that :meth:`to_dict` described."""
@@ -102,6 +140,16 @@ def component_from_dict(description: Mapping[str, float | str]) -> "Component[An
 def with_unit(value: float | None, measure: Measure) -> str | None:
     """Write an SI value so that the constructor reads the same float back."""
     return None if value is None else f"{value!r} {measure.unit}"
+
+
+def _number_in(value: float | str) -> float:
+    """Give the number of an argument, zero if it is a word."""
+    if not isinstance(value, str):
+        return value
+    try:
+        return float(value.partition(" ")[0])
+    except ValueError:
+        return 0.0
 
 
 class SIProperty:

@@ -3,12 +3,26 @@
 from typing import Final
 
 from rockframe.results.variables.motions import MEASURES
-from rockframe.results.variables.runs import ENERGY_HISTORIES, EVENTS_AND_SCALARS, HISTORIES
+from rockframe.results.variables.runs import (
+    CERTIFICATE,
+    ENERGY_HISTORIES,
+    EVENTS_AND_SCALARS,
+    HISTORIES,
+)
 from rockframe.results.variables.statics import HELD, MODES, REST
 
 SCHEMA: Final = {
     row.name: row
-    for rows in (HISTORIES, ENERGY_HISTORIES, EVENTS_AND_SCALARS, HELD, REST, MODES, MEASURES)
+    for rows in (
+        HISTORIES,
+        ENERGY_HISTORIES,
+        EVENTS_AND_SCALARS,
+        CERTIFICATE,
+        HELD,
+        REST,
+        MODES,
+        MEASURES,
+    )
     for row in rows
 }
 """All variables by name."""

@@ -26,6 +26,8 @@ from rockframe.results.outcome import (
 )
 from rockframe.results.stages import cascade_energies, cascade_events, cascade_histories
 from rockframe.results.variables.runs import Direction
+from rockframe.simulation.certificate import certify
+from rockframe.simulation.certification import Certification
 from rockframe.simulation.plan import Plan
 from rockframe.simulation.provenance import motion_attributes
 from rockframe.solve.cascade import Cascade, integrate_cascade
@@ -57,7 +59,7 @@ def ground_of(motion: GroundMotion | None) -> Ground:
     return Ground(time_step=motion.si.time_step, **arrays)
 
 
-def run(system: Assembly, plan: Plan) -> "xr.Dataset":
+def run(system: Assembly, plan: Plan, certification: Certification | None = None) -> "xr.Dataset":
     """Integrate as planned and label the result.
 
     Parameters
@@ -66,6 +68,8 @@ def run(system: Assembly, plan: Plan) -> "xr.Dataset":
         The checked scene.
     plan : Plan
         The checked arguments.
+    certification : Certification, optional
+        What to try, to tell how sure the verdict is.
 
     Returns
     -------
@@ -73,18 +77,43 @@ def run(system: Assembly, plan: Plan) -> "xr.Dataset":
     """
     ground = ground_of(plan.motion)
     _warn_of_lost_weight(system, ground)
+    scales = _scales(system)
+    values, summary = _respond(system, plan, ground, scales)
+    attributes = _attributes(system, plan, summary, scales)
+    certificate: dict[str, float | bool] = {}
+    if certification is not None:
+        found = certify(system, plan, summary, certification, outcome)
+        certificate = found.values()
+        attributes |= found.attributes(certification)
+    return build_dataset({**values, **scalars(summary, scales), **certificate}, attributes)
+
+
+def outcome(system: Assembly, plan: Plan) -> Summary:
+    """Integrate as planned, and give only what became of the run.
+
+    Parameters
+    ----------
+    system : Assembly
+        The checked scene.
+    plan : Plan
+        The checked arguments; without histories it is cheapest.
+
+    Returns
+    -------
+    Summary
+    """
+    return _respond(system, plan, ground_of(plan.motion), _scales(system))[1]
+
+
+def _scales(system: Assembly) -> Scales:
     setting = system.setting
-    scales = Scales(
+    return Scales(
         setting.overturning_angle,
         setting.uplift_angle,
         setting.settlement,
         setting.cap_offset,
         small_rotation=system.rotation is Rotation.SMALL,
         pads_on_cap=system.scene.coupling is not None,
-    )
-    values, summary = _respond(system, plan, ground, scales)
-    return build_dataset(
-        {**values, **scalars(summary, scales)}, _attributes(system, plan, summary, scales)
     )
 
 

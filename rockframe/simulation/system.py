@@ -14,6 +14,8 @@ from rockframe.units import QuantityLike
 if TYPE_CHECKING:
     import xarray as xr
 
+    from rockframe.simulation.certification import Certification
+
 
 class System(Assembly):
     """An assembled scene: parts in any order, checked together, ready to simulate.
@@ -61,6 +63,7 @@ class System(Assembly):
         output_step: QuantityLike | None = None,
         outputs: Sequence[str] | None = (),
         overturning: str = "stop",
+        certify: "bool | Certification" = False,
     ) -> "xr.Dataset":
         """Integrate the equations of motion.
 
@@ -86,6 +89,9 @@ class System(Assembly):
         overturning : {"stop", "continue"}
             Whether the run ends when the rotation reaches the overturning
             angle, or goes on until the block lies flat.
+        certify : bool or Certification
+            Whether some fifty runs beside this one, with a tighter tolerance, nudged
+            parameters and scaled motions, tell how sure the verdict is.
 
         Returns
         -------
@@ -101,7 +107,10 @@ class System(Assembly):
             The arguments do not fit the system or one another.
         SolverError
             Unknown accuracy.
+        ComponentError
+            `certify` is neither True, False nor a Certification.
         """
+        from rockframe.simulation.certification import certification_of
         from rockframe.simulation.plan import plan_run
         from rockframe.simulation.run import run
 
@@ -116,7 +125,7 @@ class System(Assembly):
             outputs=outputs,
             overturning=overturning,
         )
-        return run(self, plan)
+        return run(self, plan, certification_of(certify))
 
     def frequencies(self) -> "xr.Dataset":
         """Give the modes of small motion about rest, in full contact.

@@ -109,9 +109,7 @@ class Assembly:
         -------
         dict
         """
-        structural: Sequence[object] = [
-            part.to_dict() for part in self.parts.given() if not isinstance(part, GroundMotion)
-        ]
+        structural: Sequence[object] = [part.to_dict() for part in self.parts.structural()]
         return {
             "parts": structural,
             "restraint": str(self.restraint),

@@ -29,6 +29,10 @@ class Parts:
         """Give the parts that are there, in a fixed order."""
         return [part for part in vars(self).values() if part is not None]
 
+    def structural(self) -> "list[Component[object]]":
+        """Give the parts that are no motion, in a fixed order."""
+        return [part for part in self.given() if not isinstance(part, GroundMotion)]
+
     @property
     def signature(self) -> frozenset[str]:
         """Names of the structural parts that are there; rigid ground goes without saying."""

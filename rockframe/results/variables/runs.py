@@ -158,3 +158,39 @@ EVENTS_AND_SCALARS: Final = (
     ),
 )
 """Over events, and one for the run."""
+
+CERTIFICATE: Final = (
+    Variable(
+        "verdict_converged",
+        (),
+        None,
+        "whether a run of tighter tolerance has the same verdict",
+        dtype="bool",
+    ),
+    Variable(
+        "verdict_robust",
+        (),
+        None,
+        "whether runs with nudged parameters have the same verdict",
+        dtype="bool",
+    ),
+    Variable(
+        "verdict_margin",
+        (),
+        Unit.ONE,
+        "smallest relative change of the motion's scale found to change the verdict",
+    ),
+    Variable(
+        "peak_error_estimate",
+        (),
+        Unit.RADIAN,
+        "difference of the peak rotation from that of a run of tighter tolerance",
+    ),
+    Variable(
+        "peak_sensitivity",
+        (),
+        Unit.RADIAN,
+        "largest difference of the peak rotation from that of a run with a nudged parameter",
+    ),
+)
+"""How sure the verdict is, on request."""
