@@ -29,6 +29,10 @@ if TYPE_CHECKING:
     from rockframe.errors import SchemaError as SchemaError
     from rockframe.errors import SolverError as SolverError
     from rockframe.errors import UnitsError as UnitsError
+    from rockframe.ladder import Recommendation as Recommendation
+    from rockframe.ladder import model_ladder as model_ladder
+    from rockframe.ladder import recommend as recommend
+    from rockframe.ladder import tradeoff as tradeoff
     from rockframe.measures import fourier_spectrum as fourier_spectrum
     from rockframe.measures import intensity_measures as intensity_measures
     from rockframe.measures import response_spectrum as response_spectrum
@@ -64,6 +68,7 @@ _HOMES = {
         "SolverError",
         "UnitsError",
     ),
+    "rockframe.ladder": ("Recommendation", "model_ladder", "recommend", "tradeoff"),
     "rockframe.measures": (
         "fourier_spectrum",
         "intensity_measures",
@@ -89,6 +94,7 @@ __all__ = [
     "InitialState",
     "Member",
     "ModelWarning",
+    "Recommendation",
     "RecordError",
     "RecordWarning",
     "RegularFrame",
@@ -104,8 +110,11 @@ __all__ = [
     "__version__",
     "fourier_spectrum",
     "intensity_measures",
+    "model_ladder",
     "plot",
+    "recommend",
     "response_spectrum",
+    "tradeoff",
     "velocity_and_displacement",
 ]
 

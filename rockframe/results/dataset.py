@@ -21,6 +21,7 @@ def build_dataset(
     values: Values,
     attributes: Mapping[str, str | float | int],
     *,
+    over: tuple[str, ...] = (),
     title: str = "Rocking response",
     source: str = "event-driven integration",
 ) -> "xr.Dataset":
@@ -32,6 +33,8 @@ def build_dataset(
         Arrays and scalars by their names in the schema.
     attributes : mapping
         Strings and numbers that describe the run.
+    over : tuple of str, optional
+        Dimensions that all values have before their own.
     title, source : str
         What the dataset holds, and how it was computed.
 
@@ -53,10 +56,11 @@ def build_dataset(
             msg = f"{name!r} is not in the schema of results"
             raise SchemaError(msg)
         data = np.asarray(value, dtype=row.dtype)
-        if data.ndim != len(row.dims):
-            msg = f"{name!r} needs the dimensions {row.dims}, got an array of shape {data.shape}"
+        dims = (*over, *row.dims)
+        if data.ndim != len(dims):
+            msg = f"{name!r} needs the dimensions {dims}, got an array of shape {data.shape}"
             raise SchemaError(msg)
-        variables[name] = xr.Variable(row.dims, data, row.attributes())
+        variables[name] = xr.Variable(dims, data, row.attributes())
     coordinates = {name: variables.pop(name) for name in COORDINATES if name in variables}
     dataset = xr.Dataset(
         variables, coords=coordinates, attrs=_attributes(attributes, title, source)

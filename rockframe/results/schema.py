@@ -2,6 +2,7 @@
 
 from typing import Final
 
+from rockframe.results.variables.ladder import LADDER
 from rockframe.results.variables.motions import MEASURES
 from rockframe.results.variables.runs import (
     CERTIFICATE,
@@ -11,20 +12,19 @@ from rockframe.results.variables.runs import (
 )
 from rockframe.results.variables.statics import HELD, MODES, REST
 
-SCHEMA: Final = {
-    row.name: row
-    for rows in (
-        HISTORIES,
-        ENERGY_HISTORIES,
-        EVENTS_AND_SCALARS,
-        CERTIFICATE,
-        HELD,
-        REST,
-        MODES,
-        MEASURES,
-    )
-    for row in rows
-}
+_TABLES: Final = (
+    HISTORIES,
+    ENERGY_HISTORIES,
+    EVENTS_AND_SCALARS,
+    CERTIFICATE,
+    HELD,
+    REST,
+    MODES,
+    MEASURES,
+    LADDER,
+)
+
+SCHEMA: Final = {row.name: row for table in _TABLES for row in table}
 """All variables by name."""
 
 COORDINATES: Final = ("time", "angle", "mode")

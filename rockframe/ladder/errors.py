@@ -1,0 +1,39 @@
+"""How far a run is from another."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+def peak_error(run: "xr.Dataset", reference: "xr.Dataset") -> float:
+    """Compare peak rotations, relative to that of the reference."""
+    peak = float(reference["peak_rotation"])
+    return _relative(abs(float(run["peak_rotation"]) - peak), peak)
+
+
+def history_error(run: "xr.Dataset", reference: "xr.Dataset") -> float:
+    """Compare rotations along time, as far as both go, relative to the reference's peak."""
+    one, other = (data["rotation"].to_numpy() for data in (run, reference))
+    times = [data["time"].to_numpy() for data in (run, reference)]
+    count = min(one.size, other.size)
+    while count > 0 and times[0][count - 1] != times[1][count - 1]:
+        count -= 1  # the instant at which a run ended is no common sample
+    peak = float(np.max(np.abs(other[:count]), initial=0.0))
+    return _relative(float(np.max(np.abs(one[:count] - other[:count]), initial=0.0)), peak)
+
+
+def event_time_error(run: "xr.Dataset", reference: "xr.Dataset") -> float:
+    """Compare the times of events [s]; NaN if the runs have other events."""
+    if not np.array_equal(run["event_kind"].to_numpy(), reference["event_kind"].to_numpy()):
+        return float("nan")
+    difference = run["event_time"].to_numpy() - reference["event_time"].to_numpy()
+    return float(np.max(np.abs(difference), initial=0.0))
+
+
+def _relative(difference: float, scale: float) -> float:
+    if difference == 0.0:
+        return 0.0
+    return difference / scale if scale > 0.0 else float("inf")

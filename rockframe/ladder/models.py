@@ -1,0 +1,78 @@
+"""The ladder of models: what a scene becomes when parts and effects are left out."""
+
+import warnings
+
+from rockframe.errors import ModelWarning
+from rockframe.simulation.system import System
+from rockframe.system.options import Coupling, Rotation
+
+_STACK = (
+    ("rigid ground", ("block",), Coupling.COUPLED),
+    ("two pads", ("block", "pads"), Coupling.COUPLED),
+    ("pads, cap and soil by cascade", ("block", "pads", "cap", "soil"), Coupling.CASCADE),
+    ("pads, cap and soil coupled", ("block", "pads", "cap", "soil"), Coupling.COUPLED),
+)
+_BED = (
+    ("rigid ground", ("block",), Coupling.COUPLED),
+    ("soil", ("block", "soil"), Coupling.COUPLED),
+    ("cap and soil", ("block", "cap", "soil"), Coupling.COUPLED),
+)
+
+
+def model_ladder(system: System) -> dict[str, System]:
+    """Give the models of a scene, from the simplest to the scene itself.
+
+    From rigid ground over pads to pads, cap and soil, first by cascade, then coupled; or
+    from rigid ground to soil, without the cap and with it. Each with small rotations first,
+    then with finite ones.
+
+    Parameters
+    ----------
+    system : System
+        The scene; nothing that it lacks is added.
+
+    Returns
+    -------
+    dict of str to System
+        By a name in words, the scene itself last.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> block = rf.Block(width="1 m", height="4 m", mass="10 t")
+    >>> pads = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
+    >>> for name in model_ladder(rf.System(block, pads)):
+    ...     print(name)
+    rigid ground, small rotations
+    rigid ground
+    two pads, small rotations
+    two pads
+    """
+    given = vars(system.parts)
+    present = system.parts.signature
+    rows = _STACK if {"pads", "cap"} <= present or "soil" not in present else _BED
+    description = system.to_dict()
+    options = {name: str(description[name]) for name in ("restraint", "gravity")}
+    ladder: dict[str, System] = {}
+    with warnings.catch_warnings():
+        # what is left out may be said of a rung, but the scene itself has said its own
+        warnings.simplefilter("ignore", ModelWarning)
+        for name, slots, coupling in rows:
+            if not set(slots) <= present or not _reached(slots, coupling, system):
+                continue
+            parts = [given[slot] for slot in slots]
+            if slots == ("block",) and given["ground"] is not None:
+                parts.append(given["ground"])
+            for rotation in Rotation.SMALL, Rotation.FINITE:
+                if rotation is Rotation.FINITE and system.rotation is Rotation.SMALL:
+                    continue
+                words = f"{name}, small rotations" if rotation is Rotation.SMALL else name
+                ladder[words] = System(*parts, rotation=rotation, coupling=coupling, **options)
+    return ladder
+
+
+def _reached(slots: tuple[str, ...], coupling: Coupling, system: System) -> bool:
+    """Whether a rung is not above the scene: a cascade has no coupled rung."""
+    if "cap" not in slots or "pads" not in slots:
+        return True
+    return system.coupling is Coupling.COUPLED or coupling is Coupling.CASCADE

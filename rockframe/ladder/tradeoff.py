@@ -1,0 +1,225 @@
+"""Time against error, over the models and the tolerances that a scene leaves to choose."""
+
+import json
+import time
+import warnings
+from collections.abc import Sequence
+from dataclasses import fields, replace
+from typing import TYPE_CHECKING, Final, TypeAlias
+
+import numpy as np
+
+from rockframe.errors import ComponentError, ModelWarning
+from rockframe.ladder.errors import event_time_error, history_error, peak_error
+from rockframe.ladder.models import model_ladder
+from rockframe.results.dataset import build_dataset
+from rockframe.simulation.plan import Plan, plan_run
+from rockframe.simulation.provenance import motion_attributes
+from rockframe.simulation.run import outcome, run
+from rockframe.simulation.system import System
+from rockframe.solve.accuracy import Accuracy, AccuracyLevel
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from rockframe.components import InitialState
+    from rockframe.motion import GroundMotion
+    from rockframe.units import QuantityLike
+
+BENCHMARK: Final = Accuracy(rtol=1e-12)
+"""What errors are measured against; its own is about as large as its tolerance."""
+
+DIMENSIONS: Final = ("model", "accuracy")
+
+Outcome: TypeAlias = dict[str, float | int | bool]
+
+_KEPT: Final = ("peak_rotation", "overturned", "energy_residual", "status")
+_OWNER: Final = "tradeoff"
+_MOST_REPEATS: Final = 1000
+
+
+def tradeoff(
+    system: System,
+    motion: "GroundMotion | None" = None,
+    *,
+    models: Sequence[str] | None = None,
+    accuracies: Sequence[str | float | Accuracy] = tuple(AccuracyLevel),
+    repeats: int = 5,
+    duration: "QuantityLike | None" = None,
+    free_vibration: "QuantityLike | None" = None,
+    initial: "InitialState | None" = None,
+    output_step: "QuantityLike | None" = None,
+) -> "xr.Dataset":
+    """Measure what each model and each accuracy costs, and how far off it is.
+
+    Parameters
+    ----------
+    system : System
+        The scene, taken for the truth as far as models go.
+    motion : GroundMotion, optional
+        The ground's motion; the one among the parts unless given.
+    models : sequence of str, optional
+        Names of :func:`rockframe.model_ladder`; all unless given.
+    accuracies : sequence of str, float or Accuracy, optional
+        Levels, tolerances (``rtol``), or own settings.
+    repeats : int, optional
+        How often each run is timed.
+    duration, free_vibration, initial, output_step : optional
+        As for :meth:`rockframe.System.simulate`; histories are compared at the output times.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``model`` and ``accuracy``. ``run_time`` (median), ``run_time_least``,
+        ``run_time_greatest`` of runs that keep no histories [s]; the outcome:
+        ``peak_rotation``, ``overturned``, ``energy_residual``, ``status``. Against the same
+        model at a tolerance of 1e-12: ``numerical_peak_error``, ``numerical_history_error`` [1]
+        and ``event_time_error`` [s]. Against the scene itself at that tolerance:
+        ``peak_error``, ``history_error`` [1] and ``verdict_agrees``.
+
+    Raises
+    ------
+    ComponentError
+        Not a System, unknown models, or `repeats` out of range.
+    UnitsError, AssemblyError, SolverError
+        As for :meth:`rockframe.System.simulate`.
+
+    Notes
+    -----
+    Every rung is run once before it is timed. Times are wall times of this machine, now:
+    compare them with one another only.
+    """
+    _check(system, repeats)
+    ladder = model_ladder(system)
+    chosen = _chosen(ladder, models)
+    settings = {_label(given): _setting(given) for given in accuracies}
+    shaking = system.motion if motion is None else motion
+
+    def plan(scene: System, accuracy: Accuracy | str) -> Plan:
+        return plan_run(
+            scene,
+            shaking,
+            duration=duration,
+            free_vibration=free_vibration,
+            initial=initial,
+            accuracy=accuracy,
+            output_step=output_step,
+            outputs=(),
+            overturning="stop",
+        )
+
+    with warnings.catch_warnings():
+        # a rung may say what it cannot show; that is what the errors measure
+        warnings.simplefilter("ignore", ModelWarning)
+        truth = run(system, plan(system, BENCHMARK))
+        rows: list[list[Outcome]] = []
+        for scene in chosen.values():
+            converged = run(scene, plan(scene, BENCHMARK))
+            rows.append(
+                [
+                    measure(scene, plan(scene, setting), converged, truth, repeats)
+                    for setting in settings.values()
+                ]
+            )
+    names = rows[0][0]
+    exact = {label: vars(plan(system, setting).accuracy) for label, setting in settings.items()}
+    dataset = build_dataset(
+        {name: np.array([[cell[name] for cell in row] for row in rows]) for name in names},
+        {
+            "scene": list(ladder)[-1],
+            "benchmark_rtol": BENCHMARK.rtol,
+            "repeats": repeats,
+            "settings": json.dumps(exact),
+            "system_json": json.dumps(system.to_dict()),
+            **motion_attributes(shaking),
+        },
+        over=DIMENSIONS,
+        title="Speed against accuracy",
+        source="repeated runs",
+    )
+    return dataset.assign_coords(
+        model=("model", list(chosen), {"long_name": "model"}),
+        accuracy=("accuracy", list(settings), {"long_name": "accuracy of the integration"}),
+    )
+
+
+def measure(
+    scene: System, plan: Plan, converged: "xr.Dataset", truth: "xr.Dataset", repeats: int
+) -> Outcome:
+    """Run a rung, time it and compare it.
+
+    Parameters
+    ----------
+    scene : System
+        The rung's model.
+    plan : Plan
+        With its accuracy.
+    converged, truth : xarray.Dataset
+        The same model, and the scene itself, at a tolerance of 1e-12.
+    repeats : int
+        How often it is timed.
+
+    Returns
+    -------
+    dict
+        Scalars by their names in the schema.
+    """
+    found = run(scene, plan)
+    bare = replace(plan, output_step=None)
+    times = [_timed(scene, bare) for _ in range(repeats)]
+    return {
+        "run_time": float(np.median(times)),
+        "run_time_least": min(times),
+        "run_time_greatest": max(times),
+        "numerical_peak_error": peak_error(found, converged),
+        "numerical_history_error": history_error(found, converged),
+        "event_time_error": event_time_error(found, converged),
+        "peak_error": peak_error(found, truth),
+        "history_error": history_error(found, truth),
+        "verdict_agrees": bool(found["overturned"]) == bool(truth["overturned"]),
+        **{name: found[name].item() for name in _KEPT},
+    }
+
+
+def _timed(scene: System, plan: Plan) -> float:
+    start = time.perf_counter()
+    outcome(scene, plan)
+    return time.perf_counter() - start
+
+
+def _check(system: object, repeats: object) -> None:
+    if not isinstance(system, System):
+        msg = f"{_OWNER}: system needs a System, got {system!r}"
+        raise ComponentError(msg)
+    whole = repeats if isinstance(repeats, int) and not isinstance(repeats, bool) else 0
+    if not 1 <= whole <= _MOST_REPEATS:
+        msg = f"{_OWNER}: repeats must be a whole number from 1 to {_MOST_REPEATS}, got {repeats!r}"
+        raise ComponentError(msg)
+
+
+def _chosen(ladder: dict[str, System], models: Sequence[str] | None) -> dict[str, System]:
+    if models is None:
+        return ladder
+    unknown = [name for name in models if name not in ladder]
+    if unknown or not models:
+        known = ", ".join(repr(name) for name in ladder)
+        msg = f"{_OWNER}: models must be some of {known}, got {list(models)!r}"
+        raise ComponentError(msg)
+    return {name: ladder[name] for name in models}
+
+
+def _setting(given: str | float | Accuracy) -> Accuracy | str:
+    return given if isinstance(given, str | Accuracy) else Accuracy(rtol=given)
+
+
+def _label(given: str | float | Accuracy) -> str:
+    if isinstance(given, float):
+        return f"rtol {given:g}"
+    if isinstance(given, Accuracy):
+        changed = (
+            f"{field.name} {getattr(given, field.name):g}"
+            for field in fields(given)
+            if getattr(given, field.name) != field.default
+        )
+        return ", ".join(changed)
+    return str(given)
