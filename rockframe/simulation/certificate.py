@@ -116,7 +116,7 @@ def nudges(system: Assembly, nudge: float) -> Iterator[tuple[str, Assembly]]:
                     scene = type(system)(*together, **options)
                 except RockframeError:
                     continue
-                words = f"{name} of the {part.noun} {100.0 * change:+.3g} %"
+                words = f"{name.replace('_', ' ')} of the {part.noun} {100.0 * change:+.3g} %"
                 yield words, scene
 
 
@@ -216,7 +216,8 @@ def _sentence(
         more = f" (and {len(changed) - 1} more)" if len(changed) > 1 else ""
         doubts.append(f"with the {changed[0]}{more} it {other}")
     if scale is not None and certificate.margin <= NEAR:
-        doubts.append(f"with {what} scaled by {scale:.4g} it {other}")
+        way = "up" if scale > 1.0 else "down"
+        doubts.append(f"with {what} scaled {way} by {100.0 * certificate.margin:.2g} % it {other}")
     if doubts:
         return f"Near the boundary: the body {verdict}, but {'; '.join(doubts)}."
     far = f"for every scale of {what} tried from {1 - wanted.reach:g} to {1 + wanted.reach:g}"

@@ -1,0 +1,49 @@
+"""The ladder of models."""
+
+import pytest
+
+import rockframe as rf
+
+BLOCK = rf.Block(width="4 m", height="18 m", mass="99 t")
+PADS = rf.TwoSpringSupport(frequency_ratio=40, damping_ratio=0.10)
+CAP = rf.CushionCap(height="0.9 m", mass="36 t")
+SOIL = rf.WinklerSoil(stiffness="20 MPa", damping_ratio=0.20)
+STACK = ("rigid ground", "two pads", "pads, cap and soil by cascade", "pads, cap and soil coupled")
+
+
+def with_small(names):
+    return [words for name in names for words in (f"{name}, small rotations", name)]
+
+
+@pytest.mark.parametrize(
+    ("parts", "options", "names"),
+    [
+        ((BLOCK,), {}, STACK[:1]),
+        ((BLOCK, PADS), {}, STACK[:2]),
+        ((BLOCK, PADS, CAP, SOIL), {}, STACK),
+        ((BLOCK, PADS, CAP, SOIL), {"coupling": "cascade"}, STACK[:3]),
+        ((BLOCK, SOIL), {}, ("rigid ground", "soil")),
+        ((BLOCK, CAP, SOIL), {}, ("rigid ground", "soil", "cap and soil")),
+    ],
+)
+def test_a_scene_has_the_rungs_below_it(parts, options, names):
+    system = rf.System(*parts, **options)
+    ladder = rf.model_ladder(system)
+    assert list(ladder) == with_small(names)
+    assert ladder[names[-1]].to_dict() == system.to_dict()
+
+
+def test_small_rotations_stay_small():
+    system = rf.System(BLOCK, PADS, rotation="small")
+    ladder = rf.model_ladder(system)
+    assert list(ladder) == ["rigid ground, small rotations", "two pads, small rotations"]
+    assert list(ladder.values())[-1].to_dict() == system.to_dict()
+
+
+def test_options_and_ground_are_kept():
+    ground = rf.RigidGround(restitution=0.8)
+    system = rf.System(BLOCK, ground, restraint="leading-corner", gravity="3.7 m/s^2")
+    for rung in rf.model_ladder(system).values():
+        assert rung.parts.ground == ground
+        assert str(rung.restraint) == "leading-corner"
+        assert rung.gravity_si == 3.7

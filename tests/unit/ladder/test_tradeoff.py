@@ -1,0 +1,194 @@
+"""Speed against accuracy: what is measured, and what is recommended."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import rockframe as rf
+from rockframe.errors import ComponentError, SchemaError, SolverError, UnitsError
+
+BLOCK = rf.Block.from_size(radius="5 m", slenderness=4, mass="50 t")
+PADS = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.10)
+SYSTEM = rf.System(BLOCK, PADS)
+PULSE = rf.GroundMotion.sine_pulse("-4 m/s^2", "1 Hz")
+ACCURACIES = (1e-3, 1e-6, "standard", rf.Accuracy(rtol=1e-11, steps_per_period=40.0))
+
+
+@pytest.fixture(scope="module")
+def measured():
+    return rf.tradeoff(SYSTEM, PULSE, accuracies=ACCURACIES, repeats=2, free_vibration="3 s")
+
+
+def test_axes(measured):
+    assert measured.sizes == {"model": 4, "accuracy": 4}
+    assert measured.model.values.tolist() == list(rf.model_ladder(SYSTEM))
+    assert measured.accuracy.values.tolist() == [
+        "rtol 0.001",
+        "rtol 1e-06",
+        "standard",
+        "rtol 1e-11, steps_per_period 40",
+    ]
+
+
+def test_times_are_ordered_and_positive(measured):
+    least, median, greatest = (
+        measured[name].values for name in ("run_time_least", "run_time", "run_time_greatest")
+    )
+    assert (least > 0.0).all()
+    assert (least <= median).all()
+    assert (median <= greatest).all()
+
+
+def test_outcomes_are_those_of_the_runs(measured):
+    run = SYSTEM.simulate(PULSE, free_vibration="3 s", accuracy="standard")
+    cell = measured.sel(model="two pads", accuracy="standard")
+    assert float(cell.peak_rotation) == float(run.peak_rotation)
+    assert float(cell.energy_residual) == float(run.energy_residual)
+
+
+def test_errors_fall_with_the_tolerance(measured):
+    errors = measured.numerical_history_error.sel(model="two pads").values
+    assert errors[0] >= errors[1] > errors[2] > 10.0 * errors[3]
+    assert errors[3] < 1e-9
+
+
+def test_errors_are_what_they_are_called(measured):
+    reference = rf.Accuracy(rtol=1e-12)
+    scene = SYSTEM.simulate(PULSE, free_vibration="3 s", accuracy=reference)
+    rigid = rf.System(BLOCK).simulate(PULSE, free_vibration="3 s", accuracy="standard")
+    cell = measured.sel(model="rigid ground", accuracy="standard")
+    count = min(rigid.time.size, scene.time.size)
+    difference = np.abs(rigid.rotation.values[:count] - scene.rotation.values[:count])
+    peak = float(np.abs(scene.rotation).max())
+    assert float(cell.history_error) == pytest.approx(difference.max() / peak, rel=1e-9)
+    expected = abs(float(rigid.peak_rotation) - float(scene.peak_rotation))
+    assert float(cell.peak_error) == pytest.approx(expected / float(scene.peak_rotation), rel=1e-9)
+    assert bool(cell.verdict_agrees)
+
+
+def test_the_scene_has_no_error_of_the_model(measured):
+    top = measured.sel(model="two pads")
+    np.testing.assert_array_equal(top.peak_error, top.numerical_peak_error)
+    assert (measured.peak_error.sel(model="rigid ground") > 1e-3).all()
+
+
+def test_it_can_be_stored(measured, tmp_path):
+    measured.to_netcdf(tmp_path / "ladder.nc")
+    with xr.open_dataset(tmp_path / "ladder.nc") as stored:
+        xr.testing.assert_identical(stored, measured)
+
+
+def test_overturning_disagrees_where_it_does():
+    """On rigid ground the block stands what overturns it on pads, or the other way round."""
+    for amplitude in np.arange(4.0, 12.0, 0.25):
+        motion = rf.GroundMotion.sine_pulse(f"{-amplitude} m/s^2", "1 Hz")
+        fell = [
+            bool(system.simulate(motion, free_vibration="3 s", outputs=None).overturned)
+            for system in (SYSTEM, rf.System(BLOCK))
+        ]
+        if fell[0] != fell[1]:
+            break
+    found = rf.tradeoff(
+        SYSTEM,
+        motion,
+        models=["rigid ground", "two pads"],
+        accuracies=["standard"],
+        repeats=1,
+        free_vibration="3 s",
+    )
+    assert found.verdict_agrees.values.tolist() == [[False], [True]]
+    assert rf.recommend(found, 10.0).model == "two pads"
+
+
+def made(times, errors, agrees=True):
+    """A comparison with given times and errors, over two models and two accuracies."""
+    dims = ("model", "accuracy")
+    return xr.Dataset(
+        {
+            "run_time": (dims, np.array(times)),
+            "peak_error": (dims, np.array(errors)),
+            "verdict_agrees": (dims, np.broadcast_to(agrees, (2, 2))),
+        },
+        {"model": ["rigid", "pads"], "accuracy": ["fast", "standard"]},
+    )
+
+
+TIMES, ERRORS = [[1e-3, 2e-3], [3e-3, 8e-3]], [[0.2, 0.1], [0.03, 1e-6]]
+
+
+@pytest.mark.parametrize(
+    ("tolerance", "rung", "met"),
+    [
+        (0.5, ("rigid", "fast"), True),
+        (0.15, ("rigid", "standard"), True),
+        (0.05, ("pads", "fast"), True),
+        (1e-3, ("pads", "standard"), True),
+        (1e-9, ("pads", "standard"), False),
+    ],
+)
+def test_the_cheapest_rung_that_meets_the_tolerance(tolerance, rung, met):
+    advice = rf.recommend(made(TIMES, ERRORS), tolerance)
+    assert (advice.model, advice.accuracy) == rung
+    assert advice.met == met
+    assert str(advice).count(".") >= 1
+    assert ("No rung tried" in str(advice)) == (not met)
+
+
+def test_a_recommendation_in_words():
+    assert str(rf.recommend(made(TIMES, ERRORS), 0.05)) == (
+        "For an error of at most 5 %, take 'pads' at accuracy 'fast': 3 % off in the peak "
+        "rotation, 3 ms a run, 2.67 times faster than the slowest rung."
+    )
+
+
+def test_a_wrong_verdict_is_no_rung():
+    agrees = np.array([[False, True], [True, True]])
+    assert rf.recommend(made(TIMES, ERRORS, agrees), 0.5).accuracy == "standard"
+    none = rf.recommend(made(TIMES, ERRORS, agrees=False), 0.5)
+    assert not none.met
+    assert str(none) == "No rung tried has the verdict of the scene itself."
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error", "words"),
+    [
+        ({"tolerance": 0.0}, ComponentError, "tolerance must be greater than zero"),
+        ({"tolerance": "1 m"}, UnitsError, "tolerance needs a pure ratio"),
+        ({"error": "colour"}, SchemaError, "'peak_error' or 'history_error'"),
+        ({"error": "history_error"}, SchemaError, "expected a dataset of tradeoff"),
+    ],
+)
+def test_recommendations_that_are_refused(arguments, error, words):
+    with pytest.raises(error, match=words):
+        rf.recommend(made(TIMES, ERRORS), **arguments)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error", "words"),
+    [
+        ({"repeats": 0}, ComponentError, "repeats must be a whole number from 1"),
+        ({"repeats": True}, ComponentError, "repeats must be a whole number from 1"),
+        ({"models": ["soil"]}, ComponentError, "models must be some of 'rigid ground, small"),
+        ({"models": []}, ComponentError, "models must be some of"),
+        ({"accuracies": ["quick"]}, SolverError, "accuracy must be one of"),
+        ({"accuracies": [2.0]}, SolverError, "rtol must lie from"),
+    ],
+)
+def test_comparisons_that_are_refused(arguments, error, words):
+    with pytest.raises(error, match=words):
+        rf.tradeoff(SYSTEM, PULSE, **arguments)
+
+
+def test_only_systems_are_compared():
+    with pytest.raises(ComponentError, match="system needs a System"):
+        rf.tradeoff(BLOCK, PULSE)
+
+
+def test_the_figure(measured):
+    figure = rf.plot.tradeoff(measured)
+    figure.canvas.draw()
+    left, right = figure.axes
+    assert [text.get_text() for text in right.get_yticklabels()] == list(rf.model_ladder(SYSTEM))
+    assert len(left.lines) >= 4 * 4
+    with pytest.raises(SchemaError, match="holds no rungs"):
+        rf.plot.tradeoff(xr.Dataset())

@@ -1,0 +1,266 @@
+"""Certificates: how sure a verdict is."""
+
+import math
+import warnings
+
+import pytest
+import xarray as xr
+
+import rockframe as rf
+from rockframe.errors import ComponentError, UnitsError
+from rockframe.simulation.certificate import certify
+from rockframe.simulation.plan import plan_run
+from rockframe.solve.layout import Status
+from rockframe.solve.trajectory import Summary
+
+BLOCK = rf.Block.from_size(radius="5 m", slenderness=5, mass="50 t")
+PADS = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.10)
+SYSTEM = rf.System(BLOCK, PADS)
+PULSE = rf.GroundMotion.sine_pulse("-3 m/s^2", "1 Hz")
+NAMES = (
+    "verdict_converged",
+    "verdict_robust",
+    "verdict_margin",
+    "peak_error_estimate",
+    "peak_sensitivity",
+)
+
+
+def certified(motion=PULSE, system=SYSTEM, certify=True, **arguments):
+    arguments = {"free_vibration": "4 s", **arguments} if motion is not None else arguments
+    return system.simulate(motion, certify=certify, **arguments)
+
+
+def falls(scale, system=SYSTEM):
+    run = system.simulate(PULSE.scaled(scale), free_vibration="4 s", outputs=None)
+    return bool(run.overturned)
+
+
+def boundary(low=1.0, high=8.0):
+    """Find a scale at which the verdict changes."""
+    assert falls(high)
+    assert not falls(low)
+    for _ in range(40):
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if falls(middle) else (middle, high)
+    return 0.5 * (low + high)
+
+
+EDGE = boundary()
+
+
+def test_a_run_without_a_certificate_has_none():
+    run = SYSTEM.simulate(PULSE, free_vibration="4 s")
+    assert not set(NAMES) & set(run)
+    assert "certificate" not in run.attrs
+
+
+def test_far_from_the_boundary():
+    run = certified()
+    assert bool(run.verdict_converged)
+    assert bool(run.verdict_robust)
+    assert float(run.verdict_margin) > 0.01
+    assert 0.0 < float(run.peak_error_estimate) < 1e-6 * float(run.peak_rotation)
+    assert run.attrs["certificate"].startswith("The body stands also with a tolerance 100 times")
+    assert run.attrs["certificate_nudge"] == 1e-3
+
+
+def test_the_run_itself_is_the_same():
+    plain = SYSTEM.simulate(PULSE, free_vibration="4 s")
+    xr.testing.assert_identical(certified()[list(plain)].drop_attrs(), plain.drop_attrs())
+
+
+@pytest.mark.parametrize("off", [0.03, 0.2])
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+def test_the_margin_is_the_distance_to_the_boundary(off, side):
+    """Up to the resolution: the bisection of an interval of a geometric row."""
+    scale = EDGE / (1.0 + side * off)
+    run = certified(PULSE.scaled(scale))
+    assert bool(run.overturned) == (side < 0.0)
+    found = float(run.verdict_margin)
+    assert found == pytest.approx(off, rel=0.02)
+    # the verdict does change there
+    assert falls(scale * (1.0 + side * found)) != bool(run.overturned)
+
+
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+def test_near_the_boundary_it_says_so(side):
+    run = certified(PULSE.scaled(EDGE * (1.0 - side * 1e-4)))
+    assert bool(run.overturned) == (side < 0.0)
+    assert not bool(run.verdict_robust)
+    assert float(run.verdict_margin) < 1.1e-3
+    text = run.attrs["certificate"]
+    assert text.startswith("Near the boundary: the body")
+    assert "of the superstructure" in text
+    assert f"scaled {'up' if side > 0.0 else 'down'} by 0.0" in text
+
+
+def pretended(overturns):
+    """Give a run that overturns where a rule of scene and plan says so."""
+
+    def run(system, plan):
+        time = 1.0 if overturns(system, plan) else math.nan
+        return Summary(
+            status=Status.COMPLETED,
+            end_time=2.0,
+            peak_rotation=0.1 + plan.accuracy.rtol,
+            overturning_time=time,
+            overturning_direction=0,
+            first_uplift_time=math.nan,
+            flight_time=0.0,
+            impact_count=0,
+            flight_count=0,
+            step_count=1,
+            rejected_count=0,
+            energy_residual=0.0,
+        )
+
+    return run
+
+
+def planned(rtol=1e-4):
+    return plan_run(
+        SYSTEM,
+        PULSE,
+        duration=None,
+        free_vibration=None,
+        initial=None,
+        accuracy=rf.Accuracy(rtol=rtol),
+        output_step=None,
+        outputs=(),
+        overturning="stop",
+    )
+
+
+def certificate_of(overturns, rtol=1e-4):
+    run, plan = pretended(overturns), planned(rtol)
+    return certify(SYSTEM, plan, run(SYSTEM, plan), rf.Certification(), run)
+
+
+def test_a_verdict_that_hangs_on_the_tolerance_is_not_converged():
+    found = certificate_of(lambda _, plan: plan.accuracy.rtol > 1e-5)
+    assert not found.converged
+    assert found.robust
+    assert found.peak_error == pytest.approx(0.99e-4)
+    assert found.sentence == (
+        "Near the boundary: the body overturns, but with a tolerance 100 times tighter it stands."
+    )
+
+
+def test_a_verdict_that_hangs_on_one_parameter_is_not_robust():
+    stiffer = 20.01
+    found = certificate_of(
+        lambda system, _: system.parts.pads.to_dict()["frequency_ratio"] > stiffer
+    )
+    assert found.converged
+    assert not found.robust
+    assert "with the frequency ratio of the base +0.1 % it overturns" in found.sentence
+
+
+@pytest.mark.parametrize("edge", [0.6, 0.97, 1.004, 1.2])
+def test_the_nearest_scale_is_found(edge):
+    peak = edge * PULSE.si.peak
+
+    def overturns(_, plan):
+        return plan.motion.si.peak > peak
+
+    found = certificate_of(overturns)
+    assert found.margin == pytest.approx(abs(edge - 1.0), rel=0.02)
+
+
+def test_no_scale_within_reach():
+    found = certificate_of(lambda _, plan: plan.motion.si.peak > 1.6 * PULSE.si.peak)
+    assert found.margin == 0.5
+    assert "for every scale of the motion tried from 0.5 to 1.5" in found.sentence
+
+
+def test_the_tightest_tolerance_is_not_tightened_beyond_rounding():
+    seen = []
+    certificate_of(lambda _, plan: seen.append(plan.accuracy.rtol) or False, rtol=1e-12)
+    assert min(seen) == 1e-13
+
+
+def test_the_sensitivity_is_that_of_nudged_parameters():
+    run = certified(certify=rf.Certification(nudge=0.02))
+    peaks = [float(run.peak_rotation)]
+    for part in (BLOCK, PADS):
+        for name in part.parameters():
+            for factor in (0.98, 1.02):
+                parts = [p for p in (BLOCK, PADS) if p is not part] + [
+                    part.with_scaled(name, factor)
+                ]
+                other = rf.System(*parts).simulate(PULSE, free_vibration="4 s", outputs=None)
+                peaks.append(float(other.peak_rotation))
+    expected = max(abs(peak - peaks[0]) for peak in peaks)
+    assert float(run.peak_sensitivity) == pytest.approx(expected, rel=1e-12)
+
+
+def test_without_a_motion_the_start_is_scaled():
+    start = rf.InitialState(rotation=f"{0.9 * BLOCK.si.overturning_angle!r} rad")
+    run = certified(None, duration="20 s", initial=start)
+    assert not bool(run.overturned)
+    assert run.attrs["certificate"].startswith("The body stands")
+    assert "of the start" in run.attrs["certificate"]
+
+
+def test_at_rest_nothing_can_be_scaled():
+    run = certified(None, duration="1 s")
+    assert float(run.verdict_margin) == 0.5
+    assert bool(run.verdict_robust)
+
+
+@pytest.mark.parametrize(
+    "parts",
+    [
+        (BLOCK,),
+        (BLOCK, rf.WinklerSoil(stiffness="30 MPa", damping_ratio=0.1)),
+        (
+            BLOCK,
+            PADS,
+            rf.CushionCap(height="0.5 m", mass="10 t"),
+            rf.WinklerSoil(stiffness="30 MPa", damping_ratio=0.1),
+        ),
+    ],
+)
+@pytest.mark.parametrize("coupling", ["coupled", "cascade"])
+def test_every_scene_can_be_certified(parts, coupling, tmp_path):
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", rf.ModelWarning)
+        run = certified(system=rf.System(*parts, coupling=coupling))
+    assert all(math.isfinite(float(run[name])) for name in NAMES)
+    run.to_netcdf(tmp_path / "run.nc")
+    with xr.open_dataset(tmp_path / "run.nc") as stored:
+        xr.testing.assert_identical(stored[list(NAMES)].drop_attrs(), run[list(NAMES)].drop_attrs())
+
+
+@pytest.mark.parametrize("given", [1, "yes", None, 0.01])
+def test_what_is_no_certification_is_refused(given):
+    with pytest.raises(ComponentError, match="certify must be True, False or a Certification"):
+        SYSTEM.simulate(PULSE, certify=given)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error", "words"),
+    [
+        ({"nudge": 0.0}, ComponentError, "nudge must be above 0 and at most 0.1"),
+        ({"nudge": "1 m"}, UnitsError, "nudge needs a pure ratio"),
+        ({"reach": 1.0}, ComponentError, "reach must be from 0.01 to 0.9"),
+    ],
+)
+def test_certifications_that_are_refused(arguments, error, words):
+    with pytest.raises(error, match=words):
+        rf.Certification(**arguments)
+
+
+def test_a_part_with_a_scaled_parameter():
+    pads = PADS.with_scaled("damping_ratio", 2.0)
+    assert pads == rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.20)
+    wide = rf.CushionCap(height="0.5 m", mass="10 t").with_scaled("mass", 0.5)
+    assert wide == rf.CushionCap(height="0.5 m", mass="5 t")
+    soil = rf.WinklerSoil(stiffness="30 MPa", damping_ratio=0.1, separation="pressure")
+    assert soil.parameters() == ("stiffness", "damping_ratio")
+    assert soil.with_scaled("stiffness", 2.0) == rf.WinklerSoil(
+        stiffness="60 MPa", damping_ratio=0.1, separation="pressure"
+    )
+    with pytest.raises(ComponentError, match="no parameter is called 'colour'"):
+        PADS.with_scaled("colour", 2.0)
