@@ -12,10 +12,6 @@ import numpy as np
 from rockframe.errors import ComponentError, ModelWarning
 from rockframe.ladder.errors import event_time_error, history_error, peak_error
 from rockframe.ladder.models import model_ladder
-from rockframe.results.dataset import build_dataset
-from rockframe.simulation.plan import Plan, plan_run
-from rockframe.simulation.provenance import motion_attributes
-from rockframe.simulation.run import outcome, run
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import Accuracy, AccuracyLevel
 
@@ -24,6 +20,7 @@ if TYPE_CHECKING:
 
     from rockframe.components import InitialState
     from rockframe.motion import GroundMotion
+    from rockframe.simulation.plan import Plan
     from rockframe.units import QuantityLike
 
 BENCHMARK: Final = Accuracy(rtol=1e-12)
@@ -89,13 +86,19 @@ def tradeoff(
     Every rung is run once before it is timed. Times are wall times of this machine, now:
     compare them with one another only.
     """
+    # imported here, because they load the compiler
+    from rockframe.results.dataset import build_dataset
+    from rockframe.simulation.plan import plan_run
+    from rockframe.simulation.provenance import motion_attributes
+    from rockframe.simulation.run import run
+
     _check(system, repeats)
     ladder = model_ladder(system)
     chosen = _chosen(ladder, models)
     settings = {_label(given): _setting(given) for given in accuracies}
     shaking = system.motion if motion is None else motion
 
-    def plan(scene: System, accuracy: Accuracy | str) -> Plan:
+    def plan(scene: System, accuracy: Accuracy | str) -> "Plan":
         return plan_run(
             scene,
             shaking,
@@ -144,7 +147,7 @@ def tradeoff(
 
 
 def measure(
-    scene: System, plan: Plan, converged: "xr.Dataset", truth: "xr.Dataset", repeats: int
+    scene: System, plan: "Plan", converged: "xr.Dataset", truth: "xr.Dataset", repeats: int
 ) -> Outcome:
     """Run a rung, time it and compare it.
 
@@ -164,6 +167,8 @@ def measure(
     dict
         Scalars by their names in the schema.
     """
+    from rockframe.simulation.run import run
+
     found = run(scene, plan)
     bare = replace(plan, output_step=None)
     times = [_timed(scene, bare) for _ in range(repeats)]
@@ -181,7 +186,9 @@ def measure(
     }
 
 
-def _timed(scene: System, plan: Plan) -> float:
+def _timed(scene: System, plan: "Plan") -> float:
+    from rockframe.simulation.run import outcome
+
     start = time.perf_counter()
     outcome(scene, plan)
     return time.perf_counter() - start
