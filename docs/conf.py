@@ -6,7 +6,7 @@ import sys
 from importlib.metadata import version as version_of
 from pathlib import Path
 
-# The kernels are documented, and the figures computed, as plain Python.
+# The kernels are documented as the plain Python that they are written in.
 os.environ["ROCKFRAME_COMPILE"] = "0"
 sys.path.insert(0, str(Path(__file__).parent / "_ext"))
 

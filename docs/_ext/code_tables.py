@@ -7,7 +7,9 @@ from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
 from rockframe.dynamics.protocol import ContactState, EventKind
+from rockframe.results.variables.ladder import LADDER
 from rockframe.results.variables.runs import (
+    CERTIFICATE,
     ENERGY_HISTORIES,
     EVENTS_AND_SCALARS,
     HISTORIES,
@@ -64,6 +66,8 @@ TABLES: dict[str, Callable[[], Rows]] = {
     "energies": lambda: _variables(ENERGY_HISTORIES),
     "events": lambda: _variables(EVENTS_AND_SCALARS, EVENT),
     "scalars": lambda: _variables(EVENTS_AND_SCALARS, ()),
+    "certificate": lambda: _variables(CERTIFICATE),
+    "ladder": lambda: _variables(LADDER),
     "rest": lambda: _variables(REST),
     "held": lambda: _variables(HELD),
     "modes": lambda: _variables(MODES),
