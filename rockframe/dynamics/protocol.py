@@ -123,6 +123,25 @@ class Start:
 
 
 @dataclass(frozen=True)
+class Ending:
+    """Where a run ended, so that another can go on from there.
+
+    Parameters
+    ----------
+    mode : int
+        Of the model.
+    state : ndarray, shape (2 n,)
+        Coordinates, then their rates.
+    memory : ndarray, shape (memory,)
+        The model's memory.
+    """
+
+    mode: int
+    state: Vector
+    memory: Vector
+
+
+@dataclass(frozen=True)
 class ContactModel:
     """A scene's equations, ready for the integrator.
 

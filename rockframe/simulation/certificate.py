@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
 from rockframe.errors import ModelWarning, RockframeError
+from rockframe.simulation.beginning import Continuation
 from rockframe.simulation.certification import Certificate, Certification
 from rockframe.simulation.plan import Plan
 from rockframe.solve.accuracy import Accuracy
@@ -186,6 +187,8 @@ def scaled(plan: Plan, scale: float, theta: float) -> Plan | None:
     if plan.motion is not None:
         return replace(plan, motion=plan.motion.scaled(scale))
     start = plan.initial
+    if isinstance(start, Continuation):
+        return None
     if start.si.rotation == 0.0 and start.si.angular_velocity == 0.0:
         return None
     try:

@@ -3,14 +3,19 @@
 import json
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, cast
 
 from rockframe.components import InitialState
 from rockframe.errors import AssemblyError
 from rockframe.motion import GroundMotion
 from rockframe.results.schema import ENERGIES, SCHEMA
+from rockframe.simulation.beginning import Beginning, continuation_of
 from rockframe.solve.accuracy import Accuracy, AccuracyLevel, accuracy_of
 from rockframe.system.assembly import Assembly
 from rockframe.units import POSITIVE, TIME, QuantityLike, to_si
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 ENERGY_GROUP = "energy"
 MOST_SAMPLES = 1e8
@@ -25,7 +30,7 @@ class Plan:
 
     motion: GroundMotion | None
     duration: float
-    initial: InitialState
+    initial: Beginning
     accuracy: Accuracy
     accuracy_name: str
     output_step: float | None
@@ -52,7 +57,7 @@ def plan_run(
     *,
     duration: QuantityLike | None,
     free_vibration: QuantityLike | None,
-    initial: InitialState | None,
+    initial: "InitialState | xr.Dataset | None",
     accuracy: Accuracy | AccuracyLevel | str,
     output_step: QuantityLike | None,
     outputs: Sequence[str] | None,
@@ -71,20 +76,10 @@ def plan_run(
     """
     faults: list[str] = []
     motion = system.motion if motion is None else motion
-    initial = InitialState() if initial is None else initial
     _check_kind(motion, GroundMotion, "motion", faults)
-    _check_kind(initial, InitialState, "initial", faults)
+    beginning = _beginning(system, initial, faults)
     if faults:
         raise AssemblyError(faults)
-    start = initial.si
-    vertical_start = start.vertical_displacement is not None or start.vertical_velocity != 0.0
-    faults += system.setting.start_faults(start.rotation, vertical_start)
-    theta = system.setting.overturning_angle
-    if abs(start.rotation) >= theta:
-        faults.append(
-            f"initial rotation {start.rotation:.6g} rad is not below the overturning angle "
-            f"{theta:.6g} rad"
-        )
     length = _length(motion, duration, free_vibration, faults)
     step = motion.si.time_step if motion is not None else STILL_GROUND_OUTPUT_STEP
     if output_step is not None:
@@ -105,13 +100,34 @@ def plan_run(
     return Plan(
         motion=motion,
         duration=length,
-        initial=initial,
+        initial=beginning,
         accuracy=settings,
         accuracy_name="own" if isinstance(accuracy, Accuracy) else str(accuracy),
         output_step=step,
         energies=energies,
         stop_at_overturning=overturning == "stop",
     )
+
+
+def _beginning(system: Assembly, given: object, faults: list[str]) -> Beginning:
+    """Read the argument ``initial``; note what does not fit the system."""
+    if hasattr(given, "data_vars"):  # a dataset, known without importing xarray
+        return continuation_of(cast("xr.Dataset", given), system, faults)
+    if given is None:
+        return InitialState()
+    if not isinstance(given, InitialState):
+        faults.append(f"initial must be an InitialState or the result of a run, got {given!r}")
+        return InitialState()
+    start = given.si
+    vertical_start = start.vertical_displacement is not None or start.vertical_velocity != 0.0
+    faults += system.setting.start_faults(start.rotation, vertical_start)
+    theta = system.setting.overturning_angle
+    if abs(start.rotation) >= theta:
+        faults.append(
+            f"initial rotation {start.rotation:.6g} rad is not below the overturning angle "
+            f"{theta:.6g} rad"
+        )
+    return given
 
 
 def _check_kind(value: object, kind: type, name: str, faults: list[str]) -> None:

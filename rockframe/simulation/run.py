@@ -4,11 +4,12 @@ import json
 import math
 import warnings
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rockframe.dynamics.protocol import Start
+from rockframe.dynamics.protocol import Ending, Start
 from rockframe.errors import ModelWarning
 from rockframe.motion import GroundMotion
 from rockframe.results.dataset import build_dataset
@@ -26,6 +27,7 @@ from rockframe.results.outcome import (
 )
 from rockframe.results.stages import cascade_energies, cascade_events, cascade_histories
 from rockframe.results.variables.runs import Direction
+from rockframe.simulation.beginning import end_attributes, start_of
 from rockframe.simulation.certificate import certify
 from rockframe.simulation.certification import Certification
 from rockframe.simulation.plan import Plan
@@ -59,6 +61,15 @@ def ground_of(motion: GroundMotion | None) -> Ground:
     return Ground(time_step=motion.si.time_step, **arrays)
 
 
+@dataclass(frozen=True)
+class Response:
+    """A run before it is labelled: histories and events, what became of it, where it ended."""
+
+    values: dict[str, Generic]
+    summary: Summary
+    endings: tuple[Ending, ...]
+
+
 def run(system: Assembly, plan: Plan, certification: Certification | None = None) -> "xr.Dataset":
     """Integrate as planned and label the result.
 
@@ -78,14 +89,15 @@ def run(system: Assembly, plan: Plan, certification: Certification | None = None
     ground = ground_of(plan.motion)
     _warn_of_lost_weight(system, ground)
     scales = _scales(system)
-    values, summary = _respond(system, plan, ground, scales)
-    attributes = _attributes(system, plan, summary, scales)
+    response = _respond(system, plan, ground, scales)
+    summary = response.summary
+    attributes = _attributes(system, plan, summary, scales) | end_attributes(response.endings)
     certificate: dict[str, float | bool] = {}
     if certification is not None:
         found = certify(system, plan, summary, certification, outcome)
         certificate = found.values()
         attributes |= found.attributes(certification)
-    return build_dataset({**values, **scalars(summary, scales), **certificate}, attributes)
+    return build_dataset({**response.values, **scalars(summary, scales), **certificate}, attributes)
 
 
 def outcome(system: Assembly, plan: Plan) -> Summary:
@@ -102,7 +114,7 @@ def outcome(system: Assembly, plan: Plan) -> Summary:
     -------
     Summary
     """
-    return _respond(system, plan, ground_of(plan.motion), _scales(system))[1]
+    return _respond(system, plan, ground_of(plan.motion), _scales(system)).summary
 
 
 def _scales(system: Assembly) -> Scales:
@@ -117,18 +129,10 @@ def _scales(system: Assembly) -> Scales:
     )
 
 
-def _respond(
-    system: Assembly, plan: Plan, ground: Ground, scales: Scales
-) -> tuple[dict[str, Generic], Summary]:
-    """Integrate; give histories and events by their names, and what became of the run."""
+def _respond(system: Assembly, plan: Plan, ground: Ground, scales: Scales) -> Response:
+    """Integrate; give histories and events by their names in the schema."""
     equations = system.setting.compile()
-    initial = plan.initial.si
-    start = Start(
-        initial.rotation,
-        initial.angular_velocity,
-        initial.vertical_displacement,
-        initial.vertical_velocity,
-    )
+    start = start_of(plan.initial)
     wanted = plan.output_step is not None
     if isinstance(equations, Cascade):
         stages = integrate_cascade(
@@ -137,17 +141,20 @@ def _respond(
             stop_at_overturning=plan.stop_at_overturning, with_work=bool(plan.energies),
         )  # fmt: skip
         summary, time = stages.summary, stages.second.time
+        endings = (stages.first.ending, stages.second.ending)
         shaking = ground_at(ground, time)
         values = cascade_histories(equations, stages, scales, shaking) if wanted else {}
         energies = cascade_energies(equations, stages) if plan.energies else {}
         events = cascade_events(equations, stages)
     else:
+        begin = start if isinstance(start, Start) else start[0]
         trajectory = integrate(
-            equations, start, ground, plan.accuracy,
+            equations, begin, ground, plan.accuracy,
             duration=plan.duration, output_step=plan.output_step,
             stop_at_overturning=plan.stop_at_overturning, with_work=bool(plan.energies),
         )  # fmt: skip
         summary, time = trajectory, trajectory.time
+        endings = (trajectory.ending,)
         shaking = ground_at(ground, time)
         values = histories(equations, trajectory, shaking) if wanted else {}
         if wanted and equations.soil_contact is None:
@@ -160,7 +167,7 @@ def _respond(
         values["time"] = time
         _warn_of_pulling(system, values, summary.overturning_time)
     values |= {name: energies[name] for name in plan.energies}
-    return values | events, summary
+    return Response(values | events, summary, endings)
 
 
 def _attributes(

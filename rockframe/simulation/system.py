@@ -58,7 +58,7 @@ class System(Assembly):
         *,
         duration: QuantityLike | None = None,
         free_vibration: QuantityLike | None = None,
-        initial: InitialState | None = None,
+        initial: "InitialState | xr.Dataset | None" = None,
         accuracy: Accuracy | AccuracyLevel | str = AccuracyLevel.STANDARD,
         output_step: QuantityLike | None = None,
         outputs: Sequence[str] | None = (),
@@ -76,8 +76,9 @@ class System(Assembly):
             ground stands still [s].
         free_vibration : str or Quantity, optional
             Time added to the motion's length, instead of `duration` [s].
-        initial : InitialState, optional
-            Where the run starts; at rest unless given.
+        initial : InitialState or xarray.Dataset, optional
+            Where the run starts; at rest unless given. The result of another run of this
+            system starts it where that one ended, its time at zero again.
         accuracy : {"fast", "standard", "reference"} or Accuracy
             How accurate, and so how costly, the run is.
         output_step : str or Quantity, optional

@@ -7,7 +7,7 @@ the ground of the second, page "Cap and soil" of the manual.
 import math
 from dataclasses import dataclass
 
-from rockframe.dynamics.protocol import ContactModel, Start
+from rockframe.dynamics.protocol import ContactModel, Ending, Start
 from rockframe.solve.accuracy import Accuracy
 from rockframe.solve.carrying import HALVES, carry, carrying_step
 from rockframe.solve.ground_table import Ground
@@ -61,7 +61,7 @@ class CascadeRun:
 
 def integrate_cascade(
     cascade: Cascade,
-    start: Start,
+    start: Start | tuple[Ending, ...],
     ground: Ground,
     accuracy: Accuracy,
     *,
@@ -72,7 +72,8 @@ def integrate_cascade(
 ) -> CascadeRun:
     """Integrate both stages, with the arguments of :func:`rockframe.solve.integrate.integrate`.
 
-    The first stage starts at rest, the second as `start` tells.
+    The first stage starts at rest, the second as `start` tells; or both where those of
+    another run ended.
 
     Returns
     -------
@@ -80,13 +81,14 @@ def integrate_cascade(
         Ended where the total rotation reaches the overturning angle of the second
         stage, if asked.
     """
+    begin_first, begin_second = (Start(), start) if isinstance(start, Start) else start
     step = carrying_step(cascade.first, ground)
     fine = step / HALVES
     whole = step * math.ceil(duration / step - 1e-9)
 
     def run(
         model: ContactModel,
-        begin: Start,
+        begin: Start | Ending,
         shaking: Ground,
         length: float,
         every: float | None,
@@ -105,10 +107,10 @@ def integrate_cascade(
             keep_end=keep_end,
         )
 
-    first = run(cascade.first, Start(), ground, whole, fine)
+    first = run(cascade.first, begin_first, ground, whole, fine)
     carried = carry(cascade.first, first, ground, cascade.top, step)
     length = whole if first.status is Status.COMPLETED else first.end_time
-    second = run(cascade.second, start, carried, length, fine)
+    second = run(cascade.second, begin_second, carried, length, fine)
     summary, reaches = summarise(
         cascade, first, second, duration=duration, stop_at_overturning=stop_at_overturning
     )
@@ -116,12 +118,12 @@ def integrate_cascade(
     every = 0 if output_step is None else round(output_step / fine)
     if output_step is None:
         first, second = first.without_histories(), second.without_histories()
-    elif completed and math.isclose(every * fine, output_step):
+    elif completed and math.isclose(every * fine, output_step) and math.isclose(whole, end):
         last = math.floor(end / output_step * (1.0 + 1e-12))
         first = first.thinned(every, last, output_step)
         second = second.thinned(every, last, output_step)
     else:  # once more, at the output times and up to the end
         keep = not completed
-        first = run(cascade.first, Start(), ground, end, output_step, keep_end=keep)
-        second = run(cascade.second, start, carried, end, output_step, keep_end=keep)
+        first = run(cascade.first, begin_first, ground, end, output_step, keep_end=keep)
+        second = run(cascade.second, begin_second, carried, end, output_step, keep_end=keep)
     return CascadeRun(first, second, carried, summary, reaches)

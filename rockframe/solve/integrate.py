@@ -5,7 +5,15 @@ import math
 import numpy as np
 
 from rockframe.compiled import Vector
-from rockframe.dynamics.protocol import MEMORY_SIZE, ContactModel, ContactState, Start
+from rockframe.dynamics.protocol import (
+    IMPACT_LOSS,
+    MEMORY_SIZE,
+    REPINNING_LOSS,
+    ContactModel,
+    ContactState,
+    Ending,
+    Start,
+)
 from rockframe.solve import layout as at
 from rockframe.solve.accuracy import Accuracy
 from rockframe.solve.books import ON_SAMPLE
@@ -35,7 +43,7 @@ EVENT_ROOM = 256
 
 def integrate(
     model: ContactModel,
-    start: Start,
+    start: Start | Ending,
     ground: Ground,
     accuracy: Accuracy,
     *,
@@ -51,8 +59,8 @@ def integrate(
     ----------
     model : ContactModel
         The equations.
-    start : Start
-        Where the run starts.
+    start : Start or Ending
+        Where the run starts, or another run of the same model ended.
     ground : Ground
         Its motion; the ground stands still beyond its last sample.
     accuracy : Accuracy
@@ -73,7 +81,7 @@ def integrate(
     Trajectory
         Also where the run could not be finished; see its status.
     """
-    mode, state, memory = model.initial(start)
+    mode, state, memory = _beginning(model, start)
     shortest_period = 2.0 * math.pi / model.fastest_frequency
     controls = np.zeros(at.CONTROLS)
     controls[at.RTOL] = accuracy.rtol
@@ -180,8 +188,18 @@ def integrate(
         step_count=int(counters[at.STEPS]),
         rejected_count=int(counters[at.REJECTED]),
         energy_residual=_ratio(float(clock[at.RESIDUAL]), float(clock[at.LARGEST_TERM])),
+        ending=Ending(int(counters[at.MODE]), state.copy(), memory.copy()),
         start_energy=float(clock[at.START_ENERGY]),
     )
+
+
+def _beginning(model: ContactModel, start: Start | Ending) -> tuple[int, Vector, Vector]:
+    if isinstance(start, Start):
+        return model.initial(start)
+    memory = start.memory.copy()
+    # the books of losses begin anew with each run
+    memory[IMPACT_LOSS] = memory[REPINNING_LOSS] = 0.0
+    return start.mode, start.state.copy(), memory
 
 
 def _events(table: EventTable, count: int, width: int) -> Events:

@@ -6,6 +6,7 @@ from typing import Self
 import numpy as np
 
 from rockframe.compiled import Codes, Integers, Matrix, Vector
+from rockframe.dynamics.protocol import Ending
 from rockframe.solve.layout import Status
 
 
@@ -89,6 +90,8 @@ class Trajectory(Summary):
         The model's memory at the start.
     events : Events
         What happened when.
+    ending : Ending
+        Where the run ended.
     start_energy : float
         Kinetic, gravity and elastic energy at the start, from that at rest.
     """
@@ -100,6 +103,7 @@ class Trajectory(Summary):
     start_mode: int
     start_memory: Vector
     events: Events
+    ending: Ending
     start_energy: float
 
     def thinned(self, every: int, last: int, step: float) -> Self:

@@ -1,0 +1,107 @@
+"""How a run begins: as an initial state tells, or where another run ended."""
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, TypeAlias, cast
+
+import numpy as np
+
+from rockframe.components import InitialState
+from rockframe.dynamics.protocol import Ending, Start
+from rockframe.system.assembly import Assembly
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_ATTRIBUTE = "end_state"
+
+
+@dataclass(frozen=True)
+class Continuation:
+    """The end of another run of the same system.
+
+    Parameters
+    ----------
+    endings : tuple of Ending
+        Of the run; two of a cascade.
+    """
+
+    endings: tuple[Ending, ...]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Give it as plain values, fit for JSON."""
+        return {"type": type(self).__name__, "endings": [_plain(one) for one in self.endings]}
+
+
+Beginning: TypeAlias = InitialState | Continuation
+
+
+def start_of(beginning: Beginning) -> Start | tuple[Ending, ...]:
+    """Give a beginning as the integrator takes it."""
+    if isinstance(beginning, Continuation):
+        return beginning.endings
+    si = beginning.si
+    return Start(si.rotation, si.angular_velocity, si.vertical_displacement, si.vertical_velocity)
+
+
+def end_attributes(endings: Sequence[Ending]) -> dict[str, str]:
+    """Give the end of a run as an attribute that a later run can begin with.
+
+    Parameters
+    ----------
+    endings : sequence of Ending
+        Of the run; two of a cascade.
+
+    Returns
+    -------
+    dict
+        Mode, state and memory in JSON, exact to the last bit.
+    """
+    return {_ATTRIBUTE: json.dumps([_plain(ending) for ending in endings])}
+
+
+def continuation_of(dataset: "xr.Dataset", system: Assembly, faults: list[str]) -> Continuation:
+    """Read where a run ended, or note why none can go on from there.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        Result of a run.
+    system : Assembly
+        The system that is to go on.
+    faults : list of str
+        Appended to.
+
+    Returns
+    -------
+    Continuation
+    """
+    attributes: Mapping[str, Any] = cast("Mapping[str, Any]", dataset.attrs)
+    if _ATTRIBUTE not in attributes or "system_json" not in attributes:
+        faults.append("initial is a dataset that holds no end of a run; expected one of simulate()")
+        return Continuation(())
+    if json.loads(attributes["system_json"]) != system.to_dict():
+        faults.append("initial is the end of a run of another system")
+    if not math.isnan(float(attributes.get("overturning_time", math.nan))):
+        faults.append("initial is the end of a run that overturned")
+    stored: list[dict[str, Any]] = json.loads(attributes[_ATTRIBUTE])
+    return Continuation(
+        tuple(
+            Ending(
+                one["mode"],
+                np.array(one["state"], dtype=np.float64),
+                np.array(one["memory"], dtype=np.float64),
+            )
+            for one in stored
+        )
+    )
+
+
+def _plain(ending: Ending) -> dict[str, Any]:
+    return {
+        "mode": ending.mode,
+        "state": ending.state.tolist(),
+        "memory": ending.memory.tolist(),
+    }

@@ -1,0 +1,112 @@
+"""A run that goes on where another ended is the one run that both make."""
+
+import warnings
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import rockframe as rf
+from rockframe.errors import AssemblyError
+
+BLOCK = rf.Block.from_size(radius="5 m", slenderness=4, mass="50 t")
+PADS = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.10)
+CAP = rf.CushionCap(height="0.5 m", mass="10 t")
+SOIL = rf.WinklerSoil(stiffness="12 MPa", damping_ratio=0.1)
+SCENES = {
+    "rigid ground": rf.System(BLOCK),
+    "pads": rf.System(BLOCK, PADS),
+    "pads, leading corner": rf.System(BLOCK, PADS, restraint="leading-corner"),
+    "soil": rf.System(BLOCK, SOIL),
+    "cap and soil": rf.System(BLOCK, CAP, SOIL),
+    "coupled": rf.System(BLOCK, PADS, CAP, SOIL),
+    "cascade": rf.System(BLOCK, PADS, CAP, SOIL, coupling="cascade"),
+}
+STEP = 0.01
+
+
+def record():
+    """Smooth noise, horizontal and vertical, that uplifts and drops every scene."""
+    rng = np.random.default_rng(11)
+    across, upwards = (
+        np.convolve(rng.normal(size=800), np.hanning(25) / 12.0, "same") for _ in range(2)
+    )
+    scaled = [values / np.abs(values).max() for values in (across, upwards)]
+    return rf.GroundMotion.from_arrays(
+        (0.5 * scaled[0], "g_0"), f"{STEP} s", (0.4 * scaled[1], "g_0")
+    )
+
+
+MOTION = record()
+WHOLE = {name: system.simulate(MOTION, accuracy="reference") for name, system in SCENES.items()}
+
+
+@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("at", [0.01, 1.37, 3.0, 5.55])
+def test_a_record_split_in_two_gives_the_same_response(name, at):
+    system, whole = SCENES[name], WHOLE[name]
+    assert not bool(whole.overturned)
+    first = system.simulate(MOTION.window(end=f"{at} s"), accuracy="reference")
+    second = system.simulate(MOTION.window(f"{at} s"), initial=first, accuracy="reference")
+    place = round(at / STEP)
+    for variable in ("rotation", "vertical_displacement", "horizontal_displacement"):
+        scale = float(np.abs(whole[variable]).max())
+        both = np.concatenate([first[variable].values, second[variable].values[1:]])
+        assert both == pytest.approx(whole[variable].values, abs=2e-7 * scale)
+        # no jump where one ends and the other begins
+        assert second[variable].values[0] == first[variable].values[-1]
+    events = np.concatenate([first.event_time, second.event_time + place * STEP])
+    assert events == pytest.approx(whole.event_time.values, abs=1e-7)
+    assert float(second.energy_residual) <= 1e-8
+
+
+def test_the_end_survives_a_file(tmp_path):
+    system = SCENES["coupled"]
+    first = system.simulate(MOTION.window(end="3 s"))
+    first.to_netcdf(tmp_path / "first.nc")
+    with xr.open_dataset(tmp_path / "first.nc") as stored:
+        later = system.simulate(MOTION.window("3 s"), initial=stored)
+    now = system.simulate(MOTION.window("3 s"), initial=first)
+    xr.testing.assert_equal(later, now)
+
+
+def test_it_goes_on_at_rest_and_without_a_motion():
+    system = SCENES["pads"]
+    first = system.simulate(MOTION.window(end="3 s"))
+    calm = system.simulate(initial=first, duration="5 s")
+    free = system.simulate(MOTION.window(end="3 s"), free_vibration="5 s")
+    assert float(calm.rotation[-1]) == pytest.approx(float(free.rotation[-1]), abs=1e-8)
+    again = system.simulate(initial=calm, duration="1 s")
+    assert float(again.rotation[0]) == float(calm.rotation[-1])
+
+
+def test_a_continued_run_can_be_certified():
+    first = SCENES["pads"].simulate(MOTION.window(end="3 s"))
+    run = SCENES["pads"].simulate(MOTION.window("3 s"), initial=first, certify=True)
+    assert bool(run.verdict_converged)
+
+
+def test_runs_that_cannot_be_continued():
+    system = SCENES["pads"]
+    with pytest.raises(AssemblyError, match="holds no end of a run"):
+        system.simulate(MOTION, initial=MOTION.to_dataset())
+    with pytest.raises(AssemblyError, match="end of a run of another system"):
+        system.simulate(MOTION, initial=WHOLE["soil"])
+    fallen = system.simulate(MOTION.scaled(20.0))
+    assert bool(fallen.overturned)
+    with pytest.raises(AssemblyError, match="end of a run that overturned"):
+        system.simulate(MOTION, initial=fallen)
+    with pytest.raises(AssemblyError, match="InitialState or the result of a run, got 3"):
+        system.simulate(MOTION, initial=3)
+
+
+def test_units_do_not_matter():
+    """The same scene in other units responds alike, to rounding."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        other = rf.System(
+            rf.Block.from_size(radius="500 cm", slenderness=4, mass="50000 kg"),
+            rf.TwoSpringSupport(frequency_ratio=20, damping_ratio="10 %"),
+        )
+    run = other.simulate(MOTION, accuracy="reference")
+    assert run.rotation.values == pytest.approx(WHOLE["pads"].rotation.values, abs=1e-9)
