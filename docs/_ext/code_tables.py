@@ -50,9 +50,10 @@ def _options(kind: type) -> Rows:
 
 
 def _accuracy() -> Rows:
-    yield "level", "rtol", "floor", "steps_per_period"
+    yield "level", "substeps", "rtol", "floor", "steps_per_period"
     for name, level in LEVELS.items():
-        yield str(name), f"{level.rtol:g}", f"{level.floor:g}", f"{level.steps_per_period:g}"
+        tolerance = (f"{level.rtol:g}", f"{level.floor:g}") if level.rtol else ("", "")
+        yield str(name), str(level.substeps or ""), *tolerance, f"{level.steps_per_period:g}"
 
 
 def _units() -> Rows:

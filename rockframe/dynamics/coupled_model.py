@@ -107,7 +107,7 @@ def coupled(
     modes = np.arange(model.MODES)
     contact = contact_of_corners(modes % model.BLOCK_MODES)
     soil_contact = contact_of_bed(modes // model.BLOCK_MODES)
-    fastest = fastest_frequency(p)
+    fastest, damping_rate = fastest_vibration(p)
     rocking = math.sqrt(gravity * radius / (radius**2 + p[model.INERTIA]))
     pads = math.sqrt(2.0 * p[model.PAD_STIFFNESS])
     soil = math.sqrt(2.0 * cap_half_width * p[model.SOIL_STIFFNESS] / (1.0 + p[model.CAP_MASS]))
@@ -149,6 +149,7 @@ def coupled(
         lazy_guard=lazy_corners(model.GUARDS),
         columns=model.COLUMNS,
         fastest_frequency=fastest,
+        damping_rate=damping_rate,
         energy_scale=gravity * radius * theta,
         mass=mass,
         initial=initial,
@@ -188,13 +189,21 @@ def small_motion_matrices(p: Vector) -> tuple[Matrix, Matrix, Matrix]:
     return mass, springs(p[model.SOIL_DAMPING], p[model.PAD_DAMPING]), stiffness
 
 
-def fastest_frequency(p: Vector) -> float:
-    """Give the highest angular frequency of block and cap together, or of the cap alone."""
-    mass, _, stiffness = small_motion_matrices(p)
-    together = np.linalg.eigvals(np.linalg.solve(mass, stiffness)).real.max()
-    b_c, k, m_c = p[model.CAP_HALF_WIDTH], p[model.SOIL_STIFFNESS], p[model.CAP_MASS]
-    turning = p[model.CAP_INERTIA] + m_c * p[model.CAP_HALF_HEIGHT] ** 2
-    return math.sqrt(max(together, 2.0 * b_c * k / m_c, k * b_c**3 / 1.5 / turning))
+def fastest_vibration(p: Vector) -> tuple[float, float]:
+    """Give bounds of angular frequency and damping rate, of both together or the cap alone."""
+    mass, damping, stiffness = small_motion_matrices(p)
+    cap_mass = p[model.CAP_MASS]
+    turning = p[model.CAP_INERTIA] + cap_mass * p[model.CAP_HALF_HEIGHT] ** 2
+
+    def largest(matrix: Matrix, soil: float) -> float:
+        together = float(np.linalg.eigvals(np.linalg.solve(mass, matrix)).real.max())
+        b_c = p[model.CAP_HALF_WIDTH]
+        return max(together, 2.0 * b_c * soil / cap_mass, soil * b_c**3 / 1.5 / turning)
+
+    return (
+        math.sqrt(largest(stiffness, p[model.SOIL_STIFFNESS])),
+        largest(damping, p[model.SOIL_DAMPING]),
+    )
 
 
 @kernel

@@ -169,6 +169,8 @@ class ContactModel:
         Names of what `observe` gives.
     fastest_frequency : float
         Highest angular frequency of the model [rad s^-1].
+    damping_rate : float
+        Bound of twice damping ratio times angular frequency of its vibrations [s^-1].
     energy_scale : float
         Typical energy per unit mass, by which rounding noise is known [m^2 s^-2].
     soil_contact : ndarray of int64, shape (modes,), or None
@@ -195,6 +197,7 @@ class ContactModel:
     lazy_guard: Integers
     columns: tuple[str, ...]
     fastest_frequency: float
+    damping_rate: float
     energy_scale: float
     mass: float
     initial: Callable[[Start], tuple[int, Vector, Vector]]

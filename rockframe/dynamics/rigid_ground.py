@@ -290,6 +290,7 @@ def rigid_ground(
         lazy_guard=np.zeros(GUARDS, dtype=np.int64),
         columns=COLUMNS,
         fastest_frequency=frequency,
+        damping_rate=0.0,
         energy_scale=gravity * radius * overturning_angle,
         mass=mass,
         initial=initial,

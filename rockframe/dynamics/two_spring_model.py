@@ -76,6 +76,7 @@ def two_spring(
     vertical_frequency = math.sqrt(2.0 * p[two.STIFFNESS])
     base_inertia = p[body.INERTIA] + half_height**2
     rotational_frequency = half_width * math.sqrt(2.0 * p[two.STIFFNESS] / base_inertia)
+    fastest = max(vertical_frequency, rotational_frequency)
     contact = contact_of_corners(np.arange(two.MODES))
 
     def initial(start: Start) -> tuple[int, Vector, Vector]:
@@ -107,7 +108,8 @@ def two_spring(
         guard_tolerance=corner_tolerance(two.GUARDS, radius, settlement),
         lazy_guard=lazy_corners(two.GUARDS),
         columns=two.COLUMNS,
-        fastest_frequency=max(vertical_frequency, rotational_frequency),
+        fastest_frequency=fastest,
+        damping_rate=damping / stiffness * fastest**2,
         energy_scale=body.energy_scale(p),
         mass=mass,
         initial=initial,

@@ -73,6 +73,7 @@ def winkler(
     vertical_frequency = math.sqrt(2.0 * half_width * p[soil.STIFFNESS])
     base_inertia = p[body.INERTIA] + centre_height**2
     rotational_frequency = vertical_frequency * half_width / math.sqrt(3.0 * base_inertia)
+    fastest = max(vertical_frequency, rotational_frequency)
     contact = contact_of_bed(np.arange(soil.MODES))
 
     def initial(start: Start) -> tuple[int, Vector, Vector]:
@@ -106,7 +107,8 @@ def winkler(
         ),
         lazy_guard=np.zeros(soil.GUARDS, dtype=np.int64),
         columns=soil.COLUMNS,
-        fastest_frequency=max(vertical_frequency, rotational_frequency),
+        fastest_frequency=fastest,
+        damping_rate=damping / stiffness * fastest**2,
         energy_scale=body.energy_scale(p),
         mass=mass,
         initial=initial,

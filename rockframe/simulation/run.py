@@ -43,6 +43,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
+ADAPTIVE = "Dormand-Prince 5(4) from sample to sample, with event location"
+FIXED = "Nystrom method of order 3 in fixed sub-steps from sample to sample, with event location"
 TENSION = 1e-9
 """Share of the largest reaction below which a pull is rounding."""
 
@@ -185,8 +187,9 @@ def _attributes(
         **coupling,
         "model_description": system.describe(),
         "accuracy": plan.accuracy_name,
-        "solver_method": "Dormand-Prince 5(4) from sample to sample, with event location",
-        "solver_rtol": plan.accuracy.rtol,
+        "solver_method": ADAPTIVE if plan.accuracy.substeps is None else FIXED,
+        "solver_rtol": plan.accuracy.rtol or math.nan,
+        "solver_substeps": summary.substeps,
         "solver_steps": summary.step_count,
         "solver_rejected_steps": summary.rejected_count,
         "solver_end_time": summary.end_time,

@@ -2,8 +2,12 @@
 
 from dataclasses import dataclass, fields
 from enum import StrEnum
+from typing import Final, Literal
 
 from rockframe.errors import SolverError
+
+FEWEST: Final = "fewest"
+"""Stands for the least number of sub-steps that `steps_per_period` allows."""
 
 
 class AccuracyLevel(StrEnum):
@@ -16,46 +20,64 @@ class AccuracyLevel(StrEnum):
 
 @dataclass(frozen=True, kw_only=True)
 class Accuracy:
-    """Settings of the integration.
+    """Settings of the integration: by a tolerance, or with fixed sub-steps.
 
     Parameters
     ----------
-    rtol : float
+    rtol : float or None
         Error allowed in one step, relative to the size of each state variable [1].
+        None where `substeps` are given.
     floor : float
         Share of a variable's largest size so far below which the error is no
-        longer measured relative to its present size [1].
+        longer measured relative to its present size; without meaning beside
+        `substeps` [1].
     steps_per_period : float
-        Least number of steps per period of the model's highest frequency [1].
+        Least number of steps per period of the model's highest frequency; without
+        meaning beside a number of `substeps` [1].
     max_steps : int
         Steps after which a run is ended with status ``step_limit``.
+    substeps : int, "fewest" or None
+        Equal steps into which each sample interval of the motion is cut; ``"fewest"``
+        is the least number for which `steps_per_period` holds. None where `rtol` is
+        given.
 
     Raises
     ------
     SolverError
-        A setting is out of range.
+        A setting is out of range, or not one of `rtol` and `substeps` is given.
     """
 
-    rtol: float
+    rtol: float | None = None
     floor: float = 0.05
     steps_per_period: float = 20.0
     max_steps: int = 200_000_000
+    substeps: int | Literal["fewest"] | None = None
 
     def __post_init__(self) -> None:
+        if (self.rtol is None) == (self.substeps is None):
+            given = "neither" if self.rtol is None else "both"
+            msg = f"Accuracy: give rtol (steps by tolerance) or substeps (fixed steps), got {given}"
+            raise SolverError(msg)
         bounds = {
             "rtol": (1e-13, 1e-2),
             "floor": (0.0, 1.0),
-            "steps_per_period": (6.0, 1e4),
+            # fixed steps are not stable with fewer
+            "steps_per_period": (6.0 if self.substeps is None else 8.0, 1e4),
             "max_steps": (1, 10**12),
+            "substeps": (1, 10**6),
         }
         for field in fields(self):
             value = getattr(self, field.name)
+            if value is None or (field.name == "substeps" and value == FEWEST):
+                continue
             low, high = bounds[field.name]
+            whole = field.name in ("max_steps", "substeps")
             if isinstance(value, bool) or not isinstance(value, int | float):
-                msg = f"Accuracy: {field.name} must be a number, got {value!r}"
+                asked = f"a whole number or {FEWEST!r}" if field.name == "substeps" else "a number"
+                msg = f"Accuracy: {field.name} must be {asked}, got {value!r}"
                 raise SolverError(msg)
-            if field.name == "max_steps" and not isinstance(value, int):
-                msg = f"Accuracy: max_steps must be a whole number, got {value!r}"
+            if whole and not isinstance(value, int):
+                msg = f"Accuracy: {field.name} must be a whole number, got {value!r}"
                 raise SolverError(msg)
             if not low <= value <= high:
                 msg = f"Accuracy: {field.name} must lie from {low:g} to {high:g}, got {value!r}"
@@ -63,7 +85,7 @@ class Accuracy:
 
 
 LEVELS = {
-    AccuracyLevel.FAST: Accuracy(rtol=1e-4, steps_per_period=10.0),
+    AccuracyLevel.FAST: Accuracy(substeps=FEWEST, steps_per_period=10.0),
     AccuracyLevel.STANDARD: Accuracy(rtol=2e-8),
     AccuracyLevel.REFERENCE: Accuracy(rtol=1e-11),
 }

@@ -15,8 +15,6 @@ from rockframe.solve.trajectory import Trajectory
 
 INTERVALS_PER_PERIOD: Final = 20.0
 """Least number of polynomials over the body's shortest period."""
-STILL_TIME_STEP: Final = 0.01
-"""Spacing of the polynomials where the ground has no samples [s]."""
 HALVES: Final = 2
 """Samples of the body's response per polynomial."""
 
@@ -56,10 +54,8 @@ def carrying_step(model: ContactModel, ground: Ground) -> float:
 
     A whole part of the motion's time step, so that the motion is smooth inside.
     """
-    has_motion = len(ground.horizontal) > 0 or len(ground.vertical) > 0
-    step = ground.time_step if has_motion else STILL_TIME_STEP
     longest = 2.0 * math.pi / model.fastest_frequency / INTERVALS_PER_PERIOD
-    return step / math.ceil(step / longest)
+    return ground.interval / math.ceil(ground.interval / longest)
 
 
 def carry(model: ContactModel, run: Trajectory, ground: Ground, top: float, step: float) -> Ground:

@@ -13,6 +13,7 @@ from rockframe.solve.carrying import HALVES, carry, carrying_step
 from rockframe.solve.ground_table import Ground
 from rockframe.solve.integrate import integrate
 from rockframe.solve.layout import Status
+from rockframe.solve.substeps import finer
 from rockframe.solve.total import Reach, summarise
 from rockframe.solve.trajectory import Summary, Trajectory
 
@@ -85,11 +86,13 @@ def integrate_cascade(
     step = carrying_step(cascade.first, ground)
     fine = step / HALVES
     whole = step * math.ceil(duration / step - 1e-9)
+    fitting = finer(accuracy, round(ground.interval / step))
 
     def run(
         model: ContactModel,
         begin: Start | Ending,
         shaking: Ground,
+        settings: Accuracy,
         length: float,
         every: float | None,
         *,
@@ -99,7 +102,7 @@ def integrate_cascade(
             model,
             begin,
             shaking,
-            accuracy,
+            settings,
             duration=length,
             output_step=every,
             stop_at_overturning=False,
@@ -107,10 +110,10 @@ def integrate_cascade(
             keep_end=keep_end,
         )
 
-    first = run(cascade.first, begin_first, ground, whole, fine)
+    first = run(cascade.first, begin_first, ground, accuracy, whole, fine)
     carried = carry(cascade.first, first, ground, cascade.top, step)
     length = whole if first.status is Status.COMPLETED else first.end_time
-    second = run(cascade.second, begin_second, carried, length, fine)
+    second = run(cascade.second, begin_second, carried, fitting, length, fine)
     summary, reaches = summarise(
         cascade, first, second, duration=duration, stop_at_overturning=stop_at_overturning
     )
@@ -124,6 +127,6 @@ def integrate_cascade(
         second = second.thinned(every, last, output_step)
     else:  # once more, at the output times and up to the end
         keep = not completed
-        first = run(cascade.first, begin_first, ground, end, output_step, keep_end=keep)
-        second = run(cascade.second, begin_second, carried, end, output_step, keep_end=keep)
+        first = run(cascade.first, begin_first, ground, accuracy, end, output_step, keep_end=keep)
+        second = run(cascade.second, begin_second, carried, fitting, end, output_step, keep_end=keep)
     return CascadeRun(first, second, carried, summary, reaches)

@@ -29,6 +29,7 @@ from rockframe.solve.books import (
 )
 from rockframe.solve.crossings import earliest_crossing
 from rockframe.solve.dormand_prince import runge_kutta_step
+from rockframe.solve.fixed_step import finite, fixed_step
 from rockframe.solve.ground import TERMS, ground_acceleration, load_interval
 from rockframe.solve.step_control import EASY, excess_error, next_step
 from rockframe.solve.workspace import (
@@ -47,6 +48,8 @@ POLISHING: Final = 4
 """Corrections of an event's time on the Runge-Kutta solution itself."""
 ROUNDING: Final = 1e-15
 """Share of the time so far below which such a correction is rounding."""
+FIXED_STEPS: Final = 0.0
+"""Stands for the tolerance of a run with fixed sub-steps."""
 JUMP: Final = 1e-12
 """Share of the ground acceleration by which it must differ to have jumped at a sample."""
 
@@ -157,19 +160,25 @@ def make_step(
     guards = len(tables.lazy)
     count = int(tables.active[mode])
     scale = controls[at.TIME_STEP]
+    fixed = controls[at.RTOL] == FIXED_STEPS
     degree_x, degree_y = interval.degree_x, interval.degree_y
     h, crossed, attempt = whole, -1, 0
     burnt = supplied = excess = x = y = 0.0
     while True:
         span = Span(h, tau / scale, h / scale, degree_x, degree_y)
-        if count > 0:
-            burnt, supplied = runge_kutta_step(accelerate, mode, count, span, p, w)
-        else:
+        if count == 0:
             stand_still(w)
-        if attempt == 0 and count > 0:
-            excess = excess_error(count, controls, w)
-            if not excess <= 1.0:
+        elif fixed:
+            burnt, supplied = fixed_step(accelerate, mode, count, span, p, w)
+            if not finite(count, w):
+                excess = math.inf
                 break
+        else:
+            burnt, supplied = runge_kutta_step(accelerate, mode, count, span, p, w)
+            if attempt == 0:
+                excess = excess_error(count, controls, w)
+                if not excess <= 1.0:
+                    break
         x = ground_acceleration(span.u + span.du, degree_x, 0, w.ground)
         y = ground_acceleration(span.u + span.du, degree_y, TERMS, w.ground)
         guard(mode, w.new, w.slope, x, y, p, w.after)
@@ -291,6 +300,7 @@ def advance(
     tau = clock[at.INTO_INTERVAL]
     h_next = clock[at.NEXT_STEP]
     crossed = counters[at.PENDING]
+    fixed = controls[at.RTOL] == FIXED_STEPS
     stale = True  # accelerations and guards at the state, after a switch or a jump
     status = at.COMPLETED
     while True:
@@ -340,7 +350,10 @@ def advance(
                     break
                 continue
             crossed = step.crossed
-            if crossed < 0 and (step.excess > EASY or whole < time_step or whole >= h_next):
+            if fixed:  # after an event, on to the end of the sub-step
+                rest = whole - step.span.h
+                h_next = rest if crossed >= 0 and rest > shortest else controls[at.MAX_STEP]
+            elif crossed < 0 and (step.excess > EASY or whole < time_step or whole >= h_next):
                 h_next = next_step(whole, h_next, step.excess)
             h = step.span.h
             tau += h

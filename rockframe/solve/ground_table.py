@@ -1,11 +1,15 @@
 """The ground motion as the integrator takes it."""
 
 from dataclasses import dataclass, field
+from typing import Final
 
 import numpy as np
 
 from rockframe.compiled import Matrix, Vector
 from rockframe.solve.ground import TERMS
+
+STILL_INTERVAL: Final = 0.01
+"""Interval into which time is cut where the ground has no samples [s]."""
 
 
 def _no_samples() -> Vector:
@@ -43,6 +47,12 @@ class Ground:
             view = np.ascontiguousarray(getattr(self, name), dtype=np.float64).view()
             view.flags.writeable = False
             object.__setattr__(self, name, view)
+
+    @property
+    def interval(self) -> float:
+        """Spacing of the samples, or what stands for it where there are none [s]."""
+        moves = len(self.horizontal) > 0 or len(self.vertical) > 0
+        return self.time_step if moves else STILL_INTERVAL
 
 
 def ground_at(ground: Ground, time: Vector) -> Matrix:

@@ -17,9 +17,10 @@ from rockframe.dynamics.protocol import (
 from rockframe.solve import layout as at
 from rockframe.solve.accuracy import Accuracy
 from rockframe.solve.books import ON_SAMPLE
-from rockframe.solve.driver import advance
+from rockframe.solve.driver import FIXED_STEPS, advance
 from rockframe.solve.ground_table import Ground
 from rockframe.solve.layout import Status
+from rockframe.solve.substeps import substeps_of
 from rockframe.solve.trajectory import Events, Trajectory
 from rockframe.solve.workspace import (
     EventTable,
@@ -84,15 +85,18 @@ def integrate(
     mode, state, memory = _beginning(model, start)
     shortest_period = 2.0 * math.pi / model.fastest_frequency
     controls = np.zeros(at.CONTROLS)
-    controls[at.RTOL] = accuracy.rtol
+    substeps = substeps_of(accuracy, model, ground)
+    controls[at.RTOL] = accuracy.rtol or FIXED_STEPS
     controls[at.FLOOR] = accuracy.floor
-    controls[at.MAX_STEP] = shortest_period / accuracy.steps_per_period
+    controls[at.MAX_STEP] = (
+        ground.interval / substeps if substeps else shortest_period / accuracy.steps_per_period
+    )
     controls[at.DURATION] = duration
     controls[at.TIME_STEP] = ground.time_step
     controls[at.OUTPUT_STEP] = output_step or 1.0
     controls[at.CHATTER_TIME] = CHATTER_SHARE * shortest_period
     clock = np.zeros(at.CLOCK)
-    clock[at.NEXT_STEP] = FIRST_STEP * shortest_period
+    clock[at.NEXT_STEP] = controls[at.MAX_STEP] if substeps else FIRST_STEP * shortest_period
     clock[at.PEAK] = abs(float(model.rotation_weights @ state[: len(model.rotation_weights)]))
     clock[at.FIRST_UPLIFT] = -1.0 if model.contact[mode] == ContactState.FULL else 0.0
     clock[at.OVERTURNING_TIME] = clock[at.EVENT_TIME] = -1.0
@@ -187,6 +191,7 @@ def integrate(
         flight_count=int(counters[at.FLIGHTS]),
         step_count=int(counters[at.STEPS]),
         rejected_count=int(counters[at.REJECTED]),
+        substeps=substeps,
         energy_residual=_ratio(float(clock[at.RESIDUAL]), float(clock[at.LARGEST_TERM])),
         ending=Ending(int(counters[at.MODE]), state.copy(), memory.copy()),
         start_energy=float(clock[at.START_ENERGY]),

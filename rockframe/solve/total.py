@@ -92,6 +92,7 @@ def summarise(
         flight_count=flight_count,
         step_count=first.step_count + second.step_count,
         rejected_count=first.rejected_count + second.rejected_count,
+        substeps=max(first.substeps, second.substeps),
         energy_residual=max(first.energy_residual, second.energy_residual),
     )
     return summary, reaches

@@ -52,6 +52,8 @@ class Summary:
         Sign of the rotation at overturning, 0 if none.
     impact_count, flight_count, step_count, rejected_count : int
         Counts.
+    substeps : int
+        Fixed steps in each interval of the motion, 0 for steps by tolerance.
     energy_residual : float
         Largest imbalance of the energies over their largest term.
     """
@@ -67,6 +69,7 @@ class Summary:
     flight_count: int
     step_count: int
     rejected_count: int
+    substeps: int
     energy_residual: float
 
 

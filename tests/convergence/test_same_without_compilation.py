@@ -23,6 +23,17 @@ for rule in ("contact-state", "leading-corner", "centre"):
         system = rf.System(block, pads, restraint=rule, rotation=rotation)
         out[f"{rule} {rotation}"] = system.simulate(motion, outputs=["energy"])
 out["rigid"] = rf.System(block).simulate(motion, outputs=["energy"])
+cap = rf.CushionCap(height="0.5 m", mass="1 t")
+soil = rf.WinklerSoil(stiffness="2 MPa", damping_ratio=0.2)
+for name, parts, options in (
+    ("rigid", (), {}),
+    ("two-spring", (pads,), {"restraint": "leading-corner"}),
+    ("soil", (soil,), {}),
+    ("coupled", (pads, cap, soil), {}),
+    ("cascade", (pads, cap, soil), {"coupling": "cascade"}),
+):
+    system = rf.System(block, *parts, **options)
+    out[f"fast {name}"] = system.simulate(motion, accuracy="fast", outputs=["energy"])
 arrays = {
     f"{scene}/{name}": variable.to_numpy()
     for scene, result in out.items()

@@ -591,8 +591,52 @@ class TestAccuracy:
     def test_names_stand_for_settings(self, name):
         response = rf.System(block(), pads()).simulate(pulse(), accuracy=name, outputs=None)
         assert response.attrs["accuracy"] == name
-        own = rf.Accuracy(rtol=response.attrs["solver_rtol"])
-        assert own.rtol <= 1e-4
+        if name == "fast":
+            assert math.isnan(response.attrs["solver_rtol"])
+            assert response.attrs["solver_substeps"] >= 1
+            assert "order 3" in response.attrs["solver_method"]
+            own = rf.Accuracy(substeps=response.attrs["solver_substeps"])
+        else:
+            assert response.attrs["solver_substeps"] == 0
+            assert "5(4)" in response.attrs["solver_method"]
+            own = rf.Accuracy(rtol=response.attrs["solver_rtol"])
+        again = rf.System(block(), pads()).simulate(pulse(), accuracy=own, outputs=None)
+        assert float(again.peak_rotation) == float(response.peak_rotation)
+
+    @pytest.mark.parametrize("given", [{}, {"rtol": 1e-6, "substeps": 4}, {"floor": 0.1}])
+    def test_a_tolerance_or_substeps_but_not_both(self, given):
+        with pytest.raises(rf.SolverError, match=r"rtol .* or substeps"):
+            rf.Accuracy(**given)
+
+    @pytest.mark.parametrize("bad", [0, -1, 1.5, 2.0, True, "4", "most", math.nan, 10**7])
+    def test_substeps_out_of_range_are_refused(self, bad):
+        with pytest.raises(rf.SolverError, match="substeps"):
+            rf.Accuracy(substeps=bad)
+
+    def test_fixed_steps_ask_for_more_steps_per_period(self):
+        assert rf.Accuracy(rtol=1e-6, steps_per_period=6.0).steps_per_period == 6.0
+        with pytest.raises(rf.SolverError, match="steps_per_period"):
+            rf.Accuracy(substeps="fewest", steps_per_period=6.0)
+
+    def test_the_fewest_substeps_that_resolve_the_fastest_vibration(self):
+        counts = []
+        for frequency_ratio in (10, 20, 40, 80, 160):
+            stiff = rf.TwoSpringSupport(frequency_ratio=frequency_ratio, damping_ratio=0.1)
+            response = rf.System(block(), stiff).simulate(
+                rf.GroundMotion.from_arrays((np.zeros(11), "m/s^2"), "0.02 s"), accuracy="fast"
+            )
+            counts.append(response.attrs["solver_substeps"])
+        assert counts[0] >= 1
+        for count, following in itertools.pairwise(counts):
+            assert 2 * count - 1 <= following <= 2 * count
+
+    @pytest.mark.parametrize("substeps", [3, "fewest"])
+    def test_a_still_ground_is_stepped_likewise(self, substeps):
+        response = rf.System(block(), pads()).simulate(
+            duration="2 s", accuracy=rf.Accuracy(substeps=substeps)
+        )
+        expected = 200 * response.attrs["solver_substeps"]
+        assert response.attrs["solver_steps"] == expected
 
     def test_own_settings_are_used(self):
         own = rf.Accuracy(rtol=3e-9)
