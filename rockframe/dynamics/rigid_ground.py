@@ -35,7 +35,8 @@ RADIUS: Final = 3  # R0
 CORNER_INERTIA: Final = 4  # I_O/m + R0^2
 RESTITUTION: Final = 5  # eps
 SMALL: Final = 6  # 1 for small rotation
-PARAMETERS: Final = 7
+TANGENT: Final = 7  # tan theta; theta for small rotation
+PARAMETERS: Final = 8
 
 # modes; rocking on the right corner has alpha > 0
 RESTING: Final = 0
@@ -84,13 +85,21 @@ def rise_and_reach(p: Vector, side: float, rotation: float) -> tuple[float, floa
 
 
 @kernel
+def turning_acceleration(
+    p: Vector, sine: float, cosine: float, ground_x: float, ground_y: float
+) -> float:
+    """Give the angular acceleration of Housner's block, :eq:`eq-rigid-rocking`."""
+    moment = (p[GRAVITY] + ground_y) * sine + ground_x * cosine
+    return -p[RADIUS] * moment / p[CORNER_INERTIA]
+
+
+@kernel
 def rocking_acceleration(
     p: Vector, side: float, rotation: float, ground_x: float, ground_y: float
 ) -> float:
-    """Give the angular acceleration of Housner's block, :eq:`eq-rigid-rocking`."""
+    """Give the angular acceleration at a rotation on one side."""
     sine, cosine = rise_and_reach(p, side, rotation)
-    moment = (p[GRAVITY] + ground_y) * sine + ground_x * cosine
-    return -p[RADIUS] * moment / p[CORNER_INERTIA]
+    return turning_acceleration(p, sine, cosine, ground_x, ground_y)
 
 
 @callback(ACCELERATE)
@@ -103,9 +112,8 @@ def accelerate(
     out[2] = 0.0
     if mode == RESTING:
         return
-    side = side_of(mode)
-    sine, cosine = rise_and_reach(p, side, state[0])
-    out[0] = rocking_acceleration(p, side, state[0], ground_x, ground_y)
+    sine, cosine = rise_and_reach(p, side_of(mode), state[0])
+    out[0] = turning_acceleration(p, sine, cosine, ground_x, ground_y)
     out[2] = -p[RADIUS] * (ground_x * cosine + ground_y * sine) * state[1]
 
 
@@ -124,8 +132,7 @@ def guard(
         out[i] = 1.0 if i < GUARDS else 0.0
     rotation = state[0]
     if mode == RESTING:
-        tangent = p[ANGLE] if p[SMALL] != 0.0 else math.tan(p[ANGLE])
-        threshold = (p[GRAVITY] + ground_y) * tangent
+        threshold = (p[GRAVITY] + ground_y) * p[TANGENT]
         out[UPLIFT_ON_RIGHT] = (threshold + ground_x) / p[GRAVITY]
         out[UPLIFT_ON_LEFT] = (threshold - ground_x) / p[GRAVITY]
         return
@@ -210,8 +217,7 @@ def observe(
         out[3] = 0.0
         out[4] = 0.0
         # moments about the middle of the base: (N_R - N_L) b = -m h x_g''
-        tangent = p[ANGLE] if p[SMALL] != 0.0 else math.tan(p[ANGLE])
-        tilt = ground_x / tangent
+        tilt = ground_x / p[TANGENT]
         out[5] = 0.5 * (weight + tilt)
         out[6] = 0.5 * (weight - tilt)
         return
@@ -266,6 +272,7 @@ def rigid_ground(
     p[CORNER_INERTIA] = radius**2 * (1.0 + 1.0 / shape_factor)
     p[RESTITUTION] = restitution
     p[SMALL] = float(small_rotation)
+    p[TANGENT] = overturning_angle if small_rotation else math.tan(overturning_angle)
     frequency = math.sqrt(gravity * radius / p[CORNER_INERTIA])
 
     def initial(start: Start) -> tuple[int, Vector, Vector]:
