@@ -1,12 +1,12 @@
 """The ground acceleration inside one interval of the motion, as a polynomial."""
 
-from rockframe.compiled import Matrix, Vector, inlined, kernel
+from rockframe.compiled import Matrix, Vector, kernel
 
 TERMS = 6
 """Coefficients per direction; a record needs two, an analytic pulse six."""
 
 
-@inlined
+@kernel
 def load_interval(
     index: int,
     samples: Vector,
@@ -14,13 +14,14 @@ def load_interval(
     first: int,
     coefficients: Vector,
 ) -> int:
-    """Write the polynomial of one direction in interval `index`, up to the degree it gives.
+    """Write the polynomial of one direction in interval `index`; give its degree.
 
     The polynomial is in u, from 0 to 1 over the interval. A direction without
     samples, and the time after the last sample, have a ground that stands still.
     """
+    for j in range(TERMS):
+        coefficients[first + j] = 0.0
     if index >= len(samples) - 1:
-        coefficients[first] = 0.0
         return 0
     if len(pieces) > 0:
         for j in range(TERMS):
