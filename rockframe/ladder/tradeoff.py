@@ -23,7 +23,8 @@ if TYPE_CHECKING:
     from rockframe.simulation.plan import Plan
     from rockframe.units import QuantityLike
 
-BENCHMARK: Final = Accuracy(rtol=1e-12)
+TIGHT: Final = 1e-12
+BENCHMARK: Final = Accuracy(rtol=TIGHT)
 """What errors are measured against; its own is about as large as its tolerance."""
 
 DIMENSIONS: Final = ("model", "accuracy")
@@ -130,7 +131,7 @@ def tradeoff(
         {name: np.array([[cell[name] for cell in row] for row in rows]) for name in names},
         {
             "scene": list(ladder)[-1],
-            "benchmark_rtol": BENCHMARK.rtol,
+            "benchmark_rtol": TIGHT,
             "repeats": repeats,
             "settings": json.dumps(exact),
             "system_json": json.dumps(system.to_dict()),
@@ -224,7 +225,7 @@ def _label(given: str | float | Accuracy) -> str:
         return f"rtol {given:g}"
     if isinstance(given, Accuracy):
         changed = (
-            f"{field.name} {getattr(given, field.name):g}"
+            f"{field.name} {getattr(given, field.name)}"
             for field in fields(given)
             if getattr(given, field.name) != field.default
         )

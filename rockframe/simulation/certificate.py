@@ -10,7 +10,7 @@ from rockframe.errors import ModelWarning, RockframeError
 from rockframe.simulation.beginning import Continuation
 from rockframe.simulation.certification import Certificate, Certification
 from rockframe.simulation.plan import Plan
-from rockframe.solve.accuracy import Accuracy
+from rockframe.solve.accuracy import LEVELS, Accuracy, AccuracyLevel
 from rockframe.system.assembly import Assembly
 
 if TYPE_CHECKING:
@@ -84,7 +84,9 @@ def overturned(summary: "Summary") -> bool:
 
 
 def tightened(accuracy: Accuracy) -> Accuracy:
-    """Give the settings of the run of tighter tolerance."""
+    """Give finer settings: a tighter tolerance, or one instead of fixed sub-steps."""
+    if accuracy.rtol is None:
+        return LEVELS[AccuracyLevel.STANDARD]
     return replace(accuracy, rtol=max(TIGHTER * accuracy.rtol, TIGHTEST))
 
 
@@ -212,9 +214,12 @@ def _sentence(
 ) -> str:
     verdict, other = ("overturns", "stands") if fell else ("stands", "overturns")
     what = "the motion" if plan.motion is not None else "the start"
+    finer = f"a tolerance {1.0 / TIGHTER:g} times tighter"
+    if plan.accuracy.rtol is None:
+        finer = "steps by tolerance instead of fixed ones"
     doubts: list[str] = []
     if not certificate.converged:
-        doubts.append(f"with a tolerance {1.0 / TIGHTER:g} times tighter it {other}")
+        doubts.append(f"with {finer} it {other}")
     if changed:
         more = f" (and {len(changed) - 1} more)" if len(changed) > 1 else ""
         doubts.append(f"with the {changed[0]}{more} it {other}")
@@ -227,6 +232,6 @@ def _sentence(
     if scale is not None:
         far = f"until {what} is scaled by {scale:.3g}"
     return (
-        f"The body {verdict} also with a tolerance {1.0 / TIGHTER:g} times tighter, with every "
+        f"The body {verdict} also with {finer}, with every "
         f"parameter {100.0 * wanted.nudge:g} % larger or smaller, and {far}."
     )

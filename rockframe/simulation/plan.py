@@ -77,9 +77,9 @@ def plan_run(
     faults: list[str] = []
     motion = system.motion if motion is None else motion
     _check_kind(motion, GroundMotion, "motion", faults)
-    beginning = _beginning(system, initial, faults)
     if faults:
         raise AssemblyError(faults)
+    beginning = _beginning(system, initial, faults)
     length = _length(motion, duration, free_vibration, faults)
     step = motion.si.time_step if motion is not None else STILL_GROUND_OUTPUT_STEP
     if output_step is not None:

@@ -128,5 +128,7 @@ def integrate_cascade(
     else:  # once more, at the output times and up to the end
         keep = not completed
         first = run(cascade.first, begin_first, ground, accuracy, end, output_step, keep_end=keep)
-        second = run(cascade.second, begin_second, carried, fitting, end, output_step, keep_end=keep)
+        second = run(
+            cascade.second, begin_second, carried, fitting, end, output_step, keep_end=keep
+        )
     return CascadeRun(first, second, carried, summary, reaches)

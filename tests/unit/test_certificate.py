@@ -112,6 +112,7 @@ def pretended(overturns):
             flight_count=0,
             step_count=1,
             rejected_count=0,
+            substeps=0,
             energy_residual=0.0,
         )
 
@@ -178,6 +179,14 @@ def test_the_tightest_tolerance_is_not_tightened_beyond_rounding():
     seen = []
     certificate_of(lambda _, plan: seen.append(plan.accuracy.rtol) or False, rtol=1e-12)
     assert min(seen) == 1e-13
+
+
+def test_fixed_steps_are_certified_by_a_tolerance():
+    run = certified(accuracy="fast")
+    exact = SYSTEM.simulate(PULSE, free_vibration="4 s", accuracy="standard", outputs=None)
+    off = abs(float(run.peak_rotation) - float(exact.peak_rotation))
+    assert float(run.peak_error_estimate) == pytest.approx(off, rel=1e-12)
+    assert "with steps by tolerance instead of fixed ones" in run.attrs["certificate"]
 
 
 def test_the_sensitivity_is_that_of_nudged_parameters():

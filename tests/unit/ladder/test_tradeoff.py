@@ -26,7 +26,7 @@ def test_axes(measured):
         "rtol 0.001",
         "rtol 1e-06",
         "standard",
-        "rtol 1e-11, steps_per_period 40",
+        "rtol 1e-11, steps_per_period 40.0",
     ]
 
 
