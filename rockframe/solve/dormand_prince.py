@@ -47,13 +47,14 @@ def runge_kutta_step(
     span: Span,
     p: Vector,
     w: Workspace,
-) -> tuple[float, float]:
+) -> tuple[float, float, float]:
     """Step the first `count` coordinates; ``slopes[0]`` holds the start's accelerations.
 
     Fills ``new``, the local ``error`` of each moving variable and ``slopes[6]``,
     the accelerations at the step's end. Gives the energies burnt by dashpots and
-    put in by the ground, integrated with the weights of the fifth order. Each
-    loop keeps the slopes of the stage before and makes the next stage.
+    put in by the ground, integrated with the weights of the fifth order, and the
+    error of their difference. Each loop keeps the slopes of the stage before and
+    makes the next stage.
     """
     h = span.h
     state, new, error, stage, slope = w.state, w.new, w.error, w.stage, w.slope
@@ -61,6 +62,7 @@ def runge_kutta_step(
     size = len(state) // 2
     burnt = B1 * slopes[0, size]
     supplied = B1 * slopes[0, size + 1]
+    imbalance = E1 * (slopes[0, size] - slopes[0, size + 1])
     for i in range(count, size):
         new[i] = state[i]
         new[size + i] = state[size + i]
@@ -86,6 +88,7 @@ def runge_kutta_step(
     accelerate(mode, stage, x, y, p, slope)
     burnt += B3 * slope[size]
     supplied += B3 * slope[size + 1]
+    imbalance += E3 * (slope[size] - slope[size + 1])
     for i in range(count):
         j = size + i
         v1, v2, v3 = speeds[0, i], speeds[1, i], stage[j]
@@ -99,6 +102,7 @@ def runge_kutta_step(
     accelerate(mode, stage, x, y, p, slope)
     burnt += B4 * slope[size]
     supplied += B4 * slope[size + 1]
+    imbalance += E4 * (slope[size] - slope[size + 1])
     for i in range(count):
         j = size + i
         v1, v2, v3, v4 = speeds[0, i], speeds[1, i], speeds[2, i], stage[j]
@@ -112,6 +116,7 @@ def runge_kutta_step(
     accelerate(mode, stage, x, y, p, slope)
     burnt += B5 * slope[size]
     supplied += B5 * slope[size + 1]
+    imbalance += E5 * (slope[size] - slope[size + 1])
     for i in range(count):
         j = size + i
         v1, v2, v3, v4 = speeds[0, i], speeds[1, i], speeds[2, i], speeds[3, i]
@@ -126,6 +131,7 @@ def runge_kutta_step(
     accelerate(mode, stage, x, y, p, slope)
     burnt += B6 * slope[size]
     supplied += B6 * slope[size + 1]
+    imbalance += E6 * (slope[size] - slope[size + 1])
     for i in range(count):
         j = size + i
         v1, v3, v4, v5, v6 = speeds[0, i], speeds[2, i], speeds[3, i], speeds[4, i], stage[j]
@@ -139,4 +145,5 @@ def runge_kutta_step(
         error[i] *= h
         error[size + i] = h * (error[size + i] + E7 * slope[i])
         slopes[6, i] = slope[i]
-    return h * burnt, h * supplied
+    imbalance += E7 * (slope[size] - slope[size + 1])
+    return h * burnt, h * supplied, h * imbalance

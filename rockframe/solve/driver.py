@@ -153,6 +153,7 @@ def make_step(
     tau: float,
     whole: float,
     controls: Vector,
+    energy_scale: float,
     p: Vector,
     w: Workspace,
 ) -> Step:
@@ -174,9 +175,9 @@ def make_step(
                 excess = math.inf
                 break
         else:
-            burnt, supplied = runge_kutta_step(accelerate, mode, count, span, p, w)
+            burnt, supplied, imbalance = runge_kutta_step(accelerate, mode, count, span, p, w)
             if attempt == 0:
-                excess = excess_error(count, controls, w)
+                excess = excess_error(count, imbalance, energy_scale, controls, w)
                 if not excess <= 1.0:
                     break
         x = ground_acceleration(span.u + span.du, degree_x, 0, w.ground)
@@ -341,7 +342,10 @@ def advance(
                 status = at.STEP_LIMIT
                 break
             whole = fit_step(min(h_next, controls[at.MAX_STEP]), remaining)
-            step = make_step(accelerate, guard, tables, mode, interval, tau, whole, controls, p, w)
+            energy_scale = max(clock[at.LARGEST_TERM], clock[at.BURNT], abs(clock[at.SUPPLIED]))
+            step = make_step(
+                accelerate, guard, tables, mode, interval, tau, whole, controls, energy_scale, p, w
+            )
             if not step.excess <= 1.0:
                 counters[at.REJECTED] += 1
                 h_next = next_step(whole, whole, step.excess)

@@ -18,10 +18,14 @@ EASY: Final = 0.5
 
 
 @inlined
-def excess_error(count: int, controls: Vector, w: Workspace) -> float:
-    """Give the largest error of a step over the error allowed."""
+def excess_error(
+    count: int, imbalance: float, energy_scale: float, controls: Vector, w: Workspace
+) -> float:
+    """Give the largest error of a step, of the state or of its works, over the error allowed."""
     size = len(w.state) // 2
-    largest = 0.0
+    if not math.isfinite(imbalance):
+        return math.inf
+    largest = abs(imbalance) / energy_scale
     for i in range(2 * count):
         j = i if i < count else size + i - count
         if not math.isfinite(w.error[j]):
