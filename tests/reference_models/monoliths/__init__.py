@@ -1,20 +1,23 @@
 """Hand-written integrations of the rocking equations, kept apart from the package.
 
-Nothing here imports the package. The two modules state the mechanics anew, step with
-SciPy's DOP853 at tight tolerance, and find every contact change on the dense output. What
-they share is below: the ground motion, cut into smooth pieces, and the search for crossings.
+Nothing here imports the package. The modules state the mechanics anew, step with SciPy's
+DOP853 at tight tolerance, or with another of its methods, and find every contact change on the
+dense output. What they share is below: the ground motion, cut into smooth pieces, and the
+search for crossings.
 """
 
 from __future__ import annotations
 
+import bisect
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.integrate import DOP853
+from scipy.integrate import DOP853, LSODA, RK45, OdeSolver, Radau
 from scipy.optimize import brentq
 
 EPS = float(np.finfo(float).eps)
+METHODS = {"DOP853": DOP853, "RK45": RK45, "LSODA": LSODA, "Radau": Radau}
 SIMULTANEOUS = 1e-9
 """Crossings closer than this (seconds) belong to one instant."""
 
@@ -67,6 +70,50 @@ class _Given:
         return value
 
 
+class Pieces:
+    """Polynomials of fourth degree, one after another; add them in the order of time."""
+
+    NODES = np.linspace(0.0, 1.0, 5)
+    INVERSE = np.linalg.inv(np.vander(NODES))
+
+    def __init__(self) -> None:
+        self.edges: list[float] = []
+        self.polynomials: list[tuple[float, ...]] = []
+
+    def add(self, start: float, stop: float, values: np.ndarray) -> None:
+        """Append the polynomial through values at five equally spaced times."""
+        if not self.edges:
+            self.edges.append(float(start))
+        if stop > self.edges[-1]:
+            self.edges.append(float(stop))
+            self.polynomials.append(tuple((self.INVERSE @ values).tolist()))
+
+    def knots(self, every: bool) -> list[float]:
+        return self.edges if every else []
+
+    def _value(self, i: int, t):
+        u = (t - self.edges[i]) / (self.edges[i + 1] - self.edges[i])
+        a, b, c, d, e = self.polynomials[i]
+        return (((a * u + b) * u + c) * u + d) * u + e
+
+    def piece(self, start: float, stop: float) -> Callable:
+        last = len(self.polynomials) - 1
+
+        def place(t):
+            return min(max(bisect.bisect_right(self.edges, t) - 1, 0), last)
+
+        first = place(0.5 * (start + stop))
+        if self.edges[first] <= start and stop <= self.edges[first + 1]:
+            return lambda t: self._value(first, t)
+
+        def value(t):
+            if isinstance(t, np.ndarray):
+                return np.array([self._value(place(one), one) for one in t.tolist()])
+            return self._value(place(t), t)
+
+        return value
+
+
 class _None:
     def knots(self, every: bool) -> list[float]:
         return []
@@ -91,6 +138,8 @@ class Drive:
         def source(given):
             if given is None:
                 return _None()
+            if isinstance(given, Pieces):
+                return given
             if callable(given):
                 return _Given(given)
             if time_step is None:
@@ -129,15 +178,19 @@ class Guard:
     armed: bool = False
 
 
-def stepper(rhs, start, state, stop, *, max_step, rtol, atol) -> DOP853:
-    """Set up DOP853 without its trial steps: the step is bounded anyway."""
-    return DOP853(
+def stepper(rhs, start, state, stop, *, max_step, rtol, atol, method="DOP853") -> OdeSolver:
+    """Set up a solver, mostly without its trial steps: the step is bounded anyway.
+
+    LSODA starts at first order; it is left to choose the step for that.
+    """
+    first_step = None if method == "LSODA" else min(max_step, stop - start)
+    return METHODS[method](
         rhs,
         start,
         state,
         stop,
         max_step=max_step,
-        first_step=min(max_step, stop - start),
+        first_step=first_step,
         rtol=rtol,
         atol=atol,
     )

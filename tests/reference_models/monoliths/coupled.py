@@ -554,6 +554,8 @@ def simulate(
     overturning: str = "stop",
     restart_every_knot: bool = True,
     steps_per_period: float = 40.0,
+    max_step: float | None = None,
+    method: str = "DOP853",
 ) -> Result:
     """Integrate block, pads, cap and bed from ``initial`` = (Y, phi, r, psi and their rates).
 
@@ -606,9 +608,10 @@ def simulate(
     )
     bed_period = 2.0 * math.pi * math.sqrt(total / (2.0 * cap_half_width * bed_stiffness))
     period = min(2.0 * math.pi / omega_v, bed_period)
-    max_step = period / steps_per_period
-    if not restart_every_knot and time_step is not None:
-        max_step = min(max_step, time_step)
+    if max_step is None:
+        max_step = period / steps_per_period
+        if not restart_every_knot and time_step is not None:
+            max_step = min(max_step, time_step)
 
     # the start
     sink, phi, r, psi, *rates = initial
@@ -632,7 +635,14 @@ def simulate(
     z[6:12] = run.rates(z)
     run.sample_start = run.sample(z)
     now, z = run.march(
-        z, drive, sample_times, period=period, max_step=max_step, rtol=rtol, atol=atol
+        z,
+        drive,
+        sample_times,
+        period=period,
+        max_step=max_step,
+        rtol=rtol,
+        atol=atol,
+        method=method,
     )
 
     columns = run.columns(sample_times)

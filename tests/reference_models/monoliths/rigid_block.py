@@ -160,6 +160,8 @@ def simulate(
     overturning: str = "stop",
     restart_every_knot: bool = True,
     steps_per_period: float = 200.0,
+    max_step: float | None = None,
+    method: str = "DOP853",
     rest_rotation: float = 1e-9,
 ) -> Result:
     """Integrate a rigid block on rigid ground from ``initial`` = (alpha, alpha')."""
@@ -175,9 +177,10 @@ def simulate(
         duration=duration,
         restart_every_knot=restart_every_knot,
     )
-    max_step = 2.0 * math.pi / run.omega / steps_per_period
-    if not restart_every_knot and time_step is not None:
-        max_step = min(max_step, time_step)
+    if max_step is None:
+        max_step = 2.0 * math.pi / run.omega / steps_per_period
+        if not restart_every_knot and time_step is not None:
+            max_step = min(max_step, time_step)
 
     samples = np.asarray(sample_times, dtype=float)
     if np.any(np.diff(samples) < 0.0):
@@ -257,7 +260,9 @@ def simulate(
                 run.side = -1 if run.ground_x(now) > 0.0 else 1
                 note(now, "start", (0.0, 0.0))
                 run.set_guards()
-            solver = stepper(run.rhs, now, z, stop, max_step=max_step, rtol=rtol, atol=atol)
+            solver = stepper(
+                run.rhs, now, z, stop, max_step=max_step, rtol=rtol, atol=atol, method=method
+            )
             while solver.status == "running":
                 trouble = solver.step()
                 if solver.status == "failed":

@@ -370,6 +370,8 @@ def simulate(
     overturning: str = "stop",
     restart_every_knot: bool = True,
     steps_per_period: float = 40.0,
+    max_step: float | None = None,
+    method: str = "DOP853",
 ) -> Result:
     """Integrate a block on two springs from ``initial`` = (alpha, y, alpha', y').
 
@@ -400,9 +402,10 @@ def simulate(
         duration=duration,
         restart_every_knot=restart_every_knot,
     )
-    max_step = run.vertical_period / steps_per_period
-    if not restart_every_knot and time_step is not None:
-        max_step = min(max_step, time_step)
+    if max_step is None:
+        max_step = run.vertical_period / steps_per_period
+        if not restart_every_knot and time_step is not None:
+            max_step = min(max_step, time_step)
 
     samples = np.asarray(sample_times, dtype=float)
     if np.any(np.diff(samples) < 0.0):
@@ -522,7 +525,9 @@ def simulate(
             audit(z)
             record(0.0, lambda _, z=z: z)
         while now < stop and not ended:
-            solver = stepper(run.rhs, now, z, stop, max_step=max_step, rtol=rtol, atol=atol)
+            solver = stepper(
+                run.rhs, now, z, stop, max_step=max_step, rtol=rtol, atol=atol, method=method
+            )
             while solver.status == "running":
                 trouble = solver.step()
                 if solver.status == "failed":

@@ -337,6 +337,7 @@ class March:
         self.peak = 0.0
         self.largest = self.worst = 0.0
         self.flight: dict[str, float] = {}
+        self.watch: Callable | None = None
         self.ground_x: Callable = lambda t: 0.0 * t
         self.ground_y: Callable = lambda t: 0.0 * t
 
@@ -354,7 +355,7 @@ class March:
         self.ended = self.ended or self.stop_at_theta or self.limit > self.theta
         self.limit = 0.5 * math.pi
 
-    def march(self, z, drive, samples, *, period, max_step, rtol, atol):
+    def march(self, z, drive, samples, *, period, max_step, rtol, atol, method="DOP853"):
         """Integrate over all pieces of the ground motion; give the end time and state."""
         samples = np.asarray(samples, dtype=float)
         if np.any(np.diff(samples) < 0.0):
@@ -380,7 +381,10 @@ class March:
                 self.audit(z)
                 record(0.0, lambda _, z=z: z)
             while now < stop and not self.ended:
-                solver = stepper(self.rhs, now, z, stop, max_step=max_step, rtol=rtol, atol=atol)
+                solver = stepper(
+                    self.rhs, now, z, stop,
+                    max_step=max_step, rtol=rtol, atol=atol, method=method,
+                )  # fmt: skip
                 while solver.status == "running":
                     trouble = solver.step()
                     if solver.status == "failed":
@@ -403,6 +407,8 @@ class March:
                     first = min((hit for hit in hits if hit is not None), default=None)
                     reached = solver.t if first is None else first
                     self.follow(dense, times, solver.t_old, reached)
+                    if self.watch is not None:
+                        self.watch(self, solver.t_old, reached, dense)
                     if first is None:
                         now, z = solver.t, solver.y.copy()
                         self.audit(z)
@@ -757,6 +763,9 @@ def simulate(
     overturning: str = "stop",
     restart_every_knot: bool = True,
     steps_per_period: float = 40.0,
+    max_step: float | None = None,
+    method: str = "DOP853",
+    watch: Callable | None = None,
 ) -> Result:
     """Integrate a body on a Winkler bed from ``initial`` = (alpha, y, alpha', y').
 
@@ -764,7 +773,8 @@ def simulate(
     ``inertia`` about that centre or as the shape factor. Stiffness and damping are per unit
     length of the base. An initial y of None is that of vertical equilibrium at rest under the
     initial rotation. A start with contact has ``x = h sin(alpha) + e (1 - cos(alpha))``; a
-    start in flight has x as if ``e`` were zero and no horizontal speed.
+    start in flight has x as if ``e`` were zero and no horizontal speed. ``watch(run, start, stop,
+    dense)`` is called with every step, cut at a change of contact.
     """
     if (shape_factor is None) == (inertia is None):
         msg = "give either shape_factor or inertia"
@@ -788,6 +798,7 @@ def simulate(
     gyration = (b * b + h * h) / shape_factor if inertia is None else inertia / mass
     run = _Run(bed, gyration, math.atan2(b, h), gravity, restraint)
     run.stop_at_theta = overturning == "stop"
+    run.watch = watch
     drive = Drive(
         acceleration=acceleration,
         vertical=vertical,
@@ -797,9 +808,10 @@ def simulate(
         restart_every_knot=restart_every_knot,
     )
     period = 2.0 * math.pi * math.sqrt(mass / (2.0 * b * bed_stiffness))
-    max_step = period / steps_per_period
-    if not restart_every_knot and time_step is not None:
-        max_step = min(max_step, time_step)
+    if max_step is None:
+        max_step = period / steps_per_period
+        if not restart_every_knot and time_step is not None:
+            max_step = min(max_step, time_step)
 
     # the start
     alpha, y, alpha_dot, y_dot = initial
@@ -821,7 +833,14 @@ def simulate(
     run.sample_start = run.sample(z)
     begun_in_flight = run.contact == "flight"
     now, z = run.march(
-        z, drive, sample_times, period=period, max_step=max_step, rtol=rtol, atol=atol
+        z,
+        drive,
+        sample_times,
+        period=period,
+        max_step=max_step,
+        rtol=rtol,
+        atol=atol,
+        method=method,
     )
 
     return Result(
