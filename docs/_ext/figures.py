@@ -13,6 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Arc, Polygon, Rectangle
 from pulse_figures import cycloidal_pulses, wavelets
+from speed_figures import cost_model, work_precision
 from sphinx.application import Sphinx
 from stochastic_figure import stochastic_motions
 
@@ -156,6 +157,8 @@ FIGURES = (
     cycloidal_pulses,
     wavelets,
     stochastic_motions,
+    work_precision,
+    cost_model,
 )
 
 

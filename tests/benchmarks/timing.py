@@ -1,0 +1,53 @@
+"""Times, and the machine they belong to."""
+
+import os
+import platform
+import time
+from collections.abc import Callable
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+PACKAGES = ("rockframe", "numpy", "scipy", "numba", "openseespy")
+
+
+def cost(function: Callable[[], object], repeats: int) -> float:
+    """Give the least processor time of several calls [s].
+
+    Processor time: what else runs on the machine does not enter as waiting.
+    """
+    times = []
+    for _ in range(repeats):
+        start = time.process_time()
+        function()
+        times.append(time.process_time() - start)
+    return min(times)
+
+
+def machine() -> dict[str, str | int]:
+    """Describe the machine and the versions."""
+    found: dict[str, str | int] = {
+        "processor": _processor(),
+        "cores": os.cpu_count() or 0,
+        "system": f"{platform.system()} {platform.machine()}",
+        "python": platform.python_version(),
+    }
+    for name in PACKAGES:
+        try:
+            found[name] = version(name)
+        except PackageNotFoundError:
+            if name == "rockframe":
+                import rockframe
+
+                found[name] = getattr(rockframe, "__version__", "of the working copy")
+            else:
+                found[name] = "not installed"
+    return found
+
+
+def _processor() -> str:
+    table = Path("/proc/cpuinfo")
+    if table.is_file():
+        for line in table.read_text().splitlines():
+            if line.startswith("model name"):
+                return line.split(":", 1)[1].strip()
+    return platform.processor() or "unknown"
