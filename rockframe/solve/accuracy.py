@@ -86,8 +86,8 @@ class Accuracy:
 
 LEVELS = {
     AccuracyLevel.FAST: Accuracy(substeps=FEWEST, steps_per_period=10.0),
-    AccuracyLevel.STANDARD: Accuracy(rtol=2e-8),
-    AccuracyLevel.REFERENCE: Accuracy(rtol=1e-11),
+    AccuracyLevel.STANDARD: Accuracy(rtol=2e-8, steps_per_period=8.0),
+    AccuracyLevel.REFERENCE: Accuracy(rtol=1e-11, steps_per_period=8.0),
 }
 
 
