@@ -47,7 +47,7 @@ def earliest_crossing(
             if depth < DIP_MARGIN * (rise - fall):
                 end = _point_below_zero(guard, i, bottom, mode, count, span, p, w)
         if end >= 0.0:
-            root = _first_root(guard, i, end, mode, count, span, p, w)
+            root = _first_root(guard, i, end, tables.tolerance[i], mode, count, span, p, w)
             if root < place:
                 found = i
                 place = root
@@ -119,6 +119,7 @@ def _first_root(
     guard: Callable[..., None],
     which: int,
     end: float,
+    tolerance: float,
     mode: int,
     count: int,
     span: Span,
@@ -128,7 +129,8 @@ def _first_root(
     """Give the root between the step's start (positive) and `end` (negative).
 
     Illinois' variant of false position, kept inside its bracket by bisection;
-    from a guard at its limit at the start only bisection can tell.
+    from a guard at its limit at the start, within its rounding noise, only
+    bisection can tell: a corner that has just left is not about to land.
     """
     low, high = 0.0, end
     g_low = _guard_inside(guard, which, low, mode, count, span, p, w)
@@ -140,7 +142,7 @@ def _first_root(
         if high - low <= ROOT_TOLERANCE:
             break
         middle = 0.5 * (low + high)
-        if g_low > 0.0:
+        if g_low > tolerance:
             trial = (low * g_high - high * g_low) / (g_high - g_low)
             if low < trial < high:
                 middle = trial
