@@ -120,6 +120,9 @@ def integrate(
 
     start_memory = memory.copy()
     reference = np.maximum(np.abs(state), FIRST_SCALE * model.scales)
+    if model.rounding is not None and accuracy.floor > 0.0:
+        # no step is short enough for an error below the rounding of the forces
+        reference = np.maximum(reference, model.rounding / (accuracy.rtol * accuracy.floor))
     parameters = model.parameters.copy()
     progress = Progress(controls, clock, counters)
     output = Output(out_state, out_mode, out_work)
