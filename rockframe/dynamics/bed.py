@@ -10,22 +10,22 @@ is its share of the way from the left end (0) to the right end (1).
 from typing import Final, NamedTuple
 
 from rockframe.compiled import inlined, kernel
-from rockframe.dynamics.protocol import REENGAGEMENT, SEPARATION, SILENT
+from rockframe.dynamics.protocol import REENGAGEMENT, SEPARATION
 
 # an end of the base
 DOWN: Final = 0  # below the level of the unloaded bed
 RAISED: Final = 1
 
-# A bed's mode is left end + 2 * right end + 4 * loose + 8 * pivot. Loose: where tension
-# is cut off, nothing bears though some of the base is down, because it rises too fast.
-LOOSE: Final = 1
+# A bed's mode is left end + 2 * right end + 4 * gliding + 8 * pivot. Gliding: the end that is
+# down only touches, and the hold gives way, see :mod:`rockframe.dynamics.gliding`.
+GLIDING: Final = 1
 PIVOT_FACTOR: Final = 8
 BED_MODES: Final = 24
 
 # guards of a bed
 LEFT_END: Final = 0
 RIGHT_END: Final = 1
-GRIP: Final = 2
+SLIP: Final = 2  # of a base that glides
 BED_GUARDS: Final = 3
 
 SIMULTANEOUS: Final = 1e-9
@@ -92,13 +92,13 @@ def pressure(place: float, ends: Ends, bed: Bed) -> float:
 
 
 @inlined
-def bearing_part(left: int, right: int, loose: int, ends: Ends, bed: Bed) -> tuple[float, float]:
+def bearing_part(left: int, right: int, gliding: int, ends: Ends, bed: Bed) -> tuple[float, float]:
     """Give the places between which the base bears."""
     start, end = compressed_part(left, right, ends)
+    if gliding == GLIDING:
+        return start, start
     if bed.by_pressure == 0.0:
         return start, end
-    if loose == LOOSE:
-        return start, start
     p0 = pressure(start, ends, bed)
     p1 = pressure(end, ends, bed)
     if p0 < 0.0 < p1:
@@ -114,7 +114,7 @@ def bearing_part(left: int, right: int, loose: int, ends: Ends, bed: Bed) -> tup
 def bed_resultants(
     left: int,
     right: int,
-    loose: int,
+    gliding: int,
     ends: Ends,
     bed: Bed,
     width: float,
@@ -126,7 +126,7 @@ def bed_resultants(
     The levers are those of the base's ends. Where the base is down without bearing,
     the springs under it feed their own dashpots.
     """
-    start, end = bearing_part(left, right, loose, ends, bed)
+    start, end = bearing_part(left, right, gliding, ends, bed)
     k, c = bed.stiffness, bed.damping
     v0 = between(ends.v_left, ends.v_right, start)
     v1 = between(ends.v_left, ends.v_right, end)
@@ -138,7 +138,7 @@ def bed_resultants(
     force = 0.5 * length * (p0 + p1)
     moment = length * mean_product(p0, p1, l0, l1)
     burnt = c * length * mean_product(v0, v1, v0, v1)
-    if bed.by_pressure != 0.0:
+    if bed.by_pressure != 0.0 and gliding != GLIDING:
         down = compressed_part(left, right, ends)
         burnt += spring_power(down, ends, k, width) - spring_power((start, end), ends, k, width)
     return force, moment, burnt
@@ -176,100 +176,42 @@ def end_state(u: float) -> int:
     return DOWN if u > 0.0 else RAISED
 
 
-@kernel
-def grip(ends: Ends, bed: Bed) -> float:
-    """Give the largest pressure under the base, relative to that at rest."""
-    start, end = compressed_part(end_state(ends.u_left), end_state(ends.u_right), ends)
-    largest = max(pressure(start, ends, bed), pressure(end, ends, bed))
-    return largest / (bed.stiffness * bed.settlement)
-
-
-@kernel
-def grip_rate(ends: Ends, a_left: float, a_right: float, bed: Bed) -> float:
-    """Give the rate of :func:`grip`, from the accelerations of the base's ends."""
-    left, right = end_state(ends.u_left), end_state(ends.u_right)
-    start, end = compressed_part(left, right, ends)
-    first = pressure(start, ends, bed) > pressure(end, ends, bed)
-    place = start if first else end
-    v = between(ends.v_left, ends.v_right, place)
-    rate = -bed.stiffness * v - bed.damping * between(a_left, a_right, place)
-    if (left if first else right) == RAISED:
-        # the place moves so that u stays zero there
-        shift = v / (ends.u_right - ends.u_left)
-        rate += shift * bed.stiffness * (ends.u_right - ends.u_left)
-        rate -= shift * bed.damping * (ends.v_right - ends.v_left)
-    return rate / (bed.stiffness * bed.settlement)
-
-
-@kernel
-def bed_guards(
-    left: int, right: int, loose: int, ends: Ends, a_left: float, a_right: float, bed: Bed
-) -> tuple[float, float, float, float, float, float]:
-    """Give the guards of a bed, then their rates; `a` are the ends' accelerations."""
-    left_sign = (1.0 if left == DOWN else -1.0) / bed.settlement
-    right_sign = (1.0 if right == DOWN else -1.0) / bed.settlement
-    hold = 1.0
-    hold_rate = 0.0
-    airborne = ends.u_left <= 0.0 and ends.u_right <= 0.0
-    if bed.by_pressure != 0.0 and bed.damping > 0.0 and not airborne:
-        sign = -1.0 if loose == LOOSE else 1.0
-        hold = sign * grip(ends, bed)
-        hold_rate = sign * grip_rate(ends, a_left, a_right, bed)
+@inlined
+def bed_guards(left: int, right: int, ends: Ends, settlement: float) -> tuple[float, ...]:
+    """Give the guards of the ends, then their rates."""
+    left_sign = (1.0 if left == DOWN else -1.0) / settlement
+    right_sign = (1.0 if right == DOWN else -1.0) / settlement
     return (
         left_sign * ends.u_left,
         right_sign * ends.u_right,
-        hold,
         -left_sign * ends.v_left,
         -right_sign * ends.v_right,
-        hold_rate,
     )
 
 
 @kernel
-def switch_bed(
-    which: int, left: int, right: int, loose: int, ends: Ends, bed: Bed
-) -> tuple[int, int, int, int]:
-    """Give the ends' states, whether the base is loose, and the event, after a guard.
+def switch_bed(which: int, left: int, right: int, ends: Ends, bed: Bed) -> tuple[int, int, int]:
+    """Give the ends' states and the event after a guard.
 
     An end that lands together with the other one, or leaves together with it, takes
-    it along.
+    it along if that moves the same way.
     """
-    if which == GRIP:
-        if loose == LOOSE:
-            return left, right, 0, REENGAGEMENT
-        return left, right, LOOSE, SEPARATION
     on_left = which == LEFT_END
     end = left if on_left else right
     other = right if on_left else left
     level = abs(ends.u_right if on_left else ends.u_left)
-    if other == end and level <= SIMULTANEOUS * bed.settlement:
+    together = ends.v_left == ends.v_right or ends.v_left * ends.v_right > 0.0
+    if other == end and level <= SIMULTANEOUS * bed.settlement and together:
         other = RAISED - other
     end = RAISED - end
-    new_left = end if on_left else other
-    new_right = other if on_left else end
-    if end == DOWN:
-        landing = left == RAISED and right == RAISED
-        return new_left, new_right, 0 if landing else loose, SILENT if loose else REENGAGEMENT
-    gone = new_left == RAISED and new_right == RAISED
-    return new_left, new_right, 0 if gone else loose, SILENT if loose else SEPARATION
+    event = REENGAGEMENT if end == DOWN else SEPARATION
+    return end if on_left else other, other if on_left else end, event
 
 
 @kernel
-def start_bed(ends: Ends, bed: Bed) -> tuple[int, int, int]:
-    """Give the state of a bed at the start of a run."""
-    left = end_state(ends.u_left)
-    right = end_state(ends.u_right)
-    loose = 0
-    tears = bed.by_pressure != 0.0 and bed.damping > 0.0
-    if tears and (left == DOWN or right == DOWN) and grip(ends, bed) <= 0.0:
-        loose = LOOSE
-    return left, right, loose
-
-
-@kernel
-def nothing_bears(left: int, right: int, loose: int) -> bool:
+def airborne(left: int, right: int) -> bool:
     """Whether the base is in flight."""
-    return loose == LOOSE or (left == RAISED and right == RAISED)
+    return left == RAISED and right == RAISED
 
 
 @kernel

@@ -12,15 +12,20 @@ from rockframe.compiled import Vector, callback, inlined, kernel
 from rockframe.dynamics.bed import (
     BED_GUARDS,
     BED_MODES,
+    LEFT_END,
     PIVOT_FACTOR,
+    RIGHT_END,
+    SLIP,
     Bed,
     Ends,
+    airborne,
     bearing_part,
     bed_energy,
     bed_guards,
     bed_resultants,
-    nothing_bears,
 )
+from rockframe.dynamics.bed import GLIDING as BED_GLIDING
+from rockframe.dynamics.gliding import NO_LEVER
 from rockframe.dynamics.kinematics import (
     about_pin,
     end_accelerations,
@@ -32,7 +37,7 @@ from rockframe.dynamics.kinematics import (
 from rockframe.dynamics.pad import (
     CORNER_GUARDS,
     LEAVE,
-    RELAXING,
+    TURN,
     corner_guards,
     pad_energy,
     pad_force_and_power,
@@ -46,6 +51,9 @@ from rockframe.dynamics.protocol import (
     ROTATION_LIMIT,
 )
 from rockframe.dynamics.single_body import FREE
+from rockframe.dynamics.two_spring import GLIDING, glides, gliding_side, pivot_in, pressing
+from rockframe.dynamics.two_spring import MODES as BLOCK_MODES
+from rockframe.dynamics.winkler import gliding_side as bed_gliding_side
 
 # parameters, after ROTATION_LIMIT
 GRAVITY: Final = 1  # g
@@ -78,9 +86,7 @@ ALONG: Final = 4  # xi; follows from psi unless the block is in flight
 CAP_HORIZONTAL: Final = 5  # X; a coordinate of its own while the cap is in flight
 COORDINATES: Final = 6
 
-# A mode is block mode + 48 * bed mode; a block mode is left corner + 4 * right corner
-# + 16 * pivot, as of two pads on the ground.
-BLOCK_MODES: Final = 48
+# A mode is block mode + BLOCK_MODES * bed mode, as of two pads on the ground and of a bed.
 MODES: Final = BLOCK_MODES * BED_MODES
 
 # guards
@@ -143,16 +149,12 @@ class Motion(NamedTuple):
 @kernel
 def block_pivot(mode: int) -> int:
     """Give the block's pivot on the cap in a mode."""
-    left = mode & 3
-    right = (mode >> 2) & 3
-    if left >= RELAXING and right >= RELAXING:
-        return FREE
-    return (mode % BLOCK_MODES) >> 4
+    return pivot_in(mode % BLOCK_MODES)
 
 
 @inlined
 def bed_contact(mode: int) -> tuple[int, int, int]:
-    """Give the states of the cap's ends, and whether its base is loose."""
+    """Give the states of the cap's ends, and whether its base glides."""
     bed_mode = mode // BLOCK_MODES
     return bed_mode & 1, (bed_mode >> 1) & 1, (bed_mode >> 2) & 1
 
@@ -160,10 +162,34 @@ def bed_contact(mode: int) -> tuple[int, int, int]:
 @kernel
 def cap_pivot(mode: int) -> int:
     """Give the cap's pivot on the soil in a mode."""
-    left, right, loose = bed_contact(mode)
-    if nothing_bears(left, right, loose):
+    left, right, gliding = bed_contact(mode)
+    if gliding == BED_GLIDING or airborne(left, right):
         return FREE
+    return held_cap_pivot(mode)
+
+
+@inlined
+def held_block_pivot(mode: int) -> int:
+    """Give the block's pivot as if it did not glide."""
+    return ((mode % BLOCK_MODES) >> 4) % GLIDING
+
+
+@inlined
+def held_cap_pivot(mode: int) -> int:
+    """Give the cap's pivot as if it did not glide."""
     return mode // BLOCK_MODES // PIVOT_FACTOR
+
+
+@inlined
+def block_glides(mode: int) -> bool:
+    """Whether a corner of the block glides on the cap."""
+    return glides(mode % BLOCK_MODES)
+
+
+@inlined
+def cap_glides(mode: int) -> bool:
+    """Whether an end of the cap glides on the soil."""
+    return (mode // BLOCK_MODES >> 2) & 1 == BED_GLIDING
 
 
 @inlined
@@ -291,6 +317,217 @@ def solve_motion(
     return Motion(x, y, turn, (moment - place.slide * thrust) / i - turn, thrust)
 
 
+@kernel
+def held_place(mode: int, place: Configuration, state: Vector, p: Vector) -> Configuration:
+    """Give a configuration in which what glides is held, as far as its levers go."""
+    reach, bend, slide, curve = place.reach, place.bend, place.slide, place.curve
+    cap_free, block_free = place.cap_free, place.block_free
+    if cap_glides(mode):
+        sine, cosine, _ = sine_cosine_rise(p[CAP_HALF_HEIGHT], p[SMALL], state[CAP_ROTATION])
+        pin = pinned_point(held_cap_pivot(mode), p[CAP_HALF_WIDTH])
+        reach, bend = reach_and_bend(p[CAP_HALF_HEIGHT], p[SMALL], pin, sine, cosine)
+        cap_free = False
+    if block_glides(mode):
+        sine, cosine, _ = sine_cosine_rise(p[HALF_HEIGHT], p[SMALL], state[ROTATION])
+        pin = pinned_point(held_block_pivot(mode), p[HALF_WIDTH])
+        slide, curve = reach_and_bend(p[HALF_HEIGHT], p[SMALL], pin, sine, cosine)
+        block_free = False
+    return Configuration(
+        place.sine, place.cosine, reach, bend, slide, curve, place.arm, block_free, cap_free
+    )
+
+
+@kernel
+def gliding_levers(mode: int, state: Vector, p: Vector) -> tuple[float, float, float, float]:
+    """Give lever and its derivative of the end that glides: the block's, then the cap's."""
+    small = p[SMALL]
+    sine, cosine, _ = sine_cosine_rise(p[HALF_HEIGHT], small, state[ROTATION])
+    side = gliding_side(mode % BLOCK_MODES)
+    lever = p[HALF_HEIGHT] * sine + side * p[HALF_WIDTH] * cosine
+    left, right = end_accelerations(
+        p[HALF_HEIGHT], p[HALF_WIDTH], small, sine, cosine, 1.0, 0.0, 0.0
+    )
+    bend = left if side > 0.0 else right
+    sine, cosine, _ = sine_cosine_rise(p[CAP_HALF_HEIGHT], small, state[CAP_ROTATION])
+    cap_side = bed_gliding_side(mode // BLOCK_MODES)
+    cap_lever = p[CAP_HALF_HEIGHT] * sine + cap_side * p[CAP_HALF_WIDTH] * cosine
+    left, right = end_accelerations(
+        p[CAP_HALF_HEIGHT], p[CAP_HALF_WIDTH], small, sine, cosine, 1.0, 0.0, 0.0
+    )
+    return lever, bend, cap_lever, left if cap_side > 0.0 else right
+
+
+@kernel
+def rises(
+    place: Configuration, motion: Motion, across: float, press: float, lever: float,
+    cap_lever: float,
+) -> tuple[float, float]:  # fmt: skip
+    """Give what a motion adds to the acceleration of the block's corner and the cap's end."""
+    s, c = place.sine, place.cosine
+    normal = s * motion.cap_horizontal + c * motion.cap_vertical
+    corner = press - normal + across * motion.cap_rotation + lever * motion.rotation
+    return corner, motion.cap_vertical + cap_lever * motion.cap_rotation
+
+
+@kernel
+def responses(
+    mode: int, place: Configuration, state: Vector, p: Vector
+) -> tuple[float, float, float, float]:
+    """Give the rises of corner and end per unit of slip of the block, then of the cap."""
+    lever, _, cap_lever, _ = gliding_levers(mode, state, p)
+    across = state[ALONG]
+    motion = solve_motion(place, across, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, p)
+    corner, end = rises(place, motion, across, 0.0, lever, cap_lever)
+    motion = solve_motion(place, across, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, p)
+    cap_corner, cap_end = rises(place, motion, across, 0.0, lever, cap_lever)
+    return corner, end, cap_corner, cap_end
+
+
+@kernel
+def slips(place: Configuration, state: Vector) -> tuple[float, float]:
+    """Give the slip of the block on the cap and of the cap on the soil where they glide."""
+    block = state[COORDINATES + ALONG] - place.slide * state[COORDINATES + ROTATION]
+    sway = state[COORDINATES + CAP_HORIZONTAL]
+    return block, sway - place.reach * state[COORDINATES + CAP_ROTATION]
+
+
+@kernel
+def glide(
+    mode: int,
+    place: Configuration,
+    state: Vector,
+    soil_force: float,
+    soil_moment: float,
+    load_along: float,
+    load_x: float,
+    load_y: float,
+    given_normal: float,
+    press: float,
+    p: Vector,
+) -> tuple[float, float, float]:
+    """Give the accelerations of slip that keep what glides at its level, :eq:`eq-gliding`.
+
+    They come as the parts of `swing` and `drift` that belong to them, with the power
+    that the holds take from the slips (negative). A gliding corner bears alone, so that
+    the pads of a gliding block do not press.
+    """
+    lever, bend, cap_lever, cap_bend = gliding_levers(mode, state, p)
+    turn, spin = state[COORDINATES + CAP_ROTATION], state[COORDINATES + ROTATION]
+    across = state[ALONG]
+    moment = 0.0
+    if not block_glides(mode):  # the block's own contact goes on
+        moment = pads_moment(mode, state, p)
+    swing = place.bend * turn * turn
+    drift = place.curve * spin * spin
+    motion = solve_motion(
+        place, across, press, moment, soil_force, soil_moment, swing, drift + load_along, load_x,
+        load_y, p,
+    )  # fmt: skip
+    corner, end = rises(place, motion, across, press, lever, cap_lever)
+    corner += given_normal + bend * spin * spin
+    end += cap_bend * turn * turn
+    a11, a21, a12, a22 = responses(mode, place, state, p)
+    if not block_glides(mode):
+        drift_slip, swing_slip = 0.0, -end / a22
+    elif not cap_glides(mode):
+        drift_slip, swing_slip = -corner / a11, 0.0
+    else:
+        determinant = a11 * a22 - a12 * a21
+        drift_slip = (a12 * end - a22 * corner) / determinant
+        swing_slip = (a21 * corner - a11 * end) / determinant
+    swing += swing_slip
+    drift += drift_slip
+    motion = solve_motion(
+        place, across, press, moment, soil_force, soil_moment, swing, drift + load_along, load_x,
+        load_y, p,
+    )  # fmt: skip
+    block_slip, cap_slip = slips(place, state)
+    power = 0.0
+    if block_glides(mode):
+        power += motion.thrust * block_slip
+    if cap_glides(mode):
+        hold = place.cosine * motion.thrust + place.sine * press
+        power += (p[CAP_MASS] * (motion.cap_horizontal + load_x) + hold) * cap_slip
+    return swing, drift, power
+
+
+@kernel
+def pads_moment(mode: int, state: Vector, p: Vector) -> float:
+    """Give the pads' generalised force on psi."""
+    sine, cosine, rise = sine_cosine_rise(p[HALF_HEIGHT], p[SMALL], state[ROTATION])
+    spin, lift = state[COORDINATES + ROTATION], state[COORDINATES + NORMAL]
+    height, half = state[NORMAL] + rise, p[HALF_WIDTH] * sine
+    k, damping, delta = p[PAD_STIFFNESS], p[PAD_DAMPING], p[PAD_SETTLEMENT]
+    left = p[HALF_HEIGHT] * sine + p[HALF_WIDTH] * cosine
+    right = p[HALF_HEIGHT] * sine - p[HALF_WIDTH] * cosine
+    n_left, _ = pad_force_and_power(mode & 3, height + half, lift + left * spin, k, damping, delta)
+    n_right, _ = pad_force_and_power(
+        (mode >> 2) & 3, height - half, lift + right * spin, k, damping, delta
+    )
+    return n_left * left + n_right * right
+
+
+@kernel
+def glide_guards(
+    mode: int,
+    state: Vector,
+    accelerations: Vector,
+    ground_x: float,
+    ground_y: float,
+    p: Vector,
+    out: Vector,
+) -> None:
+    """Write the guards of what glides: of the hold that lifts, and of the slip."""
+    place = held_place(mode, configuration(mode, state, p), state, p)
+    s, c = place.sine, place.cosine
+    turn, spin = state[COORDINATES + CAP_ROTATION], state[COORDINATES + ROTATION]
+    block_slip, cap_slip = slips(place, state)
+    corner, _, _, end = responses(mode, place, state, p)
+    # forces of the cap on the block, from its acceleration, eq-coupled
+    x = accelerations[CAP_HORIZONTAL]
+    if not cap_glides(mode) and not place.cap_free:
+        x = place.reach * accelerations[CAP_ROTATION] + place.bend * turn * turn
+    x += ground_x
+    y = accelerations[CAP_VERTICAL] + p[GRAVITY] + ground_y
+    across = state[ALONG]
+    along_speed = state[COORDINATES + ALONG]
+    if not block_glides(mode) and not place.block_free:
+        along_speed = place.slide * spin
+    thrust = (
+        c * x - s * y + accelerations[ALONG] + place.arm * accelerations[CAP_ROTATION]
+        + 2.0 * state[COORDINATES + NORMAL] * turn - across * turn * turn
+    )  # fmt: skip
+    press = (
+        s * x + c * y + accelerations[NORMAL] - across * accelerations[CAP_ROTATION]
+        - 2.0 * along_speed * turn - place.arm * turn * turn
+    )  # fmt: skip
+    scale = math.sqrt(p[GRAVITY] * (p[HALF_WIDTH] + p[HALF_HEIGHT]))
+    if block_glides(mode):
+        first = LEFT_GUARDS if gliding_side(mode % BLOCK_MODES) > 0.0 else RIGHT_GUARDS
+        sign = 1.0 if corner < 0.0 else -1.0
+        out[first + LEAVE] = -sign * thrust / p[GRAVITY]
+        out[GUARDS + first + LEAVE] = 0.0
+        change = (
+            accelerations[ALONG] - place.slide * accelerations[ROTATION]
+            - place.curve * spin * spin
+        )  # fmt: skip
+        out[first + TURN] = sign * block_slip / scale if abs(corner) > NO_LEVER else -1.0
+        out[GUARDS + first + TURN] = sign * change / scale
+    if cap_glides(mode):
+        left = bed_gliding_side(mode // BLOCK_MODES) > 0.0
+        first = SOIL_GUARDS + (LEFT_END if left else RIGHT_END)
+        sign = 1.0 if end < 0.0 else -1.0
+        hold = p[CAP_MASS] * x + c * thrust + s * press
+        out[first] = -sign * hold / p[GRAVITY]
+        out[GUARDS + first] = 0.0
+        change = (
+            accelerations[CAP_HORIZONTAL] - place.reach * accelerations[CAP_ROTATION]
+            - place.bend * turn * turn
+        )  # fmt: skip
+        out[SOIL_GUARDS + SLIP] = sign * cap_slip / scale if abs(end) > NO_LEVER else -1.0
+        out[GUARDS + SOIL_GUARDS + SLIP] = sign * change / scale
+
+
 @inlined
 def block_velocity(place: Configuration, state: Vector) -> tuple[float, float]:
     """Give the horizontal and vertical velocity of the block's centre of mass."""
@@ -315,11 +552,11 @@ def accelerate(
         p[CAP_HALF_HEIGHT], small, state[CAP_ROTATION]
     )
     ends = cap_ends(state, p, cap_sine, cap_cosine, cap_rise)
-    left, right, loose = bed_contact(mode)
+    left, right, gliding = bed_contact(mode)
     soil_force, soil_moment, burnt = bed_resultants(
         left,
         right,
-        loose,
+        gliding,
         ends,
         bed_of(p),
         2.0 * p[CAP_HALF_WIDTH],
@@ -337,11 +574,13 @@ def accelerate(
     lever_right = p[HALF_HEIGHT] * sine - p[HALF_WIDTH] * cosine
     k, damping, delta = p[PAD_STIFFNESS], p[PAD_DAMPING], p[PAD_SETTLEMENT]
     n_left, burnt_left = pad_force_and_power(
-        mode & 3, height + half, lift + lever_left * spin, k, damping, delta
-    )
+        pressing(mode % BLOCK_MODES, mode & 3), height + half, lift + lever_left * spin, k,
+        damping, delta,
+    )  # fmt: skip
     n_right, burnt_right = pad_force_and_power(
-        (mode >> 2) & 3, height - half, lift + lever_right * spin, k, damping, delta
-    )
+        pressing(mode % BLOCK_MODES, (mode >> 2) & 3), height - half, lift + lever_right * spin, k,
+        damping, delta,
+    )  # fmt: skip
     press = n_left + n_right
     # motion
     turn = state[COORDINATES + CAP_ROTATION]
@@ -352,6 +591,16 @@ def accelerate(
     load_along = ground_x * c - load_y * s
     load_normal = ground_x * s + load_y * c
     coriolis = 2.0 * lift * turn - across * turn * turn
+    swing = place.bend * turn * turn
+    drift = place.curve * spin * spin
+    block_slips, cap_slips = block_glides(mode), cap_glides(mode)
+    if block_slips or cap_slips:
+        place = held_place(mode, place, state, p)
+        swing, drift, hold_power = glide(
+            mode, place, state, soil_force, soil_moment, coriolis + load_along, ground_x, load_y,
+            (2.0 * slip + place.arm * turn) * turn - load_normal, press, p,
+        )  # fmt: skip
+        burnt -= hold_power
     motion = solve_motion(
         place,
         across,
@@ -359,8 +608,8 @@ def accelerate(
         n_left * lever_left + n_right * lever_right,
         soil_force,
         soil_moment,
-        place.bend * turn * turn,
-        place.curve * spin * spin + coriolis + load_along,
+        swing,
+        drift + coriolis + load_along,
         ground_x,
         load_y,
         p,
@@ -380,8 +629,10 @@ def accelerate(
     if place.block_free:
         out[ALONG] = -load_along - cap_along - place.arm * motion.cap_rotation - coriolis
     else:
-        out[ALONG] = place.slide * motion.rotation + place.curve * spin * spin
-    out[CAP_HORIZONTAL] = motion.cap_horizontal if place.cap_free else 0.0
+        out[ALONG] = place.slide * motion.rotation + drift
+    out[CAP_HORIZONTAL] = motion.cap_horizontal if place.cap_free or cap_slips else 0.0
+    if block_slips or cap_slips:
+        place = placed(mode, state, p, cap_sine, cap_cosine, sine, cosine)
     sway = cap_sway(place, state)
     across_speed, up_speed = block_velocity(place, state)
     out[COORDINATES] = burnt + burnt_left + burnt_right
@@ -423,29 +674,36 @@ def guard(
     out[PIVOT_GUARD] = 1.0
     out[GUARDS + PIVOT_GUARD] = 0.0
     pivot = block_pivot(mode)
-    if pivot != FREE:
+    block_slips, cap_slips = block_glides(mode), cap_glides(mode)
+    if pivot != FREE or block_slips:
         out[PIVOT_GUARD], out[GUARDS + PIVOT_GUARD] = pivot_guard(
-            p[RESTRAINT], pivot, p[ANGLE], rotation, spin, accelerations[ROTATION]
+            p[RESTRAINT], held_block_pivot(mode), p[ANGLE], rotation, spin, accelerations[ROTATION]
         )
     # cap on soil
     h, b = p[CAP_HALF_HEIGHT], p[CAP_HALF_WIDTH]
     cap_rotation, turn = state[CAP_ROTATION], state[COORDINATES + CAP_ROTATION]
     sine, cosine, rise = sine_cosine_rise(h, small, cap_rotation)
-    left, right = end_accelerations(
-        h, b, small, sine, cosine, turn, accelerations[CAP_VERTICAL], accelerations[CAP_ROTATION]
-    )
     ends = cap_ends(state, p, sine, cosine, rise)
-    left_end, right_end, loose = bed_contact(mode)
-    values = bed_guards(left_end, right_end, loose, ends, left, right, bed_of(p))
-    for i in range(BED_GUARDS):
+    left_end, right_end, _ = bed_contact(mode)
+    values = bed_guards(left_end, right_end, ends, p[SOIL_SETTLEMENT])
+    for i in range(2):
         out[SOIL_GUARDS + i] = values[i]
-        out[GUARDS + SOIL_GUARDS + i] = values[BED_GUARDS + i]
+        out[GUARDS + SOIL_GUARDS + i] = values[2 + i]
+    out[SOIL_GUARDS + SLIP] = 1.0
+    out[GUARDS + SOIL_GUARDS + SLIP] = 0.0
+    if block_slips or cap_slips:
+        glide_guards(mode, state, accelerations, ground_x, ground_y, p, out)
     out[SOIL_PIVOT_GUARD] = 1.0
     out[GUARDS + SOIL_PIVOT_GUARD] = 0.0
     pivot = cap_pivot(mode)
-    if pivot != FREE:
+    if pivot != FREE or cap_slips:
         out[SOIL_PIVOT_GUARD], out[GUARDS + SOIL_PIVOT_GUARD] = pivot_guard(
-            p[RESTRAINT], pivot, p[ANGLE], cap_rotation, turn, accelerations[CAP_ROTATION]
+            p[RESTRAINT],
+            held_cap_pivot(mode),
+            p[ANGLE],
+            cap_rotation,
+            turn,
+            accelerations[CAP_ROTATION],
         )
     total = rotation + cap_rotation
     out[LIMIT_GUARD] = p[ROTATION_LIMIT] - abs(total)
@@ -531,17 +789,20 @@ def observe(
     lever_left = p[HALF_HEIGHT] * sine + p[HALF_WIDTH] * cosine
     lever_right = p[HALF_HEIGHT] * sine - p[HALF_WIDTH] * cosine
     k, c, delta = p[PAD_STIFFNESS], p[PAD_DAMPING], p[PAD_SETTLEMENT]
-    out[5], _ = pad_force_and_power(mode & 3, height + half, lift + lever_left * spin, k, c, delta)
+    block_mode = mode % BLOCK_MODES
+    out[5], _ = pad_force_and_power(
+        pressing(block_mode, mode & 3), height + half, lift + lever_left * spin, k, c, delta
+    )
     out[6], _ = pad_force_and_power(
-        (mode >> 2) & 3, height - half, lift + lever_right * spin, k, c, delta
+        pressing(block_mode, (mode >> 2) & 3), height - half, lift + lever_right * spin, k, c, delta
     )
     sine, cosine, rise = sine_cosine_rise(p[CAP_HALF_HEIGHT], p[SMALL], state[CAP_ROTATION])
     ends = cap_ends(state, p, sine, cosine, rise)
     bed = bed_of(p)
-    left, right, loose = bed_contact(mode)
-    start, end = bearing_part(left, right, loose, ends, bed)
+    left, right, gliding = bed_contact(mode)
+    start, end = bearing_part(left, right, gliding, ends, bed)
     width = 2.0 * p[CAP_HALF_WIDTH]
-    out[7], _, _ = bed_resultants(left, right, loose, ends, bed, width, 0.0, 0.0)
+    out[7], _, _ = bed_resultants(left, right, gliding, ends, bed, width, 0.0, 0.0)
     out[8] = width * (end - start)
     out[9] = state[CAP_ROTATION]
     out[10] = turn

@@ -18,6 +18,7 @@ from rockframe.dynamics.kinematics import about_pin, pinned_point, sine_cosine_r
 from rockframe.dynamics.protocol import (
     HORIZONTAL_REFERENCE,
     MEMORY_SIZE,
+    ROUNDING,
     ContactModel,
     ContactState,
     Start,
@@ -28,7 +29,7 @@ from rockframe.dynamics.two_spring_model import (
     corner_tolerance,
     lazy_corners,
 )
-from rockframe.dynamics.winkler_model import bed_tolerance, contact_of_bed
+from rockframe.dynamics.winkler_model import bed_tolerance, contact_of_bed, gliding_end
 
 
 def coupled(
@@ -140,7 +141,9 @@ def coupled(
         switch=switch,
         energy=model.energy,
         observe=model.observe,
-        active=np.where(soil_contact == ContactState.FLIGHT, 6, 5),
+        active=np.where(
+            (soil_contact == ContactState.FLIGHT) | gliding_end(modes // model.BLOCK_MODES), 6, 5
+        ),
         contact=contact,
         parameters=p,
         scales=np.concatenate([sizes, sizes * rates]),
@@ -150,11 +153,22 @@ def coupled(
         columns=model.COLUMNS,
         fastest_frequency=fastest,
         damping_rate=damping_rate,
+        rounding=rounding(p, fastest),
         energy_scale=gravity * radius * theta,
         mass=mass,
         initial=initial,
         soil_contact=soil_contact,
     )
+
+
+def rounding(p: Vector, fastest: float) -> Vector:
+    """Estimate the rounding noise of coordinates and rates, as of a body on its base."""
+    block = math.hypot(p[model.HALF_WIDTH], p[model.HALF_HEIGHT])
+    cap = math.hypot(p[model.CAP_HALF_WIDTH], p[model.CAP_HALF_HEIGHT])
+    height = 0.125 * ROUNDING * (block + cap)
+    turning = p[model.HALF_WIDTH] / (p[model.INERTIA] + p[model.HALF_HEIGHT] ** 2)
+    noise = height * np.array([1.0, 1.0 / cap, 1.0, turning, 1.0, 1.0])
+    return np.concatenate([noise, fastest * noise])
 
 
 def small_motion_matrices(p: Vector) -> tuple[Matrix, Matrix, Matrix]:
@@ -232,7 +246,7 @@ def start_mode(
         corner_level(model.RIGHT_GUARDS, state, p), reaction(model.RIGHT_GUARDS, state, p), delta
     )
     rule = p[model.RESTRAINT]
-    bed_mode = bed_mode_of(bed.DOWN, bed.DOWN, 0, 0.0, 0.0, rule)
+    bed_mode = bed_mode_of(bed.DOWN, bed.DOWN, 0.0, 0.0, rule)
     mode = block_mode_of(left, right, rotation, spin, rule) + model.BLOCK_MODES * bed_mode
     pivot = model.block_pivot(mode)
     pin = 0.0 if pivot == FREE else pinned_point(pivot, p[model.HALF_WIDTH])

@@ -8,7 +8,7 @@ import math
 from typing import Final
 
 from rockframe.compiled import Vector, inlined, kernel
-from rockframe.dynamics.protocol import IMPACT, REENGAGEMENT, SEPARATION, SILENT
+from rockframe.dynamics.protocol import IMPACT, REENGAGEMENT, ROUNDING, SEPARATION, SILENT
 
 # contact of a corner; it is held, and counts as bearing, below RELAXING
 TOUCHING: Final = 0
@@ -103,6 +103,20 @@ def corner_guards(
         out[guards + first + TURN] = acceleration / scale
 
 
+@inlined
+def reaction_noise(size: float, settlement: float) -> float:
+    """Give the rounding noise of a reaction over the weight: heights are of the body's size."""
+    return ROUNDING * (1.0 + size / settlement)
+
+
+@inlined
+def least_speed(size: float, gravity: float, damping: float, settlement: float) -> float:
+    """Give the speed of a landing below which a dashpot's answer is rounding noise."""
+    if damping == 0.0:
+        return 0.0
+    return 2.0 * gravity * reaction_noise(size, settlement) / damping
+
+
 @kernel
 def start_contact(level: float, reaction: float, settlement: float) -> int:
     """Give a corner's contact at the start of a run."""
@@ -126,6 +140,9 @@ def switch_corner(
     other: int,
     level: float,
     other_level: float,
+    rate: float,
+    other_rate: float,
+    reaction: float,
     other_reaction: float,
     damping: float,
     settlement: float,
@@ -140,11 +157,16 @@ def switch_corner(
     if contact == ENGAGING and which == TURN:
         return TOUCHING, other, SILENT
     if contact < RELAXING:
-        if other == TOUCHING and other_reaction <= 0.0:
+        # in a motion that is symmetric both reactions are the same, on either side of zero;
+        # a corner that has just come down with the first one is on its way into its pad
+        leaves = other_reaction <= 0.0 and other_rate >= 0.0
+        if other == TOUCHING and (leaves or other_reaction == reaction):
             other = released(other_level, damping, settlement)
         return released(level, damping, settlement), other, SEPARATION
     if contact == CLEAR:
-        if other == CLEAR and abs(other_level - settlement) <= SIMULTANEOUS * settlement:
+        level = abs(other_level - settlement)
+        falls = other_rate < 0.0 or other_rate == rate
+        if other == CLEAR and level <= SIMULTANEOUS * settlement and falls:
             other = TOUCHING
         return TOUCHING, other, IMPACT
     return TOUCHING, other, REENGAGEMENT

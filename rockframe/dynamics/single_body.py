@@ -10,12 +10,20 @@ from typing import Final
 import numpy as np
 
 from rockframe.compiled import Vector, inlined, kernel
+from rockframe.dynamics.gliding import (
+    NO_LEVER,
+    blend,
+    share_of_loss,
+    share_until_lifted,
+    speed_noise,
+)
 from rockframe.dynamics.kinematics import (
     CENTRE,
     PIVOT_CENTRE,
     PIVOT_LEFT,
     PIVOT_RIGHT,
     about_pin,
+    end_accelerations,
     leading_pivot,
     pinned_point,
     reach_and_bend,
@@ -27,6 +35,7 @@ from rockframe.dynamics.protocol import (
     PIVOT_CHANGE,
     REPINNING_LOSS,
     ROTATION_LIMIT,
+    ROUNDING,
     SILENT,
 )
 
@@ -55,7 +64,11 @@ COLUMNS: Final = (
 )
 
 FREE: Final = -1
-"""Stands for the pivot of a body in flight."""
+"""Stands for the pivot of a body in flight, or of one that glides."""
+
+LEFT_SIDE: Final = 1.0
+RIGHT_SIDE: Final = -1.0
+"""Sides of the base, in levers h sin a +/- b cos a."""
 
 
 @inlined
@@ -112,6 +125,66 @@ def move_body(
 
 
 @kernel
+def end_rate(side: float, state: Vector, p: Vector) -> tuple[float, float, float]:
+    """Give the lever of an end of the base, its speed, and the noise of that."""
+    sine, cosine, _ = sine_cosine_rise(p[HALF_HEIGHT], p[SMALL], state[ROTATION])
+    lever = p[HALF_HEIGHT] * sine + side * p[HALF_WIDTH] * cosine
+    speed, spin = state[COORDINATES + VERTICAL], state[COORDINATES + ROTATION]
+    return lever, speed + lever * spin, speed_noise(speed, lever, spin)
+
+
+@kernel
+def glide_body(
+    pivot: int,
+    side: float,
+    state: Vector,
+    sine: float,
+    cosine: float,
+    ground_x: float,
+    ground_y: float,
+    p: Vector,
+    out: Vector,
+) -> None:
+    """Write the accelerations of a body of which one end glides, :eq:`eq-gliding`.
+
+    Adds what the hold takes from the slip to the power burnt.
+    """
+    h, b, small = p[HALF_HEIGHT], p[HALF_WIDTH], p[SMALL]
+    spin = state[COORDINATES + ROTATION]
+    sway = state[COORDINATES + HORIZONTAL]
+    lift = -p[GRAVITY] - ground_y
+    left, right = end_accelerations(h, b, small, sine, cosine, spin, lift, 0.0)
+    turn = -(left if side > 0.0 else right) / (h * sine + side * b * cosine)
+    reach, _ = reach_and_bend(h, small, pinned_point(pivot, b), sine, cosine)
+    hold = -p[INERTIA] * turn / reach
+    out[ROTATION] = turn
+    out[VERTICAL] = lift
+    out[HORIZONTAL] = hold - ground_x
+    out[COORDINATES] -= hold * (sway - reach * spin)
+    out[COORDINATES + 1] = -ground_x * sway - ground_y * state[COORDINATES + VERTICAL]
+
+
+@kernel
+def glide_guards(
+    pivot: int, side: float, state: Vector, accelerations: Vector, ground_x: float, p: Vector
+) -> tuple[float, float, float]:
+    """Give the guards of the hold that lifts and of the slip, and the rate of the latter."""
+    h, b = p[HALF_HEIGHT], p[HALF_WIDTH]
+    sine, cosine, _ = sine_cosine_rise(h, p[SMALL], state[ROTATION])
+    spin = state[COORDINATES + ROTATION]
+    reach, bend = reach_and_bend(h, p[SMALL], pinned_point(pivot, b), sine, cosine)
+    upwards = 1.0 if (h * sine + side * b * cosine) * reach > 0.0 else -1.0
+    hold = accelerations[HORIZONTAL] + ground_x
+    slip = state[COORDINATES + HORIZONTAL] - reach * spin
+    change = accelerations[HORIZONTAL] - reach * accelerations[ROTATION] - bend * spin * spin
+    if abs(reach) < NO_LEVER * (b + h):
+        # with the held point beneath the centre of mass to hold it is not to lift it
+        return -upwards * hold / p[GRAVITY], -1.0, 0.0
+    scale = upwards / math.sqrt(p[GRAVITY] * (b + h))
+    return -upwards * hold / p[GRAVITY], scale * slip, scale * change
+
+
+@kernel
 def kinetic_energy(pivot: int, state: Vector, p: Vector) -> float:
     """Give the kinetic energy relative to the ground, :eq:`eq-energy`."""
     sine, cosine, _ = sine_cosine_rise(p[HALF_HEIGHT], p[SMALL], state[ROTATION])
@@ -153,15 +226,54 @@ def repin(old: int, new: int, state: Vector, p: Vector, memory: Vector) -> None:
 
 
 @kernel
-def turned_pivot(pivot: int, state: Vector, ground_x: float, memory: Vector) -> int:
-    """Give the pivot after the guard of the leading corner has fallen, and note the event."""
+def repin_landing(
+    new: int, side: float, least: float, state: Vector, p: Vector, memory: Vector
+) -> bool:
+    """Hold a body out of flight that has come down on one end; give whether it glides.
+
+    The hold's impulse ends where it stops the end, :eq:`eq-partial-hold`. A speed below
+    `least` is too small for the base to answer.
+    """
+    _, before, _ = end_rate(side, state, p)
+    spin = state[COORDINATES + ROTATION]
+    sway = state[COORDINATES + HORIZONTAL]
+    reference, lost = memory[HORIZONTAL_REFERENCE], memory[REPINNING_LOSS]
+    repin(FREE, new, state, p, memory)
+    _, after, noise = end_rate(side, state, p)
+    if after < -max(noise, least):
+        return False
+    share = share_until_lifted(before, after)
+    sine, cosine, _ = sine_cosine_rise(p[HALF_HEIGHT], p[SMALL], state[ROTATION])
+    held = horizontal_velocity(new, state, p, sine, cosine)
+    state[COORDINATES + ROTATION] = blend(spin, state[COORDINATES + ROTATION], share)
+    state[COORDINATES + HORIZONTAL] = blend(sway, held, share)
+    memory[HORIZONTAL_REFERENCE] = reference
+    memory[REPINNING_LOSS] = blend(lost, memory[REPINNING_LOSS], share_of_loss(share))
+    stop_end(side, 0.0, state, p)
+    return True
+
+
+@kernel
+def stop_end(side: float, direction: float, state: Vector, p: Vector) -> None:
+    """Take the speed of an end to nought, or to the side of it that rounding cannot leave."""
+    _, rate, noise = end_rate(side, state, p)
+    state[COORDINATES + VERTICAL] += direction * noise - rate
+
+
+@kernel
+def turned_pivot(pivot: int, tilt: float, state: Vector, ground_x: float, memory: Vector) -> int:
+    """Give the pivot after the guard of the leading corner has fallen, and note the event.
+
+    Upright and at rest, on still ground, the body turns as the contact tells by `tilt`.
+    """
     spin = state[COORDINATES + ROTATION]
     if pivot != PIVOT_CENTRE:
         state[ROTATION] = 0.0
         memory[LAST_EVENT] = PIVOT_CHANGE
         return PIVOT_LEFT if pivot == PIVOT_RIGHT else PIVOT_RIGHT
     memory[LAST_EVENT] = SILENT  # the first lean decides; at rest the ground does
-    return leading_pivot(state[ROTATION], spin if spin != 0.0 else -ground_x)
+    tendency = -ground_x if ground_x != 0.0 else tilt
+    return leading_pivot(state[ROTATION], spin if spin != 0.0 else tendency)
 
 
 @kernel
@@ -235,6 +347,18 @@ def body_scales(p: Vector, settlement: float, vertical_frequency: float) -> Vect
             radius * angle * rocking,
         ]
     )
+
+
+def body_rounding(p: Vector, fastest: float) -> Vector:
+    """Estimate the rounding noise of the coordinates and their rates.
+
+    The base's heights are differences of terms as large as the body; what the base
+    answers to their rounding moves the body to and fro by as much.
+    """
+    height = 0.125 * ROUNDING * math.hypot(p[HALF_WIDTH], p[HALF_HEIGHT])
+    turning = p[HALF_WIDTH] / (p[INERTIA] + p[HALF_HEIGHT] ** 2)
+    noise = height * np.array([turning, 1.0, 1.0])
+    return np.concatenate([noise, fastest * noise])
 
 
 def energy_scale(p: Vector) -> float:

@@ -9,13 +9,16 @@ All quantities per unit mass of the block.
 
 from typing import Final
 
-from rockframe.compiled import Vector, callback, kernel
+from rockframe.compiled import Vector, callback, inlined, kernel
 from rockframe.dynamics import single_body as body
 from rockframe.dynamics.kinematics import end_accelerations, pivot_guard, sine_cosine_rise
 from rockframe.dynamics.pad import (
+    CLEAR,
     CORNER_GUARDS,
     LEAVE,
     RELAXING,
+    TOUCHING,
+    TURN,
     corner_guards,
     pad_energy,
     pad_force_and_power,
@@ -28,10 +31,14 @@ from rockframe.dynamics.single_body import (
     GRAVITY,
     HALF_HEIGHT,
     HALF_WIDTH,
+    LEFT_SIDE,
     RESTRAINT,
+    RIGHT_SIDE,
     ROTATION,
     SMALL,
     VERTICAL,
+    glide_body,
+    glide_guards,
     kinetic_energy,
     limit_guard,
     move_body,
@@ -46,8 +53,10 @@ RESTITUTION: Final = STIFFNESS + 3  # eps
 PARAMETERS: Final = STIFFNESS + 4
 
 # A mode is left corner + 4 * right corner + 16 * pivot; corners as in
-# :mod:`rockframe.dynamics.pad`, pivots as in :mod:`rockframe.dynamics.kinematics`.
-MODES: Final = 48
+# :mod:`rockframe.dynamics.pad`, pivots as in :mod:`rockframe.dynamics.kinematics`,
+# plus GLIDING where the corner that touches glides.
+GLIDING: Final = 3
+MODES: Final = 96
 
 # guards: three of each corner, the pivot's, and the rotation's limit
 LEFT_GUARDS: Final = LEAVE
@@ -67,9 +76,27 @@ def in_flight(mode: int) -> bool:
 
 
 @kernel
+def glides(mode: int) -> bool:
+    """Whether the corner that touches glides."""
+    return (mode >> 4) >= GLIDING
+
+
+@kernel
 def pivot_in(mode: int) -> int:
     """Give the pivot of a mode."""
-    return FREE if in_flight(mode) else mode >> 4
+    return FREE if in_flight(mode) or glides(mode) else mode >> 4
+
+
+@kernel
+def gliding_side(mode: int) -> float:
+    """Give the side of the corner that glides."""
+    return LEFT_SIDE if (mode & 3) == TOUCHING else RIGHT_SIDE
+
+
+@inlined
+def pressing(mode: int, contact: int) -> int:
+    """Give a corner's contact as far as its pad's force goes: gliding, it has none."""
+    return CLEAR if contact == TOUCHING and glides(mode) else contact
 
 
 @callback(ACCELERATE)
@@ -88,13 +115,19 @@ def accelerate(
     c = p[DAMPING]
     delta = p[SETTLEMENT]
     left, burnt_left = pad_force_and_power(
-        mode & 3, height + half, speed + lever_left * spin, k, c, delta
+        pressing(mode, mode & 3), height + half, speed + lever_left * spin, k, c, delta
     )
     right, burnt_right = pad_force_and_power(
-        (mode >> 2) & 3, height - half, speed + lever_right * spin, k, c, delta
+        pressing(mode, (mode >> 2) & 3), height - half, speed + lever_right * spin, k, c, delta
     )
     moment = left * lever_left + right * lever_right
     out[COORDINATES] = burnt_left + burnt_right
+    if glides(mode):
+        glide_body(
+            (mode >> 4) - GLIDING, gliding_side(mode), state, sine, cosine, ground_x, ground_y, p,
+            out,
+        )  # fmt: skip
+        return
     move_body(pivot_in(mode), state, sine, cosine, left + right, moment, ground_x, ground_y, p, out)
 
 
@@ -136,8 +169,18 @@ def guard(
     out[GUARDS + PIVOT_GUARD] = 0.0
     if not in_flight(mode):
         out[PIVOT_GUARD], out[GUARDS + PIVOT_GUARD] = pivot_guard(
-            p[RESTRAINT], mode >> 4, p[ANGLE], rotation, spin, turn
+            p[RESTRAINT], (mode >> 4) % GLIDING, p[ANGLE], rotation, spin, turn
         )
+    if glides(mode):
+        side = gliding_side(mode)
+        first = LEFT_GUARDS if side > 0.0 else RIGHT_GUARDS
+        hold, slip, change = glide_guards(
+            (mode >> 4) - GLIDING, side, state, accelerations, ground_x, p
+        )
+        out[first + LEAVE] = hold
+        out[GUARDS + first + LEAVE] = 0.0
+        out[first + TURN] = slip
+        out[GUARDS + first + TURN] = change
     out[LIMIT_GUARD], out[GUARDS + LIMIT_GUARD] = limit_guard(state, p)
 
 
@@ -178,8 +221,8 @@ def observe(
     delta = p[SETTLEMENT]
     observe_body(pivot_in(mode), state, memory, p, out)
     out[REACTIONS], _ = pad_force_and_power(
-        mode & 3, height + half, speed + lever_left * spin, k, c, delta
+        pressing(mode, mode & 3), height + half, speed + lever_left * spin, k, c, delta
     )
     out[REACTIONS + 1], _ = pad_force_and_power(
-        (mode >> 2) & 3, height - half, speed + lever_right * spin, k, c, delta
+        pressing(mode, (mode >> 2) & 3), height - half, speed + lever_right * spin, k, c, delta
     )

@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rockframe.compiled import Integers, Vector, kernel
 from rockframe.dynamics import pad
@@ -77,7 +78,8 @@ def two_spring(
     base_inertia = p[body.INERTIA] + half_height**2
     rotational_frequency = half_width * math.sqrt(2.0 * p[two.STIFFNESS] / base_inertia)
     fastest = max(vertical_frequency, rotational_frequency)
-    contact = contact_of_corners(np.arange(two.MODES))
+    modes = np.arange(two.MODES)
+    contact = contact_of_corners(modes)
 
     def initial(start: Start) -> tuple[int, Vector, Vector]:
         state, memory = np.zeros(2 * body.COORDINATES), np.zeros(MEMORY_SIZE)
@@ -100,7 +102,7 @@ def two_spring(
         switch=switch,
         energy=two.energy,
         observe=two.observe,
-        active=np.where(contact == ContactState.FLIGHT, 3, 2),
+        active=np.where((contact == ContactState.FLIGHT) | gliding_corner(modes), 3, 2),
         contact=contact,
         parameters=p,
         scales=body.body_scales(p, settlement, vertical_frequency),
@@ -110,6 +112,7 @@ def two_spring(
         columns=two.COLUMNS,
         fastest_frequency=fastest,
         damping_rate=damping / stiffness * fastest**2,
+        rounding=body.body_rounding(p, fastest),
         energy_scale=body.energy_scale(p),
         mass=mass,
         initial=initial,
@@ -127,12 +130,17 @@ def contact_of_corners(modes: Integers) -> Integers:
     return contact
 
 
+def gliding_corner(modes: Integers) -> NDArray[np.bool_]:
+    """Tell in which of such modes a corner glides."""
+    return modes >> 4 >= two.GLIDING
+
+
 def corner_tolerance(guards: int, radius: float, settlement: float) -> Vector:
     """Estimate the rounding noise: heights are differences of terms as large as the block."""
     tolerance = np.full(guards, ROUNDING)
     for first in (two.LEFT_GUARDS, two.RIGHT_GUARDS):
         for guard in (pad.LEAVE, pad.REENGAGE):
-            tolerance[first + guard] = ROUNDING * (1.0 + radius / settlement)
+            tolerance[first + guard] = pad.reaction_noise(radius, settlement)
     return tolerance
 
 

@@ -3,6 +3,8 @@
 Impact :eq:`eq-impact`, re-pinning :eq:`eq-repinning`, guards :eq:`eq-guards`.
 """
 
+import math
+
 from rockframe.compiled import Vector, callback, kernel
 from rockframe.dynamics.kinematics import (
     PIVOT_CENTRE,
@@ -14,8 +16,10 @@ from rockframe.dynamics.kinematics import (
 from rockframe.dynamics.pad import (
     CLEAR,
     ENGAGING,
+    LEAVE,
     RELAXING,
     TOUCHING,
+    least_speed,
     pad_force,
     switch_corner,
 )
@@ -23,29 +27,41 @@ from rockframe.dynamics.protocol import (
     IMPACT,
     IMPACT_LOSS,
     LAST_EVENT,
+    PIVOT_CHANGE,
     REENGAGEMENT,
+    SEPARATION,
+    SILENT,
     SWITCH,
 )
 from rockframe.dynamics.single_body import (
     COORDINATES,
+    FREE,
+    GRAVITY,
     HALF_HEIGHT,
     HALF_WIDTH,
     INERTIA,
+    LEFT_SIDE,
     RESTRAINT,
+    RIGHT_SIDE,
     ROTATION,
     SMALL,
     VERTICAL,
     repin,
+    repin_landing,
+    stop_end,
     turned_pivot,
 )
 from rockframe.dynamics.two_spring import (
     DAMPING,
+    GLIDING,
     LEFT_GUARDS,
     PIVOT_GUARD,
     RESTITUTION,
     RIGHT_GUARDS,
     SETTLEMENT,
     STIFFNESS,
+    glides,
+    gliding_side,
     in_flight,
     pivot_in,
 )
@@ -115,14 +131,35 @@ def land(mode: int, left: bool, right: bool, state: Vector, p: Vector, memory: V
 
 
 @kernel
+def corner_rate(first: int, state: Vector, p: Vector) -> float:
+    """Give a corner's speed upwards."""
+    lever = corner_lever(first, state, p)
+    return state[COORDINATES + VERTICAL] + lever * state[COORDINATES + ROTATION]
+
+
+@kernel
 def reaction(first: int, state: Vector, p: Vector) -> float:
     """Give the reaction of a touching corner, :eq:`eq-pad-force`."""
-    rate = (
-        state[COORDINATES + VERTICAL]
-        + corner_lever(first, state, p) * state[COORDINATES + ROTATION]
-    )
+    rate = corner_rate(first, state, p)
     level = corner_level(first, state, p)
     return pad_force(level, rate, p[STIFFNESS], p[DAMPING], p[SETTLEMENT])
+
+
+@kernel
+def end_gliding(which: int, mode: int, state: Vector, p: Vector, memory: Vector) -> int:
+    """Let a gliding corner fly, or hold it as its slip has come to nought."""
+    side = gliding_side(mode)
+    first = LEFT_GUARDS if side > 0.0 else RIGHT_GUARDS
+    state[VERTICAL] += p[SETTLEMENT] - corner_level(first, state, p)
+    if which == LEAVE:
+        stop_end(side, 1.0, state, p)
+        memory[LAST_EVENT] = SEPARATION
+        return (CLEAR if side > 0.0 else mode & 3) + 4 * (CLEAR if side < 0.0 else mode >> 2 & 3)
+    pivot = (mode >> 4) - GLIDING
+    repin(FREE, pivot, state, p, memory)
+    stop_end(side, -1.0, state, p)
+    memory[LAST_EVENT] = PIVOT_CHANGE
+    return mode - 16 * GLIDING
 
 
 @callback(SWITCH)
@@ -139,7 +176,10 @@ def switch(
     left = mode & 3
     right = (mode >> 2) & 3
     if guard_index == PIVOT_GUARD:
-        pivot = turned_pivot(mode >> 4, state, ground_x, memory)
+        tilt = float(right - left)  # the pad of the corner that touches raises it
+        pivot = turned_pivot((mode >> 4) % GLIDING, tilt, state, ground_x, memory)
+        if glides(mode):
+            return left + 4 * right + 16 * (pivot + GLIDING)
         repin(mode >> 4, pivot, state, p, memory)
         return left + 4 * right + 16 * pivot
     rotation = state[ROTATION]
@@ -147,12 +187,17 @@ def switch(
     on_left = guard_index < RIGHT_GUARDS
     first = LEFT_GUARDS if on_left else RIGHT_GUARDS
     second = RIGHT_GUARDS if on_left else LEFT_GUARDS
+    if glides(mode) and (left if on_left else right) == TOUCHING:
+        return end_gliding(guard_index - first, mode, state, p, memory)
     contact, other, event = switch_corner(
         guard_index - first,
         left if on_left else right,
         right if on_left else left,
         corner_level(first, state, p),
         corner_level(second, state, p),
+        corner_rate(first, state, p),
+        corner_rate(second, state, p),
+        reaction(first, state, p),
         reaction(second, state, p),
         p[DAMPING],
         p[SETTLEMENT],
@@ -164,7 +209,17 @@ def switch(
         # the crossed level is set exactly, so that rounding cannot land the corner again
         state[VERTICAL] += p[SETTLEMENT] - corner_level(first, state, p)
     new = mode_of(left, right, rotation, spin, p)
-    if pivot_in(new) != pivot_in(mode):
+    memory[LAST_EVENT] = event
+    if glides(mode) and event == SILENT:
+        return left + 4 * right + 16 * (mode >> 4)
+    if event == IMPACT and in_flight(mode) and not both:
+        side = LEFT_SIDE if on_left else RIGHT_SIDE
+        state[VERTICAL] += p[SETTLEMENT] - corner_level(first, state, p)
+        size = math.hypot(p[HALF_WIDTH], p[HALF_HEIGHT])
+        least = least_speed(size, p[GRAVITY], p[DAMPING], p[SETTLEMENT])
+        if repin_landing(pivot_in(new), side, least, state, p, memory):
+            return new + 16 * GLIDING
+    elif pivot_in(new) != pivot_in(mode):
         repin(pivot_in(mode), pivot_in(new), state, p, memory)
     if event == REENGAGEMENT and reaction(first, state, p) < 0.0:
         # re-pinning sped the corner up beyond its pad: let go, it would come back without end
@@ -174,5 +229,4 @@ def switch(
         landing = LEFT_GUARDS if land_left else RIGHT_GUARDS
         state[VERTICAL] += p[SETTLEMENT] - corner_level(landing, state, p)
         land(new, land_left, not on_left or both, state, p, memory)
-    memory[LAST_EVENT] = event
     return new

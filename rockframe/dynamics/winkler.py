@@ -13,22 +13,24 @@ from rockframe.dynamics import single_body as body
 from rockframe.dynamics.bed import (
     BED_GUARDS,
     BED_MODES,
+    DOWN,
+    GLIDING,
     LEFT_END,
     PIVOT_FACTOR,
     RAISED,
     RIGHT_END,
+    SLIP,
     Bed,
     Ends,
+    airborne,
     bearing_part,
     bed_energy,
     bed_guards,
     bed_resultants,
-    nothing_bears,
     switch_bed,
 )
 from rockframe.dynamics.kinematics import (
     PIVOT_CENTRE,
-    end_accelerations,
     pivot_guard,
     pivot_of,
     sine_cosine_rise,
@@ -39,6 +41,8 @@ from rockframe.dynamics.protocol import (
     GUARD,
     LAST_EVENT,
     OBSERVE,
+    PIVOT_CHANGE,
+    SEPARATION,
     SWITCH,
 )
 from rockframe.dynamics.single_body import (
@@ -48,15 +52,21 @@ from rockframe.dynamics.single_body import (
     GRAVITY,
     HALF_HEIGHT,
     HALF_WIDTH,
+    LEFT_SIDE,
     RESTRAINT,
+    RIGHT_SIDE,
     ROTATION,
     SMALL,
     VERTICAL,
+    glide_body,
+    glide_guards,
     kinetic_energy,
     limit_guard,
     move_body,
     observe_body,
     repin,
+    repin_landing,
+    stop_end,
     turned_pivot,
 )
 
@@ -86,15 +96,23 @@ def bed_of(p: Vector) -> Bed:
 
 @inlined
 def contact_in(mode: int) -> tuple[int, int, int]:
-    """Give the states of a mode's ends, and whether the base is loose."""
+    """Give the states of a mode's ends, and whether the base glides."""
     return mode & 1, (mode >> 1) & 1, (mode >> 2) & 1
 
 
 @kernel
 def pivot_in(mode: int) -> int:
     """Give the pivot of a mode."""
-    left, right, loose = contact_in(mode)
-    return FREE if nothing_bears(left, right, loose) else mode // PIVOT_FACTOR
+    left, right, gliding = contact_in(mode)
+    if gliding == GLIDING or airborne(left, right):
+        return FREE
+    return mode // PIVOT_FACTOR
+
+
+@kernel
+def gliding_side(mode: int) -> float:
+    """Give the side of the end that glides."""
+    return LEFT_SIDE if (mode & 1) == DOWN else RIGHT_SIDE
 
 
 @inlined
@@ -116,11 +134,11 @@ def accelerate(
     sine, cosine, rise = sine_cosine_rise(p[HALF_HEIGHT], p[SMALL], state[ROTATION])
     ends = ends_of(state, p, sine, cosine, rise)
     bed = bed_of(p)
-    left, right, loose = contact_in(mode)
+    left, right, gliding = contact_in(mode)
     force, moment, burnt = bed_resultants(
         left,
         right,
-        loose,
+        gliding,
         ends,
         bed,
         2.0 * p[HALF_WIDTH],
@@ -128,6 +146,11 @@ def accelerate(
         p[HALF_HEIGHT] * sine - p[HALF_WIDTH] * cosine,
     )
     out[COORDINATES] = burnt
+    if gliding == GLIDING:
+        side = gliding_side(mode)
+        pivot = mode // PIVOT_FACTOR
+        glide_body(pivot, side, state, sine, cosine, ground_x, ground_y, p, out)
+        return
     move_body(pivot_in(mode), state, sine, cosine, force, moment, ground_x, ground_y, p, out)
 
 
@@ -141,38 +164,56 @@ def guard(
     p: Vector,
     out: Vector,
 ) -> None:
-    """Guards of the ends, of the pressure, of the pivot and of the rotation."""
+    """Guards of the ends, of the slip, of the pivot and of the rotation."""
     rotation = state[ROTATION]
     spin = state[COORDINATES + ROTATION]
     turn = accelerations[ROTATION]
-    h = p[HALF_HEIGHT]
-    sine, cosine, rise = sine_cosine_rise(h, p[SMALL], rotation)
-    a_left, a_right = end_accelerations(
-        h, p[HALF_WIDTH], p[SMALL], sine, cosine, spin, accelerations[VERTICAL], turn
-    )
-    left, right, loose = contact_in(mode)
+    sine, cosine, rise = sine_cosine_rise(p[HALF_HEIGHT], p[SMALL], rotation)
+    left, right, gliding = contact_in(mode)
     ends = ends_of(state, p, sine, cosine, rise)
-    values = bed_guards(left, right, loose, ends, a_left, a_right, bed_of(p))
-    for i in range(BED_GUARDS):
-        out[i] = values[i]
-        out[GUARDS + i] = values[BED_GUARDS + i]
+    values = bed_guards(left, right, ends, p[SETTLEMENT])
+    out[LEFT_END], out[RIGHT_END], out[SLIP] = values[0], values[1], 1.0
+    out[GUARDS + LEFT_END], out[GUARDS + RIGHT_END], out[GUARDS + SLIP] = values[2], values[3], 0.0
+    if gliding == GLIDING:
+        side = gliding_side(mode)
+        end = LEFT_END if side > 0.0 else RIGHT_END
+        out[end], out[SLIP], out[GUARDS + SLIP] = glide_guards(
+            mode // PIVOT_FACTOR, side, state, accelerations, ground_x, p
+        )
+        out[GUARDS + end] = 0.0
     out[PIVOT_GUARD] = 1.0
     out[GUARDS + PIVOT_GUARD] = 0.0
-    pivot = pivot_in(mode)
-    if pivot != FREE:
+    if not airborne(left, right):
         out[PIVOT_GUARD], out[GUARDS + PIVOT_GUARD] = pivot_guard(
-            p[RESTRAINT], pivot, p[ANGLE], rotation, spin, turn
+            p[RESTRAINT], mode // PIVOT_FACTOR, p[ANGLE], rotation, spin, turn
         )
     out[LIMIT_GUARD], out[GUARDS + LIMIT_GUARD] = limit_guard(state, p)
 
 
 @kernel
-def mode_of(left: int, right: int, loose: int, rotation: float, spin: float, p: Vector) -> int:
+def mode_of(left: int, right: int, rotation: float, spin: float, p: Vector) -> int:
     """Give the mode of a bed's contact, with the pivot of the restraint rule."""
     pivot = PIVOT_CENTRE
-    if not nothing_bears(left, right, loose):
+    if not airborne(left, right):
         pivot = pivot_of(p[RESTRAINT], left == RAISED, right == RAISED, rotation, spin)
-    return left + 2 * right + 4 * loose + PIVOT_FACTOR * pivot
+    return left + 2 * right + PIVOT_FACTOR * pivot
+
+
+@kernel
+def end_gliding(which: int, mode: int, state: Vector, p: Vector, memory: Vector) -> int:
+    """Let a gliding end fly, or hold it as its slip has come to nought."""
+    side = gliding_side(mode)
+    sine, cosine, rise = sine_cosine_rise(p[HALF_HEIGHT], p[SMALL], state[ROTATION])
+    ends = ends_of(state, p, sine, cosine, rise)
+    state[VERTICAL] += ends.u_left if side > 0.0 else ends.u_right
+    if which != SLIP:
+        stop_end(side, 1.0, state, p)
+        memory[LAST_EVENT] = SEPARATION
+        return RAISED + 2 * RAISED
+    repin(FREE, mode // PIVOT_FACTOR, state, p, memory)
+    stop_end(side, -1.0, state, p)
+    memory[LAST_EVENT] = PIVOT_CHANGE
+    return mode - 4 * GLIDING
 
 
 @callback(SWITCH)
@@ -187,23 +228,32 @@ def switch(
 ) -> int:
     """Carry out the switch that a guard calls for; give the new mode."""
     old = pivot_in(mode)
+    left, right, gliding = contact_in(mode)
     if guard_index == PIVOT_GUARD:
-        pivot = turned_pivot(old, state, ground_x, memory)
-        repin(old, pivot, state, p, memory)
-        return mode + PIVOT_FACTOR * (pivot - old)
-    left, right, loose = contact_in(mode)
+        held = mode // PIVOT_FACTOR
+        pivot = turned_pivot(held, float(right - left), state, ground_x, memory)
+        if gliding != GLIDING:
+            repin(old, pivot, state, p, memory)
+        return mode + PIVOT_FACTOR * (pivot - held)
+    if gliding == GLIDING and (guard_index == SLIP or (mode >> guard_index) & 1 == DOWN):
+        return end_gliding(guard_index, mode, state, p, memory)
     sine, cosine, rise = sine_cosine_rise(p[HALF_HEIGHT], p[SMALL], state[ROTATION])
     ends = ends_of(state, p, sine, cosine, rise)
-    left, right, loose, event = switch_bed(guard_index, left, right, loose, ends, bed_of(p))
+    lands = gliding != GLIDING and airborne(left, right)
+    left, right, event = switch_bed(guard_index, left, right, ends, bed_of(p))
+    memory[LAST_EVENT] = event
     # the crossed level is set exactly, so that rounding cannot undo the switch
     if guard_index == LEFT_END:
         state[VERTICAL] += ends.u_left
-    elif guard_index == RIGHT_END:
+    else:
         state[VERTICAL] += ends.u_right
-    new = mode_of(left, right, loose, state[ROTATION], state[COORDINATES + ROTATION], p)
-    if pivot_in(new) != old:
+    new = mode_of(left, right, state[ROTATION], state[COORDINATES + ROTATION], p)
+    if lands and left != right:
+        side = LEFT_SIDE if guard_index == LEFT_END else RIGHT_SIDE
+        if repin_landing(pivot_in(new), side, 0.0, state, p, memory):
+            return new + 4 * GLIDING
+    elif pivot_in(new) != old:
         repin(old, pivot_in(new), state, p, memory)
-    memory[LAST_EVENT] = event
     return new
 
 
@@ -231,10 +281,10 @@ def observe(
     sine, cosine, rise = sine_cosine_rise(p[HALF_HEIGHT], p[SMALL], state[ROTATION])
     ends = ends_of(state, p, sine, cosine, rise)
     bed = bed_of(p)
-    left, right, loose = contact_in(mode)
-    start, end = bearing_part(left, right, loose, ends, bed)
+    left, right, gliding = contact_in(mode)
+    start, end = bearing_part(left, right, gliding, ends, bed)
     width = 2.0 * p[HALF_WIDTH]
-    force, _, _ = bed_resultants(left, right, loose, ends, bed, width, 0.0, 0.0)
+    force, _, _ = bed_resultants(left, right, gliding, ends, bed, width, 0.0, 0.0)
     observe_body(pivot_in(mode), state, memory, p, out)
     out[REACTION] = force
     out[REACTION + 1] = width * (end - start)

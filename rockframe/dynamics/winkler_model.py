@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rockframe.compiled import Integers, Vector, kernel
 from rockframe.dynamics import bed
@@ -74,7 +75,8 @@ def winkler(
     base_inertia = p[body.INERTIA] + centre_height**2
     rotational_frequency = vertical_frequency * half_width / math.sqrt(3.0 * base_inertia)
     fastest = max(vertical_frequency, rotational_frequency)
-    contact = contact_of_bed(np.arange(soil.MODES))
+    modes = np.arange(soil.MODES)
+    contact = contact_of_bed(modes)
 
     def initial(start: Start) -> tuple[int, Vector, Vector]:
         state, memory = np.zeros(2 * body.COORDINATES), np.zeros(MEMORY_SIZE)
@@ -97,7 +99,7 @@ def winkler(
         switch=soil.switch,
         energy=soil.energy,
         observe=soil.observe,
-        active=np.where(contact == ContactState.FLIGHT, 3, 2),
+        active=np.where((contact == ContactState.FLIGHT) | gliding_end(modes), 3, 2),
         contact=contact,
         parameters=p,
         scales=body.body_scales(p, settlement, vertical_frequency),
@@ -109,6 +111,7 @@ def winkler(
         columns=soil.COLUMNS,
         fastest_frequency=fastest,
         damping_rate=damping / stiffness * fastest**2,
+        rounding=body.body_rounding(p, fastest),
         energy_scale=body.energy_scale(p),
         mass=mass,
         initial=initial,
@@ -121,8 +124,13 @@ def contact_of_bed(modes: Integers) -> Integers:
     contact = np.full(len(modes), ContactState.FULL, dtype=np.int64)
     contact[left] = ContactState.RIGHT
     contact[right] = ContactState.LEFT
-    contact[(left & right) | (modes >> 2 & 1 == bed.LOOSE)] = ContactState.FLIGHT
+    contact[left & right] = ContactState.FLIGHT
     return contact
+
+
+def gliding_end(modes: Integers) -> NDArray[np.bool_]:
+    """Tell in which modes of a bed an end glides."""
+    return modes >> 2 & 1 == bed.GLIDING
 
 
 def bed_tolerance(guards: int, radius: float, settlement: float) -> Vector:
@@ -151,8 +159,8 @@ def start_mode(
     state[body.COORDINATES + body.ROTATION] = spin
     state[body.COORDINATES + body.VERTICAL] = speed
     ends = soil.ends_of(state, p, sine, cosine, rise)
-    left, right, loose = bed.start_bed(ends, soil.bed_of(p))
-    mode = soil.mode_of(left, right, loose, rotation, spin, p)
+    left, right = bed.end_state(ends.u_left), bed.end_state(ends.u_right)
+    mode = soil.mode_of(left, right, rotation, spin, p)
     pivot = soil.pivot_in(mode)
     if pivot == body.FREE:
         state[body.HORIZONTAL] = about_pin(p[body.HALF_HEIGHT], p[body.SMALL], 0.0, rotation)

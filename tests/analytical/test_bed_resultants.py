@@ -47,15 +47,13 @@ def states(count, seed):
         yield b.Ends(*map(float, (*u, *v)))
 
 
-def modes(ends, bed):
-    """Give the states of the ends and of the grip that belong to a state of the base."""
-    left, right, loose = plain(b.start_bed)(ends, bed)
-    return int(left), int(right), int(loose)
+def modes(ends):
+    """Give the states of the ends that belong to a state of the base."""
+    return int(plain(b.end_state)(ends.u_left)), int(plain(b.end_state)(ends.u_right))
 
 
 def resultants(ends, bed, lever_left, lever_right):
-    left, right, loose = modes(ends, bed)
-    return b.bed_resultants(left, right, loose, ends, bed, WIDTH, lever_left, lever_right)
+    return b.bed_resultants(*modes(ends), 0, ends, bed, WIDTH, lever_left, lever_right)
 
 
 def by_quadrature(ends, bed, lever_left, lever_right):
@@ -113,15 +111,17 @@ def test_resultants_are_exact(damping, by_pressure):
         assert abs(stored - exact[3]) <= 1e-12 * energy
         at_rest = 0.5 * WIDTH * STIFFNESS * SETTLEMENT**2
         assert abs(change - (exact[3] - at_rest)) <= 1e-12 * (energy + at_rest)
-        start, end = b.bearing_part(*modes(ends, bed), ends, bed)
+        start, end = b.bearing_part(*modes(ends), 0, ends, bed)
         assert 0.0 <= start <= end <= 1.0
         assert abs(WIDTH * (end - start) - exact[4]) <= 1e-12 * WIDTH
         if by_pressure:
             assert force >= -1e-15 * size
             assert burnt >= -1e-15 * power
-        seen.add(modes(ends, bed))
+        seen.add((*modes(ends), start == end))
     assert {mode[:2] for mode in seen} == {(0, 0), (0, 1), (1, 0), (1, 1)}
-    assert any(mode[2] for mode in seen) == (by_pressure == 1.0 and damping > 0.0)
+    # down without bearing: it rises faster than the bed can follow
+    tears = any(nothing for left, right, nothing in seen if not left or not right)
+    assert tears == (by_pressure == 1.0 and damping > 0.0)
 
 
 @pytest.mark.parametrize("by_pressure", SEPARATIONS)
@@ -273,7 +273,7 @@ def test_in_flight_nothing_bears_burns_or_is_stored(damping, by_pressure):
         stored, change = b.bed_energy(ends, bed, WIDTH)
         assert stored == 0.0
         assert change == pytest.approx(-0.5 * STIFFNESS * WIDTH * SETTLEMENT**2, rel=1e-14)
-        assert plain(b.nothing_bears)(*modes(ends, bed))
+        assert plain(b.airborne)(*modes(ends))
 
 
 def test_where_the_springs_alone_hold_both_rules_are_one():
@@ -300,23 +300,14 @@ def test_the_mirror_image_bears_the_mirror_image(by_pressure):
 # guards -------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("by_pressure", SEPARATIONS)
-def test_guards_change_as_their_rates_say(by_pressure):
-    bed = make_bed(45.0, by_pressure)
+def test_guards_change_as_their_rates_say():
     rng = np.random.default_rng(8)
     checked = 0
     for ends in states(1500, seed=9):
         a_left, a_right = rng.normal(size=2)
-        left, right, loose = modes(ends, bed)
+        left, right = modes(ends)
         speed = max(abs(ends.v_left), abs(ends.v_right), 1e-3)
-        nearest = min(abs(ends.u_left), abs(ends.u_right), abs(ends.u_left - ends.u_right))
         step = 1e-5 * SETTLEMENT / speed
-        pressures = [
-            bed.stiffness * u - bed.damping * v
-            for u, v in ((ends.u_left, ends.v_left), (ends.u_right, ends.v_right))
-        ]
-        if nearest < 0.05 * SETTLEMENT or abs(pressures[0] - pressures[1]) < 0.1:
-            continue  # where the place of the largest pressure changes, or an end grazes
 
         def moved(t, ends=ends, a_left=a_left, a_right=a_right):
             return b.Ends(
@@ -326,13 +317,11 @@ def test_guards_change_as_their_rates_say(by_pressure):
                 ends.v_right + a_right * t,
             )
 
-        values = b.bed_guards(left, right, loose, ends, a_left, a_right, bed)
-        ahead, behind = (
-            b.bed_guards(left, right, loose, moved(t), a_left, a_right, bed) for t in (step, -step)
-        )
-        slopes = (np.array(ahead[:3]) - np.array(behind[:3])) / (2.0 * step)
+        values = b.bed_guards(left, right, ends, SETTLEMENT)
+        ahead, behind = (b.bed_guards(left, right, moved(t), SETTLEMENT) for t in (step, -step))
+        slopes = (np.array(ahead[:2]) - np.array(behind[:2])) / (2.0 * step)
         size = (speed + 1.0) / SETTLEMENT
-        np.testing.assert_allclose(slopes, values[3:], atol=1e-5 * size)
+        np.testing.assert_allclose(slopes, values[2:], atol=1e-5 * size)
         assert values[0] >= 0.0
         assert values[1] >= 0.0
         checked += 1
@@ -369,7 +358,7 @@ def test_many_springs_tend_to_the_bed(damping, order, by_pressure):
     bed = make_bed(damping, by_pressure)
     levers = (1.3, -1.3)
     errors = np.zeros((len(COUNTS), 2))
-    cases = [ends for ends in states(600, seed=10) if modes(ends, bed)[:2] in ((0, 1), (1, 0))]
+    cases = [ends for ends in states(600, seed=10) if modes(ends) in ((0, 1), (1, 0))]
     for ends in cases:
         exact = resultants(ends, bed, *levers)[:2]
         size, _ = scales(ends, bed)

@@ -1,0 +1,56 @@
+"""A base that touches without bearing, and is held only as far as it stays so.
+
+A corner can come down while the hold that its contact brings would lift it off again.
+Then neither contact nor flight is a motion: held, the corner leaves; free, it comes back.
+The hold can act only while the corner presses, so its impulse ends when the corner's
+speed has come to nought, :eq:`eq-partial-hold`. What is left of the slip makes the corner
+*glide*: it stays at its level with no reaction, and the held point slips against a force
+that is just enough to keep it there, :eq:`eq-gliding`. All quantities per unit mass.
+"""
+
+import sys
+from typing import Final
+
+from rockframe.compiled import inlined
+
+NOISE: Final = 16.0 * sys.float_info.epsilon
+"""Share of its parts by which the speed of a corner may differ from nought."""
+
+
+NO_LEVER: Final = 1e-7
+"""Lever of the hold, as a share of the body's size, below which it cannot lift."""
+
+
+@inlined
+def speed_noise(speed: float, lever: float, spin: float) -> float:
+    """Give the rounding noise of a corner's speed, the sum of two velocities."""
+    return NOISE * (abs(speed) + abs(lever * spin))
+
+
+@inlined
+def share_until_lifted(before: float, after: float) -> float:
+    """Give the share of the hold's impulse that stops a landing corner, :eq:`eq-partial-hold`.
+
+    `before` and `after` are the corner's speeds without the impulse and with all of it.
+    """
+    if before >= 0.0:
+        return 0.0
+    return min(before / (before - after), 1.0) if before < after else 1.0
+
+
+@inlined
+def blend(before: float, after: float, share: float) -> float:
+    """Give a rate after a share of an impulse, from the rates without and with all of it."""
+    return before + share * (after - before)
+
+
+@inlined
+def share_of_loss(share: float) -> float:
+    """Give the loss of a share of a plastic impulse, over that of the whole impulse."""
+    return share * (2.0 - share)
+
+
+@inlined
+def slip_guard(slip: float, lever: float, reach: float, speed: float) -> float:
+    """Give the guard of the slip, positive while the hold that opposes it lifts the corner."""
+    return slip / speed if lever * reach > 0.0 else -slip / speed
