@@ -194,14 +194,16 @@ def switch_bed(which: int, left: int, right: int, ends: Ends, bed: Bed) -> tuple
     """Give the ends' states and the event after a guard.
 
     An end that lands together with the other one, or leaves together with it, takes
-    it along if that moves the same way.
+    it along if that moves so, too.
     """
     on_left = which == LEFT_END
     end = left if on_left else right
     other = right if on_left else left
     level = abs(ends.u_right if on_left else ends.u_left)
-    together = ends.v_left == ends.v_right or ends.v_left * ends.v_right > 0.0
-    if other == end and level <= SIMULTANEOUS * bed.settlement and together:
+    speed = ends.v_right if on_left else ends.v_left
+    along = speed > 0.0 if end == DOWN else speed < 0.0
+    symmetric = ends.u_left == ends.u_right and ends.v_left == ends.v_right
+    if other == end and level <= SIMULTANEOUS * bed.settlement and (along or symmetric):
         other = RAISED - other
     end = RAISED - end
     event = REENGAGEMENT if end == DOWN else SEPARATION

@@ -62,6 +62,7 @@ from rockframe.dynamics.coupled import (
 )
 from rockframe.dynamics.gliding import (
     blend,
+    is_lifted,
     share_of_loss,
     share_until_lifted,
     speed_noise,
@@ -371,7 +372,7 @@ def switch_soil(mode: int, which: int, state: Vector, p: Vector, memory: Vector)
     repin_cap(mode, new, state, p, memory)
     if lands and left != right:
         after, noise = end_rate(which, state, p)
-        if after >= -noise:
+        if is_lifted(end_speed, after, noise):
             share = share_until_lifted(end_speed, after)
             held = cap_sway(configuration(new, state, p), state)
             state[COORDINATES + CAP_HORIZONTAL] = held
@@ -467,7 +468,7 @@ def switch_pad(mode: int, guard_index: int, state: Vector, p: Vector, memory: Ve
             size = math.hypot(p[HALF_WIDTH], p[HALF_HEIGHT])
             least = least_speed(size, p[GRAVITY], p[PAD_DAMPING], p[PAD_SETTLEMENT])
             after = corner_rate(first, state, p)
-            if after >= -max(corner_noise(first, state, p), least):
+            if is_lifted(speed, after, max(corner_noise(first, state, p), least)):
                 share = share_until_lifted(speed, after)
                 take_share(share, before, state)
                 memory[REPINNING_LOSS] = blend(lost, memory[REPINNING_LOSS], share_of_loss(share))

@@ -28,6 +28,15 @@ def speed_noise(speed: float, lever: float, spin: float) -> float:
 
 
 @inlined
+def is_lifted(before: float, after: float, noise: float) -> bool:
+    """Whether a hold would stop or lift a corner that comes down.
+
+    One that rises, though it stands a rounding below its level, is about to leave anyway.
+    """
+    return before <= noise and after >= -noise
+
+
+@inlined
 def share_until_lifted(before: float, after: float) -> float:
     """Give the share of the hold's impulse that stops a landing corner, :eq:`eq-partial-hold`.
 

@@ -13,6 +13,7 @@ from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics.gliding import (
     NO_LEVER,
     blend,
+    is_lifted,
     share_of_loss,
     share_until_lifted,
     speed_noise,
@@ -240,7 +241,7 @@ def repin_landing(
     reference, lost = memory[HORIZONTAL_REFERENCE], memory[REPINNING_LOSS]
     repin(FREE, new, state, p, memory)
     _, after, noise = end_rate(side, state, p)
-    if after < -max(noise, least):
+    if not is_lifted(before, after, max(noise, least)):
         return False
     share = share_until_lifted(before, after)
     sine, cosine, _ = sine_cosine_rise(p[HALF_HEIGHT], p[SMALL], state[ROTATION])

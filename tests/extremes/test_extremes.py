@@ -1,0 +1,52 @@
+"""Every subject's first scenes keep to the bounds; ROCKFRAME_EXTREMES=20 takes 20 times as many."""
+
+import os
+
+import numpy as np
+import pytest
+from extremes.bounds import judge
+from extremes.scenes import BASES, RULES, SUBJECTS, Scene, scenes, usual
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+MORE = int(os.environ.get("ROCKFRAME_EXTREMES", "1"))
+COUNT = 6 * MORE
+
+
+@pytest.mark.parametrize("accuracy", ["standard", "reference"])
+@pytest.mark.parametrize("subject", SUBJECTS)
+def test_the_extremes_of_a_subject_keep_to_the_bounds(subject, accuracy):
+    for number, scene in enumerate(scenes(subject, COUNT)):
+        failures = judge(scene, accuracy).failures
+        assert not failures, f"scene {number}: {'; '.join(failures)}\n{scene}"
+
+
+@given(st.integers(0, 2**32 - 1), st.sets(st.sampled_from(list(SUBJECTS)), min_size=2, max_size=3))
+@settings(max_examples=25 * MORE, deadline=None, derandomize=True, database=None)
+def test_extremes_together_keep_to_the_bounds(seed, subjects):
+    rng = np.random.default_rng(seed)
+    scene = usual(rng)
+    for subject in sorted(subjects):
+        scene = SUBJECTS[subject](scene, rng)
+    failures = judge(scene, "standard").failures
+    assert not failures, f"{'; '.join(failures)}\n{scene}"
+
+
+def test_the_scenes_cover_what_they_name():
+    drawn = [scene for subject in SUBJECTS for scene in scenes(subject, COUNT)]
+    assert {scene.base for scene in drawn} == set(BASES)
+    assert {scene.restraint for scene in drawn} == set(RULES)
+    assert {scene.separation for scene in drawn} == {"displacement", "pressure"}
+    assert {scene.rotation for scene in drawn} == {"finite", "small"}
+    assert max(scene.frequency_ratio for scene in drawn) > 1e3
+    assert max(scene.soil_ratio for scene in drawn) > 500.0
+    assert max(scene.slenderness for scene in drawn) > 20.0
+
+
+def test_what_breaks_a_bound_is_named():
+    """A soft block on pads that cannot be finished in its steps is no success."""
+    verdict = judge(Scene(peak=0.5), "standard")
+    assert verdict.failures == []
+    assert verdict.steps > 100
+    spoilt = type(verdict)("chatter", 2.0, 7, 5, finite=False)
+    assert len(spoilt.failures) == 4
