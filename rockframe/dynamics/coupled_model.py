@@ -165,7 +165,7 @@ def rounding(p: Vector, fastest: float) -> Vector:
     """Estimate the rounding noise of coordinates and rates, as of a body on its base."""
     block = math.hypot(p[model.HALF_WIDTH], p[model.HALF_HEIGHT])
     cap = math.hypot(p[model.CAP_HALF_WIDTH], p[model.CAP_HALF_HEIGHT])
-    height = 0.125 * ROUNDING * (block + cap)
+    height = 0.02 * ROUNDING * (block + cap)
     turning = p[model.HALF_WIDTH] / (p[model.INERTIA] + p[model.HALF_HEIGHT] ** 2)
     noise = height * np.array([1.0, 1.0 / cap, 1.0, turning, 1.0, 1.0])
     return np.concatenate([noise, fastest * noise])

@@ -356,7 +356,7 @@ def body_rounding(p: Vector, fastest: float) -> Vector:
     The base's heights are differences of terms as large as the body; what the base
     answers to their rounding moves the body to and fro by as much.
     """
-    height = 0.125 * ROUNDING * math.hypot(p[HALF_WIDTH], p[HALF_HEIGHT])
+    height = 0.02 * ROUNDING * math.hypot(p[HALF_WIDTH], p[HALF_HEIGHT])
     turning = p[HALF_WIDTH] / (p[INERTIA] + p[HALF_HEIGHT] ** 2)
     noise = height * np.array([turning, 1.0, 1.0])
     return np.concatenate([noise, fastest * noise])

@@ -1,0 +1,155 @@
+"""A gliding corner is the limit of dry friction, keeps its level, burns, and has no side."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from rockframe.dynamics.protocol import EventKind, Start
+from rockframe.dynamics.two_spring import GLIDING
+from rockframe.dynamics.two_spring_model import two_spring
+from rockframe.dynamics.winkler_model import winkler
+from rockframe.solve.accuracy import accuracy_of
+from rockframe.solve.ground_table import Ground
+from rockframe.solve.integrate import integrate
+
+pytestmark = pytest.mark.analytical
+
+G, B, H = 9.81, 0.5, 2.0
+INERTIA = (B * B + H * H) / 3.0
+K, C = 4e3, 60.0  # of one pad, per unit mass
+DELTA = 0.5 * G / K
+TILT, SPIN = 1.0, -1.5  # far beyond overturning, and on its way back
+STILL = Ground(time_step=1.0, horizontal=np.zeros(2), vertical=np.zeros(2))
+TIME = 0.12
+
+
+def lever(alpha, side):
+    return H * np.sin(alpha) + side * B * np.cos(alpha)
+
+
+def level(alpha, y, side):
+    return y + H * (1.0 - np.cos(alpha)) + side * B * np.sin(alpha)
+
+
+def pads(restraint=0):
+    return two_spring(
+        half_width=B,
+        half_height=H,
+        shape_factor=3.0,
+        mass=1.0,
+        stiffness=K,
+        damping=C,
+        restitution=0.9,
+        restraint=restraint,
+        small_rotation=False,
+        gravity=G,
+    )
+
+
+def bed(restraint=0):
+    return winkler(
+        half_width=B,
+        centre_height=H,
+        inertia=INERTIA,
+        mass=1.0,
+        stiffness=K / B,
+        damping=C / B,
+        by_pressure=False,
+        restraint=restraint,
+        small_rotation=False,
+        gravity=G,
+    )
+
+
+def drop(model, sign=1.0, speed=-0.05, duration=TIME):
+    """Let the block down on its lower corner, turning, without sway."""
+    y = DELTA * (1.0 + 1e-9) - H * (1.0 - np.cos(TILT)) + B * np.sin(TILT)
+    # the lower corner comes down at `speed`
+    rate = speed - lever(TILT, -1.0) * SPIN
+    return integrate(
+        model,
+        Start(sign * TILT, sign * SPIN, y, rate),
+        STILL,
+        accuracy_of("reference"),
+        duration=duration,
+        output_step=duration / 60.0,
+        stop_at_overturning=False,
+    )
+
+
+def by_friction(start, coefficient, times):
+    """Integrate the corner on its pad against dry friction while it slips."""
+
+    def rates(t, z):
+        alpha, y, _, spin, speed, sway = z
+        arm, reach = lever(alpha, -1.0), H * np.cos(alpha) + B * np.sin(alpha)
+        rate = speed + arm * spin
+        pressing = max(K * (DELTA - level(alpha, y, -1.0)) - C * rate, 0.0)
+        hold = -coefficient * pressing * np.sign(sway - reach * spin)
+        turn = (pressing * arm - reach * hold) / INERTIA
+        return [spin, speed, sway, turn, pressing - G, hold]
+
+    return solve_ivp(
+        rates, (0.0, times[-1]), start, method="DOP853", t_eval=times, rtol=1e-9, atol=1e-12,
+        max_step=2e-4,
+    ).y  # fmt: skip
+
+
+def test_gliding_is_the_limit_of_dry_friction():
+    run = drop(pads())
+    landing = list(run.events.kind).index(EventKind.IMPACT)
+    assert run.events.mode_after[landing] >> 4 >= GLIDING
+    gliding = (run.time > run.events.time[landing]) & (run.mode >> 4 >= GLIDING)
+    assert gliding.sum() > 20
+    times = run.time[gliding] - run.events.time[landing]
+    differences = []
+    for coefficient in (40.0, 160.0, 640.0):
+        z = by_friction(run.events.state_after[landing], coefficient, times)
+        gap = np.abs(z[[0, 3, 5]] - run.state[gliding][:, [0, 3, 5]].T).max(axis=1)
+        differences.append(gap)
+    # the distance falls with the reciprocal of the coefficient
+    for coarse, fine in pairwise(differences):
+        assert (fine < 0.4 * coarse).all()
+    assert differences[-1].max() < 5e-3
+
+
+@pytest.mark.parametrize("model", [pads, bed])
+@pytest.mark.parametrize("restraint", range(3))
+def test_a_gliding_corner_keeps_its_level_and_burns(model, restraint):
+    one = model(restraint)
+    run = drop(one)
+    gliding = one.active[run.mode] == 3
+    gliding &= one.contact[run.mode] != 3
+    assert gliding.sum() > 5
+    alpha, y, _, spin, speed, _ = run.state[gliding].T
+    assert np.abs(level(alpha, y, -1.0) - DELTA).max() < 1e-9
+    assert np.abs(speed + lever(alpha, -1.0) * spin).max() < 1e-9
+    assert run.energy_residual < 1e-9
+    out = np.zeros(4)
+    energy = getattr(one.energy, "__wrapped__", one.energy)
+    stored = []
+    for mode, state in zip(run.mode[gliding], run.state[gliding], strict=True):
+        energy(int(mode), state, one.parameters, out)
+        stored.append(out[0] + out[1] + out[3])
+    assert (np.diff(stored) < 0.0).all()
+
+
+@pytest.mark.parametrize("model", [pads, bed])
+@pytest.mark.parametrize("restraint", range(3))
+def test_gliding_on_the_left_mirrors_gliding_on_the_right(model, restraint):
+    one, other = (drop(model(restraint), sign, duration=0.6) for sign in (1.0, -1.0))
+    turned = np.array([-1.0, 1.0, -1.0, -1.0, 1.0, -1.0])
+    # pads are mirrored bit for bit; along a bed places are counted from its left end
+    slack = 0.0 if model is pads else 1e-10
+    np.testing.assert_allclose(other.state, one.state * turned, rtol=0.0, atol=slack)
+    np.testing.assert_allclose(other.events.time, one.events.time, rtol=slack)
+    np.testing.assert_array_equal(other.events.kind, one.events.kind)
+
+
+def test_a_corner_that_presses_after_the_hold_does_not_glide():
+    """It comes down so fast that the hold cannot stop it."""
+    run = drop(pads(), speed=-3.0)
+    landing = list(run.events.kind).index(EventKind.IMPACT)
+    assert run.events.mode_after[landing] >> 4 < GLIDING
