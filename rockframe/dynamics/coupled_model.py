@@ -1,6 +1,7 @@
 """Assembly of the model of a block on pads on a cap on soil."""
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 
@@ -18,12 +19,11 @@ from rockframe.dynamics.kinematics import about_pin, pinned_point, sine_cosine_r
 from rockframe.dynamics.protocol import (
     HORIZONTAL_REFERENCE,
     MEMORY_SIZE,
-    ROUNDING,
     ContactModel,
     ContactState,
     Start,
 )
-from rockframe.dynamics.single_body import FREE, restraint_in_use
+from rockframe.dynamics.single_body import FREE, restraint_in_use, rounding_at
 from rockframe.dynamics.two_spring_model import (
     contact_of_corners,
     corner_tolerance,
@@ -161,14 +161,14 @@ def coupled(
     )
 
 
-def rounding(p: Vector, fastest: float) -> Vector:
+def rounding(p: Vector, fastest: float) -> Callable[[float], Vector]:
     """Estimate the rounding noise of coordinates and rates, as of a body on its base."""
     block = math.hypot(p[model.HALF_WIDTH], p[model.HALF_HEIGHT])
     cap = math.hypot(p[model.CAP_HALF_WIDTH], p[model.CAP_HALF_HEIGHT])
-    height = 0.02 * ROUNDING * (block + cap)
     turning = p[model.HALF_WIDTH] / (p[model.INERTIA] + p[model.HALF_HEIGHT] ** 2)
-    noise = height * np.array([1.0, 1.0 / cap, 1.0, turning, 1.0, 1.0])
-    return np.concatenate([noise, fastest * noise])
+    settlement = p[model.PAD_SETTLEMENT] + p[model.SOIL_SETTLEMENT]
+    answers = np.array([1.0, 1.0 / cap, 1.0, turning, 1.0, 1.0])
+    return rounding_at(block + cap, settlement, answers, fastest)
 
 
 def small_motion_matrices(p: Vector) -> tuple[Matrix, Matrix, Matrix]:

@@ -173,9 +173,9 @@ class ContactModel:
         Bound of twice damping ratio times angular frequency of its vibrations [s^-1].
     energy_scale : float
         Typical energy per unit mass, by which rounding noise is known [m^2 s^-2].
-    rounding : ndarray, shape (2 n,), or None
-        Rounding noise of each coordinate and rate in one step, where the model's forces
-        are differences of large terms.
+    rounding : callable or None
+        ``rounding(rotation)``: noise of each coordinate and rate in one step about a
+        rotation, where the model's forces are differences of large terms.
     soil_contact : ndarray of int64, shape (modes,), or None
         :class:`ContactState` of the cap on the soil in each mode, where `contact` is
         that of a block on a cap.
@@ -204,5 +204,5 @@ class ContactModel:
     energy_scale: float
     mass: float
     initial: Callable[[Start], tuple[int, Vector, Vector]]
-    rounding: Vector | None = None
+    rounding: Callable[[float], Vector] | None = None
     soil_contact: Integers | None = None

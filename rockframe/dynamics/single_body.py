@@ -5,6 +5,7 @@ The base is two pads (:mod:`rockframe.dynamics.two_spring`) or a bed of springs
 """
 
 import math
+from collections.abc import Callable
 from typing import Final
 
 import numpy as np
@@ -350,16 +351,32 @@ def body_scales(p: Vector, settlement: float, vertical_frequency: float) -> Vect
     )
 
 
-def body_rounding(p: Vector, fastest: float) -> Vector:
-    """Estimate the rounding noise of the coordinates and their rates.
+def body_rounding(p: Vector, settlement: float, fastest: float) -> Callable[[float], Vector]:
+    """Estimate the rounding noise of the coordinates and their rates at a rotation.
 
-    The base's heights are differences of terms as large as the body; what the base
-    answers to their rounding moves the body to and fro by as much.
+    The heights of the base's ends are differences of terms as large as the settlement and
+    the tilt; what the base answers to their rounding moves the body to and fro by as much.
     """
-    height = 0.02 * ROUNDING * math.hypot(p[HALF_WIDTH], p[HALF_HEIGHT])
     turning = p[HALF_WIDTH] / (p[INERTIA] + p[HALF_HEIGHT] ** 2)
-    noise = height * np.array([turning, 1.0, 1.0])
-    return np.concatenate([noise, fastest * noise])
+    return rounding_at(
+        math.hypot(p[HALF_WIDTH], p[HALF_HEIGHT]),
+        settlement,
+        np.array([turning, 1.0, 1.0]),
+        fastest,
+    )
+
+
+def rounding_at(
+    size: float, settlement: float, answers: Vector, fastest: float
+) -> Callable[[float], Vector]:
+    """Give the noise of coordinates and rates by the rotation, from their `answers` to a height."""
+    both = np.concatenate([answers, fastest * answers])
+
+    def noise(rotation: float) -> Vector:
+        # an error estimate is a small part of what it is made of
+        return 0.02 * ROUNDING * (settlement + size * abs(rotation)) * both
+
+    return noise
 
 
 def energy_scale(p: Vector) -> float:

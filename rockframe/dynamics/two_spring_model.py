@@ -112,7 +112,7 @@ def two_spring(
         columns=two.COLUMNS,
         fastest_frequency=fastest,
         damping_rate=damping / stiffness * fastest**2,
-        rounding=body.body_rounding(p, fastest),
+        rounding=body.body_rounding(p, settlement, fastest),
         energy_scale=body.energy_scale(p),
         mass=mass,
         initial=initial,

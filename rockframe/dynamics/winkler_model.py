@@ -111,7 +111,7 @@ def winkler(
         columns=soil.COLUMNS,
         fastest_frequency=fastest,
         damping_rate=damping / stiffness * fastest**2,
-        rounding=body.body_rounding(p, fastest),
+        rounding=body.body_rounding(p, settlement, fastest),
         energy_scale=body.energy_scale(p),
         mass=mass,
         initial=initial,

@@ -122,7 +122,8 @@ def integrate(
     reference = np.maximum(np.abs(state), FIRST_SCALE * model.scales)
     if model.rounding is not None and accuracy.floor > 0.0:
         # no step is short enough for an error below the rounding of the forces
-        reference = np.maximum(reference, model.rounding / (accuracy.rtol * accuracy.floor))
+        noise = model.rounding(clock[at.PEAK])
+        reference = np.maximum(reference, noise / (accuracy.rtol * accuracy.floor))
     parameters = model.parameters.copy()
     progress = Progress(controls, clock, counters)
     output = Output(out_state, out_mode, out_work)

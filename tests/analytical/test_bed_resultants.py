@@ -117,7 +117,8 @@ def test_resultants_are_exact(damping, by_pressure):
         if by_pressure:
             assert force >= -1e-15 * size
             assert burnt >= -1e-15 * power
-        seen.add((*modes(ends), start == end))
+        deep = max(ends.u_left, ends.u_right) > 1e-6 * SETTLEMENT
+        seen.add((*modes(ends), start == end and deep))
     assert {mode[:2] for mode in seen} == {(0, 0), (0, 1), (1, 0), (1, 1)}
     # down without bearing: it rises faster than the bed can follow
     tears = any(nothing for left, right, nothing in seen if not left or not right)

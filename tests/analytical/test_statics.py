@@ -232,7 +232,7 @@ class Held:
         whole = self.state.held_contact_length.item() >= 2.0 * self.setting.cap.half_width
         ends = [int(not whole and self.phi > 0.0), int(not whole and self.phi < 0.0)]
         mode = block_mode_of(3 * free[0], 3 * free[1], self.psi, 0.0, rule)
-        mode += c.BLOCK_MODES * bed_mode_of(*ends, 0, self.phi, 0.0, rule)
+        mode += c.BLOCK_MODES * bed_mode_of(*ends, self.phi, 0.0, rule)
         return model, int(mode), x
 
 

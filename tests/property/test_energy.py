@@ -112,7 +112,9 @@ def test_energy_balances_in_the_histories(scenario):
     gone = sum(response[f"{kind}_energy"].values for kind in ("dissipated", "impact", "repinning"))
     balance = stored + gone - response.input_energy.values
     drift = np.abs(balance - balance[0]).max()
-    assert drift <= 1e-6 * max(energy_scale(response), 1e-300)
+    # energies far below that of the block's rocking are rounding, as in the residual
+    noise = 1e-12 * scenario.mass * GRAVITY * scenario.radius * response.overturning_angle.item()
+    assert drift <= 1e-6 * max(energy_scale(response), noise)
 
 
 @given(scenarios())
@@ -125,7 +127,8 @@ def test_losses_only_grow(scenario):
         assert (steps >= -slack).all(), name
     assert (response.kinetic_energy.values >= 0.0).all()
     assert (response.elastic_energy.values >= 0.0).all()
-    if scenario.xi == 0.0 or scenario.base == "rigid":
+    # after a flight the block may glide, which burns as well
+    if scenario.base == "rigid" or (scenario.xi == 0.0 and response.flight_count.item() == 0):
         np.testing.assert_allclose(response.dissipated_energy.values, 0.0, atol=slack)
     if scenario.base in ("rigid", "centre") or scenario.rotation == "small":
         pinned = response.flight_count.item() == 0
@@ -148,7 +151,8 @@ def test_energy_never_rises_at_an_event(scenario):
         model,
         Start(start.rotation, start.angular_velocity),
         ground_of(scenario.motion),
-        accuracy_of("standard"),
+        # a corner that ends gliding is set on its level, from as far off as the run is accurate
+        accuracy_of("reference"),
         duration=scenario.motion.si.duration + 2.0,
         output_step=None,
         stop_at_overturning=False,
