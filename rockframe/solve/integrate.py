@@ -120,7 +120,7 @@ def integrate(
 
     start_memory = memory.copy()
     reference = np.maximum(np.abs(state), FIRST_SCALE * model.scales)
-    if model.rounding is not None and accuracy.floor > 0.0:
+    if model.rounding is not None and accuracy.rtol is not None and accuracy.floor > 0.0:
         # no step is short enough for an error below the rounding of the forces
         noise = model.rounding(clock[at.PEAK])
         reference = np.maximum(reference, noise / (accuracy.rtol * accuracy.floor))
