@@ -138,7 +138,8 @@ def bed_resultants(
     force = 0.5 * length * (p0 + p1)
     moment = length * mean_product(p0, p1, l0, l1)
     burnt = c * length * mean_product(v0, v1, v0, v1)
-    if bed.by_pressure != 0.0 and gliding != GLIDING:
+    # without dashpots all that is down bears
+    if bed.by_pressure != 0.0 and c > 0.0 and gliding != GLIDING:
         down = compressed_part(left, right, ends)
         burnt += spring_power(down, ends, k, width) - spring_power((start, end), ends, k, width)
     return force, moment, burnt

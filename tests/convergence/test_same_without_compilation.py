@@ -23,6 +23,13 @@ for rule in ("contact-state", "leading-corner", "centre"):
         system = rf.System(block, pads, restraint=rule, rotation=rotation)
         out[f"{rule} {rotation}"] = system.simulate(motion, outputs=["energy"])
 out["rigid"] = rf.System(block).simulate(motion, outputs=["energy"])
+short = motion.window("0 s", "0.8 s")
+light = rf.CushionCap(width="3 m", height="0.2 m", mass="0.4 t")
+for rule, separation in (("contact-state", "displacement"), ("leading-corner", "pressure")):
+    bed = rf.WinklerSoil(stiffness="3 MPa", damping_ratio=0.1, separation=separation)
+    for coupling in ("coupled", "cascade"):
+        system = rf.System(block, pads, light, bed, restraint=rule, coupling=coupling)
+        out[f"{coupling} {rule}"] = system.simulate(short, outputs=["energy"])
 cap = rf.CushionCap(height="0.5 m", mass="1 t")
 soil = rf.WinklerSoil(stiffness="2 MPa", damping_ratio=0.2)
 for name, parts, options in (

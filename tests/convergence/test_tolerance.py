@@ -6,12 +6,21 @@ import pytest
 import rockframe as rf
 
 TOLERANCES = (1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9)
+BLOCK = rf.Block.from_size(radius="10 m", slenderness=4, mass="1 t")
+PADS = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
+CAP = rf.CushionCap(width="6 m", height="0.5 m", mass="0.2 t")
+SOIL, NO_SUCTION = (
+    rf.WinklerSoil(stiffness="200 kPa", damping_ratio=0.1, separation=separation)
+    for separation in ("displacement", "pressure")
+)
 SCENES = {
     "rigid ground": rf.System(rf.Block.from_size(radius="10 m", slenderness=6, mass="1 t")),
-    "pads": rf.System(
-        rf.Block.from_size(radius="10 m", slenderness=4, mass="1 t"),
-        rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1),
-    ),
+    "pads": rf.System(BLOCK, PADS),
+    "soil": rf.System(BLOCK, SOIL),
+    "soil that lets go by pressure": rf.System(BLOCK, NO_SUCTION),
+    "coupled": rf.System(BLOCK, PADS, CAP, SOIL),
+    "coupled, soil that lets go by pressure": rf.System(BLOCK, PADS, CAP, NO_SUCTION),
+    "cascade": rf.System(BLOCK, PADS, CAP, SOIL, coupling="cascade"),
 }
 
 

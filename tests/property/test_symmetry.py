@@ -19,8 +19,14 @@ TURNS_ROUND = {
     "angular_velocity_before",
     "angular_velocity_after",
     "overturning_direction",
+    "cap_rotation",
+    "cap_angular_velocity",
+    "rotation_on_cap",
+    "cap_acceleration",
 }
-SWAPS_CORNERS = {"contact_state", "contact_state_before", "contact_state_after"}
+SWAPS_CORNERS = {
+    f"{of}contact_state{side}" for of in ("", "soil_") for side in ("", "_before", "_after")
+}
 SWAPPED = np.array([0, 2, 1, 3])
 TRADES_PLACES = {"left_reaction": "right_reaction", "right_reaction": "left_reaction"}
 
