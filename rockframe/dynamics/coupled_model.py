@@ -246,7 +246,8 @@ def start_mode(
         corner_level(model.RIGHT_GUARDS, state, p), reaction(model.RIGHT_GUARDS, state, p), delta
     )
     rule = p[model.RESTRAINT]
-    bed_mode = bed_mode_of(bed.DOWN, bed.DOWN, 0.0, 0.0, rule)
+    # upright and at rest the cap leans nowhere yet; it follows the block
+    bed_mode = bed_mode_of(bed.DOWN, bed.DOWN, rotation, spin, rule)
     mode = block_mode_of(left, right, rotation, spin, rule) + model.BLOCK_MODES * bed_mode
     pivot = model.block_pivot(mode)
     pin = 0.0 if pivot == FREE else pinned_point(pivot, p[model.HALF_WIDTH])
