@@ -8,17 +8,20 @@ import numpy as np
 from rockframe.compiled import Matrix, Vector, kernel
 from rockframe.dynamics import bed, pad
 from rockframe.dynamics import coupled as model
-from rockframe.dynamics.coupled_switches import (
+from rockframe.dynamics import coupled_layout as at
+from rockframe.dynamics.coupled_corners import (
     bed_mode_of,
     block_mode_of,
     corner_level,
     reaction,
-    switch,
 )
+from rockframe.dynamics.coupled_motion import configuration
+from rockframe.dynamics.coupled_switches import switch
 from rockframe.dynamics.kinematics import about_pin, pinned_point, sine_cosine_rise
 from rockframe.dynamics.protocol import (
     HORIZONTAL_REFERENCE,
     MEMORY_SIZE,
+    ROTATION_LIMIT,
     ContactModel,
     ContactState,
     Start,
@@ -84,44 +87,44 @@ def coupled(
     ContactModel
     """
     radius = math.hypot(half_width, half_height)
-    p = np.zeros(model.PARAMETERS)
-    p[model.ROTATION_LIMIT] = p[model.ANGLE] = theta = math.atan2(half_width, half_height)
-    p[model.GRAVITY] = gravity
-    p[model.RESTRAINT] = restraint_in_use(restraint, small_rotation)
-    p[model.SMALL] = float(small_rotation)
-    p[model.HALF_HEIGHT] = half_height
-    p[model.HALF_WIDTH] = half_width
-    p[model.INERTIA] = inertia / mass
-    p[model.PAD_STIFFNESS] = pad_stiffness / mass
-    p[model.PAD_DAMPING] = pad_damping / mass
-    p[model.PAD_SETTLEMENT] = settlement = 0.5 * gravity * mass / pad_stiffness
-    p[model.RESTITUTION] = restitution
-    p[model.CAP_HALF_HEIGHT] = cap_half_height
-    p[model.CAP_HALF_WIDTH] = cap_half_width
-    p[model.CAP_MASS] = cap_mass / mass
-    p[model.CAP_INERTIA] = cap_inertia / mass
-    p[model.SOIL_STIFFNESS] = soil_stiffness / mass
-    p[model.SOIL_DAMPING] = soil_damping / mass
+    p = np.zeros(at.PARAMETERS)
+    p[ROTATION_LIMIT] = p[at.ANGLE] = theta = math.atan2(half_width, half_height)
+    p[at.GRAVITY] = gravity
+    p[at.RESTRAINT] = restraint_in_use(restraint, small_rotation)
+    p[at.SMALL] = float(small_rotation)
+    p[at.HALF_HEIGHT] = half_height
+    p[at.HALF_WIDTH] = half_width
+    p[at.INERTIA] = inertia / mass
+    p[at.PAD_STIFFNESS] = pad_stiffness / mass
+    p[at.PAD_DAMPING] = pad_damping / mass
+    p[at.PAD_SETTLEMENT] = settlement = 0.5 * gravity * mass / pad_stiffness
+    p[at.RESTITUTION] = restitution
+    p[at.CAP_HALF_HEIGHT] = cap_half_height
+    p[at.CAP_HALF_WIDTH] = cap_half_width
+    p[at.CAP_MASS] = cap_mass / mass
+    p[at.CAP_INERTIA] = cap_inertia / mass
+    p[at.SOIL_STIFFNESS] = soil_stiffness / mass
+    p[at.SOIL_DAMPING] = soil_damping / mass
     soil_settlement = 0.5 * (mass + cap_mass) * gravity / (cap_half_width * soil_stiffness)
-    p[model.SOIL_SETTLEMENT] = soil_settlement
-    p[model.BY_PRESSURE] = float(by_pressure)
-    modes = np.arange(model.MODES)
-    contact = contact_of_corners(modes % model.BLOCK_MODES)
-    soil_contact = contact_of_bed(modes // model.BLOCK_MODES)
+    p[at.SOIL_SETTLEMENT] = soil_settlement
+    p[at.BY_PRESSURE] = float(by_pressure)
+    modes = np.arange(at.MODES)
+    contact = contact_of_corners(modes % at.BLOCK_MODES)
+    soil_contact = contact_of_bed(modes // at.BLOCK_MODES)
     fastest, damping_rate = fastest_vibration(p)
-    rocking = math.sqrt(gravity * radius / (radius**2 + p[model.INERTIA]))
-    pads = math.sqrt(2.0 * p[model.PAD_STIFFNESS])
-    soil = math.sqrt(2.0 * cap_half_width * p[model.SOIL_STIFFNESS] / (1.0 + p[model.CAP_MASS]))
+    rocking = math.sqrt(gravity * radius / (radius**2 + p[at.INERTIA]))
+    pads = math.sqrt(2.0 * p[at.PAD_STIFFNESS])
+    soil = math.sqrt(2.0 * cap_half_width * p[at.SOIL_STIFFNESS] / (1.0 + p[at.CAP_MASS]))
     sizes = np.array([soil_settlement, theta, settlement, theta, radius * theta, radius * theta])
     rates = np.array([soil, rocking, pads, rocking, rocking, rocking])
-    tolerance = corner_tolerance(model.GUARDS, radius, settlement)
+    tolerance = corner_tolerance(at.GUARDS, radius, settlement)
     cap_radius = math.hypot(cap_half_width, cap_half_height)
-    tolerance[model.SOIL_GUARDS : model.SOIL_PIVOT_GUARD] = bed_tolerance(
+    tolerance[at.SOIL_GUARDS : at.SOIL_PIVOT_GUARD] = bed_tolerance(
         bed.BED_GUARDS, cap_radius, soil_settlement
     )
 
     def initial(start: Start) -> tuple[int, Vector, Vector]:
-        state, memory = np.zeros(2 * model.COORDINATES), np.zeros(MEMORY_SIZE)
+        state, memory = np.zeros(2 * at.COORDINATES), np.zeros(MEMORY_SIZE)
         height = start.vertical_displacement
         mode = start_mode(
             start.rotation,
@@ -142,15 +145,15 @@ def coupled(
         energy=model.energy,
         observe=model.observe,
         active=np.where(
-            (soil_contact == ContactState.FLIGHT) | gliding_end(modes // model.BLOCK_MODES), 6, 5
+            (soil_contact == ContactState.FLIGHT) | gliding_end(modes // at.BLOCK_MODES), 6, 5
         ),
         contact=contact,
         parameters=p,
         scales=np.concatenate([sizes, sizes * rates]),
         rotation_weights=np.array([0.0, 1.0, 0.0, 1.0, 0.0, 0.0]),
         guard_tolerance=tolerance,
-        lazy_guard=lazy_corners(model.GUARDS),
-        columns=model.COLUMNS,
+        lazy_guard=lazy_corners(at.GUARDS),
+        columns=at.COLUMNS,
         fastest_frequency=fastest,
         damping_rate=damping_rate,
         rounding=rounding(p, fastest),
@@ -163,10 +166,10 @@ def coupled(
 
 def rounding(p: Vector, fastest: float) -> Callable[[float], Vector]:
     """Estimate the rounding noise of coordinates and rates, as of a body on its base."""
-    block = math.hypot(p[model.HALF_WIDTH], p[model.HALF_HEIGHT])
-    cap = math.hypot(p[model.CAP_HALF_WIDTH], p[model.CAP_HALF_HEIGHT])
-    turning = p[model.HALF_WIDTH] / (p[model.INERTIA] + p[model.HALF_HEIGHT] ** 2)
-    settlement = p[model.PAD_SETTLEMENT] + p[model.SOIL_SETTLEMENT]
+    block = math.hypot(p[at.HALF_WIDTH], p[at.HALF_HEIGHT])
+    cap = math.hypot(p[at.CAP_HALF_WIDTH], p[at.CAP_HALF_HEIGHT])
+    turning = p[at.HALF_WIDTH] / (p[at.INERTIA] + p[at.HALF_HEIGHT] ** 2)
+    settlement = p[at.PAD_SETTLEMENT] + p[at.SOIL_SETTLEMENT]
     answers = np.array([1.0, 1.0 / cap, 1.0, turning, 1.0, 1.0])
     return rounding_at(block + cap, settlement, answers, fastest)
 
@@ -176,47 +179,47 @@ def small_motion_matrices(p: Vector) -> tuple[Matrix, Matrix, Matrix]:
 
     In the order Y, phi, r, psi, per unit mass of the block, :eq:`eq-coupled-small`.
     """
-    h, h_c, g = p[model.HALF_HEIGHT], p[model.CAP_HALF_HEIGHT], p[model.GRAVITY]
-    b, b_c, m_c = p[model.HALF_WIDTH], p[model.CAP_HALF_WIDTH], p[model.CAP_MASS]
+    h, h_c, g = p[at.HALF_HEIGHT], p[at.CAP_HALF_HEIGHT], p[at.GRAVITY]
+    b, b_c, m_c = p[at.HALF_WIDTH], p[at.CAP_HALF_WIDTH], p[at.CAP_MASS]
     high = h + 2.0 * h_c
     mass = np.array(
         [
             [1.0 + m_c, 0.0, 1.0, 0.0],
             [
                 0.0,
-                p[model.CAP_INERTIA] + m_c * h_c**2 + p[model.INERTIA] + high**2,
+                p[at.CAP_INERTIA] + m_c * h_c**2 + p[at.INERTIA] + high**2,
                 0.0,
-                p[model.INERTIA] + h * high,
+                p[at.INERTIA] + h * high,
             ],
             [1.0, 0.0, 1.0, 0.0],
-            [0.0, p[model.INERTIA] + h * high, 0.0, p[model.INERTIA] + h**2],
+            [0.0, p[at.INERTIA] + h * high, 0.0, p[at.INERTIA] + h**2],
         ]
     )
 
     def springs(soil: float, pads: float) -> Matrix:
         return np.diag([2.0 * b_c * soil, soil * b_c**3 / 1.5, 2.0 * pads, 2.0 * pads * b**2])
 
-    stiffness = springs(p[model.SOIL_STIFFNESS], p[model.PAD_STIFFNESS])
+    stiffness = springs(p[at.SOIL_STIFFNESS], p[at.PAD_STIFFNESS])
     stiffness[1, 1] -= g * (m_c * h_c + high)
     stiffness[3, 3] -= g * h
     stiffness[1, 3] = stiffness[3, 1] = -g * h
-    return mass, springs(p[model.SOIL_DAMPING], p[model.PAD_DAMPING]), stiffness
+    return mass, springs(p[at.SOIL_DAMPING], p[at.PAD_DAMPING]), stiffness
 
 
 def fastest_vibration(p: Vector) -> tuple[float, float]:
     """Give bounds of angular frequency and damping rate, of both together or the cap alone."""
     mass, damping, stiffness = small_motion_matrices(p)
-    cap_mass = p[model.CAP_MASS]
-    turning = p[model.CAP_INERTIA] + cap_mass * p[model.CAP_HALF_HEIGHT] ** 2
+    cap_mass = p[at.CAP_MASS]
+    turning = p[at.CAP_INERTIA] + cap_mass * p[at.CAP_HALF_HEIGHT] ** 2
 
     def largest(matrix: Matrix, soil: float) -> float:
         together = float(np.linalg.eigvals(np.linalg.solve(mass, matrix)).real.max())
-        b_c = p[model.CAP_HALF_WIDTH]
+        b_c = p[at.CAP_HALF_WIDTH]
         return max(together, 2.0 * b_c * soil / cap_mass, soil * b_c**3 / 1.5 / turning)
 
     return (
-        math.sqrt(largest(stiffness, p[model.SOIL_STIFFNESS])),
-        largest(damping, p[model.SOIL_DAMPING]),
+        math.sqrt(largest(stiffness, p[at.SOIL_STIFFNESS])),
+        largest(damping, p[at.SOIL_DAMPING]),
     )
 
 
@@ -230,29 +233,29 @@ def start_mode(
     The cap starts upright and at rest; rotation and height are those of the block on
     it, and NaN for a height asks for equilibrium on the pads.
     """
-    delta = p[model.PAD_SETTLEMENT]
-    sine, _, rise = sine_cosine_rise(p[model.HALF_HEIGHT], p[model.SMALL], rotation)
-    state[model.ROTATION] = rotation
-    state[model.NORMAL] = height
+    delta = p[at.PAD_SETTLEMENT]
+    sine, _, rise = sine_cosine_rise(p[at.HALF_HEIGHT], p[at.SMALL], rotation)
+    state[at.ROTATION] = rotation
+    state[at.NORMAL] = height
     if math.isnan(height):
-        tilt = p[model.HALF_WIDTH] * abs(sine)
-        state[model.NORMAL] = max(tilt - delta, 0.0) - rise
-    state[model.COORDINATES + model.ROTATION] = spin
-    state[model.COORDINATES + model.NORMAL] = speed
+        tilt = p[at.HALF_WIDTH] * abs(sine)
+        state[at.NORMAL] = max(tilt - delta, 0.0) - rise
+    state[at.COORDINATES + at.ROTATION] = spin
+    state[at.COORDINATES + at.NORMAL] = speed
     left = pad.start_contact(
-        corner_level(model.LEFT_GUARDS, state, p), reaction(model.LEFT_GUARDS, state, p), delta
+        corner_level(at.LEFT_GUARDS, state, p), reaction(at.LEFT_GUARDS, state, p), delta
     )
     right = pad.start_contact(
-        corner_level(model.RIGHT_GUARDS, state, p), reaction(model.RIGHT_GUARDS, state, p), delta
+        corner_level(at.RIGHT_GUARDS, state, p), reaction(at.RIGHT_GUARDS, state, p), delta
     )
-    rule = p[model.RESTRAINT]
+    rule = p[at.RESTRAINT]
     # upright and at rest the cap leans nowhere yet; it follows the block
     bed_mode = bed_mode_of(bed.DOWN, bed.DOWN, rotation, spin, rule)
-    mode = block_mode_of(left, right, rotation, spin, rule) + model.BLOCK_MODES * bed_mode
-    pivot = model.block_pivot(mode)
-    pin = 0.0 if pivot == FREE else pinned_point(pivot, p[model.HALF_WIDTH])
-    state[model.ALONG] = pin + about_pin(p[model.HALF_HEIGHT], p[model.SMALL], pin, rotation)
-    place = model.configuration(mode, state, p)
-    state[model.COORDINATES + model.ALONG] = 0.0 if pivot == FREE else place.slide * spin
-    memory[HORIZONTAL_REFERENCE] = pinned_point(model.cap_pivot(mode), p[model.CAP_HALF_WIDTH])
+    mode = block_mode_of(left, right, rotation, spin, rule) + at.BLOCK_MODES * bed_mode
+    pivot = at.block_pivot(mode)
+    pin = 0.0 if pivot == FREE else pinned_point(pivot, p[at.HALF_WIDTH])
+    state[at.ALONG] = pin + about_pin(p[at.HALF_HEIGHT], p[at.SMALL], pin, rotation)
+    place = configuration(mode, state, p)
+    state[at.COORDINATES + at.ALONG] = 0.0 if pivot == FREE else place.slide * spin
+    memory[HORIZONTAL_REFERENCE] = pinned_point(at.cap_pivot(mode), p[at.CAP_HALF_WIDTH])
     return mode

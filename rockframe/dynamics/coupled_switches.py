@@ -18,13 +18,23 @@ from rockframe.dynamics.bed import (
     switch_bed,
 )
 from rockframe.dynamics.bed import GLIDING as BED_GLIDING
-from rockframe.dynamics.coupled import (
-    ALONG,
-    BLOCK_MODES,
+from rockframe.dynamics.coupled_corners import (
+    bed_mode_of,
+    block_mode_of,
+    corner_level,
+    corner_noise,
+    corner_rate,
+    end_rate,
+    rates_of,
+    reaction,
+    stop_corner,
+    stop_end,
+    take_share,
+)
+from rockframe.dynamics.coupled_impulses import land, repin_block, repin_cap
+from rockframe.dynamics.coupled_layout import (
     CAP_HALF_HEIGHT,
-    CAP_HALF_WIDTH,
     CAP_HORIZONTAL,
-    CAP_MASS,
     CAP_ROTATION,
     CAP_VERTICAL,
     COORDINATES,
@@ -35,17 +45,13 @@ from rockframe.dynamics.coupled import (
     NORMAL,
     PAD_DAMPING,
     PAD_SETTLEMENT,
-    PAD_STIFFNESS,
     PIVOT_GUARD,
-    RESTITUTION,
     RESTRAINT,
     RIGHT_GUARDS,
     ROTATION,
     SMALL,
     SOIL_GUARDS,
     SOIL_PIVOT_GUARD,
-    Motion,
-    along_rate,
     bed_contact,
     bed_of,
     block_glides,
@@ -53,44 +59,22 @@ from rockframe.dynamics.coupled import (
     cap_ends,
     cap_glides,
     cap_pivot,
-    cap_position,
-    cap_sway,
-    configuration,
     held_block_pivot,
     held_cap_pivot,
-    solve_motion,
 )
-from rockframe.dynamics.gliding import (
-    blend,
-    is_lifted,
-    share_of_loss,
-    share_until_lifted,
-    speed_noise,
-)
+from rockframe.dynamics.coupled_motion import cap_sway, configuration
+from rockframe.dynamics.gliding import blend, is_lifted, share_of_loss, share_until_lifted
 from rockframe.dynamics.kinematics import (
     PIVOT_CENTRE,
     PIVOT_LEFT,
     PIVOT_RIGHT,
-    about_pin,
     leading_pivot,
-    pinned_point,
-    pivot_of,
     sine_cosine_rise,
 )
-from rockframe.dynamics.pad import (
-    CLEAR,
-    ENGAGING,
-    LEAVE,
-    RELAXING,
-    TOUCHING,
-    least_speed,
-    pad_force,
-    switch_corner,
-)
+from rockframe.dynamics.pad import CLEAR, ENGAGING, LEAVE, TOUCHING, least_speed, switch_corner
 from rockframe.dynamics.protocol import (
     HORIZONTAL_REFERENCE,
     IMPACT,
-    IMPACT_LOSS,
     LAST_EVENT,
     PIVOT_CHANGE,
     REENGAGEMENT,
@@ -104,214 +88,10 @@ from rockframe.dynamics.protocol import (
 )
 from rockframe.dynamics.single_body import FREE
 from rockframe.dynamics.two_spring import GLIDING, gliding_side
+from rockframe.dynamics.two_spring import MODES as BLOCK_MODES
 
 DISTURBED = 1e3
 """Speed of a gliding end, over its rounding noise, from which on it no longer glides."""
-
-
-@kernel
-def block_mode_of(left: int, right: int, rotation: float, spin: float, rule: float) -> int:
-    """Give the block's part of a mode."""
-    pivot = PIVOT_CENTRE
-    if left < RELAXING or right < RELAXING:
-        pivot = pivot_of(rule, left >= RELAXING, right >= RELAXING, rotation, spin)
-    return left + 4 * right + 16 * pivot
-
-
-@kernel
-def bed_mode_of(left: int, right: int, rotation: float, spin: float, rule: float) -> int:
-    """Give the bed's part of a mode."""
-    pivot = PIVOT_CENTRE
-    if not airborne(left, right):
-        pivot = pivot_of(rule, left == RAISED, right == RAISED, rotation, spin)
-    return left + 2 * right + PIVOT_FACTOR * pivot
-
-
-@kernel
-def corner_level(first: int, state: Vector, p: Vector) -> float:
-    """Give a corner's height above its place at rest on the cap."""
-    sine, _, rise = sine_cosine_rise(p[HALF_HEIGHT], p[SMALL], state[ROTATION])
-    side = 1.0 if first == LEFT_GUARDS else -1.0
-    return state[NORMAL] + rise + side * p[HALF_WIDTH] * sine
-
-
-@kernel
-def corner_lever(first: int, state: Vector, p: Vector) -> float:
-    """Give the rate of a corner's height with psi."""
-    sine, cosine, _ = sine_cosine_rise(p[HALF_HEIGHT], p[SMALL], state[ROTATION])
-    side = 1.0 if first == LEFT_GUARDS else -1.0
-    return p[HALF_HEIGHT] * sine + side * p[HALF_WIDTH] * cosine
-
-
-@kernel
-def corner_rate(first: int, state: Vector, p: Vector) -> float:
-    """Give a corner's speed away from the cap."""
-    lever = corner_lever(first, state, p)
-    return state[COORDINATES + NORMAL] + lever * state[COORDINATES + ROTATION]
-
-
-@kernel
-def corner_noise(first: int, state: Vector, p: Vector) -> float:
-    """Give the rounding noise of a corner's speed."""
-    lever = corner_lever(first, state, p)
-    return speed_noise(state[COORDINATES + NORMAL], lever, state[COORDINATES + ROTATION])
-
-
-@kernel
-def stop_corner(first: int, direction: float, state: Vector, p: Vector) -> None:
-    """Take a corner's speed to nought, or to the side of it that rounding cannot leave."""
-    noise = corner_noise(first, state, p)
-    state[COORDINATES + NORMAL] += direction * noise - corner_rate(first, state, p)
-
-
-@kernel
-def end_rate(end: int, state: Vector, p: Vector) -> tuple[float, float]:
-    """Give the speed of an end of the cap's base, and its rounding noise."""
-    sine, cosine, _ = sine_cosine_rise(p[CAP_HALF_HEIGHT], p[SMALL], state[CAP_ROTATION])
-    side = 1.0 if end == LEFT_END else -1.0
-    lever = p[CAP_HALF_HEIGHT] * sine + side * p[CAP_HALF_WIDTH] * cosine
-    speed = state[COORDINATES + CAP_VERTICAL]
-    spin = state[COORDINATES + CAP_ROTATION]
-    return speed + lever * spin, speed_noise(speed, lever, spin)
-
-
-@kernel
-def stop_end(end: int, direction: float, state: Vector, p: Vector) -> None:
-    """Take the speed of an end of the cap's base to nought, or beside it."""
-    speed, noise = end_rate(end, state, p)
-    state[COORDINATES + CAP_VERTICAL] += direction * noise - speed
-
-
-@kernel
-def rates_of(state: Vector) -> tuple[float, float, float, float, float, float]:
-    """Give all rates, to go back to."""
-    n = COORDINATES
-    return state[n], state[n + 1], state[n + 2], state[n + 3], state[n + 4], state[n + 5]
-
-
-@kernel
-def take_share(
-    share: float, before: tuple[float, float, float, float, float, float], state: Vector
-) -> None:
-    """Take back all but a share of what an impulse did to the rates."""
-    for i in range(COORDINATES):
-        j = COORDINATES + i
-        state[j] = blend(before[i], state[j], share)
-
-
-@kernel
-def reaction(first: int, state: Vector, p: Vector) -> float:
-    """Give the reaction of a touching corner, :eq:`eq-pad-force`."""
-    level = corner_level(first, state, p)
-    rate = corner_rate(first, state, p)
-    return pad_force(level, rate, p[PAD_STIFFNESS], p[PAD_DAMPING], p[PAD_SETTLEMENT])
-
-
-@kernel
-def kick(
-    mode: int,
-    press: float,
-    moment: float,
-    swing: float,
-    drift: float,
-    state: Vector,
-    p: Vector,
-) -> Motion:
-    """Change the velocities by impulses, or by a slip that a restraint stops.
-
-    Equation :eq:`eq-coupled-impulse`; arguments as in
-    :func:`rockframe.dynamics.coupled.solve_motion`.
-    """
-    place = configuration(mode, state, p)
-    across = state[ALONG]
-    change = solve_motion(place, across, press, moment, 0.0, 0.0, swing, drift, 0.0, 0.0, p)
-    s, c = place.sine, place.cosine
-    normal = s * change.cap_horizontal + c * change.cap_vertical
-    along = c * change.cap_horizontal - s * change.cap_vertical
-    state[COORDINATES + CAP_VERTICAL] += change.cap_vertical
-    state[COORDINATES + CAP_ROTATION] += change.cap_rotation
-    state[COORDINATES + NORMAL] += press - normal + across * change.cap_rotation
-    state[COORDINATES + ROTATION] += change.rotation
-    if place.block_free:
-        state[COORDINATES + ALONG] -= along + place.arm * change.cap_rotation
-    else:
-        state[COORDINATES + ALONG] = place.slide * state[COORDINATES + ROTATION]
-    if place.cap_free:
-        state[COORDINATES + CAP_HORIZONTAL] += change.cap_horizontal
-    return change
-
-
-@kernel
-def repin_block(old: int, new: int, state: Vector, p: Vector, memory: Vector) -> None:
-    """Project the momentum on the block's new restraint on the cap."""
-    slip = along_rate(configuration(old, state, p), state)
-    if block_pivot(new) == FREE:
-        state[COORDINATES + ALONG] = slip
-        return
-    place = configuration(new, state, p)
-    slip -= place.slide * state[COORDINATES + ROTATION]
-    change = kick(new, 0.0, 0.0, 0.0, -slip, state, p)
-    memory[REPINNING_LOSS] -= 0.5 * change.thrust * slip
-
-
-@kernel
-def repin_cap(old: int, new: int, state: Vector, p: Vector, memory: Vector) -> None:
-    """Project the momentum on the cap's new restraint on the soil."""
-    position = cap_position(old, state, p, memory)
-    slip = cap_sway(configuration(old, state, p), state)
-    pivot = cap_pivot(new)
-    if pivot == FREE:
-        state[CAP_HORIZONTAL] = position
-        state[COORDINATES + CAP_HORIZONTAL] = slip
-        return
-    pin = pinned_point(pivot, p[CAP_HALF_WIDTH])
-    memory[HORIZONTAL_REFERENCE] = position - about_pin(
-        p[CAP_HALF_HEIGHT], p[SMALL], pin, state[CAP_ROTATION]
-    )
-    place = configuration(new, state, p)
-    slip -= place.reach * state[COORDINATES + CAP_ROTATION]
-    change = kick(new, 0.0, 0.0, -slip, 0.0, state, p)
-    impulse = place.cosine * change.thrust + p[CAP_MASS] * change.cap_horizontal
-    memory[REPINNING_LOSS] -= 0.5 * impulse * slip
-
-
-@kernel
-def land(mode: int, left: bool, right: bool, state: Vector, p: Vector, memory: Vector) -> None:
-    """Reduce the speeds of the landing corners to eps times what they were."""
-    lever_left = corner_lever(LEFT_GUARDS, state, p)
-    lever_right = corner_lever(RIGHT_GUARDS, state, p)
-    before_left = corner_rate(LEFT_GUARDS, state, p)
-    before_right = corner_rate(RIGHT_GUARDS, state, p)
-    # what unit impulses at either corner do to the corners' speeds
-    place = configuration(mode, state, p)
-    s, c, across = place.sine, place.cosine, state[ALONG]
-    unit = solve_motion(place, across, 1.0, lever_left, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, p)
-    lift = 1.0 - s * unit.cap_horizontal - c * unit.cap_vertical + across * unit.cap_rotation
-    left_left = lift + lever_left * unit.rotation
-    unit = solve_motion(place, across, 1.0, lever_right, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, p)
-    lift = 1.0 - s * unit.cap_horizontal - c * unit.cap_vertical + across * unit.cap_rotation
-    mixed = lift + lever_left * unit.rotation
-    right_right = lift + lever_right * unit.rotation
-    drop_left = (p[RESTITUTION] - 1.0) * min(before_left, 0.0)
-    drop_right = (p[RESTITUTION] - 1.0) * min(before_right, 0.0)
-    impulse_left = 0.0
-    impulse_right = 0.0
-    if left and right:
-        determinant = left_left * right_right - mixed * mixed
-        impulse_left = (right_right * drop_left - mixed * drop_right) / determinant
-        impulse_right = (left_left * drop_right - mixed * drop_left) / determinant
-    elif left:
-        impulse_left = drop_left / left_left
-    else:
-        impulse_right = drop_right / right_right
-    moment = impulse_left * lever_left + impulse_right * lever_right
-    kick(mode, impulse_left + impulse_right, moment, 0.0, 0.0, state, p)
-    # work of the impulses, at the mean of each corner's speeds before and after
-    after_left = corner_rate(LEFT_GUARDS, state, p)
-    after_right = corner_rate(RIGHT_GUARDS, state, p)
-    memory[IMPACT_LOSS] -= 0.5 * (
-        impulse_left * (before_left + after_left) + impulse_right * (before_right + after_right)
-    )
 
 
 @kernel

@@ -1,0 +1,121 @@
+"""Corners of the block and ends of the cap: levels, rates, reactions, and modes made of them."""
+
+from rockframe.compiled import Vector, kernel
+from rockframe.dynamics.bed import LEFT_END, PIVOT_FACTOR, RAISED, airborne
+from rockframe.dynamics.coupled_layout import (
+    CAP_HALF_HEIGHT,
+    CAP_HALF_WIDTH,
+    CAP_ROTATION,
+    CAP_VERTICAL,
+    COORDINATES,
+    HALF_HEIGHT,
+    HALF_WIDTH,
+    LEFT_GUARDS,
+    NORMAL,
+    PAD_DAMPING,
+    PAD_SETTLEMENT,
+    PAD_STIFFNESS,
+    ROTATION,
+    SMALL,
+)
+from rockframe.dynamics.gliding import blend, speed_noise
+from rockframe.dynamics.kinematics import PIVOT_CENTRE, pivot_of, sine_cosine_rise
+from rockframe.dynamics.pad import RELAXING, pad_force
+
+
+@kernel
+def block_mode_of(left: int, right: int, rotation: float, spin: float, rule: float) -> int:
+    """Give the block's part of a mode."""
+    pivot = PIVOT_CENTRE
+    if left < RELAXING or right < RELAXING:
+        pivot = pivot_of(rule, left >= RELAXING, right >= RELAXING, rotation, spin)
+    return left + 4 * right + 16 * pivot
+
+
+@kernel
+def bed_mode_of(left: int, right: int, rotation: float, spin: float, rule: float) -> int:
+    """Give the bed's part of a mode."""
+    pivot = PIVOT_CENTRE
+    if not airborne(left, right):
+        pivot = pivot_of(rule, left == RAISED, right == RAISED, rotation, spin)
+    return left + 2 * right + PIVOT_FACTOR * pivot
+
+
+@kernel
+def corner_level(first: int, state: Vector, p: Vector) -> float:
+    """Give a corner's height above its place at rest on the cap."""
+    sine, _, rise = sine_cosine_rise(p[HALF_HEIGHT], p[SMALL], state[ROTATION])
+    side = 1.0 if first == LEFT_GUARDS else -1.0
+    return state[NORMAL] + rise + side * p[HALF_WIDTH] * sine
+
+
+@kernel
+def corner_lever(first: int, state: Vector, p: Vector) -> float:
+    """Give the rate of a corner's height with psi."""
+    sine, cosine, _ = sine_cosine_rise(p[HALF_HEIGHT], p[SMALL], state[ROTATION])
+    side = 1.0 if first == LEFT_GUARDS else -1.0
+    return p[HALF_HEIGHT] * sine + side * p[HALF_WIDTH] * cosine
+
+
+@kernel
+def corner_rate(first: int, state: Vector, p: Vector) -> float:
+    """Give a corner's speed away from the cap."""
+    lever = corner_lever(first, state, p)
+    return state[COORDINATES + NORMAL] + lever * state[COORDINATES + ROTATION]
+
+
+@kernel
+def corner_noise(first: int, state: Vector, p: Vector) -> float:
+    """Give the rounding noise of a corner's speed."""
+    lever = corner_lever(first, state, p)
+    return speed_noise(state[COORDINATES + NORMAL], lever, state[COORDINATES + ROTATION])
+
+
+@kernel
+def stop_corner(first: int, direction: float, state: Vector, p: Vector) -> None:
+    """Take a corner's speed to nought, or to the side of it that rounding cannot leave."""
+    noise = corner_noise(first, state, p)
+    state[COORDINATES + NORMAL] += direction * noise - corner_rate(first, state, p)
+
+
+@kernel
+def end_rate(end: int, state: Vector, p: Vector) -> tuple[float, float]:
+    """Give the speed of an end of the cap's base, and its rounding noise."""
+    sine, cosine, _ = sine_cosine_rise(p[CAP_HALF_HEIGHT], p[SMALL], state[CAP_ROTATION])
+    side = 1.0 if end == LEFT_END else -1.0
+    lever = p[CAP_HALF_HEIGHT] * sine + side * p[CAP_HALF_WIDTH] * cosine
+    speed = state[COORDINATES + CAP_VERTICAL]
+    spin = state[COORDINATES + CAP_ROTATION]
+    return speed + lever * spin, speed_noise(speed, lever, spin)
+
+
+@kernel
+def stop_end(end: int, direction: float, state: Vector, p: Vector) -> None:
+    """Take the speed of an end of the cap's base to nought, or beside it."""
+    speed, noise = end_rate(end, state, p)
+    state[COORDINATES + CAP_VERTICAL] += direction * noise - speed
+
+
+@kernel
+def rates_of(state: Vector) -> tuple[float, float, float, float, float, float]:
+    """Give all rates, to go back to."""
+    n = COORDINATES
+    return state[n], state[n + 1], state[n + 2], state[n + 3], state[n + 4], state[n + 5]
+
+
+@kernel
+def take_share(
+    share: float, before: tuple[float, float, float, float, float, float], state: Vector
+) -> None:
+    """Take back all but a share of what an impulse did to the rates."""
+    for i in range(COORDINATES):
+        j = COORDINATES + i
+        state[j] = blend(before[i], state[j], share)
+
+
+@kernel
+def reaction(first: int, state: Vector, p: Vector) -> float:
+    """Give the reaction of a touching corner, :eq:`eq-pad-force`."""
+    level = corner_level(first, state, p)
+    rate = corner_rate(first, state, p)
+    return pad_force(level, rate, p[PAD_STIFFNESS], p[PAD_DAMPING], p[PAD_SETTLEMENT])
