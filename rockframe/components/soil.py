@@ -6,7 +6,6 @@ from typing import ClassVar, Self
 
 from rockframe.components.base import Component, with_unit
 from rockframe.components.pads import one_of
-from rockframe.errors import ComponentError
 from rockframe.units import (
     BED_DAMPING,
     BED_STIFFNESS,
@@ -19,6 +18,7 @@ from rockframe.units import (
     to_ratio,
     to_si,
 )
+from rockframe.words import choice
 
 
 class Separation(StrEnum):
@@ -88,12 +88,7 @@ class WinklerSoil(Component[WinklerSoilSI]):
             c = to_si(damping, BED_DAMPING, owner=owner, name="damping", condition=NOT_NEGATIVE)
         if damping_ratio is not None:
             xi = to_ratio(damping_ratio, owner=owner, name="damping_ratio", condition=NOT_NEGATIVE)
-        try:
-            rule = Separation(separation)
-        except ValueError:
-            known = " or ".join(repr(str(one)) for one in Separation)
-            msg = f"{owner}: separation must be {known}, got {separation!r}"
-            raise ComponentError(msg) from None
+        rule = choice(Separation, separation, owner=owner, name="separation")
         self._freeze(
             WinklerSoilSI(k, c, xi, rule),
             {

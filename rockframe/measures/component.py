@@ -5,6 +5,7 @@ from enum import StrEnum
 from rockframe.errors import ComponentError
 from rockframe.motion import GroundMotion
 from rockframe.shaking.shaking import Shaking
+from rockframe.words import choice
 
 
 class GroundComponent(StrEnum):
@@ -66,9 +67,4 @@ def component_of(given: object, *, owner: str) -> GroundComponent:
     ComponentError
         None of the two.
     """
-    try:
-        return GroundComponent(str(given))
-    except ValueError:
-        known = " or ".join(repr(str(one)) for one in GroundComponent)
-        msg = f"{owner}: component must be {known}, got {given!r}"
-        raise ComponentError(msg) from None
+    return choice(GroundComponent, given, owner=owner, name="component")

@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from rockframe.errors import ComponentError
+from rockframe.shaking.polynomials import greatest
 from rockframe.shaking.shaking import MAXIMUM_SAMPLES as MAXIMUM_SAMPLES
 from rockframe.shaking.shaking import Array as Array
 
@@ -177,18 +178,7 @@ def peak_of(samples: Array, pieces: Array | None) -> float:
         [m s^-2]
     """
     highest = float(np.max(np.abs(samples)))
-    if pieces is None:
-        return highest
-    powers = np.arange(1.0, COEFFICIENTS)
-    slopes = pieces[:, 1:] * powers
-    turning = np.flatnonzero(slopes[:, 0] * slopes.sum(axis=1) < 0.0)
-    polynomial: Any = np.polynomial.polynomial
-    for k in turning.tolist():
-        roots: Any = polynomial.polyroots(slopes[k])
-        real: Any = roots.real[np.abs(roots.imag) < 1e-9]
-        extremes: Any = polynomial.polyval(real[(real > 0.0) & (real < 1.0)], pieces[k])
-        highest = max([highest, *np.abs(extremes).tolist()])
-    return highest
+    return highest if pieces is None else max(highest, greatest(pieces))
 
 
 def _frozen(values: object, name: str, shape: tuple[int, ...] | None) -> Array:

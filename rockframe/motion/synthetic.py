@@ -19,6 +19,7 @@ from rockframe.units import (
     to_ratio,
     to_si,
 )
+from rockframe.words import choice
 
 if TYPE_CHECKING:
     from rockframe.motion.quantities import QuantityLike, RatioLike
@@ -137,7 +138,7 @@ class SyntheticMotions(MotionOperations):
         >>> motion.metadata["seed"]
         1
         """
-        from rockframe.motion.stochastic import PointSource, accelerogram
+        from rockframe.motion.stochastic import PointSource, Site, accelerogram
 
         owner = f"{cls.__name__}.stochastic"
         number, amount = partial(to_ratio, owner=owner), partial(to_si, owner=owner)
@@ -154,7 +155,7 @@ class SyntheticMotions(MotionOperations):
                 quality_exponent, name="quality_exponent", condition=_EXPONENTS
             ),
             kappa=amount(kappa, _KAPPA, name="kappa", condition=NOT_NEGATIVE),
-            site=_site(site, owner),
+            site=choice(Site, site, owner=owner, name="site"),
         )
         first = _seed(seed, owner)
         ratio = None
@@ -184,17 +185,6 @@ def _seed(value: object, owner: str) -> int:
         msg = f"{owner}: seed must be a whole number, zero or more, got {value!r}"
         raise ComponentError(msg)
     return value
-
-
-def _site(value: str, owner: str) -> Site:
-    from rockframe.motion.stochastic import Site
-
-    try:
-        return Site(value)
-    except ValueError as problem:
-        known = ", ".join(repr(str(one)) for one in Site)
-        msg = f"{owner}: site must be one of {known}, got {value!r}"
-        raise ComponentError(msg) from problem
 
 
 def _extrapolations(source: PointSource, owner: str) -> list[str]:

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from enum import StrEnum
-from typing import TYPE_CHECKING, Final, TypeVar
+from typing import TYPE_CHECKING, Final
 
 from rockframe.errors import ComponentError
 from rockframe.motion.samples import Array, MotionSI
@@ -12,8 +11,6 @@ from rockframe.motion.value import MotionValue
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-
-Choice = TypeVar("Choice", bound=StrEnum)
 
 SAME_STEP: Final = 1e-9
 """Relative difference up to which two time steps are the same."""
@@ -54,35 +51,6 @@ def replaced(
     vertical = None if si.vertical is None else change(si.vertical, si.vertical_pieces)
     step = si.time_step if time_step is None else time_step
     return MotionSI(step, change(si.acceleration, si.pieces), vertical)
-
-
-def choice(kind: type[Choice], given: object, *, owner: str, name: str) -> Choice:
-    """Read an argument that is one of a few words.
-
-    Parameters
-    ----------
-    kind : type of StrEnum
-        The words.
-    given : object
-        What the user gave.
-    owner, name : str
-        Class and method, and argument, for the message.
-
-    Returns
-    -------
-    StrEnum
-
-    Raises
-    ------
-    ComponentError
-        None of them.
-    """
-    try:
-        return kind(str(given))
-    except ValueError:
-        known = " or ".join(repr(str(one)) for one in kind)
-        msg = f"{owner}: {name} must be {known}, got {given!r}"
-        raise ComponentError(msg) from None
 
 
 def other_motion(other: object, si: MotionSI, owner: str) -> MotionValue:

@@ -6,11 +6,12 @@ from enum import StrEnum
 from typing import TYPE_CHECKING, Final, Self, cast
 
 from rockframe.errors import ComponentError
-from rockframe.motion.operations.base import ProcessedMotion, check_whole, choice, replaced
+from rockframe.motion.operations.base import ProcessedMotion, check_whole, replaced
 from rockframe.motion.processing.baseline import without_baseline, without_drift
 from rockframe.motion.processing.filters import butterworth, padding_samples
 from rockframe.motion.samples import MAXIMUM_SAMPLES
 from rockframe.units import FREQUENCY, POSITIVE, to_si
+from rockframe.words import choice
 
 if TYPE_CHECKING:
     from rockframe.motion.quantities import QuantityLike

@@ -7,11 +7,12 @@ from enum import StrEnum
 from typing import TYPE_CHECKING, Final, Self
 
 from rockframe.errors import ComponentError
-from rockframe.motion.operations.base import SAME_STEP, ProcessedMotion, choice, replaced
+from rockframe.motion.operations.base import SAME_STEP, ProcessedMotion, replaced
 from rockframe.motion.processing.sampling import band_limited, coarsened, refined
 from rockframe.motion.processing.tapers import tapered
 from rockframe.motion.samples import MAXIMUM_SAMPLES, Array, MotionSI
 from rockframe.units import POSITIVE, TIME, to_si
+from rockframe.words import choice
 
 if TYPE_CHECKING:
     from rockframe.motion.quantities import QuantityLike

@@ -23,6 +23,17 @@ def sample_count(duration: float, time_step: float) -> int:
     return math.floor(duration / time_step * (1.0 + 1e-12) + _INTEGER_RATIO) + 1
 
 
+def whole_ratio(ratio: float) -> int | None:
+    """Give the whole number that a ratio of time steps is, or None."""
+    times = round(ratio)
+    return times if abs(ratio - times) <= _INTEGER_RATIO * ratio else None
+
+
+def instants_of(duration: float, time_step: float) -> Array:
+    """Give the times of the samples of step `time_step` within `duration` [s]."""
+    return np.minimum(np.arange(sample_count(duration, time_step)) * time_step, duration)
+
+
 def refined(dt: float, samples: Array, pieces: Array | None, time_step: float) -> Array:
     """Sample the same function of time more finely.
 
@@ -42,14 +53,12 @@ def refined(dt: float, samples: Array, pieces: Array | None, time_step: float) -
     ndarray
         The old samples are among the new ones if the ratio is an integer.
     """
-    ratio = dt / time_step
-    times = round(ratio)
-    if pieces is None and abs(ratio - times) <= _INTEGER_RATIO * ratio:
+    times = whole_ratio(dt / time_step)
+    if pieces is None and times is not None:
         share = np.arange(times) / times
         between = samples[:-1, None] * (1.0 - share) + samples[1:, None] * share
         return np.append(between.reshape(-1), samples[-1])
-    duration = (samples.size - 1) * dt
-    instants = np.minimum(np.arange(sample_count(duration, time_step)) * time_step, duration)
+    instants = instants_of((samples.size - 1) * dt, time_step)
     return value_at(dt, samples, pieces, instants)
 
 
@@ -81,23 +90,20 @@ def band_limited(dt: float, samples: Array, time_step: float) -> Array:
 
     signal: Any = module
     ratio = dt / time_step
-    times = round(ratio)
-    whole = abs(ratio - times) <= _INTEGER_RATIO * ratio
-    if not whole:
-        times = math.ceil(_OVERSAMPLING * ratio)
+    whole = whole_ratio(ratio)
+    times = math.ceil(_OVERSAMPLING * ratio) if whole is None else whole
     sinc = np.sinc(np.arange(-_SINC_REACH * times, _SINC_REACH * times + 1) / times)
     taps = sinc * signal.windows.kaiser(sinc.size, _SINC_WINDOW)
     # without division by the sum, so that the old samples stay as they are
     fine: Array = signal.resample_poly(samples, times, 1, window=taps / times, padtype="line")
     fine = fine[: (samples.size - 1) * times + 1]
-    if whole:
+    if whole is not None:
         fine[::times] = samples
         return fine
     from scipy import interpolate as splines
 
     spline: Any = splines
-    duration = (samples.size - 1) * dt
-    instants = np.minimum(np.arange(sample_count(duration, time_step)) * time_step, duration)
+    instants = instants_of((samples.size - 1) * dt, time_step)
     return spline.make_interp_spline(np.arange(fine.size) * (dt / times), fine, k=5)(instants)
 
 
@@ -130,15 +136,13 @@ def coarsened(dt: float, samples: Array, time_step: float) -> Array:
     sos = signal.cheby1(_ANTI_ALIAS_ORDER, _ANTI_ALIAS_RIPPLE, edge, output="sos")
     padding = min(samples.size - 1, math.ceil(10.0 * time_step / dt) + 27)
     smooth: Array = signal.sosfiltfilt(sos, samples, padtype="odd", padlen=padding)
-    ratio = time_step / dt
-    times = round(ratio)
-    if abs(ratio - times) <= _INTEGER_RATIO * ratio:
+    times = whole_ratio(time_step / dt)
+    if times is not None:
         return smooth[::times]
     from scipy import interpolate as splines
 
     spline: Any = splines
-    duration = (samples.size - 1) * dt
-    instants = np.arange(sample_count(duration, time_step)) * time_step
+    instants = instants_of((samples.size - 1) * dt, time_step)
     degree = min(3, samples.size - 1)
     return spline.make_interp_spline(np.arange(samples.size) * dt, smooth, k=degree)(instants)
 

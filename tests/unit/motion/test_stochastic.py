@@ -152,7 +152,7 @@ def test_bad_seed(seed):
         ({"vertical": 0.0}, "vertical must be greater than zero"),
         ({"time_step": "0.1 s"}, "time_step must be from 0.0005 s to 0.02 s"),
         ({"time_step": "1 us"}, "time_step must be from 0.0005 s to 0.02 s"),
-        ({"site": "swamp"}, "site must be one of 'rock 760', 'rock 620', got 'swamp'"),
+        ({"site": "swamp"}, "site must be 'rock 760' or 'rock 620', got 'swamp'"),
         ({"stress_drop": "1 mPa"}, "out of proportion"),
     ],
 )
