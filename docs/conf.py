@@ -3,8 +3,9 @@
 import os
 import re
 import sys
-from importlib.metadata import version as version_of
 from pathlib import Path
+
+from rockframe.version import __version__
 
 # The kernels are documented as the plain Python that they are written in.
 os.environ["ROCKFRAME_COMPILE"] = "0"
@@ -13,7 +14,7 @@ sys.path.insert(0, str(Path(__file__).parent / "_ext"))
 project = "rockframe"
 author = "The rockframe developers"
 project_copyright = author
-version = release = version_of("rockframe")
+version = release = __version__
 
 extensions = [
     "myst_parser",

@@ -2,19 +2,16 @@
 
 from collections.abc import Mapping
 from datetime import UTC, datetime
-from functools import cache
-from importlib.metadata import version
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import xarray as xr
 
 from rockframe.constants import PAPER_TITLE
 from rockframe.errors import SchemaError
 from rockframe.results.outcome import Values
 from rockframe.results.schema import COORDINATES, SCHEMA, SCHEMA_VERSION
-
-if TYPE_CHECKING:
-    import xarray as xr
+from rockframe.version import __version__
 
 
 def build_dataset(
@@ -24,7 +21,7 @@ def build_dataset(
     over: tuple[str, ...] = (),
     title: str = "Rocking response",
     source: str = "event-driven integration",
-) -> "xr.Dataset":
+) -> xr.Dataset:
     """Label values by the schema and add the provenance every result carries.
 
     Parameters
@@ -47,8 +44,6 @@ def build_dataset(
     SchemaError
         A name is not in the schema, or a shape does not fit its dimensions.
     """
-    import xarray as xr
-
     variables: dict[str, xr.Variable] = {}
     for name, value in values.items():
         row = SCHEMA.get(name)
@@ -71,21 +66,15 @@ def build_dataset(
     return dataset
 
 
-@cache
-def _release() -> str:
-    return version("rockframe")
-
-
 def _attributes(given: Mapping[str, str | float | int], title: str, source: str) -> dict[str, Any]:
     now = datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
-    release = _release()
     return {
         "Conventions": "CF-1.11",
         "title": title,
-        "history": f"{now} computed by rockframe {release}",
-        "source": f"rockframe {release}, {source}",
+        "history": f"{now} computed by rockframe {__version__}",
+        "source": f"rockframe {__version__}, {source}",
         "references": PAPER_TITLE,
-        "rockframe_version": release,
+        "rockframe_version": __version__,
         "schema_version": SCHEMA_VERSION,
         **given,
     }
