@@ -3,14 +3,14 @@
 All functions here work in the step's own scale: x = t/h from 0 to 1, displacement
 u, velocity V = h du/dt, acceleration W = h^2 d2u/dt2. The oscillator is then
 :eq:`eq-oscillator-step`, with the one number kappa = 2 pi h/T. Compiled where numba is
-installed; this file calls no kernel of another one.
+installed.
 """
 
 from typing import Any, Final
 
 import numpy as np
 
-from rockframe.compiled import Matrix, Vector, kernel
+from rockframe.compiled import FrozenMatrix, Matrix, Vector, entry, kernel
 
 STEPS_PER_PERIOD: Final = 12
 """Steps are split until a period has that many: kappa is at most 0.52."""
@@ -206,9 +206,22 @@ def march(
     peaks[2] = max(peaks[2], most_pull)
 
 
-@kernel
+@entry(
+    "none",
+    "frozen_matrix",
+    "matrix",
+    "real",
+    "real",
+    "vector",
+    "matrix",
+    "matrix",
+    "vector",
+    "vector",
+    "vector",
+    "matrix",
+)
 def march_all(
-    pieces: Matrix,
+    pieces: FrozenMatrix,
     still: Matrix,
     time_step: float,
     damping: float,

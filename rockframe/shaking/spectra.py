@@ -4,7 +4,9 @@ from typing import Final
 
 import numpy as np
 
+from rockframe.compiled import COMPILED
 from rockframe.errors import ComponentError
+from rockframe.shaking.oscillator import QUANTITIES, STEPS_PER_PERIOD, march_all
 from rockframe.shaking.polynomials import greatest
 from rockframe.shaking.shaking import Array, Shaking
 from rockframe.units import Condition
@@ -36,9 +38,6 @@ def check_cost(shaking: Shaking, periods: Array, *, owner: str) -> None:
     ComponentError
         Too many steps.
     """
-    # imported here, because it loads the compiler
-    from rockframe.shaking.oscillator import STEPS_PER_PERIOD
-
     moving = periods[periods > 0.0]
     if moving.size == 0:
         return
@@ -71,9 +70,6 @@ def spectral_peaks(shaking: Shaking, periods: Array, damping_ratio: float) -> Ar
         Greatest relative displacement [m], relative velocity [m s^-1] and absolute
         acceleration [m s^-2].
     """
-    # on the first spectrum, not at the import: it loads the compiler
-    from rockframe.compiled import COMPILED
-
     found = np.zeros((periods.size, 3))
     found[:, 2] = greatest(shaking.pieces)  # a rigid oscillator moves with the ground
     moving = np.flatnonzero(periods > 0.0)
@@ -117,9 +113,7 @@ def pseudo_spectra(
 
 
 def _march(shaking: Shaking, periods: Array, damping_ratio: float) -> Array:
-    from rockframe.shaking.oscillator import QUANTITIES, STEPS_PER_PERIOD, march_all
-
-    pieces = np.array(shaking.pieces, order="C")
+    pieces = np.ascontiguousarray(shaking.pieces)
     powers = pieces.shape[1]
     found = np.empty((periods.size, QUANTITIES))
     march_all(

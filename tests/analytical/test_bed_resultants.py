@@ -20,11 +20,6 @@ DAMPINGS = (0.0, 45.0)
 SEPARATIONS = (0.0, 1.0)  # of `Bed.by_pressure`
 
 
-def plain(function):
-    """Give the Python source of a compiled helper."""
-    return getattr(function, "py_func", function)
-
-
 def make_bed(damping, by_pressure):
     return b.Bed(STIFFNESS, damping, SETTLEMENT, by_pressure)
 
@@ -49,7 +44,7 @@ def states(count, seed):
 
 def modes(ends):
     """Give the states of the ends that belong to a state of the base."""
-    return int(plain(b.end_state)(ends.u_left)), int(plain(b.end_state)(ends.u_right))
+    return int(b.end_state(ends.u_left)), int(b.end_state(ends.u_right))
 
 
 def resultants(ends, bed, lever_left, lever_right):
@@ -223,8 +218,7 @@ def test_accelerations_of_a_body_are_those_of_its_pressures(alpha, by_pressure, 
         spin, speed = 0.3 * rng.normal(), 0.3 * rng.normal()
         model, mode, state = body(alpha, y, spin, speed, small=small, by_pressure=by_pressure)
         out = np.zeros(5)
-        accelerate = getattr(model.accelerate, "__wrapped__", model.accelerate)
-        accelerate(mode, state, 0.4, -0.2, model.parameters, out)
+        model.accelerate(mode, state, 0.4, -0.2, model.parameters, out)
         force, moment = by_strips(model, state, alpha, small, by_pressure=by_pressure, damping=45.0)
         gravity = 9.81
         size = 1e-12 * (abs(force) + gravity + STIFFNESS * WIDTH * (abs(y) + abs(alpha)))
@@ -274,7 +268,7 @@ def test_in_flight_nothing_bears_burns_or_is_stored(damping, by_pressure):
         stored, change = b.bed_energy(ends, bed, WIDTH)
         assert stored == 0.0
         assert change == pytest.approx(-0.5 * STIFFNESS * WIDTH * SETTLEMENT**2, rel=1e-14)
-        assert plain(b.airborne)(*modes(ends))
+        assert b.airborne(*modes(ends))
 
 
 def test_where_the_springs_alone_hold_both_rules_are_one():
