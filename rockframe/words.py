@@ -1,7 +1,8 @@
-"""Arguments that are one of a few words."""
+"""Arguments without a unit: one of a few words, or a whole number."""
 
 from enum import StrEnum
-from typing import TypeVar
+from operator import index
+from typing import SupportsIndex, TypeVar, cast
 
 from rockframe.errors import ComponentError
 
@@ -35,3 +36,37 @@ def choice(kind: type[Choice], given: object, *, owner: str, name: str) -> Choic
         known = " or ".join(repr(str(one)) for one in kind)
         msg = f"{owner}: {name} must be {known}, got {given!r}"
         raise ComponentError(msg) from None
+
+
+def whole_number(
+    given: object, *, owner: str, name: str, lowest: int, highest: int | None = None
+) -> int:
+    """Read an argument that is a whole number, Python's or numpy's.
+
+    Parameters
+    ----------
+    given : object
+        What the user gave.
+    owner, name : str
+        Class or function, and argument, for the message.
+    lowest, highest : int
+        Range; no upper bound if `highest` is None.
+
+    Returns
+    -------
+    int
+
+    Raises
+    ------
+    ComponentError
+        None, or out of the range.
+    """
+    try:
+        number = None if isinstance(given, bool) else index(cast("SupportsIndex", given))
+    except TypeError:
+        number = None
+    if number is not None and lowest <= number and (highest is None or number <= highest):
+        return number
+    wanted = f", {lowest} or more" if highest is None else f" from {lowest} to {highest}"
+    msg = f"{owner}: {name} must be a whole number{wanted}, got {given!r}"
+    raise ComponentError(msg)

@@ -5,19 +5,19 @@ import time
 import warnings
 from collections.abc import Sequence
 from dataclasses import fields, replace
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import TYPE_CHECKING, Final, TypeAlias, cast
 
 import numpy as np
+import xarray as xr
 
 from rockframe.errors import ComponentError, ModelWarning
 from rockframe.ladder.errors import event_time_error, history_error, peak_error
 from rockframe.ladder.models import model_ladder
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import Accuracy, AccuracyLevel
+from rockframe.words import whole_number
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from rockframe.components import InitialState
     from rockframe.motion import GroundMotion
     from rockframe.simulation.plan import Plan
@@ -47,7 +47,7 @@ def tradeoff(
     free_vibration: "QuantityLike | None" = None,
     initial: "InitialState | None" = None,
     output_step: "QuantityLike | None" = None,
-) -> "xr.Dataset":
+) -> xr.Dataset:
     """Measure what each model and each accuracy costs, and how far off it is.
 
     Parameters
@@ -93,7 +93,10 @@ def tradeoff(
     from rockframe.simulation.provenance import motion_attributes
     from rockframe.simulation.run import run
 
-    _check(system, repeats)
+    if not isinstance(cast("object", system), System):
+        msg = f"{_OWNER}: system needs a System, got {system!r}"
+        raise ComponentError(msg)
+    repeats = whole_number(repeats, owner=_OWNER, name="repeats", lowest=1, highest=_MOST_REPEATS)
     ladder = model_ladder(system)
     chosen = _chosen(ladder, models)
     settings = {_label(given): _setting(given) for given in accuracies}
@@ -148,7 +151,7 @@ def tradeoff(
 
 
 def measure(
-    scene: System, plan: "Plan", converged: "xr.Dataset", truth: "xr.Dataset", repeats: int
+    scene: System, plan: "Plan", converged: xr.Dataset, truth: xr.Dataset, repeats: int
 ) -> Outcome:
     """Run a rung, time it and compare it.
 
@@ -193,16 +196,6 @@ def _timed(scene: System, plan: "Plan") -> float:
     start = time.perf_counter()
     outcome(scene, plan)
     return time.perf_counter() - start
-
-
-def _check(system: object, repeats: object) -> None:
-    if not isinstance(system, System):
-        msg = f"{_OWNER}: system needs a System, got {system!r}"
-        raise ComponentError(msg)
-    whole = repeats if isinstance(repeats, int) and not isinstance(repeats, bool) else 0
-    if not 1 <= whole <= _MOST_REPEATS:
-        msg = f"{_OWNER}: repeats must be a whole number from 1 to {_MOST_REPEATS}, got {repeats!r}"
-        raise ComponentError(msg)
 
 
 def _chosen(ladder: dict[str, System], models: Sequence[str] | None) -> dict[str, System]:

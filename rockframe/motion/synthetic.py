@@ -19,7 +19,7 @@ from rockframe.units import (
     to_ratio,
     to_si,
 )
-from rockframe.words import choice
+from rockframe.words import choice, whole_number
 
 if TYPE_CHECKING:
     from rockframe.motion.quantities import QuantityLike, RatioLike
@@ -157,7 +157,7 @@ class SyntheticMotions(MotionOperations):
             kappa=amount(kappa, _KAPPA, name="kappa", condition=NOT_NEGATIVE),
             site=choice(Site, site, owner=owner, name="site"),
         )
-        first = _seed(seed, owner)
+        first = whole_number(seed, owner=owner, name="seed", lowest=0)
         ratio = None
         if vertical is not None:
             ratio = number(vertical, name="vertical", condition=POSITIVE)
@@ -178,13 +178,6 @@ class SyntheticMotions(MotionOperations):
             ),
             recipe={"constructor": "stochastic", **given},
         )
-
-
-def _seed(value: object, owner: str) -> int:
-    if isinstance(value, bool) or not isinstance(value, int) or value < 0:
-        msg = f"{owner}: seed must be a whole number, zero or more, got {value!r}"
-        raise ComponentError(msg)
-    return value
 
 
 def _extrapolations(source: PointSource, owner: str) -> list[str]:

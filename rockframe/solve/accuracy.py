@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, fields
 from enum import StrEnum
+from numbers import Integral, Real
 from typing import Final, Literal
 
 from rockframe.errors import SolverError
@@ -72,14 +73,14 @@ class Accuracy:
                 continue
             low, high = bounds[field.name]
             whole = field.name in ("max_steps", "substeps")
-            if isinstance(value, bool) or not isinstance(value, int | float):
+            if isinstance(value, bool) or not isinstance(value, Real):
                 asked = f"a whole number or {FEWEST!r}" if field.name == "substeps" else "a number"
                 msg = f"Accuracy: {field.name} must be {asked}, got {value!r}"
                 raise SolverError(msg)
-            if whole and not isinstance(value, int):
+            if whole and not isinstance(value, Integral):
                 msg = f"Accuracy: {field.name} must be a whole number, got {value!r}"
                 raise SolverError(msg)
-            if not low <= value <= high:
+            if not low <= float(value) <= high:
                 msg = f"Accuracy: {field.name} must lie from {low:g} to {high:g}, got {value!r}"
                 raise SolverError(msg)
 

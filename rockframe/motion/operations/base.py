@@ -85,10 +85,3 @@ def other_motion(other: object, si: MotionSI, owner: str) -> MotionValue:
         )
         raise ComponentError(msg)
     return other
-
-
-def check_whole(value: object, name: str, lowest: int, highest: int, owner: str) -> None:
-    """Refuse what is not a whole number of a range."""
-    if isinstance(value, bool) or not isinstance(value, int) or not lowest <= value <= highest:
-        msg = f"{owner}: {name} must be a whole number from {lowest} to {highest}, got {value!r}"
-        raise ComponentError(msg)

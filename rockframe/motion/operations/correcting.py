@@ -6,12 +6,12 @@ from enum import StrEnum
 from typing import TYPE_CHECKING, Final, Self, cast
 
 from rockframe.errors import ComponentError
-from rockframe.motion.operations.base import ProcessedMotion, check_whole, replaced
+from rockframe.motion.operations.base import ProcessedMotion, replaced
 from rockframe.motion.processing.baseline import without_baseline, without_drift
 from rockframe.motion.processing.filters import butterworth, padding_samples
 from rockframe.motion.samples import MAXIMUM_SAMPLES
 from rockframe.units import FREQUENCY, POSITIVE, to_si
-from rockframe.words import choice
+from rockframe.words import choice, whole_number
 
 if TYPE_CHECKING:
     from rockframe.motion.quantities import QuantityLike
@@ -94,7 +94,7 @@ class CorrectingOperations(ProcessedMotion):
                     f"frequency, {nyquist:.6g} Hz"
                 )
                 raise ComponentError(msg)
-        check_whole(order, "order", 1, _HIGHEST_ORDER, owner)
+        order = whole_number(order, owner=owner, name="order", lowest=1, highest=_HIGHEST_ORDER)
         if not isinstance(cast("object", causal), bool):
             msg = f"{owner}: causal must be True or False, got {causal!r}"
             raise ComponentError(msg)
@@ -146,7 +146,8 @@ class CorrectingOperations(ProcessedMotion):
         owner, si = f"{type(self).__name__}.baseline_corrected", self.si
         fitted = choice(Baseline, fit, owner=owner, name="fit")
         lowest = 1 if fitted is Baseline.VELOCITY else 0
-        check_whole(order, "order", lowest, min(_HIGHEST_DEGREE, len(self) - 1), owner)
+        highest = min(_HIGHEST_DEGREE, len(self) - 1)
+        order = whole_number(order, owner=owner, name="order", lowest=lowest, highest=highest)
         if fitted is Baseline.VELOCITY:
             result = replaced(si, lambda samples, _: without_drift(si.time_step, samples, order))
             step = (

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, Final, TypedDict
 
 from rockframe.errors import ComponentError
 from rockframe.units import ANGLE, Condition, Measure, Unit, to_ratio, to_si
+from rockframe.words import whole_number
 
 if TYPE_CHECKING:
     from rockframe.motion.quantities import QuantityLike, RatioLike
@@ -107,11 +108,9 @@ class Arguments:
 
     def whole(self, name: str, value: object, highest: int) -> int:
         """Read a whole number from 1 to `highest`; ComponentError if it is none."""
-        if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= highest:
-            msg = f"{self.owner}: {name} must be a whole number from 1 to {highest}, got {value!r}"
-            raise ComponentError(msg)
-        self._remember(name, value, f"{name}: {value}", f"{name}: {value}")
-        return value
+        number = whole_number(value, owner=self.owner, name=name, lowest=1, highest=highest)
+        self._remember(name, number, f"{name}: {number}", f"{name}: {number}")
+        return number
 
     def switch(self, name: str, value: object) -> bool:
         """Read True or False; ComponentError if it is neither."""

@@ -128,9 +128,15 @@ def test_vertical_component():
     assert not np.array_equal(double.si.vertical, double.si.acceleration)
 
 
+def test_a_seed_of_numpy():
+    motion = draw(seed=np.int64(7))
+    assert motion == draw(seed=7)
+    assert type(motion.metadata["seed"]) is int
+
+
 @pytest.mark.parametrize("seed", [-1, 1.0, True, "1", None])
 def test_bad_seed(seed):
-    with pytest.raises(ComponentError, match="seed must be a whole number, zero or more"):
+    with pytest.raises(ComponentError, match="seed must be a whole number, 0 or more"):
         draw(seed=seed)
 
 
