@@ -41,8 +41,12 @@ if TYPE_CHECKING:
     from rockframe.simulation.certification import Certification as Certification
     from rockframe.simulation.system import System as System
     from rockframe.solve.accuracy import Accuracy as Accuracy
+    from rockframe.version import __version__ as __version__
 
-    __version__: str
+# Every scene needs these two. They are most of what has to be loaded: here, so that the
+# first simulation does not wait for them.
+for _library in ("pint", "xarray"):
+    import_module(_library)
 
 _HOMES = {
     "rockframe.components": (
@@ -79,6 +83,7 @@ _HOMES = {
     "rockframe.simulation.certification": ("Certification",),
     "rockframe.simulation.system": ("System",),
     "rockframe.solve.accuracy": ("Accuracy",),
+    "rockframe.version": ("__version__",),
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
 
@@ -120,14 +125,12 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    # Names are imported on their first use: a script that only reads records
+    # The rest is imported on its first use: a script that only reads records
     # never waits for the integrator.
     if name in _HOME_OF:
         value = getattr(import_module(_HOME_OF[name]), name)
     elif name == "plot":
         value = import_module("rockframe.plot")
-    elif name == "__version__":
-        value = import_module("importlib.metadata").version("rockframe")
     else:
         msg = f"module {__name__!r} has no attribute {name!r}"
         raise AttributeError(msg)

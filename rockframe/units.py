@@ -11,17 +11,14 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from enum import StrEnum
 from numbers import Real
-from typing import TYPE_CHECKING, Any, Final, TypeAlias
+from typing import Any, Final, TypeAlias
+
+import pint
 
 from rockframe.errors import ComponentError, UnitsError
 
-if TYPE_CHECKING:
-    import pint
-
-    QuantityLike: TypeAlias = str | pint.Quantity[Any]
-    RatioLike: TypeAlias = float | str | pint.Quantity[Any]
-else:  # pint is imported when the first quantity is read
-    QuantityLike = RatioLike = object
+QuantityLike: TypeAlias = str | pint.Quantity[Any]
+RatioLike: TypeAlias = float | str | pint.Quantity[Any]
 
 
 class Unit(StrEnum):
@@ -108,7 +105,7 @@ _NO_UNIT: Final = re.compile(
 _POWER: Final = re.compile(r"\s*(?:\*\*|\^)\s*")
 
 
-def quantity(value: float, measure: Measure) -> "pint.Quantity[Any]":
+def quantity(value: float, measure: Measure) -> pint.Quantity[Any]:
     """Give an SI value its unit back.
 
     Parameters
@@ -123,8 +120,6 @@ def quantity(value: float, measure: Measure) -> "pint.Quantity[Any]":
     pint.Quantity
         In the shared application registry.
     """
-    import pint
-
     return pint.get_application_registry().Quantity(value, str(measure.unit))
 
 
@@ -196,8 +191,6 @@ def to_si_values(value: object, measure: Measure, *, owner: str, name: str) -> l
     ComponentError
         Not finite.
     """
-    import pint
-
     if isinstance(value, str):
         return [to_si(value, measure, owner=owner, name=name)]
     if isinstance(value, pint.Quantity):
@@ -245,8 +238,6 @@ def to_ratio(
     ComponentError
         Not finite, or outside `condition`.
     """
-    import pint
-
     number: object = value
     if isinstance(value, str | pint.Quantity):
         ratio = Measure("a pure ratio", Unit.ONE, "0.1")
@@ -273,9 +264,7 @@ NOT_NEGATIVE: Final = Condition("zero or more", lambda value: value >= 0.0)
 UNIT_INTERVAL: Final = Condition("above 0 and at most 1", lambda value: 0.0 < value <= 1.0)
 
 
-def _parse(value: object, measure: Measure, *, owner: str, name: str) -> "pint.Quantity[Any]":
-    import pint
-
+def _parse(value: object, measure: Measure, *, owner: str, name: str) -> pint.Quantity[Any]:
     if isinstance(value, pint.Quantity):
         return value
     needed = f"{owner}: {name} needs {measure.name} with a unit"
@@ -302,7 +291,7 @@ def _parse(value: object, measure: Measure, *, owner: str, name: str) -> "pint.Q
 
 
 def _check_kind(
-    given: "pint.Quantity[Any]", value: object, measure: Measure, *, owner: str, name: str
+    given: pint.Quantity[Any], value: object, measure: Measure, *, owner: str, name: str
 ) -> None:
     wanted = type(given)(1.0, "" if measure.unit is Unit.ONE else str(measure.unit))
     try:

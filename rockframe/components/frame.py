@@ -3,7 +3,10 @@
 import json
 import warnings
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any, Self
+from typing import Any, Self
+
+import pint
+import xarray as xr
 
 from rockframe.components.block import Block
 from rockframe.components.frame_building import listed_building, regular_building
@@ -19,10 +22,6 @@ from rockframe.units import (
     RatioLike,
     quantity,
 )
-
-if TYPE_CHECKING:
-    import pint
-    import xarray as xr
 
 _LEAST_SHAPE_FACTOR = 1.0 - 1e-9  # a shape factor derived from an inertia is rounded
 
@@ -253,7 +252,7 @@ class FrameEquivalent(Block):
         return self._members
 
     @property
-    def depth(self) -> "pint.Quantity[Any] | None":
+    def depth(self) -> pint.Quantity[Any] | None:
         """Depth B_y, perpendicular to the plane of rocking, if known [m]."""
         depth = None if self._outline is None else self._outline.depth
         return None if depth is None else quantity(depth, LENGTH)
@@ -264,13 +263,13 @@ class FrameEquivalent(Block):
         return None if self._outline is None else self._outline.space_proportion(self._members)
 
     @property
-    def centre_of_mass_height(self) -> "pint.Quantity[Any] | None":
+    def centre_of_mass_height(self) -> pint.Quantity[Any] | None:
         """Height of the members' centre of mass; the model takes H/2 instead [m]."""
         if self._outline is None:
             return None
         return quantity(self._outline.centre_of_mass(self._members)[1], LENGTH)
 
-    def members_table(self) -> "xr.Dataset":
+    def members_table(self) -> xr.Dataset:
         """Give one row for each member: mass, place, size, inertia.
 
         Returns

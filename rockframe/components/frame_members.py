@@ -3,7 +3,9 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import Any, ClassVar, Self
+
+import pint
 
 from rockframe.components.base import Component, SIProperty, with_unit
 from rockframe.errors import ComponentError
@@ -19,9 +21,6 @@ from rockframe.units import (
     quantity,
     to_si,
 )
-
-if TYPE_CHECKING:
-    import pint
 
 
 @dataclass(frozen=True)
@@ -205,22 +204,22 @@ class Member(Component[MemberSI]):
         return None if kind is None else str(kind)
 
     @property
-    def width(self) -> "pint.Quantity[Any] | None":
+    def width(self) -> pint.Quantity[Any] | None:
         """Horizontal size in the plane of rocking, if known [m]."""
         return _known(self.si.width, LENGTH)
 
     @property
-    def height(self) -> "pint.Quantity[Any] | None":
+    def height(self) -> pint.Quantity[Any] | None:
         """Vertical size, if known [m]."""
         return _known(self.si.height, LENGTH)
 
     @property
-    def depth(self) -> "pint.Quantity[Any] | None":
+    def depth(self) -> pint.Quantity[Any] | None:
         """Size perpendicular to the plane of rocking, if known [m]."""
         return _known(self.si.depth, LENGTH)
 
 
-def _known(value: float | None, measure: Measure) -> "pint.Quantity[Any] | None":
+def _known(value: float | None, measure: Measure) -> pint.Quantity[Any] | None:
     return None if value is None else quantity(value, measure)
 
 

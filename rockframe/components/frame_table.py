@@ -2,14 +2,12 @@
 
 import math
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
+
+import xarray as xr
 
 from rockframe.components.frame_members import Member
 from rockframe.units import Unit
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 _Column = tuple[str, str, str, Callable[[Member, float], float | None]]
 _COLUMNS: Final[tuple[_Column, ...]] = (
@@ -63,7 +61,7 @@ _COLUMNS: Final[tuple[_Column, ...]] = (
 
 def members_table(
     members: Sequence[Member], height: float, attributes: dict[str, float | None]
-) -> "xr.Dataset":
+) -> xr.Dataset:
     """Put members into a table, one row each.
 
     Parameters
@@ -80,8 +78,6 @@ def members_table(
     xarray.Dataset
         Dimension ``member``, labelled by name and kind. What is unknown is NaN.
     """
-    import xarray as xr
-
     variables: dict[str, Any] = {}
     for name, unit, words, read in _COLUMNS:
         values = [read(member, height) for member in members]

@@ -1,20 +1,16 @@
 """How far a run is from another."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
-
-if TYPE_CHECKING:
-    import xarray as xr
+import xarray as xr
 
 
-def peak_error(run: "xr.Dataset", reference: "xr.Dataset") -> float:
+def peak_error(run: xr.Dataset, reference: xr.Dataset) -> float:
     """Compare peak rotations, relative to that of the reference."""
     peak = float(reference["peak_rotation"])
     return _relative(abs(float(run["peak_rotation"]) - peak), peak)
 
 
-def history_error(run: "xr.Dataset", reference: "xr.Dataset") -> float:
+def history_error(run: xr.Dataset, reference: xr.Dataset) -> float:
     """Compare rotations along time, as far as both go, relative to the reference's peak."""
     one, other = (data["rotation"].to_numpy() for data in (run, reference))
     times = [data["time"].to_numpy() for data in (run, reference)]
@@ -25,7 +21,7 @@ def history_error(run: "xr.Dataset", reference: "xr.Dataset") -> float:
     return _relative(float(np.max(np.abs(one[:count] - other[:count]), initial=0.0)), peak)
 
 
-def event_time_error(run: "xr.Dataset", reference: "xr.Dataset") -> float:
+def event_time_error(run: xr.Dataset, reference: xr.Dataset) -> float:
     """Compare the times of events [s]; NaN if the runs have other events."""
     if not np.array_equal(run["event_kind"].to_numpy(), reference["event_kind"].to_numpy()):
         return float("nan")

@@ -1,15 +1,13 @@
 """Which rung to take for an error that one can live with."""
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
+import xarray as xr
 
 from rockframe.errors import SchemaError
 from rockframe.units import POSITIVE, to_ratio
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 _OWNER: Final = "recommend"
 _ERRORS: Final = {"peak_error": "the peak rotation", "history_error": "the rotation along time"}
@@ -39,7 +37,7 @@ class Recommendation:
 
 
 def recommend(
-    dataset: "xr.Dataset", tolerance: float = 0.01, *, error: str = "peak_error"
+    dataset: xr.Dataset, tolerance: float = 0.01, *, error: str = "peak_error"
 ) -> Recommendation:
     """Pick the cheapest rung whose verdict is right and whose error is small enough.
 

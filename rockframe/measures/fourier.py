@@ -3,6 +3,7 @@
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
+import xarray as xr
 
 from rockframe.measures.about import about
 from rockframe.measures.component import component_of, shaking_of
@@ -11,8 +12,6 @@ from rockframe.shaking.fourier import transform_of
 from rockframe.units import FREQUENCY, POSITIVE, to_si
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from rockframe.motion import GroundMotion
     from rockframe.motion.quantities import QuantityLike
 
@@ -24,7 +23,7 @@ def fourier_spectrum(
     *,
     resolution: "QuantityLike | None" = None,
     component: str = "horizontal",
-) -> "xr.Dataset":
+) -> xr.Dataset:
     """Compute the Fourier spectrum of a motion's acceleration.
 
     Parameters

@@ -2,14 +2,14 @@
 
 from typing import TYPE_CHECKING
 
+import xarray as xr
+
 from rockframe.measures.about import about
 from rockframe.measures.component import GroundComponent, component_of, shaking_of
 from rockframe.shaking.path import ground_path
 from rockframe.shaking.polynomials import knots_of
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from rockframe.motion import GroundMotion
 
 _PREFIX = {GroundComponent.HORIZONTAL: "", GroundComponent.VERTICAL: "vertical_"}
@@ -17,7 +17,7 @@ _PREFIX = {GroundComponent.HORIZONTAL: "", GroundComponent.VERTICAL: "vertical_"
 
 def velocity_and_displacement(
     motion: "GroundMotion", *, component: str = "horizontal"
-) -> "xr.Dataset":
+) -> xr.Dataset:
     """Integrate a motion to velocity and displacement of the ground.
 
     Parameters

@@ -4,6 +4,7 @@ import math
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
+import xarray as xr
 
 from rockframe.components import Block
 from rockframe.constants import STANDARD_GRAVITY
@@ -30,8 +31,6 @@ from rockframe.shaking.spectra import DAMPING_RATIO, check_cost
 from rockframe.units import ACCELERATION, POSITIVE, to_ratio, to_si
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from rockframe.motion import GroundMotion
     from rockframe.motion.quantities import QuantityLike, RatioLike
 
@@ -47,7 +46,7 @@ def intensity_measures(
     threshold: "QuantityLike" = "0.05 g_0",
     damping_ratio: "RatioLike" = 0.05,
     gravity: "QuantityLike | None" = None,
-) -> "xr.Dataset":
+) -> xr.Dataset:
     """Compute the intensity measures of a motion.
 
     Parameters

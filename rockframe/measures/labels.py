@@ -3,9 +3,9 @@
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    import xarray as xr
+import xarray as xr
 
+if TYPE_CHECKING:
     from rockframe.shaking.shaking import Array
 
 
@@ -16,7 +16,7 @@ def build_over(
     *,
     title: str,
     source: str,
-) -> "xr.Dataset":
+) -> xr.Dataset:
     """Label values, and give their dimensions coordinates.
 
     The axes have the names and units of the schema's rows for a system's modes, where

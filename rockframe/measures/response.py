@@ -3,6 +3,7 @@
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
+import xarray as xr
 
 from rockframe.errors import ComponentError
 from rockframe.measures.about import about
@@ -14,8 +15,6 @@ from rockframe.units import TIME, to_ratio, to_si_values
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
-
-    import xarray as xr
 
     from rockframe.motion import GroundMotion
     from rockframe.motion.quantities import ArrayLike, QuantityLike, RatioLike
@@ -30,7 +29,7 @@ def response_spectrum(
     damping_ratios: "Iterable[RatioLike] | RatioLike" = (0.05,),
     *,
     component: str = "horizontal",
-) -> "xr.Dataset":
+) -> xr.Dataset:
     """Compute the response spectra of a motion.
 
     Parameters

@@ -7,14 +7,13 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Final, TypeAlias, cast
 
 import numpy as np
+import xarray as xr
 
 from rockframe.errors import ComponentError, SchemaError
 from rockframe.motion.samples import Array, MotionSI
 from rockframe.units import Unit
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from rockframe.motion.value import MotionValue
 
 Recipe: TypeAlias = "Mapping[str, str | float] | None"
@@ -45,8 +44,6 @@ def to_dataset(motion: MotionValue, recipe: Recipe) -> xr.Dataset:
     -------
     xarray.Dataset
     """
-    import xarray as xr
-
     si = motion.si
     held = {
         "acceleration": si.acceleration,

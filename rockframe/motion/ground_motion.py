@@ -8,6 +8,7 @@ from pathlib import PurePath
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
+import xarray as xr
 
 from rockframe.errors import ComponentError, RecordWarning, SchemaError
 from rockframe.motion.analytic import ANALYTIC, AnalyticMotions
@@ -22,8 +23,6 @@ from rockframe.motion.value import UNNAMED
 from rockframe.units import POSITIVE, TIME, to_si
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from rockframe.motion.quantities import ArrayLike, QuantityLike
     from rockframe.motion.readers.source import PathLike
 

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-import sys
 from typing import TYPE_CHECKING, Any, Final, TypeAlias, cast
 
 import numpy as np
+import pint
+import xarray as xr
 
 from rockframe.errors import ComponentError, UnitsError
 from rockframe.motion.unit_names import RecordUnit, acceleration_unit
@@ -15,7 +16,6 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     import numpy.typing as npt
-    import xarray as xr
     from pint.facets.plain import PlainQuantity
 
     from rockframe.motion.samples import Array
@@ -47,8 +47,6 @@ def with_quantity(value: float | Array, measure: Measure) -> Quantity:
     pint.Quantity
         In the shared application registry.
     """
-    import pint
-
     registry: Any = pint.get_application_registry()
     own = value.copy() if isinstance(value, np.ndarray) else value
     return registry.Quantity(own, str(measure.unit))
@@ -182,15 +180,12 @@ def _scaled(values: object, factor: float, owner: str, name: str) -> Array:
 
 
 def _is_quantity(value: object) -> bool:
-    import pint
-
     module: Any = pint  # its Quantity is a generic that strict checkers cannot follow
     return isinstance(value, module.Quantity)
 
 
 def _is_data_array(value: object) -> bool:
-    xarray = sys.modules.get("xarray")  # not imported: then it cannot be one
-    return xarray is not None and isinstance(value, xarray.DataArray)
+    return isinstance(value, xr.DataArray)
 
 
 def declared_step(value: object) -> float | None:

@@ -3,9 +3,9 @@
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import xarray as xr
 
 if TYPE_CHECKING:
-    import xarray as xr
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -68,11 +68,11 @@ def motion(motion: "GroundMotion", *, title: str | None = None) -> "Figure":
     return figure
 
 
-def _line(axes: "Axes", dataset: "xr.Dataset", name: str, colour: str, label: str) -> None:
+def _line(axes: "Axes", dataset: xr.Dataset, name: str, colour: str, label: str) -> None:
     axes.plot(dataset["time"], dataset[name], color=colour, linewidth=0.8, label=label)
 
 
-def _mark_peak(axes: "Axes", dataset: "xr.Dataset", name: str, colour: str) -> None:
+def _mark_peak(axes: "Axes", dataset: xr.Dataset, name: str, colour: str) -> None:
     values = dataset[name].to_numpy()
     place = int(np.argmax(np.abs(values)))
     time, peak = float(dataset["time"][place]), float(values[place])

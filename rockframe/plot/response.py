@@ -3,11 +3,11 @@
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import xarray as xr
 
 from rockframe.errors import SchemaError
 
 if TYPE_CHECKING:
-    import xarray as xr
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -18,7 +18,7 @@ CONTACTS = {"contact_state": "pads", "soil_contact_state": "soil"}
 """Strips of contact states, and what they are called where there are two."""
 
 
-def response(dataset: "xr.Dataset", *, title: str | None = None) -> "Figure":
+def response(dataset: xr.Dataset, *, title: str | None = None) -> "Figure":
     """Draw rotation, vertical displacement and contact states along time.
 
     Parameters
@@ -64,7 +64,7 @@ def response(dataset: "xr.Dataset", *, title: str | None = None) -> "Figure":
     return figure
 
 
-def _ground(axes: "Axes", dataset: "xr.Dataset", time: Any) -> None:
+def _ground(axes: "Axes", dataset: xr.Dataset, time: Any) -> None:
     axes.plot(time, dataset["ground_acceleration"], color="0.3", linewidth=0.8)
     if "vertical_ground_acceleration" in dataset:
         vertical = dataset["vertical_ground_acceleration"]
@@ -73,7 +73,7 @@ def _ground(axes: "Axes", dataset: "xr.Dataset", time: Any) -> None:
     axes.set_ylabel("ground\n[m s$^{-2}$]")
 
 
-def _rotation(axes: "Axes", dataset: "xr.Dataset", time: Any) -> None:
+def _rotation(axes: "Axes", dataset: xr.Dataset, time: Any) -> None:
     theta = float(dataset["overturning_angle"])
     axes.plot(time, dataset["relative_rotation"], color="#222255", linewidth=1.0, label="block")
     uplift = float(dataset["uplift_angle"]) / theta
@@ -96,7 +96,7 @@ def _rotation(axes: "Axes", dataset: "xr.Dataset", time: Any) -> None:
     axes.set_ylabel(r"rotation $\alpha/\theta$ [-]")
 
 
-def _vertical(axes: "Axes", dataset: "xr.Dataset", time: Any) -> None:
+def _vertical(axes: "Axes", dataset: xr.Dataset, time: Any) -> None:
     if "relative_vertical_displacement" in dataset:
         axes.plot(time, dataset["relative_vertical_displacement"], color="#225522", linewidth=1.0)
         axes.set_ylabel(r"vertical $y/\delta$ [-]")
@@ -106,7 +106,7 @@ def _vertical(axes: "Axes", dataset: "xr.Dataset", time: Any) -> None:
     axes.axhline(0.0, color="0.8", linewidth=0.5, zorder=0)
 
 
-def _contact(axes: "Axes", state: "xr.DataArray", time: Any, name: str) -> None:
+def _contact(axes: "Axes", state: xr.DataArray, time: Any, name: str) -> None:
     values = state.to_numpy()
     starts = np.flatnonzero(np.diff(values, prepend=values[0] - 1))
     ends = np.append(time[starts[1:]], time[-1])
@@ -119,12 +119,12 @@ def _contact(axes: "Axes", state: "xr.DataArray", time: Any, name: str) -> None:
     axes.set_ylabel(name, rotation=0, ha="right", va="center")
 
 
-def _states(state: "xr.DataArray") -> list[tuple[int, str]]:
+def _states(state: xr.DataArray) -> list[tuple[int, str]]:
     meanings = str(state.attrs["flag_meanings"]).split()
     return list(zip(state.attrs["flag_values"], meanings, strict=True))
 
 
-def _contact_legend(axes: "Axes", state: "xr.DataArray") -> None:
+def _contact_legend(axes: "Axes", state: xr.DataArray) -> None:
     axes.legend(
         loc="upper center", bbox_to_anchor=(0.5, -1.6), ncols=len(_states(state)),
         fontsize="small", frameon=False,

@@ -3,11 +3,11 @@
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import xarray as xr
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    import xarray as xr
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -73,7 +73,7 @@ def spectra(
     return figure
 
 
-def _history(axes: "Axes", dataset: "xr.Dataset", name: str) -> None:
+def _history(axes: "Axes", dataset: xr.Dataset, name: str) -> None:
     time = dataset["time"].to_numpy()
     axes.plot(time, dataset[name], color="0.3", linewidth=0.8)
     axes.axhline(0.0, color="0.8", linewidth=0.5, zorder=0)
@@ -82,7 +82,7 @@ def _history(axes: "Axes", dataset: "xr.Dataset", name: str) -> None:
     axes.set_ylabel("acceleration\n[m s$^{-2}$]")
 
 
-def _response(axes: "Axes", dataset: "xr.Dataset") -> None:
+def _response(axes: "Axes", dataset: xr.Dataset) -> None:
     drawn = dataset.isel(period=np.flatnonzero(dataset["period"].to_numpy() > 0.0))
     ratios = dataset["damping_ratio"].to_numpy().tolist()
     for place, ratio in enumerate(ratios):
@@ -100,7 +100,7 @@ def _response(axes: "Axes", dataset: "xr.Dataset") -> None:
     _grid(axes)
 
 
-def _fourier(axes: "Axes", dataset: "xr.Dataset") -> None:
+def _fourier(axes: "Axes", dataset: xr.Dataset) -> None:
     drawn = dataset.isel(frequency=slice(1, None))
     axes.semilogx(drawn["frequency"], drawn["fourier_amplitude"], color="0.3", linewidth=0.7)
     highest = float(drawn["fourier_amplitude"].max())

@@ -3,11 +3,11 @@
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
+import xarray as xr
 
 from rockframe.errors import SchemaError
 
 if TYPE_CHECKING:
-    import xarray as xr
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -16,7 +16,7 @@ _LEAST: Final = 1e-14
 _MARKERS: Final = "osD^vP*h"
 
 
-def tradeoff(dataset: "xr.Dataset", *, title: str | None = None) -> "Figure":
+def tradeoff(dataset: xr.Dataset, *, title: str | None = None) -> "Figure":
     """Draw a comparison of models and accuracies.
 
     Left, the error of the integration against the time of a run, a line for each model; right,
@@ -89,7 +89,7 @@ def tradeoff(dataset: "xr.Dataset", *, title: str | None = None) -> "Figure":
     return figure
 
 
-def _markers(axes: "Axes", x: Any, y: Any, row: "xr.Dataset", colour: Any) -> None:
+def _markers(axes: "Axes", x: Any, y: Any, row: xr.Dataset, colour: Any) -> None:
     face = "white" if "small" in str(row["model"].item()) else colour
     agrees = row["verdict_agrees"].to_numpy()
     for k in range(len(x)):

@@ -4,16 +4,14 @@ import json
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TypeAlias, cast
+from typing import Any, TypeAlias, cast
 
 import numpy as np
+import xarray as xr
 
 from rockframe.components import InitialState
 from rockframe.dynamics.protocol import Ending, Start
 from rockframe.system.assembly import Assembly
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 _ATTRIBUTE = "end_state"
 
@@ -62,7 +60,7 @@ def end_attributes(endings: Sequence[Ending]) -> dict[str, str]:
     return {_ATTRIBUTE: json.dumps([_plain(ending) for ending in endings])}
 
 
-def continuation_of(dataset: "xr.Dataset", system: Assembly, faults: list[str]) -> Continuation:
+def continuation_of(dataset: xr.Dataset, system: Assembly, faults: list[str]) -> Continuation:
     """Read where a run ended, or note why none can go on from there.
 
     Parameters

@@ -3,7 +3,9 @@
 import json
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, cast
+from typing import cast
+
+import xarray as xr
 
 from rockframe.components import InitialState
 from rockframe.errors import AssemblyError
@@ -13,9 +15,6 @@ from rockframe.simulation.beginning import Beginning, continuation_of
 from rockframe.solve.accuracy import Accuracy, AccuracyLevel, accuracy_of
 from rockframe.system.assembly import Assembly
 from rockframe.units import POSITIVE, TIME, QuantityLike, to_si
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 ENERGY_GROUP = "energy"
 MOST_SAMPLES = 1e8

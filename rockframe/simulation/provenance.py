@@ -1,15 +1,12 @@
 """What a result says of its run, and the way back."""
 
 import json
-from typing import TYPE_CHECKING
 
 import numpy as np
+import xarray as xr
 
 from rockframe.motion import GroundMotion
 from rockframe.units import TIME, Unit
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 def motion_attributes(motion: GroundMotion | None) -> dict[str, str | float | int]:
@@ -26,7 +23,7 @@ def motion_attributes(motion: GroundMotion | None) -> dict[str, str | float | in
     }
 
 
-def motion_from_dataset(dataset: "xr.Dataset") -> GroundMotion | None:
+def motion_from_dataset(dataset: xr.Dataset) -> GroundMotion | None:
     """Give the motion of a result: built anew, or read from its histories.
 
     Parameters

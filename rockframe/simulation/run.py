@@ -5,9 +5,9 @@ import math
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+import xarray as xr
 
 from rockframe.dynamics.protocol import Ending, Start
 from rockframe.errors import ModelWarning
@@ -39,10 +39,6 @@ from rockframe.solve.trajectory import Summary
 from rockframe.system.assembly import Assembly
 from rockframe.system.options import Rotation
 
-if TYPE_CHECKING:
-    import xarray as xr
-
-
 ADAPTIVE = "Dormand-Prince 5(4) from sample to sample, with event location"
 FIXED = "Nystrom method of order 3 in fixed sub-steps from sample to sample, with event location"
 TENSION = 1e-9
@@ -72,7 +68,7 @@ class Response:
     endings: tuple[Ending, ...]
 
 
-def run(system: Assembly, plan: Plan, certification: Certification | None = None) -> "xr.Dataset":
+def run(system: Assembly, plan: Plan, certification: Certification | None = None) -> xr.Dataset:
     """Integrate as planned and label the result.
 
     Parameters

@@ -3,9 +3,9 @@
 import json
 import math
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
 
 import numpy as np
+import xarray as xr
 
 from rockframe.dynamics.protocol import ContactState
 from rockframe.errors import AssemblyError
@@ -15,11 +15,8 @@ from rockframe.system.assembly import Assembly
 from rockframe.system.small_motion import modes_of
 from rockframe.units import ANGLE, to_si_values
 
-if TYPE_CHECKING:
-    import xarray as xr
 
-
-def equilibrium(system: Assembly) -> "xr.Dataset":
+def equilibrium(system: Assembly) -> xr.Dataset:
     """Give settlements and reactions at rest, and the bounds of full contact."""
     setting = system.setting
     values: dict[str, float] = {
@@ -30,7 +27,7 @@ def equilibrium(system: Assembly) -> "xr.Dataset":
     return build_dataset(values, _about(system), title="Rest", source="vertical equilibrium")
 
 
-def moment_rotation(system: Assembly, angles: object) -> "xr.Dataset":
+def moment_rotation(system: Assembly, angles: object) -> xr.Dataset:
     """Give the quasi-static moments at given rotations."""
     held_at = to_si_values(angles, ANGLE, owner="moment_rotation", name="angles")
     states = [system.setting.statics(angle) for angle in held_at]
@@ -54,7 +51,7 @@ def _column(numbers: Iterable[float]) -> Generic:
     return np.array(list(numbers)) + 0.0  # no negative zeros
 
 
-def frequencies(system: Assembly) -> "xr.Dataset":
+def frequencies(system: Assembly) -> xr.Dataset:
     """Give the modes of small motion about rest."""
     motion = system.setting.small_motion()
     if motion is None:

@@ -4,6 +4,8 @@ import json
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Self
 
+import xarray as xr
+
 from rockframe.components import InitialState, component_from_dict
 from rockframe.errors import SchemaError
 from rockframe.motion import GroundMotion
@@ -12,8 +14,6 @@ from rockframe.system.assembly import Assembly
 from rockframe.units import QuantityLike
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from rockframe.simulation.certification import Certification
 
 
@@ -64,7 +64,7 @@ class System(Assembly):
         outputs: Sequence[str] | None = (),
         overturning: str = "stop",
         certify: "bool | Certification" = False,
-    ) -> "xr.Dataset":
+    ) -> xr.Dataset:
         """Integrate the equations of motion.
 
         Parameters
@@ -128,7 +128,7 @@ class System(Assembly):
         )
         return run(self, plan, certification_of(certify))
 
-    def frequencies(self) -> "xr.Dataset":
+    def frequencies(self) -> xr.Dataset:
         """Give the modes of small motion about rest, in full contact.
 
         Returns
@@ -155,7 +155,7 @@ class System(Assembly):
 
         return frequencies(self)
 
-    def moment_rotation(self, angles: object) -> "xr.Dataset":
+    def moment_rotation(self, angles: object) -> xr.Dataset:
         """Give the moments that hold the body at given rotations, in vertical equilibrium.
 
         Parameters
@@ -187,7 +187,7 @@ class System(Assembly):
 
         return moment_rotation(self, angles)
 
-    def equilibrium(self) -> "xr.Dataset":
+    def equilibrium(self) -> xr.Dataset:
         """Give settlements and reactions at rest, and where full contact ends.
 
         Returns
@@ -201,7 +201,7 @@ class System(Assembly):
         return equilibrium(self)
 
     @classmethod
-    def from_dataset(cls, dataset: "xr.Dataset") -> Self:
+    def from_dataset(cls, dataset: xr.Dataset) -> Self:
         """Build the system that a result came from.
 
         Parameters

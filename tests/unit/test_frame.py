@@ -6,8 +6,6 @@ import itertools
 import json
 import math
 import pickle
-import subprocess
-import sys
 
 import numpy as np
 import pint
@@ -585,19 +583,6 @@ def test_the_table_says_what_is_not_known():
     assert all(math.isnan(row[name]) for name in ("volume", "width", "height", "depth"))
     assert row.kind == ""
     assert float(row.inertia) == 800.0
-
-
-def test_only_the_table_loads_xarray():
-    code = f"""
-import sys
-from rockframe.components import FrameEquivalent
-frame = FrameEquivalent.from_members(**{REGULAR!r})
-assert "xarray" not in sys.modules
-frame.members_table()
-assert "xarray" in sys.modules
-"""
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
 
 
 # what is refused ----------------------------------------------------------------------------

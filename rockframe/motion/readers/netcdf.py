@@ -12,6 +12,7 @@ import warnings
 from typing import TYPE_CHECKING, Any, Final, cast
 
 import numpy as np
+import xarray as xr
 
 from rockframe.errors import RecordError, RockframeError
 from rockframe.motion.readers.checks import check_asked_time_step
@@ -78,7 +79,6 @@ def read(source: Source, request: Request) -> StoredMotion:
 
 def _stored(source: Source) -> StoredMotion:
     import netCDF4
-    import xarray as xr
 
     from rockframe.motion.dataset import from_dataset
 

@@ -1,8 +1,5 @@
 """Figures of motions and spectra."""
 
-import subprocess
-import sys
-
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
@@ -50,12 +47,3 @@ def test_ground_that_stands_still_can_be_drawn(tmp_path):
     still = rf.GroundMotion.from_arrays((np.zeros(50), "m/s^2"), "0.01 s")
     rf.plot.motion(still).savefig(tmp_path / "motion.png")
     rf.plot.spectra(still, (["0.1", "1"], "s")).savefig(tmp_path / "spectra.png")
-
-
-def test_naming_measures_and_figures_loads_nothing_heavy():
-    code = (
-        "import sys, rockframe.measures, rockframe.plot;"
-        "print(*{'numba', 'xarray', 'matplotlib', 'pint', 'scipy'} & set(sys.modules))"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == ""

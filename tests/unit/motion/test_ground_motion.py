@@ -3,8 +3,6 @@
 import copy
 import json
 import pickle
-import subprocess
-import sys
 
 import numpy as np
 import pint
@@ -347,14 +345,3 @@ def test_a_pulse_with_a_record_as_vertical_is_described_by_its_digest():
 def test_descriptions_that_fit_nothing(description):
     with pytest.raises(SchemaError):
         GroundMotion.from_dict(description)
-
-
-def test_the_import_is_light():
-    code = (
-        "import sys, rockframe.motion; "
-        "print([m for m in ('scipy', 'pint', 'xarray', 'netCDF4', 'numba') if m in sys.modules])"
-    )
-    result = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, check=True
-    )
-    assert result.stdout.strip() == "[]"
