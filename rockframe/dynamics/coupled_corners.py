@@ -19,7 +19,13 @@ from rockframe.dynamics.coupled_layout import (
     SMALL,
 )
 from rockframe.dynamics.gliding import blend, speed_noise
-from rockframe.dynamics.kinematics import PIVOT_CENTRE, pivot_of, sine_cosine_rise
+from rockframe.dynamics.kinematics import (
+    PIVOT_CENTRE,
+    end_height,
+    end_lever,
+    pivot_of,
+    sine_cosine_rise,
+)
 from rockframe.dynamics.pad import RELAXING, pad_force
 
 
@@ -44,17 +50,16 @@ def bed_mode_of(left: int, right: int, rotation: float, spin: float, rule: float
 @kernel
 def corner_level(first: int, state: Vector, p: Vector) -> float:
     """Give a corner's height above its place at rest on the cap."""
-    sine, _, rise = sine_cosine_rise(p[HALF_HEIGHT], p[SMALL], state[ROTATION])
     side = 1.0 if first == LEFT_GUARDS else -1.0
-    return state[NORMAL] + rise + side * p[HALF_WIDTH] * sine
+    lift = end_height(side, p[HALF_HEIGHT], p[HALF_WIDTH], p[SMALL], state[ROTATION])
+    return state[NORMAL] + lift
 
 
 @kernel
 def corner_lever(first: int, state: Vector, p: Vector) -> float:
     """Give the rate of a corner's height with psi."""
-    sine, cosine, _ = sine_cosine_rise(p[HALF_HEIGHT], p[SMALL], state[ROTATION])
     side = 1.0 if first == LEFT_GUARDS else -1.0
-    return p[HALF_HEIGHT] * sine + side * p[HALF_WIDTH] * cosine
+    return end_lever(side, p[HALF_HEIGHT], p[HALF_WIDTH], p[SMALL], state[ROTATION])
 
 
 @kernel

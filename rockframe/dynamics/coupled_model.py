@@ -20,13 +20,12 @@ from rockframe.dynamics.coupled_switches import switch
 from rockframe.dynamics.kinematics import about_pin, pinned_point, sine_cosine_rise
 from rockframe.dynamics.protocol import (
     HORIZONTAL_REFERENCE,
-    MEMORY_SIZE,
     ROTATION_LIMIT,
     ContactModel,
     ContactState,
-    Start,
 )
 from rockframe.dynamics.single_body import FREE, restraint_in_use, rounding_at
+from rockframe.dynamics.starting import starting_by
 from rockframe.dynamics.two_spring_model import (
     contact_of_corners,
     corner_tolerance,
@@ -123,20 +122,6 @@ def coupled(
         bed.BED_GUARDS, cap_radius, soil_settlement
     )
 
-    def initial(start: Start) -> tuple[int, Vector, Vector]:
-        state, memory = np.zeros(2 * at.COORDINATES), np.zeros(MEMORY_SIZE)
-        height = start.vertical_displacement
-        mode = start_mode(
-            start.rotation,
-            start.angular_velocity,
-            math.nan if height is None else height,
-            start.vertical_velocity,
-            state,
-            memory,
-            p,
-        )
-        return mode, state, memory
-
     return ContactModel(
         name="coupled",
         accelerate=model.accelerate,
@@ -159,7 +144,7 @@ def coupled(
         rounding=rounding(p, fastest),
         energy_scale=gravity * radius * theta,
         mass=mass,
-        initial=initial,
+        initial=starting_by(start_mode, at.COORDINATES, p),
         soil_contact=soil_contact,
     )
 

@@ -64,6 +64,24 @@ def about_pin(half_height: float, small: float, pin: float, rotation: float) -> 
     return half_height * math.sin(rotation) - pin * math.cos(rotation)
 
 
+@kernel
+def end_height(
+    side: float, half_height: float, half_width: float, small: float, rotation: float
+) -> float:
+    """Give h(1 - cos a) +/- b sin a: how a rotation lifts the left (side 1) or right end (-1)."""
+    sine, _, rise = sine_cosine_rise(half_height, small, rotation)
+    return rise + side * half_width * sine
+
+
+@kernel
+def end_lever(
+    side: float, half_height: float, half_width: float, small: float, rotation: float
+) -> float:
+    """Give h sin a +/- b cos a, the rate of that with the rotation."""
+    sine, cosine, _ = sine_cosine_rise(half_height, small, rotation)
+    return half_height * sine + side * half_width * cosine
+
+
 @inlined
 def end_accelerations(
     half_height: float,

@@ -12,12 +12,11 @@ from rockframe.dynamics import two_spring as two
 from rockframe.dynamics.kinematics import about_pin, pinned_point, sine_cosine_rise
 from rockframe.dynamics.protocol import (
     HORIZONTAL_REFERENCE,
-    MEMORY_SIZE,
     ROUNDING,
     ContactModel,
     ContactState,
-    Start,
 )
+from rockframe.dynamics.starting import starting_by
 from rockframe.dynamics.two_spring_switches import corner_level, mode_of, reaction, switch
 
 
@@ -81,20 +80,6 @@ def two_spring(
     modes = np.arange(two.MODES)
     contact = contact_of_corners(modes)
 
-    def initial(start: Start) -> tuple[int, Vector, Vector]:
-        state, memory = np.zeros(2 * body.COORDINATES), np.zeros(MEMORY_SIZE)
-        height = start.vertical_displacement
-        mode = start_mode(
-            start.rotation,
-            start.angular_velocity,
-            math.nan if height is None else height,
-            start.vertical_velocity,
-            state,
-            memory,
-            p,
-        )
-        return mode, state, memory
-
     return ContactModel(
         name="two-spring",
         accelerate=two.accelerate,
@@ -115,7 +100,7 @@ def two_spring(
         rounding=body.body_rounding(p, settlement, fastest),
         energy_scale=body.energy_scale(p),
         mass=mass,
-        initial=initial,
+        initial=starting_by(start_mode, body.COORDINATES, p),
     )
 
 

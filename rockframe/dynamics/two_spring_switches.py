@@ -8,6 +8,8 @@ import math
 from rockframe.compiled import Vector, callback, kernel
 from rockframe.dynamics.kinematics import (
     PIVOT_CENTRE,
+    end_height,
+    end_lever,
     pinned_point,
     pivot_of,
     reach_and_bend,
@@ -79,17 +81,16 @@ def mode_of(left: int, right: int, rotation: float, spin: float, p: Vector) -> i
 @kernel
 def corner_level(first: int, state: Vector, p: Vector) -> float:
     """Give a corner's height above its place at rest, y_I."""
-    sine, _, rise = sine_cosine_rise(p[HALF_HEIGHT], p[SMALL], state[ROTATION])
     side = 1.0 if first == LEFT_GUARDS else -1.0
-    return state[VERTICAL] + rise + side * p[HALF_WIDTH] * sine
+    lift = end_height(side, p[HALF_HEIGHT], p[HALF_WIDTH], p[SMALL], state[ROTATION])
+    return state[VERTICAL] + lift
 
 
 @kernel
 def corner_lever(first: int, state: Vector, p: Vector) -> float:
     """Give l_I = dy_I/da."""
-    sine, cosine, _ = sine_cosine_rise(p[HALF_HEIGHT], p[SMALL], state[ROTATION])
     side = 1.0 if first == LEFT_GUARDS else -1.0
-    return p[HALF_HEIGHT] * sine + side * p[HALF_WIDTH] * cosine
+    return end_lever(side, p[HALF_HEIGHT], p[HALF_WIDTH], p[SMALL], state[ROTATION])
 
 
 @kernel

@@ -12,12 +12,11 @@ from rockframe.dynamics import winkler as soil
 from rockframe.dynamics.kinematics import about_pin, pinned_point, sine_cosine_rise
 from rockframe.dynamics.protocol import (
     HORIZONTAL_REFERENCE,
-    MEMORY_SIZE,
     ROUNDING,
     ContactModel,
     ContactState,
-    Start,
 )
+from rockframe.dynamics.starting import starting_by
 
 
 def winkler(
@@ -78,20 +77,6 @@ def winkler(
     modes = np.arange(soil.MODES)
     contact = contact_of_bed(modes)
 
-    def initial(start: Start) -> tuple[int, Vector, Vector]:
-        state, memory = np.zeros(2 * body.COORDINATES), np.zeros(MEMORY_SIZE)
-        height = start.vertical_displacement
-        mode = start_mode(
-            start.rotation,
-            start.angular_velocity,
-            math.nan if height is None else height,
-            start.vertical_velocity,
-            state,
-            memory,
-            p,
-        )
-        return mode, state, memory
-
     return ContactModel(
         name="Winkler",
         accelerate=soil.accelerate,
@@ -114,7 +99,7 @@ def winkler(
         rounding=body.body_rounding(p, settlement, fastest),
         energy_scale=body.energy_scale(p),
         mass=mass,
-        initial=initial,
+        initial=starting_by(start_mode, body.COORDINATES, p),
     )
 
 
