@@ -6,13 +6,12 @@ Ranges: see `property.scenarios`.
 import numpy as np
 import pytest
 from hypothesis import example, given, settings
+from property.checks import FLIGHT, LEFT, RIGHT, check_flight
 from property.scenarios import GRAVITY, RULES, Scenario, scenarios
 
 import rockframe as rf
 
 pytestmark = pytest.mark.property
-
-FULL, LEFT, RIGHT, FLIGHT = range(4)
 
 
 @given(scenarios(bases=RULES))
@@ -108,17 +107,7 @@ def test_a_run_that_cannot_be_finished_returns_what_it_has_and_says_so():
 @given(scenarios(bases=RULES))
 @settings(max_examples=60, deadline=None)
 def test_the_time_in_flight_is_that_between_the_events(scenario):
-    response = scenario.run(outputs=None)
-    time = np.concatenate([[0.0], response.event_time.values])
-    end = np.append(time[1:], response.attrs["solver_end_time"])
-    after = response.contact_state_after.values
-    before = response.contact_state_before.values
-    first = before[:1] if before.size else np.array([FULL], dtype=np.int8)
-    state = np.concatenate([first, after])
-    flying = (end - time)[state == FLIGHT].sum()
-    assert response.flight_time.item() == pytest.approx(flying, rel=1e-9, abs=1e-12)
-    into = (state[1:] == FLIGHT) & (state[:-1] != FLIGHT)
-    assert response.flight_count.item() == into.sum() + (state[0] == FLIGHT)
+    check_flight(scenario.run(outputs=None), within=1e-12)
 
 
 @given(scenarios(bases=RULES))

@@ -11,6 +11,15 @@ import numpy as np
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
+from property.checks import (
+    FLIGHT,
+    FULL,
+    LEFT,
+    RIGHT,
+    check_energy_at_events,
+    check_flight,
+    check_output_step,
+)
 from property.scenarios import (
     GRAVITY,
     RULES,
@@ -19,8 +28,7 @@ from property.scenarios import (
     SoilScenario,
     soil_scenarios,
 )
-from property.test_energy import energy_scale, stored_energy
-from property.test_invariance import assert_same_scalars
+from property.test_energy import energy_scale
 from property.test_symmetry import SWAPPED, SWAPS_CORNERS, TRADES_PLACES, TURNS_ROUND
 
 import rockframe as rf
@@ -33,7 +41,6 @@ pytestmark = pytest.mark.property
 
 FIXED = "ROCKFRAME_RANDOM" not in os.environ
 """Always the same random scenes, unless the environment asks for new ones."""
-FULL, LEFT, RIGHT, FLIGHT = range(4)
 CASE = SoilScenario(
     base="contact-state",
     radius=5.0,
@@ -172,14 +179,7 @@ def test_energy_never_rises_at_an_event(scenario):
         output_step=None,
         stop_at_overturning=True,
     )
-    lost = [run.start_memory, *run.events.memory]
-    for i in range(len(run.events.time)):
-        before, size = stored_energy(model, run.events.mode_before[i], run.events.state_before[i])
-        after, _ = stored_energy(model, run.events.mode_after[i], run.events.state_after[i])
-        slack = 1e-11 * size + 1e-14 * GRAVITY * scenario.radius
-        assert after <= before + slack
-        booked = (lost[i + 1][1] + lost[i + 1][2]) - (lost[i][1] + lost[i][2])
-        assert before - after == pytest.approx(booked, abs=slack)
+    check_energy_at_events(model, run, scenario.radius)
 
 
 @pytest.mark.parametrize("rule", ["leading-corner", "centre"])
@@ -305,17 +305,7 @@ def test_runs_end_as_they_should(scenario):
 )  # fmt: skip
 @settings(max_examples=25, deadline=None, derandomize=FIXED)
 def test_the_time_in_flight_is_that_between_the_events(scenario):
-    response = scenario.run(outputs=None)
-    time = np.concatenate([[0.0], response.event_time.values])
-    end = np.append(time[1:], response.attrs["solver_end_time"])
-    after = response.contact_state_after.values
-    before = response.contact_state_before.values
-    first = before[:1] if before.size else np.array([FULL], dtype=np.int8)
-    state = np.concatenate([first, after])
-    flying = (end - time)[state == FLIGHT].sum()
-    assert response.flight_time.item() == pytest.approx(flying, rel=1e-9, abs=1e-9)
-    into = (state[1:] == FLIGHT) & (state[:-1] != FLIGHT)
-    assert response.flight_count.item() == into.sum() + (state[0] == FLIGHT)
+    check_flight(scenario.run(outputs=None), within=1e-9)
 
 
 @given(soil_scenarios())
@@ -467,18 +457,7 @@ def test_what_is_symmetric_stays_symmetric(scene, rule, separation, xi):
 @given(soil_scenarios(), st.sampled_from(["0.3 ms", "3 ms", "10 ms", "0.7 s", "100 s"]))
 @settings(max_examples=15, deadline=None, derandomize=FIXED)
 def test_the_output_step_changes_nothing_but_the_samples(scenario, step):
-    own = scenario.run()
-    other = scenario.run(output_step=step)
-    none = scenario.run(outputs=None)
-    more = scenario.run(output_step=step, outputs="energy")
-    for response in (other, none, more):
-        assert_same_scalars(own, response)
-        for name in own.data_vars:
-            if own[name].dims == ("event",):
-                np.testing.assert_array_equal(own[name].values, response[name].values)
-    assert "time" not in none.dims
-    for name in other.data_vars:
-        np.testing.assert_array_equal(other[name].values, more[name].values)
+    check_output_step(scenario, step)
 
 
 @given(soil_scenarios())
