@@ -50,7 +50,7 @@ class Accuracy:
 
     rtol: float | None = None
     floor: float = 0.05
-    steps_per_period: float = 20.0
+    steps_per_period: float = 8.0
     max_steps: int = 200_000_000
     substeps: int | Literal["fewest"] | None = None
 
@@ -87,8 +87,8 @@ class Accuracy:
 
 LEVELS = {
     AccuracyLevel.FAST: Accuracy(substeps=FEWEST, steps_per_period=10.0),
-    AccuracyLevel.STANDARD: Accuracy(rtol=2e-8, steps_per_period=8.0),
-    AccuracyLevel.REFERENCE: Accuracy(rtol=1e-11, steps_per_period=8.0),
+    AccuracyLevel.STANDARD: Accuracy(rtol=2e-8),
+    AccuracyLevel.REFERENCE: Accuracy(rtol=1e-11),
 }
 
 
