@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from rockframe.errors import RockframeWarning as RockframeWarning
     from rockframe.errors import SchemaError as SchemaError
     from rockframe.errors import SolverError as SolverError
+    from rockframe.errors import SolverWarning as SolverWarning
     from rockframe.errors import UnitsError as UnitsError
     from rockframe.ladder import Recommendation as Recommendation
     from rockframe.ladder import model_ladder as model_ladder
@@ -70,6 +71,7 @@ _HOMES = {
         "RockframeWarning",
         "SchemaError",
         "SolverError",
+        "SolverWarning",
         "UnitsError",
     ),
     "rockframe.ladder": ("Recommendation", "model_ladder", "recommend", "tradeoff"),
@@ -108,6 +110,7 @@ __all__ = [
     "RockframeWarning",
     "SchemaError",
     "SolverError",
+    "SolverWarning",
     "System",
     "TwoSpringSupport",
     "UnitsError",

@@ -85,5 +85,9 @@ class ModelWarning(RockframeWarning):
     """The run goes on, but the model is used near or beyond its validity."""
 
 
+class SolverWarning(RockframeWarning):
+    """A run could not be finished; what was computed until then is in the result."""
+
+
 class RecordWarning(RockframeWarning):
     """A ground-motion file was read, but something in it disagrees."""

@@ -98,7 +98,8 @@ def _made(function: Callable[..., Any], translate: Callable[[], bytes]) -> bytes
     if not _announced:
         _announced.append(True)
         _logger.warning(
-            "rockframe compiles its integrator for this machine: once, for about half a minute"
+            "rockframe compiles what this needs for this machine, once: the integrator takes some "
+            "15 s, a model or a spectrum some 5 s"
         )
     try:
         return translate()

@@ -1,17 +1,35 @@
-"""How far a run is from another."""
+"""How far a run is from another; NaN where one of them was cut off before its verdict."""
 
 import numpy as np
 import xarray as xr
 
+from rockframe.solve.layout import Status
+
+
+def verdict_of(run: xr.Dataset) -> bool | None:
+    """Tell whether a run overturned; None where it was cut off before it could tell."""
+    if bool(run["overturned"]):
+        return True
+    return False if Status(int(run["status"])).finished else None
+
+
+def verdicts_agree(run: xr.Dataset, reference: xr.Dataset) -> bool:
+    """Tell whether two runs have verdicts, and the same."""
+    return verdict_of(run) is not None and verdict_of(run) == verdict_of(reference)
+
 
 def peak_error(run: xr.Dataset, reference: xr.Dataset) -> float:
     """Compare peak rotations, relative to that of the reference."""
+    if _cut_off(run, reference):
+        return float("nan")
     peak = float(reference["peak_rotation"])
     return _relative(abs(float(run["peak_rotation"]) - peak), peak)
 
 
 def history_error(run: xr.Dataset, reference: xr.Dataset) -> float:
     """Compare rotations along time, as far as both go, relative to the reference's peak."""
+    if _cut_off(run, reference):
+        return float("nan")
     one, other = (data["rotation"].to_numpy() for data in (run, reference))
     times = [data["time"].to_numpy() for data in (run, reference)]
     count = min(one.size, other.size)
@@ -23,10 +41,16 @@ def history_error(run: xr.Dataset, reference: xr.Dataset) -> float:
 
 def event_time_error(run: xr.Dataset, reference: xr.Dataset) -> float:
     """Compare the times of events [s]; NaN if the runs have other events."""
+    if _cut_off(run, reference):
+        return float("nan")
     if not np.array_equal(run["event_kind"].to_numpy(), reference["event_kind"].to_numpy()):
         return float("nan")
     difference = run["event_time"].to_numpy() - reference["event_time"].to_numpy()
     return float(np.max(np.abs(difference), initial=0.0))
+
+
+def _cut_off(*runs: xr.Dataset) -> bool:
+    return any(verdict_of(run) is None for run in runs)
 
 
 def _relative(difference: float, scale: float) -> float:

@@ -2,7 +2,7 @@
 
 import warnings
 
-from rockframe.errors import ModelWarning
+from rockframe.errors import ComponentError, ModelWarning
 from rockframe.simulation.system import System
 from rockframe.system.options import Coupling, Rotation
 
@@ -17,6 +17,13 @@ _BED = (
     ("soil", ("block", "soil"), Coupling.COUPLED),
     ("cap and soil", ("block", "cap", "soil"), Coupling.COUPLED),
 )
+
+
+def check_system(given: object, owner: str) -> None:
+    """Refuse what is no System."""
+    if not isinstance(given, System):
+        msg = f"{owner}: system needs a System, got {type(given).__name__}"
+        raise ComponentError(msg)
 
 
 def model_ladder(system: System) -> dict[str, System]:
@@ -36,6 +43,11 @@ def model_ladder(system: System) -> dict[str, System]:
     dict of str to System
         By a name in words, the scene itself last.
 
+    Raises
+    ------
+    ComponentError
+        Not a System.
+
     Examples
     --------
     >>> import rockframe as rf
@@ -48,6 +60,7 @@ def model_ladder(system: System) -> dict[str, System]:
     two pads, small rotations
     two pads
     """
+    check_system(system, "model_ladder")
     given = vars(system.parts)
     present = system.parts.signature
     rows = _STACK if {"pads", "cap"} <= present or "soil" not in present else _BED

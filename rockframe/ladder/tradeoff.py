@@ -5,16 +5,21 @@ import time
 import warnings
 from collections.abc import Sequence
 from dataclasses import fields, replace
-from typing import TYPE_CHECKING, Final, TypeAlias, cast
+from typing import TYPE_CHECKING, Final, TypeAlias
 
 import numpy as np
 import xarray as xr
 
-from rockframe.errors import ComponentError, ModelWarning
-from rockframe.ladder.errors import event_time_error, history_error, peak_error
-from rockframe.ladder.models import model_ladder
+from rockframe.errors import ComponentError, ModelWarning, SolverWarning
+from rockframe.ladder.errors import (
+    event_time_error,
+    history_error,
+    peak_error,
+    verdicts_agree,
+)
+from rockframe.ladder.models import check_system, model_ladder
 from rockframe.simulation.system import System
-from rockframe.solve.accuracy import Accuracy, AccuracyLevel
+from rockframe.solve.accuracy import Accuracy, AccuracyLevel, accuracy_of
 from rockframe.words import whole_number
 
 if TYPE_CHECKING:
@@ -40,8 +45,8 @@ def tradeoff(
     system: System,
     motion: "GroundMotion | None" = None,
     *,
-    models: Sequence[str] | None = None,
-    accuracies: Sequence[str | float | Accuracy] = tuple(AccuracyLevel),
+    models: Sequence[str] | str | None = None,
+    accuracies: Sequence[str | float | Accuracy] | str | float | Accuracy = tuple(AccuracyLevel),
     repeats: int = 5,
     duration: "QuantityLike | None" = None,
     free_vibration: "QuantityLike | None" = None,
@@ -56,9 +61,9 @@ def tradeoff(
         The scene, taken for the truth as far as models go.
     motion : GroundMotion, optional
         The ground's motion; the one among the parts unless given.
-    models : sequence of str, optional
+    models : str or sequence of str, optional
         Names of :func:`rockframe.model_ladder`; all unless given.
-    accuracies : sequence of str, float or Accuracy, optional
+    accuracies : str, float or Accuracy, or sequence of them, optional
         Levels, tolerances (``rtol``), or own settings.
     repeats : int, optional
         How often each run is timed.
@@ -73,7 +78,8 @@ def tradeoff(
         ``peak_rotation``, ``overturned``, ``energy_residual``, ``status``. Against the same
         model at a tolerance of 1e-12: ``numerical_peak_error``, ``numerical_history_error`` [1]
         and ``event_time_error`` [s]. Against the scene itself at that tolerance:
-        ``peak_error``, ``history_error`` [1] and ``verdict_agrees``.
+        ``peak_error``, ``history_error`` [1] and ``verdict_agrees``. Errors of, and against,
+        a run that was cut off before its verdict are NaN, and its verdict agrees with none.
 
     Raises
     ------
@@ -93,16 +99,15 @@ def tradeoff(
     from rockframe.simulation.provenance import motion_attributes
     from rockframe.simulation.run import run
 
-    if not isinstance(cast("object", system), System):
-        msg = f"{_OWNER}: system needs a System, got {system!r}"
-        raise ComponentError(msg)
+    check_system(system, _OWNER)
     repeats = whole_number(repeats, owner=_OWNER, name="repeats", lowest=1, highest=_MOST_REPEATS)
     ladder = model_ladder(system)
-    chosen = _chosen(ladder, models)
-    settings = {_label(given): _setting(given) for given in accuracies}
+    chosen = _chosen(ladder, (models,) if isinstance(models, str) else models)
+    given = (accuracies,) if isinstance(accuracies, str | float | int | Accuracy) else accuracies
+    settings = {_label(accuracy): accuracy_of(accuracy) for accuracy in given}
     shaking = system.motion if motion is None else motion
 
-    def plan(scene: System, accuracy: Accuracy | str) -> "Plan":
+    def plan(scene: System, accuracy: Accuracy) -> "Plan":
         return plan_run(
             scene,
             shaking,
@@ -118,6 +123,7 @@ def tradeoff(
     with warnings.catch_warnings():
         # a rung may say what it cannot show; that is what the errors measure
         warnings.simplefilter("ignore", ModelWarning)
+        warnings.simplefilter("ignore", SolverWarning)
         truth = run(system, plan(system, BENCHMARK))
         rows: list[list[Outcome]] = []
         for scene in chosen.values():
@@ -129,7 +135,7 @@ def tradeoff(
                 ]
             )
     names = rows[0][0]
-    exact = {label: vars(plan(system, setting).accuracy) for label, setting in settings.items()}
+    exact = {label: vars(setting) for label, setting in settings.items()}
     dataset = build_dataset(
         {name: np.array([[cell[name] for cell in row] for row in rows]) for name in names},
         {
@@ -185,7 +191,7 @@ def measure(
         "event_time_error": event_time_error(found, converged),
         "peak_error": peak_error(found, truth),
         "history_error": history_error(found, truth),
-        "verdict_agrees": bool(found["overturned"]) == bool(truth["overturned"]),
+        "verdict_agrees": verdicts_agree(found, truth),
         **{name: found[name].item() for name in _KEPT},
     }
 
@@ -207,10 +213,6 @@ def _chosen(ladder: dict[str, System], models: Sequence[str] | None) -> dict[str
         msg = f"{_OWNER}: models must be some of {known}, got {list(models)!r}"
         raise ComponentError(msg)
     return {name: ladder[name] for name in models}
-
-
-def _setting(given: str | float | Accuracy) -> Accuracy | str:
-    return given if isinstance(given, str | Accuracy) else Accuracy(rtol=given)
 
 
 def _label(given: str | float | Accuracy) -> str:

@@ -147,7 +147,7 @@ def event_columns(model: ContactModel, run: Trajectory) -> dict[str, Generic]:
 def scalars(run: Summary, scales: Scales) -> dict[str, float | int | bool]:
     """Give the scalars of a run by their names in the schema."""
     return {
-        "overturned": not math.isnan(run.overturning_time),
+        "overturned": bool(run.overturned),
         "overturning_time": run.overturning_time,
         "overturning_direction": run.overturning_direction,
         "peak_rotation": run.peak_rotation,
@@ -173,21 +173,27 @@ _ENDINGS = {
 def verdict(run: Summary, scales: Scales) -> str:
     """Say in one sentence what became of the block."""
     impacts = f"{run.impact_count} impact{'' if run.impact_count == 1 else 's'}"
-    if not math.isnan(run.overturning_time):
+    peak = (
+        f"peak rotation {run.peak_rotation:.4g} rad, "
+        f"{100.0 * run.peak_rotation / scales.overturning_angle:.3g} % of the overturning angle"
+    )
+    if run.overturned:
         side = Direction(run.overturning_direction).name.lower()
         text = f"Overturned to the {side} at {run.overturning_time:.3f} s, after {impacts}"
         if run.status is Status.TOPPLED:
             text += f"; fell flat at {run.end_time:.3f} s"
+    elif run.overturned is None:
+        text = f"Not finished: {_cut_off(run)}. Until then no overturning: {peak}; {impacts}"
     else:
-        share = 100.0 * run.peak_rotation / scales.overturning_angle
-        text = (
-            f"Did not overturn: peak rotation {run.peak_rotation:.4g} rad, "
-            f"{share:.3g} % of the overturning angle; {impacts}"
-        )
-        if math.isnan(run.first_uplift_time):
-            text += ", no uplift from the pads" if scales.pads_on_cap else ", no uplift"
+        text = f"Did not overturn: {peak}; {impacts}"
+    if not run.overturned and math.isnan(run.first_uplift_time):
+        text += ", no uplift from the pads" if scales.pads_on_cap else ", no uplift"
     if run.flight_time > 0.0:
         text += f", {run.flight_time:.3g} s in flight"
-    if run.status in _ENDINGS:
-        text += f". Not finished: stopped at {run.end_time:.6g} s, because {_ENDINGS[run.status]}"
+    if run.overturned and not run.status.finished:
+        text += f". Not finished: {_cut_off(run)}"
     return text + "."
+
+
+def _cut_off(run: Summary) -> str:
+    return f"stopped at {run.end_time:.6g} s, because {_ENDINGS[run.status]}"

@@ -6,6 +6,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
+import numpy as np
+
 from rockframe.errors import ModelWarning, RockframeError
 from rockframe.simulation.beginning import Continuation
 from rockframe.simulation.certification import Certificate, Certification
@@ -28,6 +30,17 @@ HALVINGS: Final = 6
 """Bisections of the interval in which the verdict changes."""
 NEAR: Final = 0.01
 """A margin up to which a verdict is called near the boundary [1]."""
+
+NONE: Final = Certificate(
+    converged=False,
+    robust=False,
+    margin=math.nan,
+    peak_error=math.nan,
+    peak_sensitivity=math.nan,
+    runs=0,
+    sentence="No certificate: the run was not finished.",
+)
+"""Of a run without a verdict."""
 
 Run = Callable[[Assembly, Plan], "Summary"]
 
@@ -54,8 +67,10 @@ def certify(
     -------
     Certificate
     """
+    fell = summary.overturned
+    if fell is None:
+        return NONE
     bare = replace(plan, output_step=None, energies=(), stop_at_overturning=True)
-    fell = overturned(summary)
     peak = summary.peak_rotation
     with warnings.catch_warnings():
         # the run itself has given them
@@ -63,24 +78,24 @@ def certify(
         tighter = run(system, replace(bare, accuracy=tightened(plan.accuracy)))
         nudged = [(words, run(other, bare)) for words, other in nudges(system, wanted.nudge)]
         boundary = nearest_change(system, bare, fell, wanted.reach, run)
-    changed = [words for words, other in nudged if overturned(other) != fell]
+    distances = [_distance(other, peak) for _, other in nudged]
+    changed = [(words, other.overturned) for words, other in nudged if other.overturned != fell]
     certificate = Certificate(
-        converged=overturned(tighter) == fell,
+        converged=tighter.overturned == fell,
         robust=not changed,
         margin=wanted.reach if boundary.scale is None else abs(boundary.scale - 1.0),
-        peak_error=abs(tighter.peak_rotation - peak),
-        peak_sensitivity=max((abs(other.peak_rotation - peak) for _, other in nudged), default=0.0),
+        peak_error=_distance(tighter, peak),
+        peak_sensitivity=float(np.max(distances, initial=0.0)),
         runs=1 + len(nudged) + boundary.runs,
         sentence="",
     )
-    return replace(
-        certificate, sentence=_sentence(certificate, fell, changed, boundary.scale, wanted, plan)
-    )
+    doubts = list(_doubts(certificate, tighter.overturned, changed, boundary, plan))
+    return replace(certificate, sentence=_sentence(fell, doubts, boundary.scale, wanted, plan))
 
 
-def overturned(summary: "Summary") -> bool:
-    """Whether a run overturned."""
-    return not math.isnan(summary.overturning_time)
+def _distance(other: "Summary", peak: float) -> float:
+    """Give the difference of a peak rotation; NaN if the run was cut off before its peak."""
+    return math.nan if other.overturned is None else abs(other.peak_rotation - peak)
 
 
 def tightened(accuracy: Accuracy) -> Accuracy:
@@ -125,9 +140,20 @@ def nudges(system: Assembly, nudge: float) -> Iterator[tuple[str, Assembly]]:
 
 @dataclass(frozen=True)
 class Boundary:
-    """Where the verdict changes: the scale nearest to one, or None; and the runs it took."""
+    """Where the verdict changes.
+
+    Parameters
+    ----------
+    scale : float or None
+        The scale nearest to one with another verdict, if there is one.
+    overturned : bool or None
+        That verdict; None where the run was not finished.
+    runs : int
+        Number of runs that it took.
+    """
 
     scale: float | None
+    overturned: bool | None
     runs: int
 
 
@@ -155,21 +181,20 @@ def nearest_change(system: Assembly, plan: Plan, fell: bool, reach: float, run: 
     Boundary
     """
     changes = [FIRST_SCALE * (reach / FIRST_SCALE) ** (k / (SCALES - 1)) for k in range(SCALES)]
-    count = 0
+    verdicts: dict[float, bool | None] = {}
 
     def differs(change: float) -> bool:
-        nonlocal count
         other = scaled(plan, 1.0 + change, system.setting.overturning_angle)
         if other is None:
             return False
-        count += 1
-        return overturned(run(system, other)) != fell
+        verdicts[change] = run(system, other).overturned
+        return verdicts[change] != fell
 
     before = 0.0
     for change in changes:
         sides = [sign for sign in (-1.0, 1.0) if differs(sign * change)]
         if sides:
-            found = []
+            found: list[float] = []
             for sign in sides:
                 near, far = before, change
                 for _ in range(HALVINGS):
@@ -178,10 +203,11 @@ def nearest_change(system: Assembly, plan: Plan, fell: bool, reach: float, run: 
                         far = middle
                     else:
                         near = middle
-                found.append(1.0 + sign * far)
-            return Boundary(min(found, key=lambda scale: abs(scale - 1.0)), count)
+                found.append(sign * far)
+            nearest = min(found, key=abs)
+            return Boundary(1.0 + nearest, verdicts[nearest], len(verdicts))
         before = change
-    return Boundary(None, count)
+    return Boundary(None, None, len(verdicts))
 
 
 def scaled(plan: Plan, scale: float, theta: float) -> Plan | None:
@@ -204,34 +230,52 @@ def scaled(plan: Plan, scale: float, theta: float) -> Plan | None:
     return replace(plan, initial=start)
 
 
-def _sentence(
+def _doubts(
     certificate: Certificate,
-    fell: bool,
-    changed: list[str],
-    scale: float | None,
-    wanted: Certification,
+    tighter: bool | None,
+    changed: list[tuple[str, bool | None]],
+    boundary: Boundary,
     plan: Plan,
-) -> str:
-    verdict, other = ("overturns", "stands") if fell else ("stands", "overturns")
-    what = "the motion" if plan.motion is not None else "the start"
-    finer = f"a tolerance {1.0 / TIGHTER:g} times tighter"
-    if plan.accuracy.rtol is None:
-        finer = "steps by tolerance instead of fixed ones"
-    doubts: list[str] = []
+) -> Iterator[str]:
+    """Say which runs beside ended otherwise."""
     if not certificate.converged:
-        doubts.append(f"with {finer} it {other}")
+        yield f"with {_finer(plan)} {_ends(tighter)}"
     if changed:
-        more = f" (and {len(changed) - 1} more)" if len(changed) > 1 else ""
-        doubts.append(f"with the {changed[0]}{more} it {other}")
-    if scale is not None and certificate.margin <= NEAR:
-        way = "up" if scale > 1.0 else "down"
-        doubts.append(f"with {what} scaled {way} by {100.0 * certificate.margin:.2g} % it {other}")
+        (words, other), more = changed[0], len(changed) - 1
+        yield f"with the {words}{f' (and {more} more)' if more else ''} {_ends(other)}"
+    if boundary.scale is not None and certificate.margin <= NEAR:
+        way = "up" if boundary.scale > 1.0 else "down"
+        share = f"{100.0 * certificate.margin:.2g} %"
+        yield f"with {_driver(plan)} scaled {way} by {share} {_ends(boundary.overturned)}"
+
+
+def _sentence(
+    fell: bool, doubts: list[str], scale: float | None, wanted: Certification, plan: Plan
+) -> str:
+    verdict = "overturns" if fell else "stands"
     if doubts:
         return f"Near the boundary: the body {verdict}, but {'; '.join(doubts)}."
+    what = _driver(plan)
     far = f"for every scale of {what} tried from {1 - wanted.reach:g} to {1 + wanted.reach:g}"
     if scale is not None:
         far = f"until {what} is scaled by {scale:.3g}"
     return (
-        f"The body {verdict} also with {finer}, with every "
+        f"The body {verdict} also with {_finer(plan)}, with every "
         f"parameter {100.0 * wanted.nudge:g} % larger or smaller, and {far}."
     )
+
+
+def _ends(fell: bool | None) -> str:
+    if fell is None:
+        return "the run cannot be finished"
+    return "it overturns" if fell else "it stands"
+
+
+def _driver(plan: Plan) -> str:
+    return "the motion" if plan.motion is not None else "the start"
+
+
+def _finer(plan: Plan) -> str:
+    if plan.accuracy.rtol is None:
+        return "steps by tolerance instead of fixed ones"
+    return f"a tolerance {1.0 / TIGHTER:g} times tighter"

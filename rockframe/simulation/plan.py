@@ -12,7 +12,7 @@ from rockframe.errors import AssemblyError
 from rockframe.motion import GroundMotion
 from rockframe.results.schema import ENERGIES, SCHEMA
 from rockframe.simulation.beginning import Beginning, continuation_of
-from rockframe.solve.accuracy import Accuracy, AccuracyLevel, accuracy_of
+from rockframe.solve.accuracy import Accuracy, accuracy_of
 from rockframe.system.assembly import Assembly
 from rockframe.units import POSITIVE, TIME, QuantityLike, to_si
 
@@ -57,7 +57,7 @@ def plan_run(
     duration: QuantityLike | None,
     free_vibration: QuantityLike | None,
     initial: "InitialState | xr.Dataset | None",
-    accuracy: Accuracy | AccuracyLevel | str,
+    accuracy: Accuracy | str | float,
     output_step: QuantityLike | None,
     outputs: Sequence[str] | None,
     overturning: str,
@@ -101,7 +101,7 @@ def plan_run(
         duration=length,
         initial=beginning,
         accuracy=settings,
-        accuracy_name="own" if isinstance(accuracy, Accuracy) else str(accuracy),
+        accuracy_name=str(accuracy) if isinstance(accuracy, str) else "own",
         output_step=step,
         energies=energies,
         stop_at_overturning=overturning == "stop",

@@ -1,10 +1,12 @@
 """What a result says of its run, and the way back."""
 
 import json
+import warnings
 
 import numpy as np
 import xarray as xr
 
+from rockframe.errors import RecordWarning
 from rockframe.motion import GroundMotion
 from rockframe.units import TIME, Unit
 
@@ -35,6 +37,11 @@ def motion_from_dataset(dataset: xr.Dataset) -> GroundMotion | None:
     -------
     GroundMotion or None
         None where the dataset does not hold the motion, sample by sample.
+
+    Warns
+    -----
+    RecordWarning
+        The run had a motion that the dataset does not hold.
     """
     text = dataset.attrs.get("motion_json")
     if text is None:
@@ -42,11 +49,29 @@ def motion_from_dataset(dataset: xr.Dataset) -> GroundMotion | None:
     description = json.loads(text)
     if description.get("constructor"):
         return GroundMotion.from_dict(description)
+    motion, reason = _from_histories(dataset)
+    if motion is None:
+        warnings.warn(
+            f"the motion {dataset.attrs['motion']!r} (sha256 "
+            f"{str(dataset.attrs['motion_sha256'])[:12]}...) cannot be had from this dataset: "
+            f"{reason}; the system comes without a motion, give it to simulate()",
+            RecordWarning,
+            stacklevel=3,
+        )
+    return motion
+
+
+def _from_histories(dataset: xr.Dataset) -> tuple[GroundMotion | None, str]:
+    """Read a motion from the histories, or say why that cannot be done."""
     step = float(dataset.attrs["motion_time_step"])
     count = int(dataset.attrs["motion_samples"])
-    time = dataset["time"].to_numpy() if "time" in dataset else np.zeros(0)
-    if len(time) < count or not np.array_equal(time[:count], np.arange(count) * step):
-        return None
+    if "time" not in dataset or "ground_acceleration" not in dataset:
+        return None, "it holds no history of the ground acceleration"
+    time = dataset["time"].to_numpy()
+    if not np.array_equal(time[:count], np.arange(min(count, len(time))) * step):
+        return None, f"its times are not the motion's samples, {step:g} s apart from zero"
+    if len(time) < count:
+        return None, f"its histories end before the motion, which has {count} samples"
     unit = str(Unit.METRE_PER_SECOND_SQUARED)
     components = {
         name: (dataset[variable].to_numpy()[:count], unit)
@@ -59,4 +84,6 @@ def motion_from_dataset(dataset: xr.Dataset) -> GroundMotion | None:
     motion = GroundMotion.from_arrays(
         time_step=f"{step!r} {TIME.unit}", name=str(dataset.attrs["motion"]), **components
     )
-    return motion if motion.sha256 == dataset.attrs["motion_sha256"] else None
+    if motion.sha256 != dataset.attrs["motion_sha256"]:
+        return None, "its ground acceleration is not what the run had"
+    return motion, ""

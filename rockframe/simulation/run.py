@@ -3,14 +3,15 @@
 import json
 import math
 import warnings
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from typing import Final, TypeAlias
 
 import numpy as np
 import xarray as xr
 
 from rockframe.dynamics.protocol import Ending, Start
-from rockframe.errors import ModelWarning
+from rockframe.errors import ModelWarning, RockframeWarning, SolverWarning
 from rockframe.motion import GroundMotion
 from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import (
@@ -41,8 +42,15 @@ from rockframe.system.options import Rotation
 
 ADAPTIVE = "Dormand-Prince 5(4) from sample to sample, with event location"
 FIXED = "Nystrom method of order 3 in fixed sub-steps from sample to sample, with event location"
-TENSION = 1e-9
+_LEAVES: Final = (
+    "the block would leave the rigid ground, which this model cannot show; put it on a "
+    "TwoSpringSupport to follow its flight"
+)
+TENSION: Final = 1e-9
 """Share of the largest reaction below which a pull is rounding."""
+
+Caution: TypeAlias = tuple[type[RockframeWarning], str]
+"""A warning's kind and text."""
 
 
 def ground_of(motion: GroundMotion | None) -> Ground:
@@ -85,11 +93,19 @@ def run(system: Assembly, plan: Plan, certification: Certification | None = None
     xarray.Dataset
     """
     ground = ground_of(plan.motion)
-    _warn_of_lost_weight(system, ground)
     scales = _scales(system)
     response = _respond(system, plan, ground, scales)
     summary = response.summary
     attributes = _attributes(system, plan, summary, scales) | end_attributes(response.endings)
+    cautions = [
+        *_unfinished(summary, scales),
+        *_lost_weight(system, ground),
+        *_pulling(system, response.values, summary.overturning_time),
+    ]
+    for kind, text in cautions:
+        warnings.warn(text, kind, stacklevel=3)  # the line that called simulate
+    if cautions:
+        attributes["cautions"] = "; ".join(text for _, text in cautions)
     certificate: dict[str, float | bool] = {}
     if certification is not None:
         found = certify(system, plan, summary, certification, outcome)
@@ -163,7 +179,6 @@ def _respond(system: Assembly, plan: Plan, ground: Ground, scales: Scales) -> Re
         values |= relative_histories(values, scales)
         values |= ground_histories(shaking, has_vertical_motion=len(ground.vertical) > 0)
         values["time"] = time
-        _warn_of_pulling(system, values, summary.overturning_time)
     values |= {name: energies[name] for name in plan.energies}
     return Response(values | events, summary, endings)
 
@@ -174,7 +189,7 @@ def _attributes(
     coupling = {"coupling": str(system.coupling)} if system.scene.coupling else {}
     return {
         "verdict": verdict(summary, scales),
-        "overturned": int(not math.isnan(summary.overturning_time)),
+        "overturned": int(bool(summary.overturned)),
         "overturning_time": summary.overturning_time,
         "overturning_direction": Direction(summary.overturning_direction).name.lower(),
         "model": system.scene.model,
@@ -195,33 +210,32 @@ def _attributes(
     }
 
 
-def _warn_of_lost_weight(system: Assembly, ground: Ground) -> None:
+def _unfinished(summary: Summary, scales: Scales) -> Iterator[Caution]:
+    if not summary.status.finished:
+        yield SolverWarning, verdict(summary, scales)
+
+
+def _lost_weight(system: Assembly, ground: Ground) -> Iterator[Caution]:
     if system.setting.settlement is not None or len(ground.vertical) == 0:
         return
     lowest = float(np.min(ground.vertical))
     if lowest < -system.gravity_si:
-        _warn_of_tension(f"the vertical ground acceleration falls to {lowest:.4g} m s^-2, beyond "
-                         "gravity")  # fmt: skip
+        found = f"the vertical ground acceleration falls to {lowest:.4g} m s^-2, beyond gravity"
+        yield ModelWarning, f"{found}: {_LEAVES}"
 
 
-def _warn_of_pulling(
+def _pulling(
     system: Assembly, values: Mapping[str, Generic], overturning_time: float
-) -> None:
-    if system.setting.settlement is not None:
+) -> Iterator[Caution]:
+    if system.setting.settlement is not None or "left_reaction" not in values:
         return
     stands = ~(values["time"] > overturning_time)  # how a block falls is another matter
     reaction = (values["left_reaction"] + values["right_reaction"])[stands]
     lowest = float(np.min(reaction))
     if lowest < -TENSION * float(np.max(np.abs(reaction))):
         when = float(values["time"][np.argmin(reaction)])
-        _warn_of_tension(f"the ground would have to pull at the bearing corner, with "
-                         f"{-lowest:.4g} N at {when:.4g} s")  # fmt: skip
-
-
-def _warn_of_tension(found: str) -> None:
-    warnings.warn(
-        f"{found}: the block would leave the rigid ground, which this model cannot show; put it "
-        "on a TwoSpringSupport to follow its flight",
-        ModelWarning,
-        stacklevel=5,
-    )
+        found = (
+            f"the ground would have to pull at the bearing corner, with {-lowest:.4g} N at "
+            f"{when:.4g} s"
+        )
+        yield ModelWarning, f"{found}: {_LEAVES}"

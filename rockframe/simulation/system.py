@@ -59,7 +59,7 @@ class System(Assembly):
         duration: QuantityLike | None = None,
         free_vibration: QuantityLike | None = None,
         initial: "InitialState | xr.Dataset | None" = None,
-        accuracy: Accuracy | AccuracyLevel | str = AccuracyLevel.STANDARD,
+        accuracy: Accuracy | str | float = AccuracyLevel.STANDARD,
         output_step: QuantityLike | None = None,
         outputs: Sequence[str] | None = (),
         overturning: str = "stop",
@@ -79,7 +79,7 @@ class System(Assembly):
         initial : InitialState or xarray.Dataset, optional
             Where the run starts; at rest unless given. The result of another run of this
             system starts it where that one ended, its time at zero again.
-        accuracy : {"fast", "standard", "reference"} or Accuracy
+        accuracy : {"fast", "standard", "reference"}, float or Accuracy
             How accurate, and so how costly, the run is.
         output_step : str or Quantity, optional
             Spacing of the histories; the motion's time step unless given [s].
@@ -107,7 +107,7 @@ class System(Assembly):
         AssemblyError
             The arguments do not fit the system or one another.
         SolverError
-            Unknown accuracy.
+            Unknown accuracy, or a tolerance out of range.
         ComponentError
             `certify` is neither True, False nor a Certification.
         """

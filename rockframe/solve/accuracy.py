@@ -92,13 +92,13 @@ LEVELS = {
 }
 
 
-def accuracy_of(choice: "str | AccuracyLevel | Accuracy") -> Accuracy:
-    """Give the settings of a named level, or check that they are settings already.
+def accuracy_of(choice: "str | float | Accuracy") -> Accuracy:
+    """Give the settings of a named level or of a tolerance, or those given.
 
     Parameters
     ----------
-    choice : str, AccuracyLevel or Accuracy
-        ``"fast"``, ``"standard"``, ``"reference"`` or own settings.
+    choice : str, float or Accuracy
+        ``"fast"``, ``"standard"``, ``"reference"``, a tolerance ``rtol`` or own settings.
 
     Returns
     -------
@@ -107,13 +107,16 @@ def accuracy_of(choice: "str | AccuracyLevel | Accuracy") -> Accuracy:
     Raises
     ------
     SolverError
-        Neither a known level nor settings.
+        Neither a known level nor settings, or a tolerance out of range.
     """
     if isinstance(choice, Accuracy):
         return choice
+    if isinstance(choice, float):
+        return Accuracy(rtol=choice)
     try:
         return LEVELS[AccuracyLevel(choice)]
     except ValueError:
         names = ", ".join(repr(str(level)) for level in AccuracyLevel)
-        msg = f"accuracy must be one of {names} or an Accuracy(...), got {choice!r}"
+        known = f"one of {names}, a tolerance such as 1e-6 or an Accuracy(...)"
+        msg = f"accuracy must be {known}, got {choice!r}"
         raise SolverError(msg) from None

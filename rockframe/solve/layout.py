@@ -18,6 +18,11 @@ class Status(IntEnum):
     STEP_TOO_SMALL = 4
     CHATTER = 5
 
+    @property
+    def finished(self) -> bool:
+        """Whether the run went as far as it was asked to."""
+        return self <= Status.TOPPLED
+
 
 # Results of the integrator's entry point: a Status, or this.
 MORE_ROOM: Final = -1

@@ -1,5 +1,6 @@
 """What an integration leaves behind: plain arrays, in SI units and per unit mass."""
 
+import math
 from dataclasses import dataclass, replace
 from typing import Self
 
@@ -71,6 +72,13 @@ class Summary:
     rejected_count: int
     substeps: int
     energy_residual: float
+
+    @property
+    def overturned(self) -> bool | None:
+        """Whether the block overturned; None where the run was cut off before it could tell."""
+        if not math.isnan(self.overturning_time):
+            return True
+        return False if self.status.finished else None
 
 
 @dataclass(frozen=True, kw_only=True)

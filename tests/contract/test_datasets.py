@@ -426,11 +426,22 @@ def test_scalars_of_a_study_concatenate():
     assert (np.isnan(study.overturning_time) == ~study.overturned).all()
 
 
+def test_a_tolerance_is_an_accuracy():
+    system = SCENES["two-spring, contact-state, finite"]()
+    one = system.simulate(pulse(), accuracy=1e-6)
+    other = system.simulate(pulse(), accuracy=rf.Accuracy(rtol=1e-6))
+    assert one.attrs["solver_rtol"] == 1e-6
+    assert one.drop_attrs(deep=False).identical(other.drop_attrs(deep=False))
+
+
 def test_an_unfinished_run_says_so():
     system = SCENES["two-spring, contact-state, finite"]()
-    response = system.simulate(pulse(), accuracy=rf.Accuracy(rtol=1e-7, max_steps=50))
+    with pytest.warns(rf.SolverWarning, match="Not finished: stopped at") as caught:
+        response = system.simulate(pulse(), accuracy=rf.Accuracy(rtol=1e-7, max_steps=50))
+    assert caught[0].filename == __file__
     assert bool((response.status.cf == "step_limit").item())
-    assert "Not finished" in response.attrs["verdict"]
+    assert response.attrs["verdict"].startswith("Not finished: stopped at")
+    assert response.attrs["cautions"] == response.attrs["verdict"]
     assert response.attrs["solver_steps"] <= 50
     assert response.time.values[-1] == pytest.approx(response.attrs["solver_end_time"], abs=0.01)
     assert response.attrs["solver_end_time"] < 1.0

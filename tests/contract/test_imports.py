@@ -117,4 +117,7 @@ def test_errors_form_one_family():
         error = getattr(rf, f"{name}Error")
         assert issubclass(error, rf.RockframeError)
         assert error is not rf.RockframeError
-    assert issubclass(rf.ModelWarning, UserWarning)
+    for name in ("Model", "Record", "Solver"):
+        warning = getattr(rf, f"{name}Warning")
+        assert issubclass(warning, rf.RockframeWarning)
+        assert issubclass(warning, UserWarning)

@@ -210,7 +210,8 @@ def test_the_run_itself_is_on_record(tmp_path):
 )
 def test_a_record_that_the_result_does_not_hold_is_left_out(options, tmp_path):
     response = SCENES["rigid ground, finite"]().simulate(record(), **options)
-    system = rf.System.from_dataset(through_file(response, tmp_path))
+    with pytest.warns(rf.RecordWarning, match="the system comes without a motion"):
+        system = rf.System.from_dataset(through_file(response, tmp_path))
     assert system.motion is None
     assert system.to_dict() == SCENES["rigid ground, finite"]().to_dict()
 
@@ -312,7 +313,24 @@ def test_a_missing_part_of_the_description_is_no_crash(name):
 def test_changed_samples_are_not_taken_for_the_record():
     response = damaged()
     response.ground_acceleration.values[17] *= 1.0 + 1e-12
-    assert rf.System.from_dataset(response).motion is None
+    with pytest.warns(rf.RecordWarning, match="is not what the run had; the system comes without"):
+        assert rf.System.from_dataset(response).motion is None
+
+
+@pytest.mark.parametrize(
+    ("change", "reason"),
+    [
+        (lambda response: response.isel(time=slice(None, None, 2)), "are not the motion's samples"),
+        (lambda response: response.isel(time=slice(3, None)), "are not the motion's samples"),
+        (lambda response: response.isel(time=slice(0, 20)), "end before the motion"),
+        (lambda response: response.drop_vars("ground_acceleration"), "no history of the ground"),
+        (lambda response: response.drop_dims("time"), "no history of the ground"),
+    ],
+)
+def test_a_record_that_is_lost_is_missed(change, reason):
+    with pytest.warns(rf.RecordWarning, match=reason) as caught:
+        assert rf.System.from_dataset(change(damaged())).motion is None
+    assert caught[0].filename == __file__
 
 
 def test_a_foreign_dataset_is_refused():

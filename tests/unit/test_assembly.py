@@ -510,11 +510,15 @@ class TestSimulateRefuses:
         assert "'stop' or 'continue'" in message
         assert repr(bad) in message
 
-    @pytest.mark.parametrize("bad", ["best", "", None, 1e-7, True, []])
+    @pytest.mark.parametrize("bad", ["best", "", None, 1, True, []])
     def test_other_accuracies(self, bad):
         message = refusal(rf.RockframeError, accuracy=bad)
         for word in ("fast", "standard", "reference", "Accuracy", repr(bad)):
             assert word in message
+
+    @pytest.mark.parametrize("bad", [0.1, 1e-15, math.nan, -1e-6])
+    def test_tolerances_out_of_range(self, bad):
+        assert "rtol must lie from 1e-13 to 0.01" in refusal(rf.SolverError, accuracy=bad)
 
     def test_several_faults_at_once(self):
         message = refusal(

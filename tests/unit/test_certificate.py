@@ -96,12 +96,13 @@ def test_near_the_boundary_it_says_so(side):
 
 
 def pretended(overturns):
-    """Give a run that overturns where a rule of scene and plan says so."""
+    """Give a run that overturns where a rule of scene and plan says so; None: is cut off."""
 
     def run(system, plan):
-        time = 1.0 if overturns(system, plan) else math.nan
+        verdict = overturns(system, plan)
+        time = 1.0 if verdict else math.nan
         return Summary(
-            status=Status.COMPLETED,
+            status=Status.STEP_LIMIT if verdict is None else Status.COMPLETED,
             end_time=2.0,
             peak_rotation=0.1 + plan.accuracy.rtol,
             overturning_time=time,
@@ -173,6 +174,39 @@ def test_no_scale_within_reach():
     found = certificate_of(lambda _, plan: plan.motion.si.peak > 1.6 * PULSE.si.peak)
     assert found.margin == 0.5
     assert "for every scale of the motion tried from 0.5 to 1.5" in found.sentence
+
+
+def test_a_run_that_was_cut_off_has_no_certificate():
+    limit = rf.Accuracy(rtol=1e-8, max_steps=60)
+    with pytest.warns(rf.SolverWarning, match="Not finished: stopped at"):
+        run = certified(PULSE.scaled(3.0 * EDGE), accuracy=limit)
+    assert run.attrs["certificate"] == "No certificate: the run was not finished."
+    assert run.attrs["certificate_runs"] == 0
+    assert not run.verdict_converged
+    assert not run.verdict_robust
+    assert all(math.isnan(run[name]) for name in NAMES[2:])
+
+
+def test_runs_beside_that_are_cut_off_are_no_support():
+    tighter = certificate_of(lambda _, plan: None if plan.accuracy.rtol < 1e-5 else False)
+    assert not tighter.converged
+    assert math.isnan(tighter.peak_error)
+    assert "a tolerance 100 times tighter the run cannot be finished" in tighter.sentence
+
+    softer = certificate_of(
+        lambda system, _: (
+            None if system.parts.pads.to_dict()["frequency_ratio"] < 19.99 else False
+        )
+    )
+    assert not softer.robust
+    assert math.isnan(softer.peak_sensitivity)
+    assert "-0.1 % the run cannot be finished" in softer.sentence
+
+    peak = 1.005 * PULSE.si.peak
+    larger = certificate_of(lambda _, plan: None if plan.motion.si.peak > peak else False)
+    assert larger.margin == pytest.approx(0.005, rel=0.02)
+    assert larger.robust
+    assert "scaled up by 0.5 % the run cannot be finished" in larger.sentence
 
 
 def test_the_tightest_tolerance_is_not_tightened_beyond_rounding():

@@ -183,7 +183,7 @@ def lines_of_a_process():
 
 def test_the_next_process_does_without_numba(folder):
     first, second = lines_of_a_process(), lines_of_a_process()
-    assert first[0].startswith("rockframe compiles its integrator for this machine")
+    assert first[0].startswith("rockframe compiles what this needs for this machine")
     assert first[1].startswith("True")
     assert second == [first[1].replace("True", "False")]
     for file in folder.iterdir():
@@ -197,7 +197,7 @@ def test_the_announcement_is_a_message_of_rockframe(caplog):
     machine_code._announced.clear()
     with caplog.at_level(logging.WARNING, logger="rockframe"):
         times_two(np.ones(1))
-    assert "compiles its integrator" in caplog.text
+    assert "compiles what this needs" in caplog.text
 
 
 @entry("none", "vector")

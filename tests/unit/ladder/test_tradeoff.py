@@ -179,9 +179,36 @@ def test_comparisons_that_are_refused(arguments, error, words):
         rf.tradeoff(SYSTEM, PULSE, **arguments)
 
 
-def test_only_systems_are_compared():
-    with pytest.raises(ComponentError, match="system needs a System"):
-        rf.tradeoff(BLOCK, PULSE)
+@pytest.mark.parametrize("function", [rf.tradeoff, rf.model_ladder])
+def test_only_systems_are_compared(function):
+    with pytest.raises(ComponentError, match=f"{function.__name__}: system needs a System, got Bl"):
+        function(BLOCK)
+
+
+def test_one_model_and_one_accuracy():
+    measured = rf.tradeoff(SYSTEM, PULSE, models="two pads", accuracies=1e-6, repeats=1)
+    assert measured.model.values.tolist() == ["two pads"]
+    assert measured.accuracy.values.tolist() == ["rtol 1e-06"]
+
+
+def test_rungs_that_are_cut_off_are_no_rungs():
+    short = rf.Accuracy(rtol=1e-3, max_steps=60)
+    measured = rf.tradeoff(
+        SYSTEM,
+        PULSE,
+        models=["two pads"],
+        accuracies=(short, "standard"),
+        repeats=1,
+        free_vibration="3 s",
+    )
+    cells = [measured.isel(model=0, accuracy=i) for i in (0, 1)]
+    assert [int(cell.status) for cell in cells] == [3, 0]
+    assert [bool(cell.verdict_agrees) for cell in cells] == [False, True]
+    for name in ("peak_error", "history_error", "numerical_peak_error", "event_time_error"):
+        assert np.isnan(cells[0][name])
+        assert np.isfinite(cells[1][name])
+    for error in ("peak_error", "history_error"):
+        assert rf.recommend(measured, 0.5, error=error).accuracy == "standard"
 
 
 def test_the_figure(measured):
