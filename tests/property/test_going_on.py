@@ -1,5 +1,6 @@
 """A run that goes on where another ended is the one run that both make."""
 
+import json
 import warnings
 
 import numpy as np
@@ -84,12 +85,27 @@ def test_a_continued_run_can_be_certified():
     first = SCENES["pads"].simulate(MOTION.window(end="3 s"))
     run = SCENES["pads"].simulate(MOTION.window("3 s"), initial=first, certify=True)
     assert bool(run.verdict_converged)
+    # where it begins is no start that could be scaled
+    free = SCENES["pads"].simulate(initial=first, duration="1 s", certify=True)
+    assert float(free.verdict_margin) == 0.5
+
+
+@pytest.mark.parametrize("name", ["pads", "cascade"])
+def test_a_continued_run_tells_where_it_began(name):
+    first = SCENES[name].simulate(MOTION.window(end="3 s"))
+    run = SCENES[name].simulate(initial=first, duration="0.1 s")
+    assert json.loads(run.run_json)["initial"]["endings"] == json.loads(first.end_state)
 
 
 def test_runs_that_cannot_be_continued():
     system = SCENES["pads"]
     with pytest.raises(AssemblyError, match="holds no end of a run"):
         system.simulate(MOTION, initial=MOTION.to_dataset())
+    for name in ("end_state", "system_json"):
+        part = WHOLE["pads"].copy()
+        del part.attrs[name]
+        with pytest.raises(AssemblyError, match="holds no end of a run"):
+            system.simulate(MOTION, initial=part)
     with pytest.raises(AssemblyError, match="end of a run of another system"):
         system.simulate(MOTION, initial=WHOLE["soil"])
     fallen = system.simulate(MOTION.scaled(20.0))

@@ -1,14 +1,16 @@
 """Certificates: how sure a verdict is."""
 
 import math
+import re
 import warnings
+from dataclasses import replace
 
 import pytest
 import xarray as xr
 
 import rockframe as rf
 from rockframe.errors import ComponentError, UnitsError
-from rockframe.simulation.certificate import certify
+from rockframe.simulation.certificate import certify, nudges
 from rockframe.simulation.plan import plan_run
 from rockframe.solve.layout import Status
 from rockframe.solve.trajectory import Summary
@@ -149,6 +151,12 @@ def test_a_verdict_that_hangs_on_the_tolerance_is_not_converged():
     )
 
 
+def test_a_verdict_that_only_a_tighter_tolerance_overturns_is_not_converged():
+    found = certificate_of(lambda _, plan: plan.accuracy.rtol < 1e-5)
+    assert not found.converged
+    assert "the body stands, but with a tolerance 100 times tighter it overturns" in found.sentence
+
+
 def test_a_verdict_that_hangs_on_one_parameter_is_not_robust():
     stiffer = 20.01
     found = certificate_of(
@@ -157,6 +165,64 @@ def test_a_verdict_that_hangs_on_one_parameter_is_not_robust():
     assert found.converged
     assert not found.robust
     assert "with the frequency ratio of the base +0.1 % it overturns" in found.sentence
+
+
+def test_parameters_that_change_the_verdict_are_counted():
+    found = certificate_of(lambda system, _: system.to_dict() != SYSTEM.to_dict())
+    changes = 2 * sum(len(part.parameters()) for part in (BLOCK, PADS))
+    assert f"(and {changes - 1} more) it overturns" in found.sentence
+
+
+def test_a_peak_that_a_parameter_lowers_counts_as_one_that_it_raises():
+    run, plan = pretended(lambda *_: False), planned()
+
+    def lower(system, plan):
+        peak = 0.02 if system.parts.pads.to_dict()["frequency_ratio"] > 20.01 else 0.1001
+        return replace(run(system, plan), peak_rotation=peak)
+
+    found = certify(SYSTEM, plan, lower(SYSTEM, plan), rf.Certification(), lower)
+    assert found.peak_sensitivity == pytest.approx(0.0801)
+
+
+def test_nudged_scenes_keep_their_options():
+    cap, soil = (
+        rf.CushionCap(height="0.5 m", mass="10 t"),
+        rf.WinklerSoil(stiffness="30 MPa", damping_ratio=0.1),
+    )
+    options = {
+        "restraint": "leading-corner",
+        "rotation": "small",
+        "coupling": "cascade",
+        "gravity": "3.7 m/s^2",
+    }
+    system = rf.System(BLOCK, PADS, cap, soil, **options)
+    kept = {name: value for name, value in system.to_dict().items() if name != "parts"}
+    for words, other in nudges(system, 1e-3):
+        assert kept.items() <= other.to_dict().items(), words
+
+
+def test_a_nudge_that_makes_parts_misfit_is_left_out():
+    """A cap as wide as the block can be no narrower, nor the block any wider."""
+    block = rf.Block(width="2 m", height="8 m", mass="50 t")
+    cap = rf.CushionCap(width="2 m", height="0.5 m", mass="10 t")
+    system = rf.System(block, cap, rf.WinklerSoil(stiffness="30 MPa", damping_ratio=0.1))
+    words = [words for words, _ in nudges(system, 1e-3)]
+    assert "width of the cap +0.1 %" in words
+    assert "width of the cap -0.1 %" not in words
+    assert "width of the superstructure -0.1 %" in words
+    assert "width of the superstructure +0.1 %" not in words
+
+
+def test_what_a_scene_has_warned_of_its_certificate_does_not_repeat():
+    with pytest.warns(rf.ModelWarning, match="restitution"):
+        system = rf.System(BLOCK, rf.RigidGround(restitution=1.0))
+    assert "certificate" in certified(system=system).attrs
+
+
+def test_the_runs_beside_are_counted():
+    made = []
+    found = certificate_of(lambda _, plan: made.append(plan) or False)
+    assert found.runs == len(made) - 1  # the first is the run itself
 
 
 @pytest.mark.parametrize("edge", [0.6, 0.97, 1.004, 1.2])
@@ -168,6 +234,29 @@ def test_the_nearest_scale_is_found(edge):
 
     found = certificate_of(overturns)
     assert found.margin == pytest.approx(abs(edge - 1.0), rel=0.02)
+
+
+@pytest.mark.parametrize(("lower", "upper"), [(0.98, 1.027), (0.973, 1.02)])
+def test_of_two_changes_the_nearer_counts(lower, upper):
+    """Both within one interval of the geometric row."""
+    found = certificate_of(lambda _, plan: not lower < plan.motion.si.peak / PULSE.si.peak < upper)
+    assert found.margin == pytest.approx(0.02, rel=0.02)
+
+
+@pytest.mark.parametrize(
+    ("edge", "words"),
+    [
+        (1.008, "Near the boundary: .* scaled up by 0.8"),
+        (0.992, "Near the boundary: .* scaled down by 0.8"),
+        (1.02, "The body stands also .* until the motion is scaled by 1.02"),
+        (0.98, "The body stands also .* until the motion is scaled by 0.98"),
+    ],
+)
+def test_a_margin_of_more_than_a_hundredth_is_not_near(edge, words):
+    found = certificate_of(
+        lambda _, plan: (plan.motion.si.peak / PULSE.si.peak - edge) * (edge - 1.0) > 0.0
+    )
+    assert re.match(words, found.sentence)
 
 
 def test_no_scale_within_reach():
@@ -244,6 +333,33 @@ def test_without_a_motion_the_start_is_scaled():
     assert not bool(run.overturned)
     assert run.attrs["certificate"].startswith("The body stands")
     assert "of the start" in run.attrs["certificate"]
+
+
+@pytest.mark.parametrize("share", [0.0, 0.3])
+def test_the_margin_of_a_start_is_that_of_its_energy(share):
+    """A rigid block overturns if it can lift its centre of mass above the corner."""
+    block, edge = rf.Block.from_size(radius="2 m", slenderness=4, mass="1 t"), 1.1
+    angle = block.si.overturning_angle
+    rate = math.sqrt(1.5 * 9.80665 / 2.0 * (1.0 - math.cos((1.0 - share) * angle)))
+    start = rf.InitialState(
+        rotation=f"{share * angle / edge!r} rad", angular_velocity=f"{rate / edge!r} rad/s"
+    )
+    run = certified(None, rf.System(block), duration="20 s", initial=start)
+    assert not bool(run.overturned)
+    assert float(run.verdict_margin) == pytest.approx(edge - 1.0, rel=0.02)
+
+
+def test_a_start_is_not_scaled_beyond_a_right_angle():
+    low = rf.System(rf.Block(width="4 m", height="3 m", mass="1 t"))
+    run = certified(
+        None,
+        low,
+        certify=rf.Certification(reach=0.9),
+        duration="1 s",
+        initial=rf.InitialState(rotation="0.85 rad"),
+    )
+    assert not bool(run.overturned)
+    assert float(run.verdict_margin) == 0.9
 
 
 def test_at_rest_nothing_can_be_scaled():
