@@ -47,3 +47,9 @@ def test_options_and_ground_are_kept():
         assert rung.parts.ground == ground
         assert str(rung.restraint) == "leading-corner"
         assert rung.gravity_si == 3.7
+
+
+def test_a_ladder_does_not_repeat_what_the_scene_has_warned_of():
+    with pytest.warns(rf.ModelWarning, match="restitution"):
+        system = rf.System(BLOCK, rf.RigidGround(restitution=1.0))
+    assert len(rf.model_ladder(system)) == 2

@@ -1,5 +1,8 @@
 """Speed against accuracy: what is measured, and what is recommended."""
 
+import importlib
+import json
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -64,6 +67,93 @@ def test_errors_are_what_they_are_called(measured):
     expected = abs(float(rigid.peak_rotation) - float(scene.peak_rotation))
     assert float(cell.peak_error) == pytest.approx(expected / float(scene.peak_rotation), rel=1e-9)
     assert bool(cell.verdict_agrees)
+
+
+def test_numerical_errors_are_those_against_the_same_model(measured):
+    rigid = rf.System(BLOCK)
+    reference, run = (
+        rigid.simulate(PULSE, free_vibration="3 s", accuracy=rf.Accuracy(rtol=rtol))
+        for rtol in (1e-12, 1e-3)
+    )
+    cell = measured.sel(model="rigid ground", accuracy="rtol 0.001")
+    peak = float(reference.peak_rotation)
+    off = abs(float(run.peak_rotation) - peak)
+    assert float(cell.numerical_peak_error) == pytest.approx(off / peak, rel=1e-9)
+    off = np.abs(run.rotation - reference.rotation).max() / np.abs(reference.rotation).max()
+    assert float(cell.numerical_history_error) == pytest.approx(float(off), rel=1e-9)
+    off = np.abs(run.event_time.values - reference.event_time.values).max()
+    assert off > 0.0
+    assert float(cell.event_time_error) == pytest.approx(off, rel=1e-9)
+
+
+def test_it_tells_what_was_compared(measured):
+    assert measured.scene == "two pads"
+    assert measured.benchmark_rtol == 1e-12
+    assert measured.repeats == 2
+    settings = json.loads(measured.settings)
+    assert list(settings) == measured.accuracy.values.tolist()
+    assert settings["rtol 1e-06"]["rtol"] == 1e-6
+    assert settings["standard"]["rtol"] == rf.Accuracy(rtol=2e-8).rtol
+
+
+def test_the_time_is_the_median_of_runs_without_histories(monkeypatch):
+    module = importlib.import_module("rockframe.ladder.tradeoff")
+    times, steps = iter([5.0, 1.0, 2.0]), []
+    monkeypatch.setattr(
+        module, "_timed", lambda _, plan: steps.append(plan.output_step) or next(times)
+    )
+    found = rf.tradeoff(SYSTEM, PULSE, models=["two pads"], accuracies=["fast"], repeats=3)
+    least, median, greatest = (
+        found[name].item() for name in ("run_time_least", "run_time", "run_time_greatest")
+    )
+    assert (least, median, greatest) == (1.0, 2.0, 5.0)
+    assert steps == [None] * 3
+
+
+SINGLE = {"models": ["two pads"], "accuracies": [1e-4], "repeats": 1}
+
+
+def test_the_motion_among_the_parts_is_taken_unless_another_is_given():
+    other = PULSE.scaled(0.5)
+    system = rf.System(BLOCK, PADS, other)
+    own, given = rf.tradeoff(system, **SINGLE), rf.tradeoff(system, PULSE, **SINGLE)
+    for found, motion in ((own, other), (given, PULSE)):
+        run = SYSTEM.simulate(motion, accuracy=rf.Accuracy(rtol=1e-4))
+        assert found.peak_rotation.item() == float(run.peak_rotation)
+        assert found.motion_sha256 == motion.sha256
+
+
+def test_start_length_and_output_times_are_those_asked_for():
+    start = rf.InitialState(rotation="0.1 rad")
+    arguments = {"duration": "2 s", "initial": start, "output_step": "0.3 s"}
+    found = rf.tradeoff(SYSTEM, **SINGLE, **arguments)
+    run, reference = (
+        SYSTEM.simulate(**arguments, accuracy=rf.Accuracy(rtol=rtol)) for rtol in (1e-4, 1e-12)
+    )
+    assert run.time.size == 7
+    assert found.energy_residual.item() == float(run.energy_residual)
+    off = np.abs(run.rotation - reference.rotation).max() / np.abs(reference.rotation).max()
+    assert found.history_error.item() == pytest.approx(float(off), rel=1e-9)
+
+
+def test_runs_that_overturn_end_there():
+    found = rf.tradeoff(SYSTEM, PULSE.scaled(8.0), **SINGLE, free_vibration="3 s")
+    assert bool(found.overturned.item())
+    assert found.peak_rotation.item() == pytest.approx(BLOCK.si.overturning_angle, rel=1e-6)
+
+
+def test_models_stand_in_the_order_asked_for():
+    names = ["two pads", "rigid ground"]
+    found = rf.tradeoff(SYSTEM, PULSE, models=names, accuracies=["fast"], repeats=1)
+    assert found.model.values.tolist() == names
+
+
+def test_a_rung_does_not_warn_of_what_it_cannot_show():
+    """Of the ground that would have to pull at a block without pads."""
+    motion = PULSE.with_vertical(PULSE.scaled(peak="1.2 g_0"))
+    with pytest.warns(rf.ModelWarning):
+        rf.System(BLOCK).simulate(motion)
+    rf.tradeoff(SYSTEM, motion, models=["rigid ground"], accuracies=["fast"], repeats=1)
 
 
 def test_the_scene_has_no_error_of_the_model(measured):
@@ -132,6 +222,22 @@ def test_the_cheapest_rung_that_meets_the_tolerance(tolerance, rung, met):
     assert advice.met == met
     assert str(advice).count(".") >= 1
     assert ("No rung tried" in str(advice)) == (not met)
+
+
+def test_an_error_as_large_as_the_tolerance_meets_it():
+    assert rf.recommend(made(TIMES, ERRORS), 0.1).accuracy == "standard"
+
+
+def test_a_hundredth_is_the_usual_tolerance():
+    advice = rf.recommend(made(TIMES, ERRORS))
+    assert (advice.model, advice.accuracy) == ("pads", "standard")
+
+
+def test_the_error_that_was_asked_for_counts():
+    found = made(TIMES, ERRORS).assign(history_error=(("model", "accuracy"), ERRORS[::-1]))
+    advice = rf.recommend(found, 0.05, error="history_error")
+    assert (advice.model, advice.accuracy) == ("rigid", "fast")
+    assert "3 % off in the rotation along time" in str(advice)
 
 
 def test_a_recommendation_in_words():

@@ -1,0 +1,63 @@
+"""Errors of one run against another, on runs written down by hand."""
+
+import math
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from rockframe.ladder.errors import event_time_error, history_error, peak_error
+
+
+def made(rotation=(), time=(), kinds=(), instants=()):
+    return xr.Dataset(
+        {
+            "rotation": ("time", np.array(rotation, dtype=float)),
+            "peak_rotation": float(np.max(np.abs(rotation), initial=0.0)),
+            "event_kind": ("event", np.array(kinds, dtype=np.int8)),
+            "event_time": ("event", np.array(instants, dtype=float)),
+        },
+        {"time": np.array(time, dtype=float)},
+    )
+
+
+TIME = [0.0, 0.1, 0.2, 0.3]
+REFERENCE = made([0.0, 1.0, -4.0, 2.0], TIME)
+
+
+@pytest.mark.parametrize("peak", [3.0, 5.0])
+def test_a_peak_is_off_by_a_share_of_the_reference(peak):
+    assert peak_error(made([0.0, peak], TIME[:2]), REFERENCE) == 0.25
+
+
+def test_a_history_is_off_by_a_share_of_the_reference():
+    """The peak of the reference may be to the left, and the run's own does not count."""
+    assert history_error(made([0.0, 1.0, -6.0, 2.0], TIME), REFERENCE) == 0.5
+    assert history_error(made([0.0, 1.0, -2.0, 2.0], TIME), REFERENCE) == 0.5
+
+
+def test_the_instant_at_which_a_run_ended_is_not_compared():
+    ended = made([0.0, 1.0, -3.0, 9.0], [0.0, 0.1, 0.2, 0.27])
+    assert history_error(ended, REFERENCE) == 0.25
+    assert history_error(REFERENCE, ended) == pytest.approx(1.0 / 3.0)
+
+
+def test_a_reference_at_rest():
+    still, moving = made([0.0] * 4, TIME), made([0.0, 0.0, 1e-9, 0.0], TIME)
+    for error in (peak_error, history_error):
+        assert error(still, still) == 0.0
+        assert error(moving, still) == math.inf
+
+
+def test_events_may_come_early_or_late():
+    reference = made(kinds=[1, 2, 3], instants=[1.0, 2.0, 3.0])
+    early = made(kinds=[1, 2, 3], instants=[1.0, 1.5, 3.25])
+    assert event_time_error(early, reference) == 0.5
+    assert event_time_error(made(), made()) == 0.0
+
+
+@pytest.mark.parametrize("kinds", [[1, 2], [1, 3, 3], [1, 2, 3, 4]])
+def test_other_events_have_no_times_to_compare(kinds):
+    reference = made(kinds=[1, 2, 3], instants=[1.0, 2.0, 3.0])
+    other = made(kinds=kinds, instants=range(1, len(kinds) + 1))
+    assert math.isnan(event_time_error(other, reference))
