@@ -312,6 +312,10 @@ def test_description_of_a_pulse_builds_it_again(made):
         lambda m: m.filtered(high="20 Hz", causal=True),
         lambda m: m.scaled(peak_velocity="1 m/s"),
         lambda m: m.scaled(spectral_acceleration="1 m/s^2", period="0.5 s"),
+        lambda m: m.scaled(
+            spectral_acceleration="1 m/s^2", period="0.333333333 s", damping_ratio=0.2
+        ),
+        lambda m: m.scaled(0.5).resampled("0.02 s").resampled("0.003 s", interpolation="linear"),
         lambda m: m.rotated(m.scaled(2), "10 deg"),
         lambda m: m.baseline_corrected(0),
         lambda m: m.baseline_corrected(2, fit="velocity"),

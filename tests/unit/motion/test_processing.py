@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy import signal
 
 from rockframe.errors import ComponentError, UnitsError
 from rockframe.motion import GroundMotion
@@ -105,6 +106,7 @@ def test_window_may_end_one_step_after_the_last_sample():
     [
         ("-1 s", "2 s", "start = -1 s is outside the motion, which lasts from 0 s to 3.99 s"),
         ("1 s", "5 s", "end = 5 s is outside the motion"),
+        ("1 s", "4.01 s", "end = 4.01 s is outside the motion"),
         ("6 s", "7 s", "start = 6 s is outside"),
         ("2 s", "1 s", "end = 1 s must be at least one time step"),
         ("2 s", "2 s", "end = 2 s must be at least one time step"),
@@ -156,6 +158,11 @@ def test_tapers_may_meet_in_the_middle():
 def test_tapers_that_are_refused(taper, error, words):
     with pytest.raises(error, match=words):
         motion().window(taper=taper)
+
+
+def test_tapers_fit_the_window_and_not_only_the_motion():
+    with pytest.raises(ComponentError, match="longer than the window, 1 s"):
+        motion().window("1 s", "2 s", taper="0.6 s")
 
 
 @pytest.mark.parametrize("factor", [2, -0.5, "50 %", 0])
@@ -237,10 +244,26 @@ def test_a_causal_filter_has_the_amplitude_of_one_pass():
     assert "forwards only" in through.history[-1]
 
 
+def test_a_filter_has_four_poles_unless_told_otherwise():
+    assert motion().filtered(high="5 Hz") == motion().filtered(high="5 Hz", order=4)
+
+
+def test_a_straight_line_is_the_usual_baseline():
+    assert motion().baseline_corrected() == motion().baseline_corrected(1)
+
+
 def test_filter_says_how_it_padded():
     filtered = motion().filtered(low="0.1 Hz", order=4)
     assert len(filtered) == len(motion())
     assert "low corner 0.1 Hz, padded with 6000 zeros" in filtered.history[-1]
+
+
+def test_a_band_is_padded_for_its_lower_corner():
+    band = motion().filtered(low="0.1 Hz", high="20 Hz")
+    assert "padded with 6000 zeros" in band.history[-1]
+    sos, rest = signal.butter(4, [0.1, 20.0], "bandpass", fs=100.0, output="sos"), np.zeros(6000)
+    padded = signal.sosfiltfilt(sos, np.concatenate([rest, NOISE, rest]), padtype=None)
+    assert band.si.acceleration == pytest.approx(padded[6000:6400], abs=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -248,12 +271,18 @@ def test_filter_says_how_it_padded():
     [
         ({}, ComponentError, "give low, high or both"),
         ({"low": "5 Hz", "high": "1 Hz"}, ComponentError, "must be below high"),
+        ({"low": "5 Hz", "high": "5 Hz"}, ComponentError, "must be below high"),
         ({"high": "50 Hz"}, ComponentError, "below the Nyquist frequency, 50 Hz"),
         ({"low": "0 Hz"}, ComponentError, "low must be greater than zero"),
         ({"low": "1e-9 Hz"}, ComponentError, "too low"),
         ({"low": 1.0}, UnitsError, "low needs a cyclic frequency"),
         ({"high": "1 rad/s"}, UnitsError, "high needs a cyclic frequency"),
         ({"high": "5 Hz", "order": 0}, ComponentError, "order must be a whole number"),
+        (
+            {"high": "5 Hz", "order": 13},
+            ComponentError,
+            "order must be a whole number from 1 to 12",
+        ),
         ({"high": "5 Hz", "order": 2.0}, ComponentError, "order must be a whole number"),
         ({"high": "5 Hz", "order": True}, ComponentError, "order must be a whole number"),
         ({"high": "5 Hz", "causal": 1}, ComponentError, "causal must be True or False, got 1"),
@@ -341,6 +370,23 @@ def test_with_vertical_of_another_step():
         motion().with_vertical(motion(step=0.02))
 
 
+@pytest.mark.parametrize(("off", "same"), [(1e-12, True), (1e-6, False)])
+def test_time_steps_are_the_same_up_to_rounding(off, same):
+    """Over a record of 100 s, a millionth would be a tenth of a millisecond."""
+    other = motion(step=STEP * (1.0 + off))
+    if same:
+        assert motion().with_vertical(other).si.time_step == STEP
+    else:
+        with pytest.raises(ComponentError, match="time steps differ"):
+            motion().with_vertical(other)
+
+
+def test_what_is_known_of_the_vertical_component_is_kept():
+    made = motion()
+    told = GroundMotion(made.si, name="up", metadata={"station": "A"}, history=made.history)
+    assert motion().with_vertical(told).metadata["vertical_station"] == "A"
+
+
 @pytest.mark.parametrize("other", [NOISE, None, "vertical"])
 def test_with_vertical_of_something_else(other):
     with pytest.raises(ComponentError, match="needs a GroundMotion"):
@@ -358,6 +404,21 @@ def test_pieces_survive_scaling_and_windows():
     part = pulse.scaled(3).window("0.25 s", "1.5 s")
     time = np.linspace(0.0, 1.25, 5001)
     assert part.si.at(time) == pytest.approx(3.0 * np.cos(2.0 * np.pi * time), abs=3e-12)
+
+
+def test_pieces_of_the_vertical_component_survive_scaling_and_windows():
+    pulse = GroundMotion.sine_pulse("1 m/s^2", "1 Hz", 2)
+    part = pulse.with_vertical(pulse.scaled(2)).scaled(3).window("0.25 s", "1.5 s")
+    time = np.linspace(0.0, 1.25, 5001)
+    assert part.si.vertical_at(time) == pytest.approx(6.0 * np.cos(2.0 * np.pi * time), abs=6e-12)
+
+
+def test_a_record_above_an_analytic_pulse_is_refined_by_itself():
+    pulse = GroundMotion.sine_pulse("1 m/s^2", "1 Hz")
+    count = len(pulse)
+    both = pulse.with_vertical(motion(NOISE[:count], step=pulse.si.time_step))
+    fine = both.resampled(f"{pulse.si.time_step / 3.0!r} s", interpolation="linear")
+    assert fine.si.vertical[::3] == pytest.approx(NOISE[:count], abs=1e-12)
 
 
 def test_pieces_of_both_components_survive_with_vertical():
@@ -387,3 +448,11 @@ def test_other_steps_replace_pieces_and_say_so(step):
     changed = ALL_STEPS[step](GroundMotion.sine_pulse("1 m/s^2", "1 Hz", 3))
     assert changed.si.pieces is None
     assert "straight lines" in changed.history[-1]
+
+
+def test_the_pieces_of_the_vertical_component_are_spoken_of_too():
+    both = motion().with_vertical(GroundMotion.sine_pulse().resampled(f"{STEP} s"))
+    assert "straight lines" not in both.baseline_corrected().history[-1]
+    pulse = GroundMotion.sine_pulse()
+    both = motion(step=pulse.si.time_step).with_vertical(pulse)
+    assert "straight lines" in both.baseline_corrected().history[-1]

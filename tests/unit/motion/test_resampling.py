@@ -33,12 +33,30 @@ def test_refining_by_a_whole_number_keeps_the_function(times):
     assert fine.si.at(time) == pytest.approx(motion().si.at(time), abs=1e-12)
 
 
-def test_refining_by_another_number_reads_off_the_straight_lines():
-    fine = motion().resampled("0.003 s", interpolation="linear")
-    time = np.arange(len(fine)) * 0.003
-    assert time[-1] == pytest.approx(3.99)
+def test_a_ratio_that_is_whole_but_for_rounding_is_whole():
+    assert 0.15 / 0.05 < 3.0
+    fine = motion(step=0.15).resampled("0.05 s")
+    assert len(fine) == 399 * 3 + 1
+    assert fine.si.acceleration[::3].tolist() == NOISE.tolist()
+
+
+@pytest.mark.parametrize("step", [0.003, 0.003332])
+def test_refining_by_another_number_reads_off_the_straight_lines(step):
+    fine = motion().resampled(f"{step} s", interpolation="linear")
+    time = np.arange(len(fine)) * step
+    assert 3.99 - step < time[-1] < 3.99 + 1e-9
     expected = np.interp(time, np.arange(400) * STEP, NOISE)
     assert fine.si.acceleration == pytest.approx(expected, abs=1e-12)
+
+
+def test_refining_says_what_it_took_the_motion_for():
+    pulse = GroundMotion.sine_pulse("1 m/s^2", "1 Hz")
+    for made, how in (
+        (motion().resampled("0.005 s"), "without anything beyond the old Nyquist frequency"),
+        (motion().resampled("0.005 s", interpolation="linear"), "linear between samples"),
+        (pulse.resampled("0.005 s"), "read off the analytic pieces"),
+    ):
+        assert any(sentence.endswith(f"to 0.005 s, {how}") for sentence in made.history)
 
 
 def test_refining_says_what_is_left_out():
@@ -64,6 +82,21 @@ def test_coarsening_keeps_slow_and_removes_fast_motion_without_delay(step):
     assert coarse.si.acceleration == pytest.approx(exact, abs=0.02)
     assert motion(fast).resampled(f"{step} s").si.peak < 1e-3
     assert "anti-alias" in coarse.history[-1] or "anti-alias" in coarse.history[-2]
+
+
+@pytest.mark.parametrize("step", [0.02, 0.025, 0.0333])
+def test_coarsening_cuts_close_to_the_new_nyquist_frequency(step):
+    kept, removed = tone(0.35 / step), tone(0.55 / step)  # 0.7 and 1.1 of it
+    coarse = motion(kept).resampled(f"{step} s")
+    time = np.arange(len(coarse)) * step
+    exact = np.sin(np.pi * time / 40.0) ** 2 * np.sin(2.0 * np.pi * 0.35 / step * time)
+    assert coarse.si.acceleration == pytest.approx(exact, abs=0.03)
+    assert motion(removed).resampled(f"{step} s").si.peak < 0.01
+
+
+def test_coarsening_keeps_the_ends_of_a_straight_line():
+    coarse = motion(np.arange(401.0)).resampled("0.04 s").si.acceleration
+    assert coarse == pytest.approx(np.arange(0.0, 401.0, 4.0), rel=0.02, abs=0.01)
 
 
 def test_coarsening_by_picking_samples_would_alias():

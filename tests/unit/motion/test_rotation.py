@@ -48,6 +48,29 @@ def test_the_vertical_component_stays():
     assert turned.history[-1] == "the other component padded with 20 zeros"
 
 
+def test_the_vertical_component_is_padded_with_the_horizontal_ones():
+    turned = motion(ONE[:30], "one", vertical=UP[:30]).rotated(motion(OTHER, "other"), "10 deg")
+    assert turned.si.vertical.tolist() == [*UP[:30], *[0.0] * 20]
+    assert turned.history[-1] == "this component padded with 20 zeros"
+
+
+def test_the_components_are_named():
+    turned = motion(ONE, "H1", 0).rotated(motion(OTHER, "H2", 90), azimuth="-30 deg")
+    assert turned.metadata["component"] == "H1 and H2 rotated by -30 degrees"
+    assert turned.metadata["azimuth"] == pytest.approx(330.0)
+
+
+@pytest.mark.parametrize(("theirs", "known"), [(91, True), (89, True), (92, False), (88, False)])
+def test_azimuths_are_at_a_right_angle_up_to_a_degree(theirs, known):
+    """Agencies round them to whole degrees."""
+    one, other = motion(ONE, "H1", 0), motion(OTHER, "H2", theirs)
+    if known:
+        one.rotated(other, azimuth="30 deg")
+    else:
+        with pytest.raises(ComponentError, match="are not at a right angle"):
+            one.rotated(other, azimuth="30 deg")
+
+
 @pytest.mark.parametrize(("own", "theirs", "sign"), [(0, 90, 1), (90, 0, -1), (306, 36, 1)])
 def test_an_azimuth_needs_no_angle(own, theirs, sign):
     """A component that points to `azimuth` is found from two that tell theirs."""
