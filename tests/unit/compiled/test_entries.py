@@ -1,6 +1,7 @@
 """Entries: what they take, what they give, and that their code outlives the process."""
 
 import logging
+import os
 import subprocess
 import sys
 from typing import NamedTuple
@@ -143,6 +144,32 @@ def test_too_few_or_too_many_arguments_are_refused():
         combine(*arguments()[:-1])
     with pytest.raises(ValueError, match="zip"):
         combine(*arguments(), 1)
+    function, pair, *rest = arguments()
+    with pytest.raises(ValueError, match="zip"):
+        combine(function, (*pair, 1.0), *rest)
+
+
+def test_compilation_can_be_turned_off():
+    told = "from rockframe.compiled import COMPILED; print(COMPILED)"
+    done = subprocess.run(
+        [sys.executable, "-c", told],
+        env=os.environ | {"ROCKFRAME_COMPILE": "0"},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert done.stdout.strip() == "False"
+
+
+def test_code_is_made_for_one_processor(monkeypatch):
+    from rockframe.compiled import machine_code, store
+
+    makers = []
+    monkeypatch.setattr(store, "read", lambda _, maker: makers.append(maker) or b"code")
+    for features in ("+some", "+some,+other"):
+        monkeypatch.setattr(machine_code, "_features", lambda features=features: features)
+        machine_code._stored_or_made("function", bytes)
+    assert makers[0] != makers[1]
 
 
 def test_functions_of_one_name_are_not_mixed_up(folder):

@@ -65,6 +65,27 @@ def test_a_changed_source_makes_it_stale_and_replaces_it(folder, monkeypatch):
     assert written(folder) != before
 
 
+def test_the_text_of_a_source_counts(tmp_path, monkeypatch):
+    monkeypatch.setattr(store, "_ROOT", tmp_path)
+    source = tmp_path / "dynamics" / "some.py"
+    source.parent.mkdir()
+    digests = set()
+    for text in ("a = 1", "a = 2"):
+        source.write_text(text)
+        digests.add(store._sources.__wrapped__())
+    source.rename(source.with_name("other.py"))
+    digests.add(store._sources.__wrapped__())
+    assert len(digests) == 3
+
+
+def test_another_numba_has_its_own(monkeypatch):
+    numba = pytest.importorskip("numba")
+    assert numba.__version__ in store._numba()
+    store.write(NAME, MAKER, CODE)
+    monkeypatch.setattr(store, "_numba", lambda: "a later one")
+    assert store.read(NAME, MAKER) is None
+
+
 def test_every_source_that_is_compiled_counts():
     from rockframe.compiled import registry
     from rockframe.dynamics import coupled, rigid_ground, two_spring, winkler
@@ -96,6 +117,14 @@ def test_where_nothing_can_be_written_nothing_is(tmp_path, monkeypatch):
     monkeypatch.setenv("ROCKFRAME_CACHE_DIR", str(blocked))
     store.write(NAME, MAKER, CODE)
     assert store.read(NAME, MAKER) is None
+
+
+def test_one_folder_is_written_to(tmp_path, monkeypatch):
+    folders = [tmp_path / "one", tmp_path / "other"]
+    monkeypatch.setattr(store, "_folders", lambda: folders)
+    store.write(NAME, MAKER, CODE)
+    assert len(written(folders[0])) == 1
+    assert not folders[1].exists()
 
 
 def test_the_next_folder_serves_where_the_first_cannot(tmp_path, monkeypatch):
