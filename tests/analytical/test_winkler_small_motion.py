@@ -11,6 +11,7 @@ from analytical.soil import Bed
 from scipy.linalg import expm
 
 import rockframe as rf
+from rockframe.system.small_motion import SmallMotion, modes_of
 
 pytestmark = pytest.mark.analytical
 
@@ -65,6 +66,24 @@ def test_soil_too_soft_to_hold_the_block_has_no_rocking_frequency():
         duration="100 s", initial=rf.InitialState(rotation="1e-6 rad"), outputs=None
     )
     assert response.overturned.item()
+
+
+def test_a_mode_that_nothing_brings_back_has_no_frequency():
+    """Neither stable nor unstable: stiffness and gravity balance exactly."""
+    one = np.eye(1)
+    (mode,) = modes_of(SmallMotion(("rotation",), one, 0.5 * one, 0.0 * one))
+    assert math.isnan(mode.angular_frequency)
+    assert math.isnan(mode.damping_ratio)
+
+
+def test_a_cap_given_by_its_density_has_the_mass_of_its_own_width():
+    block = rf.Block(width="2.4 m", height="9.6 m", mass="50 t")
+    soil = rf.WinklerSoil(stiffness="9 MPa", damping_ratio=0.15)
+    dense, heavy = (
+        rf.System(block, rf.CushionCap(width="3.2 m", height="0.7 m", **given), soil).frequencies()
+        for given in ({"density": "2500 kg/m^3", "depth": "4 m"}, {"mass": "22.4 t"})
+    )
+    assert dense.angular_frequency.values == pytest.approx(heavy.angular_frequency.values)
 
 
 def test_block_and_cap_rock_as_one_body():
