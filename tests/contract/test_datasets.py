@@ -2,6 +2,7 @@
 
 import math
 import re
+from dataclasses import replace
 
 import cf_xarray  # noqa: F401
 import numpy as np
@@ -21,8 +22,11 @@ from contract.scenes import (
 )
 
 import rockframe as rf
+from rockframe.results.outcome import Scales, verdict
 from rockframe.results.schema import ENERGIES, SCHEMA
 from rockframe.solve.accuracy import accuracy_of
+from rockframe.solve.layout import Status
+from rockframe.solve.trajectory import Summary
 
 pytestmark = pytest.mark.contract
 
@@ -434,6 +438,87 @@ def test_a_tolerance_is_an_accuracy():
     assert one.drop_attrs(deep=False).identical(other.drop_attrs(deep=False))
 
 
+@pytest.mark.parametrize(
+    "base",
+    [
+        rf.TwoSpringSupport(frequency_ratio=40, damping_ratio=0.1),
+        rf.WinklerSoil(stiffness="20 MPa", damping_ratio=0.1),
+    ],
+)
+def test_vertical_displacements_are_relative_to_the_settlement_at_rest(base):
+    """g over the square of the vertical frequency."""
+    system = rf.System(rf.Block(width="2 m", height="8 m", mass="50 t"), base)
+    settlement = 9.80665 / float(system.frequencies().angular_frequency[-1]) ** 2
+    start = rf.InitialState(vertical_displacement="-0.1 mm")
+    response = system.simulate(duration="0.1 s", initial=start)
+    assert response.relative_vertical_displacement.values == pytest.approx(
+        response.vertical_displacement.values / settlement, rel=1e-9
+    )
+
+
+def test_a_length_that_is_whole_steps_but_for_rounding_has_its_last_sample():
+    assert 0.3 / 0.1 < 3.0
+    system = SCENES["two-spring, contact-state, finite"]()
+    assert system.simulate(duration="0.3 s", output_step="0.1 s").time.size == 4
+
+
+STANDS = "Did not overturn: peak rotation 0.01 rad, 5 % of the overturning angle; "
+
+
+@pytest.mark.parametrize(
+    ("found", "pads_on_cap", "words"),
+    [
+        ({}, False, STANDS + "1 impact."),
+        (
+            {"impact_count": 2, "flight_time": 0.125},
+            False,
+            STANDS + "2 impacts, 0.125 s in flight.",
+        ),
+        (
+            {"impact_count": 0, "first_uplift_time": math.nan},
+            False,
+            STANDS + "0 impacts, no uplift.",
+        ),
+        ({"first_uplift_time": math.nan}, True, STANDS + "1 impact, no uplift from the pads."),
+        (
+            {"overturning_time": 1.25, "overturning_direction": -1},
+            False,
+            "Overturned to the left at 1.250 s, after 1 impact.",
+        ),
+        (
+            {"overturning_time": 1.25, "overturning_direction": 1, "status": Status.TOPPLED},
+            False,
+            "Overturned to the right at 1.250 s, after 1 impact; fell flat at 2.000 s.",
+        ),
+        (
+            {"status": Status.CHATTER},
+            False,
+            "Not finished: stopped at 2 s, because contact changes followed one another without "
+            "end. Until then no overturning: peak rotation 0.01 rad, 5 % of the overturning angle; "
+            "1 impact.",
+        ),
+    ],
+)
+def test_a_verdict_in_words(found, pads_on_cap, words):
+    summary = Summary(
+        status=Status.COMPLETED,
+        end_time=2.0,
+        peak_rotation=0.01,
+        overturning_time=math.nan,
+        overturning_direction=0,
+        first_uplift_time=0.5,
+        flight_time=0.0,
+        impact_count=1,
+        flight_count=0,
+        step_count=1,
+        rejected_count=0,
+        substeps=0,
+        energy_residual=0.0,
+    )
+    scales = Scales(0.2, 0.01, None, pads_on_cap=pads_on_cap)
+    assert verdict(replace(summary, **found), scales) == words
+
+
 def test_an_unfinished_run_says_so():
     system = SCENES["two-spring, contact-state, finite"]()
     with pytest.warns(rf.SolverWarning, match="Not finished: stopped at") as caught:
@@ -443,6 +528,6 @@ def test_an_unfinished_run_says_so():
     assert response.attrs["verdict"].startswith("Not finished: stopped at")
     assert response.attrs["cautions"] == response.attrs["verdict"]
     assert response.attrs["solver_steps"] <= 50
-    assert response.time.values[-1] == pytest.approx(response.attrs["solver_end_time"], abs=0.01)
+    assert response.time.values[-1] == response.attrs["solver_end_time"]
     assert response.attrs["solver_end_time"] < 1.0
     assert response.overturned.item() is False

@@ -1,5 +1,7 @@
 """The error of fixed sub-steps falls with the third power of their length, events included."""
 
+import math
+
 import numpy as np
 import pytest
 
@@ -148,6 +150,21 @@ def test_an_unstable_number_of_substeps_is_refused():
     )
     calm = response.sel(time=slice(8.0, None))
     assert float(abs(calm.vertical_displacement).max()) < 1e-12
+
+
+@pytest.mark.parametrize("damping_ratio", [0.0, 0.3, 1.5])
+def test_the_least_number_of_substeps_is_that_of_the_fastest_vibration(damping_ratio):
+    """Steps of 0.85 over omega (zeta + sqrt(1 + zeta^2))."""
+    undamped, damped = (
+        rf.System(block(), rf.TwoSpringSupport(frequency_ratio=200, damping_ratio=ratio))
+        for ratio in (0.0, damping_ratio)
+    )
+    fastest = float(undamped.frequencies().angular_frequency[-1])
+    rate = fastest * (damping_ratio + math.hypot(1.0, damping_ratio))
+    with pytest.raises(rf.SolverError) as caught:
+        damped.simulate(record(), accuracy=rf.Accuracy(substeps=1))
+    assert f"fastest vibration ({fastest / (2.0 * math.pi):.4g} Hz)" in str(caught.value)
+    assert f"give at least {math.ceil(0.01 * rate / 0.85)}," in str(caught.value)
 
 
 @pytest.mark.parametrize("damping_ratio", [0.0, 0.05, 0.3, 1.0, 3.0])

@@ -1,6 +1,7 @@
 """Putting a system together and asking it to run: what fits, what does not, what is said."""
 
 import itertools
+import json
 import math
 import multiprocessing
 import re
@@ -573,6 +574,8 @@ class TestAccuracy:
             ("rtol", -1e-7),
             ("rtol", 1.0),
             ("rtol", 1e-16),
+            ("rtol", 0.9e-13),
+            ("rtol", 1.1e-2),
             ("rtol", math.nan),
             ("rtol", math.inf),
             ("rtol", "1e-7"),
@@ -590,6 +593,18 @@ class TestAccuracy:
     def test_settings_out_of_range_are_refused(self, name, bad):
         with pytest.raises(rf.SolverError, match=name):
             rf.Accuracy(**{"rtol": 1e-7, name: bad})
+
+    @pytest.mark.parametrize(
+        ("name", "settings"),
+        [
+            ("fast", {"rtol": None, "substeps": "fewest", "steps_per_period": 10.0}),
+            ("standard", {"rtol": 2e-8, "substeps": None, "steps_per_period": 8.0}),
+            ("reference", {"rtol": 1e-11, "substeps": None, "steps_per_period": 8.0}),
+        ],
+    )
+    def test_a_run_tells_its_settings(self, name, settings):
+        response = rf.System(block(), pads()).simulate(pulse(), accuracy=name, outputs=None)
+        assert settings.items() <= json.loads(response.run_json)["accuracy"].items()
 
     @pytest.mark.parametrize("name", ["fast", "standard", "reference"])
     def test_names_stand_for_settings(self, name):
