@@ -1,5 +1,6 @@
 """Modes of small motion about rest: frequencies, damping ratios and shapes."""
 
+import itertools
 import math
 from dataclasses import dataclass
 
@@ -50,8 +51,8 @@ def modes_of(motion: SmallMotion) -> list[Mode]:
     Returns
     -------
     list of Mode
-        A pair of real rates s1, s2 counts as one overdamped mode, of the frequency
-        sqrt(s1 s2); unstable pairs stand first.
+        A pair of real rates s1, s2 of like shapes counts as one overdamped mode, of the
+        frequency sqrt(s1 s2); unstable pairs stand first.
     """
     size = len(motion.coordinates)
     transition = np.block(
@@ -73,7 +74,7 @@ def modes_of(motion: SmallMotion) -> list[Mode]:
         elif rate.imag == 0.0:
             real.append(i)
     real.sort(key=lambda i: float(rates[i].real), reverse=True)
-    for first, second in zip(real[::2], real[1::2], strict=True):
+    for first, second in _pairs(real, np.real(vectors[:size]), motion.mass):
         shape = _shape(vectors[:size, first])
         slow, quick = float(rates[first].real), float(rates[second].real)
         if slow * quick <= 0.0:
@@ -83,6 +84,22 @@ def modes_of(motion: SmallMotion) -> list[Mode]:
         modes.append(Mode(frequency, -0.5 * (slow + quick) / frequency, shape))
     return sorted(modes, key=lambda mode: (not math.isnan(mode.angular_frequency),
                                            mode.angular_frequency))  # fmt: skip
+
+
+def _pairs(real: list[int], shapes: Array, mass: Array) -> list[tuple[int, int]]:
+    """Join real rates whose shapes are most alike, in the measure of the mass."""
+    scaled = {i: shapes[:, i] / math.sqrt(shapes[:, i] @ mass @ shapes[:, i]) for i in real}
+    alike = sorted(
+        itertools.combinations(real, 2),
+        key=lambda pair: -abs(float(scaled[pair[0]] @ mass @ scaled[pair[1]])),
+    )
+    free = set(real)
+    pairs: list[tuple[int, int]] = []
+    for pair in alike:
+        if free.issuperset(pair):
+            free.difference_update(pair)
+            pairs.append(pair)
+    return pairs
 
 
 def _shape(vector: NDArray[np.complex128]) -> Array:

@@ -68,6 +68,30 @@ def test_soil_too_soft_to_hold_the_block_has_no_rocking_frequency():
     assert response.overturned.item()
 
 
+def test_overdamped_modes_keep_their_own_rates():
+    """Damping in proportion to stiffness: each mode is an oscillator of its own."""
+    rng = np.random.default_rng(4)
+    shapes = np.linalg.qr(rng.normal(size=(4, 4)))[0]
+    frequencies = np.array([1.0, 2.0, 3.0, 5.0])
+    ratios = np.array([5.0, 1.01, 0.3, 5.0])
+    mass = np.diag([1.0, 2.0, 0.5, 3.0])
+    root = np.sqrt(mass)
+    stiffness = root @ shapes @ np.diag(frequencies**2) @ shapes.T @ root
+    damping = root @ shapes @ np.diag(2.0 * ratios * frequencies) @ shapes.T @ root
+    modes = modes_of(SmallMotion(("a", "b", "c", "d"), mass, damping, stiffness))
+    np.testing.assert_allclose([mode.angular_frequency for mode in modes], frequencies, rtol=1e-9)
+    np.testing.assert_allclose([mode.damping_ratio for mode in modes], ratios, rtol=1e-9)
+
+
+def test_a_strongly_damped_bed_has_the_frequencies_of_its_springs():
+    bed = {"stiffness": "20 MPa"}
+    block = rf.Block(width="1 m", height="1 m", mass="1 t")
+    free = rf.System(block, rf.WinklerSoil(**bed, damping_ratio=0.0)).frequencies()
+    damped = rf.System(block, rf.WinklerSoil(**bed, damping_ratio=3.0)).frequencies()
+    np.testing.assert_allclose(damped.angular_frequency, free.angular_frequency, rtol=1e-9)
+    assert damped.damping_ratio.values.max() == pytest.approx(3.0, rel=1e-9)
+
+
 def test_a_mode_that_nothing_brings_back_has_no_frequency():
     """Neither stable nor unstable: stiffness and gravity balance exactly."""
     one = np.eye(1)
