@@ -10,7 +10,7 @@ import numpy as np
 from rockframe.motion.samples import Array, value_at
 
 _INTEGER_RATIO: Final = 1e-9
-_ANTI_ALIAS_ORDER: Final = 8
+_ANTI_ALIAS_ORDER: Final = 9  # of even order it would take 0.1 dB from the slowest motion
 _ANTI_ALIAS_RIPPLE: Final = 0.05
 _ANTI_ALIAS_EDGE: Final = 0.8
 _SINC_REACH: Final = 64
@@ -125,7 +125,7 @@ def coarsened(dt: float, samples: Array, time_step: float) -> Array:
 
     Notes
     -----
-    Chebyshev filter of order 8 and 0.05 dB ripple up to 0.8 of the new Nyquist
+    Chebyshev filter of order 9 and 0.05 dB ripple up to 0.8 of the new Nyquist
     frequency, run forwards and backwards; a ratio that is not an integer is
     then read off a cubic spline.
     """

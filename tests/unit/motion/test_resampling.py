@@ -40,6 +40,11 @@ def test_a_ratio_that_is_whole_but_for_rounding_is_whole():
     assert fine.si.acceleration[::3].tolist() == NOISE.tolist()
 
 
+def test_coarsening_takes_nothing_from_the_slowest_motion():
+    still = GroundMotion.from_arrays((np.ones(2000), "m/s^2"), "0.005 s").resampled("0.02 s")
+    np.testing.assert_allclose(still.si.acceleration[100:-100], 1.0, rtol=1e-9)
+
+
 @pytest.mark.parametrize("step", [0.003, 0.003332])
 def test_refining_by_another_number_reads_off_the_straight_lines(step):
     fine = motion().resampled(f"{step} s", interpolation="linear")
