@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from rockframe.errors import ModelWarning, RockframeError
+from rockframe.errors import ModelWarning, RockframeError, SolverError
 from rockframe.simulation.beginning import Continuation
 from rockframe.simulation.certification import Certificate, Certification
 from rockframe.simulation.plan import Plan
-from rockframe.solve.accuracy import LEVELS, Accuracy, AccuracyLevel
+from rockframe.solve.accuracy import FEWEST, LEVELS, Accuracy, AccuracyLevel
 from rockframe.system.assembly import Assembly
 
 if TYPE_CHECKING:
@@ -70,27 +70,38 @@ def certify(
     fell = summary.overturned
     if fell is None:
         return NONE
-    bare = replace(plan, output_step=None, energies=(), stop_at_overturning=True)
+    bare = replace(plan, output_step=None, energies=())
+    stopping = replace(bare, stop_at_overturning=True)
     peak = summary.peak_rotation
     with warnings.catch_warnings():
         # the run itself has given them
         warnings.simplefilter("ignore", ModelWarning)
         tighter = run(system, replace(bare, accuracy=tightened(plan.accuracy)))
-        nudged = [(words, run(other, bare)) for words, other in nudges(system, wanted.nudge)]
-        boundary = nearest_change(system, bare, fell, wanted.reach, run)
+        nudged = [
+            (words, _run_beside(other, bare, run)) for words, other in nudges(system, wanted.nudge)
+        ]
+        boundary = nearest_change(system, stopping, fell, wanted.reach, run)
     distances = [_distance(other, peak) for _, other in nudged]
     changed = [(words, other.overturned) for words, other in nudged if other.overturned != fell]
     certificate = Certificate(
         converged=tighter.overturned == fell,
         robust=not changed,
-        margin=wanted.reach if boundary.scale is None else abs(boundary.scale - 1.0),
+        margin=boundary.margin(wanted.reach),
         peak_error=_distance(tighter, peak),
         peak_sensitivity=float(np.max(distances, initial=0.0)),
         runs=1 + len(nudged) + boundary.runs,
         sentence="",
     )
     doubts = list(_doubts(certificate, tighter.overturned, changed, boundary, plan))
-    return replace(certificate, sentence=_sentence(fell, doubts, boundary.scale, wanted, plan))
+    return replace(certificate, sentence=_sentence(fell, doubts, boundary, wanted, plan))
+
+
+def _run_beside(system: Assembly, plan: Plan, run: Run) -> "Summary":
+    """Run a nudged scene; with a sub-step more where those given have become too few."""
+    try:
+        return run(system, plan)
+    except SolverError:
+        return run(system, replace(plan, accuracy=replace(plan.accuracy, substeps=FEWEST)))
 
 
 def _distance(other: "Summary", peak: float) -> float:
@@ -155,6 +166,12 @@ class Boundary:
     scale: float | None
     overturned: bool | None
     runs: int
+
+    def margin(self, reach: float) -> float:
+        """Give its distance, or the reach of what was tried; NaN if nothing was."""
+        if self.runs == 0:
+            return math.nan
+        return reach if self.scale is None else abs(self.scale - 1.0)
 
 
 def nearest_change(system: Assembly, plan: Plan, fell: bool, reach: float, run: Run) -> Boundary:
@@ -250,19 +267,20 @@ def _doubts(
 
 
 def _sentence(
-    fell: bool, doubts: list[str], scale: float | None, wanted: Certification, plan: Plan
+    fell: bool, doubts: list[str], boundary: Boundary, wanted: Certification, plan: Plan
 ) -> str:
     verdict = "overturns" if fell else "stands"
     if doubts:
         return f"Near the boundary: the body {verdict}, but {'; '.join(doubts)}."
+    text = f"The body {verdict} also with {_finer(plan)}"
+    nudged = f"with every parameter {100.0 * wanted.nudge:g} % larger or smaller"
+    if boundary.runs == 0:
+        return f"{text} and {nudged}."
     what = _driver(plan)
     far = f"for every scale of {what} tried from {1 - wanted.reach:g} to {1 + wanted.reach:g}"
-    if scale is not None:
-        far = f"until {what} is scaled by {scale:.3g}"
-    return (
-        f"The body {verdict} also with {_finer(plan)}, with every "
-        f"parameter {100.0 * wanted.nudge:g} % larger or smaller, and {far}."
-    )
+    if boundary.scale is not None:
+        far = f"until {what} is scaled by {boundary.scale:.3g}"
+    return f"{text}, {nudged}, and {far}."
 
 
 def _ends(fell: bool | None) -> str:

@@ -77,7 +77,8 @@ class Certificate:
     robust : bool
         Whether it is that of every run with a nudged parameter.
     margin : float
-        Smallest change of scale found that changes it; the reach if none did [1].
+        Smallest change of scale found that changes it; the reach if none did, NaN if
+        there is nothing to scale [1].
     peak_error : float
         Difference of the peak rotation from that of the run of tighter tolerance [rad].
     peak_sensitivity : float

@@ -1,6 +1,7 @@
 """A run that goes on where another ended is the one run that both make."""
 
 import json
+import math
 import warnings
 
 import numpy as np
@@ -93,7 +94,7 @@ def test_a_continued_run_can_be_certified():
     assert bool(run.verdict_converged)
     # where it begins is no start that could be scaled
     free = SCENES["pads"].simulate(initial=first, duration="1 s", certify=True)
-    assert float(free.verdict_margin) == 0.5
+    assert math.isnan(free.verdict_margin)
 
 
 @pytest.mark.parametrize("name", ["pads", "cascade"])

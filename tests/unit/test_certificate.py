@@ -283,9 +283,7 @@ def test_runs_beside_that_are_cut_off_are_no_support():
     assert "a tolerance 100 times tighter the run cannot be finished" in tighter.sentence
 
     softer = certificate_of(
-        lambda system, _: (
-            None if system.parts.pads.to_dict()["frequency_ratio"] < 19.99 else False
-        )
+        lambda system, _: None if system.parts.pads.to_dict()["frequency_ratio"] < 19.99 else False
     )
     assert not softer.robust
     assert math.isnan(softer.peak_sensitivity)
@@ -364,8 +362,31 @@ def test_a_start_is_not_scaled_beyond_a_right_angle():
 
 def test_at_rest_nothing_can_be_scaled():
     run = certified(None, duration="1 s")
-    assert float(run.verdict_margin) == 0.5
+    assert math.isnan(run.verdict_margin)
     assert bool(run.verdict_robust)
+    assert run.attrs["certificate"] == (
+        "The body stands also with a tolerance 100 times tighter and with every parameter 0.1 % "
+        "larger or smaller."
+    )
+
+
+def test_a_run_that_goes_on_is_compared_with_runs_that_go_on():
+    strong = PULSE.scaled(3.0 * EDGE)
+    run = certified(strong, overturning="continue")
+    assert bool(run.overturned)
+    assert float(run.peak_rotation) == pytest.approx(0.5 * math.pi)
+    assert float(run.peak_error_estimate) < 1e-9
+    assert float(run.peak_sensitivity) < 1e-9
+
+
+def test_sub_steps_that_just_do_for_the_run_are_certified():
+    pads = rf.TwoSpringSupport(frequency_ratio=324.57, damping_ratio=0.1)
+    system = rf.System(BLOCK, pads)
+    given = rf.Accuracy(substeps=4)
+    with pytest.raises(rf.SolverError, match="too few"):
+        rf.System(BLOCK, pads.with_scaled("frequency_ratio", 1.001)).simulate(PULSE, accuracy=given)
+    run = certified(system=system, accuracy=given)
+    assert "larger or smaller" in run.attrs["certificate"]
 
 
 @pytest.mark.parametrize(

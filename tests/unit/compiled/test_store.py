@@ -67,6 +67,7 @@ def test_a_changed_source_makes_it_stale_and_replaces_it(folder, monkeypatch):
 
 def test_the_text_of_a_source_counts(tmp_path, monkeypatch):
     monkeypatch.setattr(store, "_ROOT", tmp_path)
+    monkeypatch.setattr(store, "_files", store._files.__wrapped__)
     source = tmp_path / "dynamics" / "some.py"
     source.parent.mkdir()
     digests = set()
