@@ -217,7 +217,7 @@ def _chosen(ladder: dict[str, System], models: Sequence[str] | None) -> dict[str
 
 def _label(given: str | float | Accuracy) -> str:
     if isinstance(given, float):
-        return f"rtol {given:g}"
+        return f"rtol {float(given)!r}"
     if isinstance(given, Accuracy):
         changed = (
             f"{field.name} {getattr(given, field.name)}"

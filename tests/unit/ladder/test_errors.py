@@ -6,14 +6,22 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from rockframe.ladder.errors import event_time_error, history_error, peak_error
+from rockframe.ladder.errors import (
+    event_time_error,
+    history_error,
+    peak_error,
+    verdicts_agree,
+)
+from rockframe.solve.layout import Status
 
 
-def made(rotation=(), time=(), kinds=(), instants=()):
+def made(rotation=(), time=(), kinds=(), instants=(), status=Status.COMPLETED, fell=False):
     return xr.Dataset(
         {
             "rotation": ("time", np.array(rotation, dtype=float)),
             "peak_rotation": float(np.max(np.abs(rotation), initial=0.0)),
+            "overturned": fell,
+            "status": int(status),
             "event_kind": ("event", np.array(kinds, dtype=np.int8)),
             "event_time": ("event", np.array(instants, dtype=float)),
         },
@@ -61,3 +69,18 @@ def test_other_events_have_no_times_to_compare(kinds):
     reference = made(kinds=[1, 2, 3], instants=[1.0, 2.0, 3.0])
     other = made(kinds=kinds, instants=range(1, len(kinds) + 1))
     assert math.isnan(event_time_error(other, reference))
+
+
+@pytest.mark.parametrize("status", [Status.STEP_LIMIT, Status.STEP_TOO_SMALL, Status.CHATTER])
+def test_a_run_that_was_cut_off_has_no_errors(status):
+    cut = made([0.0, 1.0, -4.0], TIME[:3], status=status)
+    for error in (peak_error, history_error, event_time_error):
+        assert math.isnan(error(cut, REFERENCE))
+        assert math.isnan(error(REFERENCE, cut))
+    assert not verdicts_agree(cut, REFERENCE)
+    assert not verdicts_agree(cut, cut)
+    # it overturned before, and went on: the verdict is known
+    fallen = made([0.0, 1.0, -4.0], TIME[:3], status=status, fell=True)
+    assert verdicts_agree(fallen, made(status=Status.OVERTURNED, fell=True))
+    assert not verdicts_agree(fallen, REFERENCE)
+    assert peak_error(fallen, REFERENCE) == 0.0

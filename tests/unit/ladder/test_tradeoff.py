@@ -297,6 +297,12 @@ def test_one_model_and_one_accuracy():
     assert measured.accuracy.values.tolist() == ["rtol 1e-06"]
 
 
+def test_tolerances_that_differ_little_are_two():
+    near = (1e-6, np.float64(1.0000001e-6))
+    measured = rf.tradeoff(SYSTEM, PULSE, models="two pads", accuracies=near, repeats=1)
+    assert measured.accuracy.values.tolist() == ["rtol 1e-06", "rtol 1.0000001e-06"]
+
+
 def test_rungs_that_are_cut_off_are_no_rungs():
     short = rf.Accuracy(rtol=1e-3, max_steps=60)
     measured = rf.tradeoff(
