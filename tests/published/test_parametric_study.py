@@ -10,6 +10,7 @@ import itertools
 import numpy as np
 import pytest
 import xarray as xr
+from pages import DIGITS, said
 
 import rockframe as rf
 
@@ -17,6 +18,7 @@ RADII = (1, 5, 10)
 SLENDERNESS = (2, 4, 6)
 FREQUENCY_RATIOS = (10, 20, 40)
 DAMPING_RATIOS = (0.05, 0.10, 0.20, 0.40)
+AXES = ("radius", "slenderness", "frequency_ratio", "damping_ratio")
 BOUNDARY = 1e-3  # relative distance to overturning within which a verdict may flip
 
 
@@ -33,9 +35,8 @@ def study(**options) -> xr.Dataset:
     cases = list(itertools.product(RADII, SLENDERNESS, FREQUENCY_RATIOS, DAMPING_RATIOS))
     scalars = [run(*case, **options).drop_dims("event") for case in cases]
     grid = xr.concat(scalars, "case", combine_attrs="drop", coords="minimal")
-    names = ("radius", "slenderness", "frequency_ratio", "damping_ratio")
-    columns = {name: ("case", list(column)) for name, column in zip(names, zip(*cases))}  # noqa: B905
-    return grid.assign_coords(columns).set_index(case=names).unstack("case")
+    columns = {name: ("case", list(column)) for name, column in zip(AXES, zip(*cases))}  # noqa: B905
+    return grid.assign_coords(columns).set_index(case=AXES).unstack("case")
 
 
 @pytest.fixture(scope="module", params=["contact-state", "leading-corner", "centre"])
@@ -71,6 +72,40 @@ def test_standard_and_reference_agree(standard, reference):
     assert bool((standard.overturned == reference.overturned).where(settled, True).all())
     difference = abs(standard.peak_rotation / reference.peak_rotation - 1.0).where(settled, 0.0)
     assert float(difference.max()) <= 1e-5
+
+
+def test_what_the_manual_says_of_the_levels():
+    """The page "Accuracy", with the paper's gravity."""
+    page, gravity = "guide/accuracy.md", "9.81 m/s^2"
+    runs = {
+        level: study(accuracy=level, gravity=gravity).stack(case=list(AXES))
+        for level in ("fast", "standard", "reference")
+    }
+    exact = runs["reference"]
+    for level in ("fast", "standard"):
+        assert bool((runs[level].overturned == exact.overturned).all())
+        assert bool((runs[level].impact_count == exact.impact_count).all())
+    fast, standard = (
+        abs(runs[level].peak_relative_rotation - exact.peak_relative_rotation)
+        for level in ("fast", "standard")
+    )
+    (most,) = said(page, 'with `"fast"` by at most #,')
+    assert float(fast.max()) == pytest.approx(most, rel=0.05)
+    others, count, odd, *case = said(
+        page,
+        'with `"standard"` by at most # in # of them, and by # in one '
+        "($H/B=#$, $R_0=#$ m, $\\beta=#$, $\\xi=#$)",
+    )
+    where = dict(zip(("slenderness", "radius", "frequency_ratio", "damping_ratio"), case))  # noqa: B905
+    one = tuple(where[name] for name in AXES)
+    assert float(standard.sel(case=one)) == pytest.approx(odd, rel=DIGITS)
+    rest = standard.drop_sel(case=[one])
+    assert rest.size == count
+    assert float(rest.max()) == pytest.approx(others, rel=0.05)
+    (fast_residual,) = said(page, 'With `"fast"` it is at most # in the 108 runs.')
+    residuals = said(page, "in the 108 runs at most # (standard) and # (reference).")
+    for level, most in zip(runs, (fast_residual, *residuals), strict=True):
+        assert float(runs[level].energy_residual.max()) == pytest.approx(most, rel=0.05)
 
 
 def test_mirrored_pulse_gives_the_mirrored_result(standard, restraint):

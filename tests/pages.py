@@ -1,0 +1,41 @@
+"""Numbers that pages of the manual state, read from the pages."""
+
+import re
+from pathlib import Path
+
+DOCS = Path(__file__).resolve().parents[1] / "docs"
+DIGITS = 0.6  # share by which a number of one digit may be off: 1.5 is written as 2
+
+
+def read(page: str) -> str:
+    """Give the text of a page."""
+    return (DOCS / page).read_text(encoding="utf-8")
+
+
+def said(page: str, sentence: str) -> list[float]:
+    """Give the numbers of a sentence of a page.
+
+    Each ``#`` in `sentence` stands for a number, the rest for itself, however its lines break.
+    """
+    words = r"\s+".join(re.escape(word) for word in sentence.split())
+    found = re.findall(words.replace(r"\#", r"(\d[\d.]*(?:e-?\d+)?)"), read(page))
+    assert len(found) == 1, f"{page} says {len(found)} times: {sentence}"
+    groups = found[0] if isinstance(found[0], tuple) else (found[0],)
+    return [float(group.rstrip(".")) for group in groups]
+
+
+def tables(page: str, head: str) -> list[list[list[str]]]:
+    """Give the cells of all tables of a page with the given head."""
+    pattern = re.escape(head) + r"\n\|[-| ]+\|\n((?:\|.*\|\n)+)"
+    found = re.findall(pattern, read(page))
+    assert found, f"{page} has no table {head}"
+    return [
+        [[cell.strip() for cell in line[1:-1].split("|")] for line in body.splitlines()]
+        for body in found
+    ]
+
+
+def table(page: str, head: str) -> list[list[str]]:
+    """Give the cells of the only table of a page with the given head."""
+    (rows,) = tables(page, head)
+    return rows
