@@ -1,4 +1,7 @@
-"""The snippets of every page of the guide, and of the README, run as they stand."""
+"""The snippets of every page of the guide, and of the README, run as they stand.
+
+A block of text right after a snippet is what the snippet prints.
+"""
 
 import re
 import shutil
@@ -13,6 +16,7 @@ PAGES = [
     ROOT / "docs" / "index.md",
     *sorted((ROOT / "docs/guide").glob("*.md")),
 ]
+SNIPPET = re.compile(r"```python\n(.*?)```(?:\n+```text\n(.*?)```)?", re.DOTALL)
 RECORDS = {"record.AT2": "NIS090.AT2", "TCU128-N.AT2": "PEERSMD_CHICHI_TCU128-N.AT2"}
 
 
@@ -20,12 +24,19 @@ RECORDS = {"record.AT2": "NIS090.AT2", "TCU128-N.AT2": "PEERSMD_CHICHI_TCU128-N.
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_snippets_run_from_first_to_last(page, tmp_path, monkeypatch, capsys):
     text = page.read_text(encoding="utf-8")
-    snippets = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
+    snippets = SNIPPET.findall(text)
     assert snippets, f"{page.name} shows no code"
     for name, source in RECORDS.items():
         if name in text:
             shutil.copy(record_path(source), tmp_path / name)
     monkeypatch.chdir(tmp_path)
     names: dict[str, object] = {}
-    for snippet in snippets:
+    for snippet, shown in snippets:
+        capsys.readouterr()
         exec(snippet, names)  # noqa: S102
+        if shown:
+            assert lines(capsys.readouterr().out) == lines(shown)
+
+
+def lines(text):
+    return [line.rstrip() for line in text.strip().splitlines()]
