@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
+from rockframe.plot.title import set_title
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
@@ -64,7 +66,7 @@ def motion(motion: "GroundMotion", *, title: str | None = None) -> "Figure":
     axes[0].set_xlim(time[0], time[-1])
     axes[-1].set_xlabel("time [s]")
     figure.align_ylabels(axes)
-    figure.suptitle(title or motion.name, fontsize="medium", wrap=True)
+    set_title(figure, title or motion.name)
     return figure
 
 

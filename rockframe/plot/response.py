@@ -6,12 +6,13 @@ import numpy as np
 import xarray as xr
 
 from rockframe.errors import SchemaError
+from rockframe.plot.contact import draw_contact, draw_contact_legend
+from rockframe.plot.title import set_title
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_COLOURS = {"full": "0.85", "left": "#4477aa", "right": "#cc6677", "flight": "#ddcc77"}
 _UPLIFT_COLOUR = "#8c510a"
 _CAP_COLOUR = "#999933"
 CONTACTS = {"contact_state": "pads", "soil_contact_state": "soil"}
@@ -31,7 +32,8 @@ def response(dataset: xr.Dataset, *, title: str | None = None) -> "Figure":
     Returns
     -------
     matplotlib.figure.Figure
-        Not yet shown nor saved.
+        Not yet shown nor saved. Where contact changes faster than the figure can show, the
+        strip has the mean colour of the states, by their shares of time.
 
     Raises
     ------
@@ -56,11 +58,11 @@ def response(dataset: xr.Dataset, *, title: str | None = None) -> "Figure":
     _rotation(axes[1], dataset, time)
     _vertical(axes[2], dataset, time)
     for strip, name in zip(axes[3:], strips, strict=True):
-        _contact(strip, dataset[name], time, CONTACTS[name] if len(strips) > 1 else "contact")
-    _contact_legend(axes[-1], dataset[strips[0]])
+        draw_contact(strip, dataset[name], CONTACTS[name] if len(strips) > 1 else "contact")
+    draw_contact_legend(axes[-1], dataset[strips[0]])
     axes[-1].set_xlabel("time [s]")
     axes[0].set_xlim(time[0], time[-1])
-    figure.suptitle(title or str(dataset.attrs.get("verdict", "")), fontsize="medium", wrap=True)
+    set_title(figure, title or str(dataset.attrs.get("verdict", "")))
     return figure
 
 
@@ -99,33 +101,10 @@ def _rotation(axes: "Axes", dataset: xr.Dataset, time: Any) -> None:
 def _vertical(axes: "Axes", dataset: xr.Dataset, time: Any) -> None:
     if "relative_vertical_displacement" in dataset:
         axes.plot(time, dataset["relative_vertical_displacement"], color="#225522", linewidth=1.0)
-        axes.set_ylabel(r"vertical $y/\delta$ [-]")
+        stacked = "rotation_on_cap" in dataset  # two settlements, so say which
+        whose = "\n($\\delta$ of the pads)" if stacked else ""
+        axes.set_ylabel(rf"vertical $y/\delta$ [-]{whose}")
     else:
         axes.plot(time, dataset["vertical_displacement"], color="#225522", linewidth=1.0)
         axes.set_ylabel("vertical $y$ [m]")
     axes.axhline(0.0, color="0.8", linewidth=0.5, zorder=0)
-
-
-def _contact(axes: "Axes", state: xr.DataArray, time: Any, name: str) -> None:
-    values = state.to_numpy()
-    starts = np.flatnonzero(np.diff(values, prepend=values[0] - 1))
-    ends = np.append(time[starts[1:]], time[-1])
-    for value, meaning in _states(state):
-        held = values[starts] == value
-        spans = np.column_stack([time[starts], ends - time[starts]])[held]
-        axes.broken_barh(spans.tolist(), (0.0, 1.0), color=_COLOURS[meaning], label=meaning)
-    axes.set_ylim(0.0, 1.0)
-    axes.set_yticks([])
-    axes.set_ylabel(name, rotation=0, ha="right", va="center")
-
-
-def _states(state: xr.DataArray) -> list[tuple[int, str]]:
-    meanings = str(state.attrs["flag_meanings"]).split()
-    return list(zip(state.attrs["flag_values"], meanings, strict=True))
-
-
-def _contact_legend(axes: "Axes", state: xr.DataArray) -> None:
-    axes.legend(
-        loc="upper center", bbox_to_anchor=(0.5, -1.6), ncols=len(_states(state)),
-        fontsize="small", frameon=False,
-    )  # fmt: skip

@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
+from rockframe.plot.title import set_title
+
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
@@ -69,7 +71,7 @@ def spectra(
     _history(axes["history"], history, f"{_PREFIX[str(component)]}ground_acceleration")
     _response(axes["response"], response)
     _fourier(axes["fourier"], fourier)
-    figure.suptitle(title or motion.name, fontsize="medium", wrap=True)
+    set_title(figure, title or motion.name)
     return figure
 
 

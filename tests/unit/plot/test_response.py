@@ -1,0 +1,116 @@
+"""The figure of a run: strips of contact, title and labels."""
+
+import numpy as np
+import pytest
+import xarray as xr
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.colors import to_rgb
+from records import record_path
+
+import rockframe as rf
+from rockframe.plot.contact import COLOURS, mixed_colours
+from rockframe.solve.layout import Status
+
+BLOCK = rf.Block(width="1 m", height="6 m", mass="10 t")
+PULSE = rf.GroundMotion.sine_pulse("-2 m/s^2", "1 Hz")
+FULL, LEFT, RIGHT = (np.array(to_rgb(COLOURS[name])) for name in ("full", "left", "right"))
+
+
+def strip(times, states):
+    flags = {"flag_values": np.arange(4), "flag_meanings": "full left right flight"}
+    return xr.DataArray(states, {"time": times}, "time", attrs=flags)
+
+
+def pixels(figure, axes, start, end):
+    """Colours drawn from one time to another, halfway up a panel."""
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    image = np.asarray(canvas.buffer_rgba())[::-1, :, :3] / 255.0
+    corners = axes.get_xaxis_transform().transform([(start, 0.5), (end, 0.5)])
+    (left, height), (right, _) = np.round(corners).astype(int)
+    return image[height, left + 2 : right - 1]
+
+
+def test_a_part_of_the_time_has_the_mean_colour_of_its_states():
+    state = strip([0.0, 1.0, 1.5, 3.0, 4.0], [0, 1, 2, 1, 2])
+    expected = [FULL, 0.5 * LEFT + 0.5 * RIGHT, RIGHT, LEFT]
+    np.testing.assert_allclose(mixed_colours(state, 4), expected, atol=1e-12)
+    np.testing.assert_allclose(mixed_colours(state, 1), [np.mean(expected, axis=0)], atol=1e-12)
+
+
+@pytest.mark.parametrize("dpi", [60, 100, 300])
+def test_what_is_narrower_than_a_pixel_is_mixed(dpi):
+    run = rf.System(BLOCK).simulate(PULSE, duration="40 s", output_step="1 ms")
+    time = run["time"].values
+    chatter = np.where(np.arange(time.size) % 2 == 0, 1, 2)
+    states = np.where(time < 10.0, 0, np.where(time < 20.0, 1, np.where(time < 30.0, chatter, 2)))
+    figure = rf.plot.response(run.assign(contact_state=run["contact_state"].copy(data=states)))
+    figure.set_dpi(dpi)
+    for start, colour in ((0, FULL), (10, LEFT), (20, 0.5 * (LEFT + RIGHT)), (30, RIGHT)):
+        drawn = pixels(figure, figure.axes[-1], start + 0.5, start + 9.5)
+        np.testing.assert_allclose(drawn, np.tile(colour, (len(drawn), 1)), atol=0.02)
+
+
+def test_a_block_that_chatters_is_not_drawn_as_leaning_to_one_side():
+    motion = rf.GroundMotion.read(record_path("NIS090.AT2"))
+    run = rf.System(BLOCK).simulate(motion, free_vibration="5 s")
+    rocking = run["contact_state"].sel(time=slice(24.6, 26.9)).values
+    assert np.mean(rocking == 1) == pytest.approx(0.5, abs=0.03)
+    assert np.mean(rocking == 2) == pytest.approx(0.5, abs=0.03)
+    figure = rf.plot.response(run)
+    drawn = pixels(figure, figure.axes[-1], 24.6, 26.9)
+    np.testing.assert_allclose(drawn.mean(axis=0), 0.5 * (LEFT + RIGHT), atol=0.03)
+
+
+LONGEST = (
+    "Did not overturn: peak rotation 0.05804 rad, 26.5 % of the overturning angle; 267 impacts, "
+    "no uplift from the pads, 0.123 s in flight. Not finished: stopped at 12.3456 s, because no "
+    "step was small enough for the accuracy asked for."
+)
+
+
+@pytest.mark.parametrize(
+    ("words", "lines"),
+    [
+        ("short", ["short"]),
+        (LONGEST[:90], [LONGEST[:90]]),
+        (LONGEST[:120], [LONGEST[:77], LONGEST[78:120]]),
+        (LONGEST, [LONGEST[:77], LONGEST[78:134], LONGEST[135:]]),
+        ("two\nlines", ["two", "lines"]),
+        (" ".join(["word"] * 30), [" ".join(["word"] * 19), " ".join(["word"] * 11)]),
+    ],
+)
+def test_a_title_is_broken_and_keeps_a_margin(words, lines):
+    run = rf.System(BLOCK).simulate(PULSE, free_vibration="1 s")
+    run.attrs["verdict"] = words
+    figure = rf.plot.response(run)
+    assert figure.get_suptitle().split("\n") == lines
+    FigureCanvasAgg(figure).draw()
+    texts = [text for text in figure.texts if text.get_text() == "\n".join(lines)]
+    box = texts[0].get_window_extent()
+    assert box.x0 > 0.03 * figure.bbox.width
+    assert box.x1 < 0.97 * figure.bbox.width
+    assert box.y0 > figure.axes[0].get_window_extent().y1
+
+
+def test_the_verdict_of_a_run_that_was_not_finished_fits():
+    few = rf.Accuracy(rtol=1e-6, max_steps=60)
+    run = rf.System(BLOCK).simulate(PULSE, free_vibration="5 s", accuracy=few)
+    assert int(run["status"]) == Status.STEP_LIMIT
+    figure = rf.plot.response(run)
+    assert max(len(line) for line in figure.get_suptitle().split("\n")) <= 96
+    assert figure.get_suptitle().replace("\n", " ") == run.attrs["verdict"]
+
+
+@pytest.mark.parametrize("coupling", ["coupled", "cascade"])
+def test_of_two_settlements_the_label_names_the_one(coupling):
+    block = rf.Block(width="2 m", height="8 m", mass="50 t")
+    pads = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
+    cap = rf.CushionCap(height="0.4 m", mass="20 t", width="2.5 m")
+    soil = rf.WinklerSoil(stiffness="9 MPa", damping_ratio=0.2)
+    run = rf.System(block, pads, cap, soil, coupling=coupling).simulate(PULSE)
+    label = rf.plot.response(run).axes[2].get_ylabel()
+    assert r"y/\delta" in label
+    assert r"$\delta$ of the pads" in label
+    alone = rf.System(block, pads).simulate(PULSE)
+    assert "of the pads" not in rf.plot.response(alone).axes[2].get_ylabel()
