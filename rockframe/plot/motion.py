@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
+from rockframe.plot.given import check_motion
 from rockframe.plot.title import set_title
 
 if TYPE_CHECKING:
@@ -46,6 +47,7 @@ def motion(motion: "GroundMotion", *, title: str | None = None) -> "Figure":
 
     from rockframe.measures import velocity_and_displacement
 
+    check_motion(motion, "motion")
     across = velocity_and_displacement(motion)
     upwards = None
     if motion.si.vertical is not None:

@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from rockframe.errors import SchemaError
 from rockframe.plot.contact import draw_contact, draw_contact_legend
+from rockframe.plot.given import check_run
 from rockframe.plot.title import set_title
 
 if TYPE_CHECKING:
@@ -38,13 +38,12 @@ def response(dataset: xr.Dataset, *, title: str | None = None) -> "Figure":
     Raises
     ------
     SchemaError
-        The dataset has no histories.
+        Not the result of one run, or of one without histories; the message names the
+        function that draws what was given.
     """
     from matplotlib.figure import Figure
 
-    if "rotation" not in dataset or "time" not in dataset.coords:
-        msg = "the dataset has no histories to draw; simulate with outputs=() instead of None"
-        raise SchemaError(msg)
+    check_run(dataset)
     strips = [name for name in CONTACTS if name in dataset]
     if "rotation_on_cap" not in dataset:
         strips = strips[:1]  # one body: the soil's contact is the only one

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
+from rockframe.plot.given import check_motion
 from rockframe.plot.title import set_title
 
 if TYPE_CHECKING:
@@ -61,6 +62,7 @@ def spectra(
         velocity_and_displacement,
     )
 
+    check_motion(motion, "spectra")
     response = response_spectrum(motion, periods, damping_ratios, component=component)
     fourier = fourier_spectrum(motion, resolution=_RESOLUTION, component=component)
     history = velocity_and_displacement(motion, component=component)

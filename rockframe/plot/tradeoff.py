@@ -5,23 +5,35 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 import xarray as xr
 
-from rockframe.errors import SchemaError
+from rockframe.plot.given import check_rungs
+from rockframe.plot.title import set_title
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
 
 _LEAST: Final = 1e-14
-"""Errors below are drawn here: they are rounding."""
+"""Errors of the integration below are drawn here: they are rounding."""
+_TOLD_APART: Final = 1e-6
+"""Errors of model and integration below are drawn in one band: no model is that good."""
+_BELOW: Final = 0.1 * _TOLD_APART
+_SPREAD: Final = 0.4
+"""Height over which the accuracies of a model are spread, where 1 is that of a model."""
 _MARKERS: Final = "osD^vP*h"
+_SMALL: Final = "small rotations"
+_ERROR: Final = "largest error of the rotation{}over its peak [-]"
+_LETTERS: Final = 120
+"""That a row of the legend has room for."""
 
 
 def tradeoff(dataset: xr.Dataset, *, title: str | None = None) -> "Figure":
     """Draw a comparison of models and accuracies.
 
     Left, the error of the integration against the time of a run, a line for each model; right,
-    the error of model and integration together. Each accuracy has its marker, hollow for
-    small rotations; a cross marks a rung whose verdict is not that of the scene itself.
+    the error of model and integration together, all below 1e-6 in one band. Each accuracy has
+    its marker, hollow for small rotations; a cross marks a rung whose verdict is not that of
+    the scene itself.
 
     Parameters
     ----------
@@ -38,62 +50,93 @@ def tradeoff(dataset: xr.Dataset, *, title: str | None = None) -> "Figure":
     Raises
     ------
     SchemaError
-        The dataset is no comparison of rungs.
+        The dataset is no comparison of rungs; the message names the function that draws
+        what was given.
     """
     from matplotlib import colormaps
     from matplotlib.figure import Figure
-    from matplotlib.lines import Line2D
 
-    if "run_time" not in dataset or "numerical_history_error" not in dataset:
-        msg = "the dataset holds no rungs to draw; expected one of tradeoff()"
-        raise SchemaError(msg)
+    check_rungs(dataset)
     models = [str(name) for name in dataset["model"].to_numpy()]
-    figure = Figure(figsize=(11.0, 2.6 + 0.4 * len(models)), layout="constrained")
+    figure = Figure(figsize=(11.0, max(3.6, 2.6 + 0.4 * len(models))), layout="constrained")
     axes: Any = figure.subplots(1, 2)
-    colours = colormaps["viridis"](np.linspace(0.0, 0.85, len(models)))
+    colours = colormaps["viridis"](np.linspace(0.0, 0.8, len(models)))
     for place, (model, colour) in enumerate(zip(models, colours, strict=True)):
         row = dataset.sel(model=model)
         time = 1e3 * row["run_time"].to_numpy()
         error = np.maximum(row["numerical_history_error"].to_numpy(), _LEAST)
-        axes[0].plot(time, error, "-", color=colour, lw=1.0)
-        _markers(axes[0], time, error, row, colour)
-        total = np.maximum(row["history_error"].to_numpy(), _LEAST)
-        axes[1].plot(total, np.full(total.size, place), "-", color=colour, lw=1.0)
-        _markers(axes[1], total, np.full(total.size, place), row, colour)
+        _line(axes[0], time, error, row, colour)
+        total = row["history_error"].to_numpy()
+        total = np.where(total < _TOLD_APART, _BELOW, total)
+        middle = 0.5 * (total.size - 1)
+        heights = place + _SPREAD * (middle - np.arange(total.size)) / max(total.size - 1, 1)
+        _line(axes[1], total, heights, row, colour)
     for panel in axes:
         panel.set(xscale="log")
         panel.grid(visible=True, which="major", color="0.9")
+        panel.set_axisbelow(True)
     axes[0].set(
         yscale="log",
         xlabel="time of a run [ms]",
-        ylabel="largest error of the rotation over its peak [-]",
-        title="integration",
+        ylabel=_ERROR.format("\n"),
+        title="integration: low and left is better",
     )
     axes[1].set(
         yticks=range(len(models)),
         yticklabels=models,
         ylim=(-0.7, len(models) - 0.3),
-        xlabel="largest error of the rotation over its peak [-]",
-        title="model and integration",
+        xlabel=_ERROR.format(" "),
+        title="model and integration: left is better",
     )
-    for text, colour in zip(axes[1].get_yticklabels(), colours, strict=True):
-        text.set_color(colour)
-    keys = [
-        Line2D([], [], marker=_MARKERS[k % len(_MARKERS)], color="0.3", ls="none", label=str(name))
-        for k, name in enumerate(dataset["accuracy"].to_numpy())
-    ]
-    keys.append(Line2D([], [], marker="x", color="0.3", ls="none", ms=10, label="another verdict"))
-    figure.legend(handles=keys, loc="outside lower center", ncols=len(keys), frameon=False)
+    _mark_below(axes[1], dataset["history_error"].to_numpy())
+    keys = _keys(dataset, models)
+    widths = [len(str(key.get_label())) + 6 for key in keys]
+    columns = len(keys) if sum(widths) <= _LETTERS else max(1, _LETTERS // max(widths))
+    figure.legend(handles=keys, loc="outside lower center", ncols=columns, frameon=False)
     words = f"{dataset.attrs.get('scene', '')}: {dataset.attrs.get('motion', '')}"
-    figure.suptitle(words if title is None else title)
+    set_title(figure, words if title is None else title)
     return figure
 
 
-def _markers(axes: "Axes", x: Any, y: Any, row: xr.Dataset, colour: Any) -> None:
-    face = "white" if "small" in str(row["model"].item()) else colour
+def _line(axes: "Axes", x: Any, y: Any, row: xr.Dataset, colour: Any) -> None:
+    axes.plot(x, y, "-", color=colour, lw=1.0)
+    face = "white" if _SMALL in str(row["model"].item()) else colour
     agrees = row["verdict_agrees"].to_numpy()
     for k in range(len(x)):
         marker = _MARKERS[k % len(_MARKERS)]
         axes.plot(x[k], y[k], marker, color=colour, mfc=face, ms=7)
         if not agrees[k]:
             axes.plot(x[k], y[k], "x", color="black", ms=11)
+
+
+def _mark_below(axes: "Axes", errors: Any) -> None:
+    """Set the ends of the axis of errors, and mark the band of those that are not told apart."""
+    from matplotlib.ticker import LogLocator, NullLocator
+
+    drawn = errors[np.isfinite(errors)]
+    right = 2.0 * max(1.0, np.max(drawn, initial=0.0))
+    below = bool((drawn < _TOLD_APART).any())
+    left = 0.25 * _BELOW if below else _TOLD_APART
+    axes.set_xlim(left, right)
+    axes.xaxis.set_major_locator(LogLocator(numticks=20))
+    axes.xaxis.set_minor_locator(NullLocator())
+    if not below:
+        return
+    axes.axvspan(left, _TOLD_APART, color="0.94", zorder=0)
+    ticks = [tick for tick in axes.get_xticks() if _TOLD_APART <= tick <= right]
+    names = [f"$10^{{{round(np.log10(tick))}}}$" for tick in ticks]
+    axes.set_xticks([_BELOW, *ticks], ["below", *names])
+
+
+def _keys(dataset: xr.Dataset, models: list[str]) -> "list[Line2D]":
+    """Give the legend: the accuracies, and what hollow markers and crosses mean."""
+    from matplotlib.lines import Line2D
+
+    keys = [
+        Line2D([], [], marker=_MARKERS[k % len(_MARKERS)], color="0.3", ls="none", label=str(name))
+        for k, name in enumerate(dataset["accuracy"].to_numpy())
+    ]
+    if any(_SMALL in model for model in models):
+        style: Any = {"marker": "o", "color": "0.3", "mfc": "white", "ls": "none"}
+        keys.append(Line2D([], [], **style, label=f"hollow: {_SMALL}"))
+    return [*keys, Line2D([], [], marker="x", color="0.3", ls="none", ms=10, label="other verdict")]

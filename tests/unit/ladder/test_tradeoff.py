@@ -6,6 +6,7 @@ import json
 import numpy as np
 import pytest
 import xarray as xr
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 import rockframe as rf
 from rockframe.errors import ComponentError, SchemaError, SolverError, UnitsError
@@ -325,9 +326,71 @@ def test_rungs_that_are_cut_off_are_no_rungs():
 
 def test_the_figure(measured):
     figure = rf.plot.tradeoff(measured)
-    figure.canvas.draw()
+    FigureCanvasAgg(figure).draw()
     left, right = figure.axes
-    assert [text.get_text() for text in right.get_yticklabels()] == list(rf.model_ladder(SYSTEM))
+    names = right.get_yticklabels()
+    assert [text.get_text() for text in names] == list(rf.model_ladder(SYSTEM))
+    assert {text.get_color() for text in names} == {"black"}
     assert len(left.lines) >= 4 * 4
-    with pytest.raises(SchemaError, match="holds no rungs"):
-        rf.plot.tradeoff(xr.Dataset())
+    assert "low and left is better" in left.get_title()
+    assert "left is better" in right.get_title()
+
+
+def legend(figure):
+    return [text.get_text() for text in figure.legends[0].get_texts()]
+
+
+def test_the_legend_says_what_hollow_markers_are(measured):
+    figure = rf.plot.tradeoff(measured)
+    assert legend(figure)[-2:] == ["hollow: small rotations", "other verdict"]
+    key = figure.legends[0].get_lines()[-2]
+    assert key.get_markerfacecolor() == "white"
+    finite = rf.plot.tradeoff(measured.sel(model=["rigid ground", "two pads"]))
+    assert legend(finite) == [*measured.accuracy.values, "other verdict"]
+
+
+def markers(axes):
+    """Places of all markers, in pixels."""
+    FigureCanvasAgg(axes.figure).draw()
+    drawn = [line.get_xydata()[0] for line in axes.lines if line.get_marker() not in ("None", "x")]
+    return axes.transData.transform(drawn)
+
+
+def test_small_errors_of_models_share_a_band(measured):
+    error = np.add.outer([0.3, 0.1, 0.05, 0.0], [1e-3, 1e-7, 1e-10, 0.0])
+    figure = rf.plot.tradeoff(measured.assign(history_error=(("model", "accuracy"), error)))
+    right = figure.axes[1]
+    spots = markers(right)
+    assert len(spots) == 16
+    box = right.get_window_extent()
+    assert (box.x0 < spots[:, 0]).all()
+    assert (spots[:, 0] < box.x1).all()
+    for spot in spots:  # no marker hides another
+        assert np.sort(np.hypot(*(spots - spot).T))[1] > 5.0
+    labels = {text.get_text(): tick for tick, text in zip(
+        right.get_xticks(), right.get_xticklabels(), strict=True)}  # fmt: skip
+    edge = right.transData.transform((1e-6, 0.0))[0]
+    assert (spots[:, 0] < edge).sum() == 3
+    assert labels["below"] < 1e-6
+    assert min(tick for text, tick in labels.items() if text != "below") == pytest.approx(1e-6)
+
+
+def test_there_is_no_band_where_no_error_is_small(measured):
+    figure = rf.plot.tradeoff(measured.assign(history_error=measured.history_error + 2e-3))
+    texts = [text.get_text() for text in figure.axes[1].get_xticklabels()]
+    assert "below" not in texts
+    assert figure.axes[1].get_xlim()[0] == 1e-6
+
+
+@pytest.mark.parametrize("rungs", [{"model": [3], "accuracy": [0]}, {"model": slice(None)}])
+def test_nothing_is_drawn_beyond_the_figure(measured, rungs):
+    figure = rf.plot.tradeoff(measured.isel(rungs))
+    FigureCanvasAgg(figure).draw()
+    for box in (
+        *(axes.get_tightbbox() for axes in figure.axes),
+        figure.legends[0].get_window_extent(),
+    ):
+        assert box.x0 >= 0.0
+        assert box.y0 >= 0.0
+        assert box.x1 <= figure.bbox.width
+        assert box.y1 <= figure.bbox.height

@@ -1,0 +1,164 @@
+"""What a figure is drawn from, and what is said of anything else."""
+
+from os import PathLike
+from typing import Final, cast
+
+import xarray as xr
+
+from rockframe.errors import ComponentError, SchemaError
+
+_NEEDED: Final = {
+    "response": "the result of one run with histories, as system.simulate(motion) gives it",
+    "tradeoff": "a comparison of models, as rf.tradeoff(system, motion) gives it",
+    "motion": "a GroundMotion",
+    "spectra": "a GroundMotion",
+}
+_RUN: Final = (
+    "ground_acceleration",
+    "relative_rotation",
+    "contact_state",
+    "overturning_angle",
+    "uplift_angle",
+    "overturned",
+)
+_RUNGS: Final = (
+    "run_time",
+    "numerical_history_error",
+    "history_error",
+    "verdict_agrees",
+    "model",
+    "accuracy",
+)
+_DRAWN_BY: Final = (
+    # (variables, what they are, what draws them), the first that fits
+    (("run_time", "verdict_agrees"), "a comparison of models", "rf.plot.tradeoff draws it"),
+    (("rotation", "time", "overturned"), "the result of a run", "rf.plot.response draws it"),
+    (
+        ("overturned", "peak_rotation"),
+        "the result of a run without histories",
+        "simulate with outputs=() instead of None",
+    ),
+    (
+        ("pseudo_spectral_acceleration",),
+        "response spectra",
+        "rf.plot.spectra draws them from the motion itself",
+    ),
+    (
+        ("fourier_amplitude",),
+        "a Fourier spectrum",
+        "rf.plot.spectra draws it from the motion itself",
+    ),
+    (
+        ("ground_velocity",),
+        "velocity and displacement of the ground",
+        "rf.plot.motion draws them from the motion itself",
+    ),
+)
+
+
+def check_run(given: object) -> None:
+    """Refuse what is not the result of one run with histories.
+
+    Parameters
+    ----------
+    given : object
+        What the user gave to `rf.plot.response`.
+
+    Raises
+    ------
+    SchemaError
+        It is something else, lacks a variable, or holds several runs.
+    """
+    if not isinstance(given, xr.Dataset) or not _holds(given, ("rotation", "time", "overturned")):
+        raise SchemaError(_refusal("response", given))
+    _check_complete("response", given, _RUN)
+    more = [str(name) for name in given["relative_rotation"].dims if name != "time"]
+    if more:
+        msg = (
+            f"rf.plot.response needs {_NEEDED['response']}, got several runs over "
+            f"{', '.join(more)}; pick one, for example with dataset.isel({more[0]}=0)"
+        )
+        raise SchemaError(msg)
+
+
+def check_rungs(given: object) -> None:
+    """Refuse what is not a comparison of models and accuracies.
+
+    Parameters
+    ----------
+    given : object
+        What the user gave to `rf.plot.tradeoff`.
+
+    Raises
+    ------
+    SchemaError
+        It is something else, or lacks a variable.
+    """
+    if not isinstance(given, xr.Dataset) or not _holds(given, ("run_time", "verdict_agrees")):
+        raise SchemaError(_refusal("tradeoff", given))
+    _check_complete("tradeoff", given, _RUNGS)
+
+
+def check_motion(given: object, function: str) -> None:
+    """Refuse what is not a ground motion.
+
+    Parameters
+    ----------
+    given : object
+        What the user gave.
+    function : {"motion", "spectra"}
+        Which function of `rf.plot` it was given to.
+
+    Raises
+    ------
+    ComponentError
+        It is something else.
+    """
+    from rockframe.motion import GroundMotion
+
+    if not isinstance(given, GroundMotion):
+        raise ComponentError(_refusal(function, given))
+
+
+def _check_complete(function: str, given: xr.Dataset, names: tuple[str, ...]) -> None:
+    missing = [repr(name) for name in names if name not in given.variables]
+    if missing:
+        msg = (
+            f"rf.plot.{function} needs {_NEEDED[function]}, got one that lacks "
+            f"{', '.join(missing)}; give it the whole dataset"
+        )
+        raise SchemaError(msg)
+
+
+def _refusal(function: str, given: object) -> str:
+    what, way = _words(function, given)
+    return f"rf.plot.{function} needs {_NEEDED[function]}, got {what}" + (f"; {way}" if way else "")
+
+
+def _words(function: str, given: object) -> tuple[str, str]:
+    """Say what was given, and which way leads to a figure."""
+    from rockframe.motion import GroundMotion
+    from rockframe.simulation.system import System
+
+    if isinstance(given, str | PathLike):
+        name = str(cast("object", given))
+        of_motions = function in ("motion", "spectra")
+        opened = "rf.GroundMotion.read" if of_motions else "xr.open_dataset"
+        return f"{name!r}", f"open the file first: rf.plot.{function}({opened}({name!r}))"
+    if isinstance(given, GroundMotion):
+        return f"a GroundMotion, {given.name!r}", "rf.plot.motion and rf.plot.spectra draw it"
+    if isinstance(given, System):
+        return "a System", "rf.plot.response(system.simulate(motion)) draws what becomes of it"
+    if isinstance(given, xr.DataArray):
+        return f"a DataArray, {given.name!r}", "a figure is drawn from the whole Dataset"
+    if not isinstance(given, xr.Dataset):
+        return f"{given!r}" if given is None else f"a value of type {type(given).__name__}", ""
+    for names, what, way in _DRAWN_BY:
+        if _holds(given, names):
+            return f"a Dataset with {what}", way
+    title = given.attrs.get("title")
+    return "a Dataset" + (f" with the title {title!r}" if title else " of another kind"), ""
+
+
+def _holds(given: xr.Dataset, names: tuple[str, ...]) -> bool:
+    return all(name in given.variables for name in names)

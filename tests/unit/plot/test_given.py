@@ -1,0 +1,105 @@
+"""What is said when a figure is asked of the wrong thing."""
+
+from pathlib import Path
+
+import pytest
+import xarray as xr
+
+import rockframe as rf
+from rockframe.errors import ComponentError, SchemaError
+
+PULSE = rf.GroundMotion.sine_pulse("2 m/s^2", "2 Hz")
+BLOCK = rf.Block(width="1 m", height="6 m", mass="10 t")
+SYSTEM = rf.System(BLOCK, rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1))
+
+MADE = {
+    "run": lambda: SYSTEM.simulate(PULSE),
+    "bare run": lambda: SYSTEM.simulate(PULSE, outputs=None),
+    "rungs": lambda: rf.tradeoff(
+        SYSTEM, PULSE, models=["two pads"], accuracies=["fast"], repeats=1
+    ),
+    "response spectra": lambda: rf.response_spectrum(PULSE, (["0.1", "1"], "s")),
+    "Fourier spectrum": lambda: rf.fourier_spectrum(PULSE),
+    "ground": lambda: rf.velocity_and_displacement(PULSE),
+    "measures": lambda: rf.intensity_measures(PULSE),
+    "rest": SYSTEM.equilibrium,
+    "rotation": lambda: SYSTEM.simulate(PULSE)["rotation"],
+    "nothing": xr.Dataset,
+    "motion": lambda: PULSE,
+    "system": lambda: SYSTEM,
+    "file": lambda: "run.nc",
+    "path": lambda: Path("run.nc"),
+    "None": lambda: None,
+    "numbers": lambda: [1.0, 2.0],
+}
+WORDS = {
+    "run": ("a Dataset with the result of a run", "rf.plot.response draws it"),
+    "bare run": ("the result of a run without histories", "outputs=() instead of None"),
+    "rungs": ("a Dataset with a comparison of models", "rf.plot.tradeoff draws it"),
+    "response spectra": ("a Dataset with response spectra", "rf.plot.spectra draws them from"),
+    "Fourier spectrum": ("a Dataset with a Fourier spectrum", "rf.plot.spectra draws it from"),
+    "ground": ("velocity and displacement of the ground", "rf.plot.motion draws them from"),
+    "measures": ("a Dataset with the title 'Intensity measures'",),
+    "rest": ("a Dataset with the title 'Rest'",),
+    "rotation": ("a DataArray, 'rotation'", "the whole Dataset"),
+    "nothing": ("a Dataset of another kind",),
+    "motion": ("a GroundMotion, 'sine", "rf.plot.motion and rf.plot.spectra draw it"),
+    "system": ("a System", "rf.plot.response(system.simulate(motion))"),
+    "file": ("got 'run.nc'", "open the file first"),
+    "path": ("got 'run.nc'", "open the file first"),
+    "None": ("got None",),
+    "numbers": ("a value of type list",),
+}
+DRAWN = {
+    "response": (rf.plot.response, "run", "the result of one run with histories", SchemaError),
+    "tradeoff": (rf.plot.tradeoff, "rungs", "a comparison of models", SchemaError),
+    "motion": (rf.plot.motion, "motion", "a GroundMotion", ComponentError),
+    "spectra": (rf.plot.spectra, "motion", "a GroundMotion", ComponentError),
+}
+
+
+@pytest.fixture(scope="module")
+def made():
+    return {name: make() for name, make in MADE.items()}
+
+
+@pytest.mark.parametrize("name", DRAWN)
+def test_what_was_given_and_what_draws_it_are_said(name, made):
+    draw, own, needed, error = DRAWN[name]
+    for kind in MADE:
+        if kind == own:
+            draw(made[kind])
+            continue
+        with pytest.raises(error) as caught:
+            draw(made[kind])
+        message = str(caught.value)
+        assert message.startswith(f"rf.plot.{name} needs {needed}"), kind
+        for words in WORDS[kind]:
+            assert words in message, kind
+        assert "\n" not in message
+        assert len(message) < 250
+
+
+def test_a_file_is_opened_by_what_reads_it():
+    with pytest.raises(SchemaError, match=r"rf\.plot\.response\(xr\.open_dataset\('run\.nc'\)\)"):
+        rf.plot.response("run.nc")
+    with pytest.raises(ComponentError, match=r"rf\.plot\.motion\(rf\.GroundMotion\.read\('a'\)\)"):
+        rf.plot.motion("a")
+
+
+def test_a_run_that_was_stored_is_drawn(made, tmp_path):
+    for name, draw in (("run", rf.plot.response), ("rungs", rf.plot.tradeoff)):
+        made[name].to_netcdf(tmp_path / "stored.nc")
+        with xr.open_dataset(tmp_path / "stored.nc") as stored:
+            draw(stored)
+
+
+def test_one_run_is_drawn_whole(made):
+    both = xr.concat([made["run"], made["run"]], "scale", data_vars="all")
+    with pytest.raises(SchemaError, match=r"several runs over scale; .* dataset\.isel\(scale=0\)"):
+        rf.plot.response(both)
+    rf.plot.response(both.isel(scale=0))
+    with pytest.raises(SchemaError, match="lacks 'contact_state', 'uplift_angle'"):
+        rf.plot.response(made["run"].drop_vars(["uplift_angle", "contact_state"]))
+    with pytest.raises(SchemaError, match=r"rf\.plot\.tradeoff needs .* lacks 'history_error'"):
+        rf.plot.tradeoff(made["rungs"].drop_vars("history_error"))
