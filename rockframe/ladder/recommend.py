@@ -6,10 +6,12 @@ from typing import Final
 import numpy as np
 import xarray as xr
 
-from rockframe.errors import SchemaError
+from rockframe.errors import ComponentError, SchemaError
 from rockframe.units import POSITIVE, to_ratio
 
 _OWNER: Final = "recommend"
+_LEAST_PERCENTAGE: Final = 1e-4
+"""Errors below are written as shares: a percentage with an exponent is read wrongly."""
 _ERRORS: Final = {"peak_error": "the peak rotation", "history_error": "the rotation along time"}
 
 
@@ -46,7 +48,8 @@ def recommend(
     dataset : xarray.Dataset
         Of :func:`rockframe.tradeoff`.
     tolerance : float, optional
-        Error that one can live with, models and numerics together [1].
+        Error that one can live with, models and numerics together, at most 1: 0.05 or
+        ``"5 %"`` for five per cent [1].
     error : {"peak_error", "history_error"}, optional
         Which error.
 
@@ -60,9 +63,15 @@ def recommend(
     SchemaError
         The dataset is no comparison of rungs, or has no such error.
     UnitsError, ComponentError
-        `tolerance` is no positive ratio.
+        `tolerance` is no ratio above 0 and up to 1.
     """
     limit = to_ratio(tolerance, owner=_OWNER, name="tolerance", condition=POSITIVE)
+    if limit > 1.0:
+        msg = (
+            f"{_OWNER}: tolerance must be at most 1, the whole peak, got {tolerance!r}; "
+            f"for {_plain(limit, 3)} % write {_plain(0.01 * limit, 3)}"
+        )
+        raise ComponentError(msg)
     needed = ("run_time", "verdict_agrees", "model", "accuracy")
     if error not in _ERRORS or any(name not in dataset for name in (error, *needed)):
         known = " or ".join(repr(name) for name in _ERRORS)
@@ -77,24 +86,32 @@ def recommend(
     accuracy = str(dataset["accuracy"].to_numpy()[column])
     met = bool(good.any())
     rung = f"{model!r} at accuracy {accuracy!r}"
-    cost = f"{_milliseconds(times[row, column])} a run"
-    found = f"{_percent(errors[row, column])} off in {_ERRORS[error]}"
+    cost = f"{_plain(1e3 * times[row, column], 3)} ms a run"
+    found = f"off by {_share(errors[row, column], 2)} in {_ERRORS[error]}"
     if met:
         slowest = float(np.max(times)) / float(times[row, column])
         sentence = (
-            f"For an error of at most {_percent(limit)}, take {rung}: {found}, {cost}, "
-            f"{slowest:.3g} times faster than the slowest rung."
+            f"For an error of at most {_share(limit, 3)}, take {rung}: {found}, {cost}, "
+            f"{_plain(slowest, 3)} times faster than the slowest rung."
         )
     elif np.isfinite(errors[row, column]):
-        sentence = f"No rung tried comes within {_percent(limit)}; the nearest is {rung}: {found}."
+        within = _share(limit, 3)
+        sentence = f"No rung tried comes within {within}; the nearest is {rung}: {found}."
     else:
         sentence = "No rung tried has the verdict of the scene itself."
     return Recommendation(model, accuracy, met, sentence)
 
 
-def _percent(value: float) -> str:
-    return f"{100.0 * value:.2g} %"
+def _share(value: float, digits: int) -> str:
+    """Write an error: a percentage, or where that would be tiny a share of the peak."""
+    if 0.0 < value < _LEAST_PERCENTAGE:
+        shown = np.format_float_scientific(value, digits - 1, trim="-", exp_digits=1)
+        return f"{shown} of the peak"
+    return f"{_plain(100.0 * value, digits)} %"
 
 
-def _milliseconds(value: float) -> str:
-    return f"{1e3 * value:.3g} ms"
+def _plain(value: float, digits: int) -> str:
+    """Write a number without an exponent, with all of its digits before the point."""
+    if value >= 10.0 ** (digits - 1):
+        return f"{value:.0f}"
+    return np.format_float_positional(value, digits, unique=False, fractional=False, trim="-")

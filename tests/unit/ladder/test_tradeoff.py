@@ -2,6 +2,7 @@
 
 import importlib
 import json
+import re
 
 import numpy as np
 import pytest
@@ -188,7 +189,7 @@ def test_overturning_disagrees_where_it_does():
         free_vibration="3 s",
     )
     assert found.verdict_agrees.values.tolist() == [[False], [True]]
-    assert rf.recommend(found, 10.0).model == "two pads"
+    assert rf.recommend(found, 1.0).model == "two pads"
 
 
 def made(times, errors, agrees=True):
@@ -238,13 +239,49 @@ def test_the_error_that_was_asked_for_counts():
     found = made(TIMES, ERRORS).assign(history_error=(("model", "accuracy"), ERRORS[::-1]))
     advice = rf.recommend(found, 0.05, error="history_error")
     assert (advice.model, advice.accuracy) == ("rigid", "fast")
-    assert "3 % off in the rotation along time" in str(advice)
+    assert "off by 3 % in the rotation along time" in str(advice)
 
 
 def test_a_recommendation_in_words():
     assert str(rf.recommend(made(TIMES, ERRORS), 0.05)) == (
-        "For an error of at most 5 %, take 'pads' at accuracy 'fast': 3 % off in the peak "
-        "rotation, 3 ms a run, 2.67 times faster than the slowest rung."
+        "For an error of at most 5 %, take 'pads' at accuracy 'fast': off by 3 % in the "
+        "peak rotation, 3 ms a run, 2.67 times faster than the slowest rung."
+    )
+
+
+@pytest.mark.parametrize(
+    ("tolerance", "error", "words"),
+    [
+        (0.05, 2.6e-7, "at most 5 %, take 'pads' at accuracy 'fast': off by 2.6e-7 of the peak in"),
+        (1e-4, 1e-4, "at most 0.01 %, take 'pads' at accuracy 'fast': off by 0.01 % in"),
+        (2e-6, 1e-15, "at most 2e-6 of the peak, take 'pads' at accuracy 'fast': off by 1e-15 of"),
+        (0.125, 0.0, "at most 12.5 %, take 'pads' at accuracy 'fast': off by 0 % in"),
+        (0.999, 0.996, "at most 99.9 %, take 'pads' at accuracy 'fast': off by 100 % in"),
+        (0.05, 4.96, "comes within 5 %; the nearest is 'pads' at accuracy 'fast': off by 496 % in"),
+    ],
+)
+def test_no_percentage_has_an_exponent(tolerance, error, words):
+    advice = str(rf.recommend(made([[8.0, 8.0], [1.2345, 8e3]], [[9, 9], [error, 9]]), tolerance))
+    assert words in advice
+    assert not re.search(r"\de[-+]?\d+ %", advice)
+    if "at most" in words:
+        assert advice.endswith("rotation, 1234 ms a run, 6480 times faster than the slowest rung.")
+
+
+@pytest.mark.parametrize(
+    ("tolerance", "hint"),
+    [
+        (5, "got 5; for 5 % write 0.05"),
+        (2.5, "got 2.5; for 2.5 % write 0.025"),
+        ("500 %", "got '500 %'; for 5 % write 0.05"),
+    ],
+)
+def test_a_percentage_is_not_taken_for_a_ratio(tolerance, hint):
+    with pytest.raises(ComponentError, match=f"tolerance must be at most 1, .*{re.escape(hint)}"):
+        rf.recommend(made(TIMES, ERRORS), tolerance)
+    assert rf.recommend(made(TIMES, ERRORS), 1.0).met
+    assert rf.recommend(made(TIMES, ERRORS), "5 %").sentence.startswith(
+        "For an error of at most 5 %"
     )
 
 
