@@ -1,11 +1,13 @@
 """The assembled system in words."""
 
-import math
+import re
+from textwrap import wrap
 
+from rockframe.system.angles import angle_words
 from rockframe.system.parts import Parts
 from rockframe.system.scenes import Scene, Setting
 
-_WIDTH = 34
+_WIDTH = 100
 
 
 def describe(scene: Scene, setting: Setting, parts: Parts) -> str:
@@ -23,10 +25,8 @@ def describe(scene: Scene, setting: Setting, parts: Parts) -> str:
     Returns
     -------
     str
+        Lines of at most 100 letters, but for words that are longer.
     """
-    theta = setting.overturning_angle
-    uplift = setting.uplift_angle
-    never = "never: the base stays in contact up to overturning"
     lines = [f"Model: {scene.model}"]
     lines += _section("Parts", [("", repr(part)) for part in parts.given()])
     lines += _section("Contact states and their equations", setting.equations())
@@ -35,11 +35,8 @@ def describe(scene: Scene, setting: Setting, parts: Parts) -> str:
         "Numbers",
         [
             ("gravity", f"{setting.gravity:.6g} m s^-2"),
-            ("overturning angle theta, Eq. (1)", _angle(theta)),
-            (
-                f"uplift angle, {setting.uplift_source}",
-                never if math.isnan(uplift) else _angle(uplift),
-            ),
+            ("overturning angle theta, Eq. (1)", angle_words(setting.overturning_angle)),
+            *setting.uplift_rows(),
             *setting.numbers(),
         ],
     )
@@ -48,9 +45,23 @@ def describe(scene: Scene, setting: Setting, parts: Parts) -> str:
 
 
 def _section(title: str, rows: list[tuple[str, str]]) -> list[str]:
-    return [f"{title}:"] + [f"  {name:<{_WIDTH}} {words}" if name else f"  {words}"
-                            for name, words in rows]  # fmt: skip
+    """Set names and words in two columns, the second as far right as the longest name needs."""
+    longest = max(len(name) for name, _ in rows)
+    lines = [f"{title}:"]
+    for name, words in rows:
+        first = f"  {name:<{longest}}  " if name else "  "
+        following = " " * (len(first) if name else 4)
+        broken = _broken(words, _WIDTH - len(following))
+        lines += [first + broken[0], *(following + line for line in broken[1:])]
+    return lines
 
 
-def _angle(radians: float) -> str:
-    return f"{radians:.6g} rad ({math.degrees(radians):.4g} deg)"
+def _broken(words: str, width: int) -> list[str]:
+    """Break behind commas and semicolons, so that numbers keep their names and units."""
+    lines: list[str] = []
+    for piece in re.split(r"(?<=[,;]) ", words):
+        if lines and len(lines[-1]) + 1 + len(piece) <= width:
+            lines[-1] += f" {piece}"
+        else:
+            lines += wrap(piece, width, break_long_words=False, break_on_hyphens=False) or [""]
+    return lines

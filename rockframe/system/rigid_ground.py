@@ -43,11 +43,6 @@ class RigidGroundSetting:
         return None
 
     @property
-    def uplift_source(self) -> str:
-        """Where the uplift angle comes from."""
-        return "any rotation lifts a corner"
-
-    @property
     def settlement(self) -> float | None:
         """None: the ground does not give way."""
         return None
@@ -86,6 +81,10 @@ class RigidGroundSetting:
             ("impact", f"a' after = {self.restitution:.6g} a' before, at a = 0 (Eq. (4) is the "
              "greatest value)"),
         ]  # fmt: skip
+
+    def uplift_rows(self) -> list[tuple[str, str]]:
+        """Give the uplift angle, zero."""
+        return [("uplift angle", "0 rad: any rotation lifts a corner")]
 
     def numbers(self) -> list[tuple[str, str]]:
         """Give the rocking frequency and the restitution."""

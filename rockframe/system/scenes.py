@@ -40,11 +40,6 @@ class Setting(Protocol):
         ...
 
     @property
-    def uplift_source(self) -> str:
-        """Where the uplift angle comes from."""
-        ...
-
-    @property
     def settlement(self) -> float | None:
         """Settlement under the weight, where the base gives way [m]."""
         ...
@@ -64,6 +59,10 @@ class Setting(Protocol):
 
     def equations(self) -> list[tuple[str, str]]:
         """Give each contact state with the equation that governs it."""
+        ...
+
+    def uplift_rows(self) -> list[tuple[str, str]]:
+        """Give each uplift angle in words, with its name and where it comes from."""
         ...
 
     def numbers(self) -> list[tuple[str, str]]:

@@ -9,6 +9,7 @@ import numpy as np
 
 from rockframe.components.soil import Separation
 from rockframe.errors import SolverError
+from rockframe.system.angles import uplift_words
 from rockframe.system.bodies import Cap, cap_under, one_body
 from rockframe.system.options import Options
 from rockframe.system.parts import Parts
@@ -74,11 +75,6 @@ class StackedSetting:
         return self.upper.uplift_angle
 
     @property
-    def uplift_source(self) -> str:
-        """Where the uplift angle comes from."""
-        return self.upper.uplift_source
-
-    @property
     def cap_offset(self) -> float | None:
         """Height of the cap's centre above that of cap and block as one body [m]."""
         return self.lower.cap_offset
@@ -90,6 +86,16 @@ class StackedSetting:
     def start_faults(self, rotation: float, has_vertical_start: bool) -> list[str]:
         """Give no faults: every state can start a run."""
         return []
+
+    def uplift_rows(self) -> list[tuple[str, str]]:
+        """Give the uplift angles of block and cap; the moments tell which lifts first."""
+        rows = (
+            ("on the pads, Eq. (16)", self.upper, "of block against cap"),
+            ("on the soil, arcsin(delta/b)", self.lower, "of cap against ground"),
+        )
+        return [
+            (f"uplift angle {name}", _uplift_of(setting, whose)) for name, setting, whose in rows
+        ]
 
     def numbers(self) -> list[tuple[str, str]]:
         """Give the numbers of the block on its pads and of both on the soil."""
@@ -279,6 +285,13 @@ class CascadeSetting(StackedSetting):
 
         top = 2.0 * self.cap.half_height - self.lower.body.centre_height
         return Cascade(self.lower.compile(), self.upper.compile(), top)
+
+
+def _uplift_of(setting: TwoSpringSetting | WinklerSetting, whose: str) -> str:
+    words = uplift_words(setting.uplift_angle)
+    if math.isnan(setting.uplift_angle):
+        return words
+    return f"{words} {whose}, at a moment of {setting.equilibrium()['uplift_moment']:.6g} N m"
 
 
 def _coupled_model(setting: StackedSetting) -> "ContactModel":

@@ -8,6 +8,7 @@ import numpy as np
 
 from rockframe.components.block import BlockSI
 from rockframe.components.pads import TwoSpringSupportSI
+from rockframe.system.angles import uplift_words
 from rockframe.system.impact import resolve_restitution, restitution_cautions
 from rockframe.system.options import Options, Restraint, Rotation
 from rockframe.system.parts import Parts
@@ -53,11 +54,6 @@ class TwoSpringSetting:
     def cap_offset(self) -> float | None:
         """None: there is no cap [m]."""
         return None
-
-    @property
-    def uplift_source(self) -> str:
-        """Where the uplift angle comes from."""
-        return "Eq. (16)"
 
     @property
     def vertical_frequency(self) -> float:
@@ -107,6 +103,10 @@ class TwoSpringSetting:
             ("impact", f"a landing corner keeps {self.restitution:.6g} of its speed, "
              "Eqs. (2)-(4) with the corner inertia for the printed I_O"),
         ]  # fmt: skip
+
+    def uplift_rows(self) -> list[tuple[str, str]]:
+        """Give the uplift angle, Eq. (16)."""
+        return [("uplift angle, Eq. (16)", uplift_words(self.uplift_angle))]
 
     def numbers(self) -> list[tuple[str, str]]:
         """Give stiffness, damping, frequencies and damping ratios."""

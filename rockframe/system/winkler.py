@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rockframe.components.soil import Separation, WinklerSoilSI
+from rockframe.system.angles import uplift_words
 from rockframe.system.bodies import Body, body_of, cap_under, one_body
 from rockframe.system.options import Options
 from rockframe.system.parts import Parts
@@ -67,11 +68,6 @@ class WinklerSetting:
         return math.asin(ratio) if ratio <= 1.0 else math.nan
 
     @property
-    def uplift_source(self) -> str:
-        """Where the uplift angle comes from."""
-        return "arcsin(delta/b)"
-
-    @property
     def rocking_stiffness(self) -> float:
         """(2/3) k0 b^3 - m g h, of small rotations in full contact [N m rad^-1]."""
         body = self.body
@@ -110,6 +106,10 @@ class WinklerSetting:
             ("contact", f"without impact law; the base parts from the bed "
              f"{_SEPARATION[self.separation]}"),
         ]  # fmt: skip
+
+    def uplift_rows(self) -> list[tuple[str, str]]:
+        """Give the uplift angle, from the settlement."""
+        return [("uplift angle, arcsin(delta/b)", uplift_words(self.uplift_angle))]
 
     def numbers(self) -> list[tuple[str, str]]:
         """Give stiffness, damping, frequencies and damping ratios."""

@@ -338,7 +338,7 @@ class TestDescription:
             f"centre {centre:.6g} m",
             f"{9e6:.6g} Pa",
             f"{damping:.6g} Pa s",
-            f"delta                   {settled:.6g} m",
+            f"settlement delta                    {settled:.6g} m",
             f"{math.atan(half / centre):.6g} rad",
             f"{math.asin(settled / half):.6g} rad",
             f"omega_v = {vertical:.6g} rad/s",
@@ -431,6 +431,39 @@ class TestDescription:
         omega = math.sqrt(0.75 * 1.62 / math.sqrt(17.0))
         assert f"{omega:.6g} rad/s" in moon
         assert "1.62" in moon
+
+    @pytest.mark.parametrize("coupling", ["coupled", "cascade"])
+    def test_of_a_stack_says_whose_uplift_angle_is_whose(self, coupling):
+        parts = (block(), pads(), cap(), soil())
+        system = rf.System(*parts, coupling=coupling)
+        rest = system.equilibrium()
+        text = re.sub(r"\s+", " ", system.describe())
+        on_soil = float(rest.soil_settlement) / 1.25
+        for words in (
+            f"uplift angle on the pads, Eq. (16) {float(rest.uplift_angle):.6g} rad",
+            f"of block against cap, at a moment of {float(rest.uplift_moment):.6g} N m",
+            f"uplift angle on the soil, arcsin(delta/b) {math.asin(on_soil):.6g} rad",
+            f"of cap against ground, at a moment of {float(rest.soil_uplift_moment):.6g} N m",
+        ):
+            assert words in text, words
+        assert text.count("uplift angle") == 2
+        with pytest.warns(rf.ModelWarning, match="too soft"):
+            soft = rf.System(block(), pads(), cap(), soil(stiffness="0.1 MPa"), coupling=coupling)
+        assert "arcsin(delta/b) never" in re.sub(r" +", " ", soft.describe())
+
+    def test_stands_in_two_columns(self):
+        for name in SCENES:
+            lines = assembled(name).describe().splitlines()
+            assert max(len(line) for line in lines) <= 100
+            numbers = lines[lines.index("Numbers:") + 1 : lines.index("Left out:")]
+            names = [line for line in numbers if not line.startswith("   ")]
+            starts = {re.match(r"  (?:\S+ )*\S+  +", line).end() for line in names}
+            assert len(starts) == 1, name
+            (start,) = starts
+            for line in numbers:
+                assert line[start] != " ", line
+                if line not in names:  # a line that goes on stands below what it goes on from
+                    assert not line[:start].strip()
 
     def test_is_plain_text(self):
         for name in SCENES:

@@ -95,7 +95,8 @@ def test_a_title_is_broken_and_keeps_a_margin(words, lines):
 
 def test_the_verdict_of_a_run_that_was_not_finished_fits():
     few = rf.Accuracy(rtol=1e-6, max_steps=60)
-    run = rf.System(BLOCK).simulate(PULSE, free_vibration="5 s", accuracy=few)
+    with pytest.warns(rf.SolverWarning, match="Not finished"):
+        run = rf.System(BLOCK).simulate(PULSE, free_vibration="5 s", accuracy=few)
     assert int(run["status"]) == Status.STEP_LIMIT
     figure = rf.plot.response(run)
     assert max(len(line) for line in figure.get_suptitle().split("\n")) <= 96
