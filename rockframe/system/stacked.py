@@ -88,7 +88,7 @@ class StackedSetting:
         return []
 
     def uplift_rows(self) -> list[tuple[str, str]]:
-        """Give the uplift angles of block and cap; the moments tell which lifts first."""
+        """Give the uplift angles of block and cap, with the moments at which they are reached."""
         rows = (
             ("on the pads, Eq. (16)", self.upper, "of block against cap"),
             ("on the soil, arcsin(delta/b)", self.lower, "of cap against ground"),
