@@ -67,7 +67,7 @@ def check_run(given: object) -> None:
     Raises
     ------
     SchemaError
-        It is something else, lacks a variable, or holds several runs.
+        It is something else, lacks a variable, holds several runs, or only an instant.
     """
     if not isinstance(given, xr.Dataset) or not _holds(given, ("rotation", "time", "overturned")):
         raise SchemaError(_refusal("response", given))
@@ -77,6 +77,12 @@ def check_run(given: object) -> None:
         msg = (
             f"rf.plot.response needs {_NEEDED['response']}, got several runs over "
             f"{', '.join(more)}; pick one, for example with dataset.isel({more[0]}=0)"
+        )
+        raise SchemaError(msg)
+    if given.sizes["time"] < 2:
+        msg = (
+            f"rf.plot.response needs {_NEEDED['response']}, got one of a single instant; "
+            "simulate for longer, or with a shorter output_step"
         )
         raise SchemaError(msg)
 

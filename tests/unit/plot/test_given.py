@@ -99,6 +99,8 @@ def test_one_run_is_drawn_whole(made):
     with pytest.raises(SchemaError, match=r"several runs over scale; .* dataset\.isel\(scale=0\)"):
         rf.plot.response(both)
     rf.plot.response(both.isel(scale=0))
+    with pytest.raises(SchemaError, match="got one of a single instant; simulate for longer"):
+        rf.plot.response(SYSTEM.simulate(duration="1e-9 s"))
     with pytest.raises(SchemaError, match="lacks 'contact_state', 'uplift_angle'"):
         rf.plot.response(made["run"].drop_vars(["uplift_angle", "contact_state"]))
     with pytest.raises(SchemaError, match=r"rf\.plot\.tradeoff needs .* lacks 'history_error'"):
