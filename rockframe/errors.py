@@ -4,7 +4,12 @@ Every error derives from :class:`RockframeError`, so that a script can tell
 "rockframe refused this" from a fault of its own.
 """
 
+import warnings
 from collections.abc import Sequence
+from inspect import currentframe
+
+LONGEST_SHOWN = 100
+"""Characters of a value beyond which a message does not show all of it."""
 
 
 class RockframeError(Exception):
@@ -91,3 +96,45 @@ class SolverWarning(RockframeWarning):
 
 class RecordWarning(RockframeWarning):
     """A ground-motion file was read, but something in it disagrees."""
+
+
+def shown(value: object) -> str:
+    """Show a value in a message: as it is written, if that is short.
+
+    Parameters
+    ----------
+    value : object
+        What the user gave.
+
+    Returns
+    -------
+    str
+        One line. Of long arrays and of datasets the type; of other long values the beginning.
+    """
+    text = repr(value)
+    if len(text) <= LONGEST_SHOWN and "\n" not in text:
+        return text
+    kind = f"a {type(value).__name__}"
+    if hasattr(value, "shape"):
+        return f"{kind} of shape {value.shape}"  # type: ignore[attr-defined]
+    if hasattr(value, "data_vars"):
+        return kind
+    line = " ".join(text.split())
+    return line if len(line) <= LONGEST_SHOWN else f"{line[: LONGEST_SHOWN - 3]}..."
+
+
+def warn(message: str, category: type[RockframeWarning]) -> None:
+    """Warn at the line that called into rockframe, however deep the fault is found.
+
+    Parameters
+    ----------
+    message : str
+        What is unusual.
+    category : type
+        Kind of warning.
+    """
+    package = __name__.partition(".")[0]
+    level, frame = 1, currentframe()
+    while frame and str(frame.f_globals.get("__name__")).partition(".")[0] == package:
+        level, frame = level + 1, frame.f_back
+    warnings.warn(message, category, stacklevel=level)

@@ -8,14 +8,14 @@ does no harm.
 import math
 import re
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from numbers import Real
 from typing import Any, Final, TypeAlias
 
 import pint
 
-from rockframe.errors import ComponentError, UnitsError
+from rockframe.errors import ComponentError, UnitsError, shown
 
 QuantityLike: TypeAlias = str | pint.Quantity[Any]
 RatioLike: TypeAlias = float | str | pint.Quantity[Any]
@@ -54,12 +54,29 @@ class Measure:
     unit: Unit
     example: str
 
+    def like(self, example: str) -> "Measure":
+        """Give the same kind with an example that fits other arguments."""
+        return replace(self, example=example)
+
+    @property
+    def needed(self) -> str:
+        """The kind, and that it needs a unit, in words."""
+        return self.name if self.unit is Unit.ONE else f"{self.name} with a unit"
+
+    def example_of(self, argument: str) -> str:
+        """Show how an argument is written."""
+        written = self.example if self.unit is Unit.ONE else repr(self.example)
+        return f"write for example {argument}={written}"
+
 
 LENGTH: Final = Measure("a length", Unit.METRE, "4 m")
 MASS: Final = Measure("a mass", Unit.KILOGRAM, "99 t")
 DENSITY: Final = Measure("a density", Unit.KILOGRAM_PER_CUBIC_METRE, "2500 kg/m^3")
 INERTIA: Final = Measure("a moment of inertia", Unit.KILOGRAM_METRE_SQUARED, "1.2e6 kg*m^2")
+THICKNESS: Final = LENGTH.like("0.3 m")
 TIME: Final = Measure("a time", Unit.SECOND, "20 s")
+TIME_STEP: Final = TIME.like("0.01 s")
+PERIOD: Final = TIME.like("0.5 s")
 ANGLE: Final = Measure("an angle", Unit.RADIAN, "0.1 rad")
 ANGULAR_VELOCITY: Final = Measure("an angular velocity", Unit.RADIAN_PER_SECOND, "0.2 rad/s")
 VELOCITY: Final = Measure("a velocity", Unit.METRE_PER_SECOND, "0.1 m/s")
@@ -71,12 +88,18 @@ BED_STIFFNESS: Final = Measure("a stiffness per length of base", Unit.PASCAL, "9
 BED_DAMPING: Final = Measure("a damping per length of base", Unit.PASCAL_SECOND, "400 kN*s/m^2")
 SUBGRADE_MODULUS: Final = Measure("a subgrade modulus", Unit.PASCAL_PER_METRE, "20 MN/m^3")
 
+_HEAVY: Final = (Unit.KILOGRAM, Unit.KILOGRAM_PER_CUBIC_METRE, Unit.KILOGRAM_METRE_SQUARED)
 _MISREAD_UNITS: Final = (
     # (pattern, unit it is meant for or None for any, what is wrong)
     (
         r"(?<![A-Za-z_])g(?![A-Za-z_0])",
         Unit.METRE_PER_SECOND_SQUARED,
         "'g' is the gram; the acceleration of gravity is written 'g_0'",
+    ),
+    (
+        r"(?<![A-Za-z_])(?:G|[Gg]_?[0n])(?![A-Za-z_0-9])",
+        Unit.METRE_PER_SECOND_SQUARED,
+        "the acceleration of gravity is written 'g_0'",
     ),
     (
         r"(?<![A-Za-z_])gal\b",
@@ -161,8 +184,8 @@ def to_si(
     magnitude = given.m_as(str(measure.unit))
     if not isinstance(magnitude, Real) and getattr(magnitude, "ndim", 1) != 0:
         msg = (
-            f"{owner}: {name} needs {measure.name}, one value only, got {value!r}; "
-            f"write for example {name}={measure.example!r}"
+            f"{owner}: {name} needs {measure.name}, one value only, got {shown(value)}; "
+            f"{measure.example_of(name)}"
         )
         raise UnitsError(msg)
     return _check_value(float(magnitude), value, condition, owner=owner, name=name)
@@ -214,7 +237,12 @@ def _each(given: Any) -> Iterable[Any]:
 
 
 def to_ratio(
-    value: object, *, owner: str, name: str, condition: "Condition | None" = None
+    value: object,
+    *,
+    owner: str,
+    name: str,
+    condition: "Condition | None" = None,
+    example: str = "0.1",
 ) -> float:
     """Convert a pure ratio (bare number, or a dimensionless quantity such as ``"5 %"``).
 
@@ -226,6 +254,8 @@ def to_ratio(
         Class and argument, for the message.
     condition : Condition, optional
         Range that the value must lie in.
+    example : str, optional
+        A number that makes sense for the argument, for the message.
 
     Returns
     -------
@@ -239,14 +269,17 @@ def to_ratio(
         Not finite, or outside `condition`.
     """
     number: object = value
+    ratio = Measure("a pure ratio", Unit.ONE, example)
     if isinstance(value, str | pint.Quantity):
-        ratio = Measure("a pure ratio", Unit.ONE, "0.1")
         given = _parse(value, ratio, owner=owner, name=name)
         _check_kind(given, value, ratio, owner=owner, name=name)
         magnitude: Any = given.m_as("")
         number = magnitude.item() if getattr(magnitude, "ndim", 1) == 0 else magnitude
     if isinstance(number, bool) or not isinstance(number, Real):
-        msg = f"{owner}: {name} needs a pure ratio (a bare number), got {value!r}"
+        msg = (
+            f"{owner}: {name} needs a pure ratio (a bare number), got {shown(value)}; "
+            f"{ratio.example_of(name)}"
+        )
         raise UnitsError(msg)
     return _check_value(float(number), value, condition, owner=owner, name=name)
 
@@ -267,26 +300,27 @@ UNIT_INTERVAL: Final = Condition("above 0 and at most 1", lambda value: 0.0 < va
 def _parse(value: object, measure: Measure, *, owner: str, name: str) -> pint.Quantity[Any]:
     if isinstance(value, pint.Quantity):
         return value
-    needed = f"{owner}: {name} needs {measure.name} with a unit"
-    example = f"write for example {name}={measure.example!r}"
+    needed = f"{owner}: {name} needs {measure.needed}"
+    example = measure.example_of(name)
     if not isinstance(value, str):
         kind = "a bare number" if isinstance(value, Real) else f"a {type(value).__name__}"
-        msg = f"{needed}, got {value!r} ({kind} has no unit); {example}"
+        msg = f"{needed}, got {shown(value)} ({kind} has no unit); {example}"
         raise UnitsError(msg)
     for pattern, words in _AMBIGUOUS:
         if re.search(pattern, value):
-            msg = f"{needed}, got {value!r} ({words}); {example}"
+            msg = f"{needed}, got {shown(value)} ({words}); {example}"
             raise UnitsError(msg)
     parts = _NUMBER_AND_UNIT.fullmatch(value)
     if parts is None or _NO_UNIT.search(_POWER.sub("^", parts["unit"])):
         hint = _misread(value, measure)
-        msg = f"{needed}, got {value!r}, which is not one number and a unit{hint}; {example}"
+        wanted = "a number" if measure.unit is Unit.ONE else "one number and a unit"
+        msg = f"{needed}, got {shown(value)}, which is not {wanted}{hint}; {example}"
         raise UnitsError(msg)
     try:
         return pint.get_application_registry().Quantity(value)
     except Exception as problem:  # pint's parser raises many unrelated types
         hint = _misread(value, measure)
-        msg = f"{needed}, got {value!r}, whose unit cannot be read{hint}; {example}"
+        msg = f"{needed}, got {shown(value)}, whose unit cannot be read{hint}; {example}"
         raise UnitsError(msg) from problem
 
 
@@ -303,8 +337,9 @@ def _check_kind(
     unit = f"{given.units:~}" or "no unit"
     unit_needed = "" if measure.unit is Unit.ONE else f" in a unit such as {measure.unit}"
     msg = (
-        f"{owner}: {name} needs {measure.name}{unit_needed}, got {str(value)!r} ({unit})"
-        f"{_misread(str(value), measure)}; write for example {name}={measure.example!r}"
+        f"{owner}: {name} needs {measure.name}{unit_needed}, got {shown(str(value))} ({unit})"
+        f"{_weight(given, str(value), measure) or _misread(str(value), measure)}; "
+        f"{measure.example_of(name)}"
     )
     raise UnitsError(msg)
 
@@ -315,6 +350,17 @@ def _roots(given: Any) -> dict[str, float]:
     # Of one unit, not of the value: a huge one would overflow.
     one: Any = type(given)(1.0, given.units)
     return {unit: float(power) for unit, power in one.to_root_units().unit_items()}
+
+
+def _weight(given: Any, text: str, measure: Measure) -> str:
+    """Say how a mass follows from a weight, where one was given for a mass."""
+    if measure.unit not in _HEAVY:
+        return ""
+    try:
+        heavy = given.is_compatible_with(f"{measure.unit} m s^-2")
+    except Exception:  # as in _check_kind
+        return ""
+    return f" (a force is no mass; divide it by g_0: {shown(f'{text}/g_0')})" if heavy else ""
 
 
 def _misread(text: str, measure: Measure) -> str:
@@ -332,9 +378,9 @@ def _check_value(
     number: float, value: object, condition: Condition | None, *, owner: str, name: str
 ) -> float:
     if not math.isfinite(number):
-        msg = f"{owner}: {name} must be finite, got {str(value)!r}"
+        msg = f"{owner}: {name} must be finite, got {shown(str(value))}"
         raise ComponentError(msg)
     if condition is not None and not condition.holds(number):
-        msg = f"{owner}: {name} must be {condition.words}, got {str(value)!r}"
+        msg = f"{owner}: {name} must be {condition.words}, got {shown(str(value))}"
         raise ComponentError(msg)
     return number

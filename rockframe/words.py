@@ -1,10 +1,13 @@
-"""Arguments without a unit: one of a few words, or a whole number."""
+"""Arguments without a unit: one of a few words, a whole number, or a dataset."""
 
 from enum import StrEnum
 from operator import index
-from typing import SupportsIndex, TypeVar, cast
+from typing import TYPE_CHECKING, SupportsIndex, TypeVar, cast
 
-from rockframe.errors import ComponentError
+from rockframe.errors import ComponentError, SchemaError, shown
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Choice = TypeVar("Choice", bound=StrEnum)
 
@@ -34,7 +37,7 @@ def choice(kind: type[Choice], given: object, *, owner: str, name: str) -> Choic
         return kind(str(given))
     except ValueError:
         known = " or ".join(repr(str(one)) for one in kind)
-        msg = f"{owner}: {name} must be {known}, got {given!r}"
+        msg = f"{owner}: {name} must be {known}, got {shown(given)}"
         raise ComponentError(msg) from None
 
 
@@ -68,5 +71,32 @@ def whole_number(
     if number is not None and lowest <= number and (highest is None or number <= highest):
         return number
     wanted = f", {lowest} or more" if highest is None else f" from {lowest} to {highest}"
-    msg = f"{owner}: {name} must be a whole number{wanted}, got {given!r}"
+    msg = f"{owner}: {name} must be a whole number{wanted}, got {shown(given)}"
     raise ComponentError(msg)
+
+
+def dataset(given: object, *, owner: str) -> "xr.Dataset":
+    """Read an argument that is a dataset.
+
+    Parameters
+    ----------
+    given : object
+        What the user gave.
+    owner : str
+        Class or function, for the message.
+
+    Returns
+    -------
+    xarray.Dataset
+
+    Raises
+    ------
+    SchemaError
+        None, such as the path of a file.
+    """
+    if hasattr(given, "data_vars"):
+        return cast("xr.Dataset", given)
+    msg = (
+        f"{owner}: found {shown(given)}; expected a dataset: open a file with xr.open_dataset first"
+    )
+    raise SchemaError(msg)

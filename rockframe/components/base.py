@@ -1,9 +1,11 @@
 """What all components share: immutability, equality, repr and the way to text and back."""
 
+import warnings
 from collections.abc import Mapping
 from typing import Any, ClassVar, Generic, Self, TypeVar
 
-from rockframe.errors import ComponentError, SchemaError
+from rockframe.calls import CheckedCall
+from rockframe.errors import ComponentError, ModelWarning, SchemaError, shown
 from rockframe.units import Measure, quantity
 
 SI = TypeVar("SI")
@@ -11,7 +13,7 @@ SI = TypeVar("SI")
 _COMPONENT_TYPES: dict[str, "type[Component[Any]]"] = {}
 
 
-class Component(Generic[SI]):
+class Component(CheckedCall, Generic[SI]):
     """A frozen value object.
 
     A component keeps its numbers twice: as the constructor's arguments in SI
@@ -26,7 +28,8 @@ class Component(Generic[SI]):
 
     noun: ClassVar[str] = "component"
 
-    def __init_subclass__(cls) -> None:
+    def __init_subclass__(cls, **options: Any) -> None:
+        super().__init_subclass__(**options)
         _COMPONENT_TYPES[cls.__name__] = cls
 
     def _freeze(self, si: SI, arguments: Mapping[str, float | str | None]) -> None:
@@ -97,7 +100,7 @@ class Component(Generic[SI]):
         """
         if name not in self.parameters():
             known = ", ".join(self.parameters())
-            msg = f"{type(self).__name__}: no parameter is called {name!r} (it has {known})"
+            msg = f"{type(self).__name__}: no parameter is called {shown(name)} (it has {known})"
             raise ComponentError(msg)
         value = self._arguments[name]
         number = factor * _number_in(value)
@@ -108,7 +111,10 @@ class Component(Generic[SI]):
     @classmethod
     def from_dict(cls, arguments: Mapping[str, float | str]) -> Self:
         """Build the component that :meth:`to_dict` described."""
-        return cls(**arguments)
+        with warnings.catch_warnings():
+            # they came when the component was new
+            warnings.simplefilter("ignore", ModelWarning)
+            return cls(**arguments)
 
 
 def component_from_dict(description: Mapping[str, float | str]) -> "Component[Any]":
@@ -131,7 +137,7 @@ def component_from_dict(description: Mapping[str, float | str]) -> "Component[An
     kind = description.get("type")
     if not isinstance(kind, str) or kind not in _COMPONENT_TYPES:
         known = ", ".join(sorted(_COMPONENT_TYPES))
-        msg = f"found a component of type {kind!r}; expected one of {known}"
+        msg = f"found a component of type {shown(kind)}; expected one of {known}"
         raise SchemaError(msg)
     arguments = {name: value for name, value in description.items() if name != "type"}
     return _COMPONENT_TYPES[kind].from_dict(arguments)

@@ -146,7 +146,9 @@ class Block(Component[BlockSI]):
             msg = f"{owner}: give shape_factor or inertia, not both; one follows from the other"
             raise ComponentError(msg)
         if shape_factor is not None:
-            mu = to_ratio(shape_factor, owner=owner, name="shape_factor", condition=POSITIVE)
+            mu = to_ratio(
+                shape_factor, owner=owner, name="shape_factor", condition=POSITIVE, example="3"
+            )
         if inertia is not None:
             inertia_si = to_si(inertia, INERTIA, owner=owner, name="inertia", condition=POSITIVE)
             diagonal = math.hypot(size["width"], size["height"])
@@ -236,7 +238,9 @@ class Block(Component[BlockSI]):
         """
         owner = f"{cls.__name__}.from_size"
         metres = to_si(radius, LENGTH, owner=owner, name="radius", condition=POSITIVE)
-        ratio = to_ratio(slenderness, owner=owner, name="slenderness", condition=POSITIVE)
+        ratio = to_ratio(
+            slenderness, owner=owner, name="slenderness", condition=POSITIVE, example="4"
+        )
         width = 2.0 * metres / math.hypot(1.0, ratio)
         return cls(
             width=f"{width!r} {LENGTH.unit}",

@@ -13,6 +13,7 @@ from rockframe.units import (
     MASS,
     NOT_NEGATIVE,
     POSITIVE,
+    THICKNESS,
     QuantityLike,
     to_si,
 )
@@ -83,7 +84,7 @@ class CushionCap(Component[CushionCapSI]):
         if (density is None) != (depth is None):
             msg = f"{owner}: density and depth go together; {_given(density=density, depth=depth)}"
             raise ComponentError(msg)
-        tall = to_si(height, LENGTH, owner=owner, name="height", condition=NOT_NEGATIVE)
+        tall = to_si(height, THICKNESS, owner=owner, name="height", condition=NOT_NEGATIVE)
         wide = m = rho = deep = per_width = None
         if width is not None:
             wide = to_si(width, LENGTH, owner=owner, name="width", condition=POSITIVE)

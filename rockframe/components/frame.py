@@ -14,7 +14,7 @@ from rockframe.components.frame_members import Member
 from rockframe.components.frame_outline import Outline, outline_cautions
 from rockframe.components.frame_regular import INFILL_THICKNESS, SLAB_THICKNESS
 from rockframe.components.frame_table import members_table
-from rockframe.errors import ComponentError, ModelWarning, SchemaError
+from rockframe.errors import ComponentError, ModelWarning, SchemaError, shown
 from rockframe.units import (
     LENGTH,
     MASS,
@@ -238,11 +238,11 @@ class FrameEquivalent(Block):
             try:
                 given["members"] = json.loads(given["members"])
             except (TypeError, ValueError) as problem:
-                msg = f"found members {given['members']!r}; expected a list in JSON"
+                msg = f"found members {shown(given['members'])}; expected a list in JSON"
                 raise SchemaError(msg) from problem
         if "members" in given or "density" in given:
             return cls._of_members(**given)
-        frame = cls.__new__(cls)
+        frame = object.__new__(cls)
         frame._set_parameters(**given)
         return frame
 
@@ -315,7 +315,7 @@ class FrameEquivalent(Block):
         outline = building.outline
         outline.check(building.members, owner)
         mass = sum(member.si.mass for member in building.members)
-        frame = cls.__new__(cls)
+        frame = object.__new__(cls)
         frame._set_parameters(
             width=f"{outline.width!r} {LENGTH.unit}",
             height=f"{outline.height!r} {LENGTH.unit}",

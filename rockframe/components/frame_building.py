@@ -9,7 +9,7 @@ from rockframe.components.base import with_unit
 from rockframe.components.frame_members import Member
 from rockframe.components.frame_outline import Outline
 from rockframe.components.frame_regular import INFILL_THICKNESS, SLAB_THICKNESS, RegularFrame
-from rockframe.errors import ComponentError
+from rockframe.errors import ComponentError, shown
 from rockframe.units import LENGTH, POSITIVE, to_si
 
 _DEFAULTS: Final = {"slab_thickness": SLAB_THICKNESS, "infill_thickness": INFILL_THICKNESS}
@@ -101,7 +101,7 @@ def listed_building(members: object, measures: Mapping[str, Any], owner: str) ->
     depth = None if measures.get("depth") is None else length("depth")
     outline = Outline(length("width"), length("height"), depth)
     if isinstance(members, str | Member | Mapping) or not isinstance(members, Iterable):
-        msg = f"{owner}: members must be a list of Member, got {members!r}"
+        msg = f"{owner}: members must be a list of Member, got {shown(members)}"
         raise ComponentError(msg)
     built = tuple(_member(entry, k, owner) for k, entry in enumerate(members))
     written = [
@@ -116,7 +116,7 @@ def _member(entry: object, number: int, owner: str) -> Member:
     if isinstance(entry, Member):
         return entry
     if not isinstance(entry, Mapping):
-        msg = f"{owner}: members[{number}] must be a Member or a mapping, got {entry!r}"
+        msg = f"{owner}: members[{number}] must be a Member or a mapping, got {shown(entry)}"
         raise ComponentError(msg)
     arguments = {str(name): value for name, value in entry.items()}
     if arguments.get("type") == Member.__name__:
@@ -124,5 +124,7 @@ def _member(entry: object, number: int, owner: str) -> Member:
     try:
         return Member(**arguments)
     except TypeError as problem:
-        msg = f"{owner}: members[{number}] does not describe a Member: {problem}; got {entry!r}"
+        msg = (
+            f"{owner}: members[{number}] does not describe a Member: {problem}; got {shown(entry)}"
+        )
         raise ComponentError(msg) from problem

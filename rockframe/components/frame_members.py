@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Self
 import pint
 
 from rockframe.components.base import Component, SIProperty, with_unit
-from rockframe.errors import ComponentError
+from rockframe.errors import ComponentError, shown
 from rockframe.units import (
     DENSITY,
     INERTIA,
@@ -186,7 +186,7 @@ class Member(Component[MemberSI]):
         -------
         Member
         """
-        member = cls.__new__(cls)
+        member = object.__new__(cls)
         (x, y), (width, height, depth) = centre, size
         sizes = {"width": width, "height": height, "depth": depth}
         member._fill(name, kind, (None, density, None), {"x": x, "y": y}, sizes)
@@ -225,10 +225,10 @@ def _known(value: float | None, measure: Measure) -> pint.Quantity[Any] | None:
 
 def _check_words(name: object, kind: object) -> None:
     if not isinstance(name, str) or not name.strip():
-        msg = f"Member: name must be a text that is not empty, got {name!r}"
+        msg = f"Member: name must be a text that is not empty, got {shown(name)}"
         raise ComponentError(msg)
     if kind is not None and (not isinstance(kind, str) or not kind.strip()):
-        msg = f"Member {name!r}: kind must be a text that is not empty, or None, got {kind!r}"
+        msg = f"Member {name!r}: kind must be a text that is not empty, or None, got {shown(kind)}"
         raise ComponentError(msg)
 
 

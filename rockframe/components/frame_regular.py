@@ -13,6 +13,7 @@ from rockframe.units import (
     DENSITY,
     LENGTH,
     POSITIVE,
+    THICKNESS,
     Condition,
     QuantityLike,
     RatioLike,
@@ -25,6 +26,14 @@ SLAB_THICKNESS: Final = "0.12 m"
 INFILL_THICKNESS: Final = "0.15 m"
 """Thickness of the infill walls of the paper's frames (section 4.2)."""
 
+_THIN: Final = (
+    "column_width",
+    "column_depth",
+    "beam_height",
+    "beam_width",
+    "slab_thickness",
+    "infill_thickness",
+)
 _NO_INFILL: Final = "none"
 _OR_NONE: Final = Condition("greater than zero, or None for no walls", POSITIVE.holds)
 # the bound keeps a slip of the pen from filling the memory
@@ -203,7 +212,8 @@ class RegularFrame(Component[RegularFrameSI]):
 
 
 def _length(name: str, value: object, condition: Condition = POSITIVE) -> float:
-    return to_si(value, LENGTH, owner="RegularFrame", name=name, condition=condition)
+    measure = THICKNESS if name in _THIN else LENGTH
+    return to_si(value, measure, owner="RegularFrame", name=name, condition=condition)
 
 
 def _storeys(
@@ -213,7 +223,9 @@ def _storeys(
     if storey_heights is None:
         if storeys is None or height is None:
             _refuse("give storeys and height, or storey_heights")
-        count = to_ratio(storeys, owner="RegularFrame", name="storeys", condition=_COUNT)
+        count = to_ratio(
+            storeys, owner="RegularFrame", name="storeys", condition=_COUNT, example="3"
+        )
         total = _length("height", height)
         levels = tuple(total * (k / count) for k in range(1, int(count) + 1))
         return count, (total / count,) * int(count), levels

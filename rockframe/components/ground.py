@@ -41,7 +41,11 @@ class RigidGround(Component[RigidGroundSI]):
             None
             if restitution is None
             else to_ratio(
-                restitution, owner="RigidGround", name="restitution", condition=UNIT_INTERVAL
+                restitution,
+                owner="RigidGround",
+                name="restitution",
+                condition=UNIT_INTERVAL,
+                example="0.9",
             )
         )
         self._freeze(RigidGroundSI(ratio), {"restitution": ratio})

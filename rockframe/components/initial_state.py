@@ -1,11 +1,12 @@
 """The state a run starts from."""
 
 import math
+import re
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import ClassVar, Final
 
 from rockframe.components.base import Component, with_unit
-from rockframe.errors import ComponentError
+from rockframe.errors import ComponentError, shown
 from rockframe.units import (
     ANGLE,
     ANGULAR_VELOCITY,
@@ -14,6 +15,8 @@ from rockframe.units import (
     QuantityLike,
     to_si,
 )
+
+_RISE: Final = LENGTH.like("0.01 m")
 
 
 @dataclass(frozen=True)
@@ -64,14 +67,14 @@ class InitialState(Component[InitialStateSI]):
             for name, value, measure in (
                 ("rotation", rotation, ANGLE),
                 ("angular_velocity", angular_velocity, ANGULAR_VELOCITY),
-                ("vertical_displacement", vertical_displacement, LENGTH),
+                ("vertical_displacement", vertical_displacement, _RISE),
                 ("vertical_velocity", vertical_velocity, VELOCITY),
             )
         }
         if abs(given["rotation"] or 0.0) >= 0.5 * math.pi:
             msg = (
-                f"InitialState: rotation must be below a right angle, got {str(rotation)!r}; "
-                "was it meant in degrees ('10 deg')?"
+                "InitialState: rotation must be below a right angle, "
+                f"got {shown(str(rotation))}{_meant(str(rotation))}"
             )
             raise ComponentError(msg)
         self._freeze(
@@ -88,3 +91,9 @@ class InitialState(Component[InitialStateSI]):
                 "vertical_velocity": with_unit(given["vertical_velocity"], VELOCITY),
             },
         )
+
+
+def _meant(rotation: str) -> str:
+    """Ask whether degrees were meant, if the rotation was given in radians."""
+    degrees = re.sub(r"\brad(ians?)?\b", "deg", rotation)
+    return "" if degrees == rotation else f"; was {shown(degrees)} meant?"

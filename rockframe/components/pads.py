@@ -77,7 +77,11 @@ class TwoSpringSupport(Component[TwoSpringSupportSI]):
         beta = k = xi = c = eps = None
         if frequency_ratio is not None:
             beta = to_ratio(
-                frequency_ratio, owner=owner, name="frequency_ratio", condition=POSITIVE
+                frequency_ratio,
+                owner=owner,
+                name="frequency_ratio",
+                condition=POSITIVE,
+                example="20",
             )
         if stiffness is not None:
             k = to_si(stiffness, STIFFNESS, owner=owner, name="stiffness", condition=POSITIVE)
@@ -86,7 +90,8 @@ class TwoSpringSupport(Component[TwoSpringSupportSI]):
         if damping is not None:
             c = to_si(damping, DAMPING, owner=owner, name="damping", condition=NOT_NEGATIVE)
         if restitution is not None:
-            eps = to_ratio(restitution, owner=owner, name="restitution", condition=UNIT_INTERVAL)
+            eps = to_ratio(restitution, owner=owner, name="restitution", condition=UNIT_INTERVAL,
+                           example="0.9")  # fmt: skip
         self._freeze(
             TwoSpringSupportSI(beta, k, xi, c, eps),
             {
@@ -110,6 +115,6 @@ def one_of(owner: str, **pair: object) -> None:
     if len(given) == 1:
         return
     names = " or ".join(pair)
-    found = "both" if given else "neither"
-    msg = f"{owner}: give {names}; {found} was given"
+    found = "both were" if given else "neither was"
+    msg = f"{owner}: give {names}; {found} given"
     raise ComponentError(msg)

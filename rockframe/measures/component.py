@@ -2,7 +2,7 @@
 
 from enum import StrEnum
 
-from rockframe.errors import ComponentError
+from rockframe.errors import ComponentError, shown
 from rockframe.motion import GroundMotion
 from rockframe.shaking.shaking import Shaking
 from rockframe.words import choice
@@ -37,7 +37,7 @@ def shaking_of(motion: object, component: object, *, owner: str) -> Shaking:
         Not a motion, not a component, or the motion lacks it.
     """
     if not isinstance(motion, GroundMotion):
-        msg = f"{owner}: motion needs a GroundMotion, got {motion!r}"
+        msg = f"{owner}: motion needs a GroundMotion, got {shown(motion)}"
         raise ComponentError(msg)
     si = motion.si
     if component_of(component, owner=owner) is GroundComponent.HORIZONTAL:

@@ -8,7 +8,7 @@ import xarray as xr
 
 from rockframe.components import Block
 from rockframe.constants import STANDARD_GRAVITY
-from rockframe.errors import ComponentError
+from rockframe.errors import ComponentError, shown
 from rockframe.measures.about import about
 from rockframe.measures.component import GroundComponent, component_of, shaking_of
 from rockframe.shaking.accumulation import (
@@ -181,7 +181,7 @@ def _of_block(
 
 def _check_block(block: object, component: GroundComponent) -> None:
     if not isinstance(block, Block):
-        msg = f"{_OWNER}: block needs a Block or a FrameEquivalent, got {block!r}"
+        msg = f"{_OWNER}: block needs a Block or a FrameEquivalent, got {shown(block)}"
         raise ComponentError(msg)
     if component is GroundComponent.VERTICAL:
         msg = (

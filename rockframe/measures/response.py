@@ -5,13 +5,13 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 import xarray as xr
 
-from rockframe.errors import ComponentError
+from rockframe.errors import ComponentError, shown
 from rockframe.measures.about import about
 from rockframe.measures.component import component_of, shaking_of
 from rockframe.measures.labels import build_over
 from rockframe.shaking.shaking import Array
 from rockframe.shaking.spectra import DAMPING_RATIO, check_cost, pseudo_spectra, spectral_peaks
-from rockframe.units import TIME, to_ratio, to_si_values
+from rockframe.units import PERIOD, to_ratio, to_si_values
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -105,9 +105,12 @@ def _periods(given: object) -> Array:
     if given is None:
         decades = np.arange(-2 * _PERIODS_PER_DECADE, _PERIODS_PER_DECADE + 1)
         return 10.0 ** (decades / _PERIODS_PER_DECADE)
-    seconds = np.array(to_si_values(given, TIME, owner=_OWNER, name="periods"))
+    seconds = np.array(to_si_values(given, PERIOD, owner=_OWNER, name="periods"))
     if seconds.size == 0 or seconds[0] < 0.0 or not (np.diff(seconds) > 0.0).all():
-        msg = f"{_OWNER}: periods must be one or more, from zero up and increasing, got {given!r}"
+        msg = (
+            f"{_OWNER}: periods must be one or more, from zero up and increasing, "
+            f"got {shown(given)}"
+        )
         raise ComponentError(msg)
     return seconds
 
@@ -121,6 +124,6 @@ def _damping_ratios(given: Any) -> Array:
         for value in values
     ]
     if not ratios or len(set(ratios)) < len(ratios):
-        msg = f"{_OWNER}: damping_ratios must be one or more, each once, got {given!r}"
+        msg = f"{_OWNER}: damping_ratios must be one or more, each once, got {shown(given)}"
         raise ComponentError(msg)
     return np.array(ratios)

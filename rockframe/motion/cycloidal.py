@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final, Self
 from rockframe.motion.operations import MotionOperations
 from rockframe.motion.pulses.arguments import Arguments
 from rockframe.motion.pulses.harmonics import sine, type_c_phase
-from rockframe.units import ACCELERATION, FREQUENCY, POSITIVE, TIME, VELOCITY
+from rockframe.units import ACCELERATION, FREQUENCY, PERIOD, POSITIVE, VELOCITY
 
 if TYPE_CHECKING:
     from rockframe.motion.quantities import QuantityLike, RatioLike
@@ -131,7 +131,7 @@ class CycloidalMotions(MotionOperations):
         """
         given = Arguments(cls, "half_sine_pulse", "half-sine pulse")
         peak = given.quantity("amplitude", amplitude, ACCELERATION)
-        length = given.quantity("duration", duration, TIME, POSITIVE)
+        length = given.quantity("duration", duration, PERIOD, POSITIVE)
         si = sine(amplitude=peak, frequency=0.5 / length, cycles=0.5, owner=given.owner)
         return cls(si, **given.labels())
 
@@ -171,7 +171,7 @@ class CycloidalMotions(MotionOperations):
         given = Arguments(cls, "harmonic", "harmonic motion")
         peak = given.quantity("amplitude", amplitude, ACCELERATION)
         hertz = given.quantity("frequency", frequency, FREQUENCY, POSITIVE)
-        length = given.quantity("duration", duration, TIME, POSITIVE)
+        length = given.quantity("duration", duration, PERIOD, POSITIVE)
         si = sine(
             amplitude=peak,
             frequency=hertz,
@@ -210,7 +210,7 @@ class CycloidalMotions(MotionOperations):
         """
         given = Arguments(cls, "type_a_pulse", "type A pulse")
         peak = given.quantity("velocity", velocity, VELOCITY)
-        length = given.quantity("period", period, TIME, POSITIVE)
+        length = given.quantity("period", period, PERIOD, POSITIVE)
         si = sine(
             amplitude=math.pi * peak / length,
             frequency=1.0 / length,
@@ -248,7 +248,7 @@ class CycloidalMotions(MotionOperations):
         """
         given = Arguments(cls, "type_b_pulse", "type B pulse")
         peak = given.quantity("velocity", velocity, VELOCITY)
-        length = given.quantity("period", period, TIME, POSITIVE)
+        length = given.quantity("period", period, PERIOD, POSITIVE)
         si = sine(
             amplitude=2.0 * math.pi * peak / length,
             frequency=1.0 / length,
@@ -292,7 +292,7 @@ class CycloidalMotions(MotionOperations):
         """
         given = Arguments(cls, "type_c_pulse", "type C pulse")
         peak = given.quantity("velocity", velocity, VELOCITY)
-        length = given.quantity("period", period, TIME, POSITIVE)
+        length = given.quantity("period", period, PERIOD, POSITIVE)
         number = given.whole("order", order, _HIGHEST_ORDER)
         phase = type_c_phase(number)
         si = sine(

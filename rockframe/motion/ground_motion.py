@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 import xarray as xr
 
-from rockframe.errors import ComponentError, RecordWarning, SchemaError
+from rockframe.calls import public_names
+from rockframe.errors import ComponentError, RecordWarning, SchemaError, shown
 from rockframe.motion.analytic import ANALYTIC, AnalyticMotions
 from rockframe.motion.operations import OPERATIONS
 from rockframe.motion.quantities import accelerations_to_si, argument_unit, declared_step
@@ -20,7 +21,8 @@ from rockframe.motion.readers.source import Request
 from rockframe.motion.samples import MotionSI
 from rockframe.motion.synthetic import SYNTHETIC, SyntheticMotions
 from rockframe.motion.value import UNNAMED
-from rockframe.units import POSITIVE, TIME, to_si
+from rockframe.units import POSITIVE, TIME_STEP, to_si
+from rockframe.words import dataset as checked_dataset
 
 if TYPE_CHECKING:
     from rockframe.motion.quantities import ArrayLike, QuantityLike
@@ -30,6 +32,7 @@ _CONSTRUCTORS = (*ANALYTIC, *SYNTHETIC)
 _SAME_STEP = 1e-6
 
 
+@public_names
 class GroundMotion(AnalyticMotions, SyntheticMotions):
     """Acceleration of the ground over time; immutable.
 
@@ -126,7 +129,7 @@ class GroundMotion(AnalyticMotions, SyntheticMotions):
             unit_name=None if unit is None else str(unit),
             time_step=None
             if time_step is None
-            else to_si(time_step, TIME, owner=owner, name="time_step", condition=POSITIVE),
+            else to_si(time_step, TIME_STEP, owner=owner, name="time_step", condition=POSITIVE),
             component=horizontal,
             vertical=vertical,
             response=None if response is None else str(response),
@@ -177,7 +180,7 @@ class GroundMotion(AnalyticMotions, SyntheticMotions):
             Not finite, not one-dimensional, or of different lengths.
         """
         owner = f"{cls.__name__}.from_arrays"
-        step = to_si(time_step, TIME, owner=owner, name="time_step", condition=POSITIVE)
+        step = to_si(time_step, TIME_STEP, owner=owner, name="time_step", condition=POSITIVE)
         across = accelerations_to_si(acceleration, owner=owner, name="acceleration")
         upwards = None
         if vertical is not None:
@@ -233,7 +236,7 @@ class GroundMotion(AnalyticMotions, SyntheticMotions):
         """
         from rockframe.motion.dataset import from_dataset
 
-        return cls(**from_dataset(dataset))
+        return cls(**from_dataset(checked_dataset(dataset, owner=f"{cls.__name__}.from_dataset")))
 
     def to_dict(self) -> dict[str, Any]:
         """Describe the motion: an analytic one completely, a record by its digest.
@@ -280,14 +283,15 @@ class GroundMotion(AnalyticMotions, SyntheticMotions):
             raise SchemaError(msg)
         if constructor not in _CONSTRUCTORS:
             known = ", ".join(_CONSTRUCTORS)
-            msg = f"found the constructor {constructor!r}; expected one of {known}"
+            msg = f"found the constructor {shown(constructor)}; expected one of {known}"
             raise SchemaError(msg)
         try:
             motion = getattr(cls, constructor)(**arguments)
             for operation in operations:
                 ((name, given),) = operation.items()
                 if name not in OPERATIONS:
-                    msg = f"found the operation {name!r}; expected one of {', '.join(OPERATIONS)}"
+                    known = ", ".join(OPERATIONS)
+                    msg = f"found the operation {shown(name)}; expected one of {known}"
                     raise SchemaError(msg)
                 if "other" in given:
                     given = {**given, "other": cls.from_dict(given["other"])}

@@ -8,7 +8,7 @@ import numpy as np
 import pint
 import xarray as xr
 
-from rockframe.errors import ComponentError, UnitsError
+from rockframe.errors import ComponentError, UnitsError, shown
 from rockframe.motion.unit_names import RecordUnit, acceleration_unit
 from rockframe.units import ACCELERATION, Measure, to_si
 
@@ -95,7 +95,7 @@ def accelerations_to_si(value: object, *, owner: str, name: str) -> Array:
         if len(pair) == 2 and isinstance(pair[1], str):
             return _scaled(pair[0], _unit_factor(pair[1], owner, name), owner, name)
     if isinstance(value, str):
-        found = f"{value!r}, which is one value"
+        found = f"{shown(value)}, which is one value"
     else:
         found = f"a {type(cast('object', value)).__name__} without a unit"
     msg = (
@@ -139,7 +139,7 @@ def argument_unit(unit: object, *, owner: str) -> RecordUnit:
     if factor > 0.0:
         return RecordUnit(text, factor)
     msg = (
-        f"{owner}: unit needs the unit of an acceleration, got {text!r}; "
+        f"{owner}: unit needs the unit of an acceleration, got {shown(text)}; "
         "write for example unit='g', unit='cm/s^2' or unit='m/s^2'"
     )
     raise UnitsError(msg) from cause
@@ -155,7 +155,7 @@ def _unit_factor(unit: str, owner: str, name: str, *, udunits: bool = False) -> 
         better = "m/s^2" if known is None else known.spelling
         msg = (
             f"{owner}: {name} needs the unit of an acceleration such as {ACCELERATION.unit}, "
-            f"got {unit!r}; write for example {name}=(values, {better!r})"
+            f"got {shown(unit)}; write for example {name}=(values, {better!r})"
         )
         raise UnitsError(msg) from problem
 

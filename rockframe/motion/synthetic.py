@@ -13,6 +13,7 @@ from rockframe.units import (
     DENSITY,
     NOT_NEGATIVE,
     POSITIVE,
+    TIME,
     Condition,
     Measure,
     Unit,
@@ -43,8 +44,8 @@ SYNTHETIC: Final = ("stochastic",)
 _DISTANCE: Final = Measure("a distance", Unit.METRE, "15 km")
 _STRESS: Final = Measure("a stress", Unit.PASCAL, "10 MPa")
 _WAVES: Final = Measure("a velocity", Unit.METRE_PER_SECOND, "3.5 km/s")
-_KAPPA: Final = Measure("a time", Unit.SECOND, "0.035 s")
-_STEP: Final = Measure("a time", Unit.SECOND, "0.005 s")
+_KAPPA: Final = TIME.like("0.035 s")
+_STEP: Final = TIME.like("0.005 s")
 
 _MAGNITUDES: Final = Condition(
     "from 3 to 8.5, where the model means something", lambda value: 3.0 <= value <= 8.5
@@ -143,14 +144,16 @@ class SyntheticMotions(MotionOperations):
         owner = f"{cls.__name__}.stochastic"
         number, amount = partial(to_ratio, owner=owner), partial(to_si, owner=owner)
         source = PointSource(
-            magnitude=number(magnitude, name="magnitude", condition=_MAGNITUDES),
+            magnitude=number(magnitude, name="magnitude", condition=_MAGNITUDES, example="6.5"),
             distance=amount(distance, _DISTANCE, name="distance", condition=_DISTANCES),
             stress_drop=amount(stress_drop, _STRESS, name="stress_drop", condition=POSITIVE),
             shear_wave_velocity=amount(
                 shear_wave_velocity, _WAVES, name="shear_wave_velocity", condition=POSITIVE
             ),
             density=amount(density, DENSITY, name="density", condition=POSITIVE),
-            quality_factor=number(quality_factor, name="quality_factor", condition=POSITIVE),
+            quality_factor=number(
+                quality_factor, name="quality_factor", condition=POSITIVE, example="180"
+            ),
             quality_exponent=number(
                 quality_exponent, name="quality_exponent", condition=_EXPONENTS
             ),

@@ -3,22 +3,23 @@
 from __future__ import annotations
 
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, ClassVar, Final, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Final, Self, cast
 
-from rockframe.errors import ComponentError
+from rockframe.calls import CheckedCall
+from rockframe.errors import ComponentError, shown
 from rockframe.motion.quantities import with_quantity
+from rockframe.motion.samples import MotionSI
 from rockframe.units import ACCELERATION, TIME
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from rockframe.motion.quantities import Quantity
-    from rockframe.motion.samples import MotionSI
 
 UNNAMED: Final = "unnamed motion"
 
 
-class MotionValue:
+class MotionValue(CheckedCall):
     """Samples in SI units with a name, metadata and a history; immutable.
 
     Parameters
@@ -37,7 +38,7 @@ class MotionValue:
     Raises
     ------
     ComponentError
-        A metadata value is neither a string nor a number.
+        `si` is no such samples, or a metadata value is neither a string nor a number.
     """
 
     __slots__ = ("_recipe", "_sha256", "history", "metadata", "name", "si")
@@ -50,6 +51,10 @@ class MotionValue:
     _sha256: str
 
     noun: ClassVar[str] = "ground motion"
+    usage: ClassVar[str | None] = (
+        "GroundMotion.read(path), GroundMotion.from_arrays(acceleration, time_step) or a pulse "
+        "such as GroundMotion.sine_pulse()"
+    )
 
     def __init__(
         self,
@@ -60,10 +65,16 @@ class MotionValue:
         history: tuple[str, ...] = (),
         recipe: Mapping[str, Any] | None = None,
     ) -> None:
+        if not isinstance(cast("object", si), MotionSI):
+            msg = f"GroundMotion: found {shown(si)}; write {self.usage}"
+            raise ComponentError(msg)
         entries: dict[str, Any] = dict(metadata or {})
         for key, value in entries.items():
             if isinstance(value, bool) or not isinstance(value, str | int | float):
-                msg = f"GroundMotion: metadata {key!r} must be a string or a number, got {value!r}"
+                msg = (
+                    f"GroundMotion: metadata {key!r} must be a string or a number, "
+                    f"got {shown(value)}"
+                )
                 raise ComponentError(msg)
         values = {
             "si": si,

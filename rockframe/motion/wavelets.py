@@ -9,7 +9,7 @@ from rockframe.motion.pulses.arguments import Arguments
 from rockframe.motion.pulses.harmonics import mavroeidis_papageorgiou
 from rockframe.motion.pulses.impulses import double_impulse, impulse_duration
 from rockframe.motion.pulses.wavelets import ricker
-from rockframe.units import ACCELERATION, FREQUENCY, POSITIVE, TIME, VELOCITY, Condition, to_si
+from rockframe.units import ACCELERATION, FREQUENCY, PERIOD, POSITIVE, VELOCITY, Condition, to_si
 
 if TYPE_CHECKING:
     from rockframe.motion.quantities import QuantityLike, RatioLike
@@ -62,7 +62,7 @@ class WaveletMotions(MotionOperations):
         given = Arguments(cls, "ricker_wavelet", "Ricker wavelet")
         si = ricker(
             amplitude=given.quantity("amplitude", amplitude, ACCELERATION),
-            period=given.quantity("period", period, TIME, POSITIVE),
+            period=given.quantity("period", period, PERIOD, POSITIVE),
             antisymmetric=given.switch("antisymmetric", antisymmetric),
             owner=given.owner,
         )
@@ -163,16 +163,16 @@ class WaveletMotions(MotionOperations):
         """
         given = Arguments(cls, "double_impulse", "double impulse")
         speed = given.quantity("velocity", velocity, VELOCITY)
-        apart = given.quantity("interval", interval, TIME, POSITIVE, label="interval")
+        apart = given.quantity("interval", interval, PERIOD, POSITIVE, label="interval")
         longest = _SHORT * apart
         if pulse_duration is not None:
             longest = to_si(
-                pulse_duration, TIME, owner=given.owner, name="pulse_duration", condition=POSITIVE
+                pulse_duration, PERIOD, owner=given.owner, name="pulse_duration", condition=POSITIVE
             )
         length = given.settled(
             "pulse_duration",
             impulse_duration(interval=apart, longest=longest, owner=given.owner),
-            TIME,
+            PERIOD,
             label="impulses of",
         )
         si = double_impulse(velocity=speed, interval=apart, duration=length)

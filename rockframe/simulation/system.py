@@ -6,17 +6,20 @@ from typing import TYPE_CHECKING, Self
 
 import xarray as xr
 
+from rockframe.calls import public_names
 from rockframe.components import InitialState, component_from_dict
 from rockframe.errors import SchemaError
 from rockframe.motion import GroundMotion
 from rockframe.solve.accuracy import Accuracy, AccuracyLevel
 from rockframe.system.assembly import Assembly
 from rockframe.units import QuantityLike
+from rockframe.words import dataset as checked_dataset
 
 if TYPE_CHECKING:
     from rockframe.simulation.certification import Certification
 
 
+@public_names
 class System(Assembly):
     """An assembled scene: parts in any order, checked together, ready to simulate.
 
@@ -38,7 +41,8 @@ class System(Assembly):
     Raises
     ------
     AssemblyError
-        With every fault found at once, and the supported scenes.
+        With every fault found at once; and the supported scenes, if parts are missing or do
+        not combine.
 
     Examples
     --------
@@ -219,10 +223,11 @@ class System(Assembly):
         Raises
         ------
         SchemaError
-            The dataset does not describe a system.
+            No dataset, or one that does not describe a system.
         """
         from rockframe.simulation.provenance import motion_from_dataset
 
+        dataset = checked_dataset(dataset, owner=f"{cls.__name__}.from_dataset")
         text = dataset.attrs.get("system_json")
         if not isinstance(text, str):
             msg = "the dataset has no attribute 'system_json'; expected a result of simulate()"

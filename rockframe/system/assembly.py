@@ -4,6 +4,7 @@ import warnings
 from collections.abc import Sequence
 from functools import cached_property
 
+from rockframe.calls import CheckedCall
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import AssemblyError, ModelWarning, RockframeError
 from rockframe.motion import GroundMotion
@@ -14,7 +15,7 @@ from rockframe.system.scenes import SCENES, Scene, Setting
 from rockframe.units import ACCELERATION, POSITIVE, QuantityLike, to_si
 
 
-class Assembly:
+class Assembly(CheckedCall):
     """Parts and options that have been checked and make a supported scene.
 
     Parameters

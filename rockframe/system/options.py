@@ -4,6 +4,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import TypeVar
 
+from rockframe.errors import shown
+
 
 class Restraint(StrEnum):
     """Which point of the base the ground holds horizontally."""
@@ -67,5 +69,5 @@ def read_option(kind: type[Option], value: object, name: str, faults: list[str])
         return kind(value)  # type: ignore[arg-type]
     except ValueError:
         known = ", ".join(repr(str(option)) for option in kind)
-        faults.append(f"{name} must be one of {known}, got {value!r}")
+        faults.append(f"{name} must be one of {known}, got {shown(value)}")
         return next(iter(kind))

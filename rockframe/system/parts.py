@@ -11,6 +11,7 @@ from rockframe.components import (
     TwoSpringSupport,
     WinklerSoil,
 )
+from rockframe.errors import shown
 from rockframe.motion import GroundMotion
 
 
@@ -70,10 +71,10 @@ def sort_parts(given: Sequence[object], faults: list[str]) -> Parts:
         if slot is None:
             is_class = isinstance(part, type) and issubclass(part, tuple(_SLOTS))
             hint = "; it is the class itself: call it with its values" if is_class else ""
-            faults.append(f"{part!r} is not a part of a system{hint}")
+            faults.append(f"{shown(part)} is not a part of a system{hint}")
         elif slot in found:
             name = type(part).__name__
-            faults.append(f"{name} is given twice: {found[slot]!r} and {part!r}")
+            faults.append(f"{name} is given twice: {shown(found[slot])} and {shown(part)}")
         else:
             found[slot] = part
     return Parts(**found)  # type: ignore[arg-type]

@@ -368,7 +368,7 @@ def test_each_pair_of_the_pads_needs_exactly_one_member():
         if chosen[0] != chosen[1] and chosen[2] != chosen[3]:
             rf.TwoSpringSupport(**arguments)
             continue
-        with pytest.raises(rf.ComponentError, match=r"(both|neither) was given"):
+        with pytest.raises(rf.ComponentError, match=r"(both were|neither was) given"):
             rf.TwoSpringSupport(**arguments)
 
 

@@ -31,6 +31,10 @@ def make_pads(**changed):
     return rf.TwoSpringSupport(**{**given, **changed})
 
 
+def make_cap(**changed):
+    return rf.CushionCap(**{"height": "1 m", "density": "2 t/m^3", "depth": "4 m", **changed})
+
+
 def make_system(**changed):
     return rf.System(make_block(), **changed)
 
@@ -190,6 +194,12 @@ def test_a_negative_damping_is_refused_and_a_zero_one_is_not():
     [
         (make_pulse, "amplitude", "0.3 g", "g_0"),
         (make_pulse, "amplitude", "0.3g", "g_0"),
+        (make_pulse, "amplitude", "0.5 G", "'g_0'"),
+        (make_pulse, "amplitude", "0.5 g0", "'g_0'"),
+        (make_block, "mass", "99 kN", "'99 kN/g_0'"),
+        (make_block, "mass", "88 kip", "'88 kip/g_0'"),
+        (make_block, "inertia", "3 kN*m^2", "'3 kN*m^2/g_0'"),
+        (make_cap, "density", "25 kN/m^3", "'25 kN/m^3/g_0'"),
         (make_pulse, "amplitude", "30 gal", "Gal"),
         (make_pulse, "amplitude", "30gal", "Gal"),
         (make_pulse, "amplitude", "3 m/s2", "^"),
@@ -199,7 +209,8 @@ def test_a_negative_damping_is_refused_and_a_zero_one_is_not():
         (make_block, "mass", "10 tons", "'t'"),
         (make_pulse, "frequency", "6 rad/s", "2 pi"),
         (make_pulse, "frequency", "60 rpm", "2 pi"),
-        (rf.InitialState, "rotation", "10 rad", "deg"),
+        (rf.InitialState, "rotation", "10 rad", "was '10 deg' meant?"),
+        (rf.InitialState, "rotation", "-5.5 radian", "was '-5.5 deg' meant?"),
     ],
 )
 def test_a_known_trap_is_refused_with_a_hint(maker, name, bad, hint):
@@ -207,6 +218,45 @@ def test_a_known_trap_is_refused_with_a_hint(maker, name, bad, hint):
     assert name in message
     assert bad in message
     assert hint in message
+
+
+def test_a_weight_over_gravity_is_a_mass():
+    assert make_block(mass="98.0665 kN/g_0").si.mass == pytest.approx(1e4, rel=1e-14)
+    assert make_cap(density="25 kN/m^3/g_0").si.mass_at(1.0) == pytest.approx(1e5 / 9.80665)
+
+
+def test_degrees_beyond_a_right_angle_are_not_asked_for_again():
+    assert "meant" not in refusal(rf.InitialState, rotation="120 deg")
+
+
+@pytest.mark.parametrize(
+    ("maker", "name", "example"),
+    [
+        (
+            lambda **bad: rf.GroundMotion.from_arrays(([1.0], "m/s^2"), **bad),
+            "time_step",
+            "'0.01 s'",
+        ),
+        (make_pulse().resampled, "time_step", "'0.01 s'"),
+        (make_cap, "height", "'0.3 m'"),
+        (make_pads, "frequency_ratio", "20"),
+        (make_pads, "restitution", "0.9"),
+        (make_block, "shape_factor", "3"),
+        (
+            lambda **bad: rf.Block.from_size(radius="5 m", mass="4 t", **bad),
+            "slenderness",
+            "4",
+        ),
+    ],
+)
+@pytest.mark.parametrize("bad", ["ten", [0.1]])
+def test_the_example_fits_the_argument(maker, name, example, bad):
+    assert refusal(maker, **{name: bad}).endswith(f"; write for example {name}={example}")
+
+
+def test_a_ratio_is_not_asked_for_a_unit():
+    message = refusal(make_pads, damping_ratio="ten")
+    assert "needs a pure ratio, got 'ten', which is not a number;" in message
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from enum import StrEnum
 from typing import TYPE_CHECKING, Final, Self, cast
 
-from rockframe.errors import ComponentError
+from rockframe.errors import ComponentError, shown
 from rockframe.motion.operations.base import ProcessedMotion, replaced
 from rockframe.motion.processing.baseline import without_baseline, without_drift
 from rockframe.motion.processing.filters import butterworth, padding_samples
@@ -96,7 +96,7 @@ class CorrectingOperations(ProcessedMotion):
                 raise ComponentError(msg)
         order = whole_number(order, owner=owner, name="order", lowest=1, highest=_HIGHEST_ORDER)
         if not isinstance(cast("object", causal), bool):
-            msg = f"{owner}: causal must be True or False, got {causal!r}"
+            msg = f"{owner}: causal must be True or False, got {shown(causal)}"
             raise ComponentError(msg)
         padding = padding_samples(si.time_step, min(corners.values()), order)
         if padding > MAXIMUM_SAMPLES:

@@ -18,7 +18,7 @@ from rockframe.shaking.spectra import (
     pseudo_spectra,
     spectral_peaks,
 )
-from rockframe.units import ACCELERATION, POSITIVE, TIME, VELOCITY, to_ratio, to_si
+from rockframe.units import ACCELERATION, PERIOD, POSITIVE, TIME, VELOCITY, to_ratio, to_si
 
 if TYPE_CHECKING:
     from rockframe.motion.quantities import QuantityLike, RatioLike
@@ -91,7 +91,7 @@ class ScalingOperations(ProcessedMotion):
             msg = f"{owner}: spectral_acceleration and period go together (and damping_ratio)"
             raise ComponentError(msg)
         if factor is not None:
-            ratio = to_ratio(factor, owner=owner, name="factor")
+            ratio = to_ratio(factor, owner=owner, name="factor", example="2")
             return self._times(ratio, f"scaled by {ratio!r}", {"factor": ratio})
         shaking = Shaking.of(si.time_step, si.acceleration, si.pieces)
         if peak is not None:
@@ -150,7 +150,7 @@ def _spectral(
 ) -> _Target:
     name = "spectral_acceleration"
     wanted = to_si(given, ACCELERATION, owner=owner, name=name, condition=POSITIVE)
-    seconds = to_si(period, TIME, owner=owner, name="period", condition=POSITIVE)
+    seconds = to_si(period, PERIOD, owner=owner, name="period", condition=POSITIVE)
     damping = to_ratio(
         _USUAL_DAMPING if damping_ratio is None else damping_ratio,
         owner=owner,

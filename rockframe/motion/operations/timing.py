@@ -11,7 +11,7 @@ from rockframe.motion.operations.base import SAME_STEP, ProcessedMotion, replace
 from rockframe.motion.processing.sampling import band_limited, coarsened, refined
 from rockframe.motion.processing.tapers import tapered
 from rockframe.motion.samples import MAXIMUM_SAMPLES, Array, MotionSI
-from rockframe.units import POSITIVE, TIME, to_si
+from rockframe.units import POSITIVE, TIME, TIME_STEP, to_si
 from rockframe.words import choice
 
 if TYPE_CHECKING:
@@ -149,7 +149,7 @@ class TimeOperations(ProcessedMotion):
         """
         owner, si = f"{type(self).__name__}.resampled", self.si
         between = choice(Interpolation, interpolation, owner=owner, name="interpolation")
-        step = to_si(time_step, TIME, owner=owner, name="time_step", condition=POSITIVE)
+        step = to_si(time_step, TIME_STEP, owner=owner, name="time_step", condition=POSITIVE)
         if step > si.duration:
             msg = f"{owner}: time_step = {step:.6g} s exceeds the duration, {si.duration:.6g} s"
             raise ComponentError(msg)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final, TypedDict
 
-from rockframe.errors import ComponentError
+from rockframe.errors import ComponentError, shown
 from rockframe.units import ANGLE, Condition, Measure, Unit, to_ratio, to_si
 from rockframe.words import whole_number
 
@@ -102,7 +102,7 @@ class Arguments:
 
     def ratio(self, name: str, value: RatioLike, condition: Condition) -> float:
         """Read a pure ratio; parameters and errors as of :meth:`quantity`."""
-        number = to_ratio(value, owner=self.owner, name=name, condition=condition)
+        number = to_ratio(value, owner=self.owner, name=name, condition=condition, example="2")
         self._remember(name, number, f"{name}: {number:.6g}", f"{name}: {number!r}")
         return number
 
@@ -115,7 +115,7 @@ class Arguments:
     def switch(self, name: str, value: object) -> bool:
         """Read True or False; ComponentError if it is neither."""
         if not isinstance(value, bool):
-            msg = f"{self.owner}: {name} must be True or False, got {value!r}"
+            msg = f"{self.owner}: {name} must be True or False, got {shown(value)}"
             raise ComponentError(msg)
         words = name if value else f"not {name}"
         self._remember(name, value, words, words)

@@ -1,0 +1,48 @@
+"""How messages show what was given."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import rockframe as rf
+from rockframe.errors import LONGEST_SHOWN, shown
+
+pytestmark = pytest.mark.unit
+
+
+@pytest.mark.parametrize("value", [4, "4 m", None, [1, 2], np.array([0.1]), rf.Block, 1j])
+def test_short_values_are_shown_as_written(value):
+    assert shown(value) == repr(value)
+
+
+@pytest.mark.parametrize("value", [list(range(5000)), "m" * 5000, dict.fromkeys(range(5000))])
+def test_long_values_are_cut(value):
+    assert len(shown(value)) == LONGEST_SHOWN
+    assert shown(value).endswith("...")
+    assert shown(value)[:20] == repr(value)[:20]
+
+
+def test_arrays_and_datasets_are_shown_by_their_type():
+    assert shown(np.linspace(0.0, 1.0, 5000)) == "a ndarray of shape (5000,)"
+    assert shown(xr.DataArray(np.zeros(3), dims="x")) == "a DataArray of shape (3,)"
+    assert shown(rf.GroundMotion.sine_pulse().to_dataset()) == "a Dataset"
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda long: rf.intensity_measures(long),
+        lambda long: rf.System(long),
+        lambda long: rf.System(rf.Block(width="2 m", height="8 m", mass="4 t"), rotation=long),
+        lambda long: rf.Block(width=long, height="8 m", mass="4 t"),
+        lambda long: rf.Block(width="2 m", height="8 m", mass="4 t", shape_factor=long),
+        lambda long: rf.response_spectrum(rf.GroundMotion.sine_pulse(), damping_ratios=long),
+        lambda long: rf.WinklerSoil(stiffness="9 MPa", damping_ratio=0.1, separation=long),
+        lambda long: rf.GroundMotion.from_arrays(str(long), "0.01 s"),
+        lambda long: rf.GroundMotion.sine_pulse().baseline_corrected(order=long),
+    ],
+)
+def test_messages_do_not_print_all_of_a_long_value(call):
+    with pytest.raises(rf.RockframeError) as caught:
+        call([0.05] * 5000)
+    assert max(len(line) for line in str(caught.value).splitlines()) < 4 * LONGEST_SHOWN
