@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from rockframe.components.base import Component, with_unit
+from rockframe.components.damping import damping_ratio as read_damping_ratio
 from rockframe.errors import ComponentError
 from rockframe.units import (
     DAMPING,
@@ -54,6 +55,11 @@ class TwoSpringSupport(Component[TwoSpringSupportSI]):
         A value is out of range, or not exactly one of `frequency_ratio` and
         `stiffness`, and one of `damping_ratio` and `damping`, is given.
 
+    Warns
+    -----
+    ModelWarning
+        `damping_ratio` is above 1, more than critical: per cent may have been meant.
+
     Notes
     -----
     k = m omega_v^2 / 2 and c = xi m omega_v per pad, Eq. (7); with the two pads
@@ -86,7 +92,7 @@ class TwoSpringSupport(Component[TwoSpringSupportSI]):
         if stiffness is not None:
             k = to_si(stiffness, STIFFNESS, owner=owner, name="stiffness", condition=POSITIVE)
         if damping_ratio is not None:
-            xi = to_ratio(damping_ratio, owner=owner, name="damping_ratio", condition=NOT_NEGATIVE)
+            xi = read_damping_ratio(damping_ratio, owner=owner)
         if damping is not None:
             c = to_si(damping, DAMPING, owner=owner, name="damping", condition=NOT_NEGATIVE)
         if restitution is not None:

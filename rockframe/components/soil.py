@@ -5,6 +5,7 @@ from enum import StrEnum
 from typing import ClassVar, Self
 
 from rockframe.components.base import Component, with_unit
+from rockframe.components.damping import damping_ratio as read_damping_ratio
 from rockframe.components.pads import one_of
 from rockframe.units import (
     BED_DAMPING,
@@ -15,7 +16,6 @@ from rockframe.units import (
     SUBGRADE_MODULUS,
     QuantityLike,
     RatioLike,
-    to_ratio,
     to_si,
 )
 from rockframe.words import choice
@@ -63,6 +63,11 @@ class WinklerSoil(Component[WinklerSoilSI]):
         A value is out of range, or not exactly one of `damping` and
         `damping_ratio` is given.
 
+    Warns
+    -----
+    ModelWarning
+        `damping_ratio` is above 1, more than critical: per cent may have been meant.
+
     Examples
     --------
     >>> soil = WinklerSoil.from_subgrade_modulus("20 MN/m^3", depth="4 m", damping_ratio=0.2)
@@ -87,7 +92,7 @@ class WinklerSoil(Component[WinklerSoilSI]):
         if damping is not None:
             c = to_si(damping, BED_DAMPING, owner=owner, name="damping", condition=NOT_NEGATIVE)
         if damping_ratio is not None:
-            xi = to_ratio(damping_ratio, owner=owner, name="damping_ratio", condition=NOT_NEGATIVE)
+            xi = read_damping_ratio(damping_ratio, owner=owner)
         rule = choice(Separation, separation, owner=owner, name="separation")
         self._freeze(
             WinklerSoilSI(k, c, xi, rule),

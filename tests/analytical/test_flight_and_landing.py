@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from analytical.pads import Pads
+from overdamping import overdamped
 from scipy.optimize import brentq
 
 import rockframe as rf
@@ -246,6 +247,7 @@ def test_a_block_leaves_damped_pads_when_they_no_longer_push(xi):
     assert (response.contact_state.values[flying] == FLIGHT).all()
 
 
+@overdamped
 @pytest.mark.parametrize("xi", [0.3, 2.0])
 def test_a_kick_beyond_what_the_dashpots_can_hold_is_flight_at_once(xi):
     pads = Pads(damping_ratio=xi)
@@ -262,6 +264,7 @@ def test_a_kick_beyond_what_the_dashpots_can_hold_is_flight_at_once(xi):
     )
 
 
+@overdamped
 def test_a_pad_that_catches_up_takes_the_corner_back_without_impact():
     """Overdamped pads lag behind a slow kick, and touch again while the block still rises."""
     pads = Pads(damping_ratio=2.0)

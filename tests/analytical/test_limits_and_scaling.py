@@ -6,6 +6,7 @@ import math
 import numpy as np
 import pytest
 from analytical.pads import Pads
+from overdamping import overdamped
 
 import rockframe as rf
 
@@ -34,6 +35,7 @@ def deviation(slenderness, radius, beta, rule, pulse):
     return np.abs(found).max(), abs(peaks), soft, hard
 
 
+@overdamped
 @pytest.mark.parametrize("rule", ["contact-state", "leading-corner"])
 @pytest.mark.parametrize(
     ("slenderness", "radius", "amplitude"),
@@ -53,6 +55,7 @@ def test_stiff_pads_tend_to_rigid_ground(slenderness, radius, amplitude, rule):
         assert peak < 5.0 / beta
 
 
+@overdamped
 @pytest.mark.parametrize("rule", ["contact-state", "leading-corner"])
 @pytest.mark.parametrize(
     ("slenderness", "radius", "impacts", "time"),
@@ -72,6 +75,7 @@ def test_stiff_pads_give_the_verdicts_of_rigid_ground(slenderness, radius, impac
     assert response.impact_count.item() >= impacts
 
 
+@overdamped
 @pytest.mark.parametrize("rule", RULES)
 def test_at_stiff_pads_the_block_rolls_about_its_corner(rule):
     """Before any impact: released at an angle, it falls as the energy of its rule says."""

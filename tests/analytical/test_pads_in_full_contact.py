@@ -6,6 +6,7 @@ import re
 import numpy as np
 import pytest
 from analytical.pads import Pads, oscillator, rough_record, zero_crossings
+from overdamping import overdamped
 
 import rockframe as rf
 
@@ -118,6 +119,7 @@ def test_stiffness_and_ratio_say_the_same(stiffness):
 # exact recurrences -----------------------------------------------------------------------------
 
 
+@overdamped
 @pytest.mark.parametrize("xi", [0.0, 0.05, 0.4, 1.0, 3.0])
 @pytest.mark.parametrize("beta", [10.0, 40.0])
 def test_vertical_shaking_is_a_damped_oscillator(beta, xi):

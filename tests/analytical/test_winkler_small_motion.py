@@ -8,6 +8,7 @@ import pytest
 import sympy as sp
 from analytical.pads import oscillator, rough_record
 from analytical.soil import Bed
+from overdamping import overdamped
 from scipy.linalg import expm
 
 import rockframe as rf
@@ -46,6 +47,7 @@ def test_frequencies_and_damping_ratios(bed, rotation):
     np.testing.assert_allclose(modes.vertical_displacement_shape, [0.0, 1.0], atol=1e-12)
 
 
+@overdamped
 def test_an_overdamped_mode_has_the_frequency_of_the_undamped_one():
     bed = Bed(damping_ratio=1.5)
     modes = bed.system().frequencies()

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from overdamping import overdamped
 
 import rockframe as rf
 
@@ -139,6 +140,7 @@ def test_an_event_does_not_shift_the_grid():
         assert response.attrs["solver_steps"] == 500 * substeps + events.size
 
 
+@overdamped
 def test_an_unstable_number_of_substeps_is_refused():
     stiff = rf.TwoSpringSupport(frequency_ratio=200, damping_ratio=1.5)
     system = rf.System(block(), stiff)
@@ -152,6 +154,7 @@ def test_an_unstable_number_of_substeps_is_refused():
     assert float(abs(calm.vertical_displacement).max()) < 1e-12
 
 
+@overdamped
 @pytest.mark.parametrize("damping_ratio", [0.0, 0.3, 1.5])
 def test_the_least_number_of_substeps_is_that_of_the_fastest_vibration(damping_ratio):
     """Steps of 0.85 over omega (zeta + sqrt(1 + zeta^2))."""
@@ -167,6 +170,7 @@ def test_the_least_number_of_substeps_is_that_of_the_fastest_vibration(damping_r
     assert f"give at least {math.ceil(0.01 * rate / 0.85)}," in str(caught.value)
 
 
+@overdamped
 @pytest.mark.parametrize("damping_ratio", [0.0, 0.05, 0.3, 1.0, 3.0])
 @pytest.mark.parametrize("frequency_ratio", [20, 200])
 def test_fast_is_stable(frequency_ratio, damping_ratio):

@@ -10,6 +10,7 @@ import pint
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from overdamping import overdamped
 
 import rockframe as rf
 from rockframe.components import component_from_dict
@@ -134,6 +135,7 @@ def test_a_block_is_kept_bit_for_bit(width, slenderness, mass, shape_factor):
     assert again == block
 
 
+@overdamped
 @given(_ratio, _ratio, st.none() | st.floats(1e-9, 1.0))
 @settings(max_examples=100, deadline=None)
 def test_pads_are_kept_bit_for_bit(first, second, restitution):

@@ -10,6 +10,7 @@ import pint
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from overdamping import overdamped
 
 import rockframe as rf
 from rockframe.components import component_from_dict
@@ -122,6 +123,7 @@ class TestEverySoilAndCap:
 _size = st.floats(1e-3, 1e9)
 
 
+@overdamped
 @given(_size, _size, st.floats(0.0, 10.0), st.sampled_from(["displacement", "pressure"]))
 @settings(max_examples=100, deadline=None)
 def test_soil_is_kept_bit_for_bit(stiffness, damping, ratio, separation):

@@ -1,0 +1,30 @@
+"""The damping ratio of a base, and where its warning points."""
+
+import pickle
+import warnings
+
+import pytest
+
+import rockframe as rf
+
+pytestmark = pytest.mark.unit
+
+
+def test_a_warning_points_at_the_line_of_the_user():
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=10)
+        rf.WinklerSoil.from_subgrade_modulus("20 MN/m^3", depth="4 m", damping_ratio=10)
+    assert [one.filename for one in caught] == [__file__] * 2
+
+
+def test_a_damping_ratio_of_ten_may_mean_ten_per_cent():
+    words = r"TwoSpringSupport: damping_ratio = 10 is 1000 % of critical; was '10 %' meant\?"
+    with pytest.warns(rf.ModelWarning, match=words):
+        pads = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=10)
+    assert pads.si.damping_ratio == 10.0
+    with pytest.warns(rf.ModelWarning, match=r"WinklerSoil: damping_ratio = 1\.5 is 150 % of"):
+        rf.WinklerSoil(stiffness="9 MPa", damping_ratio="150 %")
+    # what pytest would turn into errors: neither at 1 nor a second time
+    rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=1)
+    assert pickle.loads(pickle.dumps(pads)) == pads  # noqa: S301
