@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Container, Mapping
 from typing import TYPE_CHECKING, Any, Final, TypeAlias, cast
 
 import numpy as np
@@ -28,6 +28,43 @@ _LONG_NAMES: Final = {
 }
 _PIECES_DIMS: Final = ("interval", "power")
 _EVEN: Final = 1e-6
+_A_MOTION: Final = "a dataset of GroundMotion.to_dataset"
+_RESULT_ATTRIBUTE: Final = "system_json"
+_OF_A_RESULT: Final = (
+    "a motion; the motion of a result is "
+    "rockframe.System.from_dataset(xarray.open_dataset(path)).motion"
+)
+
+
+class NoMotionError(SchemaError):
+    """A dataset that holds no motion.
+
+    Parameters
+    ----------
+    found, expected : str
+        As of a :class:`~rockframe.RecordError`, which names the file besides.
+    """
+
+    def __init__(self, found: str, expected: str = _A_MOTION) -> None:
+        self.found = found
+        self.expected = expected
+        super().__init__(found, expected)
+
+    def __str__(self) -> str:
+        return f"found {self.found}; expected {self.expected}"
+
+
+def check_no_result(attributes: Container[str]) -> None:
+    """Refuse the result of a system, by the attributes of its dataset.
+
+    Raises
+    ------
+    NoMotionError
+        It is one.
+    """
+    if _RESULT_ATTRIBUTE in attributes:
+        found = "the result of a system"
+        raise NoMotionError(found, _OF_A_RESULT)
 
 
 def to_dataset(motion: MotionValue, recipe: Recipe) -> xr.Dataset:
@@ -99,10 +136,11 @@ def from_dataset(dataset: xr.Dataset) -> dict[str, Any]:
         A variable is missing, in another unit or of another shape, or the
         samples are not those that the digest was written for.
     """
+    check_no_result(dataset.attrs)
     for name in ("acceleration", "time"):
         if name not in dataset.variables:
-            msg = f"found no variable {name!r}; expected a dataset of GroundMotion.to_dataset"
-            raise SchemaError(msg)
+            found = f"no variable {name!r}"
+            raise NoMotionError(found)
     attributes: dict[str, Any] = {str(key): value for key, value in dataset.attrs.items()}
     try:
         si = MotionSI(
@@ -115,15 +153,13 @@ def from_dataset(dataset: xr.Dataset) -> dict[str, Any]:
     except (ComponentError, TypeError, ValueError) as problem:
         if isinstance(problem, SchemaError):
             raise
-        msg = f"found a dataset that holds no ground motion: {problem}"
-        raise SchemaError(msg) from problem
+        found = f"a dataset that holds no ground motion: {problem}"
+        raise NoMotionError(found) from problem
     written = attributes.get("motion_sha256")
     if written is not None and written != si.digest():
-        msg = (
-            "found samples that differ from those the attribute 'motion_sha256' was written "
-            "for; delete the attribute if they were changed on purpose"
-        )
-        raise SchemaError(msg)
+        found = "samples that differ from those the attribute 'motion_sha256' was written for"
+        expected = "the same; delete the attribute if they were changed on purpose"
+        raise NoMotionError(found, expected)
     history = str(attributes.get("history", ""))
     arguments: dict[str, Any] = {
         "si": si,
@@ -144,8 +180,8 @@ def _values(dataset: xr.Dataset, name: str) -> Array | None:
     unit = variable.attrs.get("units")
     if unit != str(Unit.METRE_PER_SECOND_SQUARED):
         wanted = str(Unit.METRE_PER_SECOND_SQUARED)
-        msg = f"found {name!r} in units {unit!r}; expected {wanted!r}"
-        raise SchemaError(msg)
+        found = f"{name!r} in units {unit!r}"
+        raise NoMotionError(found, repr(wanted))
     return np.asarray(variable.values, dtype=np.float64)
 
 
@@ -154,12 +190,12 @@ def _time_step(dataset: xr.Dataset, attributes: Mapping[str, Any]) -> float:
         return float(attributes["time_step"])
     time = np.asarray(dataset["time"].values, dtype=np.float64)
     if time.size < 2:
-        msg = "found fewer than two times; expected a sampled motion"
-        raise SchemaError(msg)
+        found = "fewer than two times"
+        raise NoMotionError(found, "a sampled motion")
     step = float((time[-1] - time[0]) / (time.size - 1))
     if not np.all(np.abs(np.diff(time) - step) <= _EVEN * abs(step)):
-        msg = "found an uneven time axis; expected a uniform time step"
-        raise SchemaError(msg)
+        found = "an uneven time axis"
+        raise NoMotionError(found, "a uniform time step")
     return step
 
 
@@ -170,9 +206,9 @@ def _mapping(attributes: Mapping[str, Any], name: str) -> dict[str, Any] | None:
     try:
         loaded: object = json.loads(str(text))
     except ValueError as problem:
-        msg = f"found an attribute {name!r} that is not JSON"
-        raise SchemaError(msg) from problem
+        found = f"an attribute {name!r} that is not JSON"
+        raise NoMotionError(found) from problem
     if not isinstance(loaded, dict):
-        msg = f"found an attribute {name!r} that is not a JSON object"
-        raise SchemaError(msg)
+        found = f"an attribute {name!r} that is not a JSON object"
+        raise NoMotionError(found)
     return cast("dict[str, Any]", loaded)

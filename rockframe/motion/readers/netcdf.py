@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Final, cast
 import numpy as np
 import xarray as xr
 
-from rockframe.errors import RecordError, RockframeError
+from rockframe.errors import RecordError
 from rockframe.motion.readers.checks import check_asked_time_step
 from rockframe.motion.readers.components import Component, choose_component
 from rockframe.motion.readers.orientation import UNKNOWN, orientation_of
@@ -80,7 +80,7 @@ def read(source: Source, request: Request) -> StoredMotion:
 def _stored(source: Source) -> StoredMotion:
     import netCDF4
 
-    from rockframe.motion.dataset import from_dataset
+    from rockframe.motion.dataset import NoMotionError, check_no_result, from_dataset
 
     try:
         with warnings.catch_warnings():
@@ -88,14 +88,15 @@ def _stored(source: Source) -> StoredMotion:
             warnings.simplefilter("ignore")
             # before xarray, which loads the axes at once: a file may declare more than it holds
             with netCDF4.Dataset(source.path) as file:
+                check_no_result(file.ncattrs())
                 _check_declared(source, file.variables)
             # undecoded: the numbers as they were written
             with xr.open_dataset(source.path, engine="netcdf4", decode_cf=False) as dataset:
                 arguments = from_dataset(_only_motion(dataset).load())
     except RecordError:
         raise
-    except RockframeError as problem:
-        raise source.refuse(found=f"netCDF: {problem}", expected=_EXPECTED) from problem
+    except NoMotionError as problem:
+        raise source.refuse(found=problem.found, expected=problem.expected) from problem
     except Exception as problem:
         # the libraries fail on damaged files in ways that they do not document
         found = f"a netCDF file that cannot be read ({type(problem).__name__})"

@@ -1,6 +1,7 @@
 """Motions that this package stored: back as they were, or refused."""
 
 import json
+import pickle
 
 import netCDF4
 import numpy as np
@@ -9,7 +10,8 @@ import xarray as xr
 from unit.motion.binary_samples import netcdf
 from unit.motion.format_samples import SAMPLES
 
-from rockframe.errors import RecordError
+import rockframe as rf
+from rockframe.errors import RecordError, SchemaError
 from rockframe.motion import GroundMotion
 
 RNG = np.random.default_rng(5)
@@ -111,6 +113,33 @@ def test_what_is_no_stored_motion_is_refused(change, words, tmp_path):
     change(arrays(tmp_path).to_dataset()).to_netcdf(path)
     with pytest.raises(RecordError, match=words):
         GroundMotion.read(path)
+
+
+def test_a_result_is_told_from_a_motion(tmp_path):
+    block = rf.Block(width="2 m", height="8 m", mass="40 t")
+    shaking = pulse(tmp_path)
+    response = rf.System(block).simulate(shaking, duration="0.1 s")
+    response.to_netcdf(tmp_path / "run.nc")
+    words = (
+        r"run\.nc: found the result of a system; expected [^;]*; [^;]*from_dataset\(.*\)\.motion"
+    )
+    with pytest.raises(RecordError, match=words + "$"):
+        GroundMotion.read(tmp_path / "run.nc")
+    with pytest.raises(SchemaError, match="found the result of a system"):
+        GroundMotion.from_dataset(response)
+    assert rf.System.from_dataset(response).motion == shaking
+
+
+def test_what_is_found_is_said_once(tmp_path):
+    path = tmp_path / "stored.nc"
+    arrays(tmp_path).to_dataset().drop_vars("acceleration").to_netcdf(path)
+    with pytest.raises(RecordError) as caught:
+        GroundMotion.read(path)
+    told = str(caught.value).removeprefix(str(path))
+    assert told.count("found") == told.count("expected") == 1
+    with pytest.raises(SchemaError) as plain:
+        GroundMotion.from_dataset(xr.Dataset())
+    assert str(pickle.loads(pickle.dumps(plain.value))) == str(plain.value)  # noqa: S301
 
 
 def test_a_file_that_declares_more_than_it_holds_is_not_loaded(tmp_path):
