@@ -8,7 +8,7 @@ from rockframe.calls import CheckedCall
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import AssemblyError, ModelWarning, RockframeError
 from rockframe.motion import GroundMotion
-from rockframe.system.fitting import misfits
+from rockframe.system.fitting import misfits, missizes
 from rockframe.system.options import Coupling, Options, Restraint, Rotation, read_option
 from rockframe.system.parts import Parts, sort_parts
 from rockframe.system.scenes import SCENES, Scene, Setting
@@ -17,6 +17,8 @@ from rockframe.units import ACCELERATION, POSITIVE, QuantityLike, to_si
 
 class Assembly(CheckedCall):
     """Parts and options that have been checked and make a supported scene.
+
+    Two are equal if they have equal parts, in whatever order, and equal options.
 
     Parameters
     ----------
@@ -34,7 +36,8 @@ class Assembly(CheckedCall):
     Raises
     ------
     AssemblyError
-        With every fault found, and the supported scenes.
+        With every fault found; and the supported scenes, if parts are missing or do not
+        combine.
     """
 
     def __init__(
@@ -47,6 +50,10 @@ class Assembly(CheckedCall):
     ) -> None:
         faults: list[str] = []
         self.parts: Parts = sort_parts(parts, faults)
+        faults += misfits(self.parts)
+        # the scenes are of use to one whose parts make none, not to one with a wrong option
+        supported = [scene.title for scene in SCENES] if faults else []
+        faults += missizes(self.parts)
         self.restraint = read_option(Restraint, restraint, "restraint", faults)
         self.rotation = read_option(Rotation, rotation, "rotation", faults)
         self.coupling = read_option(Coupling, coupling, "coupling", faults)
@@ -58,25 +65,28 @@ class Assembly(CheckedCall):
                 )
             except RockframeError as problem:
                 faults.append(str(problem))
-        scene = self._find_scene(faults)
+        scene = self._find_scene()
         if faults or scene is None:
-            raise AssemblyError(faults, [scene.title for scene in SCENES])
+            raise AssemblyError(faults, supported)
         self.scene: Scene = scene
         for caution in self.setting.cautions():
             warnings.warn(caution, ModelWarning, stacklevel=2)
 
-    def _find_scene(self, faults: list[str]) -> Scene | None:
-        faults += misfits(self.parts)
+    def _find_scene(self) -> Scene | None:
         for scene in SCENES:
             if scene.fits(self.parts, self.coupling):
                 return scene
         return None
 
+    @property
+    def options(self) -> Options:
+        """All options, and gravity."""
+        return Options(self.restraint, self.rotation, self.coupling, self.gravity_si)
+
     @cached_property
     def setting(self) -> Setting:
         """The scene's numbers in SI units."""
-        options = Options(self.restraint, self.rotation, self.coupling, self.gravity_si)
-        return self.scene.make_setting(self.parts, options)
+        return self.scene.make_setting(self.parts, self.options)
 
     @property
     def motion(self) -> GroundMotion | None:
@@ -94,6 +104,14 @@ class Assembly(CheckedCall):
         from rockframe.system.describe import describe
 
         return describe(self.scene, self.setting, self.parts)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Assembly):
+            return NotImplemented
+        return (self.parts, self.options) == (other.parts, other.options)
+
+    def __hash__(self) -> int:
+        return hash((self.parts, self.options))
 
     def __repr__(self) -> str:
         parts = ", ".join(repr(part) for part in self.parts.given())

@@ -9,7 +9,7 @@ _ROUNDING = 1e-12
 
 
 def misfits(parts: Parts) -> list[str]:
-    """Give the faults of a combination of parts.
+    """Give the faults of a combination of parts, whatever their sizes.
 
     Parameters
     ----------
@@ -39,6 +39,24 @@ def misfits(parts: Parts) -> list[str]:
             "a TwoSpringSupport and a WinklerSoil are given without a CushionCap; the cap "
             "carries the pads and spreads their reactions over the soil"
         )
+    return faults
+
+
+def missizes(parts: Parts) -> list[str]:
+    """Give the faults of the sizes of parts that are together.
+
+    Parameters
+    ----------
+    parts : Parts
+        Parts of which none is given twice.
+
+    Returns
+    -------
+    list of str
+        Each names the parts and their sizes.
+    """
+    block, cap = parts.block, parts.cap
+    faults: list[str] = []
     if block is not None and cap is not None:
         body = cap_under(block.si, cap.si)
         width = 2.0 * body.half_width
