@@ -185,7 +185,7 @@ class System(Assembly):
         >>> system = rf.System(rf.Block(width="4 m", height="18 m", mass="99 t"), soil)
         >>> held = system.moment_rotation(([0.0, 0.01, 0.1], "rad"))
         >>> [round(float(length), 3) for length in held.held_contact_length]
-        [4.0, 4.0, 1.468]
+        [4.0, 4.0, 1.47]
         """
         from rockframe.simulation.statics import moment_rotation
 
