@@ -6,7 +6,7 @@ from typing import Final
 import numpy as np
 import xarray as xr
 
-from rockframe.errors import ComponentError, SchemaError
+from rockframe.errors import ComponentError, SchemaError, shown
 from rockframe.units import POSITIVE, to_ratio
 
 _OWNER: Final = "recommend"
@@ -68,7 +68,7 @@ def recommend(
     limit = to_ratio(tolerance, owner=_OWNER, name="tolerance", condition=POSITIVE)
     if limit > 1.0:
         msg = (
-            f"{_OWNER}: tolerance must be at most 1, the whole peak, got {tolerance!r}; "
+            f"{_OWNER}: tolerance must be at most 1, the whole peak, got {shown(tolerance)}; "
             f"for {_plain(limit, 3)} % write {_plain(0.01 * limit, 3)}"
         )
         raise ComponentError(msg)
@@ -105,8 +105,8 @@ def recommend(
 def _share(value: float, digits: int) -> str:
     """Write an error: a percentage, or where that would be tiny a share of the peak."""
     if 0.0 < value < _LEAST_PERCENTAGE:
-        shown = np.format_float_scientific(value, digits - 1, trim="-", exp_digits=1)
-        return f"{shown} of the peak"
+        text = np.format_float_scientific(value, digits - 1, trim="-", exp_digits=1)
+        return f"{text.replace('.e', 'e')} of the peak"
     return f"{_plain(100.0 * value, digits)} %"
 
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 import numpy as np
 import xarray as xr
 
-from rockframe.errors import ComponentError, ModelWarning, SolverWarning
+from rockframe.errors import ComponentError, ModelWarning, SolverWarning, shown
 from rockframe.ladder.errors import (
     event_time_error,
     history_error,
@@ -210,7 +210,7 @@ def _chosen(ladder: dict[str, System], models: Sequence[str] | None) -> dict[str
     unknown = [name for name in models if name not in ladder]
     if unknown or not models:
         known = ", ".join(repr(name) for name in ladder)
-        msg = f"{_OWNER}: models must be some of {known}, got {list(models)!r}"
+        msg = f"{_OWNER}: models must be some of {known}, got {shown(list(models))}"
         raise ComponentError(msg)
     return {name: ladder[name] for name in models}
 

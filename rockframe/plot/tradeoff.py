@@ -55,6 +55,7 @@ def tradeoff(dataset: xr.Dataset, *, title: str | None = None) -> "Figure":
     """
     from matplotlib import colormaps
     from matplotlib.figure import Figure
+    from matplotlib.ticker import LogLocator, NullLocator, StrMethodFormatter
 
     check_rungs(dataset)
     models = [str(name) for name in dataset["model"].to_numpy()]
@@ -81,6 +82,9 @@ def tradeoff(dataset: xr.Dataset, *, title: str | None = None) -> "Figure":
         ylabel=_ERROR.format("\n"),
         title="integration: low and left is better",
     )
+    axes[0].xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axes[0].xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
+    axes[0].xaxis.set_minor_locator(NullLocator())
     axes[1].set(
         yticks=range(len(models)),
         yticklabels=models,

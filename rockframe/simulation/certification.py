@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Final
 
-from rockframe.errors import ComponentError
+from rockframe.errors import ComponentError, shown
 from rockframe.units import Condition, to_ratio
 
 _SMALL: Final = Condition("above 0 and at most 0.1", lambda value: 0.0 < value <= 0.1)
@@ -62,7 +62,7 @@ def certification_of(given: object) -> Certification | None:
         return Certification()
     if isinstance(given, Certification):
         return given
-    msg = f"simulate: certify must be True, False or a Certification(...), got {given!r}"
+    msg = f"simulate: certify must be True, False or a Certification(...), got {shown(given)}"
     raise ComponentError(msg)
 
 

@@ -8,13 +8,13 @@ from typing import cast
 import xarray as xr
 
 from rockframe.components import InitialState
-from rockframe.errors import AssemblyError
+from rockframe.errors import AssemblyError, shown
 from rockframe.motion import GroundMotion
 from rockframe.results.schema import ENERGIES, SCHEMA
 from rockframe.simulation.beginning import Beginning, continuation_of
 from rockframe.solve.accuracy import Accuracy, accuracy_of
 from rockframe.system.assembly import Assembly
-from rockframe.units import POSITIVE, TIME, QuantityLike, to_si
+from rockframe.units import POSITIVE, TIME, TIME_STEP, QuantityLike, to_si
 
 ENERGY_GROUP = "energy"
 MOST_SAMPLES = 1e8
@@ -82,7 +82,9 @@ def plan_run(
     length = _length(motion, duration, free_vibration, faults)
     step = motion.si.time_step if motion is not None else STILL_GROUND_OUTPUT_STEP
     if output_step is not None:
-        step = to_si(output_step, TIME, owner="simulate", name="output_step", condition=POSITIVE)
+        step = to_si(
+            output_step, TIME_STEP, owner="simulate", name="output_step", condition=POSITIVE
+        )
     if outputs is None:
         step = None
     if step is not None and length / step > MOST_SAMPLES:
@@ -91,7 +93,7 @@ def plan_run(
             f"{step:.6g} s); give a longer output_step, or outputs=None"
         )
     if overturning not in ("stop", "continue"):
-        faults.append(f"overturning must be 'stop' or 'continue', got {overturning!r}")
+        faults.append(f"overturning must be 'stop' or 'continue', got {shown(overturning)}")
     energies = _energies(outputs, faults)
     if faults:
         raise AssemblyError(faults)
@@ -115,7 +117,7 @@ def _beginning(system: Assembly, given: object, faults: list[str]) -> Beginning:
     if given is None:
         return InitialState()
     if not isinstance(given, InitialState):
-        faults.append(f"initial must be an InitialState or the result of a run, got {given!r}")
+        faults.append(f"initial must be an InitialState or the result of a run, got {shown(given)}")
         return InitialState()
     start = given.si
     vertical_start = start.vertical_displacement is not None or start.vertical_velocity != 0.0
@@ -131,7 +133,7 @@ def _beginning(system: Assembly, given: object, faults: list[str]) -> Beginning:
 
 def _check_kind(value: object, kind: type, name: str, faults: list[str]) -> None:
     if value is not None and not isinstance(value, kind):
-        faults.append(f"{name} must be a {kind.__name__}, got {value!r}")
+        faults.append(f"{name} must be a {kind.__name__}, got {shown(value)}")
 
 
 def _length(
@@ -166,7 +168,7 @@ def _energies(outputs: object, faults: list[str]) -> tuple[str, ...]:
         if not (isinstance(name, str) and (name in histories or name == ENERGY_GROUP)):
             known = ", ".join(repr(other) for other in (ENERGY_GROUP, *ENERGIES))
             faults.append(
-                f"outputs has no {name!r}; every run has its response, and on request {known}"
+                f"outputs has no {shown(name)}; every run has its response, and on request {known}"
             )
     if ENERGY_GROUP in names:
         return ENERGIES

@@ -1,12 +1,11 @@
 """What a result says of its run, and the way back."""
 
 import json
-import warnings
 
 import numpy as np
 import xarray as xr
 
-from rockframe.errors import RecordWarning
+from rockframe.errors import RecordWarning, warn
 from rockframe.motion import GroundMotion
 from rockframe.units import TIME, Unit
 
@@ -51,12 +50,11 @@ def motion_from_dataset(dataset: xr.Dataset) -> GroundMotion | None:
         return GroundMotion.from_dict(description)
     motion, reason = _from_histories(dataset)
     if motion is None:
-        warnings.warn(
+        warn(
             f"the motion {dataset.attrs['motion']!r} (sha256 "
             f"{str(dataset.attrs['motion_sha256'])[:12]}...) cannot be had from this dataset: "
             f"{reason}; the system comes without a motion, give it to simulate()",
             RecordWarning,
-            stacklevel=3,
         )
     return motion
 

@@ -2,7 +2,6 @@
 
 import json
 import math
-import warnings
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Final, TypeAlias
@@ -11,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe.dynamics.protocol import Ending, Start
-from rockframe.errors import ModelWarning, RockframeWarning, SolverWarning
+from rockframe.errors import ModelWarning, RockframeWarning, SolverWarning, warn
 from rockframe.motion import GroundMotion
 from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import (
@@ -103,7 +102,7 @@ def run(system: Assembly, plan: Plan, certification: Certification | None = None
         *_pulling(system, response.values, summary.overturning_time),
     ]
     for kind, text in cautions:
-        warnings.warn(text, kind, stacklevel=3)  # the line that called simulate
+        warn(text, kind)
     if cautions:
         attributes["cautions"] = "; ".join(text for _, text in cautions)
     certificate: dict[str, float | bool] = {}

@@ -5,7 +5,7 @@ from enum import StrEnum
 from numbers import Integral, Real
 from typing import Final, Literal
 
-from rockframe.errors import SolverError
+from rockframe.errors import SolverError, shown
 
 FEWEST: Final = "fewest"
 """Stands for the least number of sub-steps that `steps_per_period` allows."""
@@ -75,13 +75,15 @@ class Accuracy:
             whole = field.name in ("max_steps", "substeps")
             if isinstance(value, bool) or not isinstance(value, Real):
                 asked = f"a whole number or {FEWEST!r}" if field.name == "substeps" else "a number"
-                msg = f"Accuracy: {field.name} must be {asked}, got {value!r}"
+                msg = f"Accuracy: {field.name} must be {asked}, got {shown(value)}"
                 raise SolverError(msg)
             if whole and not isinstance(value, Integral):
-                msg = f"Accuracy: {field.name} must be a whole number, got {value!r}"
+                msg = f"Accuracy: {field.name} must be a whole number, got {shown(value)}"
                 raise SolverError(msg)
             if not low <= float(value) <= high:
-                msg = f"Accuracy: {field.name} must lie from {low:g} to {high:g}, got {value!r}"
+                msg = (
+                    f"Accuracy: {field.name} must lie from {low:g} to {high:g}, got {shown(value)}"
+                )
                 raise SolverError(msg)
 
 
@@ -118,5 +120,5 @@ def accuracy_of(choice: "str | float | Accuracy") -> Accuracy:
     except ValueError:
         names = ", ".join(repr(str(level)) for level in AccuracyLevel)
         known = f"one of {names}, a tolerance such as 1e-6 or an Accuracy(...)"
-        msg = f"accuracy must be {known}, got {choice!r}"
+        msg = f"accuracy must be {known}, got {shown(choice)}"
         raise SolverError(msg) from None

@@ -85,6 +85,7 @@ def test_overdamped_modes_keep_their_own_rates():
     np.testing.assert_allclose([mode.damping_ratio for mode in modes], ratios, rtol=1e-9)
 
 
+@overdamped
 def test_a_strongly_damped_bed_has_the_frequencies_of_its_springs():
     bed = {"stiffness": "20 MPa"}
     block = rf.Block(width="1 m", height="1 m", mass="1 t")
