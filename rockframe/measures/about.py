@@ -1,11 +1,18 @@
 """What an answer says of the motion that it belongs to."""
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from rockframe.measures.component import GroundComponent
 
 if TYPE_CHECKING:
     from rockframe.motion import GroundMotion
+
+
+REFERENCES: Final = (
+    "Nigam and Jennings (1969), Bull. Seism. Soc. Am. 59, 909-922; Arias (1970), in Seismic Design "
+    "for Nuclear Power Plants; Rathje et al. (2004), Earthquake Spectra 20, 119-144"
+)
+"""Where spectra and intensity measures come from; page "Response spectra" has them all."""
 
 
 def about(motion: "GroundMotion", component: GroundComponent) -> dict[str, str | float | int]:
@@ -30,4 +37,5 @@ def about(motion: "GroundMotion", component: GroundComponent) -> dict[str, str |
         "motion_samples": len(motion),
         "motion_history": "; ".join(motion.history),
         "component": str(component),
+        "references": REFERENCES,
     }

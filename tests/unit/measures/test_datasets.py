@@ -63,6 +63,7 @@ def test_it_says_what_it_belongs_to(answer, motion):
     assert dataset.attrs["motion"] == "noise"
     assert dataset.attrs["motion_sha256"] == motion.sha256
     assert dataset.attrs["component"] in ("horizontal", "vertical")
+    assert "Nigam and Jennings" in dataset.attrs["references"]
     assert all(isinstance(value, str | int | float) for value in dataset.attrs.values())
 
 
