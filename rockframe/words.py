@@ -2,12 +2,11 @@
 
 from enum import StrEnum
 from operator import index
-from typing import TYPE_CHECKING, SupportsIndex, TypeVar, cast
+from typing import SupportsIndex, TypeVar, cast
+
+import xarray as xr
 
 from rockframe.errors import ComponentError, SchemaError, shown
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 Choice = TypeVar("Choice", bound=StrEnum)
 
@@ -75,7 +74,7 @@ def whole_number(
     raise ComponentError(msg)
 
 
-def dataset(given: object, *, owner: str) -> "xr.Dataset":
+def dataset(given: object, *, owner: str) -> xr.Dataset:
     """Read an argument that is a dataset.
 
     Parameters
@@ -94,8 +93,8 @@ def dataset(given: object, *, owner: str) -> "xr.Dataset":
     SchemaError
         None, such as the path of a file.
     """
-    if hasattr(given, "data_vars"):
-        return cast("xr.Dataset", given)
+    if isinstance(given, xr.Dataset):
+        return given
     msg = (
         f"{owner}: found {shown(given)}; expected a dataset: open a file with xr.open_dataset first"
     )

@@ -8,9 +8,7 @@ from rockframe.solve.layout import Status
 
 def verdict_of(run: xr.Dataset) -> bool | None:
     """Tell whether a run overturned; None where it was cut off before it could tell."""
-    if bool(run["overturned"]):
-        return True
-    return False if Status(int(run["status"])).finished else None
+    return Status(int(run["status"])).verdict(bool(run["overturned"]))
 
 
 def verdicts_agree(run: xr.Dataset, reference: xr.Dataset) -> bool:

@@ -18,6 +18,10 @@ from rockframe.ladder.errors import (
     verdicts_agree,
 )
 from rockframe.ladder.models import check_system, model_ladder
+from rockframe.results.dataset import build_dataset
+from rockframe.simulation.plan import Plan, plan_run
+from rockframe.simulation.provenance import motion_attributes
+from rockframe.simulation.run import outcome, run
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import Accuracy, AccuracyLevel, accuracy_of
 from rockframe.words import whole_number
@@ -25,7 +29,6 @@ from rockframe.words import whole_number
 if TYPE_CHECKING:
     from rockframe.components import InitialState
     from rockframe.motion import GroundMotion
-    from rockframe.simulation.plan import Plan
     from rockframe.units import QuantityLike
 
 TIGHT: Final = 1e-12
@@ -93,12 +96,6 @@ def tradeoff(
     Every rung is run once before it is timed. Times are wall times of this machine, now:
     compare them with one another only.
     """
-    # imported here, because they load the compiler
-    from rockframe.results.dataset import build_dataset
-    from rockframe.simulation.plan import plan_run
-    from rockframe.simulation.provenance import motion_attributes
-    from rockframe.simulation.run import run
-
     check_system(system, _OWNER)
     repeats = whole_number(repeats, owner=_OWNER, name="repeats", lowest=1, highest=_MOST_REPEATS)
     ladder = model_ladder(system)
@@ -107,7 +104,7 @@ def tradeoff(
     settings = {_label(accuracy): accuracy_of(accuracy) for accuracy in given}
     shaking = system.motion if motion is None else motion
 
-    def plan(scene: System, accuracy: Accuracy) -> "Plan":
+    def plan(scene: System, accuracy: Accuracy) -> Plan:
         return plan_run(
             scene,
             shaking,
@@ -157,7 +154,7 @@ def tradeoff(
 
 
 def measure(
-    scene: System, plan: "Plan", converged: xr.Dataset, truth: xr.Dataset, repeats: int
+    scene: System, plan: Plan, converged: xr.Dataset, truth: xr.Dataset, repeats: int
 ) -> Outcome:
     """Run a rung, time it and compare it.
 
@@ -177,8 +174,6 @@ def measure(
     dict
         Scalars by their names in the schema.
     """
-    from rockframe.simulation.run import run
-
     found = run(scene, plan)
     bare = replace(plan, output_step=None)
     times = [_timed(scene, bare) for _ in range(repeats)]
@@ -196,9 +191,7 @@ def measure(
     }
 
 
-def _timed(scene: System, plan: "Plan") -> float:
-    from rockframe.simulation.run import outcome
-
+def _timed(scene: System, plan: Plan) -> float:
     start = time.perf_counter()
     outcome(scene, plan)
     return time.perf_counter() - start

@@ -6,6 +6,7 @@ import xarray as xr
 
 from rockframe.measures.about import about
 from rockframe.measures.component import GroundComponent, component_of, shaking_of
+from rockframe.results.dataset import build_dataset
 from rockframe.shaking.path import ground_path
 from rockframe.shaking.polynomials import knots_of
 
@@ -55,9 +56,6 @@ def velocity_and_displacement(
     >>> round(float(path.ground_velocity[-1]), 6)
     0.63662
     """
-    # imported here, because the schema of results loads the compiler
-    from rockframe.results.dataset import build_dataset
-
     owner = "velocity_and_displacement"
     shaking = shaking_of(motion, component, owner=owner)
     velocity, displacement = ground_path(shaking)

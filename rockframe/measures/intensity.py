@@ -11,6 +11,7 @@ from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError, shown
 from rockframe.measures.about import about
 from rockframe.measures.component import GroundComponent, component_of, shaking_of
+from rockframe.results.dataset import build_dataset
 from rockframe.shaking.accumulation import (
     absolute_velocity_history,
     arias_history,
@@ -105,9 +106,6 @@ def intensity_measures(
     >>> round(float(measures.relative_peak_ground_acceleration), 4)
     2.0394
     """
-    # imported here, because the schema of results loads the compiler
-    from rockframe.results.dataset import build_dataset
-
     shaking = shaking_of(motion, component, owner=_OWNER)
     which = component_of(component, owner=_OWNER)
     accelerations = {

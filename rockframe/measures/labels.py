@@ -5,6 +5,9 @@ from typing import TYPE_CHECKING
 
 import xarray as xr
 
+from rockframe.results.dataset import build_dataset
+from rockframe.results.schema import SCHEMA
+
 if TYPE_CHECKING:
     from rockframe.shaking.shaking import Array
 
@@ -37,10 +40,6 @@ def build_over(
     -------
     xarray.Dataset
     """
-    # imported here, because the schema of results loads the compiler
-    from rockframe.results.dataset import build_dataset
-    from rockframe.results.schema import SCHEMA
-
     dataset = build_dataset(values, attributes, title=title, source=source)
     for name, (axis, meaning) in axes.items():
         labels = {**SCHEMA[name].attributes(), "long_name": meaning}

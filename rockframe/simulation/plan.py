@@ -3,7 +3,6 @@
 import json
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import cast
 
 import xarray as xr
 
@@ -112,8 +111,8 @@ def plan_run(
 
 def _beginning(system: Assembly, given: object, faults: list[str]) -> Beginning:
     """Read the argument ``initial``; note what does not fit the system."""
-    if hasattr(given, "data_vars"):  # a dataset, known without importing xarray
-        return continuation_of(cast("xr.Dataset", given), system, faults)
+    if isinstance(given, xr.Dataset):
+        return continuation_of(given, system, faults)
     if given is None:
         return InitialState()
     if not isinstance(given, InitialState):

@@ -23,6 +23,10 @@ class Status(IntEnum):
         """Whether the run went as far as it was asked to."""
         return self <= Status.TOPPLED
 
+    def verdict(self, overturned: bool) -> bool | None:
+        """Give whether the block overturned; None if the run was cut off before it could tell."""
+        return overturned if overturned or self.finished else None
+
 
 # Results of the integrator's entry point: a Status, or this.
 MORE_ROOM: Final = -1

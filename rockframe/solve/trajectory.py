@@ -76,9 +76,7 @@ class Summary:
     @property
     def overturned(self) -> bool | None:
         """Whether the block overturned; None where the run was cut off before it could tell."""
-        if not math.isnan(self.overturning_time):
-            return True
-        return False if self.status.finished else None
+        return self.status.verdict(not math.isnan(self.overturning_time))
 
 
 @dataclass(frozen=True, kw_only=True)

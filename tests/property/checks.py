@@ -4,7 +4,10 @@ import numpy as np
 import pytest
 from property.scenarios import GRAVITY
 
-from rockframe.dynamics.protocol import IMPACT_LOSS, REPINNING_LOSS
+from rockframe.dynamics.protocol import IMPACT_LOSS, REPINNING_LOSS, Start
+from rockframe.simulation.run import ground_of
+from rockframe.solve.accuracy import accuracy_of
+from rockframe.solve.integrate import integrate
 
 FULL, LEFT, RIGHT, FLIGHT = range(4)
 
@@ -30,14 +33,25 @@ def stored_energy(model, mode, state):
     return out[0] + out[1] + out[3], max(abs(out[0]), abs(out[1]), abs(out[2]))
 
 
-def check_energy_at_events(model, run, radius):
+def check_energy_at_events(scenario, accuracy, *, stop_at_overturning):
     """Energy never rises at an event, and the books say how much went."""
+    model = scenario.system.setting.compile()
+    start = scenario.initial.si
+    run = integrate(
+        model,
+        Start(start.rotation, start.angular_velocity),
+        ground_of(scenario.motion),
+        accuracy_of(accuracy),
+        duration=scenario.motion.si.duration + 2.0,
+        output_step=None,
+        stop_at_overturning=stop_at_overturning,
+    )
     lost = [run.start_memory, *run.events.memory]
     for i in range(len(run.events.time)):
         before, size = stored_energy(model, run.events.mode_before[i], run.events.state_before[i])
         after, _ = stored_energy(model, run.events.mode_after[i], run.events.state_after[i])
         # a rigid block's impact is found to 1e-15 of theta, and its energy there to that
-        slack = 1e-11 * size + 1e-14 * GRAVITY * radius
+        slack = 1e-11 * size + 1e-14 * GRAVITY * scenario.radius
         assert after <= before + slack
         change = lost[i + 1] - lost[i]
         booked = change[IMPACT_LOSS] + change[REPINNING_LOSS]

@@ -3,11 +3,13 @@
 Ranges: see `property.scenarios`.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import example, given, settings
 from property.checks import FLIGHT, LEFT, RIGHT, check_flight
-from property.scenarios import GRAVITY, RULES, Scenario, scenarios
+from property.scenarios import CASE, GRAVITY, RULES, Scenario, scenarios
 
 import rockframe as rf
 
@@ -84,18 +86,7 @@ def test_a_landing_whose_hold_would_lift_the_corner_again_has_a_motion():
 
 
 def test_a_run_that_cannot_be_finished_returns_what_it_has_and_says_so():
-    scenario = Scenario(
-        base="contact-state",
-        radius=5.0,
-        slenderness=4.0,
-        beta=20.0,
-        xi=0.1,
-        rotation="finite",
-        peak=0.4,
-        frequency=1.0,
-        cycles=1.0,
-        vertical=0.0,
-    )
+    scenario = replace(CASE, peak=0.4, vertical=0.0)
     with pytest.warns(rf.SolverWarning, match="Not finished"):
         response = scenario.run(accuracy=rf.Accuracy(rtol=1e-8, max_steps=500))
     meanings = response.status.attrs["flag_meanings"].split()

@@ -7,24 +7,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from property.checks import check_output_step
-from property.scenarios import GRAVITY, RULES, Scenario, scenarios
+from property.scenarios import CASE, GRAVITY, RULES, Scenario, scenarios
 
 import rockframe as rf
 
 pytestmark = pytest.mark.property
-
-CASE = Scenario(
-    base="contact-state",
-    radius=5.0,
-    slenderness=4.0,
-    beta=20.0,
-    xi=0.1,
-    rotation="finite",
-    peak=0.5,
-    frequency=1.0,
-    cycles=1.0,
-    vertical=0.3,
-)
 
 
 # output ------------------------------------------------------------------------------------

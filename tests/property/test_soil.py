@@ -20,6 +20,7 @@ from property.checks import (
     check_flight,
     check_output_step,
 )
+from property.scenarios import CASE as PADS_CASE
 from property.scenarios import (
     GRAVITY,
     RULES,
@@ -32,29 +33,12 @@ from property.test_energy import energy_scale
 from property.test_symmetry import SWAPPED, SWAPS_CORNERS, TRADES_PLACES, TURNS_ROUND
 
 import rockframe as rf
-from rockframe.dynamics.protocol import Start
-from rockframe.simulation.run import ground_of
-from rockframe.solve.accuracy import accuracy_of
-from rockframe.solve.integrate import integrate
 
 pytestmark = pytest.mark.property
 
 FIXED = "ROCKFRAME_RANDOM" not in os.environ
 """Always the same random scenes, unless the environment asks for new ones."""
-CASE = SoilScenario(
-    base="contact-state",
-    radius=5.0,
-    slenderness=4.0,
-    beta=20.0,
-    xi=0.1,
-    rotation="finite",
-    peak=0.5,
-    frequency=1.0,
-    cycles=1.0,
-    vertical=0.3,
-    firmness=30.0,
-    cap_width=1.3,
-)
+CASE = SoilScenario(**vars(PADS_CASE), firmness=30.0, cap_width=1.3)
 ONE_MODEL = ("soil", "cap and soil", "coupled")
 """Scenes of one set of equations; the cascade has two."""
 every_kind = pytest.mark.parametrize(
@@ -168,18 +152,7 @@ def test_losses_only_grow(scenario):
 @example(replace(CASE, scene="cap and soil", separation="pressure", peak=1.0, vertical=0.6))
 @settings(max_examples=25, deadline=None, derandomize=FIXED)
 def test_energy_never_rises_at_an_event(scenario):
-    model = scenario.system.setting.compile()
-    start = scenario.initial.si
-    run = integrate(
-        model,
-        Start(start.rotation, start.angular_velocity),
-        ground_of(scenario.motion),
-        accuracy_of("standard"),
-        duration=scenario.motion.si.duration + 2.0,
-        output_step=None,
-        stop_at_overturning=True,
-    )
-    check_energy_at_events(model, run, scenario.radius)
+    check_energy_at_events(scenario, "standard", stop_at_overturning=True)
 
 
 @pytest.mark.parametrize("rule", ["leading-corner", "centre"])
