@@ -5,7 +5,9 @@ Equations :eq:`eq-coupled`; pads as in :mod:`rockframe.dynamics.pad`, soil as in
 events; what happens at events stands in :mod:`rockframe.dynamics.coupled_switches`.
 """
 
-from rockframe.compiled import Vector, callback
+from typing import NamedTuple
+
+from rockframe.compiled import Vector, callback, inlined
 from rockframe.dynamics.bed import SLIP, bearing_part, bed_energy, bed_guards, bed_resultants
 from rockframe.dynamics.coupled_gliding import glide, glide_guards
 from rockframe.dynamics.coupled_layout import (
@@ -60,18 +62,29 @@ from rockframe.dynamics.coupled_motion import (
     solve_motion,
 )
 from rockframe.dynamics.kinematics import end_accelerations, pivot_guard, sine_cosine_rise
-from rockframe.dynamics.pad import corner_guards, pad_energy, pad_force_and_power
+from rockframe.dynamics.pad import corner_guards, corners_in, pad_energy, pad_force_and_power
 from rockframe.dynamics.protocol import ACCELERATE, ENERGY, GUARD, OBSERVE, ROTATION_LIMIT
 from rockframe.dynamics.single_body import FREE
 from rockframe.dynamics.two_spring import MODES as BLOCK_MODES
 from rockframe.dynamics.two_spring import pressing
 
 
-@callback(ACCELERATE)
-def accelerate(
-    mode: int, state: Vector, ground_x: float, ground_y: float, p: Vector, out: Vector
-) -> None:
-    """Accelerations of :eq:`eq-coupled`, dashpot power and input power."""
+class Rates(NamedTuple):
+    """Accelerations of all coordinates, and the powers dissipated and supplied."""
+
+    cap_vertical: float
+    cap_rotation: float
+    normal: float
+    rotation: float
+    along: float
+    cap_horizontal: float
+    dissipated: float
+    supplied: float
+
+
+@inlined
+def rates(mode: int, state: Vector, ground_x: float, ground_y: float, p: Vector) -> Rates:
+    """Give the accelerations of :eq:`eq-coupled`, dashpot power and input power."""
     small = p[SMALL]
     # soil
     cap_sine, cap_cosine, cap_rise = sine_cosine_rise(
@@ -99,12 +112,14 @@ def accelerate(
     lever_left = p[HALF_HEIGHT] * sine + p[HALF_WIDTH] * cosine
     lever_right = p[HALF_HEIGHT] * sine - p[HALF_WIDTH] * cosine
     k, damping, delta = p[PAD_STIFFNESS], p[PAD_DAMPING], p[PAD_SETTLEMENT]
+    on_left, on_right = corners_in(mode)
+    block_mode = mode % BLOCK_MODES
     n_left, burnt_left = pad_force_and_power(
-        pressing(mode % BLOCK_MODES, mode & 3), height + half, lift + lever_left * spin, k,
+        pressing(block_mode, on_left), height + half, lift + lever_left * spin, k,
         damping, delta,
     )  # fmt: skip
     n_right, burnt_right = pad_force_and_power(
-        pressing(mode % BLOCK_MODES, (mode >> 2) & 3), height - half, lift + lever_right * spin, k,
+        pressing(block_mode, on_right), height - half, lift + lever_right * spin, k,
         damping, delta,
     )  # fmt: skip
     press = n_left + n_right
@@ -142,29 +157,44 @@ def accelerate(
     )
     cap_along = c * motion.cap_horizontal - s * motion.cap_vertical
     cap_normal = s * motion.cap_horizontal + c * motion.cap_vertical
-    out[CAP_VERTICAL] = motion.cap_vertical
-    out[CAP_ROTATION] = motion.cap_rotation
-    out[NORMAL] = (
+    normal = (
         press
         - load_normal
         - cap_normal
         + across * motion.cap_rotation
         + (2.0 * slip + place.arm * turn) * turn
     )
-    out[ROTATION] = motion.rotation
+    along = place.slide * motion.rotation + drift
     if place.block_free:
-        out[ALONG] = -load_along - cap_along - place.arm * motion.cap_rotation - coriolis
-    else:
-        out[ALONG] = place.slide * motion.rotation + drift
-    out[CAP_HORIZONTAL] = motion.cap_horizontal if place.cap_free or cap_slips else 0.0
+        along = -load_along - cap_along - place.arm * motion.cap_rotation - coriolis
+    cap_horizontal = motion.cap_horizontal if place.cap_free or cap_slips else 0.0
     if block_slips or cap_slips:
         place = placed(mode, state, p, cap_sine, cap_cosine, sine, cosine)
     sway = cap_sway(place, state)
     across_speed, up_speed = block_velocity(place, state)
-    out[COORDINATES] = burnt + burnt_left + burnt_right
-    out[COORDINATES + 1] = -ground_x * (across_speed + p[CAP_MASS] * sway) - ground_y * (
+    supplied = -ground_x * (across_speed + p[CAP_MASS] * sway) - ground_y * (
         up_speed + p[CAP_MASS] * state[COORDINATES + CAP_VERTICAL]
     )
+    return Rates(
+        motion.cap_vertical, motion.cap_rotation, normal, motion.rotation, along, cap_horizontal,
+        burnt + burnt_left + burnt_right, supplied,
+    )  # fmt: skip
+
+
+@callback(ACCELERATE)
+def accelerate(
+    mode: int, state: Vector, ground_x: float, ground_y: float, p: Vector, out: Vector
+) -> None:
+    """Accelerations of :eq:`eq-coupled`, dashpot power and input power."""
+    found = rates(mode, state, ground_x, ground_y, p)
+    out[CAP_VERTICAL] = found.cap_vertical
+    out[CAP_ROTATION] = found.cap_rotation
+    out[NORMAL] = found.normal
+    out[ROTATION] = found.rotation
+    out[ALONG] = found.along
+    out[CAP_HORIZONTAL] = found.cap_horizontal
+    out[COORDINATES] = found.dissipated
+    out[COORDINATES + 1] = found.supplied
 
 
 @callback(GUARD)
@@ -190,11 +220,12 @@ def guard(
     speed = state[COORDINATES + NORMAL] + h * sine * spin
     tilt = b * cosine * spin
     k, c, delta, g = p[PAD_STIFFNESS], p[PAD_DAMPING], p[PAD_SETTLEMENT], p[GRAVITY]
+    on_left, on_right = corners_in(mode)
     corner_guards(
-        mode & 3, LEFT_GUARDS, GUARDS, height + b * sine, speed + tilt, left, k, c, delta, g, out
+        on_left, LEFT_GUARDS, GUARDS, height + b * sine, speed + tilt, left, k, c, delta, g, out
     )
     corner_guards(
-        (mode >> 2) & 3, RIGHT_GUARDS, GUARDS, height - b * sine, speed - tilt, right, k, c, delta,
+        on_right, RIGHT_GUARDS, GUARDS, height - b * sine, speed - tilt, right, k, c, delta,
         g, out,
     )  # fmt: skip
     out[PIVOT_GUARD] = 1.0
@@ -295,11 +326,12 @@ def observe(
     lever_right = p[HALF_HEIGHT] * sine - p[HALF_WIDTH] * cosine
     k, c, delta = p[PAD_STIFFNESS], p[PAD_DAMPING], p[PAD_SETTLEMENT]
     block_mode = mode % BLOCK_MODES
+    on_left, on_right = corners_in(mode)
     out[5], _ = pad_force_and_power(
-        pressing(block_mode, mode & 3), height + half, lift + lever_left * spin, k, c, delta
+        pressing(block_mode, on_left), height + half, lift + lever_left * spin, k, c, delta
     )
     out[6], _ = pad_force_and_power(
-        pressing(block_mode, (mode >> 2) & 3), height - half, lift + lever_right * spin, k, c, delta
+        pressing(block_mode, on_right), height - half, lift + lever_right * spin, k, c, delta
     )
     sine, cosine, rise = sine_cosine_rise(p[CAP_HALF_HEIGHT], p[SMALL], state[CAP_ROTATION])
     ends = cap_ends(state, p, sine, cosine, rise)

@@ -1,13 +1,16 @@
-"""Corners of the block and ends of the cap: levels, rates, reactions, and modes made of them."""
+"""Corners of the block and ends of the cap: levels, rates and reactions."""
+
+import math
 
 from rockframe.compiled import Vector, kernel
-from rockframe.dynamics.bed import LEFT_END, PIVOT_FACTOR, RAISED, airborne
+from rockframe.dynamics.bed import LEFT_END
 from rockframe.dynamics.coupled_layout import (
     CAP_HALF_HEIGHT,
     CAP_HALF_WIDTH,
     CAP_ROTATION,
     CAP_VERTICAL,
     COORDINATES,
+    GRAVITY,
     HALF_HEIGHT,
     HALF_WIDTH,
     LEFT_GUARDS,
@@ -19,32 +22,8 @@ from rockframe.dynamics.coupled_layout import (
     SMALL,
 )
 from rockframe.dynamics.gliding import blend, speed_noise
-from rockframe.dynamics.kinematics import (
-    PIVOT_CENTRE,
-    end_height,
-    end_lever,
-    pivot_of,
-    sine_cosine_rise,
-)
-from rockframe.dynamics.pad import RELAXING, pad_force
-
-
-@kernel
-def block_mode_of(left: int, right: int, rotation: float, spin: float, rule: float) -> int:
-    """Give the block's part of a mode."""
-    pivot = PIVOT_CENTRE
-    if left < RELAXING or right < RELAXING:
-        pivot = pivot_of(rule, left >= RELAXING, right >= RELAXING, rotation, spin)
-    return left + 4 * right + 16 * pivot
-
-
-@kernel
-def bed_mode_of(left: int, right: int, rotation: float, spin: float, rule: float) -> int:
-    """Give the bed's part of a mode."""
-    pivot = PIVOT_CENTRE
-    if not airborne(left, right):
-        pivot = pivot_of(rule, left == RAISED, right == RAISED, rotation, spin)
-    return left + 2 * right + PIVOT_FACTOR * pivot
+from rockframe.dynamics.kinematics import end_height, end_lever, sine_cosine_rise
+from rockframe.dynamics.pad import SIMULTANEOUS, forceless_rate, least_speed, pad_force
 
 
 @kernel
@@ -77,10 +56,33 @@ def corner_noise(first: int, state: Vector, p: Vector) -> float:
 
 
 @kernel
-def stop_corner(first: int, direction: float, state: Vector, p: Vector) -> None:
-    """Take a corner's speed to nought, or to the side of it that rounding cannot leave."""
-    noise = corner_noise(first, state, p)
-    state[COORDINATES + NORMAL] += direction * noise - corner_rate(first, state, p)
+def forceless(first: int, state: Vector, p: Vector) -> float:
+    """Give the speed at which a corner rises with its pad without a force between them."""
+    level = corner_level(first, state, p)
+    return forceless_rate(level, p[PAD_STIFFNESS], p[PAD_DAMPING], p[PAD_SETTLEMENT])
+
+
+@kernel
+def answered_speed(p: Vector) -> float:
+    """Give the least speed that a pad answers with more than rounding noise."""
+    size = math.hypot(p[HALF_WIDTH], p[HALF_HEIGHT])
+    return least_speed(size, p[GRAVITY], p[PAD_DAMPING], p[PAD_SETTLEMENT])
+
+
+@kernel
+def free_corner(first: int, direction: float, state: Vector, p: Vector) -> None:
+    """Give a corner the speed at which its pad does not press, or one that rounding keeps beside.
+
+    One that has risen to the pad's level is set there exactly.
+    """
+    level = corner_level(first, state, p)
+    if level > (1.0 - SIMULTANEOUS) * p[PAD_SETTLEMENT]:
+        state[NORMAL] += p[PAD_SETTLEMENT] - level
+    beside = 0.0
+    if direction != 0.0:
+        beside = direction * max(corner_noise(first, state, p), answered_speed(p))
+    target = forceless(first, state, p) + beside
+    state[COORDINATES + NORMAL] += target - corner_rate(first, state, p)
 
 
 @kernel

@@ -38,7 +38,13 @@ from rockframe.dynamics.coupled_motion import (
 )
 from rockframe.dynamics.gliding import NO_LEVER
 from rockframe.dynamics.kinematics import end_accelerations, sine_cosine_rise
-from rockframe.dynamics.pad import LEAVE, TURN, pad_force_and_power
+from rockframe.dynamics.pad import (
+    LEAVE,
+    TURN,
+    corners_in,
+    pad_force_and_power,
+    relaxation_rate,
+)
 from rockframe.dynamics.two_spring import MODES as BLOCK_MODES
 from rockframe.dynamics.two_spring import gliding_side
 from rockframe.dynamics.winkler import gliding_side as bed_gliding_side
@@ -132,6 +138,9 @@ def glide(
     )  # fmt: skip
     corner, end = rises(place, motion, across, press, lever, cap_lever)
     corner += given_normal + bend * spin * spin
+    # a corner below its pad's level rises with the pad, which relaxes without pressing
+    rate = state[COORDINATES + NORMAL] + lever * spin
+    corner += relaxation_rate(p[PAD_STIFFNESS], p[PAD_DAMPING]) * rate
     end += cap_bend * turn * turn
     a11, a21, a12, a22 = responses(mode, place, state, p)
     if not block_glides(mode):
@@ -167,9 +176,10 @@ def pads_moment(mode: int, state: Vector, p: Vector) -> float:
     k, damping, delta = p[PAD_STIFFNESS], p[PAD_DAMPING], p[PAD_SETTLEMENT]
     left = p[HALF_HEIGHT] * sine + p[HALF_WIDTH] * cosine
     right = p[HALF_HEIGHT] * sine - p[HALF_WIDTH] * cosine
-    n_left, _ = pad_force_and_power(mode & 3, height + half, lift + left * spin, k, damping, delta)
+    on_left, on_right = corners_in(mode)
+    n_left, _ = pad_force_and_power(on_left, height + half, lift + left * spin, k, damping, delta)
     n_right, _ = pad_force_and_power(
-        (mode >> 2) & 3, height - half, lift + right * spin, k, damping, delta
+        on_right, height - half, lift + right * spin, k, damping, delta
     )
     return n_left * left + n_right * right
 

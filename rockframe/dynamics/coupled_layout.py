@@ -11,8 +11,8 @@ from rockframe.dynamics.bed import BED_GUARDS, BED_MODES, PIVOT_FACTOR, Bed, End
 from rockframe.dynamics.bed import GLIDING as BED_GLIDING
 from rockframe.dynamics.pad import CORNER_GUARDS, LEAVE
 from rockframe.dynamics.single_body import FREE
-from rockframe.dynamics.two_spring import GLIDING, glides, pivot_in
 from rockframe.dynamics.two_spring import MODES as BLOCK_MODES
+from rockframe.dynamics.two_spring import glides, held_pivot, pivot_in
 
 # parameters, after ROTATION_LIMIT
 GRAVITY: Final = 1  # g
@@ -101,7 +101,7 @@ def cap_pivot(mode: int) -> int:
 @inlined
 def held_block_pivot(mode: int) -> int:
     """Give the block's pivot as if it did not glide."""
-    return ((mode % BLOCK_MODES) >> 4) % GLIDING
+    return held_pivot(mode % BLOCK_MODES)
 
 
 @inlined

@@ -10,8 +10,6 @@ from rockframe.dynamics import bed, pad
 from rockframe.dynamics import coupled as model
 from rockframe.dynamics import coupled_layout as at
 from rockframe.dynamics.coupled_corners import (
-    bed_mode_of,
-    block_mode_of,
     corner_level,
     reaction,
 )
@@ -29,8 +27,10 @@ from rockframe.dynamics.starting import starting_by
 from rockframe.dynamics.two_spring_model import (
     contact_of_corners,
     corner_tolerance,
-    lazy_corners,
+    gliding_relaxation,
 )
+from rockframe.dynamics.two_spring_switches import mode_of as block_mode_of
+from rockframe.dynamics.winkler import mode_of as bed_mode_of
 from rockframe.dynamics.winkler_model import bed_tolerance, contact_of_bed, gliding_end
 
 
@@ -137,7 +137,9 @@ def coupled(
         scales=np.concatenate([sizes, sizes * rates]),
         rotation_weights=np.array([0.0, 1.0, 0.0, 1.0, 0.0, 0.0]),
         guard_tolerance=tolerance,
-        lazy_guard=lazy_corners(at.GUARDS),
+        relaxation=gliding_relaxation(
+            modes % at.BLOCK_MODES, p[at.PAD_STIFFNESS], p[at.PAD_DAMPING]
+        ),
         columns=at.COLUMNS,
         fastest_frequency=fastest,
         damping_rate=damping_rate,

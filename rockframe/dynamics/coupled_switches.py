@@ -18,16 +18,17 @@ from rockframe.dynamics.bed import (
     switch_bed,
 )
 from rockframe.dynamics.bed import GLIDING as BED_GLIDING
+from rockframe.dynamics.coupled import rates
 from rockframe.dynamics.coupled_corners import (
-    bed_mode_of,
-    block_mode_of,
+    answered_speed,
     corner_level,
     corner_noise,
     corner_rate,
     end_rate,
+    forceless,
+    free_corner,
     rates_of,
     reaction,
-    stop_corner,
     stop_end,
     take_share,
 )
@@ -45,6 +46,7 @@ from rockframe.dynamics.coupled_layout import (
     NORMAL,
     PAD_DAMPING,
     PAD_SETTLEMENT,
+    PAD_STIFFNESS,
     PIVOT_GUARD,
     RESTRAINT,
     RIGHT_GUARDS,
@@ -68,10 +70,27 @@ from rockframe.dynamics.kinematics import (
     PIVOT_CENTRE,
     PIVOT_LEFT,
     PIVOT_RIGHT,
+    end_accelerations,
     leading_pivot,
     sine_cosine_rise,
 )
-from rockframe.dynamics.pad import CLEAR, ENGAGING, LEAVE, TOUCHING, least_speed, switch_corner
+from rockframe.dynamics.pad import (
+    CLEAR,
+    CONTACTS,
+    DISTURBED,
+    ENGAGING,
+    LEAVE,
+    LEAVING,
+    RELAXING,
+    TOUCHING,
+    both_corners,
+    corners_in,
+    force_rises,
+    judged_anew,
+    reaction_noise,
+    released,
+    switch_corner,
+)
 from rockframe.dynamics.protocol import (
     HORIZONTAL_REFERENCE,
     IMPACT,
@@ -89,9 +108,8 @@ from rockframe.dynamics.protocol import (
 from rockframe.dynamics.single_body import FREE
 from rockframe.dynamics.two_spring import GLIDING, gliding_side
 from rockframe.dynamics.two_spring import MODES as BLOCK_MODES
-
-DISTURBED = 1e3
-"""Speed of a gliding end, over its rounding noise, from which on it no longer glides."""
+from rockframe.dynamics.two_spring_switches import mode_of as block_mode_of
+from rockframe.dynamics.winkler import mode_of as bed_mode_of
 
 
 @kernel
@@ -123,7 +141,7 @@ def switch_pivot(
     old = held_block_pivot(mode)
     tendency = -ground_x if ground_x != 0.0 else -state[COORDINATES + CAP_ROTATION]
     pivot = turned(old, ROTATION, tendency, state)
-    new = mode + 16 * (pivot - old)
+    new = mode + CONTACTS * (pivot - old)
     if not block_glides(mode):
         repin_block(mode, new, state, p, memory)
     memory[LAST_EVENT] = SILENT if old == PIVOT_CENTRE else PIVOT_CHANGE
@@ -186,28 +204,118 @@ def end_cap_gliding(mode: int, which: int, state: Vector, p: Vector, memory: Vec
 @kernel
 def end_block_gliding(mode: int, which: int, state: Vector, p: Vector, memory: Vector) -> int:
     """Let a gliding corner of the block fly, or hold it as its slip has come to nought."""
-    block_mode = mode % BLOCK_MODES
-    on_left = gliding_side(block_mode) > 0.0
-    first = LEFT_GUARDS if on_left else RIGHT_GUARDS
-    state[NORMAL] += p[PAD_SETTLEMENT] - corner_level(first, state, p)
     if which == LEAVE:
-        stop_corner(first, 1.0, state, p)
         memory[LAST_EVENT] = SEPARATION
-        left = CLEAR if on_left else mode & 3
-        right = (mode >> 2) & 3 if on_left else CLEAR
-        return mode - block_mode + left + 4 * right
-    new = mode - 16 * GLIDING
+        return let_fly(mode, 1.0, state, p)
+    new = mode - CONTACTS * GLIDING
+    first = gliding_corner(mode)
     repin_block(mode, new, state, p, memory)
-    stop_corner(first, -1.0, state, p)
+    free_corner(first, -1.0, state, p)
     memory[LAST_EVENT] = PIVOT_CHANGE
     return new
 
 
 @kernel
-def switch_pad(mode: int, guard_index: int, state: Vector, p: Vector, memory: Vector) -> int:
+def gliding_corner(mode: int) -> int:
+    """Give the corner of the block that glides, by its first guard."""
+    return LEFT_GUARDS if gliding_side(mode % BLOCK_MODES) > 0.0 else RIGHT_GUARDS
+
+
+@kernel
+def let_fly(mode: int, direction: float, state: Vector, p: Vector) -> int:
+    """Give the mode in which the gliding corner flies, with the speed of its pad or one beside."""
+    first = gliding_corner(mode)
+    if direction != 0.0:
+        free_corner(first, direction, state, p)
+    contact = released(corner_level(first, state, p), p[PAD_DAMPING], p[PAD_SETTLEMENT])
+    left, right = corners_in(mode)
+    corners = both_corners(
+        contact if first == LEFT_GUARDS else left, contact if first == RIGHT_GUARDS else right
+    )
+    return mode - mode % BLOCK_MODES + corners
+
+
+@kernel
+def presses_in(
+    mode: int, first: int, state: Vector, ground_x: float, ground_y: float, p: Vector
+) -> bool:
+    """Whether the force of a corner's pad would rise in a mode."""
+    found = rates(mode, state, ground_x, ground_y, p)
+    sine, cosine, _ = sine_cosine_rise(p[HALF_HEIGHT], p[SMALL], state[ROTATION])
+    left, right = end_accelerations(
+        p[HALF_HEIGHT], p[HALF_WIDTH], p[SMALL], sine, cosine, state[COORDINATES + ROTATION],
+        found.normal, found.rotation,
+    )  # fmt: skip
+    acceleration = left if first == LEFT_GUARDS else right
+    return force_rises(corner_rate(first, state, p), acceleration, p[PAD_STIFFNESS], p[PAD_DAMPING])
+
+
+@kernel
+def with_corners(mode: int, left: int, right: int, state: Vector, p: Vector) -> int:
+    """Give the mode with other contacts of the block's corners, and the pivot of the rule."""
+    spin = state[COORDINATES + ROTATION]
+    block_mode = block_mode_of(left, right, state[ROTATION], spin, p[RESTRAINT])
+    return block_mode + BLOCK_MODES * (mode // BLOCK_MODES)
+
+
+@kernel
+def after_separation(
+    first: int, mode: int, left: int, right: int, ground_x: float, ground_y: float,
+    state: Vector, p: Vector, memory: Vector,
+) -> int:  # fmt: skip
+    """Give the mode after corners have left their pads, and re-pin, as for pads on the ground."""
+    new = with_corners(mode, left, right, state, p)
+    if block_pivot(new) != block_pivot(mode):
+        repin_block(mode, new, state, p, memory)
+    on_left = first == LEFT_GUARDS
+    contact = left if on_left else right
+    noise = reaction_noise(math.hypot(p[HALF_WIDTH], p[HALF_HEIGHT]), p[PAD_SETTLEMENT])
+    if contact != RELAXING or reaction(first, state, p) < -noise * p[GRAVITY]:
+        return new
+    if block_pivot(new) == FREE:
+        was = corners_in(mode)
+        alone = (was[1] if on_left else was[0]) >= RELAXING
+        if alone and presses_in(new, first, state, ground_x, ground_y, p):
+            touching = TOUCHING - contact
+            new += both_corners(touching if on_left else 0, 0 if on_left else touching)
+            return new + CONTACTS * (held_block_pivot(mode) + GLIDING)
+    elif block_pivot(new) != block_pivot(mode):
+        waits = LEAVING - RELAXING
+        new += both_corners(waits if on_left else 0, 0 if on_left else waits)
+    return new
+
+
+@kernel
+def hold_block(
+    mode: int, new: int, first: int, target: float, state: Vector, p: Vector, memory: Vector
+) -> bool:
+    """Hold a block out of flight that has come down on one corner; give whether it glides.
+
+    As :func:`rockframe.dynamics.single_body.repin_landing`, with `target` the speed at which
+    the pad no longer presses.
+    """
+    before, lost = rates_of(state), memory[REPINNING_LOSS]
+    speed = corner_rate(first, state, p) - target
+    repin_block(mode, new, state, p, memory)
+    after = corner_rate(first, state, p) - target
+    noise = max(corner_noise(first, state, p), answered_speed(p))
+    idle = target > 0.0 and after - speed <= noise  # no slip to stop: forces decide
+    if idle or not is_lifted(speed, after, noise):
+        return False
+    share = share_until_lifted(speed, after)
+    take_share(share, before, state)
+    memory[REPINNING_LOSS] = blend(lost, memory[REPINNING_LOSS], share_of_loss(share))
+    state[COORDINATES + NORMAL] += target - corner_rate(first, state, p)
+    return True
+
+
+@kernel
+def switch_pad(
+    mode: int, guard_index: int, ground_x: float, ground_y: float, state: Vector, p: Vector,
+    memory: Vector,
+) -> int:  # fmt: skip
     """Carry out a switch of a corner's contact with its pad."""
-    left = mode & 3
-    right = (mode >> 2) & 3
+    left, right = corners_in(mode)
     on_left = guard_index < RIGHT_GUARDS
     first = LEFT_GUARDS if on_left else RIGHT_GUARDS
     second = RIGHT_GUARDS if on_left else LEFT_GUARDS
@@ -227,42 +335,36 @@ def switch_pad(mode: int, guard_index: int, state: Vector, p: Vector, memory: Ve
         p[PAD_DAMPING],
         p[PAD_SETTLEMENT],
     )
-    lands = event == IMPACT and block_pivot(mode) == FREE and not slides
-    both = lands and other == TOUCHING
-    left = contact if on_left else other
-    right = other if on_left else contact
+    memory[LAST_EVENT] = event
     if contact == CLEAR:
         # the crossed level is set exactly, so that rounding cannot land the corner again
         state[NORMAL] += p[PAD_SETTLEMENT] - corner_level(first, state, p)
-    spin = state[COORDINATES + ROTATION]
-    block_mode = block_mode_of(left, right, state[ROTATION], spin, p[RESTRAINT])
-    memory[LAST_EVENT] = event
-    if slides and event == SILENT:
-        block_mode = left + 4 * right + 16 * ((mode % BLOCK_MODES) >> 4)
-    new = block_mode + BLOCK_MODES * (mode // BLOCK_MODES)
-    if block_pivot(new) != block_pivot(mode):
-        before, lost = rates_of(state), memory[REPINNING_LOSS]
-        speed = corner_rate(first, state, p)
+    if event == SILENT:
+        corners = both_corners(contact if on_left else other, other if on_left else contact)
+        return mode - mode % CONTACTS + corners
+    other = judged_anew(other)
+    left = contact if on_left else other
+    right = other if on_left else contact
+    if event == SEPARATION:
+        return after_separation(first, mode, left, right, ground_x, ground_y, state, p, memory)
+    new = with_corners(mode, left, right, state, p)
+    flies = block_pivot(mode) == FREE and not slides
+    both = event == IMPACT and flies and other == TOUCHING
+    if event == IMPACT:
+        landing = LEFT_GUARDS if on_left or both else RIGHT_GUARDS
+        state[NORMAL] += p[PAD_SETTLEMENT] - corner_level(landing, state, p)
+    if flies and not both:
+        target = forceless(first, state, p) if event == REENGAGEMENT else 0.0
+        if hold_block(mode, new, first, target, state, p, memory):
+            return new + CONTACTS * GLIDING
+    elif block_pivot(new) != block_pivot(mode):
         repin_block(mode, new, state, p, memory)
-        if lands and not both:
-            size = math.hypot(p[HALF_WIDTH], p[HALF_HEIGHT])
-            least = least_speed(size, p[GRAVITY], p[PAD_DAMPING], p[PAD_SETTLEMENT])
-            after = corner_rate(first, state, p)
-            if is_lifted(speed, after, max(corner_noise(first, state, p), least)):
-                share = share_until_lifted(speed, after)
-                take_share(share, before, state)
-                memory[REPINNING_LOSS] = blend(lost, memory[REPINNING_LOSS], share_of_loss(share))
-                state[NORMAL] += p[PAD_SETTLEMENT] - corner_level(first, state, p)
-                stop_corner(first, 0.0, state, p)
-                return new + 16 * GLIDING
     if event == REENGAGEMENT and reaction(first, state, p) < 0.0:
         # re-pinning sped the corner up beyond its pad: let go, it would come back without end
-        new += ENGAGING - TOUCHING if on_left else 4 * (ENGAGING - TOUCHING)
+        waits = ENGAGING - TOUCHING
+        new += both_corners(waits if on_left else 0, 0 if on_left else waits)
     if event == IMPACT:
-        land_left = on_left or both
-        landing = LEFT_GUARDS if land_left else RIGHT_GUARDS
-        state[NORMAL] += p[PAD_SETTLEMENT] - corner_level(landing, state, p)
-        land(new, land_left, not on_left or both, state, p, memory)
+        land(new, on_left or both, not on_left or both, state, p, memory)
     return new
 
 
@@ -270,18 +372,17 @@ def switch_pad(mode: int, guard_index: int, state: Vector, p: Vector, memory: Ve
 def undisturbed(mode: int, state: Vector, p: Vector) -> int:
     """Give the mode after what happened to one body has, maybe, disturbed a gliding other.
 
-    An end that has got a speed no longer glides; it flies, and lands again at once if the
-    speed is downwards.
+    An end that has got another speed no longer glides; it flies, and lands again at once if
+    the speed is downwards.
     """
     if block_glides(mode):
-        block_mode = mode % BLOCK_MODES
-        first = LEFT_GUARDS if gliding_side(block_mode) > 0.0 else RIGHT_GUARDS
-        if abs(corner_rate(first, state, p)) > DISTURBED * corner_noise(first, state, p):
-            left = CLEAR if first == LEFT_GUARDS else mode & 3
-            right = CLEAR if first == RIGHT_GUARDS else (mode >> 2) & 3
-            mode += left + 4 * right - block_mode
+        first = gliding_corner(mode)
+        disturbance = abs(corner_rate(first, state, p) - forceless(first, state, p))
+        noise = max(corner_noise(first, state, p), answered_speed(p))
+        if disturbance > DISTURBED * noise:
+            mode = let_fly(mode, 0.0, state, p)
         else:
-            stop_corner(first, 0.0, state, p)
+            free_corner(first, 0.0, state, p)
     if cap_glides(mode):
         end = LEFT_END if bed_contact(mode)[0] == DOWN else RIGHT_END
         speed, noise = end_rate(end, state, p)
@@ -289,6 +390,13 @@ def undisturbed(mode: int, state: Vector, p: Vector) -> int:
             return mode % BLOCK_MODES + BLOCK_MODES * (RAISED + 2 * RAISED)
         stop_end(end, 0.0, state, p)
     return mode
+
+
+@kernel
+def corners_judged_anew(mode: int) -> int:
+    """Give the mode after an event of the cap, which changed the speeds of the corners."""
+    left, right = corners_in(mode)
+    return mode - mode % CONTACTS + both_corners(judged_anew(left), judged_anew(right))
 
 
 @callback(SWITCH)
@@ -303,10 +411,10 @@ def switch(
 ) -> int:
     """Carry out the switch that a guard calls for; give the new mode."""
     if guard_index < PIVOT_GUARD:
-        new = switch_pad(mode, guard_index, state, p, memory)
+        new = switch_pad(mode, guard_index, ground_x, ground_y, state, p, memory)
     elif guard_index in (PIVOT_GUARD, SOIL_PIVOT_GUARD):
         of_cap = guard_index == SOIL_PIVOT_GUARD
         new = switch_pivot(mode, of_cap, state, ground_x, p, memory)
     else:
-        new = switch_soil(mode, guard_index - SOIL_GUARDS, state, p, memory)
+        new = corners_judged_anew(switch_soil(mode, guard_index - SOIL_GUARDS, state, p, memory))
     return undisturbed(new, state, p)

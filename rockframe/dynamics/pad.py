@@ -15,17 +15,37 @@ TOUCHING: Final = 0
 ENGAGING: Final = 1  # held again, but the pad has not caught up with the corner
 RELAXING: Final = 2  # free, but still below the pad's unloaded level
 CLEAR: Final = 3  # free, above it
+LEAVING: Final = 4  # free, though the re-pinning of its separation left it pressing
+
+# Two corners' contacts in one integer: left corner + 8 * right corner.
+CORNER_BITS: Final = 3
+CORNER_MASK: Final = 7
+CONTACTS: Final = 64
 
 # guards of a corner
 LEAVE: Final = 0  # the reaction of a touching corner; the gap of a free one
-REENGAGE: Final = 1  # a relaxing pad catches up with its corner
-TURN: Final = 2  # a relaxing corner stops rising; an engaging one is pressed
+REENGAGE: Final = 1  # a relaxing pad catches up with its corner; a leaving corner outruns its pad
+TURN: Final = 2  # a leaving corner stops rising; an engaging one is pressed
 CORNER_GUARDS: Final = 3
 
 SIMULTANEOUS: Final = 1e-9
 """Share of the settlement within which both corners land together."""
+DISTURBED: Final = 1e3
+"""Speed of a gliding end beside its own, over its rounding noise, from which on it flies."""
 LEVEL_ROUNDING: Final = 1e-12
 """Share of the settlement within which a corner is at the pad's unloaded level."""
+
+
+@inlined
+def corners_in(contacts: int) -> tuple[int, int]:
+    """Give the contacts of the left and of the right corner."""
+    return contacts & CORNER_MASK, (contacts >> CORNER_BITS) & CORNER_MASK
+
+
+@inlined
+def both_corners(left: int, right: int) -> int:
+    """Give the integer that holds both corners' contacts."""
+    return left + (right << CORNER_BITS)
 
 
 @inlined
@@ -96,11 +116,17 @@ def corner_guards(
     else:
         out[first + LEAVE] = 1.0 - level / settlement
         out[guards + first + LEAVE] = -rate / settlement
-        out[first + REENGAGE] = -pad_force(level, rate, stiffness, damping, settlement) / gravity
-        out[guards + first + REENGAGE] = (damping * acceleration + stiffness * rate) / gravity
-        scale = settlement * math.sqrt(2.0 * stiffness)
-        out[first + TURN] = rate / scale
-        out[guards + first + TURN] = acceleration / scale
+        # a pad presses again at a positive force; after a separation it must have let go before
+        sign = 1.0 if contact == LEAVING else -1.0
+        force = pad_force(level, rate, stiffness, damping, settlement)
+        out[first + REENGAGE] = sign * force / gravity
+        out[guards + first + REENGAGE] = (
+            -sign * (damping * acceleration + stiffness * rate) / gravity
+        )
+        if contact == LEAVING:
+            scale = settlement * math.sqrt(2.0 * stiffness)
+            out[first + TURN] = rate / scale
+            out[guards + first + TURN] = acceleration / scale
 
 
 @inlined
@@ -133,6 +159,30 @@ def released(level: float, damping: float, settlement: float) -> int:
     return CLEAR
 
 
+@inlined
+def relaxation_rate(stiffness: float, damping: float) -> float:
+    """Give the rate at which an unloaded pad returns to its level, 0 without a dashpot."""
+    return stiffness / damping if damping > 0.0 else 0.0
+
+
+@kernel
+def forceless_rate(level: float, stiffness: float, damping: float, settlement: float) -> float:
+    """Give the speed at which a corner rises with its pad without a force between them."""
+    return relaxation_rate(stiffness, damping) * (settlement - level)
+
+
+@inlined
+def force_rises(rate: float, acceleration: float, stiffness: float, damping: float) -> bool:
+    """Whether the pad force of :eq:`eq-pad-force` rises."""
+    return stiffness * rate + damping * acceleration < 0.0
+
+
+@inlined
+def judged_anew(contact: int) -> int:
+    """Give a corner's contact after something else than its own separation changed its speed."""
+    return RELAXING if contact == LEAVING else contact
+
+
 @kernel
 def switch_corner(
     which: int,
@@ -152,8 +202,10 @@ def switch_corner(
     `which` is the guard of the corner that fell. A corner that lands together with
     the other one, or leaves together with it, takes it along.
     """
-    if contact == RELAXING and which == LEAVE:
+    if contact in (RELAXING, LEAVING) and which == LEAVE:
         return CLEAR, other, SILENT
+    if contact == LEAVING and which == REENGAGE:
+        return RELAXING, other, SILENT
     if contact == ENGAGING and which == TURN:
         return TOUCHING, other, SILENT
     if contact < RELAXING:

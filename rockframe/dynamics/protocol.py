@@ -56,7 +56,11 @@ REPINNING_LOSS: Final = 2
 """Index into the memory: energy lost in changes of the restraint so far [m^2 s^-2]."""
 LAST_EVENT: Final = 3
 """Index into the memory: kind of the last switch, an :class:`EventKind`."""
-MEMORY_SIZE: Final = 4
+IMPULSIVE_INPUT: Final = 4
+"""Index into the memory: work of jumps of the velocity of a body's ground so far, per unit
+mass [m^2 s^-2]."""
+MEMORY_SIZE: Final = 5
+"""Least length of a memory; a model may keep more behind."""
 
 ROUNDING: Final = 4.0 * sys.float_info.epsilon
 """Rounding noise of a guard that is no difference of large terms."""
@@ -163,8 +167,9 @@ class ContactModel:
         The block's rotation as a sum of coordinates.
     guard_tolerance : ndarray, shape (guards,)
         Rounding noise of each guard.
-    lazy_guard : ndarray of int64, shape (guards,)
-        1 for guards that count only once they have been positive.
+    relaxation : ndarray, shape (modes,)
+        Rate at which a constraint of a mode decays, 0 where there is none; fixed steps must
+        be short beside it [s^-1].
     columns : tuple of str
         Names of what `observe` gives.
     fastest_frequency : float
@@ -197,7 +202,7 @@ class ContactModel:
     scales: Vector
     rotation_weights: Vector
     guard_tolerance: Vector
-    lazy_guard: Integers
+    relaxation: Vector
     columns: tuple[str, ...]
     fastest_frequency: float
     damping_rate: float

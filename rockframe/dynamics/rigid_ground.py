@@ -294,7 +294,7 @@ def rigid_ground(
         scales=overturning_angle * np.array([1.0, frequency]),
         rotation_weights=np.ones(1),
         guard_tolerance=np.array([1e-15, 1e-14, 1e-14, 1e-15]),
-        lazy_guard=np.zeros(GUARDS, dtype=np.int64),
+        relaxation=np.zeros(3),
         columns=COLUMNS,
         fastest_frequency=frequency,
         damping_rate=0.0,

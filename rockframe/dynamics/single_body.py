@@ -6,7 +6,7 @@ The base is two pads (:mod:`rockframe.dynamics.two_spring`) or a bed of springs
 
 import math
 from collections.abc import Callable
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -92,6 +92,16 @@ def horizontal_position(pivot: int, state: Vector, p: Vector, memory: Vector) ->
     return memory[HORIZONTAL_REFERENCE] + about_pin(p[HALF_HEIGHT], p[SMALL], pin, state[ROTATION])
 
 
+class Rates(NamedTuple):
+    """How fast the rates of a body and its energies change, per unit mass."""
+
+    rotation: float
+    vertical: float
+    horizontal: float
+    dissipated: float
+    supplied: float
+
+
 @inlined
 def move_body(
     pivot: int,
@@ -100,30 +110,37 @@ def move_body(
     cosine: float,
     force: float,
     moment: float,
+    dissipated: float,
     ground_x: float,
     ground_y: float,
     p: Vector,
-    out: Vector,
-) -> None:
-    """Write the accelerations of :eq:`eq-two-spring` and the ground's power.
+) -> Rates:
+    """Give the accelerations of :eq:`eq-two-spring`, with the powers.
 
     `force` and `moment` are the base's vertical force and its generalised force
     on the rotation.
     """
     spin = state[COORDINATES + ROTATION]
     speed = state[COORDINATES + VERTICAL]
-    out[VERTICAL] = force - p[GRAVITY] - ground_y
+    lift = force - p[GRAVITY] - ground_y
     if pivot == FREE:
-        out[ROTATION] = 0.0
-        out[HORIZONTAL] = -ground_x
-        out[COORDINATES + 1] = -ground_x * state[COORDINATES + HORIZONTAL] - ground_y * speed
-        return
+        supplied = -ground_x * state[COORDINATES + HORIZONTAL] - ground_y * speed
+        return Rates(0.0, lift, -ground_x, dissipated, supplied)
     pin = pinned_point(pivot, p[HALF_WIDTH])
     reach, bend = reach_and_bend(p[HALF_HEIGHT], p[SMALL], pin, sine, cosine)
     push = reach * (ground_x + bend * spin * spin)
-    out[ROTATION] = (moment - push) / (p[INERTIA] + reach * reach)
-    out[HORIZONTAL] = 0.0
-    out[COORDINATES + 1] = -ground_x * reach * spin - ground_y * speed
+    turn = (moment - push) / (p[INERTIA] + reach * reach)
+    return Rates(turn, lift, 0.0, dissipated, -ground_x * reach * spin - ground_y * speed)
+
+
+@inlined
+def write_rates(rates: Rates, out: Vector) -> None:
+    """Write accelerations and powers where the integrator expects them."""
+    out[ROTATION] = rates.rotation
+    out[VERTICAL] = rates.vertical
+    out[HORIZONTAL] = rates.horizontal
+    out[COORDINATES] = rates.dissipated
+    out[COORDINATES + 1] = rates.supplied
 
 
 @kernel
@@ -139,31 +156,33 @@ def end_rate(side: float, state: Vector, p: Vector) -> tuple[float, float, float
 def glide_body(
     pivot: int,
     side: float,
+    relaxation: float,
+    dissipated: float,
     state: Vector,
     sine: float,
     cosine: float,
     ground_x: float,
     ground_y: float,
     p: Vector,
-    out: Vector,
-) -> None:
-    """Write the accelerations of a body of which one end glides, :eq:`eq-gliding`.
+) -> Rates:
+    """Give the accelerations of a body of which one end glides, :eq:`eq-gliding`.
 
-    Adds what the hold takes from the slip to the power burnt.
+    The end follows what it stands on, which relaxes at the rate `relaxation` without
+    pressing. What the hold takes from the slip is added to the power dissipated.
     """
     h, b, small = p[HALF_HEIGHT], p[HALF_WIDTH], p[SMALL]
     spin = state[COORDINATES + ROTATION]
+    speed = state[COORDINATES + VERTICAL]
     sway = state[COORDINATES + HORIZONTAL]
     lift = -p[GRAVITY] - ground_y
     left, right = end_accelerations(h, b, small, sine, cosine, spin, lift, 0.0)
-    turn = -(left if side > 0.0 else right) / (h * sine + side * b * cosine)
+    lever = h * sine + side * b * cosine
+    free = left if side > 0.0 else right
+    turn = -(free + relaxation * (speed + lever * spin)) / lever
     reach, _ = reach_and_bend(h, small, pinned_point(pivot, b), sine, cosine)
     hold = -p[INERTIA] * turn / reach
-    out[ROTATION] = turn
-    out[VERTICAL] = lift
-    out[HORIZONTAL] = hold - ground_x
-    out[COORDINATES] -= hold * (sway - reach * spin)
-    out[COORDINATES + 1] = -ground_x * sway - ground_y * state[COORDINATES + VERTICAL]
+    dissipated -= hold * (sway - reach * spin)
+    return Rates(turn, lift, hold - ground_x, dissipated, -ground_x * sway - ground_y * speed)
 
 
 @kernel
@@ -229,12 +248,13 @@ def repin(old: int, new: int, state: Vector, p: Vector, memory: Vector) -> None:
 
 @kernel
 def repin_landing(
-    new: int, side: float, least: float, state: Vector, p: Vector, memory: Vector
+    new: int, side: float, forceless: float, least: float, state: Vector, p: Vector, memory: Vector
 ) -> bool:
     """Hold a body out of flight that has come down on one end; give whether it glides.
 
-    The hold's impulse ends where it stops the end, :eq:`eq-partial-hold`. A speed below
-    `least` is too small for the base to answer.
+    The hold's impulse ends where the end has got the speed `forceless`, at which the base
+    no longer presses, :eq:`eq-partial-hold`. A speed beyond it below `least` is too small for
+    the base to answer.
     """
     _, before, _ = end_rate(side, state, p)
     spin = state[COORDINATES + ROTATION]
@@ -242,7 +262,9 @@ def repin_landing(
     reference, lost = memory[HORIZONTAL_REFERENCE], memory[REPINNING_LOSS]
     repin(FREE, new, state, p, memory)
     _, after, noise = end_rate(side, state, p)
-    if not is_lifted(before, after, max(noise, least)):
+    before, after, noise = before - forceless, after - forceless, max(noise, least)
+    idle = forceless > 0.0 and after - before <= noise  # no slip to stop: forces decide
+    if idle or not is_lifted(before, after, noise):
         return False
     share = share_until_lifted(before, after)
     sine, cosine, _ = sine_cosine_rise(p[HALF_HEIGHT], p[SMALL], state[ROTATION])
@@ -251,15 +273,17 @@ def repin_landing(
     state[COORDINATES + HORIZONTAL] = blend(sway, held, share)
     memory[HORIZONTAL_REFERENCE] = reference
     memory[REPINNING_LOSS] = blend(lost, memory[REPINNING_LOSS], share_of_loss(share))
-    stop_end(side, 0.0, state, p)
+    set_end_rate(side, forceless, 0.0, 0.0, state, p)
     return True
 
 
 @kernel
-def stop_end(side: float, direction: float, state: Vector, p: Vector) -> None:
-    """Take the speed of an end to nought, or to the side of it that rounding cannot leave."""
-    _, rate, noise = end_rate(side, state, p)
-    state[COORDINATES + VERTICAL] += direction * noise - rate
+def set_end_rate(
+    side: float, rate: float, direction: float, least: float, state: Vector, p: Vector
+) -> None:
+    """Give an end a speed, or one on the side of it that rounding cannot leave."""
+    _, now, noise = end_rate(side, state, p)
+    state[COORDINATES + VERTICAL] += rate + direction * max(noise, least) - now
 
 
 @kernel

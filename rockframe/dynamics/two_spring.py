@@ -13,15 +13,17 @@ from rockframe.compiled import Vector, callback, inlined, kernel
 from rockframe.dynamics import single_body as body
 from rockframe.dynamics.kinematics import end_accelerations, pivot_guard, sine_cosine_rise
 from rockframe.dynamics.pad import (
-    CLEAR,
+    CONTACTS,
     CORNER_GUARDS,
     LEAVE,
     RELAXING,
     TOUCHING,
     TURN,
     corner_guards,
+    corners_in,
     pad_energy,
     pad_force_and_power,
+    relaxation_rate,
 )
 from rockframe.dynamics.protocol import ACCELERATE, ENERGY, GUARD, OBSERVE
 from rockframe.dynamics.single_body import (
@@ -37,12 +39,14 @@ from rockframe.dynamics.single_body import (
     ROTATION,
     SMALL,
     VERTICAL,
+    Rates,
     glide_body,
     glide_guards,
     kinetic_energy,
     limit_guard,
     move_body,
     observe_body,
+    write_rates,
 )
 
 # parameters, after those of the body
@@ -52,17 +56,18 @@ SETTLEMENT: Final = STIFFNESS + 2  # delta
 RESTITUTION: Final = STIFFNESS + 3  # eps
 PARAMETERS: Final = STIFFNESS + 4
 
-# A mode is left corner + 4 * right corner + 16 * pivot; corners as in
-# :mod:`rockframe.dynamics.pad`, pivots as in :mod:`rockframe.dynamics.kinematics`,
-# plus GLIDING where the corner that touches glides.
+# A mode is the corners' contacts, :func:`rockframe.dynamics.pad.both_corners`, + CONTACTS *
+# pivot; pivots as in :mod:`rockframe.dynamics.kinematics`, plus GLIDING where the corner that
+# touches glides.
 GLIDING: Final = 3
-MODES: Final = 96
+MODES: Final = 6 * CONTACTS
 
 # guards: three of each corner, the pivot's, and the rotation's limit
 LEFT_GUARDS: Final = LEAVE
 RIGHT_GUARDS: Final = CORNER_GUARDS
 PIVOT_GUARD: Final = 2 * CORNER_GUARDS
-LIMIT_GUARD: Final = PIVOT_GUARD + 1
+PADS_GUARDS: Final = PIVOT_GUARD + 1
+LIMIT_GUARD: Final = PADS_GUARDS
 GUARDS: Final = LIMIT_GUARD + 1
 
 COLUMNS: Final = (*body.COLUMNS, "left_reaction", "right_reaction")
@@ -72,38 +77,50 @@ REACTIONS: Final = len(body.COLUMNS)
 @kernel
 def in_flight(mode: int) -> bool:
     """Whether no corner touches."""
-    return (mode & 3) >= RELAXING and ((mode >> 2) & 3) >= RELAXING
+    left, right = corners_in(mode)
+    return airborne_corners(left, right)
+
+
+@inlined
+def airborne_corners(left: int, right: int) -> bool:
+    """Whether two corners' contacts are those of a flight."""
+    return left >= RELAXING and right >= RELAXING
 
 
 @kernel
 def glides(mode: int) -> bool:
     """Whether the corner that touches glides."""
-    return (mode >> 4) >= GLIDING
+    return mode >= GLIDING * CONTACTS
+
+
+@inlined
+def held_pivot(mode: int) -> int:
+    """Give the pivot of a mode as if nothing glided or flew."""
+    return mode // CONTACTS % GLIDING
 
 
 @kernel
 def pivot_in(mode: int) -> int:
     """Give the pivot of a mode."""
-    return FREE if in_flight(mode) or glides(mode) else mode >> 4
+    return FREE if in_flight(mode) or glides(mode) else held_pivot(mode)
 
 
 @kernel
 def gliding_side(mode: int) -> float:
     """Give the side of the corner that glides."""
-    return LEFT_SIDE if (mode & 3) == TOUCHING else RIGHT_SIDE
+    left, _ = corners_in(mode)
+    return LEFT_SIDE if left == TOUCHING else RIGHT_SIDE
 
 
 @inlined
 def pressing(mode: int, contact: int) -> int:
     """Give a corner's contact as far as its pad's force goes: gliding, it has none."""
-    return CLEAR if contact == TOUCHING and glides(mode) else contact
+    return RELAXING if contact == TOUCHING and glides(mode) else contact
 
 
-@callback(ACCELERATE)
-def accelerate(
-    mode: int, state: Vector, ground_x: float, ground_y: float, p: Vector, out: Vector
-) -> None:
-    """Accelerations of :eq:`eq-two-spring`, dashpot power and input power."""
+@inlined
+def body_rates(mode: int, state: Vector, ground_x: float, ground_y: float, p: Vector) -> Rates:
+    """Give the accelerations of :eq:`eq-two-spring`, dashpot power and input power."""
     spin = state[COORDINATES + ROTATION]
     speed = state[COORDINATES + VERTICAL]
     sine, cosine, rise = sine_cosine_rise(p[HALF_HEIGHT], p[SMALL], state[ROTATION])
@@ -114,34 +131,44 @@ def accelerate(
     k = p[STIFFNESS]
     c = p[DAMPING]
     delta = p[SETTLEMENT]
+    on_left, on_right = corners_in(mode)
     left, burnt_left = pad_force_and_power(
-        pressing(mode, mode & 3), height + half, speed + lever_left * spin, k, c, delta
+        pressing(mode, on_left), height + half, speed + lever_left * spin, k, c, delta
     )
     right, burnt_right = pad_force_and_power(
-        pressing(mode, (mode >> 2) & 3), height - half, speed + lever_right * spin, k, c, delta
+        pressing(mode, on_right), height - half, speed + lever_right * spin, k, c, delta
     )
-    moment = left * lever_left + right * lever_right
-    out[COORDINATES] = burnt_left + burnt_right
+    burnt = burnt_left + burnt_right
     if glides(mode):
-        glide_body(
-            (mode >> 4) - GLIDING, gliding_side(mode), state, sine, cosine, ground_x, ground_y, p,
-            out,
+        return glide_body(
+            held_pivot(mode), gliding_side(mode), relaxation_rate(k, c), burnt, state, sine, cosine,
+            ground_x, ground_y, p,
         )  # fmt: skip
-        return
-    move_body(pivot_in(mode), state, sine, cosine, left + right, moment, ground_x, ground_y, p, out)
+    moment = left * lever_left + right * lever_right
+    return move_body(
+        pivot_in(mode), state, sine, cosine, left + right, moment, burnt, ground_x, ground_y, p
+    )
 
 
-@callback(GUARD)
-def guard(
+@callback(ACCELERATE)
+def accelerate(
+    mode: int, state: Vector, ground_x: float, ground_y: float, p: Vector, out: Vector
+) -> None:
+    """Accelerations of :eq:`eq-two-spring`, dashpot power and input power."""
+    write_rates(body_rates(mode, state, ground_x, ground_y, p), out)
+
+
+@inlined
+def write_guards(
     mode: int,
     state: Vector,
     accelerations: Vector,
     ground_x: float,
-    ground_y: float,
     p: Vector,
+    guards: int,
     out: Vector,
 ) -> None:
-    """Guards of the corners, of the pivot and of the rotation, :eq:`eq-guards`."""
+    """Write the guards of corners and pivot, the first of a model that has `guards` of them."""
     rotation = state[ROTATION]
     spin = state[COORDINATES + ROTATION]
     b = p[HALF_WIDTH]
@@ -158,33 +185,46 @@ def guard(
     c = p[DAMPING]
     delta = p[SETTLEMENT]
     g = p[GRAVITY]
+    on_left, on_right = corners_in(mode)
     corner_guards(
-        mode & 3, LEFT_GUARDS, GUARDS, height + b * sine, speed + tilt, left, k, c, delta, g, out
+        on_left, LEFT_GUARDS, guards, height + b * sine, speed + tilt, left, k, c, delta, g, out
     )
     corner_guards(
-        (mode >> 2) & 3, RIGHT_GUARDS, GUARDS, height - b * sine, speed - tilt, right, k, c, delta,
-        g, out,
-    )  # fmt: skip
+        on_right, RIGHT_GUARDS, guards, height - b * sine, speed - tilt, right, k, c, delta, g, out
+    )
     out[PIVOT_GUARD] = 1.0
-    out[GUARDS + PIVOT_GUARD] = 0.0
+    out[guards + PIVOT_GUARD] = 0.0
     if not in_flight(mode):
-        out[PIVOT_GUARD], out[GUARDS + PIVOT_GUARD] = pivot_guard(
-            p[RESTRAINT], (mode >> 4) % GLIDING, p[ANGLE], rotation, spin, turn
+        out[PIVOT_GUARD], out[guards + PIVOT_GUARD] = pivot_guard(
+            p[RESTRAINT], held_pivot(mode), p[ANGLE], rotation, spin, turn
         )
     if glides(mode):
         side = gliding_side(mode)
         first = LEFT_GUARDS if side > 0.0 else RIGHT_GUARDS
-        hold, slip, change = glide_guards(
-            (mode >> 4) - GLIDING, side, state, accelerations, ground_x, p
-        )
+        hold, slip, change = glide_guards(held_pivot(mode), side, state, accelerations, ground_x, p)
         out[first + LEAVE] = hold
-        out[GUARDS + first + LEAVE] = 0.0
+        out[guards + first + LEAVE] = 0.0
         out[first + TURN] = slip
-        out[GUARDS + first + TURN] = change
+        out[guards + first + TURN] = change
+
+
+@callback(GUARD)
+def guard(
+    mode: int,
+    state: Vector,
+    accelerations: Vector,
+    ground_x: float,
+    ground_y: float,
+    p: Vector,
+    out: Vector,
+) -> None:
+    """Guards of the corners, of the pivot and of the rotation, :eq:`eq-guards`."""
+    write_guards(mode, state, accelerations, ground_x, p, GUARDS, out)
     out[LIMIT_GUARD], out[GUARDS + LIMIT_GUARD] = limit_guard(state, p)
 
 
 @callback(ENERGY)
+@kernel
 def energy(mode: int, state: Vector, p: Vector, out: Vector) -> None:
     """Kinetic, gravity and elastic energy, :eq:`eq-energy`."""
     sine, _, rise = sine_cosine_rise(p[HALF_HEIGHT], p[SMALL], state[ROTATION])
@@ -199,6 +239,7 @@ def energy(mode: int, state: Vector, p: Vector, out: Vector) -> None:
 
 
 @callback(OBSERVE)
+@kernel
 def observe(
     mode: int,
     state: Vector,
@@ -220,9 +261,10 @@ def observe(
     c = p[DAMPING]
     delta = p[SETTLEMENT]
     observe_body(pivot_in(mode), state, memory, p, out)
+    on_left, on_right = corners_in(mode)
     out[REACTIONS], _ = pad_force_and_power(
-        pressing(mode, mode & 3), height + half, speed + lever_left * spin, k, c, delta
+        pressing(mode, on_left), height + half, speed + lever_left * spin, k, c, delta
     )
     out[REACTIONS + 1], _ = pad_force_and_power(
-        pressing(mode, (mode >> 2) & 3), height - half, speed + lever_right * spin, k, c, delta
+        pressing(mode, on_right), height - half, speed + lever_right * spin, k, c, delta
     )

@@ -93,7 +93,7 @@ def two_spring(
         scales=body.body_scales(p, settlement, vertical_frequency),
         rotation_weights=np.array([1.0, 0.0, 0.0]),
         guard_tolerance=corner_tolerance(two.GUARDS, radius, settlement),
-        lazy_guard=lazy_corners(two.GUARDS),
+        relaxation=gliding_relaxation(modes, p[two.STIFFNESS], p[two.DAMPING]),
         columns=two.COLUMNS,
         fastest_frequency=fastest,
         damping_rate=damping / stiffness * fastest**2,
@@ -106,8 +106,8 @@ def two_spring(
 
 def contact_of_corners(modes: Integers) -> Integers:
     """Give the contact state of modes that hold two corners' contacts in their low bits."""
-    left_free = (modes & 3) >= pad.RELAXING
-    right_free = (modes >> 2 & 3) >= pad.RELAXING
+    left_free = modes & pad.CORNER_MASK >= pad.RELAXING
+    right_free = modes >> pad.CORNER_BITS & pad.CORNER_MASK >= pad.RELAXING
     contact = np.full(len(modes), ContactState.FULL, dtype=np.int64)
     contact[left_free] = ContactState.RIGHT
     contact[right_free] = ContactState.LEFT
@@ -117,7 +117,7 @@ def contact_of_corners(modes: Integers) -> Integers:
 
 def gliding_corner(modes: Integers) -> NDArray[np.bool_]:
     """Tell in which of such modes a corner glides."""
-    return modes >> 4 >= two.GLIDING
+    return modes >= two.GLIDING * pad.CONTACTS
 
 
 def corner_tolerance(guards: int, radius: float, settlement: float) -> Vector:
@@ -129,11 +129,9 @@ def corner_tolerance(guards: int, radius: float, settlement: float) -> Vector:
     return tolerance
 
 
-def lazy_corners(guards: int) -> Integers:
-    """Mark the guards of re-engagement, which count only once they have been positive."""
-    lazy = np.zeros(guards, dtype=np.int64)
-    lazy[[two.LEFT_GUARDS + pad.REENGAGE, two.RIGHT_GUARDS + pad.REENGAGE]] = 1
-    return lazy
+def gliding_relaxation(modes: Integers, stiffness: float, damping: float) -> Vector:
+    """Give the rate at which a gliding corner follows its pad in each of such modes [s^-1]."""
+    return np.where(gliding_corner(modes), pad.relaxation_rate(stiffness, damping), 0.0)
 
 
 @kernel
@@ -170,8 +168,8 @@ def start_mode(
         reaction(two.RIGHT_GUARDS, state, p),
         p[two.SETTLEMENT],
     )
-    mode = mode_of(left, right, rotation, spin, p)
-    memory[HORIZONTAL_REFERENCE] = pinned_point(mode >> 4, p[body.HALF_WIDTH])
+    mode = mode_of(left, right, rotation, spin, p[body.RESTRAINT])
+    memory[HORIZONTAL_REFERENCE] = pinned_point(two.held_pivot(mode), p[body.HALF_WIDTH])
     if two.in_flight(mode):
         state[body.HORIZONTAL] = about_pin(p[body.HALF_HEIGHT], p[body.SMALL], 0.0, rotation)
     return mode

@@ -58,6 +58,7 @@ from rockframe.dynamics.single_body import (
     ROTATION,
     SMALL,
     VERTICAL,
+    Rates,
     glide_body,
     glide_guards,
     kinetic_energy,
@@ -66,8 +67,9 @@ from rockframe.dynamics.single_body import (
     observe_body,
     repin,
     repin_landing,
-    stop_end,
+    set_end_rate,
     turned_pivot,
+    write_rates,
 )
 
 # parameters, after those of the body
@@ -81,7 +83,8 @@ MODES: Final = BED_MODES
 
 # guards: the bed's, the pivot's, and the rotation's limit
 PIVOT_GUARD: Final = BED_GUARDS
-LIMIT_GUARD: Final = PIVOT_GUARD + 1
+BODY_GUARDS: Final = PIVOT_GUARD + 1
+LIMIT_GUARD: Final = BODY_GUARDS
 GUARDS: Final = LIMIT_GUARD + 1
 
 COLUMNS: Final = (*body.COLUMNS, "soil_reaction", "contact_length")
@@ -126,11 +129,9 @@ def ends_of(state: Vector, p: Vector, sine: float, cosine: float, rise: float) -
     return Ends(height - half, height + half, speed + tilt, speed - tilt)
 
 
-@callback(ACCELERATE)
-def accelerate(
-    mode: int, state: Vector, ground_x: float, ground_y: float, p: Vector, out: Vector
-) -> None:
-    """Accelerations of :eq:`eq-winkler`, dashpot power and input power."""
+@inlined
+def body_rates(mode: int, state: Vector, ground_x: float, ground_y: float, p: Vector) -> Rates:
+    """Give the accelerations of :eq:`eq-winkler`, dashpot power and input power."""
     sine, cosine, rise = sine_cosine_rise(p[HALF_HEIGHT], p[SMALL], state[ROTATION])
     ends = ends_of(state, p, sine, cosine, rise)
     bed = bed_of(p)
@@ -145,13 +146,59 @@ def accelerate(
         p[HALF_HEIGHT] * sine + p[HALF_WIDTH] * cosine,
         p[HALF_HEIGHT] * sine - p[HALF_WIDTH] * cosine,
     )
-    out[COORDINATES] = burnt
+    if gliding == GLIDING:
+        return glide_body(
+            mode // PIVOT_FACTOR, gliding_side(mode), 0.0, burnt, state, sine, cosine, ground_x,
+            ground_y, p,
+        )  # fmt: skip
+    return move_body(
+        pivot_in(mode), state, sine, cosine, force, moment, burnt, ground_x, ground_y, p
+    )
+
+
+@callback(ACCELERATE)
+def accelerate(
+    mode: int, state: Vector, ground_x: float, ground_y: float, p: Vector, out: Vector
+) -> None:
+    """Accelerations of :eq:`eq-winkler`, dashpot power and input power."""
+    write_rates(body_rates(mode, state, ground_x, ground_y, p), out)
+
+
+@inlined
+def write_guards(
+    mode: int,
+    state: Vector,
+    accelerations: Vector,
+    ground_x: float,
+    p: Vector,
+    first: int,
+    guards: int,
+    out: Vector,
+) -> None:
+    """Write the guards of ends, slip and pivot, from `first` on of a model's `guards`."""
+    rotation = state[ROTATION]
+    spin = state[COORDINATES + ROTATION]
+    turn = accelerations[ROTATION]
+    sine, cosine, rise = sine_cosine_rise(p[HALF_HEIGHT], p[SMALL], rotation)
+    left, right, gliding = contact_in(mode)
+    ends = ends_of(state, p, sine, cosine, rise)
+    values = bed_guards(left, right, ends, p[SETTLEMENT])
+    rates = guards + first
+    out[first + LEFT_END], out[first + RIGHT_END], out[first + SLIP] = values[0], values[1], 1.0
+    out[rates + LEFT_END], out[rates + RIGHT_END], out[rates + SLIP] = values[2], values[3], 0.0
     if gliding == GLIDING:
         side = gliding_side(mode)
-        pivot = mode // PIVOT_FACTOR
-        glide_body(pivot, side, state, sine, cosine, ground_x, ground_y, p, out)
-        return
-    move_body(pivot_in(mode), state, sine, cosine, force, moment, ground_x, ground_y, p, out)
+        end = LEFT_END if side > 0.0 else RIGHT_END
+        out[first + end], out[first + SLIP], out[rates + SLIP] = glide_guards(
+            mode // PIVOT_FACTOR, side, state, accelerations, ground_x, p
+        )
+        out[rates + end] = 0.0
+    out[first + PIVOT_GUARD] = 1.0
+    out[rates + PIVOT_GUARD] = 0.0
+    if not airborne(left, right):
+        out[first + PIVOT_GUARD], out[rates + PIVOT_GUARD] = pivot_guard(
+            p[RESTRAINT], mode // PIVOT_FACTOR, p[ANGLE], rotation, spin, turn
+        )
 
 
 @callback(GUARD)
@@ -165,37 +212,16 @@ def guard(
     out: Vector,
 ) -> None:
     """Guards of the ends, of the slip, of the pivot and of the rotation."""
-    rotation = state[ROTATION]
-    spin = state[COORDINATES + ROTATION]
-    turn = accelerations[ROTATION]
-    sine, cosine, rise = sine_cosine_rise(p[HALF_HEIGHT], p[SMALL], rotation)
-    left, right, gliding = contact_in(mode)
-    ends = ends_of(state, p, sine, cosine, rise)
-    values = bed_guards(left, right, ends, p[SETTLEMENT])
-    out[LEFT_END], out[RIGHT_END], out[SLIP] = values[0], values[1], 1.0
-    out[GUARDS + LEFT_END], out[GUARDS + RIGHT_END], out[GUARDS + SLIP] = values[2], values[3], 0.0
-    if gliding == GLIDING:
-        side = gliding_side(mode)
-        end = LEFT_END if side > 0.0 else RIGHT_END
-        out[end], out[SLIP], out[GUARDS + SLIP] = glide_guards(
-            mode // PIVOT_FACTOR, side, state, accelerations, ground_x, p
-        )
-        out[GUARDS + end] = 0.0
-    out[PIVOT_GUARD] = 1.0
-    out[GUARDS + PIVOT_GUARD] = 0.0
-    if not airborne(left, right):
-        out[PIVOT_GUARD], out[GUARDS + PIVOT_GUARD] = pivot_guard(
-            p[RESTRAINT], mode // PIVOT_FACTOR, p[ANGLE], rotation, spin, turn
-        )
+    write_guards(mode, state, accelerations, ground_x, p, 0, GUARDS, out)
     out[LIMIT_GUARD], out[GUARDS + LIMIT_GUARD] = limit_guard(state, p)
 
 
 @kernel
-def mode_of(left: int, right: int, rotation: float, spin: float, p: Vector) -> int:
+def mode_of(left: int, right: int, rotation: float, spin: float, rule: float) -> int:
     """Give the mode of a bed's contact, with the pivot of the restraint rule."""
     pivot = PIVOT_CENTRE
     if not airborne(left, right):
-        pivot = pivot_of(p[RESTRAINT], left == RAISED, right == RAISED, rotation, spin)
+        pivot = pivot_of(rule, left == RAISED, right == RAISED, rotation, spin)
     return left + 2 * right + PIVOT_FACTOR * pivot
 
 
@@ -207,16 +233,17 @@ def end_gliding(which: int, mode: int, state: Vector, p: Vector, memory: Vector)
     ends = ends_of(state, p, sine, cosine, rise)
     state[VERTICAL] += ends.u_left if side > 0.0 else ends.u_right
     if which != SLIP:
-        stop_end(side, 1.0, state, p)
+        set_end_rate(side, 0.0, 1.0, 0.0, state, p)
         memory[LAST_EVENT] = SEPARATION
         return RAISED + 2 * RAISED
     repin(FREE, mode // PIVOT_FACTOR, state, p, memory)
-    stop_end(side, -1.0, state, p)
+    set_end_rate(side, 0.0, -1.0, 0.0, state, p)
     memory[LAST_EVENT] = PIVOT_CHANGE
     return mode - 4 * GLIDING
 
 
 @callback(SWITCH)
+@kernel
 def switch(
     mode: int,
     guard_index: int,
@@ -247,10 +274,10 @@ def switch(
         state[VERTICAL] += ends.u_left
     else:
         state[VERTICAL] += ends.u_right
-    new = mode_of(left, right, state[ROTATION], state[COORDINATES + ROTATION], p)
+    new = mode_of(left, right, state[ROTATION], state[COORDINATES + ROTATION], p[RESTRAINT])
     if lands and left != right:
         side = LEFT_SIDE if guard_index == LEFT_END else RIGHT_SIDE
-        if repin_landing(pivot_in(new), side, 0.0, state, p, memory):
+        if repin_landing(pivot_in(new), side, 0.0, 0.0, state, p, memory):
             return new + 4 * GLIDING
     elif pivot_in(new) != old:
         repin(old, pivot_in(new), state, p, memory)
@@ -258,6 +285,7 @@ def switch(
 
 
 @callback(ENERGY)
+@kernel
 def energy(mode: int, state: Vector, p: Vector, out: Vector) -> None:
     """Kinetic, gravity and elastic energy, :eq:`eq-energy`."""
     sine, cosine, rise = sine_cosine_rise(p[HALF_HEIGHT], p[SMALL], state[ROTATION])
@@ -268,6 +296,7 @@ def energy(mode: int, state: Vector, p: Vector, out: Vector) -> None:
 
 
 @callback(OBSERVE)
+@kernel
 def observe(
     mode: int,
     state: Vector,

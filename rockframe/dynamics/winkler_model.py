@@ -92,7 +92,7 @@ def winkler(
         guard_tolerance=bed_tolerance(
             soil.GUARDS, math.hypot(half_width, centre_height), settlement
         ),
-        lazy_guard=np.zeros(soil.GUARDS, dtype=np.int64),
+        relaxation=np.zeros(soil.MODES),
         columns=soil.COLUMNS,
         fastest_frequency=fastest,
         damping_rate=damping / stiffness * fastest**2,
@@ -145,7 +145,7 @@ def start_mode(
     state[body.COORDINATES + body.VERTICAL] = speed
     ends = soil.ends_of(state, p, sine, cosine, rise)
     left, right = bed.end_state(ends.u_left), bed.end_state(ends.u_right)
-    mode = soil.mode_of(left, right, rotation, spin, p)
+    mode = soil.mode_of(left, right, rotation, spin, p[body.RESTRAINT])
     pivot = soil.pivot_in(mode)
     if pivot == body.FREE:
         state[body.HORIZONTAL] = about_pin(p[body.HALF_HEIGHT], p[body.SMALL], 0.0, rotation)

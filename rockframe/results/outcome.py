@@ -8,7 +8,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rockframe.dynamics.protocol import IMPACT_LOSS, REPINNING_LOSS, SILENT, ContactModel
+from rockframe.dynamics.protocol import (
+    IMPACT_LOSS,
+    IMPULSIVE_INPUT,
+    REPINNING_LOSS,
+    SILENT,
+    ContactModel,
+)
 from rockframe.results.variables.runs import Direction
 from rockframe.solve.layout import Status
 from rockframe.solve.observe import energies_of, memory_at_outputs, observe_trajectory
@@ -118,7 +124,7 @@ def energy_histories(model: ContactModel, run: Trajectory) -> dict[str, Generic]
         "dissipated_energy": work[:, 0].copy(),
         "impact_energy": lost[:, IMPACT_LOSS].copy(),
         "repinning_energy": lost[:, REPINNING_LOSS].copy(),
-        "input_energy": work[:, 1].copy(),
+        "input_energy": work[:, 1] + lost[:, IMPULSIVE_INPUT],
     }
 
 

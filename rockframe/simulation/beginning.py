@@ -2,7 +2,7 @@
 
 import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, TypeAlias, cast
 
@@ -22,45 +22,47 @@ class Continuation:
 
     Parameters
     ----------
-    endings : tuple of Ending
-        Of the run; two of a cascade.
+    ending : Ending
+        Of the run.
     """
 
-    endings: tuple[Ending, ...]
+    ending: Ending
 
     def to_dict(self) -> dict[str, Any]:
         """Give it as plain values, fit for JSON."""
-        return {"type": type(self).__name__, "endings": [_plain(one) for one in self.endings]}
+        return {"type": type(self).__name__, "ending": _plain(self.ending)}
 
 
 Beginning: TypeAlias = InitialState | Continuation
 
 
-def start_of(beginning: Beginning) -> Start | tuple[Ending, ...]:
+def start_of(beginning: Beginning) -> Start | Ending:
     """Give a beginning as the integrator takes it."""
     if isinstance(beginning, Continuation):
-        return beginning.endings
+        return beginning.ending
     si = beginning.si
     return Start(si.rotation, si.angular_velocity, si.vertical_displacement, si.vertical_velocity)
 
 
-def end_attributes(endings: Sequence[Ending]) -> dict[str, str]:
+def end_attributes(ending: Ending) -> dict[str, str]:
     """Give the end of a run as an attribute that a later run can begin with.
 
     Parameters
     ----------
-    endings : sequence of Ending
-        Of the run; two of a cascade.
+    ending : Ending
+        Of the run.
 
     Returns
     -------
     dict
         Mode, state and memory in JSON, exact to the last bit.
     """
-    return {_ATTRIBUTE: json.dumps([_plain(ending) for ending in endings])}
+    return {_ATTRIBUTE: json.dumps(_plain(ending))}
 
 
-def continuation_of(dataset: xr.Dataset, system: Assembly, faults: list[str]) -> Continuation:
+def continuation_of(
+    dataset: xr.Dataset, system: Assembly, faults: list[str]
+) -> Continuation | InitialState:
     """Read where a run ended, or note why none can go on from there.
 
     Parameters
@@ -74,25 +76,23 @@ def continuation_of(dataset: xr.Dataset, system: Assembly, faults: list[str]) ->
 
     Returns
     -------
-    Continuation
+    Continuation or InitialState
+        Rest where there is a fault.
     """
     attributes: Mapping[str, Any] = cast("Mapping[str, Any]", dataset.attrs)
     if _ATTRIBUTE not in attributes or "system_json" not in attributes:
         faults.append("initial is a dataset that holds no end of a run; expected one of simulate()")
-        return Continuation(())
+        return InitialState()
     if json.loads(attributes["system_json"]) != system.to_dict():
         faults.append("initial is the end of a run of another system")
     if not math.isnan(float(attributes.get("overturning_time", math.nan))):
         faults.append("initial is the end of a run that overturned")
-    stored: list[dict[str, Any]] = json.loads(attributes[_ATTRIBUTE])
+    stored: dict[str, Any] = json.loads(attributes[_ATTRIBUTE])
     return Continuation(
-        tuple(
-            Ending(
-                one["mode"],
-                np.array(one["state"], dtype=np.float64),
-                np.array(one["memory"], dtype=np.float64),
-            )
-            for one in stored
+        Ending(
+            stored["mode"],
+            np.array(stored["state"], dtype=np.float64),
+            np.array(stored["memory"], dtype=np.float64),
         )
     )
 

@@ -9,7 +9,7 @@ from typing import Final, TypeAlias
 import numpy as np
 import xarray as xr
 
-from rockframe.dynamics.protocol import Ending, Start
+from rockframe.dynamics.protocol import Ending
 from rockframe.errors import ModelWarning, RockframeWarning, SolverWarning, warn
 from rockframe.motion import GroundMotion
 from rockframe.results.dataset import build_dataset
@@ -25,14 +25,12 @@ from rockframe.results.outcome import (
     scalars,
     verdict,
 )
-from rockframe.results.stages import cascade_energies, cascade_events, cascade_histories
 from rockframe.results.variables.runs import Direction
 from rockframe.simulation.beginning import end_attributes, start_of
 from rockframe.simulation.certificate import certify
 from rockframe.simulation.certification import Certification
 from rockframe.simulation.plan import Plan
 from rockframe.simulation.provenance import motion_attributes
-from rockframe.solve.cascade import Cascade, integrate_cascade
 from rockframe.solve.ground_table import Ground, ground_at
 from rockframe.solve.integrate import integrate
 from rockframe.solve.trajectory import Summary
@@ -72,7 +70,7 @@ class Response:
 
     values: dict[str, Generic]
     summary: Summary
-    endings: tuple[Ending, ...]
+    ending: Ending
 
 
 def run(system: Assembly, plan: Plan, certification: Certification | None = None) -> xr.Dataset:
@@ -95,7 +93,7 @@ def run(system: Assembly, plan: Plan, certification: Certification | None = None
     scales = _scales(system)
     response = _respond(system, plan, ground, scales)
     summary = response.summary
-    attributes = _attributes(system, plan, summary, scales) | end_attributes(response.endings)
+    attributes = _attributes(system, plan, summary, scales) | end_attributes(response.ending)
     cautions = [
         *_unfinished(summary, scales),
         *_lost_weight(system, ground),
@@ -145,41 +143,25 @@ def _scales(system: Assembly) -> Scales:
 def _respond(system: Assembly, plan: Plan, ground: Ground, scales: Scales) -> Response:
     """Integrate; give histories and events by their names in the schema."""
     equations = system.setting.compile()
-    start = start_of(plan.initial)
     wanted = plan.output_step is not None
-    if isinstance(equations, Cascade):
-        stages = integrate_cascade(
-            equations, start, ground, plan.accuracy,
-            duration=plan.duration, output_step=plan.output_step,
-            stop_at_overturning=plan.stop_at_overturning, with_work=bool(plan.energies),
-        )  # fmt: skip
-        summary, time = stages.summary, stages.second.time
-        endings = (stages.first.ending, stages.second.ending)
-        shaking = ground_at(ground, time)
-        values = cascade_histories(equations, stages, scales, shaking) if wanted else {}
-        energies = cascade_energies(equations, stages) if plan.energies else {}
-        events = cascade_events(equations, stages)
-    else:
-        begin = start if isinstance(start, Start) else start[0]
-        trajectory = integrate(
-            equations, begin, ground, plan.accuracy,
-            duration=plan.duration, output_step=plan.output_step,
-            stop_at_overturning=plan.stop_at_overturning, with_work=bool(plan.energies),
-        )  # fmt: skip
-        summary, time = trajectory, trajectory.time
-        endings = (trajectory.ending,)
-        shaking = ground_at(ground, time)
-        values = histories(equations, trajectory, shaking) if wanted else {}
-        if wanted and equations.soil_contact is None:
-            values |= cap_histories(values, scales)
-        energies = energy_histories(equations, trajectory) if plan.energies else {}
-        events = event_columns(equations, trajectory)
+    trajectory = integrate(
+        equations, start_of(plan.initial), ground, plan.accuracy,
+        duration=plan.duration, output_step=plan.output_step,
+        stop_at_overturning=plan.stop_at_overturning, with_work=bool(plan.energies),
+    )  # fmt: skip
+    time = trajectory.time
+    shaking = ground_at(ground, time)
+    values = histories(equations, trajectory, shaking) if wanted else {}
+    if wanted and equations.soil_contact is None:
+        values |= cap_histories(values, scales)
+    energies = energy_histories(equations, trajectory) if plan.energies else {}
+    events = event_columns(equations, trajectory)
     if wanted:
         values |= relative_histories(values, scales)
         values |= ground_histories(shaking, has_vertical_motion=len(ground.vertical) > 0)
         values["time"] = time
     values |= {name: energies[name] for name in plan.energies}
-    return Response(values | events, summary, endings)
+    return Response(values | events, trajectory, trajectory.ending)
 
 
 def _attributes(

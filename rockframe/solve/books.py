@@ -10,9 +10,10 @@ from rockframe.compiled import Integers, Vector, inlined, kernel
 from rockframe.dynamics.protocol import (
     IMPACT,
     IMPACT_LOSS,
-    MEMORY_SIZE,
+    IMPULSIVE_INPUT,
     OVERTURNING,
     REPINNING_LOSS,
+    REST,
     ROTATION_LIMIT,
     TOPPLED,
     ContactState,
@@ -44,13 +45,20 @@ def audit(
     clock: Vector,
     w: Workspace,
 ) -> None:
-    """Compare the energy now with its start and all that came and went, :eq:`eq-audit`."""
+    """Compare the energy now with its start and all that came and went, :eq:`eq-audit`.
+
+    The largest term is that of what moves: the elastic energy at rest, and the gravity energy
+    that it takes over, say nothing of a quiet run.
+    """
     energy(mode, w.state, p, w.energies)
     stored = w.energies[1] + w.energies[3]
     lost = clock[at.BURNT] + memory[IMPACT_LOSS] + memory[REPINNING_LOSS]
-    balance = w.energies[0] + stored + lost - clock[at.SUPPLIED] - clock[at.START_ENERGY]
+    supplied = clock[at.SUPPLIED] + memory[IMPULSIVE_INPUT]
+    balance = w.energies[0] + stored + lost - supplied - clock[at.START_ENERGY]
     clock[at.RESIDUAL] = max(clock[at.RESIDUAL], abs(balance))
-    terms = max(w.energies[0], abs(w.energies[1]), w.energies[2], lost, abs(clock[at.SUPPLIED]))
+    moved = max(w.energies[0], abs(stored), lost, abs(supplied))
+    clock[at.LARGEST_MOVED] = max(clock[at.LARGEST_MOVED], moved)
+    terms = max(moved, abs(w.energies[1]), w.energies[2])
     clock[at.LARGEST_TERM] = max(clock[at.LARGEST_TERM], terms)
 
 
@@ -203,13 +211,13 @@ def book_event(
     events.values[row, 0] = time
     for i in range(width):
         events.values[row, 1 + width + i] = w.state[i]
-    for i in range(MEMORY_SIZE):
+    for i in range(len(memory)):
         events.values[row, 1 + 2 * width + i] = memory[i]
     events.codes[row, 0] = kind
     events.codes[row, 1] = old_mode
     events.codes[row, 2] = mode
     counters[at.EVENTS] += 1
-    if kind == IMPACT:
+    if kind in (IMPACT, REST):  # a block comes to rest by an impact
         counters[at.IMPACTS] += 1
     if tables.contact[mode] == FLIGHT and tables.contact[old_mode] != FLIGHT:
         counters[at.FLIGHTS] += 1
@@ -243,6 +251,7 @@ def accept(
         w.before[i] = w.after[i]
     clock[at.BURNT] += burnt
     clock[at.SUPPLIED] += supplied
+    clock[at.LARGEST_MOVED] = max(clock[at.LARGEST_MOVED], abs(clock[at.SUPPLIED]))
     clock[at.GROUND_X] = x
     clock[at.GROUND_Y] = y
     counters[at.STEPS] += 1

@@ -12,6 +12,9 @@ from rockframe.solve.workspace import Span, Tables, Workspace
 DIP_MARGIN: Final = 0.02
 """Share of a guard's variation in a step below which a predicted dip is looked into."""
 
+HALVINGS: Final = 40
+"""Halvings of a step in which a guard that rises from zero and falls again is looked for."""
+
 ROOT_TOLERANCE: Final = 1e-13
 """Width of the bracket, as a share of the step, at which the search for a root ends."""
 
@@ -31,15 +34,14 @@ def earliest_crossing(
     Looks at the step's end and, where a guard falls at first and rises at last,
     for a dip in between. Gives -1 if no guard crosses.
     """
-    guards = len(tables.lazy)
+    guards = len(tables.tolerance)
     found = -1
     place = 2.0
     for i in range(guards):
         armed = w.before[i] > tables.tolerance[i]
         end = -1.0
         if w.after[i] < 0.0:
-            if armed or tables.lazy[i] == 0:
-                end = 1.0
+            end = 1.0
         elif armed and w.before[guards + i] < 0.0 and w.after[guards + i] > 0.0:
             fall = span.h * w.before[guards + i]
             rise = span.h * w.after[guards + i]
@@ -47,7 +49,7 @@ def earliest_crossing(
             if depth < DIP_MARGIN * (rise - fall):
                 end = _point_below_zero(guard, i, bottom, mode, count, span, p, w)
         if end >= 0.0:
-            root = _first_root(guard, i, end, tables.tolerance[i], mode, count, span, p, w)
+            root = _first_root(guard, i, end, tables, mode, count, span, p, w)
             if root < place:
                 found = i
                 place = root
@@ -115,28 +117,57 @@ def _point_below_zero(
 
 
 @kernel
-def _first_root(
+def _positive_place(
     guard: Callable[..., None],
     which: int,
     end: float,
-    tolerance: float,
     mode: int,
     count: int,
     span: Span,
     p: Vector,
     w: Workspace,
 ) -> float:
-    """Give the root between the step's start (positive) and `end` (negative).
+    """Give a place before `end` where a guard that rises from zero is positive.
 
-    Illinois' variant of false position, kept inside its bracket by bisection;
-    from a guard at its limit at the start, within its rounding noise, only
-    bisection can tell: a corner that has just left is not about to land.
+    The way back from the end is halved until it is; 0 if it never is.
+    """
+    place = end
+    for _ in range(HALVINGS):
+        place *= 0.5
+        if _guard_inside(guard, which, place, mode, count, span, p, w) > 0.0:
+            return place
+    return 0.0
+
+
+@kernel
+def _first_root(
+    guard: Callable[..., None],
+    which: int,
+    end: float,
+    tables: Tables,
+    mode: int,
+    count: int,
+    span: Span,
+    p: Vector,
+    w: Workspace,
+) -> float:
+    """Give the first root between the step's start and `end` (negative).
+
+    Illinois' variant of false position, kept inside its bracket by bisection. A guard that
+    starts at its limit, within its rounding noise, may rise before it falls: the search
+    then begins where it is positive. Otherwise only bisection can tell: a corner that has
+    just left is not about to land.
     """
     low, high = 0.0, end
     g_low = _guard_inside(guard, which, low, mode, count, span, p, w)
     g_high = _guard_inside(guard, which, high, mode, count, span, p, w)
     if g_high >= 0.0:
         return high
+    rise = span.h * w.before[len(tables.tolerance) + which]
+    tolerance = tables.tolerance[which]
+    if g_low <= tolerance and rise > 0.0:
+        low = _positive_place(guard, which, end, mode, count, span, p, w)
+        g_low = _guard_inside(guard, which, low, mode, count, span, p, w)
     last = 0
     for _ in range(100):
         if high - low <= ROOT_TOLERANCE:

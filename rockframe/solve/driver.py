@@ -90,11 +90,11 @@ def suspicious(guards: int, w: Workspace) -> bool:
 @kernel
 def broken_guard(tables: Tables, w: Workspace) -> int:
     """Give a guard that a mode breaks from its start, or -1."""
-    guards = len(tables.lazy)
+    guards = len(tables.tolerance)
     for i in range(guards):
         tolerance = tables.tolerance[i]
         falls = w.before[i] < -tolerance or w.before[guards + i] < 0.0
-        if tables.lazy[i] == 0 and w.before[i] <= tolerance and falls:
+        if w.before[i] <= tolerance and falls:
             return i
     return -1
 
@@ -158,7 +158,7 @@ def make_step(
     w: Workspace,
 ) -> Step:
     """Make a step of length `whole`, and repeat it up to the first crossing of a guard."""
-    guards = len(tables.lazy)
+    guards = len(tables.tolerance)
     count = int(tables.active[mode])
     scale = controls[at.TIME_STEP]
     fixed = controls[at.RTOL] == FIXED_STEPS
@@ -223,7 +223,7 @@ def carry_out(
         events.values[row, 1 + i] = w.state[i]
     new_mode = mode
     status = at.COMPLETED
-    if crossed == len(tables.lazy) - 1:
+    if crossed == len(tables.tolerance) - 1:
         kind, status = reach_limit(time, mode, tables, p, progress, w)
     else:
         x, y = clock[at.GROUND_X], clock[at.GROUND_Y]
@@ -341,7 +341,8 @@ def advance(
             if counters[at.STEPS] + counters[at.REJECTED] >= counters[at.MAX_STEPS]:
                 status = at.STEP_LIMIT
                 break
-            whole = fit_step(min(h_next, controls[at.MAX_STEP]), remaining)
+            asked = fit_step(min(h_next, controls[at.MAX_STEP]), remaining)
+            whole = min(asked, tables.longest[mode]) if fixed else asked
             energy_scale = max(clock[at.LARGEST_TERM], clock[at.BURNT], abs(clock[at.SUPPLIED]))
             step = make_step(
                 accelerate, guard, tables, mode, interval, tau, whole, controls, energy_scale, p, w
@@ -354,9 +355,9 @@ def advance(
                     break
                 continue
             crossed = step.crossed
-            if fixed:  # after an event, on to the end of the sub-step
-                rest = whole - step.span.h
-                h_next = rest if crossed >= 0 and rest > shortest else controls[at.MAX_STEP]
+            if fixed:  # after an event or a shorter step, on to the end of the sub-step
+                rest = asked - step.span.h
+                h_next = rest if rest > shortest else controls[at.MAX_STEP]
             elif crossed < 0 and (step.excess > EASY or whole < time_step or whole >= h_next):
                 h_next = next_step(whole, h_next, step.excess)
             h = step.span.h

@@ -7,7 +7,7 @@ import numpy as np
 from rockframe.compiled import Vector
 from rockframe.dynamics.protocol import (
     IMPACT_LOSS,
-    MEMORY_SIZE,
+    IMPULSIVE_INPUT,
     REPINNING_LOSS,
     ContactModel,
     ContactState,
@@ -20,7 +20,7 @@ from rockframe.solve.books import ON_SAMPLE
 from rockframe.solve.driver import FIXED_STEPS, advance
 from rockframe.solve.ground_table import Ground
 from rockframe.solve.layout import Status
-from rockframe.solve.substeps import substeps_of
+from rockframe.solve.substeps import STABLE, substeps_of
 from rockframe.solve.trajectory import Events, Trajectory
 from rockframe.solve.workspace import (
     EventTable,
@@ -52,7 +52,6 @@ def integrate(
     output_step: float | None,
     stop_at_overturning: bool = True,
     with_work: bool = False,
-    keep_end: bool = False,
 ) -> Trajectory:
     """Integrate a model under a ground motion.
 
@@ -74,8 +73,6 @@ def integrate(
         Whether the run ends when the rotation reaches its limit.
     with_work : bool
         Whether dashpot and input work are stored at the output times.
-    keep_end : bool
-        Whether the end of a completed run is stored though it is no output time.
 
     Returns
     -------
@@ -101,7 +98,7 @@ def integrate(
     clock[at.FIRST_UPLIFT] = -1.0 if model.contact[mode] == ContactState.FULL else 0.0
     clock[at.OVERTURNING_TIME] = clock[at.EVENT_TIME] = -1.0
     clock[at.START_ENERGY] = clock[at.GROUND_X] = clock[at.GROUND_Y] = math.nan
-    clock[at.LARGEST_TERM] = ENERGY_NOISE * model.energy_scale
+    clock[at.LARGEST_TERM] = clock[at.LARGEST_MOVED] = ENERGY_NOISE * model.energy_scale
     counters = np.zeros(at.COUNTERS, dtype=np.int64)
     counters[at.MODE] = mode
     counters[at.PENDING] = -1
@@ -128,20 +125,20 @@ def integrate(
     progress = Progress(controls, clock, counters)
     output = Output(out_state, out_mode, out_work)
     events = EventTable(
-        np.empty((EVENT_ROOM, 1 + 2 * width + MEMORY_SIZE)),
+        np.empty((EVENT_ROOM, 1 + 2 * width + len(memory))),
         np.empty((EVENT_ROOM, 3), dtype=np.int64),
     )
     tables = Tables(
         model.active,
         model.contact,
-        model.lazy_guard,
+        _longest_steps(model),
         model.guard_tolerance,
         model.rotation_weights,
     )
     motion = MotionTables(
         ground.horizontal, ground.vertical, ground.horizontal_pieces, ground.vertical_pieces
     )
-    workspace = make_workspace(state, reference, len(model.lazy_guard))
+    workspace = make_workspace(state, reference, len(model.guard_tolerance))
     while True:
         result = advance(
             model.accelerate,
@@ -168,7 +165,7 @@ def integrate(
     time: Vector = np.arange(stored, dtype=np.float64) * (output_step or 1.0)
     end = float(clock[at.TIME])
     out_state, out_mode, out_work = out_state[:stored], out_mode[:stored], out_work[:stored]
-    unfinished = result != at.COMPLETED or keep_end
+    unfinished = result != at.COMPLETED
     if rows and unfinished and end - time[-1] > ON_SAMPLE * (output_step or 1.0):
         # the instant at which the run ended belongs to its history
         time = np.concatenate([time, np.array([end])])
@@ -196,7 +193,7 @@ def integrate(
         step_count=int(counters[at.STEPS]),
         rejected_count=int(counters[at.REJECTED]),
         substeps=substeps,
-        energy_residual=_ratio(float(clock[at.RESIDUAL]), float(clock[at.LARGEST_TERM])),
+        energy_residual=_ratio(float(clock[at.RESIDUAL]), float(clock[at.LARGEST_MOVED])),
         ending=Ending(int(counters[at.MODE]), state.copy(), memory.copy()),
         start_energy=float(clock[at.START_ENERGY]),
     )
@@ -207,8 +204,16 @@ def _beginning(model: ContactModel, start: Start | Ending) -> tuple[int, Vector,
         return model.initial(start)
     memory = start.memory.copy()
     # the books of losses begin anew with each run
-    memory[IMPACT_LOSS] = memory[REPINNING_LOSS] = 0.0
+    memory[IMPACT_LOSS] = memory[REPINNING_LOSS] = memory[IMPULSIVE_INPUT] = 0.0
     return start.mode, start.state.copy(), memory
+
+
+def _longest_steps(model: ContactModel) -> Vector:
+    """Give the longest stable fixed step in each mode, where that is not for its vibrations."""
+    longest = np.full(len(model.relaxation), math.inf)
+    decays = model.relaxation > 0.0
+    longest[decays] = STABLE / model.relaxation[decays]
+    return longest
 
 
 def _events(table: EventTable, count: int, width: int) -> Events:

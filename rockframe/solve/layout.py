@@ -65,7 +65,8 @@ EVENT_TIME: Final = 12
 GROUND_X: Final = 13
 GROUND_Y: Final = 14
 TIME: Final = 15
-CLOCK: Final = 16
+LARGEST_MOVED: Final = 16
+CLOCK: Final = 17
 
 # counters: integer progress and switches
 MODE: Final = 0

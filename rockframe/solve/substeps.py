@@ -1,7 +1,6 @@
 """How many fixed steps an interval of the motion is cut into, :eq:`eq-substeps`."""
 
 import math
-from dataclasses import replace
 from typing import Final
 
 from rockframe.dynamics.protocol import ContactModel
@@ -59,13 +58,3 @@ def substeps_of(accuracy: Accuracy, model: ContactModel, ground: Ground) -> int:
         )
         raise SolverError(msg)
     return accuracy.substeps
-
-
-def finer(accuracy: Accuracy, parts: int) -> Accuracy:
-    """Give settings with sub-steps as long in each of some equal parts of an interval.
-
-    Or shorter, where the sub-steps do not fit the parts.
-    """
-    if not isinstance(accuracy.substeps, int):
-        return accuracy
-    return replace(accuracy, substeps=math.ceil(accuracy.substeps / parts))

@@ -1,10 +1,7 @@
 """What an integration leaves behind: plain arrays, in SI units and per unit mass."""
 
 import math
-from dataclasses import dataclass, replace
-from typing import Self
-
-import numpy as np
+from dataclasses import dataclass
 
 from rockframe.compiled import Codes, Integers, Matrix, Vector
 from rockframe.dynamics.protocol import Ending
@@ -114,18 +111,3 @@ class Trajectory(Summary):
     events: Events
     ending: Ending
     start_energy: float
-
-    def thinned(self, every: int, last: int, step: float) -> Self:
-        """Give the run with one in `every` of its samples, `step` apart, up to number `last`."""
-        rows = slice(0, every * last + 1, every)
-        return replace(
-            self,
-            time=np.arange(len(self.time[rows]), dtype=np.float64) * step,
-            state=self.state[rows],
-            mode=self.mode[rows],
-            work=self.work[rows],
-        )
-
-    def without_histories(self) -> Self:
-        """Give the run without samples."""
-        return self.thinned(1, -1, 1.0)

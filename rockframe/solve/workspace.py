@@ -22,7 +22,7 @@ class Tables(NamedTuple):
 
     active: Integers
     contact: Integers
-    lazy: Integers
+    longest: Vector
     tolerance: Vector
     weights: Vector
 

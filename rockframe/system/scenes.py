@@ -18,7 +18,6 @@ from rockframe.system.winkler import winkler_setting
 
 if TYPE_CHECKING:
     from rockframe.dynamics.protocol import ContactModel
-    from rockframe.solve.cascade import Cascade
 
 
 class Setting(Protocol):
@@ -77,7 +76,7 @@ class Setting(Protocol):
         """Say what the model does not have."""
         ...
 
-    def compile(self) -> "ContactModel | Cascade":
+    def compile(self) -> "ContactModel":
         """Give the equations, ready for the integrator."""
         ...
 

@@ -21,7 +21,6 @@ from rockframe.system.winkler import WinklerSetting, bed_setting, bed_statics
 
 if TYPE_CHECKING:
     from rockframe.dynamics.protocol import ContactModel
-    from rockframe.solve.cascade import Cascade
 
 LEAST_CAP_SHARE = 1e-3
 """Least mass of a cap, as a share of the block's, with which the coupled equations are
@@ -279,12 +278,17 @@ class CascadeSetting(StackedSetting):
             "the cap's inclination, for the block",
         ]
 
-    def compile(self) -> "Cascade":
-        """Give both stages, ready for the integrator."""
-        from rockframe.solve.cascade import Cascade
+    def compile(self) -> "ContactModel":
+        """Give the equations of both stages, ready for the integrator."""
+        from rockframe.dynamics.cascade_model import cascade
 
-        top = 2.0 * self.cap.half_height - self.lower.body.centre_height
-        return Cascade(self.lower.compile(), self.upper.compile(), top)
+        centre = self.cap.half_height - self.lower.body.centre_height
+        return cascade(
+            self.lower.compile(),
+            self.upper.compile(),
+            top=centre + self.cap.half_height,
+            cap_centre=centre,
+        )
 
 
 def _uplift_of(setting: TwoSpringSetting | WinklerSetting, whose: str) -> str:

@@ -117,19 +117,50 @@ def test_the_ground_of_the_second_stage_is_the_motion_of_the_cap_s_top():
 # stage 2 ----------------------------------------------------------------------------------------
 
 
+def jumps_of_the_top(first, rule):
+    """Give times and sizes of the jumps of the top's velocity: the first body is re-pinned."""
+    if rule != "contact-state":
+        return []
+    held = {FULL: 0.0, 1: -1.6, 2: 1.6}
+    jumps = []
+    for i, time in enumerate(first.event_time.values):
+        before, after = (int(first[f"contact_state_{side}"][i]) for side in ("before", "after"))
+        angle = first.event_rotation.item(i)
+        sine, cosine = np.sin(angle), np.cos(angle)
+        old, new = (first[f"angular_velocity_{side}"].item(i) for side in ("before", "after"))
+        across = [
+            ((CENTRE + TOP) * cosine + held[state] * sine) * rate
+            for state, rate in ((before, old), (after, new))
+        ]
+        jumps.append((time, across[1] - across[0], -TOP * sine * (new - old)))
+    return jumps
+
+
 def second_by_hand(step, rule):
-    whole = cascade(restraint=rule).simulate(pulse(), output_step=f"{step!r} s", **RUN)
+    run = {"output_step": f"{step!r} s", **RUN}
+    whole = cascade(restraint=rule).simulate(pulse(), **run)
+    first = body_on_soil(restraint=rule).simulate(pulse(), overturning="continue", **run)
+    across = whole.cap_acceleration.values.copy()
+    upwards = whole.cap_vertical_acceleration.values.copy()
+    for time, jump_x, jump_y in jumps_of_the_top(first, rule):
+        # an impulse between two samples, with its area and its centre
+        i, share = divmod(time / step, 1.0)
+        for sample, weight in ((int(i), 1.0 - share), (int(i) + 1, share)):
+            across[sample] += weight * jump_x / step
+            upwards[sample] += weight * jump_y / step
     carried = rf.GroundMotion.from_arrays(
-        (whole.cap_acceleration.values, "m/s^2"),
-        f"{step!r} s",
-        vertical=(whole.cap_vertical_acceleration.values, "m/s^2"),
+        (across, "m/s^2"), f"{step!r} s", vertical=(upwards, "m/s^2")
     )
     return whole, rf.System(block(), pads(), restraint=rule).simulate(carried, accuracy="reference")
 
 
 @pytest.mark.parametrize("rule", RULES)
 def test_the_second_stage_is_the_block_on_its_pads_on_the_moving_cap(rule):
-    """Straight lines between samples of the cap's motion: an error that falls with the step."""
+    """Straight lines between samples of the cap's motion: an error that falls with the step.
+
+    Where the first body is re-pinned its acceleration jumps as well as its velocity, and
+    straight lines over the jump are of first order only.
+    """
     steps = (4e-3, 1e-3, 2.5e-4)
     errors = []
     for step in steps:
@@ -138,7 +169,7 @@ def test_the_second_stage_is_the_block_on_its_pads_on_the_moving_cap(rule):
         scale = np.abs(second.rotation.values).max()
         errors.append(np.abs(whole.rotation_on_cap - second.rotation).max().item() / scale)
     assert errors[0] > errors[1] > errors[2]
-    assert errors[0] > 32.0 * errors[2]
+    assert errors[0] > (4.0 if rule == "contact-state" else 32.0) * errors[2]
     assert errors[2] < 3e-5
     # all of the second stage is that of the run by hand, the totals are sums
     for name in ("left_reaction", "right_reaction"):

@@ -219,7 +219,8 @@ class Held:
         """Mode and state of the equations of motion, at rest in this place."""
         model = self.setting.compile()
         from rockframe.dynamics import coupled_layout as c
-        from rockframe.dynamics.coupled_corners import bed_mode_of, block_mode_of
+        from rockframe.dynamics.two_spring_switches import mode_of as block_mode_of
+        from rockframe.dynamics.winkler import mode_of as bed_mode_of
 
         x = np.zeros(2 * c.COORDINATES)
         x[c.CAP_VERTICAL], x[c.CAP_ROTATION] = self.rise, self.phi

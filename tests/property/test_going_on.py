@@ -101,7 +101,7 @@ def test_a_continued_run_can_be_certified():
 def test_a_continued_run_tells_where_it_began(name):
     first = SCENES[name].simulate(MOTION.window(end="3 s"))
     run = SCENES[name].simulate(initial=first, duration="0.1 s")
-    assert json.loads(run.run_json)["initial"]["endings"] == json.loads(first.end_state)
+    assert json.loads(run.run_json)["initial"]["ending"] == json.loads(first.end_state)
 
 
 def test_runs_that_cannot_be_continued():

@@ -18,7 +18,7 @@ from scipy.linalg import expm
 
 import rockframe as rf
 from rockframe.dynamics.kinematics import PIVOT_LEFT, PIVOT_RIGHT
-from rockframe.dynamics.pad import CLEAR
+from rockframe.dynamics.pad import CLEAR, CONTACTS, TOUCHING, both_corners
 from rockframe.dynamics.single_body import COORDINATES, ROTATION, VERTICAL
 
 G = 9.80665
@@ -406,8 +406,8 @@ def evaluate(model, mode, state, ground_x, ground_y):
 
 MODES = {
     FULL: 0,
-    LEFT: 4 * CLEAR + 16 * PIVOT_LEFT,
-    RIGHT: CLEAR + 16 * PIVOT_RIGHT,
+    LEFT: both_corners(TOUCHING, CLEAR) + CONTACTS * PIVOT_LEFT,
+    RIGHT: both_corners(CLEAR, TOUCHING) + CONTACTS * PIVOT_RIGHT,
 }
 
 
