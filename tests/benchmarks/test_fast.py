@@ -14,7 +14,6 @@ from records import record_path
 import rockframe as rf
 from rockframe.dynamics.protocol import Start
 from rockframe.solve.accuracy import accuracy_of
-from rockframe.solve.cascade import Cascade, integrate_cascade
 from rockframe.solve.ground_table import Ground
 from rockframe.solve.integrate import integrate
 
@@ -53,18 +52,11 @@ def systems() -> dict[str, tuple[rf.System, float]]:
 
 def solve(model, ground: Ground, level: str):
     options = {"duration": LENGTH, "output_step": STEP, "stop_at_overturning": False}
-    run = integrate_cascade if isinstance(model, Cascade) else integrate
-    return run(model, Start(), ground, accuracy_of(level), **options)
+    return integrate(model, Start(), ground, accuracy_of(level), **options)
 
 
-def rotation(model, result) -> np.ndarray:
-    if isinstance(model, Cascade):
-        parts = ((model.first, result.first), (model.second, result.second))
-    else:
-        parts = ((model, result),)
-    return sum(
-        run.state[:, : len(part.rotation_weights)] @ part.rotation_weights for part, run in parts
-    )
+def rotation(model, run) -> np.ndarray:
+    return run.state[:, : len(model.rotation_weights)] @ model.rotation_weights
 
 
 @pytest.fixture(scope="module")

@@ -1,0 +1,88 @@
+"""No pad that its law lets press is without a force: N = max(0, k(delta - y) - c y') below delta.
+
+Judged from the states of random runs on pads, alone, coupled and by cascade, with horizontal and
+vertical motion, squat and slender blocks, light and heavy dashpots.
+"""
+
+import numpy as np
+import pytest
+
+import rockframe as rf
+from rockframe.dynamics import coupled_corners, coupled_layout, two_spring, two_spring_switches
+from rockframe.dynamics.pad import RELAXING, corners_in
+from rockframe.dynamics.protocol import Start
+from rockframe.simulation.run import ground_of
+from rockframe.solve.accuracy import accuracy_of
+from rockframe.solve.integrate import integrate
+
+pytestmark = pytest.mark.property
+
+RULES = ("contact-state", "leading-corner", "centre")
+STEP = 0.01
+
+
+def shaking(rng, slope):
+    time = np.arange(301) * STEP
+    across = slope * 9.81 * rng.uniform(1.0, 4.0)
+    x, y = (
+        size * np.sin(2.0 * np.pi * rng.uniform(1.0, 8.0) * time + rng.uniform(0.0, 6.0))
+        for size in (across, rng.uniform(2.0, 9.0))
+    )
+    return rf.GroundMotion.from_arrays((x, "m/s^2"), f"{STEP} s", vertical=(y, "m/s^2"))
+
+
+def scene(kind, rule, rng):
+    slenderness = rng.uniform(1.0, 5.0)
+    block = rf.Block.from_size(
+        radius=f"{rng.uniform(0.5, 5.0)} m", slenderness=slenderness, mass="10 t"
+    )
+    pads = rf.TwoSpringSupport(
+        frequency_ratio=rng.uniform(8.0, 40.0), damping_ratio=rng.uniform(0.05, 0.6)
+    )
+    parts = [block, pads]
+    if kind != "pads":
+        width, height = block.si.width, block.si.height
+        # of what holds block and cap upright
+        stiffness = rng.uniform(4.0, 30.0) * 1.5 * 14e3 * 9.81 * height / (0.5 * width) ** 3
+        parts += [
+            rf.CushionCap(height=f"{0.15 * width} m", mass="4 t"),
+            rf.WinklerSoil(stiffness=f"{stiffness} Pa", damping_ratio=rng.uniform(0.05, 0.4)),
+        ]
+    coupling = {} if kind == "pads" else {"coupling": kind}
+    return rf.System(*parts, restraint=rule, **coupling), shaking(rng, 1.0 / slenderness)
+
+
+def free_forces(kind, model, run):
+    """Give the law's force in weights at each free corner below its pad's level, at each sample."""
+    p = model.parameters
+    if kind == "cascade":
+        p = p[len(p) - 3 - two_spring.PARAMETERS : -3]
+    law = coupled_corners.reaction if kind == "coupled" else two_spring_switches.reaction
+    level = coupled_corners.corner_level if kind == "coupled" else two_spring_switches.corner_level
+    delta = p[coupled_layout.PAD_SETTLEMENT if kind == "coupled" else two_spring.SETTLEMENT]
+    gravity = 9.80665
+    found = []
+    for mode, state in zip(run.mode, run.state, strict=True):
+        own = state[1::2] if kind == "cascade" else state
+        for first, contact in zip((0, 3), corners_in(int(mode)), strict=True):
+            if contact == RELAXING and level(first, own, p) < delta:
+                found.append(law(first, own, p) / gravity)
+    return found
+
+
+@pytest.mark.parametrize("rule", RULES)
+@pytest.mark.parametrize("kind", ["pads", "coupled", "cascade"])
+def test_a_free_corner_is_nowhere_pressed(kind, rule):
+    rng = np.random.default_rng(5)
+    relaxing = 0
+    for _ in range(25):
+        system, motion = scene(kind, rule, rng)
+        model = system.setting.compile()
+        run = integrate(
+            model, Start(), ground_of(motion), accuracy_of("standard"),
+            duration=3.0, output_step=1e-3, stop_at_overturning=True,
+        )  # fmt: skip
+        found = free_forces(kind, model, run)
+        relaxing += len(found)
+        assert max(found, default=0.0) < 1e-4
+    assert relaxing > 500
