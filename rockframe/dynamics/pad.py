@@ -167,7 +167,7 @@ def relaxation_rate(stiffness: float, damping: float) -> float:
 
 @kernel
 def forceless_rate(level: float, stiffness: float, damping: float, settlement: float) -> float:
-    """Give the speed at which a corner rises with its pad without a force between them."""
+    """Give the speed of a corner that follows its pad without a force, :eq:`eq-forceless`."""
     return relaxation_rate(stiffness, damping) * (settlement - level)
 
 

@@ -15,6 +15,7 @@ from rockframe.dynamics.protocol import (
     REPINNING_LOSS,
     REST,
     ROTATION_LIMIT,
+    ROUNDING,
     TOPPLED,
     ContactState,
 )
@@ -55,11 +56,13 @@ def audit(
     lost = clock[at.BURNT] + memory[IMPACT_LOSS] + memory[REPINNING_LOSS]
     supplied = clock[at.SUPPLIED] + memory[IMPULSIVE_INPUT]
     balance = w.energies[0] + stored + lost - supplied - clock[at.START_ENERGY]
-    clock[at.RESIDUAL] = max(clock[at.RESIDUAL], abs(balance))
     moved = max(w.energies[0], abs(stored), lost, abs(supplied))
     clock[at.LARGEST_MOVED] = max(clock[at.LARGEST_MOVED], moved)
     terms = max(moved, abs(w.energies[1]), w.energies[2])
     clock[at.LARGEST_TERM] = max(clock[at.LARGEST_TERM], terms)
+    # the terms themselves are rounded, those at rest among them
+    imbalance = abs(balance) - ROUNDING * clock[at.LARGEST_TERM]
+    clock[at.RESIDUAL] = max(clock[at.RESIDUAL], imbalance)
 
 
 @kernel

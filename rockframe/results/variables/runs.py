@@ -142,7 +142,7 @@ EVENTS_AND_SCALARS: Final = (
         "peak_relative_rotation", (), Unit.ONE, "largest absolute rotation over overturning angle"
     ),
     Variable("first_uplift_time", (), Unit.SECOND, "time contact is first lost, NaN if never"),
-    count("impact_count", "number of impacts"),
+    count("impact_count", "number of impacts, those that end in rest among them"),
     Variable("flight_time", (), Unit.SECOND, "time without any contact"),
     count("flight_count", "number of flights"),
     Variable(
