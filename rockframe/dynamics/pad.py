@@ -20,7 +20,8 @@ LEAVING: Final = 4  # free, though the re-pinning of its separation left it pres
 # Two corners' contacts in one integer: left corner + 8 * right corner.
 CORNER_BITS: Final = 3
 CORNER_MASK: Final = 7
-CONTACTS: Final = 64
+CONTACT_BITS: Final = 6
+CONTACTS: Final = 1 << CONTACT_BITS
 
 # guards of a corner
 LEAVE: Final = 0  # the reaction of a touching corner; the gap of a free one

@@ -13,6 +13,7 @@ from rockframe.compiled import Vector, callback, inlined, kernel
 from rockframe.dynamics import single_body as body
 from rockframe.dynamics.kinematics import end_accelerations, pivot_guard, sine_cosine_rise
 from rockframe.dynamics.pad import (
+    CONTACT_BITS,
     CONTACTS,
     CORNER_GUARDS,
     LEAVE,
@@ -90,19 +91,20 @@ def airborne_corners(left: int, right: int) -> bool:
 @kernel
 def glides(mode: int) -> bool:
     """Whether the corner that touches glides."""
-    return mode >= GLIDING * CONTACTS
+    return mode >> CONTACT_BITS >= GLIDING
 
 
 @inlined
 def held_pivot(mode: int) -> int:
     """Give the pivot of a mode as if nothing glided or flew."""
-    return mode // CONTACTS % GLIDING
+    pivot = mode >> CONTACT_BITS
+    return pivot - GLIDING if pivot >= GLIDING else pivot
 
 
 @kernel
 def pivot_in(mode: int) -> int:
     """Give the pivot of a mode."""
-    return FREE if in_flight(mode) or glides(mode) else held_pivot(mode)
+    return FREE if in_flight(mode) or glides(mode) else mode >> CONTACT_BITS
 
 
 @kernel

@@ -1,0 +1,57 @@
+"""The block on two pads beside MuJoCo, a multibody engine; skipped where it is not installed.
+
+All cases and steps, with costs: ``python tests/benchmarks/engine_comparison.py``.
+"""
+
+import pytest
+
+pytest.importorskip("mujoco")
+
+from benchmarks.engine_comparison import Case, by_engine, by_rockframe, difference
+
+STEP = 2e-4
+ALLOWED = 2e-4
+ALLOWED_WITH_CHANGES_MET = 1e-8
+SECONDS = 2.0
+RULES = ("centre", "leading-corner", "contact-state")
+
+
+def compared(case: Case, *, meet_changes: bool) -> tuple[float, int]:
+    """Run both; give the difference of the rotation over its peak, and the number of impacts."""
+    exact = by_rockframe(case)
+    step = 2.0 * STEP if meet_changes else STEP
+    found = by_engine(case, step, meet_changes=meet_changes)
+    return difference(found, exact["rotation"].to_numpy()), int(exact["impact_count"])
+
+
+def test_full_contact():
+    case = Case("half sine", 0.02, 0.10, seconds=SECONDS)
+    found, impacts = compared(case, meet_changes=False)
+    assert impacts == 0
+    assert found < ALLOWED_WITH_CHANGES_MET
+
+
+@pytest.mark.parametrize("damping_ratio", [0.0, 0.10])
+def test_uplift(damping_ratio):
+    """Each step as it falls: what is left is the steps in which contact changes."""
+    case = Case("half sine", 0.35, damping_ratio, seconds=SECONDS)
+    found, impacts = compared(case, meet_changes=False)
+    assert impacts > 0
+    assert found < ALLOWED
+
+
+@pytest.mark.parametrize("restraint", RULES)
+def test_uplift_with_changes_met(restraint):
+    case = Case("half sine", 0.35, 0.10, restraint, seconds=SECONDS)
+    found, impacts = compared(case, meet_changes=True)
+    assert impacts > 0
+    assert found < ALLOWED_WITH_CHANGES_MET
+
+
+@pytest.mark.parametrize("meet_changes", [False, True])
+def test_record(meet_changes):
+    case = Case("El Centro", 1.0, 0.10, seconds=4.0)
+    allowed = ALLOWED_WITH_CHANGES_MET if meet_changes else ALLOWED
+    found, impacts = compared(case, meet_changes=meet_changes)
+    assert impacts > 0
+    assert found < allowed
