@@ -153,3 +153,85 @@ def test_a_corner_that_presses_after_the_hold_does_not_glide():
     run = drop(pads(), speed=-3.0)
     landing = list(run.events.kind).index(EventKind.IMPACT)
     assert run.events.mode_after[landing] // CONTACTS < GLIDING
+
+
+# a corner that leaves into flight ---------------------------------------------------------------
+
+SQUAT = {"half_width": 1.0, "half_height": 1.7, "stiffness": 770.0, "damping": 20.0}
+
+
+def leaving(sign=1.0, duration=0.3):
+    """Throw a squat block, held at the middle of its base, off its right pad."""
+    model = two_spring(
+        **SQUAT, shape_factor=3.0, mass=1.0, restitution=0.9, restraint=2, small_rotation=False,
+        gravity=G,
+    )  # fmt: skip
+    run = integrate(
+        model,
+        Start(sign * 0.5, sign * 1.86, None, 0.38),
+        STILL,
+        accuracy_of("reference"),
+        duration=duration,
+        output_step=1e-3,
+        stop_at_overturning=False,
+    )
+    return model, run
+
+
+def right_pad(alpha, y, spin, speed):
+    """Give the force of the right pad's law."""
+    b, h, k, c = SQUAT.values()
+    rise = y + h * (1.0 - np.cos(alpha)) - b * np.sin(alpha)
+    rate = speed + (h * np.sin(alpha) - b * np.cos(alpha)) * spin
+    return k * (0.5 * G / k - rise) - c * rate
+
+
+def squat_by_friction(start, coefficient, times):
+    """Integrate the same block with dry friction at the middle of its base, regularised."""
+    b, h, _, _ = SQUAT.values()
+    inertia = (b * b + h * h) / 3.0
+
+    def rates(t, z):
+        alpha, y, _, spin, speed, sway = z
+        arm, reach = h * np.sin(alpha) - b * np.cos(alpha), h * np.cos(alpha)
+        pressing = max(right_pad(alpha, y, spin, speed), 0.0)
+        hold = -coefficient * pressing * np.tanh((sway - reach * spin) / 1e-5)
+        return [spin, speed, sway, (pressing * arm - reach * hold) / inertia, pressing - G, hold]
+
+    return solve_ivp(
+        rates, (0.0, times[-1]), start, method="LSODA", t_eval=times, rtol=1e-9, atol=1e-12,
+        max_step=1e-4,
+    ).y  # fmt: skip
+
+
+def test_a_corner_that_flight_would_press_glides_along_its_relaxing_pad():
+    """Held it leaves, free it would be pressed at once: the limit of dry friction lies between."""
+    _, run = leaving()
+    left = next(
+        i for i, mode in enumerate(run.events.mode_after)
+        if run.events.kind[i] == EventKind.SEPARATION and mode // CONTACTS >= GLIDING
+    )  # fmt: skip
+    begin = run.events.time[left]
+    gliding = (run.time > begin) & (run.mode // CONTACTS >= GLIDING)
+    assert gliding.sum() > 50
+    alpha, y, _, spin, speed, _ = run.state[gliding].T
+    # below the level of the unloaded pad, with no force
+    rise = y + 1.7 * (1.0 - np.cos(alpha)) - np.sin(alpha)
+    assert (rise < 0.99 * 0.5 * G / 770.0).sum() > 10
+    assert np.abs(right_pad(alpha, y, spin, speed)).max() < 1e-9 * G
+    assert run.energy_residual < 1e-11
+    times = run.time[gliding] - begin
+    gaps = []
+    for coefficient in (20.0, 80.0, 320.0):
+        z = squat_by_friction(run.events.state_after[left], coefficient, times)
+        gaps.append(np.abs(z[[0, 3, 5]] - run.state[gliding][:, [0, 3, 5]].T).max(axis=1))
+    for coarse, fine in pairwise(gaps):
+        assert (fine < 0.4 * coarse).all()
+    assert gaps[-1].max() < 5e-3
+
+
+def test_leaving_into_flight_has_no_side():
+    (_, one), (_, other) = leaving(), leaving(-1.0)
+    turned = np.array([-1.0, 1.0, -1.0, -1.0, 1.0, -1.0])
+    np.testing.assert_array_equal(other.state, one.state * turned)
+    np.testing.assert_array_equal(other.events.kind, one.events.kind)

@@ -180,3 +180,21 @@ def test_a_block_left_alone_comes_to_rest(rule):
     assert kinetic[-1] < 1e-9 * kinetic.max()
     assert abs(response.rotation.values[-1]) < 1e-6
     assert response.contact_state.values[-1] == 0
+
+
+@pytest.mark.parametrize("base", RULES)
+def test_the_residual_of_a_quiet_run_is_that_of_a_strong_one(base):
+    """In full contact a tenth of the shaking makes a hundredth of the energies, and of the errors.
+
+    The springs' energy at rest stays what it is; over that the residual would vanish.
+    """
+    shaking = {"frequency": 1.5, "cycles": 2.0, "vertical": 0.4, "xi": 0.1, "rotation": "small"}
+    size = {"radius": 5.0, "slenderness": 4.0, "beta": 20.0}
+    residuals = [
+        Scenario(base=base, peak=peak, **shaking, **size)
+        .run(accuracy="fast")
+        .energy_residual.item()
+        for peak in (3e-3, 3e-4, 3e-5)
+    ]
+    assert residuals[0] > 1e-7
+    assert residuals == pytest.approx([residuals[0]] * 3, rel=0.05)
