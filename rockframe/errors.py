@@ -91,7 +91,7 @@ class ModelWarning(RockframeWarning):
 
 
 class SolverWarning(RockframeWarning):
-    """A run could not be finished; what was computed until then is in the result."""
+    """A run could not be finished, or its energies show that it is no solution."""
 
 
 class RecordWarning(RockframeWarning):

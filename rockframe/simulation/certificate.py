@@ -1,52 +1,92 @@
-"""How sure a verdict is: runs beside a run, with other tolerances, parameters and scales."""
+"""How sure a verdict is: runs beside a run, by finer means, nudged and scaled."""
 
 import math
 import warnings
-from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
 from rockframe.errors import ModelWarning, RockframeError, SolverError
-from rockframe.simulation.beginning import Continuation
+from rockframe.simulation.beside import Beside, Run
+from rockframe.simulation.certificate_words import sentence
 from rockframe.simulation.certification import Certificate, Certification
+from rockframe.simulation.finer import finer_plans
+from rockframe.simulation.nudging import SceneAt, parameters, scaled, scales
 from rockframe.simulation.plan import Plan
-from rockframe.solve.accuracy import FEWEST, LEVELS, Accuracy, AccuracyLevel
+from rockframe.simulation.scan import Scan, scan
+from rockframe.solve.accuracy import FEWEST
 from rockframe.system.assembly import Assembly
 
-if TYPE_CHECKING:
-    from rockframe.solve.trajectory import Summary
-
-TIGHTER: Final = 0.01
-"""Tolerance of the run beside, over that of the run."""
-TIGHTEST: Final = 1e-13
-"""Tolerance beyond which rounding rules."""
-FIRST_SCALE: Final = 1e-3
-"""First change of the scale that is tried, and the resolution of a margin."""
-SCALES: Final = 12
-"""Changes of the scale that are tried, to each side, in a geometric row."""
-HALVINGS: Final = 6
-"""Bisections of the interval in which the verdict changes."""
-NEAR: Final = 0.01
-"""A margin up to which a verdict is called near the boundary [1]."""
+SAFETY: Final = 3.0
+"""Error that a run may have, over its largest difference from a run by finer means."""
+RESOLUTION: Final = 0.004
+"""Length of an interval of scales that is not looked into, over its distance from one."""
+NUDGE_RESOLUTION: Final = 0.06
+"""The same of the values of a parameter, over the distance from its own."""
+INSIDE: Final = (0.5, 1.0)
+"""Shares of the nudge by which a parameter is changed first."""
+PER_PARAMETER: Final = (4, 14)
+"""Least and most runs for one parameter."""
+FOR_PARAMETERS: Final = 0.6
+"""Share of all runs that may go to parameters."""
 
 NONE: Final = Certificate(
     converged=False,
     robust=False,
     margin=math.nan,
+    flip=math.nan,
     peak_error=math.nan,
     peak_sensitivity=math.nan,
     runs=0,
+    resolution=RESOLUTION,
     sentence="No certificate: the run was not finished.",
 )
 """Of a run without a verdict."""
 
-Run = Callable[[Assembly, Plan], "Summary"]
+
+@dataclass(frozen=True)
+class Evidence:
+    """All runs beside a run.
+
+    Parameters
+    ----------
+    base : Beside
+        The run itself.
+    finer : list of (str, Beside)
+        Runs by finer means, with these in words.
+    nudged : list of (str, Scan)
+        Runs with a parameter changed, with its name.
+    scaled : Scan
+        Runs with a scaled motion or start.
+    """
+
+    base: Beside
+    finer: list[tuple[str, Beside]]
+    nudged: list[tuple[str, Scan]]
+    scaled: Scan
+
+    @property
+    def runs(self) -> int:
+        """Number of runs."""
+        nudged = sum(len(found.tried) for _, found in self.nudged)
+        return len(self.finer) + nudged + len(self.scaled.tried)
+
+    @property
+    def peak_error(self) -> float:
+        """Estimate of the error of the peak rotation [rad]."""
+        return SAFETY * largest([distance(other, self.base) for _, other in self.finer])
+
+    @property
+    def peak_sensitivity(self) -> float:
+        """Largest difference of the peak rotation that a nudge makes [rad]."""
+        return largest(
+            [distance(other, self.base) for _, one in self.nudged for other in one.tried.values()]
+        )
 
 
 def certify(
-    system: Assembly, plan: Plan, summary: "Summary", wanted: Certification, run: Run
+    system: Assembly, plan: Plan, base: Beside, wanted: Certification, run: Run
 ) -> Certificate:
     """Make the certificate of a run.
 
@@ -56,244 +96,112 @@ def certify(
         The scene.
     plan : Plan
         The run's arguments.
-    summary : Summary
-        What became of it.
+    base : Beside
+        What the run showed.
     wanted : Certification
         What to try.
     run : callable
-        Makes a run and gives what became of it.
+        Makes a run and tells what it showed.
 
     Returns
     -------
     Certificate
     """
-    fell = summary.overturned
-    if fell is None:
+    if base.overturned is None:
         return NONE
     bare = replace(plan, output_step=None, energies=())
-    stopping = replace(bare, stop_at_overturning=True)
-    peak = summary.peak_rotation
     with warnings.catch_warnings():
         # the run itself has given them
         warnings.simplefilter("ignore", ModelWarning)
-        tighter = run(system, replace(bare, accuracy=tightened(plan.accuracy)))
-        nudged = [
-            (words, _run_beside(other, bare, run)) for words, other in nudges(system, wanted.nudge)
+        finer = [
+            (words, run(system, other)) for words, other in finer_plans(system, bare, base.step)
         ]
-        boundary = nearest_change(system, stopping, fell, wanted.reach, run)
-    distances = [_distance(other, peak) for _, other in nudged]
-    changed = [(words, other.overturned) for words, other in nudged if other.overturned != fell]
+        nudged = _nudged(system, bare, base, wanted, run)
+        spent = len(finer) + sum(len(found.tried) for _, found in nudged)
+        most = max(wanted.runs - spent, wanted.runs // 4)
+        along = _scaled(system, bare, base, wanted, run, most)
+    evidence = Evidence(base, finer, nudged, along)
+    margin = along.margin if along.tried else math.nan
+    followed = all(found.flip is None and found.followed for _, found in nudged)
     certificate = Certificate(
-        converged=tighter.overturned == fell,
-        robust=not changed,
-        margin=boundary.margin(wanted.reach),
-        peak_error=_distance(tighter, peak),
-        peak_sensitivity=float(np.max(distances, initial=0.0)),
-        runs=1 + len(nudged) + boundary.runs,
+        converged=all(settles(base, other) for _, other in finer),
+        robust=followed and not margin < wanted.nudge,
+        margin=margin,
+        flip=math.nan if along.flip is None else 1.0 + along.flip,
+        peak_error=evidence.peak_error,
+        peak_sensitivity=evidence.peak_sensitivity,
+        runs=evidence.runs,
+        resolution=RESOLUTION,
         sentence="",
     )
-    doubts = list(_doubts(certificate, tighter.overturned, changed, boundary, plan))
-    return replace(certificate, sentence=_sentence(fell, doubts, boundary, wanted, plan))
+    text = sentence(certificate, base, finer, nudged, along, wanted, plan)
+    return replace(certificate, sentence=text)
 
 
-def _run_beside(system: Assembly, plan: Plan, run: Run) -> "Summary":
+def _nudged(
+    system: Assembly, plan: Plan, base: Beside, wanted: Certification, run: Run
+) -> list[tuple[str, Scan]]:
+    """Change every parameter up and down, at the nudge and inside it."""
+    every = list(parameters(system))
+    fewest, most = PER_PARAMETER
+    share = int(FOR_PARAMETERS * wanted.runs) // max(len(every), 1)
+    row = [share * wanted.nudge for share in INSIDE]
+
+    def along(scene_at: SceneAt) -> Scan:
+        def look(change: float) -> Beside | None:
+            scene = scene_at(change)
+            return None if scene is None else _run_beside(scene, plan, run)
+
+        return scan(
+            look,
+            base,
+            row,
+            most=min(max(share, fewest), most),
+            resolution=NUDGE_RESOLUTION,
+            close_in=False,
+        )
+
+    return [(words, along(scene_at)) for words, scene_at in every]
+
+
+def _scaled(
+    system: Assembly, plan: Plan, base: Beside, wanted: Certification, run: Run, most: int
+) -> Scan:
+    """Scale the motion, or the start."""
+    stopping = replace(plan, stop_at_overturning=True)
+    theta = system.setting.overturning_angle
+
+    def look(change: float) -> Beside | None:
+        other = scaled(stopping, 1.0 + change, theta)
+        return None if other is None else run(system, other)
+
+    row = scales(wanted.nudge, wanted.reach)
+    return scan(look, base, row, most=most, resolution=RESOLUTION)
+
+
+def _run_beside(system: Assembly, plan: Plan, run: Run) -> Beside | None:
     """Run a nudged scene; with a sub-step more where those given have become too few."""
     try:
         return run(system, plan)
     except SolverError:
         return run(system, replace(plan, accuracy=replace(plan.accuracy, substeps=FEWEST)))
-
-
-def _distance(other: "Summary", peak: float) -> float:
-    """Give the difference of a peak rotation; NaN if the run was cut off before its peak."""
-    return math.nan if other.overturned is None else abs(other.peak_rotation - peak)
-
-
-def tightened(accuracy: Accuracy) -> Accuracy:
-    """Give finer settings: a tighter tolerance, or one instead of fixed sub-steps."""
-    if accuracy.rtol is None:
-        return LEVELS[AccuracyLevel.STANDARD]
-    return replace(accuracy, rtol=max(TIGHTER * accuracy.rtol, TIGHTEST))
-
-
-def nudges(system: Assembly, nudge: float) -> Iterator[tuple[str, Assembly]]:
-    """Give the scene with each of its parameters a little smaller, and a little larger.
-
-    A change that makes parts misfit is left out.
-
-    Parameters
-    ----------
-    system : Assembly
-        The scene.
-    nudge : float
-        Relative change [1].
-
-    Yields
-    ------
-    str, Assembly
-        What was changed, in words, and the scene.
-    """
-    description = system.to_dict()
-    options = {name: str(value) for name, value in description.items() if name != "parts"}
-    parts = system.parts.structural()
-    for place, part in enumerate(parts):
-        for name in part.parameters():
-            for change in (-nudge, nudge):
-                try:
-                    changed = part.with_scaled(name, 1.0 + change)
-                    together = [*parts[:place], changed, *parts[place + 1 :]]
-                    scene = type(system)(*together, **options)
-                except RockframeError:
-                    continue
-                words = f"{name.replace('_', ' ')} of the {part.noun} {100.0 * change:+.3g} %"
-                yield words, scene
-
-
-@dataclass(frozen=True)
-class Boundary:
-    """Where the verdict changes.
-
-    Parameters
-    ----------
-    scale : float or None
-        The scale nearest to one with another verdict, if there is one.
-    overturned : bool or None
-        That verdict; None where the run was not finished.
-    runs : int
-        Number of runs that it took.
-    """
-
-    scale: float | None
-    overturned: bool | None
-    runs: int
-
-    def margin(self, reach: float) -> float:
-        """Give its distance, or the reach of what was tried; NaN if nothing was."""
-        if self.runs == 0:
-            return math.nan
-        return reach if self.scale is None else abs(self.scale - 1.0)
-
-
-def nearest_change(system: Assembly, plan: Plan, fell: bool, reach: float, run: Run) -> Boundary:
-    """Find the scale of the motion nearest to one that changes the verdict.
-
-    Overturning is no monotonic function of the scale: scales in a geometric row are tried
-    to both sides, and the first interval in which the verdict changes is bisected.
-
-    Parameters
-    ----------
-    system : Assembly
-        The scene.
-    plan : Plan
-        The run's arguments.
-    fell : bool
-        Whether the run overturned.
-    reach : float
-        Largest relative change of the scale [1].
-    run : callable
-        Makes a run and gives what became of it.
-
-    Returns
-    -------
-    Boundary
-    """
-    changes = [FIRST_SCALE * (reach / FIRST_SCALE) ** (k / (SCALES - 1)) for k in range(SCALES)]
-    verdicts: dict[float, bool | None] = {}
-
-    def differs(change: float) -> bool:
-        other = scaled(plan, 1.0 + change, system.setting.overturning_angle)
-        if other is None:
-            return False
-        verdicts[change] = run(system, other).overturned
-        return verdicts[change] != fell
-
-    before = 0.0
-    for change in changes:
-        sides = [sign for sign in (-1.0, 1.0) if differs(sign * change)]
-        if sides:
-            found: list[float] = []
-            for sign in sides:
-                near, far = before, change
-                for _ in range(HALVINGS):
-                    middle = 0.5 * (near + far)
-                    if differs(sign * middle):
-                        far = middle
-                    else:
-                        near = middle
-                found.append(sign * far)
-            nearest = min(found, key=abs)
-            return Boundary(1.0 + nearest, verdicts[nearest], len(verdicts))
-        before = change
-    return Boundary(None, None, len(verdicts))
-
-
-def scaled(plan: Plan, scale: float, theta: float) -> Plan | None:
-    """Scale what drives a run: its motion, or without one its start; None if it cannot be."""
-    if plan.motion is not None:
-        return replace(plan, motion=plan.motion.scaled(scale))
-    start = plan.initial
-    if isinstance(start, Continuation):
+    except RockframeError:  # the start does not fit the nudged scene
         return None
-    if start.si.rotation == 0.0 and start.si.angular_velocity == 0.0:
-        return None
-    try:
-        for name in ("rotation", "angular_velocity"):
-            if name in start.parameters():
-                start = start.with_scaled(name, scale)
-    except RockframeError:
-        return None
-    if abs(start.si.rotation) >= theta:
-        return None
-    return replace(plan, initial=start)
 
 
-def _doubts(
-    certificate: Certificate,
-    tighter: bool | None,
-    changed: list[tuple[str, bool | None]],
-    boundary: Boundary,
-    plan: Plan,
-) -> Iterator[str]:
-    """Say which runs beside ended otherwise."""
-    if not certificate.converged:
-        yield f"with {_finer(plan)} {_ends(tighter)}"
-    if changed:
-        (words, other), more = changed[0], len(changed) - 1
-        yield f"with the {words}{f' (and {more} more)' if more else ''} {_ends(other)}"
-    if boundary.scale is not None and certificate.margin <= NEAR:
-        way = "up" if boundary.scale > 1.0 else "down"
-        share = f"{100.0 * certificate.margin:.2g} %"
-        yield f"with {_driver(plan)} scaled {way} by {share} {_ends(boundary.overturned)}"
+def settles(base: Beside, finer: Beside) -> bool:
+    """Whether a run by finer means has the verdict of a run, by more than they differ."""
+    if not base.alike(finer):
+        return False
+    pairs = zip(base.clearances, finer.clearances, strict=True)
+    return all(SAFETY * abs(a - b) < a for a, b in pairs)
 
 
-def _sentence(
-    fell: bool, doubts: list[str], boundary: Boundary, wanted: Certification, plan: Plan
-) -> str:
-    verdict = "overturns" if fell else "stands"
-    if doubts:
-        return f"Near the boundary: the body {verdict}, but {'; '.join(doubts)}."
-    text = f"The body {verdict} also with {_finer(plan)}"
-    nudged = f"with every parameter {100.0 * wanted.nudge:g} % larger or smaller"
-    if boundary.runs == 0:
-        return f"{text} and {nudged}."
-    what = _driver(plan)
-    far = f"for every scale of {what} tried from {1 - wanted.reach:g} to {1 + wanted.reach:g}"
-    if boundary.scale is not None:
-        far = f"until {what} is scaled by {boundary.scale:.3g}"
-    return f"{text}, {nudged}, and {far}."
+def distance(other: Beside, base: Beside) -> float:
+    """Give the difference of two peaks; NaN if a run was cut off before its own."""
+    return math.nan if other.overturned is None else abs(other.peak - base.peak)
 
 
-def _ends(fell: bool | None) -> str:
-    if fell is None:
-        return "the run cannot be finished"
-    return "it overturns" if fell else "it stands"
-
-
-def _driver(plan: Plan) -> str:
-    return "the motion" if plan.motion is not None else "the start"
-
-
-def _finer(plan: Plan) -> str:
-    if plan.accuracy.rtol is None:
-        return "steps by tolerance instead of fixed ones"
-    return f"a tolerance {1.0 / TIGHTER:g} times tighter"
+def largest(values: list[float]) -> float:
+    """Give the largest value, NaN if one is NaN, 0 of none."""
+    return float(np.max(values, initial=0.0))

@@ -5,9 +5,12 @@ from typing import Final
 
 from rockframe.errors import ComponentError, shown
 from rockframe.units import Condition, to_ratio
+from rockframe.words import whole_number
 
 _SMALL: Final = Condition("above 0 and at most 0.1", lambda value: 0.0 < value <= 0.1)
 _REACH: Final = Condition("from 0.01 to 0.9", lambda value: 0.01 <= value <= 0.9)
+FEWEST_RUNS: Final = 60
+MOST_RUNS: Final = 100_000
 
 
 @dataclass(frozen=True, init=False)
@@ -17,26 +20,33 @@ class Certification:
     Parameters
     ----------
     nudge : float, optional
-        Relative change of each parameter in turn, up and down [1].
+        Largest relative change of each parameter in turn, up and down [1].
     reach : float, optional
         Largest relative change of the motion's scale [1].
+    runs : int, optional
+        Most runs beside the run; more follow the verdict farther where it changes fast.
 
     Raises
     ------
     UnitsError
         Not a ratio.
     ComponentError
-        A nudge outside 0 to 0.1, or a reach outside 0.01 to 0.9.
+        A nudge outside 0 to 0.1, a reach outside 0.01 to 0.9, or a number of runs outside
+        60 to 100 000.
     """
 
     nudge: float
     reach: float
+    runs: int
 
-    def __init__(self, *, nudge: float = 1e-3, reach: float = 0.5) -> None:
+    def __init__(self, *, nudge: float = 1e-3, reach: float = 0.5, runs: int = 200) -> None:
+        owner = type(self).__name__
         given = {"nudge": (nudge, _SMALL), "reach": (reach, _REACH)}
         for name, (value, condition) in given.items():
-            ratio = to_ratio(value, owner="Certification", name=name, condition=condition)
+            ratio = to_ratio(value, owner=owner, name=name, condition=condition)
             object.__setattr__(self, name, ratio)
+        most = whole_number(runs, owner=owner, name="runs", lowest=FEWEST_RUNS, highest=MOST_RUNS)
+        object.__setattr__(self, "runs", most)
 
 
 def certification_of(given: object) -> Certification | None:
@@ -73,18 +83,25 @@ class Certificate:
     Parameters
     ----------
     converged : bool
-        Whether the verdict is that of a run of tighter tolerance.
+        Whether the verdict is that of every run by finer means, by more than they differ.
     robust : bool
-        Whether it is that of every run with a nudged parameter.
+        Whether no run with a parameter or the motion's scale changed by up to the nudge
+        has another verdict, and none is to be feared between them.
     margin : float
-        Smallest change of scale found that changes it; the reach if none did, NaN if
-        there is nothing to scale [1].
+        Largest change of scale up to which no other verdict was found; NaN if there is
+        nothing to scale [1].
+    flip : float
+        Scale nearest to one that was found to change the verdict; NaN if none [1].
     peak_error : float
-        Difference of the peak rotation from that of the run of tighter tolerance [rad].
+        Largest difference of the peak rotation from that of a run by finer means, times a
+        safety factor [rad].
     peak_sensitivity : float
         Largest difference from that of a run with a nudged parameter [rad].
     runs : int
         Number of runs beside.
+    resolution : float
+        Length of an interval of scales that is not looked into, over its distance from
+        one [1].
     sentence : str
         All this in words.
     """
@@ -92,9 +109,11 @@ class Certificate:
     converged: bool
     robust: bool
     margin: float
+    flip: float
     peak_error: float
     peak_sensitivity: float
     runs: int
+    resolution: float
     sentence: str
 
     def values(self) -> dict[str, float | bool]:
@@ -103,6 +122,7 @@ class Certificate:
             "verdict_converged": self.converged,
             "verdict_robust": self.robust,
             "verdict_margin": self.margin,
+            "verdict_flip_scale": self.flip,
             "peak_error_estimate": self.peak_error,
             "peak_sensitivity": self.peak_sensitivity,
         }
@@ -113,5 +133,6 @@ class Certificate:
             "certificate": self.sentence,
             "certificate_nudge": wanted.nudge,
             "certificate_reach": wanted.reach,
+            "certificate_resolution": self.resolution,
             "certificate_runs": self.runs,
         }

@@ -26,7 +26,9 @@ from rockframe.results.outcome import (
     verdict,
 )
 from rockframe.results.variables.runs import Direction
+from rockframe.simulation.audit import unbalanced
 from rockframe.simulation.beginning import end_attributes, start_of
+from rockframe.simulation.beside import Beside, what_showed
 from rockframe.simulation.certificate import certify
 from rockframe.simulation.certification import Certification
 from rockframe.simulation.plan import Plan
@@ -94,8 +96,11 @@ def run(system: Assembly, plan: Plan, certification: Certification | None = None
     response = _respond(system, plan, ground, scales)
     summary = response.summary
     attributes = _attributes(system, plan, summary, scales) | end_attributes(response.ending)
+    base = _showed(response, plan, scales)
+    audit = unbalanced(plan, summary, base, lambda other: beside(system, other))
     cautions = [
         *_unfinished(summary, scales),
+        *([] if audit is None else [(SolverWarning, audit)]),
         *_lost_weight(system, ground),
         *_pulling(system, response.values, summary.overturning_time),
     ]
@@ -105,7 +110,7 @@ def run(system: Assembly, plan: Plan, certification: Certification | None = None
         attributes["cautions"] = "; ".join(text for _, text in cautions)
     certificate: dict[str, float | bool] = {}
     if certification is not None:
-        found = certify(system, plan, summary, certification, outcome)
+        found = certify(system, plan, base, certification, beside)
         certificate = found.values()
         attributes |= found.attributes(certification)
     return build_dataset({**response.values, **scalars(summary, scales), **certificate}, attributes)
@@ -126,6 +131,29 @@ def outcome(system: Assembly, plan: Plan) -> Summary:
     Summary
     """
     return _respond(system, plan, ground_of(plan.motion), _scales(system)).summary
+
+
+def beside(system: Assembly, plan: Plan) -> Beside:
+    """Integrate as planned, and tell what a certificate asks of the run.
+
+    Parameters
+    ----------
+    system : Assembly
+        The checked scene.
+    plan : Plan
+        The checked arguments.
+
+    Returns
+    -------
+    Beside
+    """
+    scales = _scales(system)
+    return _showed(_respond(system, plan, ground_of(plan.motion), scales), plan, scales)
+
+
+def _showed(response: Response, plan: Plan, scales: Scales) -> Beside:
+    theta = scales.overturning_angle
+    return what_showed(response.summary, response.values, theta, plan.duration)
 
 
 def _scales(system: Assembly) -> Scales:

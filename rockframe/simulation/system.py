@@ -95,7 +95,7 @@ class System(Assembly):
             Whether the run ends when the rotation reaches the overturning
             angle, or goes on until the block lies flat.
         certify : bool or Certification
-            Whether some fifty runs beside this one, with a tighter tolerance, nudged
+            Whether some hundred runs beside this one, by finer means, with nudged
             parameters and scaled motions, tell how sure the verdict is.
 
         Returns

@@ -5,15 +5,19 @@ import re
 import warnings
 from dataclasses import replace
 
+import numpy as np
 import pytest
 import xarray as xr
+from pages import read, said
 
 import rockframe as rf
 from rockframe.errors import ComponentError, UnitsError
-from rockframe.simulation.certificate import certify, nudges
+from rockframe.simulation.beside import Beside
+from rockframe.simulation.certificate import RESOLUTION, SAFETY, certify
+from rockframe.simulation.finer import CUTS, SHORTER, cut, shortened
+from rockframe.simulation.nudging import parameters
 from rockframe.simulation.plan import plan_run
-from rockframe.solve.layout import Status
-from rockframe.solve.trajectory import Summary
+from rockframe.solve.accuracy import accuracy_of
 
 BLOCK = rf.Block.from_size(radius="5 m", slenderness=5, mass="50 t")
 PADS = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.10)
@@ -23,6 +27,7 @@ NAMES = (
     "verdict_converged",
     "verdict_robust",
     "verdict_margin",
+    "verdict_flip_scale",
     "peak_error_estimate",
     "peak_sensitivity",
 )
@@ -65,6 +70,8 @@ def test_far_from_the_boundary():
     assert 0.0 < float(run.peak_error_estimate) < 1e-6 * float(run.peak_rotation)
     assert run.attrs["certificate"].startswith("The body stands also with a tolerance 100 times")
     assert run.attrs["certificate_nudge"] == 1e-3
+    assert run.attrs["certificate_resolution"] == RESOLUTION
+    assert 60 <= run.attrs["certificate_runs"] <= 200
 
 
 def test_the_run_itself_is_the_same():
@@ -79,10 +86,12 @@ def test_the_margin_is_the_distance_to_the_boundary(off, side):
     scale = EDGE / (1.0 + side * off)
     run = certified(PULSE.scaled(scale))
     assert bool(run.overturned) == (side < 0.0)
-    found = float(run.verdict_margin)
-    assert found == pytest.approx(off, rel=0.02)
-    # the verdict does change there
-    assert falls(scale * (1.0 + side * found)) != bool(run.overturned)
+    found, flip = float(run.verdict_margin), float(run.verdict_flip_scale)
+    assert off * (1.0 - 2.0 * RESOLUTION) <= found <= off
+    # the verdict does change there, and not at the margin
+    assert falls(scale * flip) != bool(run.overturned)
+    assert falls(scale * (1.0 + side * found)) == bool(run.overturned)
+    assert abs(flip - 1.0) - found <= 1.01 * RESOLUTION * abs(flip - 1.0)
 
 
 @pytest.mark.parametrize("side", [-1.0, 1.0])
@@ -102,22 +111,8 @@ def pretended(overturns):
 
     def run(system, plan):
         verdict = overturns(system, plan)
-        time = 1.0 if verdict else math.nan
-        return Summary(
-            status=Status.STEP_LIMIT if verdict is None else Status.COMPLETED,
-            end_time=2.0,
-            peak_rotation=0.1 + plan.accuracy.rtol,
-            overturning_time=time,
-            overturning_direction=0,
-            first_uplift_time=math.nan,
-            flight_time=0.0,
-            impact_count=0,
-            flight_count=0,
-            step_count=1,
-            rejected_count=0,
-            substeps=0,
-            energy_residual=0.0,
-        )
+        clearances = (1.0, 1.0) if verdict else (0.5,)
+        return Beside(verdict, 0.1 + plan.accuracy.rtol, clearances, 1.0, 0, 0.001)
 
     return run
 
@@ -145,7 +140,7 @@ def test_a_verdict_that_hangs_on_the_tolerance_is_not_converged():
     found = certificate_of(lambda _, plan: plan.accuracy.rtol > 1e-5)
     assert not found.converged
     assert found.robust
-    assert found.peak_error == pytest.approx(0.99e-4)
+    assert found.peak_error == pytest.approx(SAFETY * 0.99e-4)
     assert found.sentence == (
         "Near the boundary: the body overturns, but with a tolerance 100 times tighter it stands."
     )
@@ -169,7 +164,7 @@ def test_a_verdict_that_hangs_on_one_parameter_is_not_robust():
 
 def test_parameters_that_change_the_verdict_are_counted():
     found = certificate_of(lambda system, _: system.to_dict() != SYSTEM.to_dict())
-    changes = 2 * sum(len(part.parameters()) for part in (BLOCK, PADS))
+    changes = sum(len(part.parameters()) for part in (BLOCK, PADS))
     assert f"(and {changes - 1} more) it overturns" in found.sentence
 
 
@@ -178,7 +173,7 @@ def test_a_peak_that_a_parameter_lowers_counts_as_one_that_it_raises():
 
     def lower(system, plan):
         peak = 0.02 if system.parts.pads.to_dict()["frequency_ratio"] > 20.01 else 0.1001
-        return replace(run(system, plan), peak_rotation=peak)
+        return replace(run(system, plan), peak=peak)
 
     found = certify(SYSTEM, plan, lower(SYSTEM, plan), rf.Certification(), lower)
     assert found.peak_sensitivity == pytest.approx(0.0801)
@@ -197,8 +192,8 @@ def test_nudged_scenes_keep_their_options():
     }
     system = rf.System(BLOCK, PADS, cap, soil, **options)
     kept = {name: value for name, value in system.to_dict().items() if name != "parts"}
-    for words, other in nudges(system, 1e-3):
-        assert kept.items() <= other.to_dict().items(), words
+    for words, scene_at in parameters(system):
+        assert kept.items() <= scene_at(1e-3).to_dict().items(), words
 
 
 def test_a_nudge_that_makes_parts_misfit_is_left_out():
@@ -206,11 +201,11 @@ def test_a_nudge_that_makes_parts_misfit_is_left_out():
     block = rf.Block(width="2 m", height="8 m", mass="50 t")
     cap = rf.CushionCap(width="2 m", height="0.5 m", mass="10 t")
     system = rf.System(block, cap, rf.WinklerSoil(stiffness="30 MPa", damping_ratio=0.1))
-    words = [words for words, _ in nudges(system, 1e-3)]
-    assert "width of the cap +0.1 %" in words
-    assert "width of the cap -0.1 %" not in words
-    assert "width of the superstructure -0.1 %" in words
-    assert "width of the superstructure +0.1 %" not in words
+    at = dict(parameters(system))
+    assert at["width of the cap"](0.001) is not None
+    assert at["width of the cap"](-0.001) is None
+    assert at["width of the superstructure"](-0.001) is not None
+    assert at["width of the superstructure"](0.001) is None
 
 
 def test_what_a_scene_has_warned_of_its_certificate_does_not_repeat():
@@ -233,23 +228,88 @@ def test_the_nearest_scale_is_found(edge):
         return plan.motion.si.peak > peak
 
     found = certificate_of(overturns)
-    assert found.margin == pytest.approx(abs(edge - 1.0), rel=0.02)
+    assert abs(edge - 1.0) * (1.0 - 2.0 * RESOLUTION) <= found.margin <= abs(edge - 1.0)
+    assert found.flip == pytest.approx(edge, abs=2.0 * RESOLUTION * abs(edge - 1.0))
+
+
+@pytest.mark.parametrize("edge", [1e-3, 1e-6, 1e-10])
+def test_a_margin_has_no_floor(edge):
+    found = certificate_of(lambda _, plan: plan.motion.si.peak / PULSE.si.peak > 1.0 + edge)
+    assert edge * (1.0 - 2.0 * RESOLUTION) <= found.margin <= edge
+    assert not found.robust or edge == 1e-3
+
+
+def test_a_peak_that_comes_near_to_overturning_is_looked_into():
+    """An island of overturning between two scales of the first row, told by the peaks about it."""
+    middle, half = 0.3172, 0.0008
+
+    def run(_, plan):
+        off = plan.motion.si.peak / PULSE.si.peak - 1.0 - middle
+        left = abs(off) - half
+        fell = left < 0.0
+        return Beside(fell, 0.1, (1.0, 1.0) if fell else (5.0 * left,), 1.0, 0, 0.001)
+
+    plan = planned()
+    found = certify(SYSTEM, plan, run(SYSTEM, plan), rf.Certification(), run)
+    assert found.margin == pytest.approx(middle - half, rel=2.0 * RESOLUTION)
+    assert found.margin <= middle - half
+
+
+def test_a_course_that_cannot_be_followed_ends_the_margin():
+    """Runs that all stand, each on a course of its own beyond a certain scale."""
+    rng = np.random.default_rng(0)
+
+    def run(_, plan):
+        off = abs(plan.motion.si.peak / PULSE.si.peak - 1.0)
+        course = (1.0, rng.uniform(0.0, 1.0) if off > 0.1 else 0.5)
+        return Beside(False, 0.1, (0.5,), math.nan, 0, 0.001, course)
+
+    plan = planned()
+    found = certify(SYSTEM, plan, run(SYSTEM, plan), rf.Certification(), run)
+    assert 0.09 < found.margin < 0.12
+    assert math.isnan(found.flip)
+    assert found.robust
+    assert "200 runs did not do to follow it farther" in found.sentence
+    assert found.runs <= 200
+    more = certify(SYSTEM, plan, run(SYSTEM, plan), rf.Certification(runs=400), run)
+    assert 200 < more.runs <= 400
+    assert more.margin >= found.margin
+
+
+def test_the_peak_of_a_standing_body_must_be_sure_to_stay_below():
+    def run(_, plan):
+        left = 0.01 if plan.accuracy.rtol > 1e-5 else 0.004
+        return Beside(False, 0.1, (left,), math.nan, 0, 0.001)
+
+    plan = planned()
+    found = certify(SYSTEM, plan, run(SYSTEM, plan), rf.Certification(), run)
+    assert not found.converged
+    assert "its peak rotation is uncertain by" in found.sentence
+
+
+def test_parameters_are_tried_inside_the_nudge():
+    """A band of overturning well inside, with the nudge itself beyond it."""
+    found = certificate_of(
+        lambda system, _: 20.009 < system.parts.pads.to_dict()["frequency_ratio"] < 20.011
+    )
+    assert not found.robust
+    assert "frequency ratio of the base +0.05 % it overturns" in found.sentence
 
 
 @pytest.mark.parametrize(("lower", "upper"), [(0.98, 1.027), (0.973, 1.02)])
 def test_of_two_changes_the_nearer_counts(lower, upper):
     """Both within one interval of the geometric row."""
     found = certificate_of(lambda _, plan: not lower < plan.motion.si.peak / PULSE.si.peak < upper)
-    assert found.margin == pytest.approx(0.02, rel=0.02)
+    assert 0.02 * (1.0 - 2.0 * RESOLUTION) <= found.margin <= 0.02
 
 
 @pytest.mark.parametrize(
     ("edge", "words"),
     [
-        (1.008, "Near the boundary: .* scaled up by 0.8"),
-        (0.992, "Near the boundary: .* scaled down by 0.8"),
-        (1.02, "The body stands also .* until the motion is scaled by 1.02"),
-        (0.98, "The body stands also .* until the motion is scaled by 0.98"),
+        (1.008, "Near the boundary: .* scaled up by 0.8 %"),
+        (0.992, "Near the boundary: .* scaled down by 0.8 %"),
+        (1.02, "The body stands also .* No other verdict .* another verdict is 1.020"),
+        (0.98, "The body stands also .* No other verdict .* another verdict is 0.979"),
     ],
 )
 def test_a_margin_of_more_than_a_hundredth_is_not_near(edge, words):
@@ -262,7 +322,8 @@ def test_a_margin_of_more_than_a_hundredth_is_not_near(edge, words):
 def test_no_scale_within_reach():
     found = certificate_of(lambda _, plan: plan.motion.si.peak > 1.6 * PULSE.si.peak)
     assert found.margin == 0.5
-    assert "for every scale of the motion tried from 0.5 to 1.5" in found.sentence
+    assert math.isnan(found.flip)
+    assert "scales of the motion tried from 0.5 to 1.5." in found.sentence
 
 
 def test_a_run_that_was_cut_off_has_no_certificate():
@@ -291,9 +352,9 @@ def test_runs_beside_that_are_cut_off_are_no_support():
 
     peak = 1.005 * PULSE.si.peak
     larger = certificate_of(lambda _, plan: None if plan.motion.si.peak > peak else False)
-    assert larger.margin == pytest.approx(0.005, rel=0.02)
+    assert larger.margin == pytest.approx(0.005, rel=2.0 * RESOLUTION)
     assert larger.robust
-    assert "scaled up by 0.5 % the run cannot be finished" in larger.sentence
+    assert "scaled up by 0.501 % the run cannot be finished" in larger.sentence
 
 
 def test_the_tightest_tolerance_is_not_tightened_beyond_rounding():
@@ -306,7 +367,7 @@ def test_fixed_steps_are_certified_by_a_tolerance():
     run = certified(accuracy="fast")
     exact = SYSTEM.simulate(PULSE, free_vibration="4 s", accuracy="standard", outputs=None)
     off = abs(float(run.peak_rotation) - float(exact.peak_rotation))
-    assert float(run.peak_error_estimate) == pytest.approx(off, rel=1e-12)
+    assert float(run.peak_error_estimate) >= SAFETY * off * (1.0 - 1e-12)
     assert "with steps by tolerance instead of fixed ones" in run.attrs["certificate"]
 
 
@@ -322,7 +383,9 @@ def test_the_sensitivity_is_that_of_nudged_parameters():
                 other = rf.System(*parts).simulate(PULSE, free_vibration="4 s", outputs=None)
                 peaks.append(float(other.peak_rotation))
     expected = max(abs(peak - peaks[0]) for peak in peaks)
-    assert float(run.peak_sensitivity) == pytest.approx(expected, rel=1e-12)
+    # or a little more, somewhere inside the nudge
+    assert float(run.peak_sensitivity) >= expected * (1.0 - 1e-12)
+    assert float(run.peak_sensitivity) == pytest.approx(expected, rel=0.05)
 
 
 def test_without_a_motion_the_start_is_scaled():
@@ -344,7 +407,7 @@ def test_the_margin_of_a_start_is_that_of_its_energy(share):
     )
     run = certified(None, rf.System(block), duration="20 s", initial=start)
     assert not bool(run.overturned)
-    assert float(run.verdict_margin) == pytest.approx(edge - 1.0, rel=0.02)
+    assert float(run.verdict_margin) == pytest.approx(edge - 1.0, rel=2.0 * RESOLUTION)
 
 
 def test_a_start_is_not_scaled_beyond_a_right_angle():
@@ -365,8 +428,8 @@ def test_at_rest_nothing_can_be_scaled():
     assert math.isnan(run.verdict_margin)
     assert bool(run.verdict_robust)
     assert run.attrs["certificate"] == (
-        "The body stands also with a tolerance 100 times tighter and with every parameter 0.1 % "
-        "larger or smaller."
+        "The body stands also with a tolerance 100 times tighter and steps 2.7 times shorter, "
+        "and with every parameter up to 0.1 % larger or smaller."
     )
 
 
@@ -407,7 +470,7 @@ def test_every_scene_can_be_certified(parts, coupling, tmp_path):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", rf.ModelWarning)
         run = certified(system=rf.System(*parts, coupling=coupling))
-    assert all(math.isfinite(float(run[name])) for name in NAMES)
+    assert all(math.isfinite(float(run[name])) for name in NAMES if name != "verdict_flip_scale")
     run.to_netcdf(tmp_path / "run.nc")
     with xr.open_dataset(tmp_path / "run.nc") as stored:
         xr.testing.assert_identical(stored[list(NAMES)].drop_attrs(), run[list(NAMES)].drop_attrs())
@@ -425,6 +488,7 @@ def test_what_is_no_certification_is_refused(given):
         ({"nudge": 0.0}, ComponentError, "nudge must be above 0 and at most 0.1"),
         ({"nudge": "1 m"}, UnitsError, "nudge needs a pure ratio"),
         ({"reach": 1.0}, ComponentError, "reach must be from 0.01 to 0.9"),
+        ({"runs": 10}, ComponentError, "runs must be a whole number from 60 to 100000, got 10"),
     ],
 )
 def test_certifications_that_are_refused(arguments, error, words):
@@ -444,3 +508,42 @@ def test_a_part_with_a_scaled_parameter():
     )
     with pytest.raises(ComponentError, match="no parameter is called 'colour'"):
         PADS.with_scaled("colour", 2.0)
+
+
+MOTIONS = {
+    "record": rf.GroundMotion.from_arrays(([0.0, 1.0, -2.0, 0.5], "m/s^2"), "0.1 s"),
+    "pulse": PULSE,
+    "both": PULSE.with_vertical(PULSE.scaled(0.5)),
+}
+
+
+@pytest.mark.parametrize("name", MOTIONS)
+@pytest.mark.parametrize("parts", CUTS)
+def test_a_motion_cut_finer_is_the_same_function_of_time(name, parts):
+    motion = MOTIONS[name]
+    finer = cut(motion, parts)
+    time = np.linspace(0.0, motion.si.duration, 997)
+    size = motion.si.peak
+    assert finer.si.time_step == motion.si.time_step / parts
+    assert np.abs(finer.si.at(time) - motion.si.at(time)).max() < 1e-12 * size
+    assert np.abs(finer.si.vertical_at(time) - motion.si.vertical_at(time)).max() < 1e-12 * size
+    assert (finer.si.pieces is None) == (motion.si.pieces is None)
+
+
+@pytest.mark.parametrize("accuracy", ["fast", "standard", "reference", rf.Accuracy(substeps=3)])
+def test_shorter_steps_are_shorter(accuracy):
+    run = SYSTEM.simulate(PULSE, free_vibration="4 s", accuracy=accuracy)
+    step = run.attrs["solver_end_time"] / run.attrs["solver_steps"]
+    settings = shortened(accuracy_of(accuracy), SYSTEM, step, PULSE.si.time_step)
+    finer = SYSTEM.simulate(PULSE, free_vibration="4 s", accuracy=settings)
+    assert finer.attrs["solver_steps"] > 2.0 * run.attrs["solver_steps"]
+
+
+def test_the_page_says_what_is_done():
+    page = "guide/tradeoff.md"
+    assert said(page, "at most `rf.Certification(runs=...)`, # unless given") == [200]
+    assert said(page, "steps # times shorter than they were on average") == [SHORTER]
+    assert said(page, "three with every interval of the motion cut into #, # and #") == list(CUTS)
+    assert "is three times the largest difference of their peaks" in read(page).replace("\n  ", " ")
+    assert SAFETY == 3.0
+    assert said(page, "down to `certificate_resolution`, # %") == [100.0 * RESOLUTION]

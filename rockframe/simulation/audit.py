@@ -1,0 +1,67 @@
+"""Whether a run is a solution: what is said of one whose energies do not balance."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Final
+
+from rockframe.simulation.beside import Beside
+from rockframe.simulation.plan import Plan
+from rockframe.solve.accuracy import LEVELS, AccuracyLevel
+from rockframe.solve.trajectory import Summary
+
+BY_TOLERANCE: Final = 1e-3
+"""Residual beyond which steps by tolerance give no solution; sound ones stay below 1e-5."""
+FIXED: Final = 0.5
+"""The same of fixed steps, whose works are less exact than their motion: sound ones reach 0.3."""
+DOUBTFUL: Final = 1e-2
+"""Residual of fixed steps beyond which it takes a run by tolerance to tell."""
+PEAK: Final = 0.01
+"""Share by which the peak rotation of a sound run may differ from that."""
+
+
+def unbalanced(
+    plan: Plan, summary: Summary, base: Beside, run: Callable[[Plan], Beside]
+) -> str | None:
+    """Say that a run is no solution, where its energies show it.
+
+    Parameters
+    ----------
+    plan : Plan
+        The run's arguments.
+    summary : Summary
+        What became of it.
+    base : Beside
+        What it showed.
+    run : callable
+        Makes a run of the same scene; called only where the energies leave it open.
+
+    Returns
+    -------
+    str or None
+        What was found and what to do; None of a run that may be used.
+    """
+    residual, by_tolerance = summary.energy_residual, plan.accuracy.substeps is None
+    if base.overturned is None:
+        return None
+    found = f"the energies are out of balance by {residual:.2g} of the largest"
+    if by_tolerance:
+        if residual <= BY_TOLERANCE:
+            return None
+        return f"{found}: this is no solution; repeat the run with a tighter tolerance"
+    remedy = f"repeat the run with accuracy='{AccuracyLevel.STANDARD}'"
+    if residual > FIXED:
+        return f"{found}: this is no solution; {remedy}"
+    if residual <= DOUBTFUL:
+        return None
+    standard = LEVELS[AccuracyLevel.STANDARD]
+    other = run(replace(plan, accuracy=standard, output_step=None, energies=()))
+    if other.overturned is None:
+        return None
+    difference = abs(other.peak - base.peak)
+    if base.alike(other) and difference <= PEAK * other.peak:
+        return None
+    ends = "overturns" if other.overturned else f"has a peak rotation of {other.peak:.4g} rad"
+    return (
+        f"{found}, and steps by tolerance give another course, which {ends}: this is no "
+        f"solution; {remedy}"
+    )

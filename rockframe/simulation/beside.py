@@ -1,0 +1,119 @@
+"""What a run beside another one showed, and how far its verdict was from the other one."""
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Final, TypeAlias
+
+import numpy as np
+
+from rockframe.dynamics.protocol import EventKind
+from rockframe.results.outcome import Array, Generic
+from rockframe.simulation.plan import Plan
+from rockframe.solve.trajectory import Summary
+from rockframe.system.assembly import Assembly
+
+LATER: Final = 0.05
+"""Share of its time by which an overturning comes earlier or later in another swing."""
+OTHER: Final = 0.2
+"""Share of the largest by which the parts of a course differ if they are another course."""
+PARTS: Final = 6
+"""Instants, spread evenly over a run, about which its course is summed up."""
+
+
+@dataclass(frozen=True)
+class Beside:
+    """What a run showed.
+
+    The clearances are numbers above zero that change smoothly from scene to scene, and at
+    least one of them goes to zero where the verdict changes.
+
+    Parameters
+    ----------
+    overturned : bool or None
+        Its verdict; None where the run was not finished.
+    peak : float
+        Largest absolute rotation [rad].
+    clearances : tuple of float
+        Of a body that stands, the share of the overturning angle that its peak left. Of
+        one that overturns, the square of its rate at that angle, and the time that was
+        left: it fails to overturn if it gets there without speed, or not within the run.
+    time : float
+        Of overturning; NaN if none [s].
+    direction : int
+        Sign of the rotation at overturning, 0 if none.
+    step : float
+        Average length of a step [s].
+    course : tuple of float
+        Of the whole run: root of the sum of squared rates at its events about some
+        instants. Where the verdict hangs on what came before, as after many impacts, this
+        tells of it long before a clearance does [rad s^-1].
+    """
+
+    overturned: bool | None
+    peak: float
+    clearances: tuple[float, ...] = ()
+    time: float = math.nan
+    direction: int = 0
+    step: float = math.nan
+    course: tuple[float, ...] = ()
+
+    def alike(self, other: "Beside") -> bool:
+        """Whether both take the same course: both stand, or both overturn in the same swing."""
+        if self.overturned is None or self.overturned != other.overturned:
+            return False
+        pairs = list(zip(self.course, other.course, strict=True))
+        if pairs and max(abs(a - b) for a, b in pairs) > OTHER * max(map(max, pairs)):
+            return False
+        if not self.overturned:
+            return True
+        apart = abs(self.time - other.time) > LATER * max(self.time, other.time)
+        return self.direction == other.direction and not apart
+
+
+Run: TypeAlias = Callable[[Assembly, Plan], Beside]
+"""Makes a run, and tells what it showed."""
+
+
+def what_showed(
+    summary: Summary, events: Mapping[str, Generic], theta: float, duration: float
+) -> Beside:
+    """Tell what a run showed.
+
+    Parameters
+    ----------
+    summary : Summary
+        What became of it.
+    events : mapping of str to ndarray
+        Its events, by their names in the schema.
+    theta : float
+        Overturning angle [rad].
+    duration : float
+        Length of the run [s].
+
+    Returns
+    -------
+    Beside
+    """
+    rates = np.abs(events["angular_velocity_before"])
+    if summary.overturned:
+        rate = float(rates[events["event_kind"] == EventKind.OVERTURNING][0])
+        clearances = (rate * rate, duration - summary.overturning_time)
+    else:
+        clearances = (1.0 - summary.peak_rotation / theta,)
+    return Beside(
+        summary.overturned,
+        summary.peak_rotation,
+        clearances,
+        summary.overturning_time,
+        summary.overturning_direction,
+        summary.end_time / max(summary.step_count, 1),
+        _course(events["event_time"] / duration, rates),
+    )
+
+
+def _course(place: Array, rates: Array) -> tuple[float, ...]:
+    """Sum up squares of rates by their places in a run, the nearer to an instant the more."""
+    instants = np.arange(PARTS)[:, None] / (PARTS - 1)
+    weights = np.clip(1.0 - (PARTS - 1) * np.abs(place - instants), 0.0, None)
+    return tuple(np.sqrt(weights @ rates**2).tolist())

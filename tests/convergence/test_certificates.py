@@ -1,0 +1,99 @@
+"""Certificates against what they vouch for: verdicts, margins and errors of peaks."""
+
+from functools import lru_cache
+
+import numpy as np
+import pytest
+from benchmarks.certificates import (
+    at_the_boundary,
+    clean,
+    contradictions,
+    flattered,
+    peak_error,
+    strength,
+)
+from benchmarks.certified_scenes import cases
+
+import rockframe as rf
+from rockframe.simulation.finer import cut
+
+COUNT = 5
+
+
+@lru_cache
+def pool():
+    """Give a few random scenes, each brought to the edge of its verdict."""
+    return tuple(cases(COUNT, seed=1))
+
+
+def cascade(width, height, mass, cap, stiffness, ratio, amplitude, frequency):
+    """Give a slender frame on a light cap, whose pads bounce on what the soil carries over."""
+    system = rf.System(
+        rf.Block(width=f"{width} m", height=f"{height} m", mass=f"{mass} t"),
+        rf.TwoSpringSupport(frequency_ratio=ratio, damping_ratio=0.1),
+        rf.CushionCap(height="0.5 m", mass=f"{cap} t"),
+        rf.WinklerSoil(stiffness=f"{stiffness} MPa", damping_ratio=0.05),
+        coupling="cascade",
+    )
+    time = 0.02 * np.arange(301)
+    motion = amplitude * np.sin(2.0 * np.pi * frequency * time)
+    return system, rf.GroundMotion.from_arrays((motion, "m/s^2"), "0.02 s")
+
+
+def bouncing():
+    """Give a block that re-engages a pad for less than a step."""
+    time = 0.01 * np.arange(301)
+    across, up = 3.5 * np.sin(6.0 * np.pi * time), 7.1 * np.sin(10.0 * np.pi * time)
+    block = rf.Block(width="1 m", height="3 m", mass="1000 kg")
+    system = rf.System(block, rf.TwoSpringSupport(frequency_ratio=15, damping_ratio=0.5))
+    return system, rf.GroundMotion.from_arrays((across, "m/s^2"), "0.01 s", vertical=(up, "m/s^2"))
+
+
+HARD = {
+    "hand-over of a cascade, hard pads": cascade(3, 6, 40, 12, 28, 40, 8.4, 1.0),
+    "hand-over of a cascade, soft soil": cascade(4, 6, 89, 29, 8, 30, 10.8, 2.5),
+    "re-engagement within a step": bouncing(),
+}
+
+
+@pytest.mark.parametrize("name", HARD)
+@pytest.mark.parametrize("accuracy", ["standard", "reference"])
+def test_the_error_of_a_peak_is_not_hidden_by_what_all_tolerances_share(name, accuracy):
+    """A tighter tolerance alone leaves the hand-over and the record's intervals as they are."""
+    system, motion = HARD[name]
+    given = {"free_vibration": "1 s", "outputs": None}
+    run = system.simulate(motion, accuracy=accuracy, certify=True, **given)
+    fine = rf.Accuracy(rtol=1e-12, steps_per_period=100.0)
+    exact = system.simulate(cut(motion, 64), accuracy=fine, **given)
+    error = abs(float(exact.peak_relative_rotation) - float(run.peak_relative_rotation))
+    estimate = float(run.peak_error_estimate) / float(run.overturning_angle)
+    assert not flattered(error, estimate)
+
+
+@pytest.mark.parametrize("number", range(COUNT))
+def test_an_estimate_is_at_most_ten_times_too_small(number):
+    case = pool()[number]
+    scale = strength(case)
+    run = case.certified(scale)
+    if not bool(run.overturned):
+        assert not flattered(*peak_error(case, scale, run))
+
+
+@pytest.mark.parametrize("number", range(COUNT))
+def test_clean_certificates_keep_their_word(number):
+    """Against nudges inside what is stated, and scales inside the margin."""
+    case = pool()[number]
+    scale = strength(case)
+    run = case.certified(scale)
+    if not clean(run):
+        return
+    fell, margin = bool(run.overturned), float(run.verdict_margin)
+    assert contradictions(case, scale, fell) == 0
+    for change in np.linspace(-margin, margin, 102):
+        assert case.summary(scale * (1.0 + change)).overturned == fell
+
+
+def test_nothing_is_vouched_for_at_the_boundary():
+    for distance, row in at_the_boundary(iter(pool())):
+        assert row.contradicted == 0
+        assert row.clean == 0 or distance > 1e-4

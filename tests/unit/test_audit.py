@@ -1,0 +1,95 @@
+"""What is said of a run whose energies do not balance."""
+
+from dataclasses import replace
+
+import pytest
+from extremes.scenes import Scene, scenes
+
+import rockframe as rf
+from rockframe.simulation import audit
+from rockframe.simulation.audit import BY_TOLERANCE, DOUBTFUL, FIXED, unbalanced
+from rockframe.simulation.beside import Beside
+from rockframe.simulation.plan import plan_run
+from rockframe.simulation.run import outcome
+
+SYSTEM, MOTION = Scene().system, Scene().motion
+STOOD = Beside(False, 0.1, (0.5,), course=(1.0, 0.2))
+
+
+def said(accuracy, residual, other=STOOD, base=STOOD):
+    plan = plan_run(
+        SYSTEM,
+        MOTION,
+        duration=None,
+        free_vibration=None,
+        initial=None,
+        accuracy=accuracy,
+        output_step=None,
+        outputs=None,
+        overturning="stop",
+    )
+    summary = replace(outcome(SYSTEM, plan), energy_residual=residual)
+    tried = []
+
+    def run(beside):
+        tried.append(beside.accuracy)
+        return other
+
+    return unbalanced(plan, summary, base, run), tried
+
+
+@pytest.mark.parametrize("accuracy", ["standard", "reference", 1e-6])
+def test_steps_by_tolerance_are_judged_by_their_balance(accuracy):
+    assert said(accuracy, 0.5 * BY_TOLERANCE) == (None, [])
+    text, tried = said(accuracy, 2.0 * BY_TOLERANCE)
+    assert "out of balance by 0.002 of the largest" in text
+    assert "this is no solution; repeat the run with a tighter tolerance" in text
+    assert not tried
+
+
+@pytest.mark.parametrize("accuracy", ["fast", rf.Accuracy(substeps=20)])
+def test_fixed_steps_are_judged_by_a_run_by_tolerance_where_their_balance_leaves_it_open(accuracy):
+    assert said(accuracy, 0.5 * DOUBTFUL) == (None, [])
+    standard = rf.Accuracy(rtol=2e-8)
+    assert said(accuracy, 2.0 * DOUBTFUL) == (None, [standard])
+    text, tried = said(accuracy, 2.0 * FIXED)
+    assert text.endswith("this is no solution; repeat the run with accuracy='standard'")
+    assert not tried
+
+
+@pytest.mark.parametrize(
+    ("other", "words"),
+    [
+        (replace(STOOD, peak=0.102), "a peak rotation of 0.102 rad"),
+        (replace(STOOD, course=(1.0, 0.5)), "a peak rotation of 0.1 rad"),
+        (Beside(True, 0.1, (0.5, 1.0), 2.0, 1, course=(1.0, 0.2)), "which overturns"),
+    ],
+)
+def test_another_course_is_said(other, words):
+    text, _ = said("fast", 2.0 * DOUBTFUL, other)
+    assert words in text
+    assert "repeat the run with accuracy='standard'" in text
+
+
+def test_a_run_that_was_cut_off_is_not_judged():
+    cut_off = Beside(None, 0.1)
+    assert said("fast", 1.0, base=cut_off) == (None, [])
+    assert said("fast", 2.0 * DOUBTFUL, other=cut_off)[0] is None
+
+
+def test_a_run_that_is_no_solution_warns_and_says_so_in_its_cautions(monkeypatch):
+    monkeypatch.setattr(audit, "BY_TOLERANCE", 1e-30)
+    with pytest.warns(rf.SolverWarning, match="out of balance"):
+        run = SYSTEM.simulate(MOTION)
+    assert "this is no solution" in run.attrs["cautions"]
+
+
+def test_fast_says_where_its_course_is_wrong():
+    """Sub-steps of a tenth of the period, in a scene in which every impact multiplies errors."""
+    *_, scene = scenes("restraint and separation rules, finite and small", 4)
+    with pytest.warns(rf.SolverWarning, match="another course, which"):
+        fast = scene.run("fast")
+    exact = scene.run("reference")
+    peak, right = float(fast.peak_rotation), float(exact.peak_rotation)
+    assert abs(peak - right) > 0.01 * right
+    assert "repeat the run with accuracy='standard'" in fast.attrs["cautions"]
