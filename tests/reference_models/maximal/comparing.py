@@ -1,0 +1,177 @@
+"""Set both programs beside one another, scene by scene."""
+
+from dataclasses import asdict, dataclass
+
+import numpy as np
+
+from .drawing import draw
+from .layout import (
+    BED_SETTLEMENT,
+    CHATTER,
+    ENGAGING,
+    FREE,
+    LEAVING,
+    OVERTURNED,
+    RELAXING,
+    SETTLEMENT,
+    SLIDES,
+    TOO_SMALL,
+)
+from .motions import both
+from .program import rows_at, run_program, scaled_start
+from .scene import Scene, parameters
+from .simulate import TOLERANCE, History, simulate
+
+AGREES = 1e-6
+STEPS = (1e-10, 1e-9)
+
+
+@dataclass
+class Outcome:
+    """How far the programs are apart in one scene."""
+
+    kind: str
+    seed: int
+    number: int
+    label: str
+    difference: float
+    rise_difference: float
+    peak: float
+    overturned: tuple[bool, bool]
+    status: tuple[int, int]
+    growth: tuple[float, ...] = ()
+    first: float = -1.0
+    note: str = ""
+    seen: tuple[str, ...] = ()
+
+    def plain(self) -> dict:
+        """Give plain values."""
+        return asdict(self)
+
+
+def run_reference(scene: Scene, factor: float = 1.0, tolerance: float = TOLERANCE) -> History:
+    """Run the scene with the reference model; `factor` multiplies motion and start."""
+    return simulate(scaled_start(scene, factor), both(scene.motion, factor)[1], tolerance)
+
+
+def apart(history: History, run, scene: Scene) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Give times and differences of rotation and rise over their greatest values."""
+    rows = rows_at(history.time, run)
+    # a run that overturned has stopped between two output times
+    common = rows >= 0
+    common[-1] &= history.status != OVERTURNED or common.sum() < 2
+    rows, t = rows[common], history.time[common]
+    rotation, rise = history.rotation[common], history.rise[common]
+    peak = max(np.max(np.abs(history.rotation)), 1e-9)
+    off = np.abs(run.rotation.values[rows] - rotation) / peak
+    if scene.kind == "rigid" and scene.small:
+        return t, off, np.zeros_like(off)
+    p = parameters(scene, TOLERANCE)
+    scale = max(np.max(np.abs(history.rise)), p[SETTLEMENT], p[BED_SETTLEMENT], 1e-9)
+    return t, off, np.abs(run.vertical_displacement.values[rows] - rise) / scale
+
+
+def states_seen(history: History, scene: Scene) -> tuple[str, ...]:
+    """Name the rarer states of contact that a run went through."""
+    found = set()
+    pads = scene.kind in ("pads", "cascade", "coupled")
+    for code in history.events[:, 3]:
+        soil, ends, block, corners = _digits(code)
+        if pads:
+            found |= {_CORNERS[c] for c in corners if c in _CORNERS}
+        if block == FREE and pads:
+            found.add("flight")
+        if soil == FREE and scene.kind in ("bed", "cascade", "coupled"):
+            found.add("soil flight")
+        if SLIDES in ends:
+            found.add("soil sliding")
+    return tuple(sorted(found))
+
+
+_CORNERS = {RELAXING: "relaxing", LEAVING: "leaving", ENGAGING: "engaging", SLIDES: "sliding"}
+
+
+def _digits(code: float) -> tuple[int, tuple[int, ...], int, tuple[int, ...]]:
+    digits = [int(d) for d in f"{int(code):08d}"]
+    return digits[0], tuple(digits[1:3]), digits[3], tuple(digits[4:6])
+
+
+def compare(kind: str, seed: int, number: int) -> Outcome:
+    """Run a random scene with both programs and judge the difference."""
+    scene = draw(kind, seed, number)
+    history, run = run_reference(scene), run_program(scene)
+    t, off, rise = apart(history, run, scene)
+    worst, worst_rise = float(np.max(off)), float(np.max(rise))
+    outcome = Outcome(
+        kind,
+        seed,
+        number,
+        "agrees",
+        worst,
+        worst_rise,
+        float(np.max(np.abs(history.rotation))),
+        (bool(run.overturned), history.status == OVERTURNED),
+        (int(run.status), int(history.status)),
+    )
+    outcome.seen = states_seen(history, scene)
+    if history.status in (CHATTER, TOO_SMALL):
+        outcome.note = "the reference model did not finish"
+    same = outcome.overturned[0] == outcome.overturned[1]
+    if same and max(worst, worst_rise) <= AGREES and not outcome.note:
+        return outcome
+    total = np.maximum(off, rise)
+    beyond = np.flatnonzero(total > AGREES)
+    outcome.first = float(t[beyond[0]]) if beyond.size else float(t[-1])
+    _judge(scene, outcome, t, total, history, run)
+    return outcome
+
+
+def _judge(scene: Scene, outcome: Outcome, t, total, history: History, run) -> None:
+    """Tell chaos from disagreement: does a tiny change of the motion do as much?"""
+    growth, spread = [], []
+    for size in STEPS:
+        other, again = run_reference(scene, 1.0 + size), run_program(scene, 1.0 + size)
+        ours = _between(history, other, t)
+        theirs = _between_runs(run, again, t, outcome.peak)
+        grown = np.maximum.accumulate(np.maximum(ours, theirs))
+        spread.append(grown)
+        growth.append(float(grown[-1] / size))
+        growth.append(float(np.max(ours)))
+        growth.append(float(np.max(theirs)))
+    outcome.growth = tuple(growth)
+    beyond = total > AGREES
+    if not np.any(beyond):
+        last = [float(s[-1]) for s in spread]
+        outcome.label = "chaos" if max(last) > AGREES else "disagrees"
+    elif np.all(total[beyond] <= 3.0 * spread[0][beyond]):
+        outcome.label = "chaos"
+    elif np.all(total[beyond] <= 3.0 * spread[1][beyond]):
+        outcome.label = "sensitive"
+    else:
+        outcome.label = "disagrees"
+
+
+def _between(one: History, other: History, t: np.ndarray) -> np.ndarray:
+    n = t.size
+    peak = max(np.max(np.abs(one.rotation)), 1e-9)
+    rise = max(np.max(np.abs(one.rise)), 1e-12)
+    off = np.zeros(n)
+    m = min(n, len(other.time))
+    off[:m] = np.abs(other.rotation[:m] - one.rotation[:m]) / peak
+    off[:m] = np.maximum(off[:m], np.abs(other.rise[:m] - one.rise[:m]) / rise)
+    off[m:] = 1.0
+    return off
+
+
+def _between_runs(one, other, t: np.ndarray, peak: float) -> np.ndarray:
+    first, second = rows_at(t, one), rows_at(t, other)
+    found = (first >= 0) & (second >= 0)
+    off = np.where(found, 0.0, 1.0)
+    first, second = first[found], second[found]
+    rise = max(float(np.max(np.abs(one.vertical_displacement.values))), 1e-12)
+    off[found] = np.maximum(
+        np.abs(other.rotation.values[second] - one.rotation.values[first]) / max(peak, 1e-9),
+        np.abs(other.vertical_displacement.values[second] - one.vertical_displacement.values[first])
+        / rise,
+    )
+    return off

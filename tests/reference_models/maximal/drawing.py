@@ -1,0 +1,133 @@
+"""Random scenes."""
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from .layout import RULES
+from .motions import RECORDS, have_records
+from .scene import GRAVITY, KINDS, Scene
+
+
+def draw(kind: str, seed: int, number: int) -> Scene:
+    """Draw a scene; the same seed and number give the same scene.
+
+    Parameters
+    ----------
+    kind : str
+        One of `KINDS`.
+    seed, number : int
+
+    Returns
+    -------
+    Scene
+    """
+    rng = np.random.default_rng([seed, number, KINDS.index(kind)])
+    while True:
+        scene = _body(kind, rng)
+        if _stands(scene):
+            break
+    starts = rng.random() < 0.2
+    scene = replace(
+        scene,
+        motion=_motion(scene, rng, still=starts and rng.random() < 0.5),
+        free=float(round(rng.uniform(1.0, 3.0), 3)),
+        start=float(rng.uniform(-0.6, 0.6)) if starts else 0.0,
+        start_rate=float(rng.uniform(-0.4, 0.4)) if starts and rng.random() < 0.5 else 0.0,
+    )
+    if scene.motion["form"] == "still":
+        scene = replace(scene, free=float(round(rng.uniform(3.0, 6.0), 3)))
+    return scene
+
+
+def _log(rng: np.random.Generator, low: float, high: float) -> float:
+    return float(np.exp(rng.uniform(math.log(low), math.log(high))))
+
+
+def _body(kind: str, rng: np.random.Generator) -> Scene:
+    radius, slenderness = _log(rng, 0.3, 15.0), _log(rng, 1.0, 8.0)
+    mu = float(rng.uniform(2.6, 3.2)) if rng.random() < 0.7 else 3.0
+    scene = Scene(
+        kind=kind,
+        rule=RULES[rng.integers(3)],
+        radius=radius,
+        slenderness=slenderness,
+        mass=1e4 * radius**2,
+        shape_factor=mu,
+        beta=_log(rng, 8.0, 80.0),
+        xi=0.0 if rng.random() < 0.15 else float(rng.uniform(0.0, 0.6)),
+        small=bool(rng.random() < 0.1),
+        soil_xi=0.0 if rng.random() < 0.15 else float(rng.uniform(0.0, 0.6)),
+        separation="pressure" if rng.random() < 0.3 else "displacement",
+    )
+    if rng.random() < 0.4:
+        scene = replace(scene, restitution=float(rng.uniform(0.2, 1.0)) * scene.eps)
+    if kind in ("pads", "rigid"):
+        return scene
+    cap = kind != "bed" or rng.random() < 0.5
+    if cap:
+        scene = replace(
+            scene,
+            cap=True,
+            cap_width=2.0 * scene.half_width * float(rng.uniform(1.0, 1.6)),
+            cap_height=2.0 * scene.half_height * float(rng.uniform(0.01, 0.2)),
+            cap_mass=scene.mass * _log(rng, 0.03, 0.6),
+        )
+    mass, _, b, level = scene.one_body()
+    firmness = _log(rng, 1.4, 100.0)
+    return replace(scene, soil_stiffness=1.5 * firmness * mass * GRAVITY * level / b**3)
+
+
+def _stands(scene: Scene) -> bool:
+    """Tell whether soil and pads in a row hold the block, with something to spare."""
+    soft = 0.0
+    if scene.kind in ("pads", "cascade", "coupled"):
+        b, h = scene.half_width, scene.half_height
+        fast = scene.beta * scene.frequency
+        soft += GRAVITY * h / (fast * b) ** 2
+    if scene.kind in ("bed", "cascade", "coupled"):
+        mass, _, b, level = scene.one_body()
+        soft += 1.5 * mass * GRAVITY * level / (scene.soil_stiffness * b**3)
+    return soft < 0.8
+
+
+def _motion(scene: Scene, rng: np.random.Generator, still: bool) -> dict[str, Any]:
+    threshold = GRAVITY / scene.slenderness
+    vertical = float(rng.uniform(0.05, 0.7)) * GRAVITY if rng.random() < 0.5 else 0.0
+    sign = 1.0 if rng.random() < 0.5 else -1.0
+    kind = rng.random()
+    pace = scene.frequency / (2.0 * math.pi)
+    scale = pace * _log(rng, 0.8, 8.0)
+    peak = sign * threshold * _log(rng, 0.8, 2.2) * max(1.0, 0.4 * scale / pace)
+    cycles = float(rng.choice([0.5, 1.0, 1.5, 2.5, 4.0]))
+    waves = [_waves(rng), _waves(rng)]
+    length, lead = float(rng.uniform(3.0, 7.0)), float(rng.uniform(0.1, 0.6))
+    which, step = int(rng.integers(len(RECORDS))), float(rng.choice([0.005, 0.01, 0.02]))
+    if still:
+        return {"form": "still"}
+    if kind < 0.35:
+        names = ("sine", "cosine", "ricker", "odd ricker")
+        form = names[int(kind / 0.35 * 4.0)]
+        if form.endswith("ricker"):
+            scale = 1.0 / scale
+        return {
+            "form": form, "peak": peak, "vertical": vertical, "scale": scale, "cycles": cycles,
+        }  # fmt: skip
+    size = sign * threshold * _log(rng, 1.0, 3.5)
+    if kind < 0.6 and have_records():
+        return {
+            "form": "record", "which": which, "length": length, "lead": lead, "peak": size,
+            "vertical": vertical,
+        }  # fmt: skip
+    return {
+        "form": "sines", "step": step, "length": length, "peak": size, "vertical": vertical,
+        "waves": waves[0], "vertical waves": waves[1],
+    }  # fmt: skip
+
+
+def _waves(rng: np.random.Generator) -> list[tuple[float, float, float]]:
+    return [
+        (float(rng.uniform(0.3, 1.0)), _log(rng, 0.3, 8.0), float(rng.random())) for _ in range(6)
+    ]

@@ -1,0 +1,98 @@
+"""Where the points of a base are, and how the coordinates of a block on a cap follow its own."""
+
+import math
+
+from .compiling import compiled
+from .layout import COUPLED, HALF_HEIGHT, KIND, SMALL, TOP
+
+
+@compiled
+def height(small, r, angle, half_width, level, side):
+    """Give height, its derivative by the angle, and the second one, of a point of the base.
+
+    Parameters
+    ----------
+    small : bool
+        Small rotation.
+    r, angle : float
+        Displacement of the centre of mass along the normal of the ground under it, and rotation.
+    half_width, level, side : float
+        Distance of the point from the middle, height of the centre of mass above the base; 1 for
+        a point on the left, -1 on the right.
+    """
+    if small:
+        return (
+            r + 0.5 * level * angle * angle + side * half_width * angle,
+            level * angle + side * half_width,
+            level,
+        )
+    sine, cosine = math.sin(angle), math.cos(angle)
+    half = math.sin(0.5 * angle)
+    return (
+        r + 2.0 * level * half * half + side * half_width * sine,
+        level * sine + side * half_width * cosine,
+        level * cosine - side * half_width * sine,
+    )
+
+
+@compiled
+def sway(small, angle, level, point):
+    """Give x of the centre of mass over the held point and its two derivatives by the angle."""
+    if small:
+        return level * angle, level, 0.0
+    sine, cosine = math.sin(angle), math.cos(angle)
+    return (
+        level * sine - point * cosine,
+        level * cosine + point * sine,
+        point * cosine - level * sine,
+    )
+
+
+@compiled
+def relative(z, p, rel, rows):
+    """Find place and speed of the block seen from what it stands on.
+
+    Parameters
+    ----------
+    z : ndarray
+        State.
+    p : ndarray
+        Parameters.
+    rel : ndarray, shape (8,)
+        Filled with the coordinates along the base, along its normal and the rotation, their
+        rates, and the parts of the first two accelerations that hold no acceleration.
+    rows : ndarray, shape (3, 6)
+        Filled with the derivatives of these coordinates by those of both bodies.
+    """
+    rows[:] = 0.0
+    rows[0, 3] = rows[1, 4] = rows[2, 5] = 1.0
+    rel[0], rel[1], rel[2] = z[3], z[4], z[5]
+    rel[3], rel[4], rel[5] = z[9], z[10], z[11]
+    rel[6] = rel[7] = 0.0
+    if int(p[KIND]) != COUPLED:
+        return
+    sine, cosine = math.sin(z[2]), math.cos(z[2])
+    half = math.sin(0.5 * z[2])
+    apart = p[TOP] + p[HALF_HEIGHT]
+    dx, dy = z[3] - z[0], z[4] - z[1]
+    vx, vy, turn = z[9] - z[6], z[10] - z[7], z[8]
+    along = cosine * dx - sine * (dy + apart)
+    rise = sine * dx + cosine * dy - 2.0 * apart * half * half
+    far = rise + apart
+    rel[0], rel[1], rel[2] = along, rise, z[5] - z[2]
+    rel[3] = cosine * vx - sine * vy - turn * far
+    rel[4] = sine * vx + cosine * vy + turn * along
+    rel[5] = z[11] - z[8]
+    rel[6] = -2.0 * turn * rel[4] + turn * turn * along
+    rel[7] = 2.0 * turn * rel[3] + turn * turn * far
+    rows[0, 0], rows[0, 1], rows[0, 2] = -cosine, sine, -far
+    rows[0, 3], rows[0, 4] = cosine, -sine
+    rows[1, 0], rows[1, 1], rows[1, 2] = -sine, -cosine, along
+    rows[1, 3], rows[1, 4] = sine, cosine
+    rows[2, 2] = -1.0
+
+
+@compiled
+def is_small(p):
+    """Tell whether the kinematics are those of small rotation."""
+    return p[SMALL] > 0.5

@@ -1,0 +1,85 @@
+"""The same scene through rockframe's public interface."""
+
+import warnings
+from dataclasses import replace
+
+import numpy as np
+
+import rockframe as rf
+
+from .motions import both
+from .scene import Scene
+
+RTOL = 1e-12
+
+
+def system_of(scene: Scene) -> rf.System:
+    """Assemble the scene."""
+    block = rf.Block(
+        width=_in(2.0 * scene.half_width, "m"),
+        height=_in(2.0 * scene.half_height, "m"),
+        mass=_in(scene.mass, "kg"),
+        shape_factor=scene.shape_factor,
+    )
+    parts = [block]
+    given = {} if scene.restitution is None else {"restitution": scene.restitution}
+    if scene.kind == "rigid":
+        parts.append(rf.RigidGround(**given))
+    if scene.kind in ("pads", "cascade", "coupled"):
+        parts.append(
+            rf.TwoSpringSupport(frequency_ratio=scene.beta, damping_ratio=scene.xi, **given)
+        )
+    if scene.kind in ("bed", "cascade", "coupled"):
+        parts.append(
+            rf.WinklerSoil(
+                stiffness=_in(scene.soil_stiffness, "Pa"),
+                damping_ratio=scene.soil_xi,
+                separation=scene.separation,
+            )
+        )
+        if scene.has_cap:
+            parts.append(
+                rf.CushionCap(
+                    width=_in(scene.cap_width, "m"),
+                    height=_in(scene.cap_height, "m"),
+                    mass=_in(scene.cap_mass, "kg"),
+                )
+            )
+    options = {"coupling": scene.kind} if scene.kind in ("cascade", "coupled") else {}
+    return rf.System(
+        *parts, restraint=scene.rule, rotation="small" if scene.small else "finite", **options
+    )
+
+
+def run_program(scene: Scene, factor: float = 1.0, rtol: float = RTOL):
+    """Run the scene with rockframe; `factor` multiplies motion and start."""
+    motion, _ = both(scene.motion, factor)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        system = system_of(scene)
+        limit = float(system.equilibrium().overturning_angle)
+        initial = rf.InitialState(
+            rotation=_in(factor * scene.start * limit, "rad"),
+            angular_velocity=_in(factor * scene.start_rate * scene.frequency * limit, "rad/s"),
+        )
+        options = {"initial": initial, "accuracy": rf.Accuracy(rtol=rtol)}
+        if motion is None:
+            return system.simulate(duration=_in(scene.free, "s"), output_step="0.01 s", **options)
+        return system.simulate(motion, free_vibration=_in(scene.free, "s"), **options)
+
+
+def scaled_start(scene: Scene, factor: float) -> Scene:
+    """Give the scene with a start that is larger by a factor."""
+    return replace(scene, start=factor * scene.start, start_rate=factor * scene.start_rate)
+
+
+def _in(value: float, unit: str) -> str:
+    return f"{float(value)!r} {unit}"
+
+
+def rows_at(times: np.ndarray, run) -> np.ndarray:
+    """Give the rows of a run at output times, -1 where there is none."""
+    have = run.time.values
+    rows = np.searchsorted(have, times - 1e-9)
+    rows = np.minimum(rows, have.size - 1)
+    return np.where(np.abs(have[rows] - times) < 1e-9, rows, -1)

@@ -1,0 +1,71 @@
+"""Impact, rest and start of a block on rigid ground."""
+
+import math
+
+from .compiling import compiled
+from .kinematics import is_small
+from .layout import (
+    GRAVITY,
+    HALF_HEIGHT,
+    HALF_WIDTH,
+    HELD,
+    HOLD,
+    INERTIA,
+    LIMIT,
+    MASS,
+    PLACE,
+    POINT,
+    RESTING,
+    RESTITUTION,
+)
+
+LEAST_REBOUND = 1e-10
+
+
+@compiled
+def place_hinged(z, held, p):
+    """Put the centre of mass where the hinge says; take the drift away."""
+    b, h = p[HALF_WIDTH], p[HALF_HEIGHT]
+    side = 1.0 if held[POINT] > 0.0 else -1.0
+    a, rate = z[5], z[11]
+    if is_small(p):
+        z[3], z[4] = held[PLACE] + h * a, side * b * a
+        z[9], z[10] = h * rate, side * b * rate
+        return
+    half = math.sin(0.5 * a)
+    sine, cosine = math.sin(a), math.cos(a)
+    rise = side * b * sine - 2.0 * h * half * half
+    z[3] = held[PLACE] + h * sine + 2.0 * side * b * half * half
+    z[4] = rise
+    z[9] = (h * cosine + side * b * sine) * rate
+    z[10] = (side * b * cosine - h * sine) * rate
+
+
+def start_rocking(z, gx, contact, held, p):
+    """The ground tips the block over the corner that it leaves behind."""
+    contact[HOLD] = HELD
+    held[POINT] = p[HALF_WIDTH] if gx < 0.0 else -p[HALF_WIDTH]
+    z[5] = z[11] = 0.0
+    place_hinged(z, held, p)
+
+
+def impact(z, gx, gy, contact, held, p):
+    """The block changes its corner, or comes to rest."""
+    b, h = p[HALF_WIDTH], p[HALF_HEIGHT]
+    held[POINT] = -held[POINT]
+    side = 1.0 if held[POINT] > 0.0 else -1.0
+    z[5] = 0.0
+    z[11] *= p[RESTITUTION]
+    inertia = p[INERTIA] + p[MASS] * (b * b + h * h)
+    if is_small(p):
+        frequency2 = p[MASS] * p[GRAVITY] * math.hypot(b, h) / inertia
+        back = (1.0 + gy / p[GRAVITY]) * p[LIMIT] + side * gx / p[GRAVITY]
+        back *= frequency2
+    else:
+        back = p[MASS] * ((p[GRAVITY] + gy) * b + side * gx * h) / inertia
+    if back > 0.0 and 0.5 * z[11] * z[11] / back < LEAST_REBOUND * p[LIMIT]:
+        contact[HOLD] = RESTING
+        z[11] = 0.0
+        z[4] = z[9] = z[10] = 0.0
+        return
+    place_hinged(z, held, p)

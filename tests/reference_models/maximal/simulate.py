@@ -1,0 +1,107 @@
+"""Run a scene with the reference model."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from . import layout as at
+from . import shaking
+from .running import run
+from .scene import Scene, paces, parameters, start
+
+TOLERANCE = 1e-13
+
+
+@dataclass(frozen=True)
+class Shaking:
+    """A motion as the equations want it."""
+
+    step: float
+    intervals: int
+    shape: np.ndarray
+    across: np.ndarray
+    upwards: np.ndarray
+    longest: float
+
+    @classmethod
+    def still(cls, step: float = 0.01) -> "Shaking":
+        """Give still ground."""
+        return cls(step, 0, np.zeros(5), np.zeros(2), np.zeros(2), np.inf)
+
+    @classmethod
+    def record(cls, step: float, across, upwards=None) -> "Shaking":
+        """Give straight lines between samples."""
+        across = np.array(across, dtype=np.float64)
+        upwards = np.zeros_like(across) if upwards is None else np.array(upwards, dtype=np.float64)
+        shape = np.array([shaking.RECORD, step, 0.0, 0.0, 0.0])
+        return cls(step, across.size - 1, shape, across, upwards, np.inf)
+
+    @classmethod
+    def pulse(cls, kind, step, intervals, scale, phase, peak, vertical) -> "Shaking":
+        """Give a formula; `scale` is its frequency, or a wavelet's period."""
+        shape = np.array([kind, scale, phase, peak, vertical], dtype=np.float64)
+        longest = 0.02 / scale if kind == shaking.HARMONIC else 0.01 * scale
+        return cls(step, intervals, shape, np.zeros(2), np.zeros(2), longest)
+
+
+@dataclass(frozen=True)
+class History:
+    """Histories at the output times, up to the end of the run."""
+
+    time: np.ndarray
+    states: np.ndarray
+    rotation: np.ndarray
+    rise: np.ndarray
+    status: int
+    end: float
+    events: np.ndarray
+
+
+def simulate(scene: Scene, motion: Shaking, tolerance: float = TOLERANCE) -> History:
+    """Run a scene.
+
+    Parameters
+    ----------
+    scene : Scene
+    motion : Shaking
+    tolerance : float
+        Of one step, relative to the largest value so far.
+
+    Returns
+    -------
+    History
+    """
+    p = parameters(scene, tolerance)
+    z, contact, held = start(scene, p)
+    total = motion.intervals * motion.step + scene.free
+    count = int(np.ceil(total / motion.step * (1.0 - 1e-12)))
+    stops = motion.step * np.arange(count + 1)
+    stops[-1] = total
+    pieces = np.arange(count)
+    if int(motion.shape[0]) != shaking.RECORD:
+        pieces = np.zeros(count, dtype=np.int64)
+    pieces[motion.intervals :] = -1
+    status, end, states, reached, events = run(
+        stops,
+        pieces,
+        (motion.shape, motion.across, motion.upwards),
+        z,
+        contact,
+        held,
+        p,
+        paces(scene, p),
+        motion.longest,
+    )
+    states = states[:reached]
+    if scene.kind == "bed":
+        rotation, rise = states[:, 2], states[:, 1]
+    elif scene.kind == "cascade":
+        rotation, rise = states[:, 2] + states[:, 5], states[:, 1] + states[:, 4]
+    else:
+        rotation, rise = states[:, 5], states[:, 4]
+    return History(stops[:reached], states, rotation, rise, status, end, events)
+
+
+def reached_limit(history: History) -> bool:
+    """Tell whether the body overturned."""
+    return history.status == at.OVERTURNED
