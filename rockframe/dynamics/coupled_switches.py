@@ -274,7 +274,7 @@ def after_separation(
         return new
     if block_pivot(new) == FREE:
         was = corners_in(mode)
-        alone = (was[1] if on_left else was[0]) >= RELAXING
+        alone = (was[1] if on_left else was[0]) != TOUCHING
         if alone and presses_in(new, first, state, ground_x, ground_y, p):
             touching = TOUCHING - contact
             new += both_corners(touching if on_left else 0, 0 if on_left else touching)

@@ -215,6 +215,8 @@ def switch_corner(
         leaves = other_reaction <= 0.0 and other_rate >= 0.0
         if other == TOUCHING and (leaves or other_reaction == reaction):
             other = released(other_level, damping, settlement)
+        elif other == ENGAGING:  # nothing presses any more, so that nothing is held
+            other = RELAXING
         return released(level, damping, settlement), other, SEPARATION
     if contact == CLEAR:
         level = abs(other_level - settlement)
