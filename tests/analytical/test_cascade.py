@@ -215,7 +215,7 @@ def test_overturning_is_that_of_the_total_rotation():
     assert stopped.overturned.item()
     assert stopped.overturning_angle.item() == pytest.approx(theta, rel=1e-14)
     assert stopped.time.values[-1] == time == stopped.attrs["solver_end_time"]
-    assert abs(stopped.rotation.values[-1]) == pytest.approx(theta, rel=1e-10)
+    assert abs(stopped.rotation.values[-1]) == pytest.approx(theta, rel=1e-14)
     assert (np.abs(stopped.rotation.values[:-1]) < theta).all()
     for name in ("cap_rotation", "rotation_on_cap"):
         assert 0.01 * theta < np.abs(stopped[name].values).max() < theta, name
