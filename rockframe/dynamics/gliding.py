@@ -57,9 +57,3 @@ def blend(before: float, after: float, share: float) -> float:
 def share_of_loss(share: float) -> float:
     """Give the loss of a share of a plastic impulse, over that of the whole impulse."""
     return share * (2.0 - share)
-
-
-@inlined
-def slip_guard(slip: float, lever: float, reach: float, speed: float) -> float:
-    """Give the guard of the slip, positive while the hold that opposes it lifts the corner."""
-    return slip / speed if lever * reach > 0.0 else -slip / speed

@@ -235,3 +235,29 @@ def test_leaving_into_flight_has_no_side():
     turned = np.array([-1.0, 1.0, -1.0, -1.0, 1.0, -1.0])
     np.testing.assert_array_equal(other.state, one.state * turned)
     np.testing.assert_array_equal(other.events.kind, one.events.kind)
+
+
+def test_fixed_steps_are_cut_to_what_a_fast_pad_asks_for_while_a_corner_glides():
+    """A weak dashpot relaxes in a sixth of the step that the vibrations need."""
+    model = two_spring(
+        half_width=1.0, half_height=1.705, stiffness=840.0, damping=1.45, shape_factor=3.0,
+        mass=1.0, restitution=0.9, restraint=2, small_rotation=False, gravity=G,
+    )  # fmt: skip
+    ground = Ground(time_step=0.01, horizontal=np.zeros(51), vertical=np.zeros(51))
+    fast, exact = (
+        integrate(
+            model,
+            Start(0.5422, 1.7868, None, 0.4153),
+            ground,
+            accuracy_of(level),
+            duration=0.5,
+            output_step=0.005,
+            stop_at_overturning=False,
+        )
+        for level in ("fast", "reference")
+    )
+    assert 840.0 / 1.45 * 0.01 / fast.substeps > 3.0
+    assert (fast.mode // CONTACTS >= GLIDING).sum() > 10
+    assert fast.step_count > 1.5 * 50 * fast.substeps
+    assert np.abs(fast.state - exact.state).max() < 2e-3
+    assert fast.energy_residual < 1e-3
