@@ -26,7 +26,7 @@ def stochastic_motions() -> Figure:
         curve = PointSource(magnitude, 20e3).acceleration_spectrum(target)
         spectra.loglog(target, curve, color=colour, lw=1.8, label=f"magnitude {magnitude:g}")
         history = figure.add_subplot(layout[row, 1])
-        samples = motions[0].si.acceleration
+        samples = motions[0].si.horizontal.samples
         time = motions[0].si.time_step * np.arange(samples.size)
         history.plot(time, samples, color=colour, lw=0.6)
         history.set(xlim=(0.0, 48.0), ylabel="[m/s²]")

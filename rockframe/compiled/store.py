@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Final
 
 _ROOT: Final = Path(__file__).parent.parent
-_SOURCES: Final = ("constants.py", "compiled/*.py", "shaking/*.py", "dynamics/*.py", "solve/*.py")
+_SOURCES: Final = ("constants.py", "compiled/*.py", "signals/*.py", "dynamics/*.py", "solve/*.py")
 """Files that the machine code depends on."""
 
 _CHECK_SIZE: Final = 32

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import ClassVar, Self
 
+from rockframe.arguments import one_of_words
 from rockframe.components.base import Component, with_unit
 from rockframe.components.damping import damping_ratio as read_damping_ratio
 from rockframe.components.pads import one_of
@@ -18,7 +19,6 @@ from rockframe.units import (
     RatioLike,
     to_si,
 )
-from rockframe.words import choice
 
 
 class Separation(StrEnum):
@@ -93,7 +93,7 @@ class WinklerSoil(Component[WinklerSoilSI]):
             c = to_si(damping, BED_DAMPING, owner=owner, name="damping", condition=NOT_NEGATIVE)
         if damping_ratio is not None:
             xi = read_damping_ratio(damping_ratio, owner=owner)
-        rule = choice(Separation, separation, owner=owner, name="separation")
+        rule = one_of_words(Separation, separation, owner=owner, name="separation")
         self._freeze(
             WinklerSoilSI(k, c, xi, rule),
             {

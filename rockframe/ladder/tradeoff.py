@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 import numpy as np
 import xarray as xr
 
+from rockframe.arguments import whole_number
 from rockframe.errors import ComponentError, ModelWarning, SolverWarning, shown
 from rockframe.ladder.errors import (
     event_time_error,
@@ -24,7 +25,6 @@ from rockframe.simulation.provenance import motion_attributes
 from rockframe.simulation.run import outcome, run
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import Accuracy, AccuracyLevel, accuracy_of
-from rockframe.words import whole_number
 
 if TYPE_CHECKING:
     from rockframe.components import InitialState
@@ -102,12 +102,12 @@ def tradeoff(
     chosen = _chosen(ladder, (models,) if isinstance(models, str) else models)
     given = (accuracies,) if isinstance(accuracies, str | float | int | Accuracy) else accuracies
     settings = {_label(accuracy): accuracy_of(accuracy) for accuracy in given}
-    shaking = system.motion if motion is None else motion
+    record = system.motion if motion is None else motion
 
     def plan(scene: System, accuracy: Accuracy) -> Plan:
         return plan_run(
             scene,
-            shaking,
+            record,
             duration=duration,
             free_vibration=free_vibration,
             initial=initial,
@@ -141,7 +141,7 @@ def tradeoff(
             "repeats": repeats,
             "settings": json.dumps(exact),
             "system_json": json.dumps(system.to_dict()),
-            **motion_attributes(shaking),
+            **motion_attributes(record),
         },
         over=DIMENSIONS,
         title="Speed against accuracy",

@@ -2,10 +2,10 @@
 
 from enum import StrEnum
 
+from rockframe.arguments import one_of_words
 from rockframe.errors import ComponentError, shown
 from rockframe.motion import GroundMotion
-from rockframe.shaking.shaking import Shaking
-from rockframe.words import choice
+from rockframe.signals import Signal
 
 
 class GroundComponent(StrEnum):
@@ -15,7 +15,7 @@ class GroundComponent(StrEnum):
     VERTICAL = "vertical"
 
 
-def shaking_of(motion: object, component: object, *, owner: str) -> Shaking:
+def signal_of(motion: object, component: object, *, owner: str) -> Signal:
     """Take one component of a motion.
 
     Parameters
@@ -29,7 +29,7 @@ def shaking_of(motion: object, component: object, *, owner: str) -> Shaking:
 
     Returns
     -------
-    Shaking
+    Signal
 
     Raises
     ------
@@ -39,13 +39,12 @@ def shaking_of(motion: object, component: object, *, owner: str) -> Shaking:
     if not isinstance(motion, GroundMotion):
         msg = f"{owner}: motion needs a GroundMotion, got {shown(motion)}"
         raise ComponentError(msg)
-    si = motion.si
     if component_of(component, owner=owner) is GroundComponent.HORIZONTAL:
-        return Shaking.of(si.time_step, si.acceleration, si.pieces)
-    if si.vertical is None:
+        return motion.si.horizontal
+    if motion.si.vertical is None:
         msg = f"{owner}: component='vertical', but {motion.name!r} has no vertical acceleration"
         raise ComponentError(msg)
-    return Shaking.of(si.time_step, si.vertical, si.vertical_pieces)
+    return motion.si.vertical
 
 
 def component_of(given: object, *, owner: str) -> GroundComponent:
@@ -67,4 +66,4 @@ def component_of(given: object, *, owner: str) -> GroundComponent:
     ComponentError
         None of the two.
     """
-    return choice(GroundComponent, given, owner=owner, name="component")
+    return one_of_words(GroundComponent, given, owner=owner, name="component")

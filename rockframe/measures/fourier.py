@@ -6,9 +6,9 @@ import numpy as np
 import xarray as xr
 
 from rockframe.measures.about import about
-from rockframe.measures.component import component_of, shaking_of
+from rockframe.measures.component import component_of, signal_of
 from rockframe.measures.labels import build_over
-from rockframe.shaking.fourier import transform_of
+from rockframe.signals.fourier import transform_of
 from rockframe.units import FREQUENCY, POSITIVE, to_si
 
 if TYPE_CHECKING:
@@ -63,11 +63,11 @@ def fourier_spectrum(
     >>> round(float(spectrum.fourier_amplitude.sel(frequency=0.0)), 6)
     0.63662
     """
-    shaking = shaking_of(motion, component, owner=_OWNER)
+    signal = signal_of(motion, component, owner=_OWNER)
     finest = 0.0
     if resolution is not None:
         finest = to_si(resolution, FREQUENCY, owner=_OWNER, name="resolution", condition=POSITIVE)
-    frequency, transform = transform_of(shaking, finest)
+    frequency, transform = transform_of(signal, finest)
     return build_over(
         {"frequency": (frequency, "cyclic frequency")},
         {"fourier_amplitude": np.abs(transform), "fourier_phase": np.angle(transform)},

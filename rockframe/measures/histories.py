@@ -5,10 +5,10 @@ from typing import TYPE_CHECKING
 import xarray as xr
 
 from rockframe.measures.about import about
-from rockframe.measures.component import GroundComponent, component_of, shaking_of
+from rockframe.measures.component import GroundComponent, component_of, signal_of
 from rockframe.results.dataset import build_dataset
-from rockframe.shaking.path import ground_path
-from rockframe.shaking.polynomials import knots_of
+from rockframe.signals.path import ground_path
+from rockframe.signals.polynomials import knots_of
 
 if TYPE_CHECKING:
     from rockframe.motion import GroundMotion
@@ -57,13 +57,13 @@ def velocity_and_displacement(
     0.63662
     """
     owner = "velocity_and_displacement"
-    shaking = shaking_of(motion, component, owner=owner)
-    velocity, displacement = ground_path(shaking)
+    signal = signal_of(motion, component, owner=owner)
+    velocity, displacement = ground_path(signal)
     which = component_of(component, owner=owner)
     prefix = _PREFIX[which]
     values = {
-        "time": shaking.times,
-        f"{prefix}ground_acceleration": shaking.samples,
+        "time": signal.times,
+        f"{prefix}ground_acceleration": signal.samples,
         f"{prefix}ground_velocity": knots_of(velocity),
         f"{prefix}ground_displacement": knots_of(displacement),
     }

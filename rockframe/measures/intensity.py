@@ -10,25 +10,25 @@ from rockframe.components import Block
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError, shown
 from rockframe.measures.about import about
-from rockframe.measures.component import GroundComponent, component_of, shaking_of
+from rockframe.measures.component import GroundComponent, component_of, signal_of
 from rockframe.results.dataset import build_dataset
-from rockframe.shaking.accumulation import (
+from rockframe.signals import Signal
+from rockframe.signals.accumulation import (
     absolute_velocity_history,
     arias_history,
     standardized_absolute_velocity,
 )
-from rockframe.shaking.durations import exceedance, time_between_shares
-from rockframe.shaking.path import ground_path
-from rockframe.shaking.periods import (
+from rockframe.signals.durations import exceedance, time_between_shares
+from rockframe.signals.path import ground_path
+from rockframe.signals.periods import (
     HOUSNER_PERIODS,
     PULSE_PERIODS,
     housner_intensity,
     mean_period,
     pulse_period,
 )
-from rockframe.shaking.polynomials import greatest
-from rockframe.shaking.shaking import Shaking
-from rockframe.shaking.spectra import DAMPING_RATIO, check_cost
+from rockframe.signals.polynomials import greatest
+from rockframe.signals.spectra import DAMPING_RATIO, check_cost
 from rockframe.units import ACCELERATION, POSITIVE, to_ratio, to_si
 
 if TYPE_CHECKING:
@@ -106,7 +106,7 @@ def intensity_measures(
     >>> round(float(measures.relative_peak_ground_acceleration), 4)
     2.0394
     """
-    shaking = shaking_of(motion, component, owner=_OWNER)
+    signal = signal_of(motion, component, owner=_OWNER)
     which = component_of(component, owner=_OWNER)
     accelerations = {
         "threshold": threshold,
@@ -117,11 +117,11 @@ def intensity_measures(
         for name, value in accelerations.items()
     )
     damping = to_ratio(damping_ratio, owner=_OWNER, name="damping_ratio", condition=DAMPING_RATIO)
-    check_cost(shaking, np.concatenate([HOUSNER_PERIODS, PULSE_PERIODS]), owner=_OWNER)
-    values = _of_ground(shaking, threshold=level, damping_ratio=damping, gravity=g)
+    check_cost(signal, np.concatenate([HOUSNER_PERIODS, PULSE_PERIODS]), owner=_OWNER)
+    values = _of_ground(signal, threshold=level, damping_ratio=damping, gravity=g)
     if block is not None:
         _check_block(block, which)
-        values |= _of_block(shaking, block, values, gravity=g)
+        values |= _of_block(signal, block, values, gravity=g)
     return build_dataset(
         values,
         {
@@ -137,31 +137,31 @@ def intensity_measures(
 
 
 def _of_ground(
-    shaking: Shaking, *, threshold: float, damping_ratio: float, gravity: float
+    signal: Signal, *, threshold: float, damping_ratio: float, gravity: float
 ) -> dict[str, float]:
-    velocity, displacement = ground_path(shaking)
-    arias = arias_history(shaking, gravity)
-    step = shaking.time_step
+    velocity, displacement = ground_path(signal)
+    arias = arias_history(signal, gravity)
+    step = signal.time_step
     return {
-        "peak_ground_acceleration": greatest(shaking.pieces),
+        "peak_ground_acceleration": greatest(signal.pieces),
         "peak_ground_velocity": greatest(velocity),
         "peak_ground_displacement": greatest(displacement),
         "arias_intensity": float(arias[-1]),
-        "cumulative_absolute_velocity": float(absolute_velocity_history(shaking)[-1]),
+        "cumulative_absolute_velocity": float(absolute_velocity_history(signal)[-1]),
         "standardized_cumulative_absolute_velocity": standardized_absolute_velocity(
-            shaking, _STANDARDIZED_THRESHOLD * gravity
+            signal, _STANDARDIZED_THRESHOLD * gravity
         ),
         "significant_duration_5_75": time_between_shares(arias, step, 0.05, 0.75),
         "significant_duration_5_95": time_between_shares(arias, step, 0.05, 0.95),
-        "bracketed_duration": exceedance(shaking, threshold)[0],
-        "housner_spectrum_intensity": housner_intensity(shaking, damping_ratio),
-        "mean_period": mean_period(shaking),
-        "predominant_pulse_period": pulse_period(shaking, damping_ratio),
+        "bracketed_duration": exceedance(signal, threshold)[0],
+        "housner_spectrum_intensity": housner_intensity(signal, damping_ratio),
+        "mean_period": mean_period(signal),
+        "predominant_pulse_period": pulse_period(signal, damping_ratio),
     }
 
 
 def _of_block(
-    shaking: Shaking, block: Block, of_ground: dict[str, float], *, gravity: float
+    signal: Signal, block: Block, of_ground: dict[str, float], *, gravity: float
 ) -> dict[str, float]:
     """Compute :eq:`eq-rocking-measures`."""
     uplift = gravity * math.tan(block.si.overturning_angle)
@@ -170,7 +170,7 @@ def _of_block(
     return {
         "overturning_angle": block.si.overturning_angle,
         "uplift_acceleration": uplift,
-        "uplift_duration": exceedance(shaking, uplift)[1],
+        "uplift_duration": exceedance(signal, uplift)[1],
         "relative_peak_ground_acceleration": of_ground["peak_ground_acceleration"] / uplift,
         "relative_peak_ground_velocity": frequency * of_ground["peak_ground_velocity"] / uplift,
         "relative_pulse_frequency": pulse / frequency,

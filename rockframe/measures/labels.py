@@ -9,7 +9,7 @@ from rockframe.results.dataset import build_dataset
 from rockframe.results.schema import SCHEMA
 
 if TYPE_CHECKING:
-    from rockframe.shaking.shaking import Array
+    from rockframe.signals.arrays import Array
 
 
 def build_over(

@@ -7,10 +7,10 @@ import xarray as xr
 
 from rockframe.errors import ComponentError, shown
 from rockframe.measures.about import about
-from rockframe.measures.component import component_of, shaking_of
+from rockframe.measures.component import component_of, signal_of
 from rockframe.measures.labels import build_over
-from rockframe.shaking.shaking import Array
-from rockframe.shaking.spectra import DAMPING_RATIO, check_cost, pseudo_spectra, spectral_peaks
+from rockframe.signals.arrays import Array
+from rockframe.signals.spectra import DAMPING_RATIO, check_cost, pseudo_spectra, spectral_peaks
 from rockframe.units import PERIOD, to_ratio, to_si_values
 
 if TYPE_CHECKING:
@@ -76,12 +76,12 @@ def response_spectrum(
     >>> spectrum.pseudo_spectral_acceleration.values.round(4).tolist()
     [[1.0, 1.7321, 0.3963]]
     """
-    shaking = shaking_of(motion, component, owner=_OWNER)
+    signal = signal_of(motion, component, owner=_OWNER)
     seconds = _periods(periods)
     ratios = _damping_ratios(damping_ratios)
-    check_cost(shaking, seconds, owner=_OWNER)
-    found = np.array([spectral_peaks(shaking, seconds, ratio) for ratio in ratios.tolist()])
-    pseudo_velocity, pseudo_acceleration = pseudo_spectra(shaking, seconds, found[:, :, 0])
+    check_cost(signal, seconds, owner=_OWNER)
+    found = np.array([spectral_peaks(signal, seconds, ratio) for ratio in ratios.tolist()])
+    pseudo_velocity, pseudo_acceleration = pseudo_spectra(signal, seconds, found[:, :, 0])
     values = {
         "spectral_displacement": found[:, :, 0],
         "spectral_velocity": found[:, :, 1],

@@ -1,7 +1,10 @@
 """Ground motions: records, analytic pulses and their processing."""
 
-from rockframe.motion.ground_motion import GroundMotion as GroundMotion
-from rockframe.motion.readers import formats as formats
-from rockframe.motion.readers import register as register
-from rockframe.motion.readers import unregister as unregister
-from rockframe.motion.samples import MotionSI as MotionSI
+from rockframe.motion.ground_motion import GroundMotion
+from rockframe.motion.readers import formats, register, unregister
+
+__all__ = ["GroundMotion", "formats", "register", "unregister"]
+
+
+def __dir__() -> list[str]:
+    return [*__all__]

@@ -4,19 +4,20 @@ from __future__ import annotations
 
 import json
 from collections.abc import Container, Mapping
-from typing import TYPE_CHECKING, Any, Final, TypeAlias, cast
+from typing import TYPE_CHECKING, Any, Final, cast
 
 import numpy as np
 import xarray as xr
 
+from rockframe.arguments import checked_dataset
 from rockframe.errors import ComponentError, SchemaError
-from rockframe.motion.samples import Array, MotionSI
+from rockframe.signals import Motion, Signal
+from rockframe.signals.arrays import OWNER, Array
+from rockframe.signals.signal import VERTICAL
 from rockframe.units import Unit
 
 if TYPE_CHECKING:
-    from rockframe.motion.value import MotionValue
-
-Recipe: TypeAlias = "Mapping[str, str | float] | None"
+    from rockframe.motion.value import Made, MotionValue
 
 _LONG_NAMES: Final = {
     "acceleration": "horizontal ground acceleration",
@@ -67,26 +68,20 @@ def check_no_result(attributes: Container[str]) -> None:
         raise NoMotionError(found, _OF_A_RESULT)
 
 
-def to_dataset(motion: MotionValue, recipe: Recipe) -> xr.Dataset:
-    """Write a motion as a dataset.
-
-    Parameters
-    ----------
-    motion : MotionValue
-        Motion.
-    recipe : mapping or None
-        Constructor and arguments of an analytic motion.
+def to_dataset(motion: MotionValue) -> xr.Dataset:
+    """Write the motion as a dataset that plain xarray can store.
 
     Returns
     -------
     xarray.Dataset
+        ``acceleration`` (and ``vertical_acceleration``) over ``time``, with
+        units, name, metadata and history.
     """
     si = motion.si
-    held = {
-        "acceleration": si.acceleration,
-        "vertical_acceleration": si.vertical,
-        "acceleration_pieces": si.pieces,
-        "vertical_acceleration_pieces": si.vertical_pieces,
+    components = {"acceleration": si.horizontal, "vertical_acceleration": si.vertical}
+    present = {name: signal for name, signal in components.items() if signal is not None}
+    held = {name: signal.samples for name, signal in present.items()} | {
+        f"{name}_pieces": signal.polynomials for name, signal in present.items()
     }
     variables: dict[str, Any] = {
         name: (
@@ -109,16 +104,36 @@ def to_dataset(motion: MotionValue, recipe: Recipe) -> xr.Dataset:
     }
     if motion.history:
         attributes["history"] = "\n".join(motion.history)
-    if recipe is not None:
-        attributes["recipe"] = json.dumps(dict(recipe))
+    if motion.recipe is not None:
+        attributes["recipe"] = json.dumps(dict(motion.recipe))
     dataset = xr.Dataset(variables, coords={"time": ("time", time, axis)}, attrs=attributes)
     for name in (*variables, "time"):
         dataset[name].encoding["_FillValue"] = None
     return dataset
 
 
-def from_dataset(dataset: xr.Dataset) -> dict[str, Any]:
-    """Read what :func:`to_dataset` wrote.
+def from_dataset(kind: type[Made], dataset: xr.Dataset) -> Made:
+    """Read what :meth:`to_dataset` wrote, bit for bit.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        With ``acceleration`` over ``time``.
+
+    Returns
+    -------
+    GroundMotion
+
+    Raises
+    ------
+    SchemaError
+        Not such a dataset, or its samples were changed since.
+    """
+    return kind(**stored_motion(checked_dataset(dataset, owner=f"{kind.__name__}.from_dataset")))
+
+
+def stored_motion(dataset: xr.Dataset) -> dict[str, Any]:
+    """Read what :func:`to_dataset` wrote, part by part.
 
     Parameters
     ----------
@@ -143,13 +158,7 @@ def from_dataset(dataset: xr.Dataset) -> dict[str, Any]:
             raise NoMotionError(found)
     attributes: dict[str, Any] = {str(key): value for key, value in dataset.attrs.items()}
     try:
-        si = MotionSI(
-            time_step=_time_step(dataset, attributes),
-            acceleration=cast("Array", _values(dataset, "acceleration")),
-            vertical=_values(dataset, "vertical_acceleration"),
-            pieces=_values(dataset, "acceleration_pieces"),
-            vertical_pieces=_values(dataset, "vertical_acceleration_pieces"),
-        )
+        si = _motion(dataset, _time_step(dataset, attributes))
     except (ComponentError, TypeError, ValueError) as problem:
         if isinstance(problem, SchemaError):
             raise
@@ -171,6 +180,20 @@ def from_dataset(dataset: xr.Dataset) -> dict[str, Any]:
     if "motion_name" in attributes:
         arguments["name"] = str(attributes["motion_name"])
     return arguments
+
+
+def _motion(dataset: xr.Dataset, time_step: float) -> Motion:
+    across, upwards = (_values(dataset, name) for name in ("acceleration", "vertical_acceleration"))
+    pieces, vertical_pieces = (
+        _values(dataset, name) for name in ("acceleration_pieces", "vertical_acceleration_pieces")
+    )
+    horizontal = Signal(time_step, cast("Array", across), pieces)
+    if upwards is not None:
+        return Motion(horizontal, Signal(time_step, upwards, vertical_pieces, name=VERTICAL))
+    if vertical_pieces is not None:
+        msg = f"{OWNER}: vertical_pieces without vertical samples"
+        raise ComponentError(msg)
+    return Motion(horizontal)
 
 
 def _values(dataset: xr.Dataset, name: str) -> Array | None:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
     from pint.facets.plain import PlainQuantity
 
-    from rockframe.motion.samples import Array
+    from rockframe.signals.arrays import Array
 
     # pint.Quantity itself, in a form that a strict type checker can follow
     Quantity: TypeAlias = PlainQuantity[Any]

@@ -1,30 +1,32 @@
-"""The immutable value behind a ground motion: its samples, its name, its past."""
+"""The immutable value behind a ground motion: its numbers, its name, its past."""
 
 from __future__ import annotations
 
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, ClassVar, Final, Self, cast
+from typing import TYPE_CHECKING, Any, Final, TypeVar
 
-from rockframe.calls import CheckedCall
 from rockframe.errors import ComponentError, shown
 from rockframe.motion.quantities import with_quantity
-from rockframe.motion.samples import MotionSI
 from rockframe.units import ACCELERATION, TIME
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from rockframe.motion.quantities import Quantity
+    from rockframe.signals import Motion
 
 UNNAMED: Final = "unnamed motion"
 
+Made = TypeVar("Made", bound="MotionValue")
+"""The class of a motion, kept by constructors and operations."""
 
-class MotionValue(CheckedCall):
-    """Samples in SI units with a name, metadata and a history; immutable.
+
+class MotionValue:
+    """A motion in SI units with a name, metadata and a history; immutable.
 
     Parameters
     ----------
-    si : MotionSI
+    si : Motion
         The motion itself.
     name : str, optional
         For titles and messages.
@@ -38,36 +40,32 @@ class MotionValue(CheckedCall):
     Raises
     ------
     ComponentError
-        `si` is no such samples, or a metadata value is neither a string nor a number.
+        A metadata value is neither a string nor a number.
     """
 
-    __slots__ = ("_recipe", "_sha256", "history", "metadata", "name", "si")
+    __slots__ = {
+        "history": "One sentence per step.",
+        "metadata": "Strings and numbers: event, station, unit as read, ...",
+        "name": "What titles and messages call it.",
+        "recipe": "Constructor and arguments of an analytic motion, and what was done to it since.",
+        "si": "The motion in SI units.",
+    }
 
-    si: MotionSI
+    si: Motion
     name: str
     metadata: Mapping[str, str | float | int]
     history: tuple[str, ...]
-    _recipe: Mapping[str, Any] | None
-    _sha256: str
-
-    noun: ClassVar[str] = "ground motion"
-    usage: ClassVar[str | None] = (
-        "GroundMotion.read(path), GroundMotion.from_arrays(acceleration, time_step) or a pulse "
-        "such as GroundMotion.sine_pulse()"
-    )
+    recipe: Mapping[str, Any] | None
 
     def __init__(
         self,
-        si: MotionSI,
+        si: Motion,
         *,
         name: str = UNNAMED,
         metadata: Mapping[str, str | float | int] | None = None,
         history: tuple[str, ...] = (),
         recipe: Mapping[str, Any] | None = None,
     ) -> None:
-        if not isinstance(cast("object", si), MotionSI):
-            msg = f"GroundMotion: found {shown(si)}; write {self.usage}"
-            raise ComponentError(msg)
         entries: dict[str, Any] = dict(metadata or {})
         for key, value in entries.items():
             if isinstance(value, bool) or not isinstance(value, str | int | float):
@@ -81,8 +79,7 @@ class MotionValue(CheckedCall):
             "name": _one_line(name) or UNNAMED,
             "metadata": MappingProxyType(entries),
             "history": tuple(_one_line(step) for step in history),
-            "_recipe": None if recipe is None else MappingProxyType(dict(recipe)),
-            "_sha256": si.digest(),
+            "recipe": None if recipe is None else MappingProxyType(dict(recipe)),
         }
         for key, value in values.items():
             object.__setattr__(self, key, value)
@@ -90,7 +87,7 @@ class MotionValue(CheckedCall):
     @property
     def sha256(self) -> str:
         """Digest of time step, samples and pieces: the identity of what is simulated."""
-        return self._sha256
+        return self.si.digest()
 
     @property
     def time_step(self) -> Quantity:
@@ -105,13 +102,13 @@ class MotionValue(CheckedCall):
     @property
     def acceleration(self) -> Quantity:
         """Horizontal acceleration of the ground, a copy of the samples [m s^-2]."""
-        return with_quantity(self.si.acceleration, ACCELERATION)
+        return with_quantity(self.si.horizontal.samples, ACCELERATION)
 
     @property
     def vertical_acceleration(self) -> Quantity | None:
         """Vertical acceleration of the ground, upwards, or None [m s^-2]."""
         vertical = self.si.vertical
-        return None if vertical is None else with_quantity(vertical, ACCELERATION)
+        return None if vertical is None else with_quantity(vertical.samples, ACCELERATION)
 
     @property
     def peak_acceleration(self) -> Quantity:
@@ -119,7 +116,7 @@ class MotionValue(CheckedCall):
         return with_quantity(self.si.peak, ACCELERATION)
 
     def __len__(self) -> int:
-        return int(self.si.acceleration.size)
+        return int(self.si.horizontal.samples.size)
 
     def __repr__(self) -> str:
         vertical = "" if self.si.vertical is None else ", with vertical"
@@ -147,40 +144,21 @@ class MotionValue(CheckedCall):
         raise AttributeError(msg)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        recipe = None if self._recipe is None else dict(self._recipe)
+        recipe = None if self.recipe is None else dict(self.recipe)
         return (
             _rebuild,
             (type(self), self.si, self.name, dict(self.metadata), self.history, recipe),
         )
 
-    def _next(
-        self,
-        si: MotionSI,
-        *steps: str,
-        operation: Mapping[str, Any] | None = None,
-        metadata: Mapping[str, Any] | None = None,
-    ) -> Self:
-        recipe = None
-        if self._recipe is not None and operation is not None:
-            done = [*self._recipe.get("operations", ()), dict(operation)]
-            recipe = {**self._recipe, "operations": done}
-        return type(self)(
-            si,
-            name=self.name,
-            metadata={**self.metadata, **(metadata or {})},
-            history=(*self.history, *steps),
-            recipe=recipe,
-        )
-
 
 def _rebuild(
-    kind: type[MotionValue],
-    si: MotionSI,
+    kind: type[Made],
+    si: Motion,
     name: str,
     metadata: dict[str, str | float | int],
     history: tuple[str, ...],
     recipe: dict[str, Any] | None,
-) -> MotionValue:
+) -> Made:
     return kind(si, name=name, metadata=metadata, history=history, recipe=recipe)
 
 

@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 from typing import Final
 
+from rockframe.arguments import whole_number
 from rockframe.errors import ComponentError, shown
 from rockframe.units import Condition, to_ratio
-from rockframe.words import whole_number
 
 _SMALL: Final = Condition("above 0 and at most 0.1", lambda value: 0.0 < value <= 0.1)
 _REACH: Final = Condition("from 0.01 to 0.9", lambda value: 0.01 <= value <= 0.9)

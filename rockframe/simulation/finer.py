@@ -9,7 +9,9 @@ import numpy as np
 
 from rockframe.errors import RockframeError
 from rockframe.motion import GroundMotion
-from rockframe.motion.samples import COEFFICIENTS, Array, MotionSI
+from rockframe.motion.processing.sampling import refined
+from rockframe.signals import Signal
+from rockframe.signals.signal import COEFFICIENTS
 from rockframe.simulation.plan import Plan
 from rockframe.solve.accuracy import LEVELS, Accuracy, AccuracyLevel
 from rockframe.solve.ground_table import STILL_INTERVAL
@@ -120,28 +122,25 @@ def cut(motion: GroundMotion, parts: int) -> GroundMotion:
     GroundMotion
         Straight lines stay straight lines, polynomials the same polynomials.
     """
-    si = motion.si
-    horizontal, pieces = _cut(si.acceleration, si.pieces, parts)
-    vertical = vertical_pieces = None
-    if si.vertical is not None:
-        vertical, vertical_pieces = _cut(si.vertical, si.vertical_pieces, parts)
-    return GroundMotion(
-        MotionSI(si.time_step / parts, horizontal, vertical, pieces, vertical_pieces),
-        name=motion.name,
-    )
+    return GroundMotion(motion.si.each(lambda signal: _cut(signal, parts)), name=motion.name)
 
 
-def _cut(samples: Array, pieces: Array | None, parts: int) -> tuple[Array, Array | None]:
+def _cut(signal: Signal, parts: int) -> Signal:
+    step, samples = signal.time_step / parts, signal.samples
+    if signal.polynomials is None:
+        return replace(signal, time_step=step, samples=refined(signal, step))
     share = np.arange(parts) / parts
-    if pieces is None:
-        inner = samples[:-1, None] * (1.0 - share) + samples[1:, None] * share
-        return np.append(inner.ravel(), samples[-1]), None
     # in the part from u0 on, u = u0 + v/parts: the binomial theorem gives the powers of v
     shifted = np.zeros((parts, COEFFICIENTS, COEFFICIENTS))
     for power in range(COEFFICIENTS):
         for k in range(power + 1):
             shifted[:, k, power] = math.comb(power, k) * share ** (power - k) / parts**k
-    finer = np.einsum("pkj,ij->ipk", shifted, pieces)
+    finer = np.einsum("pkj,ij->ipk", shifted, signal.polynomials)
     values = finer[:, :, 0].copy()
     values[:, 0] = samples[:-1]
-    return np.append(values.ravel(), samples[-1]), finer.reshape(-1, COEFFICIENTS)
+    return replace(
+        signal,
+        time_step=step,
+        samples=np.append(values.ravel(), samples[-1]),
+        polynomials=finer.reshape(-1, COEFFICIENTS),
+    )

@@ -143,16 +143,16 @@ def _length(
 ) -> float:
     if duration is not None and free_vibration is not None:
         faults.append("give duration or free_vibration, not both: each fixes the run's length")
-    shaking = 0.0 if motion is None else (len(motion) - 1) * motion.si.time_step
+    length = 0.0 if motion is None else motion.si.duration
     if duration is not None:
         return to_si(duration, TIME, owner="simulate", name="duration", condition=POSITIVE)
     if free_vibration is not None:
-        return shaking + to_si(
+        return length + to_si(
             free_vibration, TIME, owner="simulate", name="free_vibration", condition=POSITIVE
         )
     if motion is None:
         faults.append("nothing to simulate: give a motion, or a duration for a still ground")
-    return shaking
+    return length
 
 
 def _energies(outputs: object, faults: list[str]) -> tuple[str, ...]:

@@ -26,6 +26,7 @@ from rockframe.results.outcome import (
     verdict,
 )
 from rockframe.results.variables.runs import Direction
+from rockframe.signals.arrays import Array
 from rockframe.simulation.audit import unbalanced
 from rockframe.simulation.beginning import end_attributes, start_of
 from rockframe.simulation.beside import Beside, what_showed
@@ -33,7 +34,7 @@ from rockframe.simulation.certificate import certify
 from rockframe.simulation.certification import Certification
 from rockframe.simulation.plan import Plan
 from rockframe.simulation.provenance import motion_attributes
-from rockframe.solve.ground_table import Ground, ground_at
+from rockframe.solve.ground_table import Ground
 from rockframe.solve.integrate import integrate
 from rockframe.solve.trajectory import Summary
 from rockframe.system.assembly import Assembly
@@ -56,14 +57,20 @@ def ground_of(motion: GroundMotion | None) -> Ground:
     """Give a motion as the integrator takes it."""
     if motion is None:
         return Ground()
-    given = {
-        "horizontal": motion.si.acceleration,
-        "vertical": motion.si.vertical,
-        "horizontal_pieces": motion.si.pieces,
-        "vertical_pieces": motion.si.vertical_pieces,
-    }
-    arrays = {name: array for name, array in given.items() if array is not None}
-    return Ground(time_step=motion.si.time_step, **arrays)
+    components = {"horizontal": motion.si.horizontal, "vertical": motion.si.vertical}
+    given = {name: signal.samples for name, signal in components.items() if signal is not None}
+    for name, signal in components.items():
+        if signal is not None and signal.polynomials is not None:
+            given[f"{name}_pieces"] = signal.polynomials
+    return Ground(time_step=motion.si.time_step, **given)
+
+
+def ground_at(motion: GroundMotion | None, time: Array) -> Array:
+    """Evaluate a motion: horizontal and vertical accelerations, shape (times, 2) [m s^-2]."""
+    still = np.zeros_like(time)
+    components = () if motion is None else (motion.si.horizontal, motion.si.vertical)
+    found = [still if signal is None else signal.at(time) for signal in components]
+    return np.column_stack(found or [still, still])
 
 
 @dataclass(frozen=True)
@@ -178,15 +185,16 @@ def _respond(system: Assembly, plan: Plan, ground: Ground, scales: Scales) -> Re
         stop_at_overturning=plan.stop_at_overturning, with_work=bool(plan.energies),
     )  # fmt: skip
     time = trajectory.time
-    shaking = ground_at(ground, time)
-    values = histories(equations, trajectory, shaking) if wanted else {}
-    if wanted and equations.soil_contact is None:
-        values |= cap_histories(values, scales)
+    values: dict[str, Generic] = {}
     energies = energy_histories(equations, trajectory) if plan.energies else {}
     events = event_columns(equations, trajectory)
     if wanted:
+        acceleration = ground_at(plan.motion, time)
+        values |= histories(equations, trajectory, acceleration)
+        if equations.soil_contact is None:
+            values |= cap_histories(values, scales)
         values |= relative_histories(values, scales)
-        values |= ground_histories(shaking, has_vertical_motion=len(ground.vertical) > 0)
+        values |= ground_histories(acceleration, has_vertical_motion=len(ground.vertical) > 0)
         values["time"] = time
     values |= {name: energies[name] for name in plan.energies}
     return Response(values | events, trajectory, trajectory.ending)

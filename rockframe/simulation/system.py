@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Self
 
 import xarray as xr
 
+from rockframe.arguments import checked_dataset
 from rockframe.calls import public_names
 from rockframe.components import InitialState, component_from_dict
 from rockframe.errors import SchemaError
@@ -13,7 +14,6 @@ from rockframe.motion import GroundMotion
 from rockframe.solve.accuracy import Accuracy, AccuracyLevel
 from rockframe.system.assembly import Assembly
 from rockframe.units import QuantityLike
-from rockframe.words import dataset as checked_dataset
 
 if TYPE_CHECKING:
     from rockframe.simulation.certification import Certification

@@ -122,7 +122,7 @@ def test_stiffness_and_ratio_say_the_same(stiffness):
 @overdamped
 @pytest.mark.parametrize("xi", [0.0, 0.05, 0.4, 1.0, 3.0])
 @pytest.mark.parametrize("beta", [10.0, 40.0])
-def test_vertical_shaking_is_a_damped_oscillator(beta, xi):
+def test_vertical_motion_is_a_damped_oscillator(beta, xi):
     pads = Pads(beta=beta, damping_ratio=xi)
     upwards = rough_record(401, STEP, 1.0 if xi else 0.2, seed=1)
     motion = rf.GroundMotion.from_arrays(
@@ -143,9 +143,9 @@ def test_vertical_shaking_is_a_damped_oscillator(beta, xi):
 @pytest.mark.parametrize("rule", RULES)
 @pytest.mark.parametrize("rotation", ["small", "finite"])
 @pytest.mark.parametrize(("slenderness", "xi"), [(4.0, 0.1), (2.0, 0.0), (6.0, 0.4)])
-def test_weak_horizontal_shaking_is_a_damped_oscillator(slenderness, xi, rotation, rule):
+def test_weak_horizontal_motion_is_a_damped_oscillator(slenderness, xi, rotation, rule):
     # what is left out is of second order in the rotation, and of first order where the
-    # leading corner is held (x' = h + b |a|): the shaking is so weak that neither shows
+    # leading corner is held (x' = h + b |a|): the motion is so weak that neither shows
     pads = Pads(slenderness=slenderness, damping_ratio=xi)
     across = rough_record(401, STEP, 1e-5 if rule == "leading-corner" else 1e-4, seed=2)
     motion = rf.GroundMotion.from_arrays((across, "m/s^2"), f"{STEP} s")
@@ -164,7 +164,7 @@ def test_weak_horizontal_shaking_is_a_damped_oscillator(slenderness, xi, rotatio
     assert response.peak_rotation.item() >= np.abs(response.rotation.values).max()
 
 
-def test_shaking_on_both_axes_superposes_at_small_rotation():
+def test_motion_on_both_axes_superposes_at_small_rotation():
     pads = Pads()
     across = rough_record(401, STEP, 1e-6, seed=3)
     upwards = rough_record(401, STEP, 1e-6, seed=4)
@@ -179,7 +179,7 @@ def test_shaking_on_both_axes_superposes_at_small_rotation():
     assert worst(response.rotation.values, angle) < 1e-6
 
 
-def test_free_vibration_after_the_shaking_goes_on_exactly():
+def test_free_vibration_after_the_motion_goes_on_exactly():
     pads = Pads(damping_ratio=0.02)
     upwards = np.zeros(401)
     upwards[:41] = rough_record(41, STEP, 0.5, seed=5)

@@ -114,7 +114,7 @@ STOPPING = [*RETURNING, "type A", *(name for name in CASES if name.startswith("M
 
 def path(motion):
     """Integrate the polynomials of a motion from rest; give times, velocity, displacement."""
-    dt, pieces = motion.si.time_step, motion.si.pieces
+    dt, pieces = motion.si.time_step, motion.si.horizontal.pieces
     powers = np.arange(pieces.shape[1])
     gained = dt * (pieces / (powers + 1)).sum(axis=1)
     velocity = np.concatenate([[0.0], np.cumsum(gained)])
@@ -256,7 +256,7 @@ def test_the_period_of_a_ricker_wavelet_is_that_of_its_spectral_peak(antisymmetr
     time = np.arange(len(motion)) * motion.si.time_step
 
     def amplitude(frequency):
-        return abs(np.sum(motion.si.acceleration * np.exp(-2j * np.pi * frequency * time)))
+        return abs(np.sum(motion.si.horizontal.samples * np.exp(-2j * np.pi * frequency * time)))
 
     assert amplitude(1.0) > max(amplitude(0.999), amplitude(1.001))
 
@@ -265,7 +265,7 @@ def test_the_period_of_a_ricker_wavelet_is_that_of_its_spectral_peak(antisymmetr
 def test_the_cut_of_a_ricker_wavelet_is_negligible(antisymmetric):
     samples = GroundMotion.ricker_wavelet(
         "1 m/s^2", "1 s", antisymmetric=antisymmetric
-    ).si.acceleration
+    ).si.horizontal.samples
     assert np.max(np.abs(samples[[0, -1]])) < 8e-16
 
 

@@ -106,6 +106,6 @@ def test_double_impulse(interval, parts):
 def test_the_ground_stands_still_after_a_jump():
     motion = rf.GroundMotion.type_b_pulse("0.02 m/s", "1 s")
     response = rigid_block(THETA).simulate(motion, free_vibration="0.5 s", output_step="0.05 s")
-    shaking = response.ground_acceleration.sel(time=slice(1.01, None))
-    assert len(shaking) > 5
-    assert not np.any(shaking)
+    excitation = response.ground_acceleration.sel(time=slice(1.01, None))
+    assert len(excitation) > 5
+    assert not np.any(excitation)

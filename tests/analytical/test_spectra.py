@@ -294,7 +294,7 @@ def test_records_have_the_intensities_of_another_library(record):
     pytest.importorskip("eqsig")
     from eqsig import AccSignal, im
 
-    signal = AccSignal(record.si.acceleration, record.si.time_step)
+    signal = AccSignal(record.si.horizontal.samples, record.si.time_step)
     found = intensity_measures(record, gravity="9.81 m/s^2")
     assert found.arias_intensity.item() == pytest.approx(
         im.calc_arias_intensity(signal)[-1], rel=1e-12
@@ -304,7 +304,7 @@ def test_records_have_the_intensities_of_another_library(record):
     )
     # it counts whole samples
     within = {"abs": 3.0 * record.si.time_step}
-    durations = im.calc_sig_dur_vals(record.si.acceleration, record.si.time_step)
+    durations = im.calc_sig_dur_vals(record.si.horizontal.samples, record.si.time_step)
     assert found.significant_duration_5_95.item() == pytest.approx(durations, **within)
     bracketed = im.calc_brac_dur(signal, 0.05 * 9.80665)
     assert found.bracketed_duration.item() == pytest.approx(bracketed, **within)
@@ -315,8 +315,10 @@ def test_records_have_the_spectra_of_another_library(record):
     pytest.importorskip("eqsig")
     from eqsig import sdof
 
-    fine = record.resampled(f"{record.si.time_step / 8.0!r} s", interpolation="linear").si
-    histories = sdof.nigam_and_jennings_response(fine.acceleration, fine.time_step, PERIODS, 0.05)
+    fine = record.resampled(
+        f"{record.si.time_step / 8.0!r} s", interpolation="linear"
+    ).si.horizontal
+    histories = sdof.nigam_and_jennings_response(fine.samples, fine.time_step, PERIODS, 0.05)
     found = response_spectrum(record, (PERIODS, "s"))
     for name, history in zip(
         ("spectral_displacement", "spectral_velocity", "absolute_spectral_acceleration"),

@@ -207,9 +207,9 @@ def test_vertical_motion_alone_is_one_damped_oscillator(bed, rotation):
 @pytest.mark.parametrize("rule", RULES)
 @pytest.mark.parametrize("rotation", ["finite", "small"])
 @pytest.mark.parametrize("bed", BEDS)
-def test_weak_horizontal_shaking_is_one_damped_oscillator(bed, rotation, rule):
+def test_weak_horizontal_motion_is_one_damped_oscillator(bed, rotation, rule):
     # what is left out is of second order in the rotation, and of first order where the
-    # leading corner is held (x' = h + b |a|): the shaking is so weak that neither shows
+    # leading corner is held (x' = h + b |a|): the motion is so weak that neither shows
     across = rough_record(401, STEP, 1e-5 if rule == "leading-corner" else 1e-4, seed=12)
     motion = rf.GroundMotion.from_arrays((across, "m/s^2"), f"{STEP} s")
     response = bed.system(rotation=rotation, restraint=rule).simulate(motion, accuracy="reference")
@@ -402,7 +402,7 @@ def test_a_tiny_free_vibration_of_block_and_cap_is_linear(linear, rotation):
     assert (response.soil_contact_state.values == 0).all()
 
 
-def test_weak_shaking_of_block_and_cap_is_linear(linear):
+def test_weak_motion_of_block_and_cap_is_linear(linear):
     """The ground enters through the heights of both masses above the soil."""
     mass, _, _ = linear
     across, upwards = (rough_record(401, STEP, 1e-4, seed=seed) for seed in (15, 16))

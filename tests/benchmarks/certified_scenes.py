@@ -1,6 +1,6 @@
 """Random scenes for the tables of certificates, each beside the boundary of its verdict.
 
-A scene is drawn from the ranges that engineers use, with its shaking: noise, as a record of
+A scene is drawn from the ranges that engineers use, with its ground motion: noise, as a record of
 straight lines, or a sine, as a record or as an analytic pulse. Its strength is counted from an
 edge: a scale of the motion at which the verdict changes, found on the way up and bisected.
 """
@@ -95,7 +95,7 @@ def edge(case: Case, accuracy=TIGHT) -> float | None:
 
 
 def draw(rng: np.random.Generator) -> tuple[str, rf.System, rf.GroundMotion, float] | None:
-    """Draw a scene and its shaking, before its strength is known."""
+    """Draw a scene and its ground motion, before its strength is known."""
     scene = replace(usual(rng), start=0.0, continues=False)
     try:
         with warnings.catch_warnings():

@@ -38,7 +38,7 @@ SOFTEST = 6.0
 WINDOW = ("5 s", "13 s")
 
 
-def shaking() -> rf.GroundMotion:
+def excitation() -> rf.GroundMotion:
     """Give the motion of the five scenes, unscaled and whole."""
     return rf.GroundMotion.stochastic(6.8, "5 km", seed=29, stress_drop="20 MPa")
 
@@ -64,8 +64,8 @@ def measured(system: rf.System, motion: rf.GroundMotion, accuracy, repeats: int)
 
 def over_lengths() -> dict:
     """Repeat the motion until it is long enough, in the five scenes."""
-    one = shaking()
-    step, samples = one.si.time_step, one.si.acceleration
+    one = excitation()
+    step, samples = one.si.time_step, one.si.horizontal.samples
     rows: dict[str, list[dict]] = {name: [] for name in scenes()}
     for length in LENGTHS:
         count = round(length / step) + 1
@@ -82,7 +82,7 @@ def over_impacts() -> dict:
     """Scale the motion: other numbers of events in the same length."""
     rows: dict[str, list[dict]] = {name: [] for name in scenes()}
     for factor in FACTORS:
-        motion = shaking().scaled(factor)
+        motion = excitation().scaled(factor)
         for name, scene in scenes().items():
             row = measured(scene.system, motion, "standard", 9)
             if row["end"] > 0.999 * motion.si.time_step * (len(motion) - 1):
@@ -131,7 +131,7 @@ def over_limits() -> list[dict]:
     The settings refuse fewer than six; what the error control would do alone is seen by lifting
     that bound.
     """
-    motion = shaking().scaled(2.0).window(*WINDOW)
+    motion = excitation().scaled(2.0).window(*WINDOW)
     rows = []
     for level, rtol in (("fast", 1e-4), ("standard", 2e-8)):
         for steps_per_period in (20.0, 10.0, 6.0, 4.0, 2.5, 1.0):
@@ -144,7 +144,7 @@ def over_limits() -> list[dict]:
 
 def over_stiffness() -> list[dict]:
     """Harden the pads, at every level."""
-    motion = shaking().scaled(2.0).window(*WINDOW)
+    motion = excitation().scaled(2.0).window(*WINDOW)
     return [
         on_pads(block, ratio, 0.1, level, motion)
         for block in BLOCKS
@@ -156,7 +156,7 @@ def over_stiffness() -> list[dict]:
 
 def over_damping() -> list[dict]:
     """Damp hard pads until the dashpots' rate is the fastest."""
-    motion = shaking().scaled(2.0).window(*WINDOW)
+    motion = excitation().scaled(2.0).window(*WINDOW)
     return [
         on_pads("rocks", HARD, damping, level, motion) for level in LEVELS for damping in DAMPING
     ]

@@ -88,7 +88,7 @@ def record() -> rf.GroundMotion:
     return rf.GroundMotion.read(record_path(RECORD))
 
 
-def shaking(case: Case) -> tuple[rf.GroundMotion, Callable[[float], float]]:
+def excitation(case: Case) -> tuple[rf.GroundMotion, Callable[[float], float]]:
     """Give the ground's acceleration as rockframe takes it, and as a function of time."""
     if case.motion == "half sine":
         peak = case.size * GRAVITY
@@ -99,7 +99,7 @@ def shaking(case: Case) -> tuple[rf.GroundMotion, Callable[[float], float]]:
 
         return rf.GroundMotion.half_sine_pulse(f"{peak!r} m/s^2", f"{PULSE_LENGTH} s"), pulse
     motion = record().scaled(case.size)
-    samples, step = [*motion.si.acceleration.tolist(), 0.0], motion.si.time_step
+    samples, step = [*motion.si.horizontal.samples.tolist(), 0.0], motion.si.time_step
     last = len(samples) - 2
 
     def between_samples(time: float) -> float:
@@ -120,7 +120,7 @@ def by_rockframe(case: Case, accuracy: rf.Accuracy | str = EXACT):
         block = rf.Block(width=f"{2 * B} m", height=f"{2 * H} m", mass=f"{MASS} kg")
         system = rf.System(block, pads, restraint=case.restraint)
         return system.simulate(
-            shaking(case)[0],
+            excitation(case)[0],
             duration=f"{case.length!r} s",
             output_step=f"{OUTPUT_STEP} s",
             accuracy=accuracy,
@@ -138,7 +138,7 @@ def by_engine(case: Case, step: float, *, meet_changes: bool) -> np.ndarray:
         stiffness=0.5 * MASS * vertical**2,
         damping=case.damping_ratio * MASS * vertical,
         gravity=GRAVITY,
-        acceleration=shaking(case)[1],
+        acceleration=excitation(case)[1],
         step=step,
         restraint=case.restraint,
         meet_changes=meet_changes,

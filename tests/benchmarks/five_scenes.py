@@ -28,7 +28,7 @@ class Scene:
 
 @cache
 def motion() -> rf.GroundMotion:
-    """Give eight seconds of strong shaking: in every scene contact changes."""
+    """Give eight seconds of strong motion: in every scene contact changes."""
     drawn = rf.GroundMotion.stochastic(6.8, "5 km", seed=29, stress_drop="20 MPa")
     return drawn.scaled(2.4).window("5 s", "13 s")
 

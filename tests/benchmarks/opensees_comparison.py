@@ -25,7 +25,7 @@ LEVELS = ("fast", "standard", "reference")
 TOLERANCES = tuple(10.0**-power for power in range(2, 12))
 
 
-def shaking(factor: float) -> rf.GroundMotion:
+def excitation(factor: float) -> rf.GroundMotion:
     """Give the motion of the five scenes, by another factor."""
     drawn = rf.GroundMotion.stochastic(6.8, "5 km", seed=29, stress_drop="20 MPa")
     return drawn.scaled(factor).window("5 s", "13 s")
@@ -51,7 +51,7 @@ def arguments(damping_ratio: float, motion: rf.GroundMotion) -> dict:
     return {
         "half_width": B, "half_height": H, "mass": MASS, "inertia": MASS * (B**2 + H**2) / 3.0,
         "stiffness": 0.5 * MASS * vertical**2, "damping": damping_ratio * MASS * vertical,
-        "gravity": GRAVITY, "acceleration": motion.si.acceleration,
+        "gravity": GRAVITY, "acceleration": motion.si.horizontal.samples,
         "time_step": motion.si.time_step,
         "samples_per_output": round(OUTPUT_STEP / motion.si.time_step),
     }  # fmt: skip
@@ -65,7 +65,7 @@ def compare(steps: tuple[int, ...] = STEPS_PER_SAMPLE, repeats: int = 3) -> dict
 
 
 def _compare(ops, damping_ratio, factor, steps, repeats) -> dict:
-    scene, motion = system(damping_ratio), shaking(factor)
+    scene, motion = system(damping_ratio), excitation(factor)
     run = {"output_step": f"{OUTPUT_STEP} s"}
     answer = scene.simulate(motion, accuracy=EXACT, **run)
     exact = answer["rotation"].to_numpy()

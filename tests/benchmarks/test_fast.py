@@ -62,7 +62,7 @@ def rotation(model, run) -> np.ndarray:
 @pytest.fixture(scope="module")
 def ratios():
     record = rf.GroundMotion.read(Path(record_path("PEERSMD_CHICHI_TCU128-N.AT2")))
-    samples = record.window("30 s", "90 s").si.acceleration
+    samples = record.window("30 s", "90 s").si.horizontal.samples
     scenes = {
         name: (system.setting.compile(), Ground(time_step=STEP, horizontal=factor * samples))
         for name, (system, factor) in systems().items()

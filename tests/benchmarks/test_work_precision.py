@@ -18,18 +18,18 @@ RUN = {"output_step": f"{OUTPUT_STEP} s"}
 @pytest.mark.parametrize("name", scenes())
 def test_beside_scipy(name):
     """RK45, loose and through the samples: the least that SciPy can do."""
-    scene, shaking = scenes()[name], motion().window("0 s", f"{SECONDS} s")
-    exact = scene.system.simulate(shaking, accuracy=EXACT, **RUN)["rotation"].to_numpy()
-    step = shaking.si.time_step
+    scene, excitation = scenes()[name], motion().window("0 s", f"{SECONDS} s")
+    exact = scene.system.simulate(excitation, accuracy=EXACT, **RUN)["rotation"].to_numpy()
+    step = excitation.si.time_step
     given = {
-        "time_step": step, "acceleration": shaking.si.acceleration, "duration": SECONDS,
+        "time_step": step, "acceleration": excitation.si.horizontal.samples, "duration": SECONDS,
         "sample_times": np.arange(len(exact)) * OUTPUT_STEP, "max_step": SAMPLES_AT_ONCE * step,
         "rtol": 1e-3, "atol": 1e-6, "method": "RK45", "restart_every_knot": False,
     }  # fmt: skip
     found = []
     yours = cost(lambda: found.append(scene.by_hand(**given)), 1)
-    mine = cost(lambda: scene.system.simulate(shaking, accuracy="fast", **RUN), 5)
-    ours = scene.system.simulate(shaking, accuracy="fast", **RUN)["rotation"].to_numpy()
+    mine = cost(lambda: scene.system.simulate(excitation, accuracy="fast", **RUN), 5)
+    ours = scene.system.simulate(excitation, accuracy="fast", **RUN)["rotation"].to_numpy()
     print(
         f"\n  {name}: rockframe {1e3 * mine:.1f} ms, error {error(ours, exact):.0e}; SciPy "
         f"{1e3 * yours:.0f} ms, error {error(found[0], exact):.0e}; ratio {yours / mine:.0f}"
@@ -43,12 +43,12 @@ def test_beside_opensees():
         ops = opensees()
     except ImportError as reason:
         pytest.skip(f"OpenSees is not at hand: {reason}")
-    from benchmarks.opensees_comparison import CASES, arguments, shaking, system
+    from benchmarks.opensees_comparison import CASES, arguments, excitation, system
     from benchmarks.opensees_pads import simulate
 
     ops.logFile("/dev/null", "-noEcho")
     damping_ratio, factor = CASES["undamped, with uplift"]
-    record = shaking(factor).window("0 s", f"{SECONDS} s")
+    record = excitation(factor).window("0 s", f"{SECONDS} s")
     scene, given = system(damping_ratio), arguments(damping_ratio, record)
     exact = scene.simulate(record, accuracy=EXACT, **RUN)["rotation"].to_numpy()
     errors = [error(simulate(ops, **given, steps_per_sample=count), exact) for count in (2, 8, 32)]

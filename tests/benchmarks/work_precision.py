@@ -62,14 +62,14 @@ def error(found: np.ndarray, exact: np.ndarray) -> float:
     return float(np.abs(found - exact).max() / np.abs(exact).max())
 
 
-def ours(system: rf.System, shaking: rf.GroundMotion, exact: np.ndarray) -> Iterator[dict]:
+def ours(system: rf.System, excitation: rf.GroundMotion, exact: np.ndarray) -> Iterator[dict]:
     """Measure rockframe at its levels and over tolerances, with and without histories."""
     settings = {level: level for level in LEVELS}
     settings |= {f"rtol {rtol:g}": rf.Accuracy(rtol=rtol) for rtol in TOLERANCES}
     for name, accuracy in settings.items():
 
         def run(accuracy=accuracy, **other):
-            return system.simulate(shaking, accuracy=accuracy, overturning="continue", **other)
+            return system.simulate(excitation, accuracy=accuracy, overturning="continue", **other)
 
         found = run(output_step=f"{OUTPUT_STEP} s")
         yield {
@@ -89,7 +89,7 @@ def by_scipy(scene: Scene, exact: np.ndarray) -> Iterator[dict]:
     for (method, way), tolerances in SCIPY.items():
         for rtol in tolerances:
             arguments = {
-                "time_step": si.time_step, "acceleration": si.acceleration,
+                "time_step": si.time_step, "acceleration": si.horizontal.samples,
                 "duration": float(times[-1]), "sample_times": times,
                 "rtol": rtol, "atol": 1e-3 * rtol, "method": method,
                 "restart_every_knot": way == AT_SAMPLES,
@@ -143,8 +143,8 @@ def stepping_alone() -> dict:
 
     What SciPy's own Python takes, whatever the equations are compiled with; no events, no output.
     """
-    shaking = motion()
-    step, count = shaking.si.time_step, len(shaking) - 1
+    excitation = motion()
+    step, count = excitation.si.time_step, len(excitation) - 1
     nothing, start = np.zeros(8), np.ones(8)
 
     def run(starts: int, length: float) -> None:

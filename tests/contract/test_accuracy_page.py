@@ -103,7 +103,7 @@ def test_no_smaller_pulse_overturns():
 
 def test_fast_on_coarse_records():
     record = rf.GroundMotion.read(record_path("PEERSMD_CHICHI_TCU128-N.AT2"))
-    samples = 1.5 * record.window("30 s", "90 s").si.acceleration
+    samples = 1.5 * record.window("30 s", "90 s").si.horizontal.samples
     block = rf.Block(width="4 m", height="18 m", mass="99 t")
     on_pads = said(PAGE, "errors of the history of #, #, # and # (the sub-steps")
     on_rigid = said(PAGE, "with one step per sample, #, #, # and #. Ask")

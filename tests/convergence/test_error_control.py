@@ -57,7 +57,7 @@ def system(kind, rng):
         return rf.System(*parts)
 
 
-def shaking(block, rng):
+def excitation(block, rng):
     """Smoothed noise of 0.5 to 5 times what uplifts a block on rigid ground."""
     smooth = int(rng.integers(2, 30))
     noise = rng.normal(size=int(rng.integers(200, 800)))
@@ -71,7 +71,7 @@ def shaking(block, rng):
 def outcomes(kind, rng):
     """Run one scene; give its outcomes, or none where it is chaotic or does not move."""
     scene = system(kind, rng)
-    motion = shaking(scene.parts.block.si, rng)
+    motion = excitation(scene.parts.block.si, rng)
     equations, duration = scene.setting.compile(), motion.si.duration
 
     def run(accuracy, ground):

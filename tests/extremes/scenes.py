@@ -39,7 +39,7 @@ class Scene:
     restraint: str = "contact-state"
     separation: str = "displacement"
     rotation: str = "finite"
-    shaking: str = "noise"
+    signal: str = "noise"
     peak: float = 0.3  # of the horizontal acceleration over gravity
     vertical: float = 0.0  # of the vertical one
     time_step: float = 0.01
@@ -94,7 +94,7 @@ class Scene:
     @property
     def motion(self) -> rf.GroundMotion:
         rng = np.random.default_rng(self.seed)
-        across, up = shake(self.shaking, SAMPLES, rng)
+        across, up = shake(self.signal, SAMPLES, rng)
         scale = GRAVITY * np.array([self.peak, self.vertical])
         return rf.GroundMotion.from_arrays(
             (across * scale[0], "m/s^2"),
@@ -118,7 +118,7 @@ class Scene:
 
 
 def shake(kind: str, count: int, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
-    """Give the horizontal and the vertical shape of a shaking, at most one in size."""
+    """Give the horizontal and the vertical shape of a ground motion, at most one in size."""
     time = np.linspace(0.0, 1.0, count)
     up = np.sin(2.0 * np.pi * 7.0 * time)
     if kind == "constant":
@@ -187,14 +187,14 @@ SUBJECTS: dict[str, Extreme] = {
     "soil stiffness over ten decades": _with(
         base=_one_of("soil", "coupled", "cascade"), soil_ratio=_log(0.1, 1e4)
     ),
-    "constant acceleration": _with(shaking=_fixed("constant"), peak=_log(0.01, 3.0)),
-    "a step at the start": _with(shaking=_fixed("step"), peak=_log(0.01, 3.0)),
+    "constant acceleration": _with(signal=_fixed("constant"), peak=_log(0.01, 3.0)),
+    "a step at the start": _with(signal=_fixed("step"), peak=_log(0.01, 3.0)),
     "release at 0.999999 of overturning": _with(
-        shaking=_fixed("still"), start=_one_of(0.999999, -0.999999)
+        signal=_fixed("still"), start=_one_of(0.999999, -0.999999)
     ),
     "contact that grazes": _with(
         base=_one_of("pads", "soil", "coupled"),
-        shaking=_fixed("constant"),
+        signal=_fixed("constant"),
         # weightless but for rounding, or for a part in a million
         vertical=_one_of(-1.0, -0.999999, -1.000001),
         peak=_one_of(0.0, 1e-6, 1e-3),
@@ -202,7 +202,7 @@ SUBJECTS: dict[str, Extreme] = {
     ),
     "landings at the same instant": _with(
         base=_one_of("pads", "soil", "coupled"),
-        shaking=_fixed("still"),
+        signal=_fixed("still"),
         vertical=_one_of(1.5, 3.0),
         start=_one_of(0.0, 1e-14, 1e-11, 1e-8),
         slenderness=_one_of(0.9, 2.0, 6.0),

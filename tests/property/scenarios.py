@@ -22,7 +22,7 @@ RULES = ("contact-state", "leading-corner", "centre")
 
 @dataclass(frozen=True)
 class Scenario:
-    """A scene and its shaking; `sign` mirrors both."""
+    """A scene and its ground motion; `sign` mirrors both."""
 
     base: str  # "rigid" or a restraint rule
     radius: float

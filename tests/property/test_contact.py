@@ -105,7 +105,7 @@ def test_the_time_in_flight_is_that_between_the_events(scenario):
 @given(scenarios(bases=RULES))
 @settings(max_examples=60, deadline=None)
 def test_finer_tolerances_do_not_change_a_short_run(scenario):
-    """Up to the second event after the shaking's start; later, rocking may be chaotic."""
+    """Up to the second event after the motion's start; later, rocking may be chaotic."""
     one = scenario.run(output_step="2 ms", duration="1 s", free_vibration=None)
     other = scenario.run(
         output_step="2 ms", duration="1 s", free_vibration=None, accuracy="reference"

@@ -84,8 +84,8 @@ def test_energy_balances(scenario):
 )
 def test_the_residual_is_over_the_largest_term_of_the_whole_run(scene):
     """Not only of the instants of events and of the end, where little may be stored."""
-    shaking = {"peak": 0.2, "frequency": 0.5, "cycles": 0.5, "vertical": 0.0}
-    scenario = Scenario(**{"xi": 0.0, "rotation": "finite", **shaking, **scene})
+    excitation = {"peak": 0.2, "frequency": 0.5, "cycles": 0.5, "vertical": 0.0}
+    scenario = Scenario(**{"xi": 0.0, "rotation": "finite", **excitation, **scene})
     response = scenario.run(outputs="energy", output_step="1 ms")
     stored = sum(response[f"{kind}_energy"].values for kind in ("kinetic", "potential", "elastic"))
     stored -= stored[0]
@@ -184,14 +184,14 @@ def test_a_block_left_alone_comes_to_rest(rule):
 
 @pytest.mark.parametrize("base", RULES)
 def test_the_residual_of_a_quiet_run_is_that_of_a_strong_one(base):
-    """In full contact a tenth of the shaking makes a hundredth of the energies, and of the errors.
+    """In full contact a tenth of the motion makes a hundredth of the energies, and of the errors.
 
     The springs' energy at rest stays what it is; over that the residual would vanish.
     """
-    shaking = {"frequency": 1.5, "cycles": 2.0, "vertical": 0.4, "xi": 0.1, "rotation": "small"}
+    excitation = {"frequency": 1.5, "cycles": 2.0, "vertical": 0.4, "xi": 0.1, "rotation": "small"}
     size = {"radius": 5.0, "slenderness": 4.0, "beta": 20.0}
     residuals = [
-        Scenario(base=base, peak=peak, **shaking, **size)
+        Scenario(base=base, peak=peak, **excitation, **size)
         .run(accuracy="fast")
         .energy_residual.item()
         for peak in (3e-3, 3e-4, 3e-5)

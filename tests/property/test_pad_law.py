@@ -21,7 +21,7 @@ RULES = ("contact-state", "leading-corner", "centre")
 STEP = 0.01
 
 
-def shaking(rng, slope):
+def excitation(rng, slope):
     time = np.arange(301) * STEP
     across = slope * 9.81 * rng.uniform(1.0, 4.0)
     x, y = (
@@ -49,7 +49,7 @@ def scene(kind, rule, rng):
             rf.WinklerSoil(stiffness=f"{stiffness} Pa", damping_ratio=rng.uniform(0.05, 0.4)),
         ]
     coupling = {} if kind == "pads" else {"coupling": kind}
-    return rf.System(*parts, restraint=rule, **coupling), shaking(rng, 1.0 / slenderness)
+    return rf.System(*parts, restraint=rule, **coupling), excitation(rng, 1.0 / slenderness)
 
 
 def free_forces(kind, model, run):

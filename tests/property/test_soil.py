@@ -312,7 +312,7 @@ def test_events_join_up(scenario):
 @given(soil_scenarios())
 @settings(max_examples=15, deadline=None, derandomize=FIXED)
 def test_finer_tolerances_do_not_change_a_short_run(scenario):
-    """Up to the second event after the shaking's start; later, rocking may be chaotic."""
+    """Up to the second event after the motion's start; later, rocking may be chaotic."""
     one, other = (
         scenario.run(output_step="2 ms", duration="1 s", free_vibration=None, accuracy=level)
         for level in ("standard", "reference")
@@ -368,7 +368,7 @@ def assert_mirrored(one, other, count=None):
 @example(replace(CASE, scene="coupled", separation="pressure", peak=1.0, rate=-0.4))
 @example(replace(CASE, scene="cascade", peak=0.6))
 @settings(max_examples=40, deadline=None, derandomize=FIXED)
-def test_mirrored_shaking_and_start_give_the_mirrored_response(scenario):
+def test_mirrored_motion_and_start_give_the_mirrored_response(scenario):
     """Up to the third event; later, rocking may be chaotic, and rounding grows."""
     options = {"output_step": "5 ms", "outputs": "energy"}
     one, other = scenario.run(**options), scenario.mirrored.run(**options)

@@ -67,7 +67,7 @@ CASE = {
 @example(Scenario(base="centre", peak=1.0, vertical=0.0, **CASE))
 @example(Scenario(base="rigid", peak=1.0, vertical=-0.4, **CASE))
 @settings(max_examples=120, deadline=None)
-def test_mirrored_shaking_and_start_give_the_mirrored_response(scenario):
+def test_mirrored_motion_and_start_give_the_mirrored_response(scenario):
     options = {"output_step": "10 ms", "outputs": "energy", "overturning": "continue"}
     assert_mirrored(scenario.run(**options), scenario.mirrored.run(**options))
 

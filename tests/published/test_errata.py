@@ -321,7 +321,7 @@ def test_the_inertia_in_the_law_of_impact(reading, holds):
         assert math.isclose(loss, printed_loss, rel_tol=1e-12) is holds
 
 
-# Energy: without damping and shaking it must stay -------------------------------------------
+# Energy: without damping and ground motion it must stay -------------------------------------------
 
 
 def accelerations(equations, case, printed):

@@ -129,7 +129,7 @@ def test_records_on_pads(name, window, scale, radius, slenderness):
     block = rf.Block.from_size(radius=f"{radius} m", slenderness=slenderness, mass="1 t")
     ours = on_pads(block, 20, 0.1, motion)
     theirs = monolith_on_pads(
-        block, 20, 0.1, time_step=motion.si.time_step, acceleration=motion.si.acceleration,
+        block, 20, 0.1, time_step=motion.si.time_step, acceleration=motion.si.horizontal.samples,
         duration=float(ours.time[-1]), sample_times=ours.time.to_numpy(),
     )  # fmt: skip
     assert int(ours.impact_count) > 0
@@ -161,7 +161,7 @@ def test_record_on_rigid_ground():
     theirs = rigid_block.simulate(
         half_width=0.5 * block.width.m_as("m"), half_height=0.5 * block.height.m_as("m"),
         shape_factor=3.0, gravity=GRAVITY, time_step=motion.si.time_step,
-        acceleration=motion.si.acceleration, duration=float(ours.time[-1]),
+        acceleration=motion.si.horizontal.samples, duration=float(ours.time[-1]),
         initial=(0.0, 0.0), sample_times=ours.time.to_numpy(),
     )  # fmt: skip
     assert int(ours.impact_count) > 3

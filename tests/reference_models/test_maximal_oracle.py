@@ -12,16 +12,16 @@ from reference_models.maximal import layout as at
 from reference_models.maximal import runge_kutta
 from reference_models.maximal.comparing import compare, run_reference
 from reference_models.maximal.drawing import draw
+from reference_models.maximal.excitation import HARMONIC
 from reference_models.maximal.running import kinetic, rooms, run, stored
 from reference_models.maximal.scene import GRAVITY, KINDS, Scene, paces, parameters, start
-from reference_models.maximal.shaking import HARMONIC
-from reference_models.maximal.simulate import Shaking, simulate
+from reference_models.maximal.simulate import Excitation, simulate
 
 pytestmark = pytest.mark.reference_models
 
 SCENES = 8
 SLOW = os.environ.get("ROCKFRAME_COMPILE") == "0"
-PULSE = Shaking.pulse(HARMONIC, 1.0 / 128.0, 128, 1.0, 0.0, 4.0, 2.0)
+PULSE = Excitation.pulse(HARMONIC, 1.0 / 128.0, 128, 1.0, 0.0, 4.0, 2.0)
 SOIL = {"soil_stiffness": 15e6, "cap_width": 3.0, "cap_height": 0.8, "cap_mass": 2e4}
 
 
@@ -35,7 +35,7 @@ def test_formula_has_its_order():
 
 def test_first_impact_of_a_free_block():
     scene = Scene("rigid", small=True, start=0.4, free=2.0)
-    history = simulate(scene, Shaking.still())
+    history = simulate(scene, Excitation.still())
     # Housner: the quarter period of small rotation
     quarter = math.acosh(1.0 / (1.0 - 0.4)) / scene.frequency
     assert history.events[0, 0] == pytest.approx(quarter, abs=1e-12)
@@ -93,8 +93,8 @@ def test_energies_balance(kind, separation):
 
 def test_mirrored_motion():
     scene = replace(Scene("coupled", start=0.3, xi=0.3, beta=10.0, free=3.0), **SOIL)
-    one = simulate(scene, Shaking.still())
-    other = simulate(replace(scene, start=-0.3), Shaking.still())
+    one = simulate(scene, Excitation.still())
+    other = simulate(replace(scene, start=-0.3), Excitation.still())
     assert other.rotation == pytest.approx(-one.rotation, abs=1e-9)
     assert other.rise == pytest.approx(one.rise, abs=1e-9)
 

@@ -134,7 +134,7 @@ def test_records_on_soil(name, window, scale):
     ours = on_soil("contact-state", "finite", "displacement", motion, 0.0)
     theirs = monolith_on_soil(
         "contact-state", "finite", "displacement", 0.0, time_step=motion.si.time_step,
-        acceleration=motion.si.acceleration, duration=float(ours.time[-1]),
+        acceleration=motion.si.horizontal.samples, duration=float(ours.time[-1]),
         sample_times=ours.time.to_numpy(),
     )  # fmt: skip
     assert int((ours.contact_state != 0).sum()) > 10
@@ -206,7 +206,7 @@ def test_record_coupled():
     ours = stacked("contact-state", motion, 0.0)
     theirs = monolith_stacked(
         "contact-state", 0.0, time_step=motion.si.time_step,
-        acceleration=motion.si.acceleration, duration=float(ours.time[-1]),
+        acceleration=motion.si.horizontal.samples, duration=float(ours.time[-1]),
         sample_times=ours.time.to_numpy(),
     )  # fmt: skip
     compare_stacked(ours, theirs)

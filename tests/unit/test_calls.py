@@ -35,11 +35,15 @@ BLOCK = rf.Block(**SIZE)
         ),
         (rf.GroundMotion, "write GroundMotion.read(path), GroundMotion.from_arrays("),
         (
-            lambda: rf.GroundMotion.stochastic(6.5, "5 km"),
-            "GroundMotion.stochastic() missing 1 required positional argument: 'seed'",
+            lambda: rf.GroundMotion(acceleration=[0.0, 1.0], time_step="0.01 s"),
+            "GroundMotion: it is not built by calling it; write GroundMotion.read(path)",
         ),
-        (lambda: rf.GroundMotion.sine_pulse(cycle=1), "GroundMotion.sine_pulse() got"),
-        (lambda: rf.GroundMotion.sine_pulse().resampled(), "GroundMotion.resampled() missing"),
+        (
+            lambda: rf.GroundMotion.stochastic(6.5, "5 km"),
+            "stochastic() missing 1 required positional argument: 'seed'",
+        ),
+        (lambda: rf.GroundMotion.sine_pulse(cycle=1), "sine_pulse() got"),
+        (lambda: rf.GroundMotion.sine_pulse().resampled(), "resampled() missing"),
         (lambda: rf.System(BLOCK).describe("all"), "System.describe() takes"),
     ],
 )

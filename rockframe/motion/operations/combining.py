@@ -3,156 +3,150 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Final, Self, cast
+from dataclasses import replace
+from typing import TYPE_CHECKING, Final, cast
 
 import numpy as np
 
 from rockframe.errors import ComponentError
-from rockframe.motion.operations.base import ProcessedMotion, other_motion
+from rockframe.motion.operations.following import following, other_motion
 from rockframe.motion.processing.sampling import padded
-from rockframe.motion.samples import COEFFICIENTS, Array, MotionSI
-from rockframe.motion.value import MotionValue
+from rockframe.signals import Motion, Signal
+from rockframe.signals.signal import COEFFICIENTS, VERTICAL
 from rockframe.units import ANGLE, to_si
 
 if TYPE_CHECKING:
     from rockframe.motion.quantities import QuantityLike
+    from rockframe.motion.value import Made, MotionValue
+    from rockframe.signals.arrays import Array
 
 _RIGHT_ANGLE_TOLERANCE: Final = 1.0  # degrees; agencies round azimuths to whole ones
 _ROUNDING: Final = 1e-15
 
 
-class CombiningOperations(ProcessedMotion):
-    """A motion that can be joined with another component."""
+def with_vertical(motion: Made, other: MotionValue) -> Made:
+    """Add a vertical motion: the horizontal component of another one, upwards.
 
-    __slots__ = ()
+    Parameters
+    ----------
+    other : GroundMotion
+        Of the same time step; the shorter of the two is padded with zeros.
 
-    def with_vertical(self, other: MotionValue) -> Self:
-        """Add a vertical motion: the horizontal component of another one, upwards.
+    Returns
+    -------
+    GroundMotion
 
-        Parameters
-        ----------
-        other : GroundMotion
-            Of the same time step; the shorter of the two is padded with zeros.
+    Raises
+    ------
+    ComponentError
+        Not a motion, or another time step.
+    """
+    owner, si = f"{type(motion).__name__}.with_vertical", motion.si
+    theirs = other_motion(other, si, owner).si
+    count = max(len(motion), len(other))
+    upwards = replace(padded(theirs.horizontal, count), time_step=si.time_step, name=VERTICAL)
+    verb = "vertical component" if si.vertical is None else "vertical component replaced:"
+    steps = [f"{verb} {other.name} (sha256 {other.sha256[:12]})"]
+    for label, one in (("horizontal", motion), ("vertical", other)):
+        if len(one) < count:
+            steps.append(f"{label} component padded with {count - len(one)} zeros")
+    result = Motion(padded(si.horizontal, count), upwards)
+    about = {f"vertical_{key}": value for key, value in other.metadata.items()}
+    known = None if other.recipe is None else dict(other.recipe)
+    operation = None if known is None else {"with_vertical": {"other": known}}
+    return following(motion, result, *steps, operation=operation, metadata=about)
 
-        Returns
-        -------
-        GroundMotion
 
-        Raises
-        ------
-        ComponentError
-            Not a motion, or another time step.
-        """
-        owner, si = f"{type(self).__name__}.with_vertical", self.si
-        theirs = other_motion(other, si, owner).si
-        count = max(len(self), len(other))
-        across, pieces = padded(si.acceleration, si.pieces, count)
-        upwards, vertical_pieces = padded(theirs.acceleration, theirs.pieces, count)
-        verb = "vertical component" if si.vertical is None else "vertical component replaced:"
-        steps = [f"{verb} {other.name} (sha256 {other.sha256[:12]})"]
-        for label, motion in (("horizontal", self), ("vertical", other)):
-            if len(motion) < count:
-                steps.append(f"{label} component padded with {count - len(motion)} zeros")
-        result = MotionSI(si.time_step, across, upwards, pieces, vertical_pieces)
-        about = {f"vertical_{key}": value for key, value in other.metadata.items()}
-        known = None if other._recipe is None else dict(other._recipe)
-        operation = None if known is None else {"with_vertical": {"other": known}}
-        return self._next(result, *steps, operation=operation, metadata=about)
+def rotated(
+    motion: Made,
+    other: MotionValue,
+    angle: QuantityLike | None = None,
+    *,
+    azimuth: QuantityLike | None = None,
+) -> Made:
+    """Give the horizontal acceleration in another direction.
 
-    def rotated(
-        self,
-        other: MotionValue,
-        angle: QuantityLike | None = None,
-        *,
-        azimuth: QuantityLike | None = None,
-    ) -> Self:
-        """Give the horizontal acceleration in another direction.
+    Parameters
+    ----------
+    other : GroundMotion
+        The horizontal component at a right angle to this one, of the same time
+        step; the shorter of the two is padded with zeros.
+    angle : str or Quantity, optional
+        From this component towards the other one [rad].
+    azimuth : str or Quantity, optional
+        Instead of `angle`: clockwise from north, for components whose
+        metadata tell their own ``azimuth`` [rad].
 
-        Parameters
-        ----------
-        other : GroundMotion
-            The horizontal component at a right angle to this one, of the same time
-            step; the shorter of the two is padded with zeros.
-        angle : str or Quantity, optional
-            From this component towards the other one [rad].
-        azimuth : str or Quantity, optional
-            Instead of `angle`: clockwise from north, for components whose
-            metadata tell their own ``azimuth`` [rad].
+    Returns
+    -------
+    GroundMotion
+        With this motion's vertical component, if it has one.
 
-        Returns
-        -------
-        GroundMotion
-            With this motion's vertical component, if it has one.
+    Raises
+    ------
+    UnitsError
+        Not an angle.
+    ComponentError
+        Both or neither of `angle` and `azimuth` given; not a motion, or another time
+        step; an azimuth that a component lacks, or components that are not at a right
+        angle.
 
-        Raises
-        ------
-        UnitsError
-            Not an angle.
-        ComponentError
-            Both or neither of `angle` and `azimuth` given; not a motion, or another time
-            step; an azimuth that a component lacks, or components that are not at a right
-            angle.
-
-        Notes
-        -----
-        ``a cos(angle) + a_other sin(angle)``.
-        """
-        owner, si = f"{type(self).__name__}.rotated", self.si
-        theirs = other_motion(other, si, owner).si
-        if (angle is None) == (azimuth is None):
-            msg = f"{owner}: give either angle or azimuth, for example angle='30 deg'"
-            raise ComponentError(msg)
-        metadata: dict[str, str | float] = {}
-        if azimuth is None:
-            turn = to_si(cast("QuantityLike", angle), ANGLE, owner=owner, name="angle")
-        else:
-            target = to_si(azimuth, ANGLE, owner=owner, name="azimuth")
-            turn = self._turn_to(target, other, owner)
-            metadata["azimuth"] = math.degrees(target) % 360.0
-        count = max(len(self), len(other))
-        mine, my_pieces = padded(si.acceleration, si.pieces, count)
-        partner, partner_pieces = padded(theirs.acceleration, theirs.pieces, count)
-        upwards, vertical_pieces = si.vertical, si.vertical_pieces
-        if upwards is not None:
-            upwards, vertical_pieces = padded(upwards, vertical_pieces, count)
-        along, across = _direction(turn)
-        pieces = None
-        if my_pieces is not None or partner_pieces is not None:
-            pieces = along * _as_pieces(mine, my_pieces)
-            pieces += across * _as_pieces(partner, partner_pieces)
-        result = MotionSI(
-            si.time_step, along * mine + across * partner, upwards, pieces, vertical_pieces
-        )
-        steps = [
-            f"rotated by {math.degrees(turn):.9g} degrees towards {other.name} "
-            f"(sha256 {other.sha256[:12]})"
-        ]
-        for label, motion in (("this", self), ("the other", other)):
-            if len(motion) < count:
-                steps.append(f"{label} component padded with {count - len(motion)} zeros")
-        known = None if other._recipe is None else dict(other._recipe)
-        operation = None
-        if known is not None:
-            operation = {"rotated": {"other": known, "angle": f"{turn!r} {ANGLE.unit}"}}
-        metadata["component"] = " and ".join(
-            str(motion.metadata.get("component", motion.name)) for motion in (self, other)
-        )
-        metadata["component"] += f" rotated by {math.degrees(turn):.6g} degrees"
-        return self._next(result, *steps, operation=operation, metadata=metadata)
-
-    def _turn_to(self, target: float, other: MotionValue, owner: str) -> float:
-        known = [motion.metadata.get("azimuth") for motion in (self, other)]
-        degrees = [value for value in known if isinstance(value, int | float)]
-        if len(degrees) < len(known):
-            msg = f"{owner}: the metadata of both components must tell their azimuth; give angle"
-            raise ComponentError(msg)
-        own, theirs = degrees
-        apart = (theirs - own) % 360.0
-        for right, sign in ((90.0, 1.0), (270.0, -1.0)):
-            if abs(apart - right) <= _RIGHT_ANGLE_TOLERANCE:
-                return sign * (target - math.radians(own))
-        msg = f"{owner}: azimuths of {own:.6g} and {theirs:.6g} degrees are not at a right angle"
+    Notes
+    -----
+    ``a cos(angle) + a_other sin(angle)``.
+    """
+    owner, si = f"{type(motion).__name__}.rotated", motion.si
+    theirs = other_motion(other, si, owner).si
+    if (angle is None) == (azimuth is None):
+        msg = f"{owner}: give either angle or azimuth, for example angle='30 deg'"
         raise ComponentError(msg)
+    metadata: dict[str, str | float] = {}
+    if azimuth is None:
+        turn = to_si(cast("QuantityLike", angle), ANGLE, owner=owner, name="angle")
+    else:
+        target = to_si(azimuth, ANGLE, owner=owner, name="azimuth")
+        turn = _turn_to(motion, target, other, owner)
+        metadata["azimuth"] = math.degrees(target) % 360.0
+    count = max(len(motion), len(other))
+    mine, partner = padded(si.horizontal, count), padded(theirs.horizontal, count)
+    along, across = _direction(turn)
+    pieces = None
+    if mine.analytic or partner.analytic:
+        pieces = along * _polynomials(mine)
+        pieces += across * _polynomials(partner)
+    turned = Signal(si.time_step, along * mine.samples + across * partner.samples, pieces)
+    result = Motion(turned, None if si.vertical is None else padded(si.vertical, count))
+    steps = [
+        f"rotated by {math.degrees(turn):.9g} degrees towards {other.name} "
+        f"(sha256 {other.sha256[:12]})"
+    ]
+    for label, one in (("this", motion), ("the other", other)):
+        if len(one) < count:
+            steps.append(f"{label} component padded with {count - len(one)} zeros")
+    known = None if other.recipe is None else dict(other.recipe)
+    operation = None
+    if known is not None:
+        operation = {"rotated": {"other": known, "angle": f"{turn!r} {ANGLE.unit}"}}
+    metadata["component"] = " and ".join(
+        str(one.metadata.get("component", one.name)) for one in (motion, other)
+    )
+    metadata["component"] += f" rotated by {math.degrees(turn):.6g} degrees"
+    return following(motion, result, *steps, operation=operation, metadata=metadata)
+
+
+def _turn_to(motion: MotionValue, target: float, other: MotionValue, owner: str) -> float:
+    known = [one.metadata.get("azimuth") for one in (motion, other)]
+    degrees = [value for value in known if isinstance(value, int | float)]
+    if len(degrees) < len(known):
+        msg = f"{owner}: the metadata of both components must tell their azimuth; give angle"
+        raise ComponentError(msg)
+    own, theirs = degrees
+    apart = (theirs - own) % 360.0
+    for right, sign in ((90.0, 1.0), (270.0, -1.0)):
+        if abs(apart - right) <= _RIGHT_ANGLE_TOLERANCE:
+            return sign * (target - math.radians(own))
+    msg = f"{owner}: azimuths of {own:.6g} and {theirs:.6g} degrees are not at a right angle"
+    raise ComponentError(msg)
 
 
 def _direction(turn: float) -> tuple[float, float]:
@@ -164,9 +158,7 @@ def _direction(turn: float) -> tuple[float, float]:
     return math.cos(turn), math.sin(turn)
 
 
-def _as_pieces(samples: Array, pieces: Array | None) -> Array:
-    if pieces is not None:
-        return pieces
-    lines = np.zeros((samples.size - 1, COEFFICIENTS))
-    lines[:, 0], lines[:, 1] = samples[:-1], np.diff(samples)
-    return lines
+def _polynomials(signal: Signal) -> Array:
+    polynomials = np.zeros((signal.samples.size - 1, COEFFICIENTS))
+    polynomials[:, : signal.pieces.shape[1]] = signal.pieces
+    return polynomials

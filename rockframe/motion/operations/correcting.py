@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 from enum import StrEnum
-from typing import TYPE_CHECKING, Final, Self, cast
+from typing import TYPE_CHECKING, Final, cast
 
+from rockframe.arguments import one_of_words, whole_number
 from rockframe.errors import ComponentError, shown
-from rockframe.motion.operations.base import ProcessedMotion, replaced
+from rockframe.motion.operations.following import following, lost_pieces, with_samples
 from rockframe.motion.processing.baseline import without_baseline, without_drift
 from rockframe.motion.processing.filters import butterworth, padding_samples
-from rockframe.motion.samples import MAXIMUM_SAMPLES
+from rockframe.signals.signal import MAXIMUM_SAMPLES
 from rockframe.units import FREQUENCY, POSITIVE, to_si
-from rockframe.words import choice, whole_number
 
 if TYPE_CHECKING:
     from rockframe.motion.quantities import QuantityLike
+    from rockframe.motion.value import Made
 
 _HIGHEST_ORDER: Final = 12
 _HIGHEST_DEGREE: Final = 20
@@ -27,135 +28,131 @@ class Baseline(StrEnum):
     VELOCITY = "velocity"
 
 
-class CorrectingOperations(ProcessedMotion):
-    """A motion that can be filtered and freed of its baseline."""
+def filtered(
+    motion: Made,
+    *,
+    low: QuantityLike | None = None,
+    high: QuantityLike | None = None,
+    order: int = 4,
+    causal: bool = False,
+) -> Made:
+    """Apply a Butterworth filter, zero-phase unless told otherwise.
 
-    __slots__ = ()
+    Parameters
+    ----------
+    low : str or Quantity, optional
+        Frequencies below are taken out [Hz].
+    high : str or Quantity, optional
+        Frequencies above are taken out [Hz].
+    order : int, optional
+        Of each pass; after the two of a zero-phase filter, forwards and backwards,
+        the amplitude at a corner is halved.
+    causal : bool, optional
+        Run the filter forwards only: nothing moves before its time, but phases are
+        shifted; the amplitude at a corner is divided by the square root of 2.
 
-    def filtered(
-        self,
-        *,
-        low: QuantityLike | None = None,
-        high: QuantityLike | None = None,
-        order: int = 4,
-        causal: bool = False,
-    ) -> Self:
-        """Apply a Butterworth filter, zero-phase unless told otherwise.
+    Returns
+    -------
+    GroundMotion
 
-        Parameters
-        ----------
-        low : str or Quantity, optional
-            Frequencies below are taken out [Hz].
-        high : str or Quantity, optional
-            Frequencies above are taken out [Hz].
-        order : int, optional
-            Of each pass; after the two of a zero-phase filter, forwards and backwards,
-            the amplitude at a corner is halved.
-        causal : bool, optional
-            Run the filter forwards only: nothing moves before its time, but phases are
-            shifted; the amplitude at a corner is divided by the square root of 2.
+    Raises
+    ------
+    UnitsError
+        Not a frequency.
+    ComponentError
+        No corner, corners in the wrong order or beyond the Nyquist
+        frequency, an order outside 1 to 12, or `causal` neither True nor False.
 
-        Returns
-        -------
-        GroundMotion
-
-        Raises
-        ------
-        UnitsError
-            Not a frequency.
-        ComponentError
-            No corner, corners in the wrong order or beyond the Nyquist
-            frequency, an order outside 1 to 12, or `causal` neither True nor False.
-
-        Notes
-        -----
-        For a zero-phase filter the motion is padded with zeros at both ends, 1.5 order/f
-        of the lowest corner f, and cut back to its length afterwards. A causal filter
-        starts from rest, as if zeros had gone before.
-        """
-        owner, si = f"{type(self).__name__}.filtered", self.si
-        corners = {
-            name: to_si(value, FREQUENCY, owner=owner, name=name, condition=POSITIVE)
-            for name, value in (("low", low), ("high", high))
-            if value is not None
-        }
-        nyquist = 0.5 / si.time_step
-        lower, upper = corners.get("low"), corners.get("high")
-        if not corners:
-            msg = f"{owner}: give low, high or both, for example low='0.1 Hz'"
-            raise ComponentError(msg)
-        if lower is not None and upper is not None and lower >= upper:
-            msg = f"{owner}: low = {lower:.6g} Hz must be below high = {upper:.6g} Hz"
-            raise ComponentError(msg)
-        for name, corner in corners.items():
-            if corner >= nyquist:
-                msg = (
-                    f"{owner}: {name} = {corner:.6g} Hz must be below the Nyquist "
-                    f"frequency, {nyquist:.6g} Hz"
-                )
-                raise ComponentError(msg)
-        order = whole_number(order, owner=owner, name="order", lowest=1, highest=_HIGHEST_ORDER)
-        if not isinstance(cast("object", causal), bool):
-            msg = f"{owner}: causal must be True or False, got {shown(causal)}"
-            raise ComponentError(msg)
-        padding = padding_samples(si.time_step, min(corners.values()), order)
-        if padding > MAXIMUM_SAMPLES:
-            msg = f"{owner}: a corner of {min(corners.values()):.6g} Hz is too low for this motion"
-            raise ComponentError(msg)
-        result = replaced(
-            si,
-            lambda samples, _: butterworth(
-                si.time_step, samples, low=lower, high=upper, order=order, causal=causal
-            ),
-        )
-        band = ", ".join(f"{name} corner {value:.9g} Hz" for name, value in corners.items())
-        way = (
-            f"forwards only, {band}, from rest"
-            if causal
-            else f"forwards and backwards, {band}, padded with {padding} zeros at both ends"
-        )
-        step = f"Butterworth filter of order {order}, {way}"
-        given = {name: f"{value!r} {FREQUENCY.unit}" for name, value in corners.items()}
-        operation = {"filtered": {**given, "order": order, "causal": causal}}
-        return self._next(result, step, *self._drop_note(), operation=operation)
-
-    def baseline_corrected(
-        self, order: int = 1, *, fit: Baseline | str = Baseline.ACCELERATION
-    ) -> Self:
-        """Subtract the polynomial that fits the acceleration, or the velocity, best.
-
-        Parameters
-        ----------
-        order : int, optional
-            Degree. Of the acceleration 0 takes the mean away, 1 a straight line; a
-            polynomial of the velocity is zero at the start, so its degree is 1 or more.
-        fit : {"acceleration", "velocity"}, optional
-            What the polynomial is fitted to (least squares); of the velocity's its slope is
-            subtracted from the acceleration.
-
-        Returns
-        -------
-        GroundMotion
-
-        Raises
-        ------
-        ComponentError
-            Not a whole number up to 20, or not below the number of samples; or
-            another `fit`.
-        """
-        owner, si = f"{type(self).__name__}.baseline_corrected", self.si
-        fitted = choice(Baseline, fit, owner=owner, name="fit")
-        lowest = 1 if fitted is Baseline.VELOCITY else 0
-        highest = min(_HIGHEST_DEGREE, len(self) - 1)
-        order = whole_number(order, owner=owner, name="order", lowest=lowest, highest=highest)
-        if fitted is Baseline.VELOCITY:
-            result = replaced(si, lambda samples, _: without_drift(si.time_step, samples, order))
-            step = (
-                f"baseline corrected: slope of the polynomial of degree {order} through the "
-                "velocity subtracted (least squares)"
+    Notes
+    -----
+    For a zero-phase filter the motion is padded with zeros at both ends, 1.5 order/f
+    of the lowest corner f, and cut back to its length afterwards. A causal filter
+    starts from rest, as if zeros had gone before.
+    """
+    owner, si = f"{type(motion).__name__}.filtered", motion.si
+    corners = {
+        name: to_si(value, FREQUENCY, owner=owner, name=name, condition=POSITIVE)
+        for name, value in (("low", low), ("high", high))
+        if value is not None
+    }
+    nyquist = 0.5 / si.time_step
+    lower, upper = corners.get("low"), corners.get("high")
+    if not corners:
+        msg = f"{owner}: give low, high or both, for example low='0.1 Hz'"
+        raise ComponentError(msg)
+    if lower is not None and upper is not None and lower >= upper:
+        msg = f"{owner}: low = {lower:.6g} Hz must be below high = {upper:.6g} Hz"
+        raise ComponentError(msg)
+    for name, corner in corners.items():
+        if corner >= nyquist:
+            msg = (
+                f"{owner}: {name} = {corner:.6g} Hz must be below the Nyquist "
+                f"frequency, {nyquist:.6g} Hz"
             )
-        else:
-            result = replaced(si, lambda samples, _: without_baseline(samples, order))
-            step = f"baseline corrected: polynomial of degree {order} subtracted (least squares)"
-        operation = {"baseline_corrected": {"order": order, "fit": str(fitted)}}
-        return self._next(result, step, *self._drop_note(), operation=operation)
+            raise ComponentError(msg)
+    order = whole_number(order, owner=owner, name="order", lowest=1, highest=_HIGHEST_ORDER)
+    if not isinstance(cast("object", causal), bool):
+        msg = f"{owner}: causal must be True or False, got {shown(causal)}"
+        raise ComponentError(msg)
+    padding = padding_samples(si.time_step, min(corners.values()), order)
+    if padding > MAXIMUM_SAMPLES:
+        msg = f"{owner}: a corner of {min(corners.values()):.6g} Hz is too low for this motion"
+        raise ComponentError(msg)
+    result = with_samples(
+        si,
+        lambda signal: butterworth(
+            si.time_step, signal.samples, low=lower, high=upper, order=order, causal=causal
+        ),
+    )
+    band = ", ".join(f"{name} corner {value:.9g} Hz" for name, value in corners.items())
+    way = (
+        f"forwards only, {band}, from rest"
+        if causal
+        else f"forwards and backwards, {band}, padded with {padding} zeros at both ends"
+    )
+    step = f"Butterworth filter of order {order}, {way}"
+    given = {name: f"{value!r} {FREQUENCY.unit}" for name, value in corners.items()}
+    operation = {"filtered": {**given, "order": order, "causal": causal}}
+    return following(motion, result, step, *lost_pieces(si), operation=operation)
+
+
+def baseline_corrected(
+    motion: Made, order: int = 1, *, fit: Baseline | str = Baseline.ACCELERATION
+) -> Made:
+    """Subtract the polynomial that fits the acceleration, or the velocity, best.
+
+    Parameters
+    ----------
+    order : int, optional
+        Degree. Of the acceleration 0 takes the mean away, 1 a straight line; a
+        polynomial of the velocity is zero at the start, so its degree is 1 or more.
+    fit : {"acceleration", "velocity"}, optional
+        What the polynomial is fitted to (least squares); of the velocity's its slope is
+        subtracted from the acceleration.
+
+    Returns
+    -------
+    GroundMotion
+
+    Raises
+    ------
+    ComponentError
+        Not a whole number up to 20, or not below the number of samples; or
+        another `fit`.
+    """
+    owner, si = f"{type(motion).__name__}.baseline_corrected", motion.si
+    fitted = one_of_words(Baseline, fit, owner=owner, name="fit")
+    lowest = 1 if fitted is Baseline.VELOCITY else 0
+    highest = min(_HIGHEST_DEGREE, len(motion) - 1)
+    order = whole_number(order, owner=owner, name="order", lowest=lowest, highest=highest)
+    if fitted is Baseline.VELOCITY:
+        result = with_samples(si, lambda signal: without_drift(si.time_step, signal.samples, order))
+        step = (
+            f"baseline corrected: slope of the polynomial of degree {order} through the "
+            "velocity subtracted (least squares)"
+        )
+    else:
+        result = with_samples(si, lambda signal: without_baseline(signal.samples, order))
+        step = f"baseline corrected: polynomial of degree {order} subtracted (least squares)"
+    operation = {"baseline_corrected": {"order": order, "fit": str(fitted)}}
+    return following(motion, result, step, *lost_pieces(si), operation=operation)

@@ -3,19 +3,28 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from enum import StrEnum
-from typing import TYPE_CHECKING, Final, Self
+from typing import TYPE_CHECKING, Final
 
+from rockframe.arguments import one_of_words
 from rockframe.errors import ComponentError
-from rockframe.motion.operations.base import SAME_STEP, ProcessedMotion, replaced
+from rockframe.motion.operations.following import (
+    SAME_STEP,
+    following,
+    lost_pieces,
+    with_samples,
+)
 from rockframe.motion.processing.sampling import band_limited, coarsened, refined
 from rockframe.motion.processing.tapers import tapered
-from rockframe.motion.samples import MAXIMUM_SAMPLES, Array, MotionSI
+from rockframe.signals.signal import MAXIMUM_SAMPLES
 from rockframe.units import POSITIVE, TIME, TIME_STEP, to_si
-from rockframe.words import choice
 
 if TYPE_CHECKING:
     from rockframe.motion.quantities import QuantityLike
+    from rockframe.motion.value import Made
+    from rockframe.signals import Signal
+    from rockframe.signals.arrays import Array
 
 _SNAP: Final = 1e-6
 
@@ -33,151 +42,144 @@ _HOW: Final = {
 }
 
 
-class TimeOperations(ProcessedMotion):
-    """A motion that can be cut and resampled."""
+def window(
+    motion: Made,
+    start: QuantityLike | None = None,
+    end: QuantityLike | None = None,
+    *,
+    taper: QuantityLike | None = None,
+) -> Made:
+    """Cut a part out, and let it begin and end smoothly; its time starts at zero.
 
-    __slots__ = ()
+    Parameters
+    ----------
+    start, end : str or Quantity, optional
+        Snapped to the nearest samples; the motion's own unless given [s].
+    taper : str or Quantity, optional
+        Length over which the acceleration grows from zero at the start, and fades
+        to zero at the end, along half a cosine [s].
 
-    def window(
-        self,
-        start: QuantityLike | None = None,
-        end: QuantityLike | None = None,
-        *,
-        taper: QuantityLike | None = None,
-    ) -> Self:
-        """Cut a part out, and let it begin and end smoothly; its time starts at zero.
+    Returns
+    -------
+    GroundMotion
 
-        Parameters
-        ----------
-        start, end : str or Quantity, optional
-            Snapped to the nearest samples; the motion's own unless given [s].
-        taper : str or Quantity, optional
-            Length over which the acceleration grows from zero at the start, and fades
-            to zero at the end, along half a cosine [s].
-
-        Returns
-        -------
-        GroundMotion
-
-        Raises
-        ------
-        UnitsError
-            Not a time.
-        ComponentError
-            Outside the motion, fewer than two samples, or tapers that are not positive or
-            longer than the part.
-        """
-        owner, si = f"{type(self).__name__}.window", self.si
-        asked = {
-            name: own if value is None else to_si(value, TIME, owner=owner, name=name)
-            for name, value, own in (("start", start, 0.0), ("end", end, si.duration))
-        }
-        last = len(self) - 1
-        places = {name: value / si.time_step for name, value in asked.items()}
-        for name, place in places.items():
-            # some records count their length as n dt, one step beyond the last sample
-            if place < -_SNAP or place > last + 1.0 + _SNAP:
-                msg = (
-                    f"{owner}: {name} = {asked[name]:.6g} s is outside the motion, "
-                    f"which lasts from 0 s to {si.duration:.6g} s"
-                )
-                raise ComponentError(msg)
-        first, final = (min(max(round(places[name]), 0), last) for name in ("start", "end"))
-        if final <= first:
+    Raises
+    ------
+    UnitsError
+        Not a time.
+    ComponentError
+        Outside the motion, fewer than two samples, or tapers that are not positive or
+        longer than the part.
+    """
+    owner, si = f"{type(motion).__name__}.window", motion.si
+    asked = {
+        name: own if value is None else to_si(value, TIME, owner=owner, name=name)
+        for name, value, own in (("start", start, 0.0), ("end", end, si.duration))
+    }
+    last = len(motion) - 1
+    places = {name: value / si.time_step for name, value in asked.items()}
+    for name, place in places.items():
+        # some records count their length as n dt, one step beyond the last sample
+        if place < -_SNAP or place > last + 1.0 + _SNAP:
             msg = (
-                f"{owner}: end = {asked['end']:.6g} s must be at least one time step "
-                f"({si.time_step:.6g} s) after start = {asked['start']:.6g} s"
+                f"{owner}: {name} = {asked[name]:.6g} s is outside the motion, "
+                f"which lasts from 0 s to {si.duration:.6g} s"
             )
             raise ComponentError(msg)
-        step = f"window from {first * si.time_step:.9g} s to {final * si.time_step:.9g} s"
-        if any(abs(places[n] - k) > _SNAP for n, k in (("start", first), ("end", final))):
-            step += f", the samples nearest to {asked['start']:.9g} s and {asked['end']:.9g} s"
-        samples, between = slice(first, final + 1), slice(first, final)
-        part = MotionSI(
-            time_step=si.time_step,
-            acceleration=si.acceleration[samples],
-            vertical=None if si.vertical is None else si.vertical[samples],
-            pieces=None if si.pieces is None else si.pieces[between],
-            vertical_pieces=None if si.vertical_pieces is None else si.vertical_pieces[between],
+    first, final = (min(max(round(places[name]), 0), last) for name in ("start", "end"))
+    if final <= first:
+        msg = (
+            f"{owner}: end = {asked['end']:.6g} s must be at least one time step "
+            f"({si.time_step:.6g} s) after start = {asked['start']:.6g} s"
         )
-        given = {name: f"{value!r} {TIME.unit}" for name, value in asked.items()}
-        steps = [step]
-        if taper is not None:
-            length = to_si(taper, TIME, owner=owner, name="taper", condition=POSITIVE)
-            if 2.0 * length > part.duration * (1.0 + _SNAP):
-                msg = (
-                    f"{owner}: two tapers of {length:.6g} s are longer than the window, "
-                    f"{part.duration:.6g} s"
-                )
-                raise ComponentError(msg)
-            given["taper"] = f"{length!r} {TIME.unit}"
-            steps += [f"tapered over {length!r} s at both ends, half a cosine", *self._drop_note()]
-            part = replaced(part, lambda samples, _: tapered(samples, length / si.time_step))
-        return self._next(part, *steps, operation={"window": given})
-
-    def resampled(
-        self,
-        time_step: QuantityLike,
-        *,
-        interpolation: Interpolation | str = Interpolation.BAND_LIMITED,
-    ) -> Self:
-        """Change the time step.
-
-        Finer: the motion that has these samples and nothing beyond their Nyquist
-        frequency, or the straight lines between them; an analytic motion is read off
-        as it stands. Coarser: after a zero-phase low-pass filter against aliasing.
-
-        Parameters
-        ----------
-        time_step : str or Quantity
-            New time step [s].
-        interpolation : {"band-limited", "linear"}, optional
-            Between the samples of a record, for a finer time step. Straight lines are what
-            a simulation sees in any case: ``"linear"`` changes no result.
-
-        Returns
-        -------
-        GroundMotion
-
-        Raises
-        ------
-        UnitsError
-            Not a time.
-        ComponentError
-            Not positive, longer than the motion, too short to be meant, or another
-            interpolation.
-        """
-        owner, si = f"{type(self).__name__}.resampled", self.si
-        between = choice(Interpolation, interpolation, owner=owner, name="interpolation")
-        step = to_si(time_step, TIME_STEP, owner=owner, name="time_step", condition=POSITIVE)
-        if step > si.duration:
-            msg = f"{owner}: time_step = {step:.6g} s exceeds the duration, {si.duration:.6g} s"
-            raise ComponentError(msg)
-        if si.duration / step > MAXIMUM_SAMPLES:
+        raise ComponentError(msg)
+    step = f"window from {first * si.time_step:.9g} s to {final * si.time_step:.9g} s"
+    if any(abs(places[n] - k) > _SNAP for n, k in (("start", first), ("end", final))):
+        step += f", the samples nearest to {asked['start']:.9g} s and {asked['end']:.9g} s"
+    part = si.each(lambda signal: _between(signal, first, final))
+    given = {name: f"{value!r} {TIME.unit}" for name, value in asked.items()}
+    steps = [step]
+    if taper is not None:
+        length = to_si(taper, TIME, owner=owner, name="taper", condition=POSITIVE)
+        if 2.0 * length > part.duration * (1.0 + _SNAP):
             msg = (
-                f"{owner}: time_step = {step:.6g} s would give more than {MAXIMUM_SAMPLES} samples"
+                f"{owner}: two tapers of {length:.6g} s are longer than the window, "
+                f"{part.duration:.6g} s"
             )
             raise ComponentError(msg)
-        given = {"time_step": f"{step!r} {TIME.unit}", "interpolation": str(between)}
-        operation = {"resampled": given}
-        if math.isclose(step, si.time_step, rel_tol=SAME_STEP):
-            same = f"resampled to {step!r} s: the time step that it had"
-            return self._next(si, same, operation=operation)
-        finer = step < si.time_step
+        given["taper"] = f"{length!r} {TIME.unit}"
+        steps += [f"tapered over {length!r} s at both ends, half a cosine", *lost_pieces(si)]
+        part = with_samples(part, lambda signal: tapered(signal.samples, length / si.time_step))
+    return following(motion, part, *steps, operation={"window": given})
 
-        def anew(samples: Array, pieces: Array | None) -> Array:
-            if not finer:
-                return coarsened(si.time_step, samples, step)
-            if pieces is None and between is Interpolation.BAND_LIMITED:
-                return band_limited(si.time_step, samples, step)
-            return refined(si.time_step, samples, pieces, step)
 
-        result = replaced(si, anew, step)
-        how = _HOW[between] if finer else "after a zero-phase anti-alias filter"
-        if finer and si.pieces is not None:
-            how = "read off the analytic pieces"
-        steps = [f"resampled from {si.time_step!r} s to {step!r} s, {how}"]
-        rest = si.duration - result.duration
-        if rest > _SNAP * step:
-            steps.append(f"the last {rest:.6g} s, less than one new time step, are left out")
-        return self._next(result, *steps, *self._drop_note(), operation=operation)
+def _between(signal: Signal, first: int, final: int) -> Signal:
+    """Cut out what lies between two samples, both included."""
+    pieces = None if signal.polynomials is None else signal.polynomials[first:final]
+    return replace(signal, samples=signal.samples[first : final + 1], polynomials=pieces)
+
+
+def resampled(
+    motion: Made,
+    time_step: QuantityLike,
+    *,
+    interpolation: Interpolation | str = Interpolation.BAND_LIMITED,
+) -> Made:
+    """Change the time step.
+
+    Finer: the motion that has these samples and nothing beyond their Nyquist
+    frequency, or the straight lines between them; an analytic motion is read off
+    as it stands. Coarser: after a zero-phase low-pass filter against aliasing.
+
+    Parameters
+    ----------
+    time_step : str or Quantity
+        New time step [s].
+    interpolation : {"band-limited", "linear"}, optional
+        Between the samples of a record, for a finer time step. Straight lines are what
+        a simulation sees in any case: ``"linear"`` changes no result.
+
+    Returns
+    -------
+    GroundMotion
+
+    Raises
+    ------
+    UnitsError
+        Not a time.
+    ComponentError
+        Not positive, longer than the motion, too short to be meant, or another
+        interpolation.
+    """
+    owner, si = f"{type(motion).__name__}.resampled", motion.si
+    between = one_of_words(Interpolation, interpolation, owner=owner, name="interpolation")
+    step = to_si(time_step, TIME_STEP, owner=owner, name="time_step", condition=POSITIVE)
+    if step > si.duration:
+        msg = f"{owner}: time_step = {step:.6g} s exceeds the duration, {si.duration:.6g} s"
+        raise ComponentError(msg)
+    if si.duration / step > MAXIMUM_SAMPLES:
+        msg = f"{owner}: time_step = {step:.6g} s would give more than {MAXIMUM_SAMPLES} samples"
+        raise ComponentError(msg)
+    given = {"time_step": f"{step!r} {TIME.unit}", "interpolation": str(between)}
+    operation = {"resampled": given}
+    if math.isclose(step, si.time_step, rel_tol=SAME_STEP):
+        same = f"resampled to {step!r} s: the time step that it had"
+        return following(motion, si, same, operation=operation)
+    finer = step < si.time_step
+
+    def anew(signal: Signal) -> Array:
+        if not finer:
+            return coarsened(si.time_step, signal.samples, step)
+        if not signal.analytic and between is Interpolation.BAND_LIMITED:
+            return band_limited(si.time_step, signal.samples, step)
+        return refined(signal, step)
+
+    result = with_samples(si, anew, step)
+    how = _HOW[between] if finer else "after a zero-phase anti-alias filter"
+    if finer and si.horizontal.analytic:
+        how = "read off the analytic pieces"
+    steps = [f"resampled from {si.time_step!r} s to {step!r} s, {how}"]
+    rest = si.duration - result.duration
+    if rest > _SNAP * step:
+        steps.append(f"the last {rest:.6g} s, less than one new time step, are left out")
+    return following(motion, result, *steps, *lost_pieces(si), operation=operation)

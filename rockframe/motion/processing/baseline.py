@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rockframe.motion.samples import Array
+from rockframe.signals.arrays import Array
 
 
 def without_baseline(samples: Array, order: int) -> Array:

@@ -7,7 +7,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from rockframe.motion.samples import Array
+from rockframe.signals.arrays import Array
 
 _PADDING_PERIODS: Final = 1.5
 

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any, Final
 
 import numpy as np
 
-from rockframe.motion.samples import Array, value_at
+from rockframe.signals.arrays import Array
+from rockframe.signals.signal import Signal
 
 _INTEGER_RATIO: Final = 1e-9
 _ANTI_ALIAS_ORDER: Final = 9  # of even order it would take 0.1 dB from the slowest motion
@@ -34,17 +36,13 @@ def instants_of(duration: float, time_step: float) -> Array:
     return np.minimum(np.arange(sample_count(duration, time_step)) * time_step, duration)
 
 
-def refined(dt: float, samples: Array, pieces: Array | None, time_step: float) -> Array:
+def refined(signal: Signal, time_step: float) -> Array:
     """Sample the same function of time more finely.
 
     Parameters
     ----------
-    dt : float
-        Present time step [s].
-    samples : ndarray, shape (n,)
-        Present samples [m s^-2].
-    pieces : ndarray, shape (n - 1, 6), optional
-        Polynomials between them.
+    signal : Signal
+        The function.
     time_step : float
         New, smaller time step [s].
 
@@ -53,13 +51,18 @@ def refined(dt: float, samples: Array, pieces: Array | None, time_step: float) -
     ndarray
         The old samples are among the new ones if the ratio is an integer.
     """
-    times = whole_ratio(dt / time_step)
-    if pieces is None and times is not None:
+    place = instants_of(signal.duration, time_step) / signal.time_step
+    if signal.analytic:
+        return signal.at_place(place)
+    samples = signal.samples
+    times = whole_ratio(signal.time_step / time_step)
+    if times is not None:
         share = np.arange(times) / times
         between = samples[:-1, None] * (1.0 - share) + samples[1:, None] * share
         return np.append(between.reshape(-1), samples[-1])
-    instants = instants_of((samples.size - 1) * dt, time_step)
-    return value_at(dt, samples, pieces, instants)
+    interval = np.minimum(place.astype(np.intp), samples.size - 2)
+    share = place - interval
+    return samples[interval] * (1.0 - share) + samples[interval + 1] * share
 
 
 def band_limited(dt: float, samples: Array, time_step: float) -> Array:
@@ -147,26 +150,26 @@ def coarsened(dt: float, samples: Array, time_step: float) -> Array:
     return spline.make_interp_spline(np.arange(samples.size) * dt, smooth, k=degree)(instants)
 
 
-def padded(samples: Array, pieces: Array | None, count: int) -> tuple[Array, Array | None]:
+def padded(signal: Signal, count: int) -> Signal:
     """Append zeros (a still ground) up to `count` samples.
 
     Parameters
     ----------
-    samples : ndarray, shape (n,)
-        Samples [m s^-2].
-    pieces : ndarray, shape (n - 1, 6), optional
-        Polynomials between them.
+    signal : Signal
+        The signal, of n samples.
     count : int
         Length wanted, at least n.
 
     Returns
     -------
-    tuple of ndarray
-        Samples and pieces. With pieces the ground stops at once, without them by a
-        straight line over one time step.
+    Signal
+        An analytic one stops at once, a record by a straight line over one time step.
     """
-    missing = count - samples.size
-    longer = np.concatenate([samples, np.zeros(missing)])
-    if pieces is None or missing == 0:
-        return longer, pieces
-    return longer, np.concatenate([pieces, np.zeros((missing, pieces.shape[1]))])
+    missing = count - signal.samples.size
+    if missing == 0:
+        return signal
+    pieces = signal.polynomials
+    if pieces is not None:
+        pieces = np.concatenate([pieces, np.zeros((missing, pieces.shape[1]))])
+    samples = np.concatenate([signal.samples, np.zeros(missing)])
+    return replace(signal, samples=samples, polynomials=pieces)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final, TypedDict
 
+from rockframe.arguments import whole_number
 from rockframe.errors import ComponentError, shown
 from rockframe.units import ANGLE, Condition, Measure, Unit, to_ratio, to_si
-from rockframe.words import whole_number
 
 if TYPE_CHECKING:
     from rockframe.motion.quantities import QuantityLike, RatioLike

@@ -9,7 +9,8 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from rockframe.motion.pulses.sampling import Shape, sampled
-from rockframe.motion.samples import Array, MotionSI
+from rockframe.signals import Motion
+from rockframe.signals.arrays import Array
 
 INTERVALS_PER_CYCLE: Final = 128
 """Quintic pieces per cycle: (2 pi/128)^6/(64 * 720) = 3.0e-13 of the amplitude."""
@@ -29,7 +30,7 @@ class _Sine(NamedTuple):
 
 def sine(
     *, amplitude: float, frequency: float, cycles: float, phase: float = 0.0, owner: str
-) -> MotionSI:
+) -> Motion:
     """Build ``a(t) = amplitude sin(2 pi frequency t + phase)``.
 
     Parameters
@@ -47,7 +48,7 @@ def sine(
 
     Returns
     -------
-    MotionSI
+    Motion
         Exact to 3e-13 of the amplitude.
 
     Raises
@@ -87,7 +88,7 @@ def type_c_phase(order: int) -> float:
 
 def mavroeidis_papageorgiou(
     *, velocity: float, frequency: float, phase: float, cycles: float, owner: str
-) -> MotionSI:
+) -> Motion:
     """Build the pulse of Mavroeidis and Papageorgiou as its three sines, :eq:`eq-mp-sines`.
 
     Parameters
@@ -105,7 +106,7 @@ def mavroeidis_papageorgiou(
 
     Returns
     -------
-    MotionSI
+    Motion
         Exact to 1e-12 of its peak.
 
     Raises

@@ -9,7 +9,8 @@ import numpy as np
 
 from rockframe.errors import ComponentError
 from rockframe.motion.pulses.sampling import hermite_pieces
-from rockframe.motion.samples import MAXIMUM_SAMPLES, MotionSI
+from rockframe.signals import Motion, Signal
+from rockframe.signals.signal import MAXIMUM_SAMPLES
 
 INTERVALS_PER_IMPULSE: Final = 16
 """Pieces per impulse. One would do, but the samples alone should show it, too."""
@@ -54,7 +55,7 @@ def impulse_duration(*, interval: float, longest: float, owner: str) -> float:
     return interval / math.ceil(interval / longest * (1.0 - _ROUNDING))
 
 
-def double_impulse(*, velocity: float, interval: float, duration: float) -> MotionSI:
+def opposite_impulses(*, velocity: float, interval: float, duration: float) -> Motion:
     """Build two opposite impulses of the shape :eq:`eq-impulse`.
 
     Parameters
@@ -68,7 +69,7 @@ def double_impulse(*, velocity: float, interval: float, duration: float) -> Moti
 
     Returns
     -------
-    MotionSI
+    Motion
         Its pieces are the shape itself.
 
     Raises
@@ -86,8 +87,5 @@ def double_impulse(*, velocity: float, interval: float, duration: float) -> Moti
         curvature = height * 2.0 * (1.0 - 6.0 * u * (1.0 - u)) * step**2
         pieces = hermite_pieces(value, slope, curvature)
     rest = np.zeros((between, pieces.shape[1]))
-    return MotionSI(
-        time_step=duration * step,
-        acceleration=np.concatenate([value[:-1], np.zeros(between + 1), -value[1:]]),
-        pieces=np.concatenate([pieces, rest, -pieces]),
-    )
+    samples = np.concatenate([value[:-1], np.zeros(between + 1), -value[1:]])
+    return Motion(Signal(duration * step, samples, np.concatenate([pieces, rest, -pieces])))

@@ -9,7 +9,9 @@ from typing import TypeAlias
 import numpy as np
 
 from rockframe.errors import ComponentError
-from rockframe.motion.samples import MAXIMUM_SAMPLES, Array, MotionSI
+from rockframe.signals import Motion, Signal
+from rockframe.signals.arrays import Array
+from rockframe.signals.signal import MAXIMUM_SAMPLES
 
 Shape: TypeAlias = Callable[[Array, float], tuple[Array, Array, Array]]
 """Gives a, a' h and a'' h^2 [m s^-2] at some places, and for the step h between them.
@@ -18,9 +20,7 @@ Places and step count periods; the derivatives are those by the place.
 """
 
 
-def sampled(
-    shape: Shape, *, length: float, frequency: float, intervals: int, owner: str
-) -> MotionSI:
+def sampled(shape: Shape, *, length: float, frequency: float, intervals: int, owner: str) -> Motion:
     """Sample a function that is smooth from the start to the end of the motion.
 
     Parameters
@@ -38,7 +38,7 @@ def sampled(
 
     Returns
     -------
-    MotionSI
+    Motion
         With quintic Hermite pieces: value, slope and curvature are right at
         every sample.
 
@@ -60,7 +60,7 @@ def sampled(
     with np.errstate(over="ignore", invalid="ignore"):
         value, slope, curvature = shape(places, step)
         pieces = hermite_pieces(value, slope, curvature)
-    return MotionSI(time_step=time_step, acceleration=value, pieces=pieces)
+    return Motion(Signal(time_step, value, pieces))
 
 
 def hermite_pieces(value: Array, slope: Array, curvature: Array) -> Array:

@@ -8,7 +8,8 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from rockframe.motion.pulses.sampling import sampled
-from rockframe.motion.samples import Array, MotionSI
+from rockframe.signals import Motion
+from rockframe.signals.arrays import Array
 
 INTERVALS_PER_PERIOD: Final = 256
 """Quintic pieces per period: 6e-14 of the amplitude at most, 105 h^6/(64 * 720)."""
@@ -34,7 +35,7 @@ ANTISYMMETRIC: Final = _Derivative(
 )
 
 
-def ricker(*, amplitude: float, period: float, antisymmetric: bool, owner: str) -> MotionSI:
+def ricker(*, amplitude: float, period: float, antisymmetric: bool, owner: str) -> Motion:
     """Build a Ricker wavelet, :eq:`eq-ricker-symmetric` or :eq:`eq-ricker-antisymmetric`.
 
     Parameters
@@ -50,7 +51,7 @@ def ricker(*, amplitude: float, period: float, antisymmetric: bool, owner: str) 
 
     Returns
     -------
-    MotionSI
+    Motion
         Five periods long, its centre in the middle; exact to 2e-13 of the amplitude.
 
     Raises

@@ -12,7 +12,7 @@ from rockframe.motion.unit_names import RecordUnit, acceleration_unit, other_qua
 
 if TYPE_CHECKING:
     from rockframe.motion.readers.source import Request, Source
-    from rockframe.motion.samples import Array
+    from rockframe.signals.arrays import Array
 
 TIME_STEP_LIMITS: Final = (1e-6, 10.0)
 """Time steps outside are refused [s]."""

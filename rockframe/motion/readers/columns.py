@@ -14,7 +14,7 @@ from rockframe.motion.readers.source import HEADER_WIDTH, MAXIMUM_SAMPLES, Sourc
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from rockframe.motion.samples import Array
+    from rockframe.signals.arrays import Array
 
 HEADER_LINES: Final = 20
 _MOST_COMMENTS: Final = 2_000

@@ -40,7 +40,7 @@ from rockframe.motion.readers.orientation import (
 from rockframe.motion.readers.source import Metadata, Record, Request, Source, shown
 
 if TYPE_CHECKING:
-    from rockframe.motion.samples import Array
+    from rockframe.signals.arrays import Array
 
 NAME: Final = "cwa"
 TITLE: Final = "file of the Central Weather Administration, Taiwan"

@@ -11,7 +11,7 @@ from rockframe.motion.readers.numbers import floats, is_plain, number, too_many,
 from rockframe.motion.readers.source import MAXIMUM_SAMPLES, Source, shown
 
 if TYPE_CHECKING:
-    from rockframe.motion.samples import Array
+    from rockframe.signals.arrays import Array
 
 _LONGEST_COUNT: Final = 12
 _WHOLE: Final = re.compile(r"[-+]?\d+", re.ASCII)

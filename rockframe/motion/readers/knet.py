@@ -32,7 +32,7 @@ from rockframe.motion.readers.orientation import orientation_of
 from rockframe.motion.readers.source import Metadata, Record, Request, Source, shown
 
 if TYPE_CHECKING:
-    from rockframe.motion.samples import Array
+    from rockframe.signals.arrays import Array
 
 NAME: Final = "k-net"
 TITLE: Final = "K-NET or KiK-net file (ASCII)"

@@ -38,7 +38,7 @@ from rockframe.motion.readers.source import (
 from rockframe.motion.readers.station_xml import Response, Responses
 
 if TYPE_CHECKING:
-    from rockframe.motion.samples import Array
+    from rockframe.signals.arrays import Array
 
 NAME: Final = "miniseed"
 TITLE: Final = "miniSEED file (through ObsPy)"

@@ -24,7 +24,7 @@ from rockframe.motion.unit_names import RecordUnit
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from rockframe.motion.samples import MotionSI
+    from rockframe.signals import Motion
 
 NAME: Final = "netcdf"
 TITLE: Final = "netCDF file of a motion, written by rockframe"
@@ -80,7 +80,7 @@ def read(source: Source, request: Request) -> StoredMotion:
 def _stored(source: Source) -> StoredMotion:
     import netCDF4
 
-    from rockframe.motion.dataset import NoMotionError, check_no_result, from_dataset
+    from rockframe.motion.dataset import NoMotionError, check_no_result, stored_motion
 
     try:
         with warnings.catch_warnings():
@@ -92,7 +92,7 @@ def _stored(source: Source) -> StoredMotion:
                 _check_declared(source, file.variables)
             # undecoded: the numbers as they were written
             with xr.open_dataset(source.path, engine="netcdf4", decode_cf=False) as dataset:
-                arguments = from_dataset(_only_motion(dataset).load())
+                arguments = stored_motion(_only_motion(dataset).load())
     except RecordError:
         raise
     except NoMotionError as problem:
@@ -101,7 +101,7 @@ def _stored(source: Source) -> StoredMotion:
         # the libraries fail on damaged files in ways that they do not document
         found = f"a netCDF file that cannot be read ({type(problem).__name__})"
         raise source.refuse(found=found, expected=_EXPECTED) from problem
-    si = cast("MotionSI", arguments["si"])
+    si = cast("Motion", arguments["si"])
     metadata = cast("dict[str, Any]", arguments["metadata"])
     for key, value in metadata.items():
         finite = not isinstance(value, float) or math.isfinite(value)
@@ -147,11 +147,11 @@ def _compare(source: Source, request: Request, stored: StoredMotion) -> None:
         return
     components = [
         _placeholder(stored, key)
-        for key, values in (
-            ("component", stored.si.acceleration),
+        for key, signal in (
+            ("component", stored.si.horizontal),
             ("vertical_component", stored.si.vertical),
         )
-        if values is not None
+        if signal is not None
     ]
     choose_component(source, request, components)
 

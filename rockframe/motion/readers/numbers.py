@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from rockframe.errors import RecordError
-    from rockframe.motion.samples import Array
+    from rockframe.signals.arrays import Array
 
 # written so that no digit can be matched in two ways: a failed match stays linear
 NUMBER: Final = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[EeDd][-+]?\d+)?"

@@ -23,14 +23,14 @@ from rockframe.motion.readers.source import (
     base_name,
     load,
 )
-from rockframe.motion.samples import MotionSI
 from rockframe.motion.unit_names import RecordUnit
+from rockframe.signals import Motion
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from rockframe.motion.readers.registry import Format
-    from rockframe.motion.samples import Array
+    from rockframe.signals.arrays import Array
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class Reading:
 
     Parameters
     ----------
-    si : MotionSI
+    si : Motion
         In SI units.
     metadata : dict
         What the file says about itself, and which file it was.
@@ -53,7 +53,7 @@ class Reading:
         Of an analytic motion that was stored.
     """
 
-    si: MotionSI
+    si: Motion
     metadata: Metadata
     history: tuple[str, ...]
     warnings: tuple[str, ...] = ()
@@ -96,10 +96,10 @@ def read_record(path: PathLike, format_name: str | None, request: Request) -> Re
             record.si, record.metadata, record.history, name=record.name, recipe=record.recipe
         )
     check_time_step(source, record.time_step, None)
-    si = MotionSI(
-        time_step=record.time_step,
-        acceleration=_in_si(source, record.samples, record.unit),
-        vertical=None if record.vertical is None else _in_si(source, record.vertical, record.unit),
+    si = Motion.of_samples(
+        record.time_step,
+        _in_si(source, record.samples, record.unit),
+        None if record.vertical is None else _in_si(source, record.vertical, record.unit),
     )
     base = base_name(source.path)
     metadata = {

@@ -14,8 +14,9 @@ from rockframe.errors import RecordError
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from rockframe.motion.samples import Array, MotionSI
     from rockframe.motion.unit_names import RecordUnit
+    from rockframe.signals import Motion
+    from rockframe.signals.arrays import Array
 
 Metadata: TypeAlias = "dict[str, str | float | int]"
 PathLike: TypeAlias = "str | os.PathLike[str]"
@@ -195,7 +196,7 @@ class StoredMotion:
 
     Parameters
     ----------
-    si : MotionSI
+    si : Motion
         In SI units.
     name : str or None
         Of the motion.
@@ -207,7 +208,7 @@ class StoredMotion:
         Constructor and arguments of an analytic motion.
     """
 
-    si: MotionSI
+    si: Motion
     name: str | None
     metadata: Metadata
     history: tuple[str, ...]

@@ -9,7 +9,7 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from rockframe.motion.samples import Array
+    from rockframe.signals.arrays import Array
 
 _JITTER: Final = 1e-6
 _FLOAT_ULPS: Final = 8.0

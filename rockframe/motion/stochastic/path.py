@@ -10,7 +10,7 @@ import numpy as np
 from rockframe.motion.stochastic.source import REFERENCE_DISTANCE
 
 if TYPE_CHECKING:
-    from rockframe.motion.samples import Array
+    from rockframe.signals.arrays import Array
 
 KILOMETRE: Final = 1_000.0
 
@@ -128,7 +128,7 @@ def crustal_attenuation(
 
 
 def path_duration(distance: float) -> float:
-    """Compute how much the path lengthens the shaking, :eq:`eq-duration`.
+    """Compute how much the path lengthens the motion, :eq:`eq-duration`.
 
     Parameters
     ----------

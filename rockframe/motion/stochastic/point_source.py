@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from rockframe.motion.stochastic import path, site, source
 
 if TYPE_CHECKING:
-    from rockframe.motion.samples import Array
+    from rockframe.signals.arrays import Array
 
 
 @dataclass(frozen=True)

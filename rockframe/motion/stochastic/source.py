@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
-    from rockframe.motion.samples import Array
+    from rockframe.signals.arrays import Array
 
 RADIATION_PATTERN: Final = 0.55
 """Average of the shear waves over the focal sphere [1] (Boore and Thompson 2015)."""

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Final, cast
 import numpy as np
 
 if TYPE_CHECKING:
-    from rockframe.motion.samples import Array
     from rockframe.motion.stochastic.point_source import PointSource
+    from rockframe.signals.arrays import Array
 
 WINDOW_PEAK: Final = 0.2
 """Place of the window's peak, over its length [1] (Boore 2003)."""

@@ -7,6 +7,7 @@ import numpy as np
 from .bed import cut_off
 from .compiling import compiled
 from .events import due
+from .excitation import ground
 from .forces import has_lower
 from .guards import evaluate, noise_levels
 from .impulses import tidy
@@ -31,7 +32,6 @@ from .layout import (
 )
 from .rigid_switches import place_hinged
 from .runge_kutta import rates, step
-from .shaking import ground
 from .watching import SAMPLES, earliest, sample_guards
 
 TIME, STEP, STOP, PACE, LONGEST = range(5)
@@ -51,7 +51,7 @@ def advance(clock, stops, pieces, motion, z, contact, held, p, room, largest, st
     pieces : ndarray, shape (n - 1,)
         Which part of the motion holds between two stops.
     motion : tuple of ndarray
-        See `shaking.ground`.
+        See `excitation.ground`.
     z, contact, held, p : ndarray
         State, contact, held points, parameters; the state is changed.
     room : tuple of ndarray

@@ -9,8 +9,8 @@ import numpy as np
 
 import rockframe as rf
 
-from . import shaking
-from .simulate import Shaking
+from . import excitation
+from .simulate import Excitation
 
 RECORDS = ("NIS090.AT2", "PEERSMD_IMPVALL_IELC180.AT2")
 _VARIABLE = "ROCKFRAME_RECORDS"
@@ -29,10 +29,10 @@ def _folder() -> Path:
 @cache
 def _samples(name: str) -> tuple[float, np.ndarray]:
     si = rf.GroundMotion.read(_folder() / name).si
-    return si.time_step, si.acceleration
+    return si.time_step, si.horizontal.samples
 
 
-def both(motion: dict[str, Any], factor: float = 1.0) -> tuple[rf.GroundMotion | None, Shaking]:
+def both(motion: dict[str, Any], factor: float = 1.0) -> tuple[rf.GroundMotion | None, Excitation]:
     """Build a motion for rockframe and for the reference model.
 
     Parameters
@@ -45,11 +45,11 @@ def both(motion: dict[str, Any], factor: float = 1.0) -> tuple[rf.GroundMotion |
     Returns
     -------
     tuple
-        A `GroundMotion`, or None for still ground, and a `Shaking`.
+        A `GroundMotion`, or None for still ground, and a `Excitation`.
     """
     form = motion["form"]
     if form == "still":
-        return None, Shaking.still()
+        return None, Excitation.still()
     if form in ("sine", "cosine", "ricker", "odd ricker"):
         return _pulse(motion, factor)
     samples = _record(motion) if form == "record" else _sines(motion)
@@ -57,10 +57,10 @@ def both(motion: dict[str, Any], factor: float = 1.0) -> tuple[rf.GroundMotion |
     given = rf.GroundMotion.from_arrays(
         (across, "m/s^2"), f"{step!r} s", vertical=(upwards, "m/s^2")
     )
-    return given, Shaking.record(step, across, upwards)
+    return given, Excitation.record(step, across, upwards)
 
 
-def _pulse(motion: dict[str, Any], factor: float) -> tuple[rf.GroundMotion, Shaking]:
+def _pulse(motion: dict[str, Any], factor: float) -> tuple[rf.GroundMotion, Excitation]:
     form, scale = motion["form"], motion["scale"]
     peaks = [factor * motion["peak"], factor * motion["vertical"]]
     made = []
@@ -76,10 +76,12 @@ def _pulse(motion: dict[str, Any], factor: float) -> tuple[rf.GroundMotion, Shak
         if motion["vertical"] == 0.0:
             break
     given = made[0] if len(made) == 1 else made[0].with_vertical(made[1])
-    kind = {"ricker": shaking.RICKER, "odd ricker": shaking.RICKER_ODD}.get(form, shaking.HARMONIC)
+    kind = {"ricker": excitation.RICKER, "odd ricker": excitation.RICKER_ODD}.get(
+        form, excitation.HARMONIC
+    )
     phase = 0.5 * np.pi if form == "cosine" else 0.0
-    step, intervals = given.si.time_step, given.si.acceleration.size - 1
-    return given, Shaking.pulse(kind, step, intervals, scale, phase, *peaks)
+    step, intervals = given.si.time_step, given.si.horizontal.samples.size - 1
+    return given, Excitation.pulse(kind, step, intervals, scale, phase, *peaks)
 
 
 def _record(motion: dict[str, Any]) -> tuple[float, np.ndarray, np.ndarray]:

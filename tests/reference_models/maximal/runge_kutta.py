@@ -4,6 +4,7 @@ import numpy as np
 
 from .bed import bed_energy
 from .compiling import compiled
+from .excitation import ground
 from .forces import accelerate, corner, has_lower
 from .impulses import lower_slip, slip
 from .kinematics import relative
@@ -23,7 +24,6 @@ from .layout import (
     STIFFNESS,
     TOUCHING,
 )
-from .shaking import ground
 
 STAGES = 13
 NODES = np.array(

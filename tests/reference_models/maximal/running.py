@@ -5,6 +5,7 @@ import numpy as np
 from .bed import bed_energy
 from .driver import advance, typical_sizes
 from .events import fire
+from .excitation import ground
 from .forces import corner, has_lower, inverse_masses
 from .guards import noise_levels
 from .impulses import note_places
@@ -22,7 +23,6 @@ from .layout import (
     STATES,
     STIFFNESS,
 )
-from .shaking import ground
 
 MOST_EVENTS = 20000
 AT_ONCE = 400

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from . import excitation
 from . import layout as at
-from . import shaking
 from .running import run
 from .scene import Scene, paces, parameters, start
 
@@ -13,7 +13,7 @@ TOLERANCE = 1e-13
 
 
 @dataclass(frozen=True)
-class Shaking:
+class Excitation:
     """A motion as the equations want it."""
 
     step: float
@@ -24,23 +24,23 @@ class Shaking:
     longest: float
 
     @classmethod
-    def still(cls, step: float = 0.01) -> "Shaking":
+    def still(cls, step: float = 0.01) -> "Excitation":
         """Give still ground."""
         return cls(step, 0, np.zeros(5), np.zeros(2), np.zeros(2), np.inf)
 
     @classmethod
-    def record(cls, step: float, across, upwards=None) -> "Shaking":
+    def record(cls, step: float, across, upwards=None) -> "Excitation":
         """Give straight lines between samples."""
         across = np.array(across, dtype=np.float64)
         upwards = np.zeros_like(across) if upwards is None else np.array(upwards, dtype=np.float64)
-        shape = np.array([shaking.RECORD, step, 0.0, 0.0, 0.0])
+        shape = np.array([excitation.RECORD, step, 0.0, 0.0, 0.0])
         return cls(step, across.size - 1, shape, across, upwards, np.inf)
 
     @classmethod
-    def pulse(cls, kind, step, intervals, scale, phase, peak, vertical) -> "Shaking":
+    def pulse(cls, kind, step, intervals, scale, phase, peak, vertical) -> "Excitation":
         """Give a formula; `scale` is its frequency, or a wavelet's period."""
         shape = np.array([kind, scale, phase, peak, vertical], dtype=np.float64)
-        longest = 0.02 / scale if kind == shaking.HARMONIC else 0.01 * scale
+        longest = 0.02 / scale if kind == excitation.HARMONIC else 0.01 * scale
         return cls(step, intervals, shape, np.zeros(2), np.zeros(2), longest)
 
 
@@ -57,13 +57,13 @@ class History:
     events: np.ndarray
 
 
-def simulate(scene: Scene, motion: Shaking, tolerance: float = TOLERANCE) -> History:
+def simulate(scene: Scene, motion: Excitation, tolerance: float = TOLERANCE) -> History:
     """Run a scene.
 
     Parameters
     ----------
     scene : Scene
-    motion : Shaking
+    motion : Excitation
     tolerance : float
         Of one step, relative to the largest value so far.
 
@@ -78,7 +78,7 @@ def simulate(scene: Scene, motion: Shaking, tolerance: float = TOLERANCE) -> His
     stops = motion.step * np.arange(count + 1)
     stops[-1] = total
     pieces = np.arange(count)
-    if int(motion.shape[0]) != shaking.RECORD:
+    if int(motion.shape[0]) != excitation.RECORD:
         pieces = np.zeros(count, dtype=np.int64)
     pieces[motion.intervals :] = -1
     status, end, states, reached, events = run(

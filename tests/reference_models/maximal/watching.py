@@ -1,10 +1,10 @@
 """Looking at the guards inside a step, and finding the first that falls through zero."""
 
 from .compiling import compiled
+from .excitation import ground
 from .guards import evaluate
 from .layout import GUARDS
 from .runge_kutta import step
-from .shaking import ground
 
 SAMPLES = 8
 POINTS, LAPS = 16, 5

@@ -90,7 +90,7 @@ def test_another_numba_has_its_own(monkeypatch):
 def test_every_source_that_is_compiled_counts():
     from rockframe.compiled import registry
     from rockframe.dynamics import coupled, rigid_ground, two_spring, winkler
-    from rockframe.shaking import oscillator
+    from rockframe.signals import oscillator
     from rockframe.solve import driver
 
     for module in (coupled, rigid_ground, two_spring, winkler, oscillator, driver):

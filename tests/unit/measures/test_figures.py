@@ -16,7 +16,7 @@ def test_a_motion_is_drawn_in_three_rows(tmp_path):
     assert labels == ["acceleration", "velocity", "displacement"]
     assert figure.axes[-1].get_xlabel() == "time [s]"
     drawn = figure.axes[0].get_lines()[0].get_ydata()
-    np.testing.assert_array_equal(drawn, PULSE.si.acceleration)
+    np.testing.assert_array_equal(drawn, PULSE.si.horizontal.samples)
     assert figure.get_suptitle() == PULSE.name
     figure.savefig(tmp_path / "motion.png")
 

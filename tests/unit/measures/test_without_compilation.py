@@ -52,7 +52,7 @@ def test_a_long_motion_is_filtered_in_pieces(monkeypatch):
 
     if COMPILED:
         pytest.skip("the filter is for runs without compilation")
-    from rockframe.shaking import filtering
+    from rockframe.signals import filtering
 
     pieces = np.random.default_rng(1).normal(size=(500, 2))
     periods = np.array([0.05, 0.3, 4.0])

@@ -24,7 +24,7 @@ def test_it_is_recognised_and_read(sample, tmp_path):
     motion = GroundMotion.read(sample.write(tmp_path), component=sample.component)
     assert motion.metadata["format"] == sample.format
     assert motion.si.time_step == sample.time_step
-    np.testing.assert_allclose(motion.si.acceleration, sample.samples, rtol=1e-12, atol=1e-12)
+    np.testing.assert_allclose(motion.si.horizontal.samples, sample.samples, rtol=1e-12, atol=1e-12)
     assert motion.metadata.get("component") == sample.named
     assert motion.name == Path(sample.name).stem
 
@@ -59,7 +59,7 @@ def test_line_ends_and_byte_order_marks_do_not_matter(sample, change, tmp_path):
     path = tmp_path / sample.name
     path.write_bytes(changed)
     motion = GroundMotion.read(path, component=sample.component)
-    np.testing.assert_allclose(motion.si.acceleration, sample.samples, rtol=1e-12, atol=1e-12)
+    np.testing.assert_allclose(motion.si.horizontal.samples, sample.samples, rtol=1e-12, atol=1e-12)
 
 
 @pytest.mark.parametrize("other", KNOWN)
@@ -94,7 +94,7 @@ def test_another_unit_than_its_own_is_used_and_warned_about(sample, tmp_path):
         other = GroundMotion.read(path, component=sample.component, unit="mm/s^2")
     assert re.search(re.escape(str(path)) + words, str(caught[0].message))
     assert other.metadata["unit_as_read"] == "mm/s^2"
-    ratios = own.si.acceleration[1:] / other.si.acceleration[1:]
+    ratios = own.si.horizontal.samples[1:] / other.si.horizontal.samples[1:]
     np.testing.assert_allclose(ratios, ratios[0], rtol=1e-9)
     assert ratios[0] > 5.0
 
@@ -110,7 +110,7 @@ def test_of_a_part_of_it_nothing_wrong_is_read(sample, share, tmp_path):
     except RecordError:
         return
     # the component that was asked for may stand before the cut, all of it
-    np.testing.assert_allclose(motion.si.acceleration, sample.samples, rtol=1e-12, atol=1e-12)
+    np.testing.assert_allclose(motion.si.horizontal.samples, sample.samples, rtol=1e-12, atol=1e-12)
 
 
 def test_there_is_a_sample_of_every_text_format():

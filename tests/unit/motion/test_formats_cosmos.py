@@ -17,7 +17,9 @@ def read(write, text, **given):
 
 def expect(motion, values=NORTH, factor=0.01, step=0.01):
     assert motion.si.time_step == step
-    np.testing.assert_allclose(motion.si.acceleration, np.asarray(values) * factor, rtol=1e-13)
+    np.testing.assert_allclose(
+        motion.si.horizontal.samples, np.asarray(values) * factor, rtol=1e-13
+    )
 
 
 def test_what_is_recorded(write):

@@ -29,7 +29,7 @@ def test_what_is_recorded(write):
 def test_volume_1_is_in_g_and_nine_wide(write):
     motion = read(write, csmip(1), "r.V1", component="N")
     np.testing.assert_allclose(
-        motion.si.acceleration, np.round(1e-3 * VALUES["N"], 6) * G, rtol=1e-13
+        motion.si.horizontal.samples, np.round(1e-3 * VALUES["N"], 6) * G, rtol=1e-13
     )
     assert motion.metadata["description"] == "uncorrected"
 
@@ -37,7 +37,7 @@ def test_volume_1_is_in_g_and_nine_wide(write):
 def test_a_layout_that_is_not_stated_is_seen_from_a_full_line(write):
     text = csmip(2).replace(" (8f10.3)", "").replace(", in cm/sec2.", ".  (UNITS: CM/SEC/SEC)")
     motion = read(write, text, component="N")
-    np.testing.assert_allclose(motion.si.acceleration, VALUES["N"] * 0.01, rtol=1e-13)
+    np.testing.assert_allclose(motion.si.horizontal.samples, VALUES["N"] * 0.01, rtol=1e-13)
     assert motion.metadata["unit_as_read"] == "CM/SEC/SEC"
 
 
@@ -53,7 +53,7 @@ def test_a_line_that_is_no_full_line_is_refused(write):
 
 def test_velocities_and_displacements_are_skipped(write):
     motion = read(write, csmip(2), component="U")
-    np.testing.assert_allclose(motion.si.acceleration, VALUES["U"] * 0.01, rtol=1e-13)
+    np.testing.assert_allclose(motion.si.horizontal.samples, VALUES["U"] * 0.01, rtol=1e-13)
 
 
 def test_spectra_are_refused(write):

@@ -47,7 +47,7 @@ class TestWithObspy:
         write(station_xml(), "r.xml")
         motion = GroundMotion.read(write(miniseed(), "r.mseed"))
         expected = (COUNTS - COUNTS.mean()) / 4e5
-        np.testing.assert_allclose(motion.si.acceleration, expected, rtol=1e-12, atol=1e-18)
+        np.testing.assert_allclose(motion.si.horizontal.samples, expected, rtol=1e-12, atol=1e-18)
         assert motion.si.time_step == 0.01
         assert motion.metadata["component"] == "HNE"
         assert motion.metadata["azimuth"] == 90.0
@@ -102,7 +102,9 @@ class TestWithObspy:
     def test_samples_with_a_unit_are_taken_as_they_are(self, write):
         write(station_xml(), "r.xml")
         motion = GroundMotion.read(write(miniseed(COUNTS // 100), "r.mseed"), unit="gal")
-        assert motion.si.acceleration.tolist() == pytest.approx((COUNTS // 100 * 0.01).tolist())
+        assert motion.si.horizontal.samples.tolist() == pytest.approx(
+            (COUNTS // 100 * 0.01).tolist()
+        )
         assert "as asked for" in motion.history[1]
 
     def test_unit_and_response_exclude_each_other(self, write):
@@ -164,7 +166,7 @@ class TestWithObspy:
         assert GroundMotion.read(path, component="30").metadata["component"] == "HN1"
         both = GroundMotion.read(path, component=("XX.MADE..HNE", "Z"))
         assert both.metadata["vertical_component"] == "HNZ"
-        np.testing.assert_allclose(both.si.vertical, both.si.acceleration, atol=1e-15)
+        np.testing.assert_allclose(both.si.vertical.samples, both.si.horizontal.samples, atol=1e-15)
 
     def test_records_that_follow_one_another(self, write):
         write(station_xml(), "r.xml")

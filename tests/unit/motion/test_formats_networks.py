@@ -79,8 +79,8 @@ class TestKnet:
     def test_counts_become_accelerations_without_their_offset(self, write):
         motion = self.read(write, knet())
         expected = (COUNTS - COUNTS.mean()) * GAL_PER_COUNT * 0.01
-        np.testing.assert_allclose(motion.si.acceleration, expected, rtol=1e-12, atol=1e-15)
-        assert abs(motion.si.acceleration.mean()) < 1e-15
+        np.testing.assert_allclose(motion.si.horizontal.samples, expected, rtol=1e-12, atol=1e-15)
+        assert abs(motion.si.horizontal.samples.mean()) < 1e-15
         assert motion.metadata["offset_removed"] == pytest.approx(COUNTS.mean())
         assert motion.metadata["scale_factor"] == GAL_PER_COUNT
         sentence = motion.history[1]
@@ -180,7 +180,7 @@ class TestGeonet:
     def test_every_component(self, write, corrected, asked, key):
         motion = self.read(write, geonet(corrected=corrected), component=asked)
         expected = np.round(10.0 * VALUES[key], 1) * 1e-3
-        np.testing.assert_allclose(motion.si.acceleration, expected, rtol=1e-12)
+        np.testing.assert_allclose(motion.si.horizontal.samples, expected, rtol=1e-12)
 
     @pytest.mark.parametrize(
         ("old", "new", "words"),
@@ -246,7 +246,7 @@ class TestCwa:
     def test_columns_follow_the_header(self, write):
         text = cwa(sequence="Time N(+); E(+); U(+)")
         motion = self.read(write, text, component="N")
-        np.testing.assert_allclose(motion.si.acceleration, VALUES["U"] * 0.01, rtol=1e-12)
+        np.testing.assert_allclose(motion.si.horizontal.samples, VALUES["U"] * 0.01, rtol=1e-12)
 
     def test_columns_that_touch(self, write):
         table = np.column_stack(
@@ -257,7 +257,7 @@ class TestCwa:
         assert "0-99" in text
         with pytest.warns(RecordWarning, match="peak acceleration"):
             motion = self.read(write, text, component="E")
-        np.testing.assert_allclose(motion.si.acceleration, table[:, 3] * 0.01, rtol=1e-9)
+        np.testing.assert_allclose(motion.si.horizontal.samples, table[:, 3] * 0.01, rtol=1e-9)
 
     @pytest.mark.parametrize(
         ("given", "words"),

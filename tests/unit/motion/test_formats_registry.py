@@ -109,7 +109,9 @@ def test_an_unknown_format_is_refused_and_the_others_listed(write):
 def test_an_added_format_is_recognised_and_read(write, registered, name, given):
     registered()
     motion = GroundMotion.read(write(FILE, name), format=given, component="N")
-    assert motion.si.acceleration.tolist() == pytest.approx((0.01 * VALUES).tolist(), abs=1e-9)
+    assert motion.si.horizontal.samples.tolist() == pytest.approx(
+        (0.01 * VALUES).tolist(), abs=1e-9
+    )
     assert motion.metadata["format"] == "made-up"
     assert motion.metadata["component"] == "N"
     assert formats()[-2].title == "file made up for a test"
@@ -122,7 +124,7 @@ def test_an_added_format_may_read_bytes(write, registered):
         read=lambda source, request: Record(0.01, [1, 2.5], GAL, {"unit_as_read": "gal"}),
     )
     motion = GroundMotion.read(write(b"\x00MUP\xff", "r.bin"))
-    assert motion.si.acceleration.tolist() == [0.01, 0.025]
+    assert motion.si.horizontal.samples.tolist() == [0.01, 0.025]
 
 
 def test_it_can_be_taken_away_again(write, registered):

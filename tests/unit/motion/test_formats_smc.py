@@ -28,7 +28,7 @@ def test_what_is_recorded(write):
 @pytest.mark.parametrize("rate", [50.0, 100.0, 200.0])
 def test_accelerograms(write, kind, rate):
     motion = read(write, smc(kind=kind, rate=rate))
-    np.testing.assert_allclose(motion.si.acceleration, NORTH * 0.01, rtol=1e-13)
+    np.testing.assert_allclose(motion.si.horizontal.samples, NORTH * 0.01, rtol=1e-13)
     assert motion.si.time_step == 1.0 / rate
 
 
@@ -53,7 +53,7 @@ def test_numbers_without_a_blank_between_them(write):
     head = smc().split("|made up\n")[0] + "|made up\n" * 2
     motion = read(write, head + "\n".join(lines) + "\n")
     expected = np.array([float(text) for text in printed]) * 0.01
-    np.testing.assert_allclose(motion.si.acceleration, expected, rtol=1e-13)
+    np.testing.assert_allclose(motion.si.horizontal.samples, expected, rtol=1e-13)
 
 
 def test_no_sampling_rate_means_uneven_times_and_is_refused(write):
@@ -92,7 +92,7 @@ def test_vertical_directions(write, name, slope, sign):
     text = smc(name=name, slope=slope, azimuth=-32768)
     with pytest.warns(RecordWarning, match="is vertical"):
         read(write, text)
-    upwards = read(write, text, component="Z").si.acceleration
+    upwards = read(write, text, component="Z").si.horizontal.samples
     np.testing.assert_allclose(upwards, sign * 0.01 * NORTH, rtol=1e-13)
 
 

@@ -1,6 +1,7 @@
 """The value object: construction from arrays, immutability, equality, description."""
 
 import copy
+import inspect
 import json
 import pickle
 
@@ -10,7 +11,8 @@ import pytest
 import xarray as xr
 
 from rockframe.errors import ComponentError, SchemaError, UnitsError
-from rockframe.motion import GroundMotion, MotionSI
+from rockframe.motion import GroundMotion
+from rockframe.signals import Motion, Signal
 
 G = 9.80665
 UREG = pint.get_application_registry()
@@ -40,7 +42,7 @@ def motion(vertical=None, **given):
 )
 def test_accepted_arrays(acceleration):
     made = GroundMotion.from_arrays(acceleration, "0.01 s")
-    assert made.si.acceleration.tolist() == VALUES
+    assert made.si.horizontal.samples.tolist() == VALUES
     assert made.si.time_step == 0.01
     assert made == motion()
 
@@ -51,7 +53,7 @@ def test_accepted_arrays(acceleration):
 def test_units_are_converted(unit, factor):
     for given in ((VALUES, unit), UREG.Quantity(np.array(VALUES), unit)):
         made = GroundMotion.from_arrays(given, "10 ms")
-        assert made.si.acceleration == pytest.approx(np.array(VALUES) * factor, rel=1e-15)
+        assert made.si.horizontal.samples == pytest.approx(np.array(VALUES) * factor, rel=1e-15)
 
 
 @pytest.mark.parametrize(
@@ -144,8 +146,13 @@ def test_arrays_are_own_read_only_contiguous_float64():
     made = GroundMotion.from_arrays((source, "m/s^2"), "0.01 s", (source, "m/s^2"))
     pulse = GroundMotion.sine_pulse()
     source[:] = 7.0
-    assert made.si.acceleration.tolist() == VALUES
-    for array in (made.si.acceleration, made.si.vertical, pulse.si.pieces):
+    assert made.si.horizontal.samples.tolist() == VALUES
+    for array in (
+        made.si.horizontal.samples,
+        made.si.vertical.samples,
+        pulse.si.horizontal.pieces,
+        made.si.horizontal.pieces,
+    ):
         assert array.dtype == np.float64
         assert array.flags.c_contiguous
         assert not array.flags.writeable
@@ -192,14 +199,14 @@ def test_digest_is_that_of_what_is_simulated():
     assert motion().sha256 == motion(name="other").sha256
     assert len(motion().sha256) == 64
     pulse = GroundMotion.sine_pulse()
-    sampled = MotionSI(pulse.si.time_step, pulse.si.acceleration)
+    sampled = Motion.of_samples(pulse.si.time_step, pulse.si.horizontal.samples)
     digests = {
         motion().sha256,
         motion(vertical=VALUES).sha256,
         pulse.sha256,
         GroundMotion(sampled).sha256,
-        GroundMotion(MotionSI(0.02, motion().si.acceleration)).sha256,
-        GroundMotion(MotionSI(0.01, np.append(VALUES, 0.0))).sha256,
+        GroundMotion(Motion.of_samples(0.02, motion().si.horizontal.samples)).sha256,
+        GroundMotion(Motion.of_samples(0.01, np.append(VALUES, 0.0))).sha256,
     }
     assert len(digests) == 6
 
@@ -218,9 +225,42 @@ def test_copies_are_equal_and_read_only(made, twin):
     other = twin(made)
     assert other == made
     assert other.to_dict() == made.to_dict()
-    assert not other.si.acceleration.flags.writeable
+    assert not other.si.horizontal.samples.flags.writeable
     with pytest.raises(AttributeError, match="immutable"):
         other.name = "other"
+
+
+def test_only_public_names_are_shown():
+    import rockframe.motion
+
+    inner = [name for name in dir(GroundMotion) if name.startswith("_")]
+    assert all(name.endswith("__") for name in inner)
+    assert dir(rockframe.motion) == ["GroundMotion", "formats", "register", "unregister"]
+
+
+def test_help_shows_constructors_and_operations():
+    assert list(inspect.signature(GroundMotion).parameters)[:2] == ["si", "name"]
+    assert list(inspect.signature(GroundMotion.sine_pulse).parameters) == [
+        "amplitude", "frequency", "cycles",
+    ]  # fmt: skip
+    assert list(inspect.signature(motion().window).parameters) == ["start", "end", "taper"]
+    for name, member in vars(GroundMotion).items():
+        if not name.startswith("_"):
+            assert inspect.getdoc(member), name
+
+
+def test_a_subclass_may_have_its_own_constructor():
+    class Measured(GroundMotion):
+        __slots__ = ()
+
+        def __init__(self, si, station="", **given):
+            super().__init__(si, **{"metadata": {"station": station}, **given})
+
+    made = Measured(motion().si, "A", name="own")
+    assert made.metadata["station"] == "A"
+    assert type(made.scaled(2)) is Measured
+    assert type(Measured.sine_pulse()) is Measured
+    assert list(inspect.signature(Measured).parameters) == ["si", "station", "given"]
 
 
 def test_repr_says_what_it_is():
@@ -248,16 +288,30 @@ def test_metadata_are_strings_and_numbers(value):
     [
         ({"time_step": 0.0}, "time_step"),
         ({"time_step": float("nan")}, "time_step"),
-        ({"vertical": np.zeros(4)}, "vertical needs the shape"),
-        ({"pieces": np.zeros((5, 6))}, "pieces needs the shape"),
-        ({"pieces": np.zeros((4, 5))}, "pieces needs the shape"),
-        ({"vertical_pieces": np.zeros((4, 6))}, "without vertical samples"),
-        ({"pieces": np.full((4, 6), np.nan)}, "pieces must be finite"),
+        ({"samples": [0.0]}, "acceleration needs at least two samples, got 1"),
+        ({"samples": np.zeros((4, 2))}, "acceleration needs one dimension, got the shape"),
+        ({"polynomials": np.zeros((5, 6))}, "GroundMotion: pieces needs the shape"),
+        ({"polynomials": np.zeros((4, 5))}, "GroundMotion: pieces needs the shape"),
+        ({"polynomials": np.full((4, 6), np.nan)}, "pieces must be finite"),
+        ({"samples": [0.0, np.inf], "name": "vertical"}, "vertical must be finite"),
+        ({"polynomials": np.zeros((5, 6)), "name": "vertical"}, "vertical_pieces needs the shape"),
     ],
 )
 def test_samples_that_do_not_fit_together(arguments, words):
     with pytest.raises(ComponentError, match=words):
-        MotionSI(**{"time_step": 0.01, "acceleration": np.array(VALUES), **arguments})
+        Signal(**{"time_step": 0.01, "samples": np.array(VALUES), **arguments})
+
+
+@pytest.mark.parametrize(
+    ("vertical", "words"),
+    [
+        (Signal(0.01, np.zeros(4)), r"vertical needs the shape \(5,\), got the shape \(4,\)"),
+        (Signal(0.02, np.zeros(5)), "vertical needs the time step 0.01 s, got 0.02 s"),
+    ],
+)
+def test_components_that_do_not_fit_together(vertical, words):
+    with pytest.raises(ComponentError, match=words):
+        Motion(Signal(0.01, np.array(VALUES)), vertical)
 
 
 def test_the_ground_is_linear_between_samples_and_still_outside():
@@ -266,10 +320,9 @@ def test_the_ground_is_linear_between_samples_and_still_outside():
         [0.0, 0.75, 1.5, 0.5625, 0.125], abs=1e-14
     )
     assert si.at([-1e-9, 0.04 + 1e-9, 7.0]).tolist() == [0.0, 0.0, 0.0]
-    assert si.vertical_at(0.005) == pytest.approx(0.3125)
-    assert motion().si.vertical_at([0.0, 0.01]).tolist() == [0.0, 0.0]
-    assert motion().si.vertical_peak == 0.0
-    assert si.vertical_peak == 2.25
+    assert si.vertical.at(0.005) == pytest.approx(0.3125)
+    assert motion().si.vertical is None
+    assert si.vertical.peak == 2.25
 
 
 def test_description_of_a_record_asks_for_the_record():

@@ -26,7 +26,7 @@ DIALECTS = {
 
 def expect(motion, values=VALUES, time_step=0.005):
     assert motion.si.time_step == time_step
-    assert motion.si.acceleration.tolist() == (np.asarray(values) * G).tolist()
+    assert motion.si.horizontal.samples.tolist() == (np.asarray(values) * G).tolist()
 
 
 @pytest.mark.parametrize("dialect", DIALECTS)
@@ -115,14 +115,14 @@ def test_unit_of_the_header(write, spelling, factor):
     )
     motion = GroundMotion.read(write(text))
     read = [float(f"{value:.7E}") * factor for value in VALUES * scale]
-    assert motion.si.acceleration == pytest.approx(read, rel=1e-15)
+    assert motion.si.horizontal.samples == pytest.approx(read, rel=1e-15)
 
 
 def test_other_argument_unit_is_used_and_warned_about(write):
     path = write(at2(DIALECTS["SMD"], VALUES))
     with pytest.warns(RecordWarning, match=r"line 3.*'G'.*'m/s\^2'"):
         motion = GroundMotion.read(path, unit="m/s^2")
-    assert motion.si.acceleration.tolist() == VALUES.tolist()
+    assert motion.si.horizontal.samples.tolist() == VALUES.tolist()
 
 
 def test_same_argument_unit_is_no_contradiction(write):

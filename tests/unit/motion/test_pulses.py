@@ -15,8 +15,8 @@ def test_defaults_are_equation_17():
     time = np.linspace(0.0, 1.0, 4001)
     assert pulse.si.at(time) == pytest.approx(-9.81 * np.sin(2.0 * np.pi * time), abs=1e-11)
     assert pulse.si.at([1.0 + 1e-9, 2.0]).tolist() == [0.0, 0.0]
-    assert pulse.si.acceleration[[0, 64, 128]].tolist() == [0.0, 0.0, 0.0]
-    assert pulse.si.acceleration[32] == -9.81
+    assert pulse.si.horizontal.samples[[0, 64, 128]].tolist() == [0.0, 0.0, 0.0]
+    assert pulse.si.horizontal.samples[32] == -9.81
     assert pulse.si.peak == 9.81
 
 
@@ -34,15 +34,15 @@ def test_pieces_are_as_exact_as_promised(frequency, cycles):
 def test_straight_lines_through_the_same_samples_would_be_much_worse():
     pulse = GroundMotion.sine_pulse("1 m/s^2", "1 Hz")
     time = np.linspace(0.0, 1.0, 20011)
-    straight = np.interp(time, np.arange(129) / 128.0, pulse.si.acceleration)
+    straight = np.interp(time, np.arange(129) / 128.0, pulse.si.horizontal.samples)
     assert np.max(np.abs(straight - np.sin(2.0 * np.pi * time))) > 1e-4
 
 
 def test_pieces_meet_with_value_slope_and_curvature():
     si = GroundMotion.harmonic("3 m/s^2", "2 Hz", "1.3 s", "0.4 rad").si
-    pieces = si.pieces
+    pieces = si.horizontal.pieces
     powers = np.arange(6)
-    assert pieces.sum(axis=1) == pytest.approx(si.acceleration[1:], abs=1e-14)
+    assert pieces.sum(axis=1) == pytest.approx(si.horizontal.samples[1:], abs=1e-14)
     assert (pieces @ powers)[:-1] == pytest.approx(pieces[1:, 1], abs=1e-13)
     assert (pieces @ (powers * (powers - 1)))[:-1] == pytest.approx(2.0 * pieces[1:, 2], abs=1e-12)
     slope = 3.0 * np.cos(2.0 * np.pi * 2.0 * np.arange(len(pieces)) * si.time_step + 0.4)
@@ -62,7 +62,7 @@ def test_harmonic_motion_with_a_phase(phase):
 @pytest.mark.parametrize("phase", ["0.01 rad", "1 rad", "-0.7 rad"])
 def test_peak_between_samples_is_found(phase):
     motion = GroundMotion.harmonic("5 m/s^2", "1 Hz", "2 s", phase)
-    assert np.max(np.abs(motion.si.acceleration)) < 5.0 - 1e-6
+    assert np.max(np.abs(motion.si.horizontal.samples)) < 5.0 - 1e-6
     assert motion.si.peak == pytest.approx(5.0, rel=1e-12)
 
 

@@ -141,8 +141,8 @@ def test_the_other_file_of_tcu128_holds_the_other_component():
     The text file, named 090, is the east component of the motion whose north
     component is the AT2 file: neither a sign nor a scale nor a lag makes one the other.
     """
-    north = GroundMotion.read(record_path(TCU128)).si.acceleration
-    east = GroundMotion.read(record_path(TCU128_EAST), **TEXT).si.acceleration
+    north = GroundMotion.read(record_path(TCU128)).si.horizontal.samples
+    east = GroundMotion.read(record_path(TCU128_EAST), **TEXT).si.horizontal.samples
     window = np.hanning(401)
     envelopes = [np.sqrt(np.convolve(x**2, window / window.sum(), "same")) for x in (north, east)]
     lags = range(0, north.size - east.size + 1, 5)
@@ -155,7 +155,7 @@ def test_the_other_file_of_tcu128_holds_the_other_component():
     assert fit.max() > 0.85
     assert lags[int(fit.argmax())] * 0.005 == pytest.approx(20.35, abs=0.5)
     assert abs(correlation(north, east)).max() < 0.3
-    # the same shaking in the same unit: energies of one size
+    # the same motion in the same unit: energies of one size
     assert 0.5 < np.sum(east**2) / np.sum(north**2) < 1.0
 
 

@@ -23,7 +23,7 @@ def test_the_component_at_an_angle(degrees):
     turned = motion(ONE, "one").rotated(motion(OTHER, "other"), f"{degrees} deg")
     angle = np.radians(degrees)
     expected = np.cos(angle) * ONE + np.sin(angle) * OTHER
-    assert turned.si.acceleration == pytest.approx(expected, abs=1e-14)
+    assert turned.si.horizontal.samples == pytest.approx(expected, abs=1e-14)
     assert "towards other" in turned.history[-1]
 
 
@@ -32,25 +32,25 @@ def test_the_component_at_an_angle(degrees):
 )
 def test_right_angles_are_exact(degrees, expected):
     turned = motion(ONE, "one").rotated(motion(OTHER, "other"), f"{degrees} deg")
-    assert turned.si.acceleration.tolist() == expected.tolist()
+    assert turned.si.horizontal.samples.tolist() == expected.tolist()
 
 
 def test_rotation_keeps_the_energy_of_the_pair():
     one, other = motion(ONE, "one"), motion(OTHER, "other")
-    along = one.rotated(other, "0.7 rad").si.acceleration
-    across = one.rotated(other, f"{0.7 + np.pi / 2!r} rad").si.acceleration
+    along = one.rotated(other, "0.7 rad").si.horizontal.samples
+    across = one.rotated(other, f"{0.7 + np.pi / 2!r} rad").si.horizontal.samples
     assert along @ along + across @ across == pytest.approx(ONE @ ONE + OTHER @ OTHER, rel=1e-14)
 
 
 def test_the_vertical_component_stays():
     turned = motion(ONE, "one", vertical=UP).rotated(motion(OTHER[:30], "other"), "10 deg")
-    assert turned.si.vertical.tolist() == UP.tolist()
+    assert turned.si.vertical.samples.tolist() == UP.tolist()
     assert turned.history[-1] == "the other component padded with 20 zeros"
 
 
 def test_the_vertical_component_is_padded_with_the_horizontal_ones():
     turned = motion(ONE[:30], "one", vertical=UP[:30]).rotated(motion(OTHER, "other"), "10 deg")
-    assert turned.si.vertical.tolist() == [*UP[:30], *[0.0] * 20]
+    assert turned.si.vertical.samples.tolist() == [*UP[:30], *[0.0] * 20]
     assert turned.history[-1] == "this component padded with 20 zeros"
 
 
@@ -78,11 +78,13 @@ def test_an_azimuth_needs_no_angle(own, theirs, sign):
     turned = one.rotated(other, azimuth="60 deg")
     angle = sign * np.radians(60.0 - own)
     expected = np.cos(angle) * ONE + np.sin(angle) * OTHER
-    assert turned.si.acceleration == pytest.approx(expected, abs=1e-14)
+    assert turned.si.horizontal.samples == pytest.approx(expected, abs=1e-14)
     assert turned.metadata["azimuth"] == pytest.approx(60.0)
     # along its own direction each is itself
-    assert one.rotated(other, azimuth=f"{own} deg").si.acceleration.tolist() == ONE.tolist()
-    assert other.rotated(one, azimuth=f"{theirs} deg").si.acceleration.tolist() == OTHER.tolist()
+    assert one.rotated(other, azimuth=f"{own} deg").si.horizontal.samples.tolist() == ONE.tolist()
+    assert (
+        other.rotated(one, azimuth=f"{theirs} deg").si.horizontal.samples.tolist() == OTHER.tolist()
+    )
 
 
 def test_pulses_stay_analytic():

@@ -38,8 +38,8 @@ def test_the_spectral_acceleration_is_reached(period, damping_ratio):
     damping = 0.05 if damping_ratio is None else damping_ratio
     spectrum = rf.response_spectrum(scaled, [period], damping_ratios=(damping,))
     assert spectrum.pseudo_spectral_acceleration.item() == pytest.approx(0.4 * 9.80665, rel=1e-12)
-    ratio = scaled.si.acceleration[5] / NOISE[5]
-    assert scaled.si.vertical == pytest.approx(ratio * NOISE[::-1], rel=1e-14)
+    ratio = scaled.si.horizontal.samples[5] / NOISE[5]
+    assert scaled.si.vertical.samples == pytest.approx(ratio * NOISE[::-1], rel=1e-14)
 
 
 @pytest.mark.parametrize(

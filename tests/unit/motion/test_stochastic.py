@@ -33,7 +33,7 @@ def draw(magnitude=5.0, distance="20 km", seed=1, **others):
 
 def test_the_same_seed_gives_the_same_motion():
     assert draw(seed=7) == draw(seed=7)
-    assert np.array_equal(draw(seed=7).si.acceleration, draw(seed=7).si.acceleration)
+    assert np.array_equal(draw(seed=7).si.horizontal.samples, draw(seed=7).si.horizontal.samples)
 
 
 def test_another_seed_gives_another_motion():
@@ -91,7 +91,9 @@ def test_it_says_what_it_is():
 def test_units_of_the_arguments_do_not_matter():
     metric = draw(distance="20 km", stress_drop="10 MPa", kappa="0.035 s")
     other = draw(distance="20000 m", stress_drop="100 bar", kappa="35 ms")
-    np.testing.assert_allclose(other.si.acceleration, metric.si.acceleration, rtol=1e-9, atol=1e-12)
+    np.testing.assert_allclose(
+        other.si.horizontal.samples, metric.si.horizontal.samples, rtol=1e-9, atol=1e-12
+    )
 
 
 def test_defaults_are_as_documented():
@@ -121,11 +123,13 @@ def test_time_step_is_kept():
 def test_vertical_component():
     motion = draw(vertical=0.5)
     assert draw().si.vertical is None
-    assert np.array_equal(motion.si.acceleration, draw().si.acceleration)
-    assert motion.si.vertical.size == motion.si.acceleration.size
+    assert np.array_equal(motion.si.horizontal.samples, draw().si.horizontal.samples)
+    assert motion.si.vertical.samples.size == motion.si.horizontal.samples.size
     double = draw(vertical=1.0)
-    np.testing.assert_allclose(double.si.vertical, 2.0 * motion.si.vertical, rtol=1e-14)
-    assert not np.array_equal(double.si.vertical, double.si.acceleration)
+    np.testing.assert_allclose(
+        double.si.vertical.samples, 2.0 * motion.si.vertical.samples, rtol=1e-14
+    )
+    assert not np.array_equal(double.si.vertical.samples, double.si.horizontal.samples)
 
 
 def test_a_seed_of_numpy():

@@ -11,7 +11,7 @@ from rockframe.errors import ComponentError, SchemaError, shown
 Choice = TypeVar("Choice", bound=StrEnum)
 
 
-def choice(kind: type[Choice], given: object, *, owner: str, name: str) -> Choice:
+def one_of_words(kind: type[Choice], given: object, *, owner: str, name: str) -> Choice:
     """Read an argument that is one of a few words.
 
     Parameters
@@ -74,7 +74,7 @@ def whole_number(
     raise ComponentError(msg)
 
 
-def dataset(given: object, *, owner: str) -> xr.Dataset:
+def checked_dataset(given: object, *, owner: str) -> xr.Dataset:
     """Read an argument that is a dataset.
 
     Parameters

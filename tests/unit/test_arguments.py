@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from rockframe.arguments import whole_number
 from rockframe.errors import ComponentError
-from rockframe.words import whole_number
 
 
 @pytest.mark.parametrize("given", [3, np.int64(3), np.uint8(3), np.array(3)])

@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from rockframe.shaking.shaking import Array
+from rockframe.signals.arrays import Array
 
 _HALVINGS: Final = 54  # to the last bit of x
 
@@ -19,18 +19,18 @@ def values_at(pieces: Array, place: Array | float) -> Array:
 
     Parameters
     ----------
-    pieces : ndarray, shape (n, m)
+    pieces : ndarray, shape (..., m)
         Coefficients.
-    place : ndarray, shape (n,), or float
+    place : ndarray, shape (...), or float
         x [1].
 
     Returns
     -------
-    ndarray, shape (n,)
+    ndarray, shape (...)
     """
-    values = np.zeros(len(pieces))
-    for power in reversed(range(pieces.shape[1])):
-        values = values * place + pieces[:, power]
+    values = np.zeros(pieces.shape[:-1])
+    for power in reversed(range(pieces.shape[-1])):
+        values = values * place + pieces[..., power]
     return values
 
 

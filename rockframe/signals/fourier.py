@@ -6,17 +6,18 @@ from typing import Any, Final
 import numpy as np
 
 from rockframe.errors import ComponentError
-from rockframe.shaking.shaking import MAXIMUM_SAMPLES, Array, Shaking
+from rockframe.signals.arrays import Array
+from rockframe.signals.signal import MAXIMUM_SAMPLES, Signal
 
 _TERMS: Final = 40
 
 
-def transform_of(shaking: Shaking, resolution: float) -> tuple[Array, Any]:
+def transform_of(signal: Signal, resolution: float) -> tuple[Array, Any]:
     """Compute the Fourier transform, :eq:`eq-fourier`.
 
     Parameters
     ----------
-    shaking : Shaking
+    signal : Signal
         Acceleration of the ground.
     resolution : float
         Greatest distance between frequencies; 0 for one over the length [Hz].
@@ -33,7 +34,7 @@ def transform_of(shaking: Shaking, resolution: float) -> tuple[Array, Any]:
     ComponentError
         A resolution that needs too many samples.
     """
-    dt, count = shaking.time_step, shaking.samples.size
+    dt, count = signal.time_step, signal.samples.size
     if resolution > 0.0:
         count = max(count, math.ceil(min(1.0 / resolution / dt, 2.0 * MAXIMUM_SAMPLES)))
     if count > MAXIMUM_SAMPLES:
@@ -43,9 +44,9 @@ def transform_of(shaking: Shaking, resolution: float) -> tuple[Array, Any]:
         )
         raise ComponentError(msg)
     frequency = np.arange(float(count // 2 + 1)) / (count * dt)
-    if not shaking.analytic:
-        return frequency, dt * np.fft.rfft(shaking.samples, count)
-    by_power = np.fft.rfft(shaking.pieces, count, axis=0)
+    if not signal.analytic:
+        return frequency, dt * np.fft.rfft(signal.samples, count)
+    by_power = np.fft.rfft(signal.pieces, count, axis=0)
     moments = _moments(2.0 * np.pi * frequency * dt, by_power.shape[1])
     return frequency, dt * (by_power * moments).sum(axis=1)
 

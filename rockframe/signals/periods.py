@@ -5,9 +5,10 @@ from typing import Final
 
 import numpy as np
 
-from rockframe.shaking.fourier import transform_of
-from rockframe.shaking.shaking import Array, Shaking
-from rockframe.shaking.spectra import spectral_peaks
+from rockframe.signals.arrays import Array
+from rockframe.signals.fourier import transform_of
+from rockframe.signals.signal import Signal
+from rockframe.signals.spectra import spectral_peaks
 
 MEAN_PERIOD_BAND: Final = (0.25, 20.0)
 """Frequencies that the mean period looks at [Hz] (Rathje et al. 1998)."""
@@ -25,12 +26,12 @@ PULSE_PERIODS: Final = 10.0 ** (np.arange(-100, 131) / 100.0)
 """Where its peak is looked for: 0.1 s to 20 s [s]."""
 
 
-def mean_period(shaking: Shaking) -> float:
+def mean_period(signal: Signal) -> float:
     """Compute the mean period, :eq:`eq-mean-period`.
 
     Parameters
     ----------
-    shaking : Shaking
+    signal : Signal
         Acceleration of the ground.
 
     Returns
@@ -38,7 +39,7 @@ def mean_period(shaking: Shaking) -> float:
     float
         NaN for ground that stands still in this band [s].
     """
-    frequency, transform = transform_of(shaking, MEAN_PERIOD_RESOLUTION)
+    frequency, transform = transform_of(signal, MEAN_PERIOD_RESOLUTION)
     low, high = MEAN_PERIOD_BAND
     inside = (frequency >= low) & (frequency <= high)
     power = np.abs(transform[inside]) ** 2
@@ -46,12 +47,12 @@ def mean_period(shaking: Shaking) -> float:
     return float(np.sum(power / frequency[inside])) / total if total > 0.0 else math.nan
 
 
-def housner_intensity(shaking: Shaking, damping_ratio: float) -> float:
+def housner_intensity(signal: Signal, damping_ratio: float) -> float:
     """Integrate the pseudo-velocity spectrum, :eq:`eq-housner-intensity`.
 
     Parameters
     ----------
-    shaking : Shaking
+    signal : Signal
         Acceleration of the ground.
     damping_ratio : float
         Damping ratio [1].
@@ -61,16 +62,16 @@ def housner_intensity(shaking: Shaking, damping_ratio: float) -> float:
     float
         [m]
     """
-    velocity = _pseudo_velocity(shaking, HOUSNER_PERIODS, damping_ratio)
+    velocity = _pseudo_velocity(signal, HOUSNER_PERIODS, damping_ratio)
     return float(np.trapezoid(velocity, HOUSNER_PERIODS))
 
 
-def pulse_period(shaking: Shaking, damping_ratio: float) -> float:
+def pulse_period(signal: Signal, damping_ratio: float) -> float:
     """Find the period where the pseudo-velocity spectrum has its peak.
 
     Parameters
     ----------
-    shaking : Shaking
+    signal : Signal
         Acceleration of the ground.
     damping_ratio : float
         Damping ratio [1].
@@ -80,7 +81,7 @@ def pulse_period(shaking: Shaking, damping_ratio: float) -> float:
     float
         Between 0.1 s and 20 s; NaN for ground that stands still [s].
     """
-    velocity = _pseudo_velocity(shaking, PULSE_PERIODS, damping_ratio)
+    velocity = _pseudo_velocity(signal, PULSE_PERIODS, damping_ratio)
     if not velocity.max() > 0.0:
         return math.nan
     top = int(np.argmax(velocity))
@@ -92,6 +93,6 @@ def pulse_period(shaking: Shaking, damping_ratio: float) -> float:
     return float(PULSE_PERIODS[top] * (PULSE_PERIODS[1] / PULSE_PERIODS[0]) ** shift)
 
 
-def _pseudo_velocity(shaking: Shaking, periods: Array, damping_ratio: float) -> Array:
-    peaks = spectral_peaks(shaking, periods, damping_ratio)
+def _pseudo_velocity(signal: Signal, periods: Array, damping_ratio: float) -> Array:
+    peaks = spectral_peaks(signal, periods, damping_ratio)
     return 2.0 * np.pi / periods * peaks[:, 0]

@@ -1,15 +1,16 @@
 """Velocity and displacement of ground that starts from rest."""
 
-from rockframe.shaking.polynomials import integral_of
-from rockframe.shaking.shaking import Array, Shaking
+from rockframe.signals.arrays import Array
+from rockframe.signals.polynomials import integral_of
+from rockframe.signals.signal import Signal
 
 
-def ground_path(shaking: Shaking) -> tuple[Array, Array]:
+def ground_path(signal: Signal) -> tuple[Array, Array]:
     """Integrate the acceleration of ground that starts from rest.
 
     Parameters
     ----------
-    shaking : Shaking
+    signal : Signal
         The acceleration.
 
     Returns
@@ -19,5 +20,5 @@ def ground_path(shaking: Shaking) -> tuple[Array, Array]:
     displacement : ndarray, shape (n, m + 2)
         Polynomials from sample to sample [m].
     """
-    velocity = integral_of(shaking.pieces, shaking.time_step)
-    return velocity, integral_of(velocity, shaking.time_step)
+    velocity = integral_of(signal.pieces, signal.time_step)
+    return velocity, integral_of(velocity, signal.time_step)

@@ -1,9 +1,10 @@
-"""How long the shaking is strong."""
+"""How long a ground motion is strong."""
 
 import numpy as np
 
-from rockframe.shaking.polynomials import roots_of
-from rockframe.shaking.shaking import Array, Shaking
+from rockframe.signals.arrays import Array
+from rockframe.signals.polynomials import roots_of
+from rockframe.signals.signal import Signal
 
 
 def time_between_shares(history: Array, time_step: float, start: float, end: float) -> float:
@@ -35,12 +36,12 @@ def time_between_shares(history: Array, time_step: float, start: float, end: flo
     return float(places[1] - places[0]) * time_step
 
 
-def exceedance(shaking: Shaking, level: float) -> tuple[float, float]:
+def exceedance(signal: Signal, level: float) -> tuple[float, float]:
     """Measure how long the absolute acceleration exceeds a level.
 
     Parameters
     ----------
-    shaking : Shaking
+    signal : Signal
         Acceleration of the ground.
     level : float
         [m s^-2]
@@ -54,7 +55,7 @@ def exceedance(shaking: Shaking, level: float) -> tuple[float, float]:
     """
     first, last, total = np.inf, -np.inf, 0.0
     for side in (1.0, -1.0):
-        above = side * shaking.pieces
+        above = side * signal.pieces
         above[:, 0] -= level
         starts_above, ends_above = above[:, 0] > 0.0, above.sum(axis=1) > 0.0
         enter, leave = np.zeros(len(above)), np.ones(len(above))
@@ -68,4 +69,4 @@ def exceedance(shaking: Shaking, level: float) -> tuple[float, float]:
             first = min(first, float(rows[0] + enter[rows[0]]))
             last = max(last, float(rows[-1] + leave[rows[-1]]))
     bracketed = max(0.0, last - first)
-    return bracketed * shaking.time_step, total * shaking.time_step
+    return bracketed * signal.time_step, total * signal.time_step

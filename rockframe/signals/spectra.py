@@ -6,9 +6,10 @@ import numpy as np
 
 from rockframe.compiled import COMPILED
 from rockframe.errors import ComponentError
-from rockframe.shaking.oscillator import QUANTITIES, STEPS_PER_PERIOD, march_all
-from rockframe.shaking.polynomials import greatest
-from rockframe.shaking.shaking import Array, Shaking
+from rockframe.signals.arrays import Array
+from rockframe.signals.oscillator import QUANTITIES, STEPS_PER_PERIOD, march_all
+from rockframe.signals.polynomials import greatest
+from rockframe.signals.signal import Signal
 from rockframe.units import Condition
 
 DAMPING_RATIO: Final = Condition("from 0 to 1", lambda value: 0.0 <= value <= 1.0)
@@ -21,12 +22,12 @@ MAXIMUM_PARTS: Final = 1_000_000
 """Steps in one interval of the motion beyond which a period is refused."""
 
 
-def check_cost(shaking: Shaking, periods: Array, *, owner: str) -> None:
+def check_cost(signal: Signal, periods: Array, *, owner: str) -> None:
     """Refuse a spectrum that would take minutes.
 
     Parameters
     ----------
-    shaking : Shaking
+    signal : Signal
         Acceleration of the ground.
     periods : ndarray, shape (k,)
         Periods, zero or more [s].
@@ -41,23 +42,23 @@ def check_cost(shaking: Shaking, periods: Array, *, owner: str) -> None:
     moving = periods[periods > 0.0]
     if moving.size == 0:
         return
-    count = len(shaking.pieces)
-    parts = np.ceil(STEPS_PER_PERIOD * shaking.time_step / moving)
+    count = len(signal.pieces)
+    parts = np.ceil(STEPS_PER_PERIOD * signal.time_step / moving)
     if parts.max() > MAXIMUM_PARTS or parts.sum() * count > MAXIMUM_STEPS:
         msg = (
             f"{owner}: {moving.size} periods from {moving.min():.4g} s on need "
             f"{parts.sum() * count:.2g} steps on a motion of {count} intervals of "
-            f"{shaking.time_step:.4g} s; give fewer or longer periods, or a shorter motion"
+            f"{signal.time_step:.4g} s; give fewer or longer periods, or a shorter motion"
         )
         raise ComponentError(msg)
 
 
-def spectral_peaks(shaking: Shaking, periods: Array, damping_ratio: float) -> Array:
+def spectral_peaks(signal: Signal, periods: Array, damping_ratio: float) -> Array:
     """Find the peaks of oscillators of one damping ratio.
 
     Parameters
     ----------
-    shaking : Shaking
+    signal : Signal
         Acceleration of the ground.
     periods : ndarray, shape (k,)
         Periods, zero or more [s].
@@ -71,27 +72,25 @@ def spectral_peaks(shaking: Shaking, periods: Array, damping_ratio: float) -> Ar
         acceleration [m s^-2].
     """
     found = np.zeros((periods.size, 3))
-    found[:, 2] = greatest(shaking.pieces)  # a rigid oscillator moves with the ground
+    found[:, 2] = greatest(signal.pieces)  # a rigid oscillator moves with the ground
     moving = np.flatnonzero(periods > 0.0)
     if COMPILED:
-        found[moving] = _march(shaking, periods[moving], damping_ratio)
+        found[moving] = _march(signal, periods[moving], damping_ratio)
     else:
-        from rockframe.shaking.filtering import filter_all
+        from rockframe.signals.filtering import filter_all
 
-        found[moving] = filter_all(
-            shaking.pieces, shaking.time_step, damping_ratio, periods[moving]
-        )
+        found[moving] = filter_all(signal.pieces, signal.time_step, damping_ratio, periods[moving])
     return found
 
 
 def pseudo_spectra(
-    shaking: Shaking, periods: Array, spectral_displacement: Array
+    signal: Signal, periods: Array, spectral_displacement: Array
 ) -> tuple[Array, Array]:
     """Compute the pseudo spectra, :eq:`eq-pseudo-spectra`.
 
     Parameters
     ----------
-    shaking : Shaking
+    signal : Signal
         Acceleration of the ground.
     periods : ndarray, shape (k,)
         Periods, zero or more [s].
@@ -108,18 +107,18 @@ def pseudo_spectra(
     rigid = periods == 0.0
     frequency = 2.0 * np.pi / np.where(rigid, 1.0, periods)
     velocity = np.where(rigid, 0.0, frequency * spectral_displacement)
-    acceleration = np.where(rigid, greatest(shaking.pieces), frequency * velocity)
+    acceleration = np.where(rigid, greatest(signal.pieces), frequency * velocity)
     return velocity, acceleration
 
 
-def _march(shaking: Shaking, periods: Array, damping_ratio: float) -> Array:
-    pieces = np.ascontiguousarray(shaking.pieces)
+def _march(signal: Signal, periods: Array, damping_ratio: float) -> Array:
+    pieces = np.ascontiguousarray(signal.pieces)
     powers = pieces.shape[1]
     found = np.empty((periods.size, QUANTITIES))
     march_all(
         pieces,
         np.zeros((STEPS_PER_PERIOD, powers)),
-        shaking.time_step,
+        signal.time_step,
         float(damping_ratio),
         periods,
         np.empty((2, 2 + powers)),

@@ -1,19 +1,20 @@
-"""What accumulates while the ground shakes: Arias intensity and absolute velocity."""
+"""What accumulates in the course of a ground motion: Arias intensity and absolute velocity."""
 
 import math
 
 import numpy as np
 
-from rockframe.shaking.polynomials import integral_of, knots_of, turning_points
-from rockframe.shaking.shaking import Array, Shaking
+from rockframe.signals.arrays import Array
+from rockframe.signals.polynomials import integral_of, knots_of, turning_points
+from rockframe.signals.signal import Signal
 
 
-def arias_history(shaking: Shaking, gravity: float) -> Array:
+def arias_history(signal: Signal, gravity: float) -> Array:
     """Compute the Arias intensity up to every sample, :eq:`eq-arias`.
 
     Parameters
     ----------
-    shaking : Shaking
+    signal : Signal
         Acceleration of the ground.
     gravity : float
         [m s^-2]
@@ -23,21 +24,21 @@ def arias_history(shaking: Shaking, gravity: float) -> Array:
     ndarray, shape (n,)
         Starts at zero [m s^-1].
     """
-    if shaking.analytic:
-        exponents = np.arange(shaking.pieces.shape[1])
+    if signal.analytic:
+        exponents = np.arange(signal.pieces.shape[1])
         weights = 1.0 / (exponents[:, None] + exponents + 1.0)  # integral of x^j x^k
-        square = ((shaking.pieces @ weights) * shaking.pieces).sum(axis=1)
+        square = ((signal.pieces @ weights) * signal.pieces).sum(axis=1)
     else:
-        square = _trapezoids(shaking.samples**2)
-    return _summed(square) * (shaking.time_step * 0.5 * math.pi / gravity)
+        square = _trapezoids(signal.samples**2)
+    return _summed(square) * (signal.time_step * 0.5 * math.pi / gravity)
 
 
-def absolute_velocity_history(shaking: Shaking) -> Array:
+def absolute_velocity_history(signal: Signal) -> Array:
     """Compute the cumulative absolute velocity up to every sample, :eq:`eq-cav`.
 
     Parameters
     ----------
-    shaking : Shaking
+    signal : Signal
         Acceleration of the ground.
 
     Returns
@@ -45,10 +46,10 @@ def absolute_velocity_history(shaking: Shaking) -> Array:
     ndarray, shape (n,)
         Starts at zero [m s^-1].
     """
-    if not shaking.analytic:
-        return _summed(_trapezoids(np.abs(shaking.samples))) * shaking.time_step
+    if not signal.analytic:
+        return _summed(_trapezoids(np.abs(signal.samples))) * signal.time_step
     # the way that the velocity goes up and down, turning included
-    velocity = integral_of(shaking.pieces, shaking.time_step)
+    velocity = integral_of(signal.pieces, signal.time_step)
     knots = knots_of(velocity)
     ways = np.abs(np.diff(knots))
     rows, turned = turning_points(velocity)
@@ -56,12 +57,12 @@ def absolute_velocity_history(shaking: Shaking) -> Array:
     return _summed(ways)
 
 
-def standardized_absolute_velocity(shaking: Shaking, threshold: float) -> float:
+def standardized_absolute_velocity(signal: Signal, threshold: float) -> float:
     """Sum the absolute velocity of the seconds whose peak reaches a threshold, :eq:`eq-cav`.
 
     Parameters
     ----------
-    shaking : Shaking
+    signal : Signal
         Acceleration of the ground.
     threshold : float
         [m s^-2]
@@ -71,12 +72,12 @@ def standardized_absolute_velocity(shaking: Shaking, threshold: float) -> float:
     float
         [m s^-1]
     """
-    times = shaking.times
+    times = signal.times
     seconds = np.arange(0.0, math.ceil(times[-1]) + 1.0)
-    at_seconds = np.interp(seconds, times, absolute_velocity_history(shaking))
-    size = np.abs(shaking.samples)
+    at_seconds = np.interp(seconds, times, absolute_velocity_history(signal))
+    size = np.abs(signal.samples)
     # a sample at a full second belongs to the seconds on both its sides
-    rounding = 1e-9 * shaking.time_step
+    rounding = 1e-9 * signal.time_step
     first = np.searchsorted(times, seconds[:-1] - rounding, side="left")
     last = np.searchsorted(times, seconds[1:] + rounding, side="right")
     strong = [

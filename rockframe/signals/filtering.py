@@ -1,7 +1,7 @@
 """The same oscillators without a compiler: their recurrence as a filter.
 
 The matrices of a step and the extremum inside it are those of
-:mod:`rockframe.shaking.oscillator`; only the march from step to step is SciPy's.
+:mod:`rockframe.signals.oscillator`; only the march from step to step is SciPy's.
 """
 
 from collections.abc import Callable
@@ -11,15 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import signal
 
-from rockframe.shaking.oscillator import (
+from rockframe.signals.arrays import Array
+from rockframe.signals.oscillator import (
     QUANTITIES,
     STEPS_PER_PERIOD,
     fill_step,
     shift_piece,
     turning_value,
 )
-from rockframe.shaking.polynomials import knots_of, slopes_of
-from rockframe.shaking.shaking import Array
+from rockframe.signals.polynomials import knots_of, slopes_of
 
 Rows: TypeAlias = NDArray[np.intp]
 

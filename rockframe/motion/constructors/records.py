@@ -1,0 +1,163 @@
+"""Constructors of records: from files, and from arrays."""
+
+from __future__ import annotations
+
+import warnings
+from pathlib import PurePath
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from rockframe.errors import ComponentError, RecordWarning
+from rockframe.motion.quantities import accelerations_to_si, argument_unit, declared_step
+from rockframe.motion.readers.components import component_names
+from rockframe.motion.readers.reading import read_record
+from rockframe.motion.readers.source import Request
+from rockframe.motion.value import UNNAMED
+from rockframe.signals import Motion
+from rockframe.units import POSITIVE, TIME_STEP, to_si
+
+if TYPE_CHECKING:
+    from rockframe.motion.quantities import ArrayLike, QuantityLike
+    from rockframe.motion.readers.source import PathLike
+    from rockframe.motion.value import Made
+
+_SAME_STEP: Final = 1e-6
+
+
+def read(
+    kind: type[Made],
+    path: PathLike,
+    format: str | None = None,  # noqa: A002
+    component: str | tuple[str, str] | None = None,
+    unit: str | None = None,
+    *,
+    time_step: QuantityLike | None = None,
+    response: PathLike | None = None,
+) -> Made:
+    """Read a record file.
+
+    Parameters
+    ----------
+    path : str or path-like
+        File.
+    format : str, optional
+        A name of :func:`rockframe.motion.formats`; recognised from the
+        file unless given.
+    component : str or pair of str, optional
+        Component by its name in the file (``"HNE"``, ``"S16W"``), by its
+        direction (``"N"``, ``"090"``, ``"U"``) or by its number
+        (``"channel 3"``); a pair takes a horizontal component and sets the
+        vertical one beside it. Needed where a file has more than one
+        horizontal component.
+    unit : str, optional
+        Unit of the samples, where the file does not say: ``"g"``,
+        ``"gal"``, ``"cm/s^2"``, ... Here ``g`` is the acceleration of gravity.
+    time_step : str or Quantity, optional
+        For a column of samples without times [s].
+    response : str or path-like, optional
+        StationXML with the response of the instrument, for counts in
+        miniSEED; looked for beside the file unless given.
+
+    Returns
+    -------
+    GroundMotion
+        Its metadata name the file and its digest, and what the file says of
+        event, station, component and unit; what was done is in its history.
+
+    Raises
+    ------
+    RecordError
+        The file cannot be read as a ground-motion record, or has no such
+        component; the message lists those that it has.
+    UnitsError
+        `unit` is not an acceleration, or `time_step` not a time.
+    ComponentError
+        `format` is unknown, `component` neither a name nor a pair of names,
+        or `time_step` is not positive.
+
+    Warns
+    -----
+    RecordWarning
+        The file contradicts itself or an argument a little, its peak or time
+        step is unusual, or its only component is vertical.
+    """
+    owner = f"{kind.__name__}.read"
+    horizontal, vertical = component_names(component, owner=owner)
+    request = Request(
+        unit=None if unit is None else argument_unit(unit, owner=owner),
+        unit_name=None if unit is None else str(unit),
+        time_step=None
+        if time_step is None
+        else to_si(time_step, TIME_STEP, owner=owner, name="time_step", condition=POSITIVE),
+        component=horizontal,
+        vertical=vertical,
+        response=None if response is None else str(response),
+    )
+    reading = read_record(path, format, request)
+    for message in reading.warnings:
+        warnings.warn(message, RecordWarning, stacklevel=2)
+    return kind(
+        reading.si,
+        name=reading.name or PurePath(path).stem,
+        metadata=reading.metadata,
+        history=reading.history,
+        recipe=reading.recipe,
+    )
+
+
+def from_arrays(
+    kind: type[Made],
+    acceleration: ArrayLike,
+    time_step: QuantityLike,
+    vertical: ArrayLike | None = None,
+    *,
+    name: str | None = None,
+) -> Made:
+    """Build a motion from arrays with a unit.
+
+    Parameters
+    ----------
+    acceleration : Quantity, (sequence, unit) or DataArray, shape (n,)
+        Horizontal acceleration; a DataArray needs the attribute ``units``
+        [m s^-2].
+    time_step : str or Quantity
+        Time between samples [s].
+    vertical : Quantity, (sequence, unit) or DataArray, shape (n,), optional
+        Vertical acceleration, upwards [m s^-2].
+    name : str, optional
+        For titles and messages.
+
+    Returns
+    -------
+    GroundMotion
+
+    Raises
+    ------
+    UnitsError
+        An array or the time step has no unit, or a wrong one.
+    ComponentError
+        Not finite, not one-dimensional, or of different lengths.
+    """
+    owner = f"{kind.__name__}.from_arrays"
+    step = to_si(time_step, TIME_STEP, owner=owner, name="time_step", condition=POSITIVE)
+    across = accelerations_to_si(acceleration, owner=owner, name="acceleration")
+    upwards = None
+    if vertical is not None:
+        upwards = accelerations_to_si(vertical, owner=owner, name="vertical")
+        if upwards.size != across.size:
+            msg = (
+                f"{owner}: acceleration has {across.size} samples, vertical {upwards.size}; "
+                "give both the same length, or use with_vertical, which pads"
+            )
+            raise ComponentError(msg)
+    for label, array in (("acceleration", acceleration), ("vertical", vertical)):
+        declared = declared_step(array)
+        if declared is not None and not np.isclose(declared, step, rtol=_SAME_STEP, atol=0.0):
+            msg = (
+                f"{owner}: the time axis of {label} has the step {declared:.9g} s, "
+                f"but time_step is {step:.9g} s"
+            )
+            raise ComponentError(msg)
+    words = f"built from arrays: {across.size} samples at {step!r} s"
+    return kind(Motion.of_samples(step, across, upwards), name=name or UNNAMED, history=(words,))

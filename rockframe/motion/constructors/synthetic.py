@@ -1,0 +1,216 @@
+"""Motions of earthquakes that nobody recorded, by constructor."""
+
+from __future__ import annotations
+
+import warnings
+from functools import partial
+from typing import TYPE_CHECKING, Final
+
+from rockframe.arguments import one_of_words, whole_number
+from rockframe.errors import ComponentError, ModelWarning
+from rockframe.signals import Motion
+from rockframe.units import (
+    DENSITY,
+    NOT_NEGATIVE,
+    POSITIVE,
+    TIME,
+    Condition,
+    Measure,
+    Unit,
+    to_ratio,
+    to_si,
+)
+
+if TYPE_CHECKING:
+    from rockframe.motion.quantities import QuantityLike, RatioLike
+    from rockframe.motion.stochastic import PointSource, Site
+    from rockframe.motion.value import Made
+
+MODEL: Final = (
+    "stochastic point source: Boore (2003), doi:10.1007/PL00012553, with the parameters of "
+    "Boore and Thompson (2015), doi:10.1785/0120140281"
+)
+"""Source of the model, for the metadata."""
+
+LARGEST_MAGNITUDE: Final = 8.0
+"""The saturation length is calibrated up to here [1] (Yenier and Atkinson 2015)."""
+
+LONGEST_DURATION: Final = 1_000.0
+"""A duration beyond is taken for a slip of the pen [s]."""
+
+_DISTANCE: Final = Measure("a distance", Unit.METRE, "15 km")
+_STRESS: Final = Measure("a stress", Unit.PASCAL, "10 MPa")
+_WAVES: Final = Measure("a velocity", Unit.METRE_PER_SECOND, "3.5 km/s")
+_KAPPA: Final = TIME.like("0.035 s")
+_STEP: Final = TIME.like("0.005 s")
+
+_MAGNITUDES: Final = Condition(
+    "from 3 to 8.5, where the model means something", lambda value: 3.0 <= value <= 8.5
+)
+_DISTANCES: Final = Condition("above 0 and at most 1000 km", lambda value: 0.0 < value <= 1e6)
+_STEPS: Final = Condition("from 0.0005 s to 0.02 s", lambda value: 0.0005 <= value <= 0.02)
+_EXPONENTS: Final = Condition("from 0 to 1", lambda value: 0.0 <= value <= 1.0)
+
+
+def stochastic(
+    kind: type[Made],
+    magnitude: RatioLike,
+    distance: QuantityLike,
+    seed: int,
+    *,
+    stress_drop: QuantityLike = "10 MPa",
+    shear_wave_velocity: QuantityLike = "3.5 km/s",
+    density: QuantityLike = "2720 kg/m^3",
+    quality_factor: RatioLike = 180,
+    quality_exponent: RatioLike = 0.45,
+    kappa: QuantityLike = "0.035 s",
+    site: Site | str = "rock 760",
+    vertical: RatioLike | None = None,
+    time_step: QuantityLike = "0.005 s",
+) -> Made:
+    """Draw the motion of an earthquake from a published model, without a file.
+
+    Windowed noise gets the spectrum that an earthquake of this magnitude has on
+    the average at this distance, :eq:`eq-target-spectrum`: the point source of
+    Boore (2003) with the parameters of Boore and Thompson (2015) for active
+    crustal regions. Another seed is another motion of the same earthquake.
+
+    Parameters
+    ----------
+    magnitude : float
+        Moment magnitude [1].
+    distance : str or Quantity
+        Closest distance to the rupture; of a small earthquake to its
+        hypocentre [m].
+    seed : int
+        Not negative; the same seed gives the same motion.
+    stress_drop : str or Quantity, optional
+        Stress drop; 10 MPa are 100 bar [Pa].
+    shear_wave_velocity : str or Quantity, optional
+        Of the crust at the source [m s^-1].
+    density : str or Quantity, optional
+        Of the crust at the source [kg m^-3].
+    quality_factor : float, optional
+        Q0 of the crust, at 1 Hz [1].
+    quality_exponent : float, optional
+        n of Q(f) = Q0 (f/Hz)^n [1].
+    kappa : str or Quantity, optional
+        Loss of high frequencies at the site, exp(-pi kappa f) [s].
+    site : Site or str, optional
+        ``"rock 760"`` or ``"rock 620"``: mean shear-wave velocity of the upper
+        30 m in m/s.
+    vertical : float, optional
+        Vertical over horizontal spectrum, the same at all frequencies; no
+        vertical component unless given [1].
+    time_step : str or Quantity, optional
+        Time between samples [s].
+
+    Returns
+    -------
+    GroundMotion
+        One horizontal component, from rest to rest.
+
+    Raises
+    ------
+    UnitsError
+        A wrong unit, or none.
+    ComponentError
+        A magnitude, distance or time step outside its range, a seed that is not
+        a whole number, an unknown site, a value that is not positive, or values
+        out of all proportion.
+
+    Warns
+    -----
+    ModelWarning
+        The magnitude exceeds 8, or the distance 270 km: the model is extrapolated.
+
+    Examples
+    --------
+    >>> motion = GroundMotion.stochastic(6.5, "15 km", seed=1)
+    >>> motion.metadata["seed"]
+    1
+    """
+    from rockframe.motion.stochastic import PointSource, Site, accelerogram
+
+    owner = f"{kind.__name__}.stochastic"
+    number, amount = partial(to_ratio, owner=owner), partial(to_si, owner=owner)
+    source = PointSource(
+        magnitude=number(magnitude, name="magnitude", condition=_MAGNITUDES, example="6.5"),
+        distance=amount(distance, _DISTANCE, name="distance", condition=_DISTANCES),
+        stress_drop=amount(stress_drop, _STRESS, name="stress_drop", condition=POSITIVE),
+        shear_wave_velocity=amount(
+            shear_wave_velocity, _WAVES, name="shear_wave_velocity", condition=POSITIVE
+        ),
+        density=amount(density, DENSITY, name="density", condition=POSITIVE),
+        quality_factor=number(
+            quality_factor, name="quality_factor", condition=POSITIVE, example="180"
+        ),
+        quality_exponent=number(quality_exponent, name="quality_exponent", condition=_EXPONENTS),
+        kappa=amount(kappa, _KAPPA, name="kappa", condition=NOT_NEGATIVE),
+        site=one_of_words(Site, site, owner=owner, name="site"),
+    )
+    first = whole_number(seed, owner=owner, name="seed", lowest=0)
+    ratio = None
+    if vertical is not None:
+        ratio = number(vertical, name="vertical", condition=POSITIVE)
+    step = amount(time_step, _STEP, name="time_step", condition=_STEPS)
+    for message in _extrapolations(source, owner):
+        warnings.warn(message, ModelWarning, stacklevel=2)
+    across = accelerogram(source, step, first)
+    upwards = None if ratio is None else ratio * accelerogram(source, step, first, stream=1)
+    given = _arguments(source, first, ratio, step)
+    what = f"magnitude {source.magnitude:.6g} at {source.distance / 1e3:.6g} km"
+    return kind(
+        Motion.of_samples(step, across, upwards),
+        name=f"stochastic motion, {what}, {source.site}, seed {first}",
+        metadata={"model": MODEL, **given},
+        history=(
+            "drawn from a stochastic point source: "
+            + ", ".join(f"{key.replace('_', ' ')} {value}" for key, value in given.items()),
+        ),
+        recipe={"constructor": "stochastic", **given},
+    )
+
+
+def _extrapolations(source: PointSource, owner: str) -> list[str]:
+    """Tell what is beyond the model's calibration; refuse what cannot be meant."""
+    from rockframe.motion.stochastic.path import LARGEST_DISTANCE
+
+    if source.duration > LONGEST_DURATION:
+        msg = (
+            f"{owner}: an earthquake of these properties would last {source.duration:.6g} s; "
+            f"stress_drop, shear_wave_velocity or magnitude is out of proportion"
+        )
+        raise ComponentError(msg)
+    found: list[str] = []
+    if source.magnitude > LARGEST_MAGNITUDE:
+        found.append(
+            f"{owner}: magnitude = {source.magnitude:.6g} is beyond {LARGEST_MAGNITUDE:g}, up to "
+            "which the model's saturation near large faults is calibrated"
+        )
+    if source.distance > LARGEST_DISTANCE:
+        found.append(
+            f"{owner}: distance = {source.distance / 1e3:.6g} km is beyond "
+            f"{LARGEST_DISTANCE / 1e3:g} km, where the table of the model's durations ends"
+        )
+    return found
+
+
+def _arguments(
+    source: PointSource, seed: int, vertical: float | None, time_step: float
+) -> dict[str, str | float | int]:
+    """Give the arguments that build the same motion again, whatever the defaults become."""
+    return {
+        "magnitude": source.magnitude,
+        "distance": f"{source.distance!r} {_DISTANCE.unit}",
+        "seed": seed,
+        "stress_drop": f"{source.stress_drop!r} {_STRESS.unit}",
+        "shear_wave_velocity": f"{source.shear_wave_velocity!r} {_WAVES.unit}",
+        "density": f"{source.density!r} {DENSITY.unit}",
+        "quality_factor": source.quality_factor,
+        "quality_exponent": source.quality_exponent,
+        "kappa": f"{source.kappa!r} {_KAPPA.unit}",
+        "site": str(source.site),
+        **({} if vertical is None else {"vertical": vertical}),
+        "time_step": f"{time_step!r} {_STEP.unit}",
+    }

@@ -1,0 +1,127 @@
+"""What the operations share: the motion that follows, and the motion that another is joined to."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, Final
+
+from rockframe.errors import ComponentError
+from rockframe.motion.value import MotionValue
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from rockframe.motion.value import Made
+    from rockframe.signals import Motion, Signal
+    from rockframe.signals.arrays import Array
+
+SAME_STEP: Final = 1e-9
+"""Relative difference up to which two time steps are the same."""
+
+_DROPPED: Final = "the analytic pieces between samples are replaced by straight lines"
+
+
+def following(
+    motion: Made,
+    si: Motion,
+    *steps: str,
+    operation: Mapping[str, Any] | None = None,
+    metadata: Mapping[str, Any] | None = None,
+) -> Made:
+    """Give the motion that an operation leads to.
+
+    Parameters
+    ----------
+    motion : GroundMotion
+        The motion before.
+    si : Motion
+        What became of it.
+    *steps : str
+        Sentences for its history.
+    operation : mapping, optional
+        Name and arguments, for the recipe; without them nothing can build the motion again.
+    metadata : mapping, optional
+        What is to be added.
+
+    Returns
+    -------
+    GroundMotion
+        Of the same class.
+    """
+    recipe = None
+    if motion.recipe is not None and operation is not None:
+        done = [*motion.recipe.get("operations", ()), dict(operation)]
+        recipe = {**motion.recipe, "operations": done}
+    return type(motion)(
+        si,
+        name=motion.name,
+        metadata={**motion.metadata, **(metadata or {})},
+        history=(*motion.history, *steps),
+        recipe=recipe,
+    )
+
+
+def lost_pieces(si: Motion) -> tuple[str, ...]:
+    """Say, where it has analytic pieces, that processing the samples loses them."""
+    return (_DROPPED,) if si.analytic else ()
+
+
+def with_samples(
+    si: Motion, change: Callable[[Signal], Array], time_step: float | None = None
+) -> Motion:
+    """Change the samples of both components alike; analytic pieces between them are dropped.
+
+    Parameters
+    ----------
+    si : Motion
+        The motion.
+    change : callable
+        New samples from the old component.
+    time_step : float, optional
+        The new one; the old one unless given [s].
+
+    Returns
+    -------
+    Motion
+    """
+    step = si.time_step if time_step is None else time_step
+
+    def changed(signal: Signal) -> Signal:
+        return replace(signal, time_step=step, samples=change(signal), polynomials=None)
+
+    return si.each(changed)
+
+
+def other_motion(other: object, si: Motion, owner: str) -> MotionValue:
+    """Check the motion that another one is to be combined with.
+
+    Parameters
+    ----------
+    other : object
+        What the user gave.
+    si : Motion
+        The motion itself.
+    owner : str
+        Class and method, for the message.
+
+    Returns
+    -------
+    GroundMotion
+
+    Raises
+    ------
+    ComponentError
+        Not a motion, or of another time step.
+    """
+    if not isinstance(other, MotionValue):
+        msg = f"{owner}: other needs a GroundMotion, got {type(other).__name__}"
+        raise ComponentError(msg)
+    theirs = other.si
+    if not math.isclose(theirs.time_step, si.time_step, rel_tol=SAME_STEP):
+        msg = (
+            f"{owner}: time steps differ, {si.time_step!r} s and {theirs.time_step!r} s; "
+            f"resample one, for example other.resampled('{si.time_step!r} s')"
+        )
+        raise ComponentError(msg)
+    return other

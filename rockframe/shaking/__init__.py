@@ -1,1 +1,0 @@
-"""Ground motions in numbers: integrals, durations, oscillators, transforms; SI arrays only."""

@@ -1,0 +1,4 @@
+"""Ground motions in numbers: integrals, durations, oscillators, transforms; SI arrays only."""
+
+from rockframe.signals.motion import Motion as Motion
+from rockframe.signals.signal import Signal as Signal

@@ -1,0 +1,50 @@
+"""Arrays of accelerations: what they must be, and copies that nobody can change."""
+
+from typing import Final, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockframe.errors import ComponentError
+
+Array: TypeAlias = NDArray[np.float64]
+
+OWNER: Final = "GroundMotion"
+"""What users build, for messages."""
+
+
+def frozen(values: object, name: str, shape: tuple[int, ...] | None = None) -> Array:
+    """Copy values to an array that is read-only and contiguous, or refuse them.
+
+    Parameters
+    ----------
+    values : array_like
+        Numbers.
+    name : str
+        What they are, for the message.
+    shape : tuple of int, optional
+        What they must have; any one-dimensional one unless given.
+
+    Returns
+    -------
+    ndarray
+        Of the shape wanted.
+
+    Raises
+    ------
+    ComponentError
+        Another shape, or a value that is not finite.
+    """
+    array = np.array(values, dtype=np.float64, order="C", copy=True)
+    if (array.ndim != 1) if shape is None else (array.shape != shape):
+        wanted = "one dimension" if shape is None else f"the shape {shape}"
+        msg = f"{OWNER}: {name} needs {wanted}, got the shape {array.shape}"
+        raise ComponentError(msg)
+    flat = array.reshape(-1)
+    wrong = np.flatnonzero(~np.isfinite(flat))
+    if wrong.size:
+        where = int(wrong[0])
+        msg = f"{OWNER}: {name} must be finite, got {flat[where]} at index {where}"
+        raise ComponentError(msg)
+    array.setflags(write=False)
+    return array

@@ -1,0 +1,131 @@
+"""The motion of the ground in SI units: what records, pulses and simulations have in common."""
+
+from __future__ import annotations
+
+import hashlib
+import struct
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Self
+
+from rockframe.errors import ComponentError
+from rockframe.signals.arrays import OWNER
+from rockframe.signals.signal import VERTICAL, Signal
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    import numpy.typing as npt
+
+    from rockframe.signals.arrays import Array
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """The accelerations of the ground, from file or formula to integrator.
+
+    Parameters
+    ----------
+    horizontal : Signal
+        Horizontal acceleration.
+    vertical : Signal, optional
+        Vertical acceleration, upwards; of the same time step and length.
+
+    Raises
+    ------
+    ComponentError
+        The components differ in time step or length.
+    """
+
+    horizontal: Signal
+    vertical: Signal | None = None
+
+    def __post_init__(self) -> None:
+        vertical = self.vertical
+        if vertical is None:
+            return
+        wanted, found = self.horizontal.samples.shape, vertical.samples.shape
+        if found != wanted:
+            msg = f"{OWNER}: vertical needs the shape {wanted}, got the shape {found}"
+            raise ComponentError(msg)
+        if vertical.time_step != self.time_step:
+            msg = (
+                f"{OWNER}: vertical needs the time step {self.time_step!r} s, "
+                f"got {vertical.time_step!r} s"
+            )
+            raise ComponentError(msg)
+
+    @classmethod
+    def of_samples(cls, time_step: float, horizontal: Array, vertical: Array | None = None) -> Self:
+        """Join the samples of a record by straight lines.
+
+        Parameters
+        ----------
+        time_step : float
+            dt between samples [s].
+        horizontal, vertical : ndarray, shape (n,)
+            Accelerations at the samples, if there are vertical ones [m s^-2].
+
+        Returns
+        -------
+        Motion
+        """
+        across = Signal(time_step, horizontal)
+        if vertical is None:
+            return cls(across)
+        return cls(across, Signal(time_step, vertical, name=VERTICAL))
+
+    @property
+    def time_step(self) -> float:
+        """Time between samples [s]."""
+        return self.horizontal.time_step
+
+    @property
+    def duration(self) -> float:
+        """Time from the first to the last sample [s]."""
+        return self.horizontal.duration
+
+    @property
+    def peak(self) -> float:
+        """Greatest absolute horizontal acceleration, between samples too [m s^-2]."""
+        return self.horizontal.peak
+
+    @property
+    def analytic(self) -> bool:
+        """Whether a component has polynomials between its samples."""
+        return self.horizontal.analytic or (self.vertical is not None and self.vertical.analytic)
+
+    def at(self, time: npt.ArrayLike) -> Array:
+        """Evaluate the horizontal acceleration, as :meth:`Signal.at` does."""
+        return self.horizontal.at(time)
+
+    def each(self, change: Callable[[Signal], Signal]) -> Motion:
+        """Change both components alike.
+
+        Parameters
+        ----------
+        change : callable
+            New component from old one.
+
+        Returns
+        -------
+        Motion
+        """
+        horizontal = change(self.horizontal)
+        return Motion(horizontal, None if self.vertical is None else change(self.vertical))
+
+    def digest(self) -> str:
+        """Give the sha256 of time step, samples and polynomials: what a simulation sees."""
+        return self._digest
+
+    @cached_property
+    def _digest(self) -> str:
+        total = hashlib.sha256(b"rockframe motion 1")
+        total.update(struct.pack("<d", self.time_step))
+        samples = (self.horizontal.samples, self.vertical and self.vertical.samples)
+        polynomials = (self.horizontal.polynomials, self.vertical and self.vertical.polynomials)
+        for values in (*samples, *polynomials):
+            total.update(struct.pack("<q", -1 if values is None else values.size))
+            if values is not None:
+                total.update(values.astype("<f8", copy=False).tobytes())
+        return total.hexdigest()

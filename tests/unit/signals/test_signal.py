@@ -1,0 +1,113 @@
+"""Motions in numbers: one function of time per component, and its value anywhere."""
+
+import copy
+import pickle
+
+import numpy as np
+import pytest
+
+from rockframe.signals import Motion, Signal
+
+pytestmark = pytest.mark.unit
+
+STEP = 0.01
+VALUES = np.array([0.0, 1.5, -2.25, 0.5, 0.125])
+QUINTICS = np.random.default_rng(7).normal(size=(4, 6))
+RECORD = Signal(STEP, VALUES)
+ANALYTIC = Signal(STEP, np.append(QUINTICS[:, 0], 0.75), QUINTICS)
+
+
+def test_lines_through_the_samples_of_a_record():
+    assert not RECORD.analytic
+    assert RECORD.polynomials is None
+    assert RECORD.pieces.tolist() == [[0.0, 1.5], [1.5, -3.75], [-2.25, 2.75], [0.5, -0.375]]
+    assert RECORD.pieces is RECORD.pieces
+
+
+def test_polynomials_of_an_analytic_signal():
+    assert ANALYTIC.analytic
+    assert ANALYTIC.pieces.tolist() == QUINTICS.tolist()
+
+
+@pytest.mark.parametrize("signal", [RECORD, ANALYTIC])
+def test_arrays_are_read_only_and_contiguous(signal):
+    for array in (signal.samples, signal.pieces):
+        assert array.dtype == np.float64
+        assert array.flags.c_contiguous
+        assert not array.flags.writeable
+
+
+@pytest.mark.parametrize("signal", [RECORD, ANALYTIC])
+def test_samples_at_samples(signal):
+    assert signal.at(signal.times).tolist() == signal.samples.tolist()
+    late, early = signal.times * (1.0 + 1e-15), signal.times * (1.0 - 1e-15)
+    assert signal.at(late).tolist() == signal.at(early).tolist() == signal.samples.tolist()
+
+
+def test_where_polynomials_jump_the_sample_counts_and_the_later_one_begins():
+    steps = np.zeros((2, 6))
+    steps[:, 0] = [1.0, 3.0]
+    jumping = Signal(STEP, [1.0, 2.0, 3.0], steps)
+    assert jumping.at([0.009, 0.01, 0.011]).tolist() == [1.0, 2.0, 3.0]
+    assert jumping.at_place(np.array([0.9, 1.0, 1.1])).tolist() == [1.0, 3.0, 3.0]
+
+
+def test_polynomials_between_samples():
+    place = np.array([0.25, 1.5, 3.75])
+    exact = [np.polynomial.Polynomial(QUINTICS[k])(u) for k, u in ((0, 0.25), (1, 0.5), (3, 0.75))]
+    assert ANALYTIC.at(place * STEP) == pytest.approx(exact, rel=1e-12)
+    assert ANALYTIC.at_place(place) == pytest.approx(exact, rel=1e-14)
+    assert RECORD.at(place * STEP) == pytest.approx([0.375, -0.375, 0.21875], rel=1e-12)
+
+
+@pytest.mark.parametrize("signal", [RECORD, ANALYTIC])
+def test_zero_outside(signal):
+    end = signal.duration
+    assert signal.at([-1.0, -1e-8, end * (1.0 + 1e-6), 7.0]).tolist() == [0.0] * 4
+
+
+@pytest.mark.parametrize("signal", [RECORD, ANALYTIC])
+@pytest.mark.parametrize("shape", [(), (1,), (2, 3), (0,)])
+def test_values_have_the_shape_of_the_times(signal, shape):
+    assert signal.at(np.full(shape, 0.013)).shape == shape
+
+
+def test_the_vertical_component_has_its_own_pieces():
+    motion = Motion(ANALYTIC, RECORD)
+    assert motion.analytic
+    assert motion.duration == RECORD.duration
+    assert motion.time_step == STEP
+    assert motion.at([0.013]).tolist() == ANALYTIC.at([0.013]).tolist()
+    assert Motion(RECORD, ANALYTIC).analytic
+    assert not Motion(RECORD, RECORD).analytic
+    assert Motion(RECORD, ANALYTIC).digest() != motion.digest()
+
+
+def test_both_components_are_changed_alike():
+    def doubled(signal):
+        return Signal(signal.time_step, 2.0 * signal.samples)
+
+    motion = Motion.of_samples(STEP, VALUES, -VALUES).each(doubled)
+    assert motion.horizontal.samples.tolist() == (2.0 * VALUES).tolist()
+    assert motion.vertical.samples.tolist() == (-2.0 * VALUES).tolist()
+    assert Motion(RECORD).each(doubled).vertical is None
+
+
+@pytest.mark.parametrize(
+    "twin",
+    [copy.copy, copy.deepcopy, lambda motion: pickle.loads(pickle.dumps(motion))],  # noqa: S301
+)
+def test_copies_are_equal_and_read_only(twin):
+    motion = Motion(ANALYTIC, RECORD)
+    again = twin(motion)
+    assert again.digest() == motion.digest()
+    for signal in (again.horizontal, again.vertical):
+        assert not signal.samples.flags.writeable
+        assert not signal.pieces.flags.writeable
+
+
+def test_nothing_can_be_assigned():
+    with pytest.raises(AttributeError):
+        RECORD.time_step = 1.0
+    with pytest.raises(AttributeError):
+        Motion(RECORD).vertical = RECORD
