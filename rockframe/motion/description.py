@@ -4,7 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final
 
+import numpy as np
+
 from rockframe.errors import SchemaError, shown
+from rockframe.signals import Motion, Signal
+from rockframe.signals.signal import VERTICAL
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -40,8 +44,14 @@ OPERATIONS: Final = (
 """Operations that a recipe may name."""
 
 
-def to_dict(motion: MotionValue) -> dict[str, Any]:
+def to_dict(motion: MotionValue, *, samples: bool = False) -> dict[str, Any]:
     """Describe the motion: an analytic one completely, a record by its digest.
+
+    Parameters
+    ----------
+    samples : bool
+        Whether a motion that only its samples describe is described by them too, with its
+        metadata and its history.
 
     Returns
     -------
@@ -53,11 +63,21 @@ def to_dict(motion: MotionValue) -> dict[str, Any]:
     kind = {"type": type(motion).__name__}
     if motion.recipe is not None:
         return {**kind, **motion.recipe}
-    return {**kind, "constructor": None, "name": motion.name, "sha256": motion.sha256}
+    known = {**kind, "constructor": None, "name": motion.name, "sha256": motion.sha256}
+    if not samples:
+        return known
+    return {
+        **known,
+        "metadata": dict(motion.metadata),
+        "history": list(motion.history),
+        "time_step": motion.si.time_step,
+        "horizontal": _described(motion.si.horizontal),
+        "vertical": None if motion.si.vertical is None else _described(motion.si.vertical),
+    }
 
 
 def from_dict(kind: type[Made], description: Mapping[str, Any]) -> Made:
-    """Build the analytic motion that :meth:`to_dict` described.
+    """Build the motion that :meth:`to_dict` described.
 
     Parameters
     ----------
@@ -71,11 +91,13 @@ def from_dict(kind: type[Made], description: Mapping[str, Any]) -> Made:
     Raises
     ------
     SchemaError
-        The motion is a record, which must be supplied, or the description
-        fits no constructor.
+        The motion is a record without its samples, which must be supplied, or the
+        description fits no constructor.
     """
     arguments = {key: value for key, value in description.items() if key != "type"}
     constructor = arguments.pop("constructor", None)
+    if constructor is None and "horizontal" in arguments:
+        return _sampled(kind, arguments)
     operations = arguments.pop("operations", ())
     if constructor is None:
         known = " and ".join(
@@ -102,3 +124,34 @@ def from_dict(kind: type[Made], description: Mapping[str, Any]) -> Made:
         msg = f"found arguments that do not fit {constructor} or what was done to it: {problem}"
         raise SchemaError(msg) from problem
     return motion
+
+
+def _described(signal: Signal) -> dict[str, list[Any]]:
+    arrays = {"samples": signal.samples, "polynomials": signal.polynomials}
+    return {name: array.tolist() for name, array in arrays.items() if array is not None}
+
+
+def _sampled(kind: type[Made], description: Mapping[str, Any]) -> Made:
+    """Build a motion from its samples, which must be those of its digest."""
+    try:
+        step, upwards = description["time_step"], description["vertical"]
+        horizontal = Signal(step, **_arrays(description["horizontal"]))
+        vertical = None if upwards is None else Signal(step, **_arrays(upwards), name=VERTICAL)
+        motion = kind(
+            Motion(horizontal, vertical),
+            name=description["name"],
+            metadata=description["metadata"],
+            history=tuple(description["history"]),
+        )
+        written = description["sha256"]
+    except (KeyError, TypeError, ValueError, AttributeError) as problem:
+        msg = f"found a description that holds no ground motion: {problem}"
+        raise SchemaError(msg) from problem
+    if motion.sha256 != written:
+        msg = "found samples that differ from those 'sha256' was written for; expected the same"
+        raise SchemaError(msg)
+    return motion
+
+
+def _arrays(described: Mapping[str, Any]) -> dict[str, Any]:
+    return {name: np.array(values, dtype=np.float64) for name, values in described.items()}

@@ -4,6 +4,7 @@ import copy
 import inspect
 import json
 import pickle
+import re
 
 import numpy as np
 import pint
@@ -263,6 +264,40 @@ def test_a_subclass_may_have_its_own_constructor():
     assert list(inspect.signature(Measured).parameters) == ["si", "station", "given"]
 
 
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (GroundMotion, "write GroundMotion.read(path), GroundMotion.from_arrays("),
+        (
+            lambda: GroundMotion(acceleration=[0.0, 1.0], time_step="0.01 s"),
+            "GroundMotion: it is not built by calling it; write GroundMotion.read(path)",
+        ),
+        (
+            lambda: GroundMotion.stochastic(6.5, "5 km"),
+            "stochastic() missing 1 required positional argument: 'seed'",
+        ),
+        (lambda: GroundMotion.sine_pulse(cycle=1), "sine_pulse() got"),
+        (lambda: GroundMotion.sine_pulse().resampled(), "resampled() missing"),
+    ],
+)
+def test_calls_that_do_not_fit_are_refused(call, words):
+    with pytest.raises(TypeError, match=re.escape(words)):
+        call()
+
+
+def test_a_path_is_neither_motion_nor_dataset():
+    with pytest.raises(ComponentError, match=r"found 'x\.AT2'; write GroundMotion\.read\(path\)"):
+        GroundMotion("x.AT2")
+    words = r"GroundMotion\.from_dataset: found 'run\.nc'; .*xr\.open_dataset first"
+    with pytest.raises(SchemaError, match=words):
+        GroundMotion.from_dataset("run.nc")
+
+
+def test_methods_survive_pickling():
+    for method in (GroundMotion.resampled, GroundMotion.stochastic):
+        assert _pickled(method) == method
+
+
 def test_repr_says_what_it_is():
     assert repr(motion(name="test")) == (
         "<GroundMotion 'test': 5 samples at 0.01 s, 0.04 s long, peak 2.25 m/s^2>"
@@ -336,6 +371,43 @@ def test_description_of_a_record_asks_for_the_record():
     }
     with pytest.raises(SchemaError, match=f"test.*{made.sha256}.*supply the record"):
         GroundMotion.from_dict(description)
+
+
+PULSE = GroundMotion.sine_pulse()
+SAMPLED = [
+    GroundMotion(motion().si, name="test", metadata={"station": "A", "azimuth": 30.0}),
+    motion(vertical=VALUES[::-1]).scaled(0.5),
+    GroundMotion(PULSE.si, name="without its recipe"),
+    GroundMotion(Motion(PULSE.si.horizontal, PULSE.scaled(0.3).si.horizontal)),
+]
+
+
+@pytest.mark.parametrize("made", SAMPLED)
+def test_a_record_described_with_its_samples_is_built_again(made):
+    description = json.loads(json.dumps(made.to_dict(samples=True), allow_nan=False))
+    again = GroundMotion.from_dict(description)
+    assert again == made
+    assert again.to_dict(samples=True) == made.to_dict(samples=True)
+    assert description.items() >= made.to_dict().items()
+    assert GroundMotion.sine_pulse().to_dict(samples=True) == GroundMotion.sine_pulse().to_dict()
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"time_step": 0.02}, "samples that differ from those 'sha256' was written for"),
+        ({"time_step": None}, "holds no ground motion"),
+        ({"horizontal": None}, "holds no ground motion"),
+        ({"horizontal": {}}, "holds no ground motion"),
+        ({"horizontal": {"samples": ["much", "little"]}}, "holds no ground motion"),
+        ({"vertical": {"samples": [0.0, 1.0]}}, "vertical needs the shape"),
+        ({"metadata": {"key": None}}, "metadata 'key' must be"),
+        ({"history": 3}, "holds no ground motion"),
+    ],
+)
+def test_samples_that_were_damaged_are_refused(changes, words):
+    with pytest.raises(SchemaError, match=words):
+        GroundMotion.from_dict({**motion().to_dict(samples=True), **changes})
 
 
 @pytest.mark.parametrize(
