@@ -8,10 +8,10 @@ import xarray as xr
 
 from rockframe.errors import ComponentError, SchemaError, shown
 
-Choice = TypeVar("Choice", bound=StrEnum)
+Words = TypeVar("Words", bound=StrEnum)
 
 
-def one_of_words(kind: type[Choice], given: object, *, owner: str, name: str) -> Choice:
+def one_of_words(kind: type[Words], given: object, *, owner: str, name: str) -> Words:
     """Read an argument that is one of a few words.
 
     Parameters

@@ -138,3 +138,9 @@ def warn(message: str, category: type[RockframeWarning]) -> None:
     while frame and str(frame.f_globals.get("__name__")).partition(".")[0] == package:
         level, frame = level + 1, frame.f_back
     warnings.warn(message, category, stacklevel=level)
+
+
+def __dir__() -> list[str]:
+    kinds = RockframeError | RockframeWarning
+    known = globals().items()
+    return [name for name, one in known if isinstance(one, type) and issubclass(one, kinds)]

@@ -11,11 +11,15 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from numbers import Real
-from typing import Any, Final, TypeAlias
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import pint
 
 from rockframe.errors import ComponentError, UnitsError, shown
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
 
 QuantityLike: TypeAlias = str | pint.Quantity[Any]
 RatioLike: TypeAlias = float | str | pint.Quantity[Any]
@@ -61,11 +65,11 @@ class Measure:
     @property
     def needed(self) -> str:
         """The kind, and that it needs a unit, in words."""
-        return self.name if self.unit is Unit.ONE else f"{self.name} with a unit"
+        return self.name if self.unit == Unit.ONE else f"{self.name} with a unit"
 
     def example_of(self, argument: str) -> str:
         """Show how an argument is written."""
-        written = self.example if self.unit is Unit.ONE else repr(self.example)
+        written = self.example if self.unit == Unit.ONE else repr(self.example)
         return f"write for example {argument}={written}"
 
 
@@ -82,6 +86,7 @@ ANGULAR_VELOCITY: Final = Measure("an angular velocity", Unit.RADIAN_PER_SECOND,
 VELOCITY: Final = Measure("a velocity", Unit.METRE_PER_SECOND, "0.1 m/s")
 ACCELERATION: Final = Measure("an acceleration", Unit.METRE_PER_SECOND_SQUARED, "9.81 m/s^2")
 FREQUENCY: Final = Measure("a cyclic frequency", Unit.HERTZ, "1 Hz")
+FORCE: Final = Measure("a force", Unit.NEWTON, "100 kN")
 STIFFNESS: Final = Measure("a stiffness", Unit.NEWTON_PER_METRE, "12 MN/m")
 DAMPING: Final = Measure("a damping coefficient", Unit.NEWTON_SECOND_PER_METRE, "80 kN*s/m")
 BED_STIFFNESS: Final = Measure("a stiffness per length of base", Unit.PASCAL, "9 MPa")
@@ -128,12 +133,12 @@ _NO_UNIT: Final = re.compile(
 _POWER: Final = re.compile(r"\s*(?:\*\*|\^)\s*")
 
 
-def quantity(value: float, measure: Measure) -> pint.Quantity[Any]:
+def quantity(value: "float | npt.NDArray[np.float64]", measure: Measure) -> pint.Quantity[Any]:
     """Give an SI value its unit back.
 
     Parameters
     ----------
-    value : float
+    value : float or ndarray
         Value in the SI unit of `measure`.
     measure : Measure
         Kind of quantity.
@@ -290,6 +295,8 @@ class Condition:
 
     words: str
     holds: Callable[[float], bool]
+    hint: Callable[[str], str] = lambda _: ""
+    """What may have been meant by a value outside it, as it was written."""
 
 
 POSITIVE: Final = Condition("greater than zero", lambda value: value > 0.0)
@@ -313,7 +320,7 @@ def _parse(value: object, measure: Measure, *, owner: str, name: str) -> pint.Qu
     parts = _NUMBER_AND_UNIT.fullmatch(value)
     if parts is None or _NO_UNIT.search(_POWER.sub("^", parts["unit"])):
         hint = _misread(value, measure)
-        wanted = "a number" if measure.unit is Unit.ONE else "one number and a unit"
+        wanted = "a number" if measure.unit == Unit.ONE else "one number and a unit"
         msg = f"{needed}, got {shown(value)}, which is not {wanted}{hint}; {example}"
         raise UnitsError(msg)
     try:
@@ -327,7 +334,7 @@ def _parse(value: object, measure: Measure, *, owner: str, name: str) -> pint.Qu
 def _check_kind(
     given: pint.Quantity[Any], value: object, measure: Measure, *, owner: str, name: str
 ) -> None:
-    wanted = type(given)(1.0, "" if measure.unit is Unit.ONE else str(measure.unit))
+    wanted = type(given)(1.0, "" if measure.unit == Unit.ONE else str(measure.unit))
     try:
         same_kind = given.is_compatible_with(wanted) and _roots(given) == _roots(wanted)
     except Exception:  # offset units such as degC cannot be compared
@@ -335,7 +342,7 @@ def _check_kind(
     if same_kind:
         return
     unit = f"{given.units:~}" or "no unit"
-    unit_needed = "" if measure.unit is Unit.ONE else f" in a unit such as {measure.unit}"
+    unit_needed = "" if measure.unit == Unit.ONE else f" in a unit such as {measure.unit}"
     msg = (
         f"{owner}: {name} needs {measure.name}{unit_needed}, got {shown(str(value))} ({unit})"
         f"{_weight(given, str(value), measure) or _misread(str(value), measure)}; "
@@ -381,6 +388,7 @@ def _check_value(
         msg = f"{owner}: {name} must be finite, got {shown(str(value))}"
         raise ComponentError(msg)
     if condition is not None and not condition.holds(number):
-        msg = f"{owner}: {name} must be {condition.words}, got {shown(str(value))}"
+        hint = condition.hint(str(value))
+        msg = f"{owner}: {name} must be {condition.words}, got {shown(str(value))}{hint}"
         raise ComponentError(msg)
     return number

@@ -1,64 +1,145 @@
-"""What all components share: immutability, equality, repr and the way to text and back."""
+"""What all components share: values, immutability, equality, and the way to text and back."""
 
-import warnings
 from collections.abc import Mapping
-from typing import Any, ClassVar, Generic, Self, TypeVar
+from inspect import Parameter as Argument
+from inspect import Signature
+from typing import Any, ClassVar, NoReturn, Self
 
-from rockframe.calls import CheckedCall
-from rockframe.errors import ComponentError, ModelWarning, SchemaError, shown
-from rockframe.units import Measure, quantity
+from rockframe.components.alternatives import OneOf
+from rockframe.components.docstrings import with_parameters
+from rockframe.components.parameters import DERIVED, REQUIRED, Declared
+from rockframe.components.registry import register
+from rockframe.components.values import SIValues
+from rockframe.errors import ComponentError, ModelWarning, shown, warn
 
-SI = TypeVar("SI")
 
-_COMPONENT_TYPES: dict[str, "type[Component[Any]]"] = {}
+class Component:
+    """A frozen value object, made of the parameters that its class declares.
 
+    A class of components declares each of its parameters once, as an attribute:
+    :class:`~rockframe.components.Parameter` (with a unit),
+    :class:`~rockframe.components.Ratio`, :class:`~rockframe.components.Choice` or
+    :class:`~rockframe.components.Text`; and in ``alternatives`` which of them stand for
+    one another. All else follows: constructor, checks, properties, and what is below.
 
-class Component(CheckedCall, Generic[SI]):
-    """A frozen value object.
+    A component keeps its values in SI units: as they were given in ``given``, and as the
+    equations need them in ``si``.
 
-    A component keeps its numbers twice: as the constructor's arguments in SI
-    units (:meth:`to_dict`, from which it can be built again), and as the plain
-    SI floats ``si`` that the equations need. Public properties give quantities
-    with units.
+    Examples
+    --------
+    >>> from rockframe.components import Component, Parameter, Ratio
+    >>> from rockframe.units import FORCE, POSITIVE
+    >>> class Buffer(Component):
+    ...     strength = Parameter(FORCE, POSITIVE, doc="Force at which it breaks.")
+    ...     friction = Ratio(doc="Coefficient of friction.", default=0.3)
+    >>> buffer = Buffer(strength="3 kN")
+    >>> buffer
+    Buffer(strength='3000.0 N', friction=0.3)
+    >>> buffer.replace(strength="4 kN").strength.to("kN")
+    <Quantity(4.0, 'kilonewton')>
     """
 
-    __slots__ = ("_arguments", "si")
-    si: SI
-    _arguments: dict[str, float | str]
+    __slots__ = ("given", "si")
+    given: SIValues
+    si: Any
 
     noun: ClassVar[str] = "component"
+    alternatives: ClassVar[tuple[OneOf, ...]] = ()
+    _declared: ClassVar[Mapping[str, Declared[Any, Any]]] = {}
 
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)
-        _COMPONENT_TYPES[cls.__name__] = cls
+        own = {name: one for name, one in vars(cls).items() if isinstance(one, Declared)}
+        for name in own:
+            if hasattr(Component, name):
+                msg = f"{cls.__qualname__}: {name!r} means something else for all components"
+                raise ComponentError(msg)
+        cls._declared = {**cls._declared, **own}
+        if own and "__init__" not in vars(cls):
+            cls.__init__ = _constructor(cls)
+        if cls.__doc__ is not None:
+            cls.__doc__ = with_parameters(cls.__doc__, cls._declared.values())
+        register(cls)
 
-    def _freeze(self, si: SI, arguments: Mapping[str, float | str | None]) -> None:
-        object.__setattr__(self, "si", si)
-        given = {name: value for name, value in arguments.items() if value is not None}
-        object.__setattr__(self, "_arguments", given)
+    def __init__(self, **given: object) -> None:
+        self._fill(given)
+        self._warn()
 
-    def __setattr__(self, name: str, value: object) -> None:
+    def _warn(self) -> None:
+        for caution in self._cautions():
+            warn(f"{type(self).__name__}: {caution}", ModelWarning)
+
+    def _fill(self, given: Mapping[str, object]) -> None:
+        """Check and keep the arguments of the constructor."""
+        every = _every_argument(type(self), given)
+        owner = self._owner(every)
+        self._check(every, owner)
+        self._hold({name: one.accept(every[name], owner) for name, one in self._declared.items()})
+
+    def _hold(self, values: Mapping[str, object]) -> None:
+        """Keep values in SI units, and what follows from them."""
+        given = SIValues(**values)
+        object.__setattr__(self, "given", given)
+        object.__setattr__(self, "si", self._numbers(given))
+
+    @classmethod
+    def _owner(cls, given: Mapping[str, object]) -> str:
+        """Name the component in messages."""
+        return cls.__name__
+
+    def _check(self, given: Mapping[str, object], owner: str) -> None:
+        """Refuse arguments that do not go together."""
+        for alternative in self.alternatives:
+            alternative.check(given, owner)
+
+    def _numbers(self, given: SIValues) -> Any:
+        """Give the numbers that the equations need; refuse values that do not fit together."""
+        return given
+
+    def _cautions(self) -> list[str]:
+        """Say what is unusual about the values."""
+        values = vars(self.given)
+        found = [
+            one.caution(values[name])
+            for name, one in self._declared.items()
+            if values[name] is not None
+        ]
+        return [words for words in found if words is not None]
+
+    def _arguments(self) -> dict[str, float | str]:
+        """Give the arguments from which the constructor builds an equal component."""
+        values = vars(self.given)
+        written = {
+            name: None if values[name] is None else one.write(values[name])
+            for name, one in self._declared.items()
+        }
+        return {name: value for name, value in written.items() if value is not None}
+
+    def __setattr__(self, name: str, value: object) -> NoReturn:
         msg = f"{type(self).__name__} is immutable; build a new one to change {name}"
         raise AttributeError(msg)
 
-    def __delattr__(self, name: str) -> None:
+    def __delattr__(self, name: str) -> NoReturn:
         msg = f"{type(self).__name__} is immutable; {name} cannot be deleted"
         raise AttributeError(msg)
 
+    def __dir__(self) -> list[str]:
+        return [name for name in super().__dir__() if not name.startswith("_")]
+
     def __eq__(self, other: object) -> bool:
-        if not isinstance(other, type(self)):
+        if not isinstance(other, Component) or type(other) is not type(self):
             return NotImplemented
-        return self._arguments == other._arguments
+        return self._arguments() == other._arguments()
 
     def __hash__(self) -> int:
-        return hash((type(self).__name__, tuple(self._arguments.items())))
+        return hash((type(self), tuple(self._arguments().items())))
 
     def __repr__(self) -> str:
-        given = ", ".join(f"{name}={value!r}" for name, value in self._arguments.items())
+        given = ", ".join(f"{name}={value!r}" for name, value in self._arguments().items())
         return f"{type(self).__name__}({given})"
 
     def __reduce__(self) -> tuple[object, ...]:
-        return (component_from_dict, (self.to_dict(),))
+        return (type(self).from_dict, (self._arguments(),))
 
     def to_dict(self) -> dict[str, float | str]:
         """Give the constructor's arguments in SI units, with the class under ``type``.
@@ -68,7 +149,49 @@ class Component(CheckedCall, Generic[SI]):
         dict
             Plain strings and floats, fit for JSON.
         """
-        return {"type": type(self).__name__, **self._arguments}
+        return {"type": type(self).__name__, **self._arguments()}
+
+    @classmethod
+    def from_dict(cls, arguments: Mapping[str, float | str]) -> Self:
+        """Build the component that :meth:`to_dict` described, without its warnings.
+
+        Parameters
+        ----------
+        arguments : mapping
+            Of the constructor.
+
+        Returns
+        -------
+        Component
+
+        Raises
+        ------
+        TypeError, UnitsError, ComponentError
+            As the constructor.
+        """
+        part = object.__new__(cls)
+        part._fill({name: value for name, value in arguments.items() if name != "type"})
+        return part
+
+    def replace(self, **changes: Any) -> Self:
+        """Build a component of which some parameters are others.
+
+        Parameters
+        ----------
+        **changes
+            Arguments of the constructor. One that stands for another, such as a stiffness
+            for a frequency ratio, takes its place; None is as if it were not given.
+
+        Returns
+        -------
+        Component
+
+        Raises
+        ------
+        TypeError, UnitsError, ComponentError
+            As the constructor.
+        """
+        return type(self)(**replaced(self._arguments(), changes, self.alternatives))
 
     def parameters(self) -> tuple[str, ...]:
         """Name the arguments that are numbers other than zero, with a unit or without.
@@ -77,7 +200,7 @@ class Component(CheckedCall, Generic[SI]):
         -------
         tuple of str
         """
-        return tuple(name for name, value in self._arguments.items() if _number_in(value))
+        return tuple(name for name, value in self._arguments().items() if _number_in(value))
 
     def with_scaled(self, name: str, factor: float) -> Self:
         """Build a component of which one argument is larger or smaller.
@@ -102,50 +225,83 @@ class Component(CheckedCall, Generic[SI]):
             known = ", ".join(self.parameters())
             msg = f"{type(self).__name__}: no parameter is called {shown(name)} (it has {known})"
             raise ComponentError(msg)
-        value = self._arguments[name]
+        arguments = self._arguments()
+        value = arguments[name]
         number = factor * _number_in(value)
         unit = value.partition(" ")[2] if isinstance(value, str) else ""
         changed = f"{number!r} {unit}" if isinstance(value, str) else number
-        return self.from_dict({**self._arguments, name: changed})
-
-    @classmethod
-    def from_dict(cls, arguments: Mapping[str, float | str]) -> Self:
-        """Build the component that :meth:`to_dict` described."""
-        with warnings.catch_warnings():
-            # they came when the component was new
-            warnings.simplefilter("ignore", ModelWarning)
-            return cls(**arguments)
+        return self.from_dict({**arguments, name: changed})
 
 
-def component_from_dict(description: Mapping[str, float | str]) -> "Component[Any]":
-    """Build any component from its :meth:`Component.to_dict`.
+def replaced(
+    arguments: Mapping[str, float | str],
+    changes: Mapping[str, Any],
+    alternatives: tuple[OneOf, ...],
+) -> dict[str, Any]:
+    """Give arguments with some changed, without those that the changes stand for.
 
     Parameters
     ----------
-    description : mapping
-        As written by :meth:`Component.to_dict`.
+    arguments, changes : mapping
+        By their names.
+    alternatives : tuple of OneOf
+        Arguments that stand for one another.
 
     Returns
     -------
-    Component
-
-    Raises
-    ------
-    SchemaError
-        ``type`` is missing or unknown.
+    dict
     """
-    kind = description.get("type")
-    if not isinstance(kind, str) or kind not in _COMPONENT_TYPES:
-        known = ", ".join(sorted(_COMPONENT_TYPES))
-        msg = f"found a component of type {shown(kind)}; expected one of {known}"
-        raise SchemaError(msg)
-    arguments = {name: value for name, value in description.items() if name != "type"}
-    return _COMPONENT_TYPES[kind].from_dict(arguments)
+    gone = {name for each in alternatives for name in each.displaced(changes)}
+    return {**{name: value for name, value in arguments.items() if name not in gone}, **changes}
 
 
-def with_unit(value: float | None, measure: Measure) -> str | None:
-    """Write an SI value so that the constructor reads the same float back."""
-    return None if value is None else f"{value!r} {measure.unit}"
+def _every_argument(kind: type[Component], given: Mapping[str, object]) -> dict[str, object]:
+    """Add defaults to arguments; refuse unknown and missing ones as Python does."""
+    declared = kind._declared  # pyright: ignore[reportPrivateUsage]
+    call = f"{kind.__qualname__}.__init__()"
+    for name in given:
+        if name not in declared:
+            msg = f"{call} got an unexpected keyword argument {name!r}"
+            raise TypeError(msg)
+    missing = [
+        repr(name)
+        for name, one in declared.items()
+        if one.default is REQUIRED and name not in given
+    ]
+    if missing:
+        count = f"{len(missing)} required keyword-only argument{'s' if len(missing) > 1 else ''}"
+        msg = f"{call} missing {count}: {' and '.join(missing)}"
+        raise TypeError(msg)
+    defaults = {name: _default(one, None) for name, one in declared.items()}
+    return {**defaults, **given}
+
+
+def _default(one: Declared[Any, Any], required: object) -> object:
+    if one.default is REQUIRED:
+        return required
+    return None if one.default is DERIVED else one.default
+
+
+def _constructor(kind: type[Component]) -> Any:
+    """Make a constructor with the signature that the declarations give."""
+
+    def __init__(self: Component, **given: object) -> None:  # noqa: N807
+        Component.__init__(self, **given)
+
+    arguments = [
+        Argument(
+            name,
+            Argument.KEYWORD_ONLY,
+            default=_default(one, Argument.empty),
+            annotation=one.annotation,
+        )
+        for name, one in kind._declared.items()  # pyright: ignore[reportPrivateUsage]
+    ]
+    this = Argument("self", Argument.POSITIONAL_OR_KEYWORD)
+    __init__.__signature__ = Signature([this, *arguments])  # type: ignore[attr-defined]
+    __init__.__qualname__ = f"{kind.__qualname__}.__init__"
+    __init__.__module__ = kind.__module__
+    return __init__
 
 
 def _number_in(value: float | str) -> float:
@@ -156,27 +312,3 @@ def _number_in(value: float | str) -> float:
         return float(value.partition(" ")[0])
     except ValueError:
         return 0.0
-
-
-class SIProperty:
-    """A read-only property: the float ``si.<name>`` as a quantity with its unit.
-
-    Parameters
-    ----------
-    measure : Measure
-        Kind of quantity, which fixes the unit.
-    doc : str
-        Docstring of the property.
-    """
-
-    def __init__(self, measure: Measure, doc: str) -> None:
-        self._measure = measure
-        self.__doc__ = f"{doc} [{measure.unit}]"
-
-    def __set_name__(self, owner: type, name: str) -> None:
-        self._name = name
-
-    def __get__(self, instance: Any, owner: type | None = None) -> Any:
-        if instance is None:
-            return self
-        return quantity(getattr(instance.si, self._name), self._measure)

@@ -4,7 +4,10 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar, Self
 
-from rockframe.components.base import Component, SIProperty, with_unit
+from rockframe.components.alternatives import OneOf
+from rockframe.components.base import Component
+from rockframe.components.parameters import DERIVED, Parameter, Ratio
+from rockframe.components.values import SIProperty, SIValues
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError
 from rockframe.units import (
@@ -76,22 +79,8 @@ class BlockSI:
         return (1.0 + mu * math.cos(2.0 * self.overturning_angle)) / (1.0 + mu)
 
 
-class Block(Component[BlockSI]):
+class Block(Component):
     """A rigid rectangular block, or a body that rocks like one.
-
-    Parameters
-    ----------
-    width : str or Quantity
-        Base width B [m].
-    height : str or Quantity
-        Height H; the centre of mass stands at H/2 [m].
-    mass : str or Quantity
-        Mass m [kg].
-    shape_factor : float, optional
-        mu = m R0^2 / I_O; 3, the solid rectangle's, unless given [1].
-    inertia : str or Quantity, optional
-        Moment of inertia about the centre of mass I_O, instead of
-        `shape_factor` [kg m^2].
 
     Raises
     ------
@@ -111,16 +100,31 @@ class Block(Component[BlockSI]):
     >>> block = Block(width="2.4254 m", height="9.7014 m", mass="50 t")
     >>> round(block.overturning_angle.m_as("rad"), 4)
     0.245
+    >>> block.replace(mass="60 t").mass.to("t")
+    <Quantity(60.0, 'metric_ton')>
     """
 
+    si: BlockSI
     noun: ClassVar[str] = "superstructure"
+    alternatives: ClassVar[tuple[OneOf, ...]] = (OneOf("shape_factor", "inertia", required=False),)
 
-    width = SIProperty(LENGTH, "Base width B.")
-    height = SIProperty(LENGTH, "Height H.")
-    mass = SIProperty(MASS, "Mass m.")
+    width = Parameter(LENGTH, POSITIVE, doc="Base width B.")
+    height = Parameter(LENGTH, POSITIVE, doc="Height H; the centre of mass stands at H/2.")
+    mass = Parameter(MASS, POSITIVE, doc="Mass m.")
+    shape_factor = Ratio(
+        POSITIVE,
+        doc="mu = m R0^2 / I_O; 3, the solid rectangle's, unless given.",
+        default=DERIVED,
+        example="3",
+    )
+    inertia = Parameter(
+        INERTIA,
+        POSITIVE,
+        doc="Moment of inertia about the centre of mass I_O, instead of `shape_factor`.",
+        default=DERIVED,
+    )
     radius = SIProperty(LENGTH, "R0, distance from a corner to the centre of mass.")
     overturning_angle = SIProperty(ANGLE, "theta = arctan(B/H), Eq. (1).")
-    inertia = SIProperty(INERTIA, "Moment of inertia about the centre of mass, I_O.")
     frequency = SIProperty(
         ANGULAR_VELOCITY, "Angular frequency omega under standard gravity, Eq. (6)."
     )
@@ -134,38 +138,19 @@ class Block(Component[BlockSI]):
         shape_factor: RatioLike | None = None,
         inertia: QuantityLike | None = None,
     ) -> None:
-        owner = type(self).__name__
-        size = {
-            name: to_si(value, LENGTH, owner=owner, name=name, condition=POSITIVE)
-            for name, value in (("width", width), ("height", height))
-        }
-        kilograms = to_si(mass, MASS, owner=owner, name="mass", condition=POSITIVE)
-        mu = SOLID_RECTANGLE_SHAPE_FACTOR
-        inertia_si = None
-        if shape_factor is not None and inertia is not None:
-            msg = f"{owner}: give shape_factor or inertia, not both; one follows from the other"
-            raise ComponentError(msg)
-        if shape_factor is not None:
-            mu = to_ratio(
-                shape_factor, owner=owner, name="shape_factor", condition=POSITIVE, example="3"
-            )
-        if inertia is not None:
-            inertia_si = to_si(inertia, INERTIA, owner=owner, name="inertia", condition=POSITIVE)
-            diagonal = math.hypot(size["width"], size["height"])
-            mu = kilograms * diagonal * (diagonal / (4.0 * inertia_si))
-        si = BlockSI(mass=kilograms, shape_factor=mu, **size)
-        _check_representable(si, owner)
-        _check_rocks(si, owner)
-        self._freeze(
-            si,
-            {
-                "width": with_unit(si.width, LENGTH),
-                "height": with_unit(si.height, LENGTH),
-                "mass": with_unit(si.mass, MASS),
-                "shape_factor": mu if shape_factor is not None else None,
-                "inertia": with_unit(inertia_si, INERTIA),
-            },
+        super().__init__(
+            width=width, height=height, mass=mass, shape_factor=shape_factor, inertia=inertia
         )
+
+    def _numbers(self, given: SIValues) -> BlockSI:
+        mu: float = given.shape_factor or SOLID_RECTANGLE_SHAPE_FACTOR
+        if given.inertia is not None:
+            diagonal = math.hypot(given.width, given.height)
+            mu = given.mass * diagonal * (diagonal / (4.0 * given.inertia))
+        si = BlockSI(given.width, given.height, given.mass, mu)
+        _check_representable(si, type(self).__name__)
+        _check_rocks(si, type(self).__name__)
+        return si
 
     @classmethod
     def from_density(
@@ -253,11 +238,6 @@ class Block(Component[BlockSI]):
     def slenderness(self) -> float:
         """Height over width, H/B [1]."""
         return self.si.height / self.si.width
-
-    @property
-    def shape_factor(self) -> float:
-        """Mu = m R0^2 / I_O [1]."""
-        return self.si.shape_factor
 
     @property
     def maximum_restitution(self) -> float:

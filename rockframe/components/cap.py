@@ -4,9 +4,10 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
-from rockframe.components.base import Component, with_unit
-from rockframe.components.pads import one_of
-from rockframe.errors import ComponentError
+from rockframe.components.alternatives import OneOf
+from rockframe.components.base import Component
+from rockframe.components.parameters import Parameter
+from rockframe.components.values import SIValues
 from rockframe.units import (
     DENSITY,
     LENGTH,
@@ -15,7 +16,6 @@ from rockframe.units import (
     POSITIVE,
     THICKNESS,
     QuantityLike,
-    to_si,
 )
 
 
@@ -38,20 +38,8 @@ class CushionCapSI:
         return self.mass_at(width) * diagonal * diagonal / 12.0
 
 
-class CushionCap(Component[CushionCapSI]):
+class CushionCap(Component):
     """A rigid, solid slab that spreads a building's weight over the soil.
-
-    Parameters
-    ----------
-    height : str or Quantity
-        Height H_c; zero for a thin plate [m].
-    mass : str or Quantity, optional
-        Mass m_c; zero for a plate without mass [kg].
-    width : str or Quantity, optional
-        Width B_c in the plane of rocking; the building's unless given [m].
-    density, depth : str or Quantity, optional
-        Mass per volume, and size out of the plane of rocking, instead of
-        `mass` [kg m^-3], [m].
 
     Raises
     ------
@@ -68,7 +56,24 @@ class CushionCap(Component[CushionCapSI]):
     45000.0
     """
 
+    si: CushionCapSI
     noun: ClassVar[str] = "cap"
+    alternatives: ClassVar[tuple[OneOf, ...]] = (OneOf("mass", ("density", "depth")),)
+
+    height = Parameter(THICKNESS, NOT_NEGATIVE, doc="Height H_c; zero for a thin plate.")
+    mass = Parameter(
+        MASS, NOT_NEGATIVE, doc="Mass m_c; zero for a plate without mass.", default=None
+    )
+    width = Parameter(
+        LENGTH,
+        POSITIVE,
+        doc="Width B_c in the plane of rocking; the building's unless given.",
+        default=None,
+    )
+    density = Parameter(
+        DENSITY, POSITIVE, doc="Mass per volume, with `depth` instead of `mass`.", default=None
+    )
+    depth = Parameter(LENGTH, POSITIVE, doc="Size out of the plane of rocking.", default=None)
 
     def __init__(
         self,
@@ -79,32 +84,9 @@ class CushionCap(Component[CushionCapSI]):
         density: QuantityLike | None = None,
         depth: QuantityLike | None = None,
     ) -> None:
-        owner = "CushionCap"
-        one_of(owner, mass=mass, density=density)
-        if (density is None) != (depth is None):
-            msg = f"{owner}: density and depth go together; {_given(density=density, depth=depth)}"
-            raise ComponentError(msg)
-        tall = to_si(height, THICKNESS, owner=owner, name="height", condition=NOT_NEGATIVE)
-        wide = m = rho = deep = per_width = None
-        if width is not None:
-            wide = to_si(width, LENGTH, owner=owner, name="width", condition=POSITIVE)
-        if mass is not None:
-            m = to_si(mass, MASS, owner=owner, name="mass", condition=NOT_NEGATIVE)
-        if density is not None and depth is not None:
-            rho = to_si(density, DENSITY, owner=owner, name="density", condition=POSITIVE)
-            deep = to_si(depth, LENGTH, owner=owner, name="depth", condition=POSITIVE)
-            per_width = rho * deep * tall
-        self._freeze(
-            CushionCapSI(wide, tall, m, per_width),
-            {
-                "height": with_unit(tall, LENGTH),
-                "mass": with_unit(m, MASS),
-                "width": with_unit(wide, LENGTH),
-                "density": with_unit(rho, DENSITY),
-                "depth": with_unit(deep, LENGTH),
-            },
-        )
+        super().__init__(height=height, mass=mass, width=width, density=density, depth=depth)
 
-
-def _given(**pair: object) -> str:
-    return "only " + next(name for name, value in pair.items() if value is not None) + " was given"
+    def _numbers(self, given: SIValues) -> CushionCapSI:
+        by_density = given.density is not None
+        per_width = given.density * given.depth * given.height if by_density else None
+        return CushionCapSI(given.width, given.height, given.mass, per_width)

@@ -2,45 +2,30 @@
 
 from typing import Final
 
-from rockframe.errors import ModelWarning, warn
-from rockframe.units import NOT_NEGATIVE, to_ratio
+from rockframe.components.parameters import Ratio
+from rockframe.units import NOT_NEGATIVE
 
 CRITICAL: Final = 1.0
 """Damping ratio beyond which nothing vibrates [1]."""
 
 
-def damping_ratio(given: object, *, owner: str) -> float:
-    """Read the argument ``damping_ratio`` of a base.
+class DampingRatio(Ratio[None]):
+    """A damping ratio that stands for a damping coefficient; a large one brings a warning.
 
     Parameters
     ----------
-    given : float, str or pint.Quantity
-        What the user gave.
-    owner : str
-        Class, for the message.
-
-    Returns
-    -------
-    float
-        [1]
-
-    Raises
-    ------
-    UnitsError
-        Not a pure ratio.
-    ComponentError
-        Not finite, or negative.
-
-    Warns
-    -----
-    ModelWarning
-        Above 1: per cent may have been meant.
+    doc : str
+        What it is, in a sentence.
     """
-    ratio = to_ratio(given, owner=owner, name="damping_ratio", condition=NOT_NEGATIVE)
-    if ratio > CRITICAL:
-        msg = (
-            f"{owner}: damping_ratio = {ratio:.6g} is {100.0 * ratio:.6g} % of critical; "
-            f"was '{ratio:.6g} %' meant?"
+
+    def __init__(self, *, doc: str) -> None:
+        super().__init__(NOT_NEGATIVE, doc=doc, default=None)
+
+    def caution(self, value: float) -> str | None:
+        """Ask whether per cent were meant, above 1."""
+        if value <= CRITICAL:
+            return None
+        return (
+            f"{self.name} = {value:.6g} is {100.0 * value:.6g} % of critical; "
+            f"was '{value:.6g} %' meant?"
         )
-        warn(msg, ModelWarning)
-    return ratio

@@ -1,23 +1,25 @@
 """The frame building as an equivalent rigid block, Eqs. (21) to (23)."""
 
 import json
-import warnings
 from collections.abc import Iterable, Mapping
 from typing import Any, Self
 
-import pint
 import xarray as xr
 
+from rockframe.components.base import replaced
 from rockframe.components.block import Block
-from rockframe.components.frame_building import listed_building, regular_building
+from rockframe.components.frame_building import Building, listed_building, regular_building
 from rockframe.components.frame_members import Member
-from rockframe.components.frame_outline import Outline, outline_cautions
-from rockframe.components.frame_regular import INFILL_THICKNESS, SLAB_THICKNESS
+from rockframe.components.frame_outline import outline_cautions
+from rockframe.components.frame_regular import INFILL_THICKNESS, SLAB_THICKNESS, RegularFrame
 from rockframe.components.frame_table import members_table
-from rockframe.errors import ComponentError, ModelWarning, SchemaError, shown
+from rockframe.components.parameters import DERIVED, Ratio
+from rockframe.components.values import Quantity
+from rockframe.errors import ComponentError, SchemaError, shown
 from rockframe.units import (
     LENGTH,
     MASS,
+    POSITIVE,
     QuantityLike,
     RatioLike,
     quantity,
@@ -31,20 +33,6 @@ class FrameEquivalent(Block):
 
     Built from the equivalent parameters, as in the paper's Table 2, or by
     :meth:`from_members` from what the building consists of.
-
-    Parameters
-    ----------
-    width : str or Quantity
-        Width B' = B_x in the plane of rocking, Eq. (21) [m].
-    height : str or Quantity
-        Height H' = H, Eq. (21); the centre of mass is taken at H/2 [m].
-    mass : str or Quantity
-        Mass of all members together [kg].
-    shape_factor : float
-        mu of Eq. (22) [1].
-    inertia : str or Quantity
-        Moment of inertia about the centre of mass I_O, instead of
-        `shape_factor` [kg m^2].
 
     Raises
     ------
@@ -63,7 +51,9 @@ class FrameEquivalent(Block):
 
     Notes
     -----
-    A solid rectangle's shape factor, 3, is not assumed: a frame is hollow.
+    Width B' = B_x and height H' = H are those of the building, Eq. (21); the mass is that
+    of all members together. A solid rectangle's shape factor, 3, is not assumed: a frame
+    is hollow.
 
     Examples
     --------
@@ -72,26 +62,9 @@ class FrameEquivalent(Block):
     0.418
     """
 
-    _members: tuple[Member, ...]
-    _outline: Outline | None
+    shape_factor = Ratio(POSITIVE, doc="mu of Eq. (22).", default=DERIVED, example="2.5")
 
-    def __init__(
-        self,
-        *,
-        width: QuantityLike,
-        height: QuantityLike,
-        mass: QuantityLike,
-        shape_factor: RatioLike | None = None,
-        inertia: QuantityLike | None = None,
-    ) -> None:
-        self._set_parameters(width, height, mass, shape_factor, inertia)
-        if self.si.shape_factor < _LEAST_SHAPE_FACTOR:
-            msg = (
-                f"FrameEquivalent: a shape factor of {self.si.shape_factor:.4g} is not physical: "
-                "in the plane of rocking all mass lies within R0 of the centre, so that Eq. (22) "
-                "gives 1 or more; the value is used as given"
-            )
-            warnings.warn(msg, ModelWarning, stacklevel=2)
+    _building: Building | None = None
 
     @classmethod
     def from_members(
@@ -204,8 +177,7 @@ class FrameEquivalent(Block):
             beam_width=beam_width,
             density=density,
         )
-        for caution in outline_cautions(frame._outline, frame._members):
-            warnings.warn(f"FrameEquivalent: {caution}", ModelWarning, stacklevel=2)
+        frame._warn()
         return frame
 
     @classmethod
@@ -227,47 +199,80 @@ class FrameEquivalent(Block):
     def from_dict(cls, arguments: Mapping[str, float | str]) -> Self:
         """Build the frame that :meth:`to_dict` described, members included.
 
+        Parameters
+        ----------
+        arguments : mapping
+            Of the constructor, or of :meth:`from_members`.
+
+        Returns
+        -------
+        FrameEquivalent
+
         Raises
         ------
         SchemaError
             The members are not readable.
+        TypeError, UnitsError, ComponentError
+            As the constructor.
         """
-        # Nothing is warned about twice: the warnings came when the frame was new.
-        given: dict[str, Any] = dict(arguments)
+        given: dict[str, Any] = {name: value for name, value in arguments.items() if name != "type"}
+        if not {"members", "density"} & set(given):
+            return super().from_dict(given)
         if "members" in given:
             try:
                 given["members"] = json.loads(given["members"])
             except (TypeError, ValueError) as problem:
                 msg = f"found members {shown(given['members'])}; expected a list in JSON"
                 raise SchemaError(msg) from problem
-        if "members" in given or "density" in given:
-            return cls._of_members(**given)
-        frame = object.__new__(cls)
-        frame._set_parameters(**given)
-        return frame
+        return cls._of_members(**given)
+
+    def replace(self, **changes: Any) -> Self:
+        """Build a frame of which some parameters are others.
+
+        Parameters
+        ----------
+        **changes
+            Arguments of the constructor; of :meth:`from_members`, where the frame was built
+            by that.
+
+        Returns
+        -------
+        FrameEquivalent
+
+        Raises
+        ------
+        TypeError, UnitsError, ComponentError
+            As the constructor, or as :meth:`from_members`.
+        """
+        if self._building is None:
+            return super().replace(**changes)
+        arguments = self._plain_arguments()
+        return type(self).from_members(**replaced(arguments, changes, RegularFrame.alternatives))
 
     @property
     def members(self) -> tuple[Member, ...]:
         """Members that the frame was built from; none if it was built from its parameters."""
-        return self._members
+        return () if self._building is None else self._building.members
 
     @property
-    def depth(self) -> pint.Quantity[Any] | None:
+    def depth(self) -> Quantity | None:
         """Depth B_y, perpendicular to the plane of rocking, if known [m]."""
-        depth = None if self._outline is None else self._outline.depth
+        depth = None if self._building is None else self._building.outline.depth
         return None if depth is None else quantity(depth, LENGTH)
 
     @property
     def space_proportion(self) -> float | None:
         """Chi of Eq. (23), None where the depth or a member's volume is unknown [1]."""
-        return None if self._outline is None else self._outline.space_proportion(self._members)
+        if self._building is None:
+            return None
+        return self._building.outline.space_proportion(self._building.members)
 
     @property
-    def centre_of_mass_height(self) -> pint.Quantity[Any] | None:
+    def centre_of_mass_height(self) -> Quantity | None:
         """Height of the members' centre of mass; the model takes H/2 instead [m]."""
-        if self._outline is None:
+        if self._building is None:
             return None
-        return quantity(self._outline.centre_of_mass(self._members)[1], LENGTH)
+        return quantity(self._building.centre_of_mass[1], LENGTH)
 
     def members_table(self) -> xr.Dataset:
         """Give one row for each member: mass, place, size, inertia.
@@ -285,23 +290,24 @@ class FrameEquivalent(Block):
         ComponentError
             The frame was built from its parameters and knows no members.
         """
-        if self._outline is None:
+        building = self._building
+        if building is None:
             msg = (
                 "FrameEquivalent: there are no members to show, for the frame was built from its "
                 "equivalent parameters; use FrameEquivalent.from_members(...)"
             )
             raise ComponentError(msg)
         return members_table(
-            self._members,
+            building.members,
             self.si.height,
             {
                 "width": self.si.width,
                 "height": self.si.height,
-                "depth": self._outline.depth,
+                "depth": building.outline.depth,
                 "mass": self.si.mass,
                 "shape_factor": self.si.shape_factor,
                 "space_proportion": self.space_proportion,
-                "centre_of_mass_height": self._outline.centre_of_mass(self._members)[1],
+                "centre_of_mass_height": building.centre_of_mass[1],
             },
         )
 
@@ -314,52 +320,49 @@ class FrameEquivalent(Block):
             building = listed_building(members, measures, owner)
         outline = building.outline
         outline.check(building.members, owner)
-        mass = sum(member.si.mass for member in building.members)
         frame = object.__new__(cls)
-        frame._set_parameters(
-            width=f"{outline.width!r} {LENGTH.unit}",
-            height=f"{outline.height!r} {LENGTH.unit}",
-            mass=f"{mass!r} {MASS.unit}",
-            shape_factor=outline.shape_factor(building.members),
+        frame._fill(
+            {
+                "width": f"{outline.width!r} {LENGTH.unit}",
+                "height": f"{outline.height!r} {LENGTH.unit}",
+                "mass": f"{sum(member.si.mass for member in building.members)!r} {MASS.unit}",
+                "shape_factor": outline.shape_factor(building.members),
+            }
         )
-        frame._freeze(frame.si, building.arguments)
-        frame._keep(building.members, outline)
+        object.__setattr__(frame, "_building", building)
         return frame
 
-    def _set_parameters(
-        self,
-        width: QuantityLike,
-        height: QuantityLike,
-        mass: QuantityLike,
-        shape_factor: RatioLike | None = None,
-        inertia: QuantityLike | None = None,
-    ) -> None:
-        if shape_factor is None and inertia is None:
+    def _check(self, given: Mapping[str, object], owner: str) -> None:
+        if given["shape_factor"] is None and given["inertia"] is None:
             msg = (
-                f"{type(self).__name__}: give shape_factor or inertia, neither was given; a frame "
+                f"{owner}: give shape_factor or inertia, neither was given; a frame "
                 "is hollow, so that the solid rectangle's 3 is not assumed"
             )
             raise ComponentError(msg)
-        super().__init__(
-            width=width, height=height, mass=mass, shape_factor=shape_factor, inertia=inertia
-        )
-        self._keep((), None)
+        super()._check(given, owner)
 
-    def _keep(self, members: tuple[Member, ...], outline: Outline | None) -> None:
-        object.__setattr__(self, "_members", members)
-        object.__setattr__(self, "_outline", outline)
+    def _cautions(self) -> list[str]:
+        if self._building is not None:
+            return outline_cautions(self._building.outline, self._building.members)
+        if self.si.shape_factor >= _LEAST_SHAPE_FACTOR:
+            return super()._cautions()
+        return [
+            *super()._cautions(),
+            f"a shape factor of {self.si.shape_factor:.4g} is not physical: in the plane of "
+            "rocking all mass lies within R0 of the centre, so that Eq. (22) gives 1 or more; "
+            "the value is used as given",
+        ]
 
-    def __eq__(self, other: object) -> bool:
-        # A block compares the arguments of its subclasses too; a frame is no plain block.
-        return type(other) is type(self) and self._arguments == other._arguments
+    def _arguments(self) -> dict[str, float | str]:
+        return super()._arguments() if self._building is None else dict(self._building.arguments)
 
-    __hash__ = Block.__hash__
+    def _plain_arguments(self) -> dict[str, Any]:
+        """Give the arguments of :meth:`from_members`, members as a list."""
+        given: dict[str, Any] = self._arguments()
+        return given | ({"members": json.loads(given["members"])} if "members" in given else {})
 
     def __repr__(self) -> str:
-        if self._outline is None:
+        if self._building is None:
             return super().__repr__()
-        given: dict[str, Any] = dict(self._arguments)
-        if "members" in given:
-            given["members"] = json.loads(given["members"])
-        words = ", ".join(f"{name}={value!r}" for name, value in given.items())
+        words = ", ".join(f"{name}={value!r}" for name, value in self._plain_arguments().items())
         return f"{type(self).__name__}.from_members({words})"

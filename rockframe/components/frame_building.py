@@ -5,7 +5,6 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
-from rockframe.components.base import with_unit
 from rockframe.components.frame_members import Member
 from rockframe.components.frame_outline import Outline
 from rockframe.components.frame_regular import INFILL_THICKNESS, SLAB_THICKNESS, RegularFrame
@@ -22,7 +21,12 @@ class Building:
 
     members: tuple[Member, ...]
     outline: Outline
-    arguments: Mapping[str, float | str | None]
+    arguments: Mapping[str, float | str]
+
+    @property
+    def centre_of_mass(self) -> tuple[float, float]:
+        """Coordinates x, y [m]."""
+        return self.outline.centre_of_mass(self.members)
 
 
 def regular_building(measures: Mapping[str, Any], owner: str) -> Building:
@@ -108,7 +112,7 @@ def listed_building(members: object, measures: Mapping[str, Any], owner: str) ->
         {word: value for word, value in member.to_dict().items() if word != "type"}
         for member in built
     ]
-    arguments = {name: with_unit(getattr(outline, name), LENGTH) for name in _OUTLINE}
+    arguments = {name: f"{value!r} {LENGTH.unit}" for name, value in vars(outline).items() if value}
     return Building(built, outline, {**arguments, "members": json.dumps(written)})
 
 

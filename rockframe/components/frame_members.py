@@ -3,12 +3,13 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar, Self
+from typing import ClassVar, Self
 
-import pint
-
-from rockframe.components.base import Component, SIProperty, with_unit
-from rockframe.errors import ComponentError, shown
+from rockframe.components.alternatives import OneOf
+from rockframe.components.base import Component
+from rockframe.components.parameters import DERIVED, Parameter, Text
+from rockframe.components.values import SIValues
+from rockframe.errors import ComponentError
 from rockframe.units import (
     DENSITY,
     INERTIA,
@@ -16,10 +17,7 @@ from rockframe.units import (
     MASS,
     NOT_NEGATIVE,
     POSITIVE,
-    Measure,
     QuantityLike,
-    quantity,
-    to_si,
 )
 
 
@@ -47,34 +45,8 @@ class MemberSI:
         return math.hypot(self.x, self.y - 0.5 * height)
 
 
-class Member(Component[MemberSI]):
+class Member(Component):
     """A column, beam, slab, wall, ... of a building, seen in the plane of rocking.
-
-    Parameters
-    ----------
-    name : str
-        What it is called in :meth:`FrameEquivalent.members_table`.
-    mass : str or Quantity, optional
-        Mass m_i [kg].
-    density : str or Quantity, optional
-        Mass per volume, instead of `mass`; needs all three sizes [kg m^-3].
-    x : str or Quantity
-        Horizontal position of its centre of mass, from the middle of the
-        building's base, to the right [m].
-    y : str or Quantity
-        Height of its centre of mass above the base [m].
-    width, height : str or Quantity, optional
-        Size of a rectangular member in the plane of rocking, horizontal and
-        vertical [m].
-    inertia : str or Quantity, optional
-        Moment of inertia I_i about its own centre of mass, about the axis
-        perpendicular to the plane of rocking; instead of `width` and `height`,
-        for a member that is no upright rectangle [kg m^2].
-    depth : str or Quantity, optional
-        Size of a rectangular member perpendicular to the plane of rocking.
-        Only its volume depends on it [m].
-    kind : str, optional
-        Such as ``"column"``; members of one kind can be looked at together.
 
     Raises
     ------
@@ -96,12 +68,52 @@ class Member(Component[MemberSI]):
     2083.3
     """
 
+    si: MemberSI
     noun: ClassVar[str] = "member"
+    alternatives: ClassVar[tuple[OneOf, ...]] = (
+        OneOf("mass", "density"),
+        OneOf(("width", "height", "depth"), "inertia"),
+    )
 
-    mass = SIProperty(MASS, "Mass m_i.")
-    x = SIProperty(LENGTH, "Horizontal position of the centre, from the middle of the base.")
-    y = SIProperty(LENGTH, "Height of the centre above the base.")
-    inertia = SIProperty(INERTIA, "Moment of inertia I_i about the member's own centre.")
+    name = Text(doc="What it is called in :meth:`FrameEquivalent.members_table`.")
+    kind = Text(
+        doc='Such as ``"column"``; members of one kind can be looked at together.', default=None
+    )
+    mass = Parameter(MASS, POSITIVE, doc="Mass m_i.", default=DERIVED)
+    density = Parameter(
+        DENSITY,
+        POSITIVE,
+        doc="Mass per volume, instead of `mass`; needs all three sizes.",
+        default=None,
+    )
+    x = Parameter(
+        LENGTH,
+        doc="Horizontal position of its centre of mass, from the middle of the building's base, "
+        "to the right.",
+    )
+    y = Parameter(LENGTH, doc="Height of its centre of mass above the base.")
+    width = Parameter(
+        LENGTH,
+        POSITIVE,
+        doc="Horizontal size of a rectangular member in the plane of rocking.",
+        default=None,
+    )
+    height = Parameter(LENGTH, POSITIVE, doc="Vertical size of a rectangular member.", default=None)
+    depth = Parameter(
+        LENGTH,
+        POSITIVE,
+        doc="Size of a rectangular member perpendicular to the plane of rocking. Only its volume "
+        "depends on it.",
+        default=None,
+    )
+    inertia = Parameter(
+        INERTIA,
+        NOT_NEGATIVE,
+        doc="Moment of inertia I_i about its own centre of mass, about the axis perpendicular to "
+        "the plane of rocking; instead of `width` and `height`, for a member that is no upright "
+        "rectangle.",
+        default=DERIVED,
+    )
 
     def __init__(
         self,
@@ -117,47 +129,17 @@ class Member(Component[MemberSI]):
         depth: QuantityLike | None = None,
         kind: str | None = None,
     ) -> None:
-        _check_words(name, kind)
-        owner = f"Member {name!r}"
-        given = {"width": width, "height": height, "depth": depth, "inertia": inertia}
-        _check_combination(owner, {"mass": mass, "density": density, **given})
-        size = {
-            word: None if value is None else to_si(value, LENGTH, owner=owner, name=word,
-                                                   condition=POSITIVE)
-            for word, value in given.items() if word != "inertia"
-        }  # fmt: skip
-        place = {
-            word: to_si(value, LENGTH, owner=owner, name=word)
-            for word, value in (("x", x), ("y", y))
-        }
-        per_volume = kilograms = turning = None
-        if density is not None:
-            per_volume = to_si(density, DENSITY, owner=owner, name="density", condition=POSITIVE)
-        if mass is not None:
-            kilograms = to_si(mass, MASS, owner=owner, name="mass", condition=POSITIVE)
-        if inertia is not None:
-            turning = to_si(inertia, INERTIA, owner=owner, name="inertia", condition=NOT_NEGATIVE)
-        self._fill(name, kind, (kilograms, per_volume, turning), place, size)
-
-    def _fill(
-        self,
-        name: str,
-        kind: str | None,
-        heft: tuple[float | None, float | None, float | None],
-        place: Mapping[str, float],
-        size: Mapping[str, float | None],
-    ) -> None:
-        mass, density, inertia = heft
-        self._freeze(
-            _si(f"Member {name!r}", mass, density, inertia, place, size),
-            {
-                "name": name,
-                "kind": kind,
-                "mass": with_unit(mass, MASS),
-                "density": with_unit(density, DENSITY),
-                **{word: with_unit(value, LENGTH) for word, value in {**place, **size}.items()},
-                "inertia": with_unit(inertia, INERTIA),
-            },
+        super().__init__(
+            name=name,
+            kind=kind,
+            mass=mass,
+            density=density,
+            x=x,
+            y=y,
+            width=width,
+            height=height,
+            depth=depth,
+            inertia=inertia,
         )
 
     @classmethod
@@ -188,88 +170,51 @@ class Member(Component[MemberSI]):
         """
         member = object.__new__(cls)
         (x, y), (width, height, depth) = centre, size
-        sizes = {"width": width, "height": height, "depth": depth}
-        member._fill(name, kind, (None, density, None), {"x": x, "y": y}, sizes)
+        values = {"name": name, "kind": kind, "density": density, "x": x, "y": y}
+        values |= {"width": width, "height": height, "depth": depth, "mass": None, "inertia": None}
+        member._hold(values)
         return member
 
-    @property
-    def name(self) -> str:
-        """Name of the member."""
-        return str(self._arguments["name"])
+    @classmethod
+    def _owner(cls, given: Mapping[str, object]) -> str:
+        name = given["name"]
+        return f"Member {name!r}" if isinstance(name, str) and name.strip() else "Member"
 
-    @property
-    def kind(self) -> str | None:
-        """Kind of member, if one was given."""
-        kind = self._arguments.get("kind")
-        return None if kind is None else str(kind)
-
-    @property
-    def width(self) -> pint.Quantity[Any] | None:
-        """Horizontal size in the plane of rocking, if known [m]."""
-        return _known(self.si.width, LENGTH)
-
-    @property
-    def height(self) -> pint.Quantity[Any] | None:
-        """Vertical size, if known [m]."""
-        return _known(self.si.height, LENGTH)
-
-    @property
-    def depth(self) -> pint.Quantity[Any] | None:
-        """Size perpendicular to the plane of rocking, if known [m]."""
-        return _known(self.si.depth, LENGTH)
-
-
-def _known(value: float | None, measure: Measure) -> pint.Quantity[Any] | None:
-    return None if value is None else quantity(value, measure)
-
-
-def _check_words(name: object, kind: object) -> None:
-    if not isinstance(name, str) or not name.strip():
-        msg = f"Member: name must be a text that is not empty, got {shown(name)}"
-        raise ComponentError(msg)
-    if kind is not None and (not isinstance(kind, str) or not kind.strip()):
-        msg = f"Member {name!r}: kind must be a text that is not empty, or None, got {shown(kind)}"
-        raise ComponentError(msg)
-
-
-def _check_combination(owner: str, values: dict[str, object]) -> None:
-    given = {word for word, value in values.items() if value is not None}
-    rules = (
-        (("mass" in given) is not ("density" in given), "give mass or density, exactly one"),
-        (
-            "density" not in given or {"width", "height", "depth"} <= given,
-            "density needs width, height and depth",
-        ),
-        (
-            given & {"width", "height", "inertia"} in ({"width", "height"}, {"inertia"}),
-            "give width and height, or inertia (0 kg*m^2 for a point mass)",
-        ),
-        (not {"depth", "inertia"} <= given, "depth goes with width and height, not with inertia"),
-    )
-    for holds, rule in rules:
-        if not holds:
-            found = ", ".join(sorted(given)) or "none of them"
-            msg = f"{owner}: {rule}; {found} given"
-            raise ComponentError(msg)
-
-
-def _si(
-    owner: str,
-    mass: float | None,
-    density: float | None,
-    inertia: float | None,
-    place: Mapping[str, float],
-    size: Mapping[str, float | None],
-) -> MemberSI:
-    width, height, depth = (size[word] or 0.0 for word in ("width", "height", "depth"))
-    if mass is None:
-        mass = (density or 0.0) * width * height * depth
-    if inertia is None:
-        inertia = mass * (width * width + height * height) / 12.0
-    if not (0.0 < mass < math.inf and inertia < math.inf):
-        msg = (
-            f"{owner}: a mass of {mass:.4g} {MASS.unit} and a moment of inertia of {inertia:.4g} "
-            f"{INERTIA.unit} are beyond what a computer's numbers can hold"
+    def _check(self, given: Mapping[str, object], owner: str) -> None:
+        words = ("mass", "density", "width", "height", "depth", "inertia")
+        there = {word for word in words if given[word] is not None}
+        rules = (
+            (("mass" in there) is not ("density" in there), "give mass or density, exactly one"),
+            (
+                "density" not in there or {"width", "height", "depth"} <= there,
+                "density needs width, height and depth",
+            ),
+            (
+                there & {"width", "height", "inertia"} in ({"width", "height"}, {"inertia"}),
+                "give width and height, or inertia (0 kg*m^2 for a point mass)",
+            ),
+            (
+                not {"depth", "inertia"} <= there,
+                "depth goes with width and height, not with inertia",
+            ),
         )
-        raise ComponentError(msg)
-    return MemberSI(mass=mass, inertia=inertia, **place, **size)  # type: ignore[arg-type]
+        for holds, rule in rules:
+            if not holds:
+                found = ", ".join(sorted(there)) or "none of them"
+                msg = f"{owner}: {rule}; {found} given"
+                raise ComponentError(msg)
+
+    def _numbers(self, given: SIValues) -> MemberSI:
+        width, height, depth = (given.width or 0.0), (given.height or 0.0), (given.depth or 0.0)
+        mass, inertia = given.mass, given.inertia
+        if mass is None:
+            mass = given.density * width * height * depth
+        if inertia is None:
+            inertia = mass * (width * width + height * height) / 12.0
+        if not (0.0 < mass < math.inf and inertia < math.inf):
+            msg = (
+                f"Member {given.name!r}: a mass of {mass:.4g} {MASS.unit} and a moment of inertia "
+                f"of {inertia:.4g} {INERTIA.unit} are beyond what a computer's numbers can hold"
+            )
+            raise ComponentError(msg)
+        return MemberSI(mass, given.x, given.y, inertia, given.width, given.height, given.depth)

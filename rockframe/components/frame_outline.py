@@ -147,13 +147,13 @@ class Outline:
             raise ComponentError(msg)
 
 
-def outline_cautions(outline: Outline | None, members: Sequence[Member]) -> list[str]:
+def outline_cautions(outline: Outline, members: Sequence[Member]) -> list[str]:
     """Say where the centre of mass is far from where the model takes it.
 
     Parameters
     ----------
-    outline : Outline or None
-        None if there are no members.
+    outline : Outline
+        Of the building.
     members : sequence of Member
         All members.
 
@@ -161,8 +161,6 @@ def outline_cautions(outline: Outline | None, members: Sequence[Member]) -> list
     -------
     list of str
     """
-    if outline is None:
-        return []
     x, y = outline.centre_of_mass(members)
     beside, above = x / outline.width, y / outline.height - 0.5
     cautions: list[str] = []

@@ -2,12 +2,17 @@
 
 import itertools
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import ClassVar, Final
+from typing import Any, ClassVar, Final
 
-from rockframe.components.base import Component, SIProperty, with_unit
+import numpy as np
+
+from rockframe.components.alternatives import OneOf
+from rockframe.components.base import Component
 from rockframe.components.frame_members import Member
+from rockframe.components.parameters import DERIVED, Declared, Missing, Parameter
+from rockframe.components.values import Quantity, SIValues
 from rockframe.errors import ComponentError
 from rockframe.units import (
     DENSITY,
@@ -15,8 +20,10 @@ from rockframe.units import (
     POSITIVE,
     THICKNESS,
     Condition,
+    Measure,
     QuantityLike,
     RatioLike,
+    quantity,
     to_ratio,
     to_si,
 )
@@ -26,16 +33,7 @@ SLAB_THICKNESS: Final = "0.12 m"
 INFILL_THICKNESS: Final = "0.15 m"
 """Thickness of the infill walls of the paper's frames (section 4.2)."""
 
-_THIN: Final = (
-    "column_width",
-    "column_depth",
-    "beam_height",
-    "beam_width",
-    "slab_thickness",
-    "infill_thickness",
-)
 _NO_INFILL: Final = "none"
-_OR_NONE: Final = Condition("greater than zero, or None for no walls", POSITIVE.holds)
 # the bound keeps a slip of the pen from filling the memory
 _COUNT: Final = Condition(
     "a whole number from 1 to 1000",
@@ -60,6 +58,11 @@ class RegularFrameSI:
     density: float
 
     @property
+    def storeys(self) -> int:
+        """Number of storeys."""
+        return len(self.levels)
+
+    @property
     def height(self) -> float:
         """Level of the topmost slab's top [m]."""
         return self.levels[-1]
@@ -75,34 +78,76 @@ class RegularFrameSI:
         return self.depth - 2.0 * self.column_depth
 
 
-class RegularFrame(Component[RegularFrameSI]):
-    """A building of equal floors on four corner columns, as in the paper's section 4.2.
+class StoreyCount(Declared[int, Missing]):
+    """A number of storeys."""
 
-    Parameters
-    ----------
-    storeys : int
-        Number of storeys, all equally high.
-    height : str or Quantity
-        Height H of the building, with `storeys` [m].
-    storey_heights : sequence of str or Quantity, or str
-        Height of every storey from the lowest up, instead of `storeys` and
-        `height`; one text holds them separated by semicolons [m].
-    width : str or Quantity
-        Plan B_x in the plane of rocking, over the columns' outer faces [m].
-    depth : str or Quantity, optional
-        Plan B_y perpendicular to it; `width` unless given, as in the paper [m].
-    column_width : str or Quantity
-        Width of a column in the plane of rocking [m].
-    column_depth : str or Quantity, optional
-        Perpendicular to it; `column_width`, a square column, unless given [m].
-    beam_height, beam_width : str or Quantity
-        Section of the edge beams. The height includes the slab [m].
-    slab_thickness : str or Quantity
-        Thickness of the slabs [m].
-    infill_thickness : str, Quantity or None
-        Thickness of the infill walls; None (or ``"none"``) for no walls [m].
-    density : str or Quantity
-        Mass per volume of all members [kg m^-3].
+    written_as = "int"
+    annotation = RatioLike
+
+    def read(self, given: object, owner: str) -> float:
+        """Take the number."""
+        return to_ratio(given, owner=owner, name=self.name, condition=self.condition, example="3")
+
+
+class StoreyHeights(Declared[Quantity, Missing]):
+    """Heights of storeys: a sequence, or a text with semicolons between them."""
+
+    written_as = "sequence of str or Quantity, or str"
+    annotation = Iterable[QuantityLike]
+
+    def read(self, given: object, owner: str) -> tuple[float, ...]:
+        """Convert every height to SI units.
+
+        Raises
+        ------
+        UnitsError, ComponentError
+            A height is none, or there are none.
+        """
+        each: Any = given.split(";") if isinstance(given, str) else given
+        try:
+            each = list(each)
+        except TypeError:  # one value; a scalar Quantity even calls itself iterable
+            each = [given]
+        if not each:
+            _refuse("storey_heights is empty; give the height of every storey")
+        return tuple(
+            to_si(one, LENGTH, owner=owner, name=f"{self.name}[{k}]", condition=POSITIVE)
+            for k, one in enumerate(each)
+        )
+
+    def write(self, value: tuple[float, ...]) -> str:
+        """Write all heights in one text."""
+        return "; ".join(f"{height!r} {LENGTH.unit}" for height in value)
+
+    def public(self, value: tuple[float, ...]) -> Quantity:
+        """Give all heights in one Quantity."""
+        return quantity(np.array(value), LENGTH)
+
+
+class InfillThickness(Declared[Quantity | None, str]):
+    """Thickness of walls, where there may be none: None, or ``"none"``; zero in SI units."""
+
+    written_as = "str, Quantity or None"
+    annotation = QuantityLike | None
+    measure: Measure
+
+    def read(self, given: object, owner: str) -> float:
+        """Convert to SI units."""
+        if given is None or (isinstance(given, str) and given == _NO_INFILL):
+            return 0.0
+        return to_si(given, self.measure, owner=owner, name=self.name, condition=self.condition)
+
+    def write(self, value: float) -> str:
+        """Write the thickness, or that there are no walls."""
+        return f"{value!r} {self.unit}" if value else _NO_INFILL
+
+    def public(self, value: float) -> Quantity | None:
+        """Give the thickness, or None."""
+        return quantity(value, self.measure) if value else None
+
+
+class RegularFrame(Component):
+    """A building of equal floors on four corner columns, as in the paper's section 4.2.
 
     Raises
     ------
@@ -137,12 +182,51 @@ class RegularFrame(Component[RegularFrameSI]):
     ['column left front', 'column left back']
     """
 
+    si: RegularFrameSI
     noun: ClassVar[str] = "frame"
+    alternatives: ClassVar[tuple[OneOf, ...]] = (OneOf(("storeys", "height"), "storey_heights"),)
 
-    width = SIProperty(LENGTH, "Plan B_x in the plane of rocking.")
-    depth = SIProperty(LENGTH, "Plan B_y perpendicular to the plane of rocking.")
-    height = SIProperty(LENGTH, "Height H.")
-    density = SIProperty(DENSITY, "Mass per volume.")
+    storeys = StoreyCount(None, _COUNT, doc="Number of storeys, all equally high.", default=DERIVED)
+    height = Parameter(
+        LENGTH, POSITIVE, doc="Height H of the building, with `storeys`.", default=DERIVED
+    )
+    storey_heights = StoreyHeights(
+        LENGTH,
+        POSITIVE,
+        doc="Height of every storey from the lowest up, instead of `storeys` and `height`; one "
+        "text holds them separated by semicolons.",
+        default=DERIVED,
+    )
+    width = Parameter(
+        LENGTH, POSITIVE, doc="Plan B_x in the plane of rocking, over the columns' outer faces."
+    )
+    depth = Parameter(
+        LENGTH,
+        POSITIVE,
+        doc="Plan B_y perpendicular to it; `width` unless given, as in the paper.",
+        default=DERIVED,
+    )
+    column_width = Parameter(THICKNESS, POSITIVE, doc="Width of a column in the plane of rocking.")
+    column_depth = Parameter(
+        THICKNESS,
+        POSITIVE,
+        doc="Perpendicular to it; `column_width`, a square column, unless given.",
+        default=DERIVED,
+    )
+    beam_height = Parameter(
+        THICKNESS, POSITIVE, doc="Height of the edge beams, which includes the slab."
+    )
+    beam_width = Parameter(THICKNESS, POSITIVE, doc="Width of the edge beams.")
+    slab_thickness = Parameter(
+        THICKNESS, POSITIVE, doc="Thickness of the slabs.", default=SLAB_THICKNESS
+    )
+    infill_thickness = InfillThickness(
+        THICKNESS,
+        Condition("greater than zero, or None for no walls", POSITIVE.holds),
+        doc='Thickness of the infill walls; None (or ``"none"``) for no walls.',
+        default=INFILL_THICKNESS,
+    )
+    density = Parameter(DENSITY, POSITIVE, doc="Mass per volume of all members.")
 
     def __init__(
         self,
@@ -160,87 +244,52 @@ class RegularFrame(Component[RegularFrameSI]):
         slab_thickness: QuantityLike = SLAB_THICKNESS,
         infill_thickness: QuantityLike | None = INFILL_THICKNESS,
     ) -> None:
-        lengths = {
-            name: _length(name, value)
-            for name, value in (
-                ("width", width),
-                ("depth", width if depth is None else depth),
-                ("column_width", column_width),
-                ("column_depth", column_width if column_depth is None else column_depth),
-                ("beam_height", beam_height),
-                ("beam_width", beam_width),
-                ("slab_thickness", slab_thickness),
-            )
-        }
-        per_volume = to_si(
-            density, DENSITY, owner="RegularFrame", name="density", condition=POSITIVE
-        )
-        infill = 0.0
-        if infill_thickness is not None and infill_thickness != _NO_INFILL:
-            infill = _length("infill_thickness", infill_thickness, _OR_NONE)
-        count, heights, levels = _storeys(storeys, height, storey_heights)
-        si = RegularFrameSI(
-            storey_heights=heights,
-            levels=levels,
-            infill_thickness=infill,
-            density=per_volume,
-            **lengths,
-        )
-        _check_fit(si)
-        texts = [f"{value!r} {LENGTH.unit}" for value in heights]
-        self._freeze(
-            si,
-            {
-                "storeys": count,
-                "height": None if count is None else with_unit(si.height, LENGTH),
-                "storey_heights": "; ".join(texts) if count is None else None,
-                **{name: with_unit(value, LENGTH) for name, value in lengths.items()},
-                "infill_thickness": with_unit(infill, LENGTH) if infill else _NO_INFILL,
-                "density": with_unit(per_volume, DENSITY),
-            },
+        super().__init__(
+            storeys=storeys,
+            height=height,
+            storey_heights=storey_heights,
+            width=width,
+            depth=depth,
+            column_width=column_width,
+            column_depth=column_depth,
+            beam_height=beam_height,
+            beam_width=beam_width,
+            slab_thickness=slab_thickness,
+            infill_thickness=infill_thickness,
+            density=density,
         )
 
-    @property
-    def storeys(self) -> int:
-        """Number of storeys."""
-        return len(self.si.levels)
+    def _check(self, given: Mapping[str, object], owner: str) -> None:
+        of_all = [given[name] is not None for name in ("storeys", "height")]
+        one_by_one = given["storey_heights"] is not None
+        if not one_by_one and not all(of_all):
+            _refuse("give storeys and height, or storey_heights")
+        if one_by_one and any(of_all):
+            _refuse("storey_heights tells the storeys and the height; give them without it")
+
+    def _hold(self, values: Mapping[str, object]) -> None:
+        square = {
+            "depth": values["depth"] or values["width"],
+            "column_depth": values["column_depth"] or values["column_width"],
+        }
+        super()._hold({**values, **square})
+
+    def _numbers(self, given: SIValues) -> RegularFrameSI:
+        values = dict(vars(given))
+        count, total, heights = (values.pop(n) for n in ("storeys", "height", "storey_heights"))
+        if heights is None:
+            levels = tuple(total * (k / count) for k in range(1, int(count) + 1))
+            heights = (total / count,) * int(count)
+        else:
+            levels = tuple(itertools.accumulate(heights))
+        si = RegularFrameSI(storey_heights=heights, levels=levels, **values)
+        _check_fit(si)
+        return si
 
     @property
     def members(self) -> tuple[Member, ...]:
         """All members: the columns, then slab, beams and walls of each storey upwards."""
         return tuple(_members(self.si))
-
-
-def _length(name: str, value: object, condition: Condition = POSITIVE) -> float:
-    measure = THICKNESS if name in _THIN else LENGTH
-    return to_si(value, measure, owner="RegularFrame", name=name, condition=condition)
-
-
-def _storeys(
-    storeys: object, height: object, storey_heights: object
-) -> tuple[float | None, tuple[float, ...], tuple[float, ...]]:
-    """Give the count (None for unequal storeys), the storeys' heights and their levels."""
-    if storey_heights is None:
-        if storeys is None or height is None:
-            _refuse("give storeys and height, or storey_heights")
-        count = to_ratio(
-            storeys, owner="RegularFrame", name="storeys", condition=_COUNT, example="3"
-        )
-        total = _length("height", height)
-        levels = tuple(total * (k / count) for k in range(1, int(count) + 1))
-        return count, (total / count,) * int(count), levels
-    if storeys is not None or height is not None:
-        _refuse("storey_heights tells the storeys and the height; give them without it")
-    if isinstance(storey_heights, str):
-        storey_heights = storey_heights.split(";")
-    try:
-        given = list(storey_heights)  # type: ignore[call-overload]
-    except TypeError:  # one value; a scalar Quantity even calls itself iterable
-        given = [storey_heights]
-    heights = tuple(_length(f"storey_heights[{k}]", each) for k, each in enumerate(given))
-    if not heights:
-        _refuse("storey_heights is empty; give the height of every storey")
-    return None, heights, tuple(itertools.accumulate(heights))
 
 
 def _check_fit(si: RegularFrameSI) -> None:

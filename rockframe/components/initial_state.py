@@ -5,18 +5,30 @@ import re
 from dataclasses import dataclass
 from typing import ClassVar, Final
 
-from rockframe.components.base import Component, with_unit
-from rockframe.errors import ComponentError, shown
+from rockframe.components.base import Component
+from rockframe.components.parameters import Parameter
+from rockframe.components.values import SIValues
+from rockframe.errors import shown
 from rockframe.units import (
     ANGLE,
     ANGULAR_VELOCITY,
     LENGTH,
     VELOCITY,
+    Condition,
     QuantityLike,
-    to_si,
 )
 
+
+def _in_degrees(rotation: str) -> str:
+    """Ask whether degrees were meant, if the rotation was given in radians."""
+    degrees = re.sub(r"\brad(ians?)?\b", "deg", rotation)
+    return "" if degrees == rotation else f"; was {shown(degrees)} meant?"
+
+
 _RISE: Final = LENGTH.like("0.01 m")
+_TILTED: Final = Condition(
+    "below a right angle", lambda rotation: abs(rotation) < 0.5 * math.pi, _in_degrees
+)
 
 
 @dataclass(frozen=True)
@@ -29,20 +41,8 @@ class InitialStateSI:
     vertical_velocity: float
 
 
-class InitialState(Component[InitialStateSI]):
+class InitialState(Component):
     """Rotation and velocities at the start of a run; all zero unless given.
-
-    Parameters
-    ----------
-    rotation : str or Quantity, optional
-        alpha, clockwise positive [rad].
-    angular_velocity : str or Quantity, optional
-        Rate of `rotation` [rad s^-1].
-    vertical_displacement : str or Quantity, optional
-        Of the centre of mass from static equilibrium, upwards; unless given,
-        the block starts in vertical equilibrium at its rotation [m].
-    vertical_velocity : str or Quantity, optional
-        Rate of `vertical_displacement` [m s^-1].
 
     Raises
     ------
@@ -52,7 +52,22 @@ class InitialState(Component[InitialStateSI]):
         Not finite, or a rotation of a right angle and more.
     """
 
+    si: InitialStateSI
     noun: ClassVar[str] = "initial state"
+
+    rotation = Parameter(ANGLE, _TILTED, doc="alpha, clockwise positive.", default=None)
+    angular_velocity = Parameter(
+        ANGULAR_VELOCITY, doc="Angular velocity, the rate of `rotation`.", default=None
+    )
+    vertical_displacement = Parameter(
+        _RISE,
+        doc="Of the centre of mass from static equilibrium, upwards; unless given, the block "
+        "starts in vertical equilibrium at its rotation.",
+        default=None,
+    )
+    vertical_velocity = Parameter(
+        VELOCITY, doc="Velocity, the rate of `vertical_displacement`.", default=None
+    )
 
     def __init__(
         self,
@@ -62,38 +77,17 @@ class InitialState(Component[InitialStateSI]):
         vertical_displacement: QuantityLike | None = None,
         vertical_velocity: QuantityLike | None = None,
     ) -> None:
-        given = {
-            name: None if value is None else to_si(value, measure, owner="InitialState", name=name)
-            for name, value, measure in (
-                ("rotation", rotation, ANGLE),
-                ("angular_velocity", angular_velocity, ANGULAR_VELOCITY),
-                ("vertical_displacement", vertical_displacement, _RISE),
-                ("vertical_velocity", vertical_velocity, VELOCITY),
-            )
-        }
-        if abs(given["rotation"] or 0.0) >= 0.5 * math.pi:
-            msg = (
-                "InitialState: rotation must be below a right angle, "
-                f"got {shown(str(rotation))}{_meant(str(rotation))}"
-            )
-            raise ComponentError(msg)
-        self._freeze(
-            InitialStateSI(
-                given["rotation"] or 0.0,
-                given["angular_velocity"] or 0.0,
-                given["vertical_displacement"],
-                given["vertical_velocity"] or 0.0,
-            ),
-            {
-                "rotation": with_unit(given["rotation"], ANGLE),
-                "angular_velocity": with_unit(given["angular_velocity"], ANGULAR_VELOCITY),
-                "vertical_displacement": with_unit(given["vertical_displacement"], LENGTH),
-                "vertical_velocity": with_unit(given["vertical_velocity"], VELOCITY),
-            },
+        super().__init__(
+            rotation=rotation,
+            angular_velocity=angular_velocity,
+            vertical_displacement=vertical_displacement,
+            vertical_velocity=vertical_velocity,
         )
 
-
-def _meant(rotation: str) -> str:
-    """Ask whether degrees were meant, if the rotation was given in radians."""
-    degrees = re.sub(r"\brad(ians?)?\b", "deg", rotation)
-    return "" if degrees == rotation else f"; was {shown(degrees)} meant?"
+    def _numbers(self, given: SIValues) -> InitialStateSI:
+        return InitialStateSI(
+            given.rotation or 0.0,
+            given.angular_velocity or 0.0,
+            given.vertical_displacement,
+            given.vertical_velocity or 0.0,
+        )

@@ -1,11 +1,11 @@
 """The two viscoelastic pads under the corners."""
 
-from dataclasses import dataclass
 from typing import ClassVar
 
-from rockframe.components.base import Component, with_unit
-from rockframe.components.damping import damping_ratio as read_damping_ratio
-from rockframe.errors import ComponentError
+from rockframe.components.alternatives import OneOf
+from rockframe.components.base import Component
+from rockframe.components.damping import DampingRatio
+from rockframe.components.parameters import Parameter, Ratio
 from rockframe.units import (
     DAMPING,
     NOT_NEGATIVE,
@@ -14,38 +14,11 @@ from rockframe.units import (
     UNIT_INTERVAL,
     QuantityLike,
     RatioLike,
-    to_ratio,
-    to_si,
 )
 
 
-@dataclass(frozen=True)
-class TwoSpringSupportSI:
-    """Pads in SI units; of each pair one member is given, the other None."""
-
-    frequency_ratio: float | None
-    stiffness: float | None
-    damping_ratio: float | None
-    damping: float | None
-    restitution: float | None
-
-
-class TwoSpringSupport(Component[TwoSpringSupportSI]):
+class TwoSpringSupport(Component):
     """Two equal Kelvin-Voigt pads, one under each corner, that take no tension.
-
-    Parameters
-    ----------
-    frequency_ratio : float, optional
-        beta = omega_v / omega, vertical over rocking frequency, Eq. (8) [1].
-    stiffness : str or Quantity, optional
-        Stiffness k of one pad, instead of `frequency_ratio` [N m^-1].
-    damping_ratio : float, optional
-        Vertical damping ratio xi, Eq. (7b) [1].
-    damping : str or Quantity, optional
-        Damping coefficient c of one pad, instead of `damping_ratio` [N s m^-1].
-    restitution : float, optional
-        Ratio eps of a landing corner's speeds after and before the impact,
-        Eq. (2), above 0 and at most 1; eps_max, Eq. (4), unless given [1].
 
     Raises
     ------
@@ -67,6 +40,37 @@ class TwoSpringSupport(Component[TwoSpringSupportSI]):
     """
 
     noun: ClassVar[str] = "base"
+    alternatives: ClassVar[tuple[OneOf, ...]] = (
+        OneOf("frequency_ratio", "stiffness"),
+        OneOf("damping_ratio", "damping"),
+    )
+
+    frequency_ratio = Ratio(
+        POSITIVE,
+        doc="beta = omega_v / omega, vertical over rocking frequency, Eq. (8).",
+        default=None,
+        example="20",
+    )
+    stiffness = Parameter(
+        STIFFNESS,
+        POSITIVE,
+        doc="Stiffness k of one pad, instead of `frequency_ratio`.",
+        default=None,
+    )
+    damping_ratio = DampingRatio(doc="Vertical damping ratio xi, Eq. (7b).")
+    damping = Parameter(
+        DAMPING,
+        NOT_NEGATIVE,
+        doc="Damping coefficient c of one pad, instead of `damping_ratio`.",
+        default=None,
+    )
+    restitution = Ratio(
+        UNIT_INTERVAL,
+        doc="Ratio eps of a landing corner's speeds after and before the impact, Eq. (2); "
+        "eps_max, Eq. (4), unless given.",
+        default=None,
+        example="0.9",
+    )
 
     def __init__(
         self,
@@ -77,50 +81,10 @@ class TwoSpringSupport(Component[TwoSpringSupportSI]):
         damping: QuantityLike | None = None,
         restitution: RatioLike | None = None,
     ) -> None:
-        owner = "TwoSpringSupport"
-        one_of(owner, frequency_ratio=frequency_ratio, stiffness=stiffness)
-        one_of(owner, damping_ratio=damping_ratio, damping=damping)
-        beta = k = xi = c = eps = None
-        if frequency_ratio is not None:
-            beta = to_ratio(
-                frequency_ratio,
-                owner=owner,
-                name="frequency_ratio",
-                condition=POSITIVE,
-                example="20",
-            )
-        if stiffness is not None:
-            k = to_si(stiffness, STIFFNESS, owner=owner, name="stiffness", condition=POSITIVE)
-        if damping_ratio is not None:
-            xi = read_damping_ratio(damping_ratio, owner=owner)
-        if damping is not None:
-            c = to_si(damping, DAMPING, owner=owner, name="damping", condition=NOT_NEGATIVE)
-        if restitution is not None:
-            eps = to_ratio(restitution, owner=owner, name="restitution", condition=UNIT_INTERVAL,
-                           example="0.9")  # fmt: skip
-        self._freeze(
-            TwoSpringSupportSI(beta, k, xi, c, eps),
-            {
-                "frequency_ratio": beta,
-                "stiffness": with_unit(k, STIFFNESS),
-                "damping_ratio": xi,
-                "damping": with_unit(c, DAMPING),
-                "restitution": eps,
-            },
+        super().__init__(
+            frequency_ratio=frequency_ratio,
+            stiffness=stiffness,
+            damping_ratio=damping_ratio,
+            damping=damping,
+            restitution=restitution,
         )
-
-    @property
-    def restitution(self) -> float | None:
-        """Restitution eps, or None for the block's eps_max [1]."""
-        return self.si.restitution
-
-
-def one_of(owner: str, **pair: object) -> None:
-    """Refuse to be given both or neither of a pair of arguments."""
-    given = [name for name, value in pair.items() if value is not None]
-    if len(given) == 1:
-        return
-    names = " or ".join(pair)
-    found = "both were" if given else "neither was"
-    msg = f"{owner}: give {names}; {found} given"
-    raise ComponentError(msg)

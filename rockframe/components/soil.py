@@ -1,13 +1,12 @@
 """The Winkler bed that stands for the soil."""
 
-from dataclasses import dataclass
 from enum import StrEnum
-from typing import ClassVar, Self
+from typing import ClassVar, Literal, Self, TypeAlias
 
-from rockframe.arguments import one_of_words
-from rockframe.components.base import Component, with_unit
-from rockframe.components.damping import damping_ratio as read_damping_ratio
-from rockframe.components.pads import one_of
+from rockframe.components.alternatives import OneOf
+from rockframe.components.base import Component
+from rockframe.components.damping import DampingRatio
+from rockframe.components.parameters import Choice, Parameter
 from rockframe.units import (
     BED_DAMPING,
     BED_STIFFNESS,
@@ -28,32 +27,11 @@ class Separation(StrEnum):
     PRESSURE = "pressure"
 
 
-@dataclass(frozen=True)
-class WinklerSoilSI:
-    """A bed in SI units; of damping and damping ratio one is given, the other None."""
-
-    stiffness: float
-    damping: float | None
-    damping_ratio: float | None
-    separation: Separation
+SeparationLike: TypeAlias = Separation | Literal["displacement", "pressure"]
 
 
-class WinklerSoil(Component[WinklerSoilSI]):
+class WinklerSoil(Component):
     """A bed of springs and dashpots side by side that take no tension.
-
-    Parameters
-    ----------
-    stiffness : str or Quantity
-        k0, stiffness of the bed per length of base in the plane of rocking: the
-        subgrade modulus times the base's depth out of the plane [Pa].
-    damping : str or Quantity, optional
-        c0, damping coefficient per length of base [Pa s].
-    damping_ratio : float, optional
-        Damping ratio of the vertical motion, instead of `damping`:
-        2 b c0 = 2 xi_s sqrt(2 b k0 m), with all mass that the bed carries [1].
-    separation : {"displacement", "pressure"}
-        Where the base and the bed part: above the level of the unloaded bed, as
-        in the paper; or also where the dashpots would have to pull.
 
     Raises
     ------
@@ -71,11 +49,34 @@ class WinklerSoil(Component[WinklerSoilSI]):
     Examples
     --------
     >>> soil = WinklerSoil.from_subgrade_modulus("20 MN/m^3", depth="4 m", damping_ratio=0.2)
-    >>> soil.si.stiffness
-    80000000.0
+    >>> soil.stiffness.to("MPa")
+    <Quantity(80.0, 'megapascal')>
     """
 
     noun: ClassVar[str] = "soil"
+    alternatives: ClassVar[tuple[OneOf, ...]] = (OneOf("damping", "damping_ratio"),)
+
+    stiffness = Parameter(
+        BED_STIFFNESS,
+        POSITIVE,
+        doc="k0, stiffness of the bed per length of base in the plane of rocking: the subgrade "
+        "modulus times the base's depth out of the plane.",
+    )
+    damping = Parameter(
+        BED_DAMPING,
+        NOT_NEGATIVE,
+        doc="c0, damping coefficient per length of base.",
+        default=None,
+    )
+    damping_ratio = DampingRatio(
+        doc="Damping ratio of the vertical motion, instead of `damping`: "
+        "2 b c0 = 2 xi_s sqrt(2 b k0 m), with all mass that the bed carries.",
+    )
+    separation = Choice(
+        Separation.DISPLACEMENT,
+        doc="Where the base and the bed part: above the level of the unloaded bed, as in the "
+        "paper; or also where the dashpots would have to pull.",
+    )
 
     def __init__(
         self,
@@ -83,25 +84,13 @@ class WinklerSoil(Component[WinklerSoilSI]):
         stiffness: QuantityLike,
         damping: QuantityLike | None = None,
         damping_ratio: RatioLike | None = None,
-        separation: Separation | str = Separation.DISPLACEMENT,
+        separation: SeparationLike = Separation.DISPLACEMENT,
     ) -> None:
-        owner = "WinklerSoil"
-        one_of(owner, damping=damping, damping_ratio=damping_ratio)
-        k = to_si(stiffness, BED_STIFFNESS, owner=owner, name="stiffness", condition=POSITIVE)
-        c = xi = None
-        if damping is not None:
-            c = to_si(damping, BED_DAMPING, owner=owner, name="damping", condition=NOT_NEGATIVE)
-        if damping_ratio is not None:
-            xi = read_damping_ratio(damping_ratio, owner=owner)
-        rule = one_of_words(Separation, separation, owner=owner, name="separation")
-        self._freeze(
-            WinklerSoilSI(k, c, xi, rule),
-            {
-                "stiffness": with_unit(k, BED_STIFFNESS),
-                "damping": with_unit(c, BED_DAMPING),
-                "damping_ratio": xi,
-                "separation": str(rule) if rule is not Separation.DISPLACEMENT else None,
-            },
+        super().__init__(
+            stiffness=stiffness,
+            damping=damping,
+            damping_ratio=damping_ratio,
+            separation=separation,
         )
 
     @classmethod
@@ -112,7 +101,7 @@ class WinklerSoil(Component[WinklerSoilSI]):
         depth: QuantityLike,
         damping: QuantityLike | None = None,
         damping_ratio: RatioLike | None = None,
-        separation: Separation | str = Separation.DISPLACEMENT,
+        separation: SeparationLike = Separation.DISPLACEMENT,
     ) -> Self:
         """Build the bed from the soil's subgrade modulus.
 
@@ -143,8 +132,3 @@ class WinklerSoil(Component[WinklerSoilSI]):
             damping_ratio=damping_ratio,
             separation=separation,
         )
-
-    @property
-    def separation(self) -> Separation:
-        """Where the bed lets go of the base."""
-        return self.si.separation

@@ -1,0 +1,246 @@
+"""Parameters of components, each declared once, as an attribute of its class."""
+
+from enum import Enum, StrEnum
+from typing import Any, Final, Generic, NoReturn, Self, TypeVar, overload
+
+from rockframe.arguments import one_of_words
+from rockframe.components.values import Quantity
+from rockframe.errors import ComponentError, shown
+from rockframe.units import (
+    Condition,
+    Measure,
+    QuantityLike,
+    RatioLike,
+    Unit,
+    quantity,
+    to_ratio,
+    to_si,
+)
+
+
+class Missing(Enum):
+    """What it means that a parameter is not given, where it then has no value of its own."""
+
+    REQUIRED = "it must be given"
+    DERIVED = "it follows from others; the property gives it always"
+
+
+REQUIRED: Final = Missing.REQUIRED
+DERIVED: Final = Missing.DERIVED
+
+Public = TypeVar("Public")
+Usual = TypeVar("Usual")
+Words = TypeVar("Words", bound=StrEnum)
+
+
+class Declared(Generic[Public, Usual]):
+    """A parameter of a component: an argument of its constructor, and a property.
+
+    Parameters
+    ----------
+    measure : Measure or None
+        Kind of quantity.
+    condition : Condition or None
+        Range that the value must lie in.
+    doc : str
+        What it is, in a sentence; its range and unit are added.
+    default : object
+        Value unless given, as users write it; None for one that may be missing,
+        ``DERIVED`` for one that then follows from others.
+    """
+
+    name: str
+    written_as: str
+    annotation: Any
+
+    def __init__(
+        self, measure: Measure | None, condition: Condition | None, *, doc: str, default: Usual
+    ) -> None:
+        self.measure = measure
+        self.condition = condition
+        self.default = default
+        self.unit = "" if measure is None else str(measure.unit)
+        limits = "" if condition is None else f"; {condition.words}"
+        unit = f" [{self.unit}]" if self.unit else ""
+        self.__doc__ = self.words = f"{doc.removesuffix('.')}{limits}{unit}."
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self.name = name
+
+    @overload
+    def __get__(self, instance: None, owner: type) -> Self: ...
+    @overload
+    def __get__(self: "Declared[Public, None]", instance: object, owner: type) -> Public | None: ...
+    @overload
+    def __get__(self, instance: object, owner: type) -> Public: ...
+    def __get__(self, instance: Any, owner: type) -> Any:
+        if instance is None:
+            return self
+        source = instance.si if self.default is DERIVED else instance.given
+        value = getattr(source, self.name)
+        return None if value is None else self.public(value)
+
+    def __set__(self, instance: object, value: Any) -> NoReturn:
+        msg = f"{type(instance).__name__} is immutable; build a new one to change {self.name}"
+        raise AttributeError(msg)
+
+    def accept(self, given: object, owner: str) -> Any:
+        """Read what was given, where that may be nothing; `owner` is named in messages."""
+        missing = given is None and self.default in (None, DERIVED)
+        return None if missing else self.read(given, owner)
+
+    def read(self, given: object, owner: str) -> Any:
+        """Read what was given: the value in SI units."""
+        raise NotImplementedError
+
+    def write(self, value: Any) -> float | str | None:
+        """Write a value so that :meth:`read` gives the same back; None if that is needless."""
+        return value
+
+    def public(self, value: Any) -> Any:
+        """Give a value as users see it."""
+        return value
+
+    def caution(self, value: Any) -> str | None:
+        """Say what is unusual about a value, if anything is."""
+        return None
+
+
+class Parameter(Declared[Quantity, Usual]):
+    """A parameter with a unit.
+
+    Parameters
+    ----------
+    measure : Measure
+        Kind of quantity, with its unit and an example for messages.
+    condition : Condition, optional
+        Range that the value must lie in.
+    doc : str
+        What it is, in a sentence; its range and unit are added.
+    default : str, optional
+        Value unless given; None for one that may be missing, ``DERIVED`` for one that
+        then follows from others.
+    """
+
+    written_as = "str or Quantity"
+    annotation = QuantityLike
+    measure: Measure
+
+    def __init__(
+        self,
+        measure: Measure,
+        condition: Condition | None = None,
+        *,
+        doc: str,
+        default: Usual = REQUIRED,
+    ) -> None:
+        super().__init__(measure, condition, doc=doc, default=default)
+
+    def read(self, given: object, owner: str) -> float:
+        """Convert to SI units, with :func:`rockframe.units.to_si`."""
+        return to_si(given, self.measure, owner=owner, name=self.name, condition=self.condition)
+
+    def write(self, value: float) -> str:
+        """Write the number with its unit."""
+        return f"{value!r} {self.unit}"
+
+    def public(self, value: float) -> Quantity:
+        """Give the number with its unit."""
+        return quantity(value, self.measure)
+
+
+class Ratio(Declared[float, Usual]):
+    """A parameter that is a pure number.
+
+    Parameters
+    ----------
+    condition : Condition, optional
+        Range that the value must lie in.
+    doc : str
+        What it is, in a sentence; its range is added.
+    default : float, optional
+        Value unless given; None for one that may be missing, ``DERIVED`` for one that
+        then follows from others.
+    example : str, optional
+        A number that makes sense, for messages.
+    """
+
+    written_as = "float"
+    annotation = RatioLike
+    measure: Measure
+
+    def __init__(
+        self,
+        condition: Condition | None = None,
+        *,
+        doc: str,
+        default: Usual = REQUIRED,
+        example: str = "0.1",
+    ) -> None:
+        measure = Measure("a pure ratio", Unit.ONE, example)
+        super().__init__(measure, condition, doc=doc, default=default)
+
+    def read(self, given: object, owner: str) -> float:
+        """Take the number, with :func:`rockframe.units.to_ratio`."""
+        example = self.measure.example
+        return to_ratio(
+            given, owner=owner, name=self.name, condition=self.condition, example=example
+        )
+
+
+class Choice(Declared[Words, Words]):
+    """A parameter that is one of a few words; the usual one goes without saying.
+
+    Parameters
+    ----------
+    default : StrEnum
+        Value unless given; its kind has the words.
+    doc : str
+        What it is, in a sentence.
+    """
+
+    annotation = str
+
+    def __init__(self, default: Words, *, doc: str) -> None:
+        super().__init__(None, None, doc=doc, default=default)
+        self.written_as = "{" + ", ".join(f'"{word}"' for word in type(default)) + "}"
+
+    def read(self, given: object, owner: str) -> Words:
+        """Find the word, with :func:`rockframe.arguments.one_of_words`."""
+        return one_of_words(type(self.default), given, owner=owner, name=self.name)
+
+    def write(self, value: Words) -> str | None:
+        """Write the word, unless it is the usual one."""
+        return None if value is self.default else str(value)
+
+
+class Text(Declared[str, Usual]):
+    """A parameter that is a text.
+
+    Parameters
+    ----------
+    doc : str
+        What it is, in a sentence.
+    default : None, optional
+        For one that may be missing.
+    """
+
+    written_as = "str"
+    annotation = str
+
+    def __init__(self, *, doc: str, default: Usual = REQUIRED) -> None:
+        super().__init__(None, None, doc=doc, default=default)
+
+    def read(self, given: object, owner: str) -> str:
+        """Take the text.
+
+        Raises
+        ------
+        ComponentError
+            No text, or an empty one.
+        """
+        if isinstance(given, str) and given.strip():
+            return given
+        missing = ", or None" if self.default is None else ""
+        msg = f"{owner}: {self.name} must be a text that is not empty{missing}, got {shown(given)}"
+        raise ComponentError(msg)

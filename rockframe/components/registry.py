@@ -1,0 +1,67 @@
+"""Classes of components by their names, for the way back from a description."""
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Final
+
+from rockframe.errors import ComponentError, SchemaError, shown
+
+if TYPE_CHECKING:
+    from rockframe.components.base import Component
+
+_KINDS: Final[dict[str, "type[Component]"]] = {}
+
+
+def register(kind: "type[Component]") -> None:
+    """Note a class by its name.
+
+    Parameters
+    ----------
+    kind : type
+        The class; one of the same module and qualified name takes the place of the former,
+        as when a cell of a notebook is run again.
+
+    Raises
+    ------
+    ComponentError
+        Another class has that name.
+    """
+    known = _KINDS.setdefault(kind.__name__, kind)
+    if _full_name(known) != _full_name(kind):
+        msg = (
+            f"{_full_name(kind)}: there is a component of that name, {_full_name(known)}; "
+            "descriptions tell components by their names, so give this one another"
+        )
+        raise ComponentError(msg)
+    _KINDS[kind.__name__] = kind
+
+
+def component_from_dict(description: Mapping[str, float | str]) -> "Component":
+    """Build any component from its :meth:`Component.to_dict`.
+
+    Parameters
+    ----------
+    description : mapping
+        As written by :meth:`Component.to_dict`.
+
+    Returns
+    -------
+    Component
+
+    Raises
+    ------
+    SchemaError
+        ``type`` is missing or unknown.
+    """
+    kind = description.get("type")
+    if not isinstance(kind, str) or kind not in _KINDS:
+        known = ", ".join(sorted(_KINDS))
+        msg = (
+            f"found a component of type {shown(kind)}; expected one of {known}, or of a class of "
+            "your own in a module that has been imported"
+        )
+        raise SchemaError(msg)
+    return _KINDS[kind].from_dict(description)
+
+
+def _full_name(kind: type) -> str:
+    return f"{kind.__module__}.{kind.__qualname__}"

@@ -1,0 +1,25 @@
+"""Parts as a user's own module defines them."""
+
+import rockframe as rf
+from rockframe.components import Component, Parameter, Ratio
+from rockframe.units import FORCE, LENGTH, NOT_NEGATIVE, POSITIVE
+
+
+class Stop(Component):
+    """A stop that breaks."""
+
+    noun = "stop"
+
+    gap = Parameter(LENGTH, NOT_NEGATIVE, doc="Distance before it is touched.")
+    strength = Parameter(FORCE, POSITIVE, doc="Force at which it breaks.")
+    friction = Ratio(NOT_NEGATIVE, doc="Coefficient of friction.", default=0.3)
+
+
+class YieldingPads(rf.TwoSpringSupport):
+    """Pads that yield."""
+
+    strength = Parameter(FORCE, POSITIVE, doc="Force at which a pad yields.")
+
+
+class HeavyBlock(rf.Block):
+    """A block of another name, with nothing of its own."""

@@ -1,0 +1,297 @@
+"""What parts give back, how they are changed, and what their signatures and docs show."""
+
+import copy
+import inspect
+import math
+import pickle
+
+import pint
+import pytest
+from unit import own_parts as own
+
+import rockframe as rf
+from rockframe.components import Component, Member, Ratio, RegularFrame, component_from_dict
+from rockframe.components.parameters import REQUIRED
+
+pytestmark = pytest.mark.unit
+
+UNIT = pint.get_application_registry()
+PADS = rf.TwoSpringSupport(stiffness="12 MN/m", damping_ratio=0.1)
+SOIL = rf.WinklerSoil(stiffness="9 MPa", damping_ratio="20 %")
+CAP = rf.CushionCap(height="0.9 m", mass="36 t", width="5 m")
+CAST = rf.CushionCap(height="0.9 m", density="2500 kg/m^3", depth="4 m")
+BLOCK = rf.Block(width="2 m", height="8 m", mass="50 t")
+MEMBER = Member(name="tank", mass="4 t", x="1 m", y="7 m", width="2 m", height="1.5 m")
+FRAME = RegularFrame(
+    storeys=3, height="9 m", width="4 m", column_width="0.25 m", beam_height="0.30 m",
+    beam_width="0.25 m", density="2500 kg/m^3",
+)  # fmt: skip
+TILTED = rf.InitialState(rotation="5 deg")
+KINDS = [type(part) for part in (PADS, SOIL, CAP, BLOCK, MEMBER, FRAME, TILTED, rf.RigidGround())]
+KINDS.append(rf.FrameEquivalent)
+
+
+@pytest.mark.parametrize(
+    ("part", "name", "value"),
+    [
+        (PADS, "stiffness", "12 MN/m"),
+        (PADS, "damping_ratio", 0.1),
+        (PADS, "frequency_ratio", None),
+        (PADS, "damping", None),
+        (PADS, "restitution", None),
+        (rf.TwoSpringSupport(frequency_ratio=20, damping="80 kN*s/m"), "frequency_ratio", 20.0),
+        (rf.TwoSpringSupport(frequency_ratio=20, damping="80 kN*s/m"), "damping", "80 kN*s/m"),
+        (SOIL, "stiffness", "9 MPa"),
+        (SOIL, "damping_ratio", 0.2),
+        (SOIL, "damping", None),
+        (SOIL, "separation", "displacement"),
+        (CAP, "height", "0.9 m"),
+        (CAP, "mass", "36 t"),
+        (CAP, "width", "5 m"),
+        (CAP, "density", None),
+        (CAST, "mass", None),
+        (CAST, "density", "2500 kg/m^3"),
+        (CAST, "depth", "4 m"),
+        (CAST, "width", None),
+        (rf.RigidGround(restitution=0.9), "restitution", 0.9),
+        (BLOCK, "shape_factor", 3.0),
+        (BLOCK.replace(inertia="3e5 kg*m^2"), "inertia", "3e5 kg*m^2"),
+        (MEMBER, "mass", "4 t"),
+        (MEMBER, "density", None),
+        (MEMBER, "width", "2 m"),
+        (MEMBER, "depth", None),
+        (MEMBER, "name", "tank"),
+        (MEMBER, "kind", None),
+        (FRAME, "storeys", 3),
+        (FRAME, "column_width", "0.25 m"),
+        (FRAME, "column_depth", "0.25 m"),
+        (FRAME, "depth", "4 m"),
+        (FRAME, "slab_thickness", "0.12 m"),
+        (FRAME, "infill_thickness", "0.15 m"),
+        (FRAME.replace(infill_thickness=None), "infill_thickness", None),
+        (TILTED, "rotation", "5 deg"),
+        (TILTED, "vertical_displacement", None),
+    ],
+)
+def test_a_part_gives_back_what_it_was_given(part, name, value):
+    found = getattr(part, name)
+    if not isinstance(value, str) or isinstance(found, str):
+        assert found == value
+        assert type(found) is type(value) or name == "separation"
+        return
+    wanted = UNIT.Quantity(value)
+    assert isinstance(found, UNIT.Quantity)
+    assert found.m_as(wanted.units) == pytest.approx(wanted.magnitude, rel=1e-14)
+
+
+def test_storeys_one_by_one():
+    frame = FRAME.replace(storey_heights=["3 m", "3.5 m"])
+    assert frame.storeys == 2
+    assert frame.height.m_as("m") == 6.5
+    assert frame.storey_heights.m_as("m").tolist() == [3.0, 3.5]
+    assert FRAME.storey_heights.m_as("m").tolist() == [3.0] * 3
+    assert FRAME.replace(storey_heights=FRAME.storey_heights).si == FRAME.si
+
+
+# replacing -----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("part", "changes", "gone"),
+    [
+        (PADS, {"damping_ratio": 0.2}, ()),
+        (PADS, {"frequency_ratio": 20}, ("stiffness",)),
+        (PADS, {"damping": "80 kN*s/m", "restitution": 0.9}, ("damping_ratio",)),
+        (PADS.replace(restitution=0.9), {"restitution": None}, ()),
+        (SOIL, {"damping": "0 Pa*s", "separation": "pressure"}, ("damping_ratio",)),
+        (CAP, {"density": "2500 kg/m^3", "depth": "4 m"}, ("mass",)),
+        (CAST, {"mass": "9 t"}, ("density", "depth")),
+        (CAST, {"depth": "5 m"}, ()),
+        (BLOCK.replace(shape_factor=2.9), {"inertia": "3e5 kg*m^2"}, ("shape_factor",)),
+        (BLOCK, {"mass": 60.0 * UNIT.tonne}, ()),
+        (MEMBER, {"inertia": "0 kg*m^2"}, ("width", "height")),
+        (FRAME, {"storey_heights": "3 m; 4 m"}, ("storeys", "height")),
+        (FRAME, {"slab_thickness": "0.2 m", "width": "5 m"}, ()),
+        (TILTED, {"angular_velocity": "1 rad/s"}, ()),
+    ],
+)
+def test_a_part_is_changed_by_copying(part, changes, gone):
+    before = part.to_dict()
+    changed = part.replace(**changes)
+    arguments = {name: value for name, value in before.items() if name not in ("type", *gone)}
+    assert changed == type(part)(**{**arguments, **changes})
+    assert changed != part
+    assert part.to_dict() == before
+    assert part.replace() == part
+
+
+def test_what_replaces_is_checked_as_what_is_new():
+    with pytest.raises(rf.UnitsError, match="TwoSpringSupport: stiffness needs a stiffness"):
+        PADS.replace(stiffness=12e6)
+    with pytest.raises(rf.ComponentError, match="damping_ratio must be zero or more"):
+        PADS.replace(damping_ratio=-0.1)
+    with pytest.raises(rf.ComponentError, match="give damping_ratio or damping; both were given"):
+        PADS.replace(damping_ratio=0.1, damping="80 kN*s/m")
+    with pytest.raises(rf.ComponentError, match="neither was given"):
+        PADS.replace(stiffness=None)
+    with pytest.raises(rf.ComponentError, match="density and depth go together; only density was"):
+        CAP.replace(density="2500 kg/m^3")
+    with pytest.raises(rf.ComponentError, match="cannot rock"):
+        BLOCK.replace(height="1 m")
+    with pytest.raises(TypeError, match="unexpected keyword argument 'frequency'"):
+        PADS.replace(frequency=3)
+    with pytest.warns(rf.ModelWarning, match="'5 %' meant") as caught:
+        assert PADS.replace(damping_ratio=5).damping_ratio == 5.0
+    assert caught[0].filename == __file__
+
+
+def test_a_frame_of_members_is_changed_by_its_measures():
+    measures = {
+        "width": "4 m", "column_width": "0.25 m", "beam_height": "0.30 m",
+        "beam_width": "0.25 m", "density": "2500 kg/m^3",
+    }  # fmt: skip
+    frame = rf.FrameEquivalent.from_members(storeys=3, height="9 m", **measures)
+    changed = frame.replace(storeys=6, height="18 m")
+    assert changed == rf.FrameEquivalent.from_members(storeys=6, height="18 m", **measures)
+    unequal = frame.replace(storey_heights=["3 m", "4 m"])
+    assert unequal.height.m_as("m") == 7.0
+    with pytest.raises(TypeError, match="'mass'"):
+        frame.replace(mass="50 t")
+    listed = rf.FrameEquivalent.from_members(frame.members, width="4 m", height="9 m")
+    assert listed.replace(depth="4 m").space_proportion == pytest.approx(frame.space_proportion)
+    plain = rf.FrameEquivalent(width="4 m", height="9 m", mass="45.8 t", shape_factor=1.153)
+    assert plain.replace(inertia="4e5 kg*m^2").inertia.m_as("kg*m^2") == pytest.approx(4e5)
+
+
+# signatures and docs -------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("kind", KINDS)
+class TestConstructor:
+    def test_it_has_every_parameter_by_name(self, kind):
+        arguments = inspect.signature(kind).parameters
+        assert set(arguments) == set(kind._declared)
+        for name, argument in arguments.items():
+            assert argument.kind is inspect.Parameter.KEYWORD_ONLY
+            required = kind._declared[name].default is REQUIRED
+            assert (argument.default is inspect.Parameter.empty) == required
+
+    def test_python_says_what_does_not_fit(self, kind):
+        name = kind.__name__
+        with pytest.raises(TypeError, match=rf"^{name}\.__init__\(\) got an unexpected .*'odd'"):
+            kind(**dict.fromkeys(kind._declared, "1 m"), odd="2 m")
+        with pytest.raises(TypeError, match=rf"^{name}\.__init__\(\) takes 1 positional"):
+            kind("2 m")
+
+    def test_its_docstring_tells_every_parameter(self, kind):
+        text = inspect.getdoc(kind)
+        assert text.count("Parameters\n----------") == 1
+        for name, declared in kind._declared.items():
+            assert f"\n{name} : " in text
+            if declared.unit:
+                assert f"[{declared.unit}]" in text
+            assert inspect.getdoc(getattr(kind, name)) == declared.words
+
+
+@pytest.mark.parametrize("part", [PADS, SOIL, CAP, BLOCK, MEMBER, FRAME, TILTED])
+def test_only_public_names_are_shown(part):
+    shown = dir(part)
+    assert not [name for name in shown if name.startswith("_")]
+    assert set(part._declared) | {"replace", "to_dict", "si", "given"} <= set(shown)
+
+
+def test_values_do_not_lead_back_in():
+    with pytest.raises(AttributeError, match="immutable"):
+        PADS.given.stiffness = 1.0
+    with pytest.raises(AttributeError, match="immutable"):
+        del PADS.si.stiffness
+
+
+# parts of one's own --------------------------------------------------------------------------
+
+
+def pickled(part):
+    return pickle.loads(pickle.dumps(part))  # noqa: S301
+
+
+class TestOwnParts:
+    def test_a_class_that_only_declares(self):
+        stop = own.Stop(strength="3 kN", gap="2 mm")
+        assert stop.strength.m_as("kN") == pytest.approx(3.0)
+        assert stop.gap.m_as("mm") == pytest.approx(2.0)
+        assert stop.friction == 0.3
+        assert stop.si.strength == 3000.0
+        assert repr(stop) == "Stop(gap='0.002 m', strength='3000.0 N', friction=0.3)"
+        assert stop.parameters() == ("gap", "strength", "friction")
+        assert stop.with_scaled("gap", 2.0).gap.m_as("mm") == pytest.approx(4.0)
+        assert str(inspect.signature(own.Stop)).startswith("(*, gap:")
+        assert "Force at which it breaks; greater than zero [N]." in inspect.getdoc(own.Stop)
+
+    def test_a_class_with_one_parameter_more(self):
+        pads = own.YieldingPads(frequency_ratio=20, damping_ratio=0.1, strength="80 kN")
+        assert isinstance(pads, rf.TwoSpringSupport)
+        assert pads.strength.m_as("kN") == pytest.approx(80.0)
+        assert pads.frequency_ratio == 20.0
+        assert list(inspect.signature(own.YieldingPads).parameters)[-1] == "strength"
+        assert pads.replace(stiffness="12 MN/m").frequency_ratio is None
+        with pytest.raises(rf.ComponentError, match="YieldingPads: give frequency_ratio or stif"):
+            own.YieldingPads(damping_ratio=0.1, strength="80 kN")
+        with pytest.raises(rf.UnitsError, match="YieldingPads: strength needs a force with a uni"):
+            own.YieldingPads(frequency_ratio=20, damping_ratio=0.1, strength=80)
+        with pytest.raises(TypeError, match=r"YieldingPads\.__init__\(\) missing 1 required keyw"):
+            own.YieldingPads(frequency_ratio=20, damping_ratio=0.1)
+        with pytest.warns(rf.ModelWarning, match="YieldingPads: damping_ratio = 5 is 500 %"):
+            own.YieldingPads(frequency_ratio=20, damping_ratio=5, strength="80 kN")
+
+    @pytest.mark.parametrize("twin", [copy.copy, copy.deepcopy, pickled])
+    def test_they_survive_what_other_parts_do(self, twin):
+        for part in (
+            own.Stop(strength="3 kN", gap="2 mm"),
+            own.YieldingPads(frequency_ratio=20, damping_ratio=0.1, strength="80 kN"),
+            own.HeavyBlock(width="2 m", height="8 m", mass="50 t"),
+        ):
+            assert twin(part) == part
+            assert type(twin(part)) is type(part)
+            assert component_from_dict(part.to_dict()) == part
+            assert hash(twin(part)) == hash(part)
+
+    def test_a_subclass_never_equals_its_parent(self):
+        size = {"width": "2 m", "height": "8 m", "mass": "50 t"}
+        assert own.HeavyBlock(**size) != rf.Block(**size)
+        assert rf.Block(**size) != own.HeavyBlock(**size)
+
+    def test_a_system_with_one_comes_back(self):
+        system = rf.System(own.HeavyBlock(width="2 m", height="8 m", mass="50 t"))
+        again = rf.System.from_dict(system.to_dict())
+        assert again == system
+        assert type(again.parts.block) is own.HeavyBlock
+
+    def test_two_classes_of_one_name_are_told_apart(self):
+        with pytest.raises(rf.ComponentError, match=r"unit\.own_parts\.Stop; .* give this one an"):
+            type("Stop", (Component,), {"__module__": "elsewhere", "__qualname__": "Stop"})
+        found = component_from_dict({"type": "Stop", "gap": "1 mm", "strength": "1 kN"})
+        assert type(found) is own.Stop
+
+    def test_a_class_may_be_defined_anew(self):
+        made = [
+            type("Redefined", (Component,), {"__module__": "notebook", "__qualname__": "Redefined"})
+            for _ in range(2)
+        ]
+        assert type(component_from_dict({"type": "Redefined"})) is made[1]
+        assert made[0]() != made[1]()
+
+    def test_names_that_all_parts_have_are_refused(self):
+        with pytest.raises(rf.ComponentError, match="'si' means something else"):
+            type("Strange", (Component,), {"si": Ratio(doc="Nothing.")})
+
+    def test_an_unknown_class_is_said(self):
+        with pytest.raises(rf.SchemaError, match="in a module that has been imported"):
+            component_from_dict({"type": "Unheard"})
+
+
+def test_numbers_are_the_same_through_all_ways():
+    angle = 0.1 + 1e-17
+    state = rf.InitialState(rotation=f"{angle!r} rad")
+    assert state.si.rotation == angle
+    assert state.rotation.magnitude == angle
+    assert math.isclose(state.replace(rotation=state.rotation).si.rotation, angle, rel_tol=0.0)
