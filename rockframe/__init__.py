@@ -9,7 +9,12 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from rockframe import errors as errors
     from rockframe import plot as plot
+    from rockframe.comparison import Recommendation as Recommendation
+    from rockframe.comparison import model_ladder as model_ladder
+    from rockframe.comparison import recommend as recommend
+    from rockframe.comparison import tradeoff as tradeoff
     from rockframe.components import Block as Block
     from rockframe.components import CushionCap as CushionCap
     from rockframe.components import FrameEquivalent as FrameEquivalent
@@ -30,10 +35,6 @@ if TYPE_CHECKING:
     from rockframe.errors import SolverError as SolverError
     from rockframe.errors import SolverWarning as SolverWarning
     from rockframe.errors import UnitsError as UnitsError
-    from rockframe.ladder import Recommendation as Recommendation
-    from rockframe.ladder import model_ladder as model_ladder
-    from rockframe.ladder import recommend as recommend
-    from rockframe.ladder import tradeoff as tradeoff
     from rockframe.measures import fourier_spectrum as fourier_spectrum
     from rockframe.measures import intensity_measures as intensity_measures
     from rockframe.measures import response_spectrum as response_spectrum
@@ -74,7 +75,7 @@ _HOMES = {
         "SolverWarning",
         "UnitsError",
     ),
-    "rockframe.ladder": ("Recommendation", "model_ladder", "recommend", "tradeoff"),
+    "rockframe.comparison": ("Recommendation", "model_ladder", "recommend", "tradeoff"),
     "rockframe.measures": (
         "fourier_spectrum",
         "intensity_measures",
@@ -116,6 +117,7 @@ __all__ = [
     "UnitsError",
     "WinklerSoil",
     "__version__",
+    "errors",
     "fourier_spectrum",
     "intensity_measures",
     "model_ladder",
@@ -132,8 +134,8 @@ def __getattr__(name: str) -> Any:
     # never waits for the integrator.
     if name in _HOME_OF:
         value = getattr(import_module(_HOME_OF[name]), name)
-    elif name == "plot":
-        value = import_module("rockframe.plot")
+    elif name in ("errors", "plot"):
+        value = import_module(f"{__name__}.{name}")
     else:
         msg = f"module {__name__!r} has no attribute {name!r}"
         raise AttributeError(msg)

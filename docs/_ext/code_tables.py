@@ -7,7 +7,7 @@ from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
 from rockframe.dynamics.protocol import ContactState, EventKind
-from rockframe.results.variables.ladder import LADDER
+from rockframe.results.variables.comparison import COMPARISON
 from rockframe.results.variables.runs import (
     CERTIFICATE,
     ENERGY_HISTORIES,
@@ -68,7 +68,7 @@ TABLES: dict[str, Callable[[], Rows]] = {
     "events": lambda: _variables(EVENTS_AND_SCALARS, EVENT),
     "scalars": lambda: _variables(EVENTS_AND_SCALARS, ()),
     "certificate": lambda: _variables(CERTIFICATE),
-    "ladder": lambda: _variables(LADDER),
+    "comparison": lambda: _variables(COMPARISON),
     "rest": lambda: _variables(REST),
     "held": lambda: _variables(HELD),
     "modes": lambda: _variables(MODES),

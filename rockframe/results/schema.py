@@ -2,7 +2,7 @@
 
 from typing import Final
 
-from rockframe.results.variables.ladder import LADDER
+from rockframe.results.variables.comparison import COMPARISON
 from rockframe.results.variables.motions import MEASURES
 from rockframe.results.variables.runs import (
     CERTIFICATE,
@@ -21,7 +21,7 @@ _TABLES: Final = (
     REST,
     MODES,
     MEASURES,
-    LADDER,
+    COMPARISON,
 )
 
 SCHEMA: Final = {row.name: row for table in _TABLES for row in table}

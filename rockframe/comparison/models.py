@@ -1,6 +1,7 @@
-"""The ladder of models: what a scene becomes when parts and effects are left out."""
+"""Models to compare: what a scene becomes when parts and effects are left out."""
 
 import warnings
+from typing import Any
 
 from rockframe.errors import ComponentError, ModelWarning
 from rockframe.simulation.system import System
@@ -64,9 +65,8 @@ def model_ladder(system: System) -> dict[str, System]:
     given = vars(system.parts)
     present = system.parts.signature
     rows = _STACK if {"pads", "cap"} <= present or "soil" not in present else _BED
-    description = system.to_dict()
-    options = {name: str(description[name]) for name in ("restraint", "gravity")}
-    ladder: dict[str, System] = {}
+    options: dict[str, Any] = {"restraint": system.restraint, "gravity": system.gravity}
+    models: dict[str, System] = {}
     with warnings.catch_warnings():
         # what is left out may be said of a rung, but the scene itself has said its own
         warnings.simplefilter("ignore", ModelWarning)
@@ -80,8 +80,8 @@ def model_ladder(system: System) -> dict[str, System]:
                 if rotation is Rotation.FINITE and system.rotation is Rotation.SMALL:
                     continue
                 words = f"{name}, small rotations" if rotation is Rotation.SMALL else name
-                ladder[words] = System(*parts, rotation=rotation, coupling=coupling, **options)
-    return ladder
+                models[words] = System(*parts, rotation=rotation, coupling=coupling, **options)
+    return models
 
 
 def _reached(slots: tuple[str, ...], coupling: Coupling, system: System) -> bool:

@@ -5,7 +5,7 @@ from typing import Final
 from rockframe.results.variables.variable import Variable
 from rockframe.units import Unit
 
-LADDER: Final = (
+COMPARISON: Final = (
     Variable("run_time", (), Unit.SECOND, "wall time of a run, median of the repetitions"),
     Variable("run_time_least", (), Unit.SECOND, "least wall time of a run"),
     Variable("run_time_greatest", (), Unit.SECOND, "greatest wall time of a run"),

@@ -11,14 +11,14 @@ import numpy as np
 import xarray as xr
 
 from rockframe.arguments import whole_number
-from rockframe.errors import ComponentError, ModelWarning, SolverWarning, shown
-from rockframe.ladder.errors import (
+from rockframe.comparison.errors import (
     event_time_error,
     history_error,
     peak_error,
     verdicts_agree,
 )
-from rockframe.ladder.models import check_system, model_ladder
+from rockframe.comparison.models import check_system, model_ladder
+from rockframe.errors import ComponentError, ModelWarning, SolverWarning, shown
 from rockframe.results.dataset import build_dataset
 from rockframe.simulation.plan import Plan, plan_run
 from rockframe.simulation.provenance import motion_attributes
@@ -29,6 +29,7 @@ from rockframe.solve.accuracy import Accuracy, AccuracyLevel, accuracy_of
 if TYPE_CHECKING:
     from rockframe.components import InitialState
     from rockframe.motion import GroundMotion
+    from rockframe.system.options import AccuracyLike
     from rockframe.units import QuantityLike
 
 TIGHT: Final = 1e-12
@@ -49,7 +50,7 @@ def tradeoff(
     motion: "GroundMotion | None" = None,
     *,
     models: Sequence[str] | str | None = None,
-    accuracies: Sequence[str | float | Accuracy] | str | float | Accuracy = tuple(AccuracyLevel),
+    accuracies: "Sequence[AccuracyLike] | AccuracyLike" = tuple(AccuracyLevel),
     repeats: int = 5,
     duration: "QuantityLike | None" = None,
     free_vibration: "QuantityLike | None" = None,
@@ -98,15 +99,15 @@ def tradeoff(
     """
     check_system(system, _OWNER)
     repeats = whole_number(repeats, owner=_OWNER, name="repeats", lowest=1, highest=_MOST_REPEATS)
-    ladder = model_ladder(system)
-    chosen = _chosen(ladder, (models,) if isinstance(models, str) else models)
+    models_of_scene = model_ladder(system)
+    chosen = _chosen(models_of_scene, (models,) if isinstance(models, str) else models)
     given = (accuracies,) if isinstance(accuracies, str | float | int | Accuracy) else accuracies
     settings = {_label(accuracy): accuracy_of(accuracy) for accuracy in given}
     record = system.motion if motion is None else motion
 
     def plan(scene: System, accuracy: Accuracy) -> Plan:
         return plan_run(
-            scene,
+            scene.assembly,
             record,
             duration=duration,
             free_vibration=free_vibration,
@@ -121,10 +122,10 @@ def tradeoff(
         # a rung may say what it cannot show; that is what the errors measure
         warnings.simplefilter("ignore", ModelWarning)
         warnings.simplefilter("ignore", SolverWarning)
-        truth = run(system, plan(system, BENCHMARK))
+        truth = run(system.assembly, plan(system, BENCHMARK))
         rows: list[list[Outcome]] = []
         for scene in chosen.values():
-            converged = run(scene, plan(scene, BENCHMARK))
+            converged = run(scene.assembly, plan(scene, BENCHMARK))
             rows.append(
                 [
                     measure(scene, plan(scene, setting), converged, truth, repeats)
@@ -136,11 +137,11 @@ def tradeoff(
     dataset = build_dataset(
         {name: np.array([[cell[name] for cell in row] for row in rows]) for name in names},
         {
-            "scene": list(ladder)[-1],
+            "scene": list(models_of_scene)[-1],
             "benchmark_rtol": TIGHT,
             "repeats": repeats,
             "settings": json.dumps(exact),
-            "system_json": json.dumps(system.to_dict()),
+            "system_json": json.dumps(system.assembly.to_dict()),
             **motion_attributes(record),
         },
         over=DIMENSIONS,
@@ -174,7 +175,7 @@ def measure(
     dict
         Scalars by their names in the schema.
     """
-    found = run(scene, plan)
+    found = run(scene.assembly, plan)
     bare = replace(plan, output_step=None)
     times = [_timed(scene, bare) for _ in range(repeats)]
     return {
@@ -193,22 +194,22 @@ def measure(
 
 def _timed(scene: System, plan: Plan) -> float:
     start = time.perf_counter()
-    outcome(scene, plan)
+    outcome(scene.assembly, plan)
     return time.perf_counter() - start
 
 
-def _chosen(ladder: dict[str, System], models: Sequence[str] | None) -> dict[str, System]:
+def _chosen(known: dict[str, System], models: Sequence[str] | None) -> dict[str, System]:
     if models is None:
-        return ladder
-    unknown = [name for name in models if name not in ladder]
+        return known
+    unknown = [name for name in models if name not in known]
     if unknown or not models:
-        known = ", ".join(repr(name) for name in ladder)
-        msg = f"{_OWNER}: models must be some of {known}, got {shown(list(models))}"
+        names = ", ".join(repr(name) for name in known)
+        msg = f"{_OWNER}: models must be some of {names}, got {shown(list(models))}"
         raise ComponentError(msg)
-    return {name: ladder[name] for name in models}
+    return {name: known[name] for name in models}
 
 
-def _label(given: str | float | Accuracy) -> str:
+def _label(given: "AccuracyLike") -> str:
     if isinstance(given, float):
         return f"rtol {float(given)!r}"
     if isinstance(given, Accuracy):

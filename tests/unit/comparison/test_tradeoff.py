@@ -99,7 +99,7 @@ def test_it_tells_what_was_compared(measured):
 
 
 def test_the_time_is_the_median_of_runs_without_histories(monkeypatch):
-    module = importlib.import_module("rockframe.ladder.tradeoff")
+    module = importlib.import_module("rockframe.comparison.tradeoff")
     times, steps = iter([5.0, 1.0, 2.0]), []
     monkeypatch.setattr(
         module, "_timed", lambda _, plan: steps.append(plan.output_step) or next(times)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from rockframe.ladder.errors import (
+from rockframe.comparison.errors import (
     event_time_error,
     history_error,
     peak_error,

@@ -1,0 +1,11 @@
+"""Speed against accuracy: models and tolerances compared for a scene."""
+
+from rockframe.comparison.models import model_ladder
+from rockframe.comparison.recommend import Recommendation, recommend
+from rockframe.comparison.tradeoff import tradeoff
+
+__all__ = ["Recommendation", "model_ladder", "recommend", "tradeoff"]
+
+
+def __dir__() -> list[str]:
+    return __all__
