@@ -1,6 +1,12 @@
 """Figures of results and motions; matplotlib is imported when the first is drawn."""
 
-from rockframe.plot.motion import motion as motion
-from rockframe.plot.response import response as response
-from rockframe.plot.spectra import spectra as spectra
-from rockframe.plot.tradeoff import tradeoff as tradeoff
+from rockframe.plot._motion import motion
+from rockframe.plot._response import response
+from rockframe.plot._spectra import spectra
+from rockframe.plot._tradeoff import tradeoff
+
+__all__ = ["motion", "response", "spectra", "tradeoff"]
+
+
+def __dir__() -> list[str]:
+    return __all__

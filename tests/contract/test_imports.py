@@ -112,6 +112,16 @@ def test_all_names_are_there():
         rf.Sytem  # noqa: B018
 
 
+def test_only_what_is_meant_for_users_is_shown():
+    assert dir(rf.plot) == ["motion", "response", "spectra", "tradeoff"]
+    assert all(callable(getattr(rf.plot, name)) for name in dir(rf.plot))
+    assert {name for name in rf.__all__ if name.endswith(("Error", "Warning"))} == set(
+        dir(rf.errors)
+    )
+    assert all(getattr(rf, name) is getattr(rf.errors, name) for name in dir(rf.errors))
+    assert "Block" in dir(rf.components)
+
+
 def test_errors_form_one_family():
     for name in ("Units", "Component", "Assembly", "Record", "Solver", "Schema"):
         error = getattr(rf, f"{name}Error")

@@ -8,7 +8,7 @@ from matplotlib.colors import to_rgb
 from records import record_path
 
 import rockframe as rf
-from rockframe.plot.contact import COLOURS, mixed_colours
+from rockframe.plot._contact import COLOURS, mixed_colours
 from rockframe.solve.layout import Status
 
 BLOCK = rf.Block(width="1 m", height="6 m", mass="10 t")

@@ -1,12 +1,12 @@
-"""Time against error: the work-precision diagram and the ladder of models."""
+"""Time against error: the work-precision diagram and the comparison of models."""
 
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 import xarray as xr
 
-from rockframe.plot.given import check_rungs
-from rockframe.plot.title import set_title
+from rockframe.plot._given import check_rungs
+from rockframe.plot._title import set_title
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from rockframe.plot.contact import draw_contact, draw_contact_legend
-from rockframe.plot.given import check_run
-from rockframe.plot.title import set_title
+from rockframe.plot._contact import draw_contact, draw_contact_legend
+from rockframe.plot._given import check_run
+from rockframe.plot._title import set_title
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from rockframe.plot.given import check_motion
-from rockframe.plot.title import set_title
+from rockframe.plot._given import check_motion
+from rockframe.plot._title import set_title
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
