@@ -8,7 +8,7 @@ from typing import Final
 from rockframe.errors import RockframeError
 from rockframe.simulation.beginning import Continuation
 from rockframe.simulation.plan import Plan
-from rockframe.system.assembly import Assembly
+from rockframe.system.assembly import Assembly, assemble
 
 QUARTERS: Final = (0.25, 0.5)
 """Shares of the nudge at which scales are tried inside it."""
@@ -34,15 +34,14 @@ def parameters(system: Assembly) -> Iterator[tuple[str, SceneAt]]:
         The parameter in words, and what gives the scene for a relative change of it: None
         where the parts then misfit.
     """
-    description = system.to_dict()
-    options = {name: str(value) for name, value in description.items() if name != "parts"}
+    options = system.options.to_dict()
     parts = system.parts.structural()
 
     def changed(place: int, name: str) -> SceneAt:
         def at(change: float) -> Assembly | None:
             try:
                 part = parts[place].with_scaled(name, 1.0 + change)
-                return type(system)(*parts[:place], part, *parts[place + 1 :], **options)
+                return assemble([*parts[:place], part, *parts[place + 1 :]], **options)
             except RockframeError:
                 return None
 

@@ -13,6 +13,7 @@ from rockframe.results.schema import ENERGIES, SCHEMA
 from rockframe.simulation.beginning import Beginning, continuation_of
 from rockframe.solve.accuracy import Accuracy, accuracy_of
 from rockframe.system.assembly import Assembly
+from rockframe.system.options import AccuracyLike, Overturning, OverturningLike, read_option
 from rockframe.units import POSITIVE, TIME, TIME_STEP, QuantityLike, to_si
 
 ENERGY_GROUP = "energy"
@@ -56,10 +57,10 @@ def plan_run(
     duration: QuantityLike | None,
     free_vibration: QuantityLike | None,
     initial: "InitialState | xr.Dataset | None",
-    accuracy: Accuracy | str | float,
+    accuracy: AccuracyLike,
     output_step: QuantityLike | None,
     outputs: Sequence[str] | None,
-    overturning: str,
+    overturning: OverturningLike,
 ) -> Plan:
     """Check the arguments of a run against the system and one another.
 
@@ -73,7 +74,7 @@ def plan_run(
         With every fault found.
     """
     faults: list[str] = []
-    motion = system.motion if motion is None else motion
+    motion = system.parts.motion if motion is None else motion
     _check_kind(motion, GroundMotion, "motion", faults)
     if faults:
         raise AssemblyError(faults)
@@ -91,8 +92,7 @@ def plan_run(
             f"the histories would have {length / step:.3g} samples ({length:.6g} s in steps of "
             f"{step:.6g} s); give a longer output_step, or outputs=None"
         )
-    if overturning not in ("stop", "continue"):
-        faults.append(f"overturning must be 'stop' or 'continue', got {shown(overturning)}")
+    course = read_option(Overturning, overturning, "overturning", faults)
     energies = _energies(outputs, faults)
     if faults:
         raise AssemblyError(faults)
@@ -105,7 +105,7 @@ def plan_run(
         accuracy_name=str(accuracy) if isinstance(accuracy, str) else "own",
         output_step=step,
         energies=energies,
-        stop_at_overturning=overturning == "stop",
+        stop_at_overturning=course is Overturning.STOP,
     )
 
 

@@ -38,7 +38,6 @@ from rockframe.solve.ground_table import Ground
 from rockframe.solve.integrate import integrate
 from rockframe.solve.trajectory import Summary
 from rockframe.system.assembly import Assembly
-from rockframe.system.options import Rotation
 
 ADAPTIVE = "Dormand-Prince 5(4) from sample to sample, with event location"
 FIXED = "Nystrom method of order 3 in fixed sub-steps from sample to sample, with event location"
@@ -170,7 +169,7 @@ def _scales(system: Assembly) -> Scales:
         setting.uplift_angle,
         setting.settlement,
         setting.cap_offset,
-        small_rotation=system.rotation is Rotation.SMALL,
+        small_rotation=system.options.small,
         pads_on_cap=system.scene.coupling is not None,
     )
 
@@ -203,15 +202,15 @@ def _respond(system: Assembly, plan: Plan, ground: Ground, scales: Scales) -> Re
 def _attributes(
     system: Assembly, plan: Plan, summary: Summary, scales: Scales
 ) -> dict[str, str | float | int]:
-    coupling = {"coupling": str(system.coupling)} if system.scene.coupling else {}
+    coupling = {"coupling": str(system.options.coupling)} if system.scene.coupling else {}
     return {
         "verdict": verdict(summary, scales),
         "overturned": int(bool(summary.overturned)),
         "overturning_time": summary.overturning_time,
         "overturning_direction": Direction(summary.overturning_direction).name.lower(),
         "model": system.scene.model,
-        "restraint": str(system.restraint),
-        "kinematics": str(system.rotation),
+        "restraint": str(system.options.restraint),
+        "kinematics": str(system.options.rotation),
         **coupling,
         "model_description": system.describe(),
         "accuracy": plan.accuracy_name,
@@ -236,7 +235,7 @@ def _lost_weight(system: Assembly, ground: Ground) -> Iterator[Caution]:
     if system.setting.settlement is not None or len(ground.vertical) == 0:
         return
     lowest = float(np.min(ground.vertical))
-    if lowest < -system.gravity_si:
+    if lowest < -system.options.gravity:
         found = f"the vertical ground acceleration falls to {lowest:.4g} m s^-2, beyond gravity"
         yield ModelWarning, f"{found}: {_LEAVES}"
 

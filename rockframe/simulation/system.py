@@ -1,26 +1,43 @@
 """The system that users build and simulate."""
 
 import json
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Self
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Final, Self
 
+import pint
 import xarray as xr
 
 from rockframe.arguments import checked_dataset
-from rockframe.calls import public_names
 from rockframe.components import InitialState, component_from_dict
-from rockframe.errors import SchemaError
+from rockframe.errors import ModelWarning, SchemaError, warn
 from rockframe.motion import GroundMotion
-from rockframe.solve.accuracy import Accuracy, AccuracyLevel
-from rockframe.system.assembly import Assembly
-from rockframe.units import QuantityLike
+from rockframe.simulation.provenance import motion_from_dataset
+from rockframe.solve.accuracy import AccuracyLevel
+from rockframe.system.assembly import Assembly, assemble
+from rockframe.system.options import (
+    AccuracyLike,
+    Coupling,
+    CouplingLike,
+    Options,
+    Overturning,
+    OverturningLike,
+    Restraint,
+    RestraintLike,
+    Rotation,
+    RotationLike,
+)
+from rockframe.system.parts import Parts
+from rockframe.system.scenes import Scene, Setting
+from rockframe.units import ACCELERATION, QuantityLike, quantity
 
 if TYPE_CHECKING:
     from rockframe.simulation.certification import Certification
 
+_DAMAGED: Final = (ValueError, KeyError, TypeError, AttributeError)
+"""What is raised where a description is not what was written."""
 
-@public_names
-class System(Assembly):
+
+class System:
     """An assembled scene: parts in any order, checked together, ready to simulate.
 
     Parameters
@@ -56,6 +73,101 @@ class System(Assembly):
     False
     """
 
+    __slots__ = ("_assembly",)
+
+    def __init__(
+        self,
+        *parts: object,
+        restraint: RestraintLike = Restraint.CONTACT_STATE,
+        rotation: RotationLike = Rotation.FINITE,
+        coupling: CouplingLike = Coupling.COUPLED,
+        gravity: QuantityLike | None = None,
+    ) -> None:
+        self._assembly = assemble(
+            parts, restraint=restraint, rotation=rotation, coupling=coupling, gravity=gravity
+        )
+        for caution in self.setting.cautions():
+            warn(caution, ModelWarning)
+
+    @property
+    def assembly(self) -> Assembly:
+        """Parts and options, checked together."""
+        return self._assembly
+
+    @property
+    def parts(self) -> Parts:
+        """The parts, by what they are."""
+        return self._assembly.parts
+
+    @property
+    def motion(self) -> GroundMotion | None:
+        """The ground motion among the parts, if there is one."""
+        return self.parts.motion
+
+    @property
+    def options(self) -> Options:
+        """All options, and gravity."""
+        return self._assembly.options
+
+    @property
+    def restraint(self) -> Restraint:
+        """Which point of the base the ground holds horizontally."""
+        return self.options.restraint
+
+    @property
+    def rotation(self) -> Rotation:
+        """Exact kinematics, or expanded to second order in the rotation."""
+        return self.options.rotation
+
+    @property
+    def coupling(self) -> Coupling:
+        """How block, pads, cap and soil are joined, in a scene that has them."""
+        return self.options.coupling
+
+    @property
+    def gravity(self) -> pint.Quantity[Any]:
+        """Acceleration of gravity [m s^-2]."""
+        return quantity(self.gravity_si, ACCELERATION)
+
+    @property
+    def gravity_si(self) -> float:
+        """Acceleration of gravity, as a number [m s^-2]."""
+        return self.options.gravity
+
+    @property
+    def scene(self) -> Scene:
+        """The row of the table of scenes that the parts make."""
+        return self._assembly.scene
+
+    @property
+    def setting(self) -> Setting:
+        """The scene's numbers in SI units."""
+        return self._assembly.setting
+
+    def __eq__(self, other: object) -> bool:
+        return self._assembly == other._assembly if isinstance(other, System) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(self._assembly)
+
+    def __repr__(self) -> str:
+        parts = ", ".join(repr(part) for part in self.parts.given())
+        coupling = f", coupling={str(self.coupling)!r}" if self.scene.coupling else ""
+        return (
+            f"{type(self).__name__}({parts}, restraint={str(self.restraint)!r}, "
+            f"rotation={str(self.rotation)!r}{coupling})"
+        )
+
+    def describe(self) -> str:
+        """Tell which model was picked, by which equations, and what it leaves out.
+
+        Returns
+        -------
+        str
+            Several lines of plain text.
+        """
+        return self._assembly.describe()
+
     def simulate(
         self,
         motion: GroundMotion | None = None,
@@ -63,10 +175,10 @@ class System(Assembly):
         duration: QuantityLike | None = None,
         free_vibration: QuantityLike | None = None,
         initial: "InitialState | xr.Dataset | None" = None,
-        accuracy: Accuracy | str | float = AccuracyLevel.STANDARD,
+        accuracy: AccuracyLike = AccuracyLevel.STANDARD,
         output_step: QuantityLike | None = None,
         outputs: Sequence[str] | None = (),
-        overturning: str = "stop",
+        overturning: OverturningLike = Overturning.STOP,
         certify: "bool | Certification" = False,
     ) -> xr.Dataset:
         """Integrate the equations of motion.
@@ -120,7 +232,7 @@ class System(Assembly):
         from rockframe.simulation.run import run
 
         plan = plan_run(
-            self,
+            self._assembly,
             motion,
             duration=duration,
             free_vibration=free_vibration,
@@ -130,7 +242,7 @@ class System(Assembly):
             outputs=outputs,
             overturning=overturning,
         )
-        return run(self, plan, certification_of(certify))
+        return run(self._assembly, plan, certification_of(certify))
 
     def frequencies(self) -> xr.Dataset:
         """Give the modes of small motion about rest, in full contact.
@@ -157,7 +269,7 @@ class System(Assembly):
         """
         from rockframe.simulation.statics import frequencies
 
-        return frequencies(self)
+        return frequencies(self._assembly)
 
     def moment_rotation(self, angles: object) -> xr.Dataset:
         """Give the moments that hold the body at given rotations, in vertical equilibrium.
@@ -189,7 +301,7 @@ class System(Assembly):
         """
         from rockframe.simulation.statics import moment_rotation
 
-        return moment_rotation(self, angles)
+        return moment_rotation(self._assembly, angles)
 
     def equilibrium(self) -> xr.Dataset:
         """Give settlements and reactions at rest, and where full contact ends.
@@ -202,7 +314,45 @@ class System(Assembly):
         """
         from rockframe.simulation.statics import equilibrium
 
-        return equilibrium(self)
+        return equilibrium(self._assembly)
+
+    def to_dict(self) -> dict[str, object]:
+        """Give parts, options and gravity as plain values, fit for JSON.
+
+        Returns
+        -------
+        dict
+            A motion among the parts stands under ``motion``: a pulse or a synthetic motion
+            by its recipe, a record with its samples.
+        """
+        motion = {} if self.motion is None else {"motion": self.motion.to_dict(samples=True)}
+        return {**self._assembly.to_dict(), **motion}
+
+    @classmethod
+    def from_dict(cls, description: Mapping[str, Any]) -> Self:
+        """Build the system that :meth:`to_dict` described.
+
+        Parameters
+        ----------
+        description : mapping
+            As written by :meth:`to_dict`, or read as ``system_json`` from a result.
+
+        Returns
+        -------
+        System
+
+        Raises
+        ------
+        SchemaError
+            It does not describe a system.
+        """
+        try:
+            given = description.get("motion")
+            motion = None if given is None else GroundMotion.from_dict(given)
+            return cls._described(description, motion)
+        except _DAMAGED as problem:
+            msg = f"this does not describe a system: {problem}"
+            raise SchemaError(msg) from problem
 
     @classmethod
     def from_dataset(cls, dataset: xr.Dataset) -> Self:
@@ -225,19 +375,23 @@ class System(Assembly):
         SchemaError
             No dataset, or one that does not describe a system.
         """
-        from rockframe.simulation.provenance import motion_from_dataset
-
         dataset = checked_dataset(dataset, owner=f"{cls.__name__}.from_dataset")
         text = dataset.attrs.get("system_json")
         if not isinstance(text, str):
             msg = "the dataset has no attribute 'system_json'; expected a result of simulate()"
             raise SchemaError(msg)
         try:
-            description = json.loads(text)
-            parts = [component_from_dict(part) for part in description.pop("parts")]
-            options = {name: str(value) for name, value in description.items()}
-            motion = motion_from_dataset(dataset)
-            return cls(*parts, *([] if motion is None else [motion]), **options)
-        except (ValueError, KeyError, TypeError, AttributeError) as problem:
+            return cls._described(json.loads(text), motion_from_dataset(dataset))
+        except _DAMAGED as problem:
             msg = f"the dataset's attributes do not describe a system: {problem}"
             raise SchemaError(msg) from problem
+
+    @classmethod
+    def _described(cls, description: Mapping[str, Any], motion: GroundMotion | None) -> Self:
+        parts = [component_from_dict(part) for part in description["parts"]]
+        options: dict[str, Any] = {
+            name: str(value)
+            for name, value in description.items()
+            if name not in ("parts", "motion")
+        }
+        return cls(*parts, *([] if motion is None else [motion]), **options)

@@ -1,10 +1,12 @@
-"""Options of a system."""
+"""Options of systems and runs, and the words for them."""
 
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import TypeVar
+from typing import Literal, TypeAlias, TypeVar
 
 from rockframe.errors import shown
+from rockframe.solve.accuracy import Accuracy, AccuracyLevel
+from rockframe.units import ACCELERATION
 
 
 class Restraint(StrEnum):
@@ -29,6 +31,22 @@ class Coupling(StrEnum):
     CASCADE = "cascade"
 
 
+class Overturning(StrEnum):
+    """What a run does when the rotation reaches the overturning angle."""
+
+    STOP = "stop"
+    CONTINUE = "continue"
+
+
+RestraintLike: TypeAlias = Restraint | Literal["contact-state", "leading-corner", "centre"]
+RotationLike: TypeAlias = Rotation | Literal["finite", "small"]
+CouplingLike: TypeAlias = Coupling | Literal["coupled", "cascade"]
+OverturningLike: TypeAlias = Overturning | Literal["stop", "continue"]
+AccuracyLike: TypeAlias = (
+    Accuracy | AccuracyLevel | Literal["fast", "standard", "reference"] | float
+)
+
+
 @dataclass(frozen=True)
 class Options:
     """Options of a system, and the gravity it stands in [m s^-2]."""
@@ -42,6 +60,15 @@ class Options:
     def small(self) -> bool:
         """Whether the kinematics are expanded to second order."""
         return self.rotation is Rotation.SMALL
+
+    def to_dict(self) -> dict[str, str]:
+        """Give the options as texts from which a system reads the same."""
+        return {
+            "restraint": str(self.restraint),
+            "rotation": str(self.rotation),
+            "coupling": str(self.coupling),
+            "gravity": f"{self.gravity!r} {ACCELERATION.unit}",
+        }
 
 
 Option = TypeVar("Option", bound=StrEnum)

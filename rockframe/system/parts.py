@@ -26,11 +26,11 @@ class Parts:
     ground: RigidGround | None = None
     motion: GroundMotion | None = None
 
-    def given(self) -> list["Component[object] | GroundMotion"]:
+    def given(self) -> list[Component | GroundMotion]:
         """Give the parts that are there, in a fixed order."""
         return [part for part in vars(self).values() if part is not None]
 
-    def structural(self) -> "list[Component[object]]":
+    def structural(self) -> list[Component]:
         """Give the parts that are no motion, in a fixed order."""
         return [part for part in self.given() if not isinstance(part, GroundMotion)]
 

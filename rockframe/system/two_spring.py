@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rockframe.components.block import BlockSI
-from rockframe.components.pads import TwoSpringSupportSI
+from rockframe.components.values import SIValues
 from rockframe.system.angles import uplift_words
 from rockframe.system.impact import resolve_restitution, restitution_cautions
 from rockframe.system.options import Options, Restraint, Rotation
@@ -203,12 +203,12 @@ class TwoSpringSetting:
         }
 
 
-def pad_constants(pads: TwoSpringSupportSI, block: BlockSI, gravity: float) -> tuple[float, float]:
+def pad_constants(pads: SIValues, block: BlockSI, gravity: float) -> tuple[float, float]:
     """Give stiffness and damping of one pad, Eqs. (7) and (8).
 
     Parameters
     ----------
-    pads : TwoSpringSupportSI
+    pads : SIValues
         As given by the user.
     block : BlockSI
         The block on them.

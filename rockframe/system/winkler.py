@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rockframe.components.soil import Separation, WinklerSoilSI
+from rockframe.components.soil import Separation
+from rockframe.components.values import SIValues
 from rockframe.system.angles import uplift_words
 from rockframe.system.bodies import Body, body_of, cap_under, one_body
 from rockframe.system.options import Options
@@ -216,7 +217,7 @@ def vibration_words(symbol: str, frequency: float, damping_ratio: float) -> str:
 
 
 def bed_setting(
-    body: Body, soil: WinklerSoilSI, options: Options, cap_offset: float | None = None
+    body: Body, soil: SIValues, options: Options, cap_offset: float | None = None
 ) -> WinklerSetting:
     """Put a body on a bed; a damping ratio is that of the vertical motion of all its mass."""
     damping = soil.damping

@@ -45,7 +45,7 @@ def strength(case: Case) -> float:
 def contradictions(case: Case, scale: float, fell: bool, count: int = NUDGES) -> int:
     """Count how many random nudges inside what is stated, and a tight run, say otherwise."""
     rng = np.random.default_rng([11, case.number])
-    every = list(parameters(case.system))
+    every = list(parameters(case.system.assembly))
     plan = case.plan(scale)
     found = int(case.summary(scale, TRUTH.__class__(rtol=1e-13)).overturned != fell)
     with warnings.catch_warnings():

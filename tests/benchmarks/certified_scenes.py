@@ -39,7 +39,7 @@ class Case:
         """Plan a run without histories."""
         motion = self.motion if motion is None else motion
         return plan_run(
-            self.system,
+            self.system.assembly,
             motion.scaled(scale),
             duration=f"{self.duration!r} s",
             free_vibration=None,
@@ -52,7 +52,7 @@ class Case:
 
     def summary(self, scale: float = 1.0, accuracy="standard", motion=None):
         """Run; give what became of it."""
-        return outcome(self.system, self.plan(scale, accuracy, motion))
+        return outcome(self.system.assembly, self.plan(scale, accuracy, motion))
 
     def certified(self, scale: float = 1.0, accuracy="standard", certify=True):
         """Run with a certificate."""

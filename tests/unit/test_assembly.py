@@ -1,9 +1,12 @@
 """Putting a system together and asking it to run: what fits, what does not, what is said."""
 
+import copy
+import inspect
 import itertools
 import json
 import math
 import multiprocessing
+import pickle
 import re
 import sys
 
@@ -178,6 +181,59 @@ def test_systems_of_equal_parts_and_options_are_equal(name):
     ):
         assert other != system
     assert system != SCENES[name]
+
+
+@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize(
+    "motion",
+    [
+        None,
+        pulse(),
+        pulse().with_vertical(pulse().scaled(0.5)),
+        rf.GroundMotion.from_arrays(([0.0, 1.0, 0.3], "m/s^2"), "0.02 s", name="three"),
+    ],
+    ids=["still", "pulse", "two pulses", "record"],
+)
+def test_a_system_survives_the_way_through_text(name, motion):
+    others = () if motion is None else (motion,)
+    system = assembled(name, *others, restraint="centre", gravity="9.8 m/s^2")
+    text = json.dumps(system.to_dict(), allow_nan=False)
+    again = rf.System.from_dict(json.loads(text))
+    assert again == system
+    assert again.to_dict() == system.to_dict()
+    assert pickle.loads(pickle.dumps(system)) == system  # noqa: S301
+    assert copy.deepcopy(system).describe() == system.describe()
+
+
+@pytest.mark.parametrize(
+    "description",
+    [{}, {"parts": 3}, {"parts": []}, {"parts": [{"type": "Brick"}]}, 3, None, "Block"],
+)
+def test_what_describes_no_system_is_refused(description):
+    with pytest.raises(rf.SchemaError, match="does not describe a system"):
+        rf.System.from_dict(description)
+
+
+def test_a_path_is_no_dataset():
+    words = r"System\.from_dataset: found 'run\.nc'; .*xr\.open_dataset first"
+    with pytest.raises(rf.SchemaError, match=words):
+        rf.System.from_dataset("run.nc")
+
+
+def test_a_system_is_immutable():
+    system = assembled("coupled")
+    for name in ("parts", "gravity", "restraint", "brand_new"):
+        with pytest.raises(AttributeError):
+            setattr(system, name, None)
+    assert system.gravity.m_as("m/s^2") == 9.80665
+
+
+def test_calls_that_do_not_fit_are_refused_in_the_name_of_the_system():
+    with pytest.raises(TypeError, match=r"System\.__init__\(\) got an unexpected .* 'block'"):
+        rf.System(block=block())
+    with pytest.raises(TypeError, match=r"System\.describe\(\) takes"):
+        assembled("coupled").describe("all")
+    assert next(iter(inspect.signature(rf.System).parameters)) == "parts"
 
 
 def test_coupled_and_cascade_differ():
@@ -577,7 +633,7 @@ class TestSimulateRefuses:
     @pytest.mark.parametrize("bad", ["Stop", "go on", None, True, 1, []])
     def test_other_ways_to_overturn(self, bad):
         message = refusal(overturning=bad)
-        assert "'stop' or 'continue'" in message
+        assert "'stop', 'continue'" in message
         assert repr(bad) in message
 
     @pytest.mark.parametrize("bad", ["best", "", None, 1, True, []])

@@ -18,7 +18,7 @@ STOOD = Beside(False, 0.1, (0.5,), course=(1.0, 0.2))
 
 def said(accuracy, residual, other=STOOD, base=STOOD):
     plan = plan_run(
-        SYSTEM,
+        SYSTEM.assembly,
         MOTION,
         duration=None,
         free_vibration=None,
@@ -28,7 +28,7 @@ def said(accuracy, residual, other=STOOD, base=STOOD):
         outputs=None,
         overturning="stop",
     )
-    summary = replace(outcome(SYSTEM, plan), energy_residual=residual)
+    summary = replace(outcome(SYSTEM.assembly, plan), energy_residual=residual)
     tried = []
 
     def run(beside):

@@ -119,7 +119,7 @@ def pretended(overturns):
 
 def planned(rtol=1e-4):
     return plan_run(
-        SYSTEM,
+        SYSTEM.assembly,
         PULSE,
         duration=None,
         free_vibration=None,
@@ -133,7 +133,7 @@ def planned(rtol=1e-4):
 
 def certificate_of(overturns, rtol=1e-4):
     run, plan = pretended(overturns), planned(rtol)
-    return certify(SYSTEM, plan, run(SYSTEM, plan), rf.Certification(), run)
+    return certify(SYSTEM.assembly, plan, run(SYSTEM.assembly, plan), rf.Certification(), run)
 
 
 def test_a_verdict_that_hangs_on_the_tolerance_is_not_converged():
@@ -175,7 +175,7 @@ def test_a_peak_that_a_parameter_lowers_counts_as_one_that_it_raises():
         peak = 0.02 if system.parts.pads.to_dict()["frequency_ratio"] > 20.01 else 0.1001
         return replace(run(system, plan), peak=peak)
 
-    found = certify(SYSTEM, plan, lower(SYSTEM, plan), rf.Certification(), lower)
+    found = certify(SYSTEM.assembly, plan, lower(SYSTEM.assembly, plan), rf.Certification(), lower)
     assert found.peak_sensitivity == pytest.approx(0.0801)
 
 
@@ -192,7 +192,7 @@ def test_nudged_scenes_keep_their_options():
     }
     system = rf.System(BLOCK, PADS, cap, soil, **options)
     kept = {name: value for name, value in system.to_dict().items() if name != "parts"}
-    for words, scene_at in parameters(system):
+    for words, scene_at in parameters(system.assembly):
         assert kept.items() <= scene_at(1e-3).to_dict().items(), words
 
 
@@ -201,7 +201,7 @@ def test_a_nudge_that_makes_parts_misfit_is_left_out():
     block = rf.Block(width="2 m", height="8 m", mass="50 t")
     cap = rf.CushionCap(width="2 m", height="0.5 m", mass="10 t")
     system = rf.System(block, cap, rf.WinklerSoil(stiffness="30 MPa", damping_ratio=0.1))
-    at = dict(parameters(system))
+    at = dict(parameters(system.assembly))
     assert at["width of the cap"](0.001) is not None
     assert at["width of the cap"](-0.001) is None
     assert at["width of the superstructure"](-0.001) is not None
@@ -250,7 +250,7 @@ def test_a_peak_that_comes_near_to_overturning_is_looked_into():
         return Beside(fell, 0.1, (1.0, 1.0) if fell else (5.0 * left,), 1.0, 0, 0.001)
 
     plan = planned()
-    found = certify(SYSTEM, plan, run(SYSTEM, plan), rf.Certification(), run)
+    found = certify(SYSTEM.assembly, plan, run(SYSTEM.assembly, plan), rf.Certification(), run)
     assert found.margin == pytest.approx(middle - half, rel=2.0 * RESOLUTION)
     assert found.margin <= middle - half
 
@@ -265,13 +265,15 @@ def test_a_course_that_cannot_be_followed_ends_the_margin():
         return Beside(False, 0.1, (0.5,), math.nan, 0, 0.001, course)
 
     plan = planned()
-    found = certify(SYSTEM, plan, run(SYSTEM, plan), rf.Certification(), run)
+    found = certify(SYSTEM.assembly, plan, run(SYSTEM.assembly, plan), rf.Certification(), run)
     assert 0.09 < found.margin < 0.12
     assert math.isnan(found.flip)
     assert found.robust
     assert "200 runs did not do to follow it farther" in found.sentence
     assert found.runs <= 200
-    more = certify(SYSTEM, plan, run(SYSTEM, plan), rf.Certification(runs=400), run)
+    more = certify(
+        SYSTEM.assembly, plan, run(SYSTEM.assembly, plan), rf.Certification(runs=400), run
+    )
     assert 200 < more.runs <= 400
     assert more.margin >= found.margin
 
@@ -282,7 +284,7 @@ def test_the_peak_of_a_standing_body_must_be_sure_to_stay_below():
         return Beside(False, 0.1, (left,), math.nan, 0, 0.001)
 
     plan = planned()
-    found = certify(SYSTEM, plan, run(SYSTEM, plan), rf.Certification(), run)
+    found = certify(SYSTEM.assembly, plan, run(SYSTEM.assembly, plan), rf.Certification(), run)
     assert not found.converged
     assert "its peak rotation is uncertain by" in found.sentence
 
@@ -536,7 +538,7 @@ def test_a_motion_cut_finer_is_the_same_function_of_time(name, parts):
 def test_shorter_steps_are_shorter(accuracy):
     run = SYSTEM.simulate(PULSE, free_vibration="4 s", accuracy=accuracy)
     step = run.attrs["solver_end_time"] / run.attrs["solver_steps"]
-    settings = shortened(accuracy_of(accuracy), SYSTEM, step, PULSE.si.time_step)
+    settings = shortened(accuracy_of(accuracy), SYSTEM.assembly, step, PULSE.si.time_step)
     finer = SYSTEM.simulate(PULSE, free_vibration="4 s", accuracy=settings)
     assert finer.attrs["solver_steps"] > 2.0 * run.attrs["solver_steps"]
 
