@@ -7,6 +7,7 @@ from rockframe.components import (
     Block,
     Component,
     CushionCap,
+    FrameEquivalent,
     RigidGround,
     TwoSpringSupport,
     WinklerSoil,
@@ -50,6 +51,9 @@ _SLOTS: dict[type, str] = {
     GroundMotion: "motion",
 }
 
+_MODULES = {kind.__module__ for kind in (*_SLOTS, FrameEquivalent)}
+"""Modules of the parts that the models are written for."""
+
 
 def sort_parts(given: Sequence[object], faults: list[str]) -> Parts:
     """Put each part in its slot; note doubled parts and things that are no parts.
@@ -77,4 +81,19 @@ def sort_parts(given: Sequence[object], faults: list[str]) -> Parts:
             faults.append(f"{name} is given twice: {shown(found[slot])} and {shown(part)}")
         else:
             found[slot] = part
+            faults += _beyond_models(part)
     return Parts(**found)  # type: ignore[arg-type]
+
+
+def _beyond_models(part: object) -> list[str]:
+    """Refuse a part with parameters that its class has added to one that the models know."""
+    if not isinstance(part, Component):
+        return []
+    known = next(kind for kind in type(part).__mro__ if kind.__module__ in _MODULES)
+    added = sorted(set(vars(part.given)) - {name for name in dir(known) if name[0] != "_"})
+    if not added:
+        return []
+    return [
+        f"{type(part).__name__} adds {' and '.join(added)} to {known.__name__}, of which no model "
+        f"knows; it would be simulated as a {known.__name__}"
+    ]

@@ -260,6 +260,17 @@ class TestOwnParts:
         assert own.HeavyBlock(**size) != rf.Block(**size)
         assert rf.Block(**size) != own.HeavyBlock(**size)
 
+    def test_what_no_model_knows_is_not_simulated_as_something_else(self):
+        pads = own.YieldingPads(frequency_ratio=20, damping_ratio=0.1, strength="80 kN")
+        with pytest.raises(
+            rf.AssemblyError, match="YieldingPads adds strength to TwoSpringSupport"
+        ):
+            rf.System(BLOCK, pads)
+
+    def test_a_part_that_adds_nothing_is_simulated_as_its_parent(self):
+        heavy = own.HeavyBlock(width="2 m", height="8 m", mass="50 t")
+        assert rf.System(heavy, PADS).setting == rf.System(BLOCK, PADS).setting
+
     def test_a_system_with_one_comes_back(self):
         system = rf.System(own.HeavyBlock(width="2 m", height="8 m", mass="50 t"))
         again = rf.System.from_dict(system.to_dict())
