@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from inspect import getattr_static
 
 from rockframe.components import (
     Block,
@@ -12,6 +13,7 @@ from rockframe.components import (
     TwoSpringSupport,
     WinklerSoil,
 )
+from rockframe.components.parameters import Declared
 from rockframe.errors import shown
 from rockframe.motion import GroundMotion
 
@@ -90,10 +92,19 @@ def _beyond_models(part: object) -> list[str]:
     if not isinstance(part, Component):
         return []
     known = next(kind for kind in type(part).__mro__ if kind.__module__ in _MODULES)
-    added = sorted(set(vars(part.given)) - {name for name in dir(known) if name[0] != "_"})
+    added = sorted(
+        name
+        for name in vars(part.given)
+        if _declares(type(part), name) and not _declares(known, name)
+    )
     if not added:
         return []
     return [
         f"{type(part).__name__} adds {' and '.join(added)} to {known.__name__}, of which no model "
         f"knows; it would be simulated as a {known.__name__}"
     ]
+
+
+def _declares(kind: type, name: str) -> bool:
+    """Whether a class has a parameter of a name; a property of that name is none."""
+    return isinstance(getattr_static(kind, name, None), Declared)

@@ -23,3 +23,9 @@ class YieldingPads(rf.TwoSpringSupport):
 
 class HeavyBlock(rf.Block):
     """A block of another name, with nothing of its own."""
+
+
+class RoundedBlock(rf.Block):
+    """A block with round corners, of which the parameter is called like a property of blocks."""
+
+    radius = Parameter(LENGTH, POSITIVE, doc="Radius of the corners.")

@@ -267,6 +267,11 @@ class TestOwnParts:
         ):
             rf.System(BLOCK, pads)
 
+    def test_a_parameter_is_not_taken_for_a_property_of_its_name(self):
+        rounded = own.RoundedBlock(width="2 m", height="8 m", mass="50 t", radius="5 mm")
+        with pytest.raises(rf.AssemblyError, match="RoundedBlock adds radius to Block"):
+            rf.System(rounded)
+
     def test_a_part_that_adds_nothing_is_simulated_as_its_parent(self):
         heavy = own.HeavyBlock(width="2 m", height="8 m", mass="50 t")
         assert rf.System(heavy, PADS).setting == rf.System(BLOCK, PADS).setting
