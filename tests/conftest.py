@@ -1,10 +1,37 @@
 """Markers from the path: a test's kind is the folder it stands in."""
 
+import logging
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 _ROOT = Path(__file__).parent
+
+
+class _Fallbacks(logging.Handler):
+    """Keeps what is said of functions that could not be compiled."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.said: list[str] = []
+
+    def emit(self, record: logging.LogRecord) -> None:
+        if "could not be compiled" in record.msg:
+            self.said.append(record.getMessage())
+
+
+_fallbacks = _Fallbacks()
+logging.getLogger("rockframe").addHandler(_fallbacks)
+
+
+@pytest.fixture(autouse=True)
+def fallbacks() -> Iterator[list[str]]:
+    """Fail where something was not compiled and ran as plain Python, unless a test clears this."""
+    yield _fallbacks.said
+    said = "; ".join(_fallbacks.said)
+    _fallbacks.said.clear()
+    assert not said, said
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:

@@ -1,150 +1,152 @@
-"""Functions that Python calls and that run as machine code where numba is installed."""
+"""Functions that Python calls and that run as machine code where numba is installed.
 
-import ctypes
+One is compiled for each structure of its arguments: the classes of its named tuples, the
+kinds of its arrays and numbers.
+"""
+
+import logging
 import os
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable
 from functools import update_wrapper
 from importlib.util import find_spec
-from typing import Any, Final, cast
+from threading import RLock
+from typing import Any, Final, TypeVar, cast
 
-from rockframe.compiled.arrays import ARRAY_KINDS
-from rockframe.compiled.machine_code import load
-from rockframe.compiled.registry import CALLBACKS, Function, Signature, field_kinds, name_of
+import numpy as np
 
-COMPILED: Final = os.environ.get("ROCKFRAME_COMPILE", "1") != "0" and find_spec("numba") is not None
-"""Whether the kernels are compiled."""
+from rockframe.compiled.bound import Bound, Source
+from rockframe.compiled.marks import inlined
 
-_SCALARS: Final = {"real": ctypes.c_double, "integer": ctypes.c_int64, "none": None}
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+_HAS_NUMBA: Final = find_spec("numba") is not None
+COMPILED: Final = os.environ.get("ROCKFRAME_COMPILE", "1") != "0" and _HAS_NUMBA
+"""Whether functions are compiled."""
+PATIENCE: Final = 3.0
+"""Length of a run in plain Python from which on numba is spoken of [s]."""
+_said_slow: Final[list[bool]] = []
+
+_logger = logging.getLogger("rockframe")
+_lock: Final = RLock()
 
 
-def entry(result: str, *arguments: str | Signature | type) -> Callable[[Function], Function]:
-    """Compile a function called from Python, with all its types fixed beforehand.
+def entry(function: Function) -> Function:
+    """Mark a function that Python calls and that is compiled.
+
+    Its arguments are floats, integers, arrays in C order, bound functions
+    (:mod:`rockframe.compiled.bound`) and named tuples of these; its result is an integer or
+    none.
+    """
+    return cast("Function", Entry(function)) if COMPILED else function
+
+
+def _could_not(function: Callable[..., Any], problem: Exception) -> None:
+    """Say that a function could not be compiled, and why; all of it at the level of debugging."""
+    lines = [line.strip() for line in str(problem).splitlines() if line.strip()]
+    reason = next((line for line in lines if not line.startswith("Failed in")), "no reason")
+    _logger.warning(
+        "%s.%s could not be compiled, and runs as plain Python, some hundred times slower (%s: "
+        "%s)", function.__module__, function.__qualname__, type(problem).__name__, reason,
+    )  # fmt: skip
+    _logger.debug("%s", function.__qualname__, exc_info=problem)
+
+
+def say_slow(seconds: float) -> None:
+    """Say once, after a long run without numba, what it would do.
 
     Parameters
     ----------
-    result : str
-        Type of the result.
-    *arguments : str, Signature or type
-        Types of the arguments; a signature stands for a callback, a class for a
-        named tuple whose fields are annotated with the types of
-        :mod:`rockframe.compiled.arrays`.
+    seconds : float
+        That the run has taken.
     """
-
-    def make_entry(function: Function) -> Function:
-        return cast("Function", Entry(function, result, arguments)) if COMPILED else function
-
-    return make_entry
+    if seconds > PATIENCE and not _HAS_NUMBA and not _said_slow:
+        _said_slow.append(True)
+        _logger.warning(
+            "this run took %.0f s in plain Python; with numba (pip install 'rockframe[fast]') "
+            "one like it takes some hundredth of that",
+            seconds,
+        )
 
 
 class Entry:
-    """A compiled function, with arguments checked before their addresses are handed over.
+    """A compiled function: the machine code for each structure of arguments.
 
     Parameters
     ----------
     function : callable
         Its source.
-    result, arguments
-        As in :func:`entry`.
     """
 
-    def __init__(
-        self,
-        function: Callable[..., Any],
-        result: str,
-        arguments: tuple[str | Signature | type, ...],
-    ) -> None:
-        self._result = result
-        self._arguments = arguments
-        self._kinds: tuple[str | Signature | tuple[str, ...], ...] = ()
-        self._routine: Callable[..., Any] | None = None
-        self._function = function
+    def __init__(self, function: Callable[..., Any]) -> None:
+        self.source = inlined(function)
+        self._routines: dict[tuple[Any, ...], Callable[..., Any] | None] = {}
         update_wrapper(self, function)
 
     def __call__(self, *arguments: Any) -> Any:
-        """Run the machine code.
+        """Run the machine code, or the function itself where it could not be compiled.
 
         Raises
         ------
         TypeError
-            An array is of another type than the code was made for.
+            An array is not contiguous in C order, or an argument is of another sort.
         """
-        routine = self._routine or self._prepare()
         words: list[Any] = []
-        for kind, argument in zip(self._kinds, arguments, strict=True):
-            if isinstance(kind, str):
-                words += self._words(kind, argument)
-            elif isinstance(kind, Signature):
-                words.append(address_of(argument, kind))
-            else:
-                for field, value in zip(kind, argument, strict=True):
-                    words += self._words(field, value)
+        sources: list[Source] = []
+        structure = tuple(_structure_of(argument, words, sources) for argument in arguments)
+        routine = self._routines.get(structure)
+        if routine is None or any(source.code is None for source in sources):
+            with _lock:
+                routine = self._compiled(structure, sources)
+            if routine is None:
+                return self.source(*arguments)
+            codes = {id(source): source.code for source in sources}
+            words = [codes.get(id(word), word) for word in words]
         return routine(*words)
 
-    def _prepare(self) -> Callable[..., Any]:
-        function, result, arguments = self._function, self._result, self._arguments
+    def _compiled(
+        self, structure: tuple[Any, ...], sources: list[Source]
+    ) -> Callable[..., Any] | None:
+        from rockframe.compiled.jobs import Job
+        from rockframe.compiled.together import make_all
 
-        def translate() -> bytes:
-            from rockframe.compiled.translation import translate_entry
+        if structure in self._routines and self._routines[structure] is None:
+            return None
+        missing = {id(source): source for source in sources if source.code is None}.values()
+        jobs = [Job(source.function, source.structure, True) for source in missing]
+        try:
+            *codes, routine = make_all([*jobs, Job(self.source, structure, False)])
+        except Exception as problem:  # whatever happens inside a compiler
+            _could_not(self.source, problem)
+            self._routines[structure] = None
+            return None
+        for source, code in zip(missing, codes, strict=True):
+            source.code = code
+        self._routines[structure] = routine
+        return routine
 
-            return translate_entry(function, result, arguments)
 
-        self._kinds = tuple(
-            field_kinds(argument) if isinstance(argument, type) else argument
-            for argument in arguments
-        )
-        prototype = ctypes.CFUNCTYPE(_SCALARS[result], *_word_types(self._kinds))
-        self._routine = prototype(load(function, translate))
-        return self._routine
-
-    def _words(self, name: str, value: Any) -> Sequence[Any]:
-        kind = ARRAY_KINDS.get(name)
-        if kind is None:
-            return (value,)
-        flags = value.flags
-        if (
-            value.dtype != kind.dtype
-            or value.ndim != kind.dimensions
-            or not flags.c_contiguous
-            or not (flags.writeable or kind.read_only)
-        ):
+def _structure_of(argument: Any, words: list[Any], sources: list[Source]) -> Any:
+    """Describe an argument, and add the words that hand it over, and bound functions in it."""
+    if isinstance(argument, tuple):
+        values = cast("tuple[Any, ...]", argument)
+        return (type(values), *[_structure_of(value, words, sources) for value in values])
+    if isinstance(argument, Bound):
+        source = argument.source
+        sources.append(source)
+        words.append(source if source.code is None else source.code)
+        return ("function", source.signature)
+    words.append(argument)
+    if isinstance(argument, np.ndarray):
+        flags = argument.flags
+        if not flags.c_contiguous:
             msg = (
-                f"{name_of(self._function)} needs a {name}: {kind.dimensions} dimensions of "
-                f"{kind.dtype} in C order{'' if kind.read_only else ', writeable'}; got "
-                f"{value.ndim} of {value.dtype}, {'' if flags.c_contiguous else 'not '}in C "
-                f"order, {'' if flags.writeable else 'not '}writeable"
+                f"compiled functions need arrays in C order, got one of strides {argument.strides}"
             )
             raise TypeError(msg)
-        return (value.ctypes.data, *value.shape)
-
-
-def address_of(function: Callable[..., Any], signature: Signature) -> int:
-    """Give the address of a callback's machine code.
-
-    Raises
-    ------
-    TypeError
-        The function is no callback of this signature.
-    """
-    if CALLBACKS.get(function) != signature:
-        msg = f"{name_of(function)} is no callback of the signature {signature}"
-        raise TypeError(msg)
-
-    def translate() -> bytes:
-        from rockframe.compiled.translation import translate_callback
-
-        return translate_callback(function, signature)
-
-    return load(function, translate)
-
-
-def _word_types(kinds: Sequence[str | Signature | tuple[str, ...]]) -> Iterator[Any]:
-    for kind in kinds:
-        if isinstance(kind, tuple):
-            yield from _word_types(kind)
-        elif isinstance(kind, Signature):
-            yield ctypes.c_void_p
-        elif kind in ARRAY_KINDS:
-            yield ctypes.c_void_p
-            yield from [ctypes.c_int64] * ARRAY_KINDS[kind].dimensions
-        else:
-            yield _SCALARS[kind]
+        return (argument.dtype.name, argument.ndim, flags.writeable)
+    if isinstance(argument, float):
+        return "real"
+    if isinstance(argument, int | np.integer):
+        return "integer"
+    msg = f"compiled functions take numbers, arrays and tuples of them, got {type(argument)}"
+    raise TypeError(msg)

@@ -1,78 +1,116 @@
-"""Machine code on disk, by the sources that it was made from."""
+"""Where the modules of entries are written, and with them, by numba, their machine code."""
 
-import hashlib
 import os
 import sys
-from functools import cache
-from importlib.util import find_spec
+import time
+from collections.abc import Callable, Generator, Iterable
+from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
-_ROOT: Final = Path(__file__).parent.parent
-_SOURCES: Final = ("constants.py", "compiled/*.py", "signals/*.py", "dynamics/*.py", "solve/*.py")
-"""Files that the machine code depends on."""
+from rockframe.compiled.sources import PACKAGE, digest, digest_of_sources
 
-_CHECK_SIZE: Final = 32
+_PATIENCE: Final = 120.0
+"""Longest wait for another process, which may have been killed [s]."""
+_POLL: Final = 0.05
 
-
-def knows(file: str) -> bool:
-    """Whether a file is one of the sources, so that code made from it is known to be fresh."""
-    return Path(file) in _files()
+_UNUSED: Final = 30 * 24 * 3600.0
+"""Age at which machine code of other sources is removed [s]."""
 
 
-def read(name: str, maker: str) -> bytes | None:
-    """Read a function's machine code.
+def file_of(function: Callable[..., Any], text: str, classes: Iterable[type]) -> Path | None:
+    """Give the file of an entry's module, written if it is not there.
 
     Parameters
     ----------
-    name : str
-        Full name of the function.
-    maker : str
-        Compiler and processor.
+    function : callable
+        What it calls.
+    text : str
+        Of the module.
+    classes : iterable of type
+        Classes of named tuples among the arguments.
 
     Returns
     -------
-    bytes or None
-        None where there is none, or it is not whole.
+    Path or None
+        None where some source has no file, or nothing can be written.
     """
+    classes = list(classes)
+    sources = digest_of_sources(function, classes)
+    if sources is None:
+        return None
+    # machine code knows functions and classes by the names of their modules
+    modules = sorted({function.__module__, *(kind.__module__ for kind in classes)})
+    name = f"{function.__name__}_{digest(' '.join(modules).encode(), text.encode())}"
     for folder in _folders():
         try:
-            content = (folder / _file_name(name, maker)).read_bytes()
+            place = folder / f"code-{sources}"
+            if place.is_dir():
+                os.utime(place)  # it is in use
+            else:
+                place.mkdir(parents=True, exist_ok=True)
+                _remove_unused(folder)
+            file = place / f"{name}.py"
+            if not file.is_file():  # other processes see the whole file or none
+                part = file.with_suffix(f".{os.getpid()}")
+                part.write_text(text)
+                part.replace(file)
         except OSError:
             continue
-        check, code = content[:_CHECK_SIZE], content[_CHECK_SIZE:]
-        if _check(code) == check:
-            return code
+        return file
     return None
 
 
-def write(name: str, maker: str, code: bytes) -> None:
-    """Write a function's machine code where that can be written, and drop what is out of date.
+def has_code(file: Path) -> bool:
+    """Whether machine code of a module has been kept beside it."""
+    return any((file.parent / "__pycache__").glob(f"{file.stem}.*.nbc"))
+
+
+def is_compiled_elsewhere(file: Path) -> bool:
+    """Whether another process compiles a module now."""
+    return _mark_of(file).exists()
+
+
+def _mark_of(file: Path) -> Path:
+    return file.with_suffix(".lock")
+
+
+@contextmanager
+def compiling(file: Path, waiting: Callable[[], bool]) -> Generator[None]:
+    """Wait as long as another process compiles a module; then let others wait for this one.
 
     Parameters
     ----------
-    name, maker : str
-        As in :func:`read`.
-    code : bytes
-        What :func:`read` is to give.
+    file : Path
+        Of the module.
+    waiting : callable
+        Whether to go on waiting.
     """
-    for folder in _folders():
+    mark = _mark_of(file)
+    begun = time.monotonic()
+    while time.monotonic() - begun < _PATIENCE and waiting():
         try:
-            folder.mkdir(parents=True, exist_ok=True)
-            for old in folder.glob(f"{_stem(name, maker)}-*.o"):
-                old.unlink(missing_ok=True)
-            # other processes see the whole file or none
-            file = folder / _file_name(name, maker)
-            part = file.with_suffix(f".{os.getpid()}")
-            part.write_bytes(_check(code) + code)
-            part.replace(file)
-        except OSError:
-            continue
-        return
+            mark.touch(exist_ok=False)
+            break
+        except FileExistsError:
+            time.sleep(_POLL)
+        except OSError:  # nothing can be written: nobody waits
+            break
+    try:
+        yield
+    finally:
+        with suppress(OSError):
+            mark.unlink(missing_ok=True)
+
+
+def forget_code(file: Path) -> None:
+    """Remove the machine code of a module."""
+    for kept in (file.parent / "__pycache__").glob(f"{file.stem}.*.nb[ci]"):
+        kept.unlink(missing_ok=True)
 
 
 def _folders() -> list[Path]:
-    """Give the folders to look in, and to write to, in this order."""
+    """Give the folders to write to, in this order."""
     given = os.environ.get("ROCKFRAME_CACHE_DIR")
     if given:
         return [Path(given)]
@@ -82,42 +120,12 @@ def _folders() -> list[Path]:
         own = "~/Library/Caches"
     else:
         own = os.environ.get("XDG_CACHE_HOME", "~/.cache")
-    return [_ROOT / "__pycache__", Path(own).expanduser() / "rockframe"]
+    return [Path(own).expanduser() / "rockframe", PACKAGE / "__pycache__"]
 
 
-def _stem(name: str, maker: str) -> str:
-    """Give the part of a file's name that stays when the sources change."""
-    return f"{name}-{sys.implementation.cache_tag}-{_digest(f'{_numba()} {maker}'.encode(), 6)}"
-
-
-def _file_name(name: str, maker: str) -> str:
-    return f"{_stem(name, maker)}-{_sources()}.o"
-
-
-def _digest(content: bytes, size: int) -> str:
-    return hashlib.blake2b(content, digest_size=size).hexdigest()
-
-
-def _check(code: bytes) -> bytes:
-    return hashlib.blake2b(code, digest_size=_CHECK_SIZE).digest()
-
-
-@cache
-def _sources() -> str:
-    """Give a digest of the sources."""
-    return _digest(b"".join(path.name.encode() + path.read_bytes() for path in _files()), 16)
-
-
-@cache
-def _files() -> tuple[Path, ...]:
-    return tuple(path for pattern in _SOURCES for path in sorted(_ROOT.glob(pattern)))
-
-
-@cache
-def _numba() -> str:
-    """Tell numba's version without importing it."""
-    found = find_spec("numba")
-    if found is None or found.origin is None:
-        return ""
-    version = Path(found.origin).with_name("_version.py")
-    return version.read_text() if version.is_file() else ""
+def _remove_unused(folder: Path) -> None:
+    for old in folder.glob("code-*"):
+        if time.time() - old.stat().st_mtime > _UNUSED:
+            for file in sorted(old.rglob("*"), reverse=True):
+                file.rmdir() if file.is_dir() else file.unlink(missing_ok=True)
+            old.rmdir()

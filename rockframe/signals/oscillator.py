@@ -10,7 +10,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from rockframe.compiled import FrozenMatrix, Matrix, Vector, entry, kernel
+from rockframe.compiled import Matrix, Vector, entry, kernel
 
 STEPS_PER_PERIOD: Final = 12
 """Steps are split until a period has that many: kappa is at most 0.52."""
@@ -206,22 +206,16 @@ def march(
     peaks[2] = max(peaks[2], most_pull)
 
 
-@entry(
-    "none",
-    "frozen_matrix",
-    "matrix",
-    "real",
-    "real",
-    "vector",
-    "matrix",
-    "matrix",
-    "vector",
-    "vector",
-    "vector",
-    "matrix",
-)
+@kernel
+def clear(peaks: Vector) -> None:
+    """Set all peaks to zero."""
+    for j in range(QUANTITIES):
+        peaks[j] = 0.0
+
+
+@entry
 def march_all(
-    pieces: FrozenMatrix,
+    pieces: Matrix,
     still: Matrix,
     time_step: float,
     damping: float,
@@ -265,15 +259,15 @@ def march_all(
         length, free_length = time_step / parts, period / STEPS_PER_PERIOD
         kappa = 2.0 * np.pi * length / period
         fill_step(kappa, damping, step)
-        state[:] = 0.0
-        peaks[:] = 0.0
+        state[0] = state[1] = 0.0
+        clear(peaks)
         march(
             pieces, parts, length * length, kappa, damping, step, shifted, state, peaks
         )  # fmt: skip
         for j in range(QUANTITIES):
             found[k, j] = peaks[j] / length**j
         state[1] *= free_length / length
-        peaks[:] = 0.0
+        clear(peaks)
         march(still, 1, 0.0, free, damping, free_step, shifted, state, peaks)
         for j in range(QUANTITIES):
             found[k, j] = max(found[k, j], peaks[j] / free_length**j)

@@ -1,76 +1,35 @@
-"""Entries: what they take, what they give, and that their code outlives the process."""
+"""Compiled functions give what Python gives, or say that they run as Python."""
 
-import logging
+import importlib
 import os
 import subprocess
 import sys
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
 
 from rockframe.compiled import (
     COMPILED,
-    FrozenMatrix,
+    Codes,
     Integers,
-    Signature,
+    Matrix,
     Vector,
-    callback,
+    bound,
+    constant,
     entry,
+    inlined,
     kernel,
+    numbers_in,
+    put,
+    some_negative,
+    some_reversed,
 )
 
 pytestmark = [
     pytest.mark.unit,
     pytest.mark.skipif(not COMPILED, reason="this run does without compilation"),
 ]
-
-SHIFT = Signature("real", "real", "vector")
-OTHER = Signature("real", "vector", "real")
-
-
-class Pair(NamedTuple):
-    values: Vector
-    counts: Integers
-    factor: float
-
-
-@kernel
-def times(a: float, b: float) -> float:
-    return a * b
-
-
-@callback(SHIFT)
-def shift(value: float, by: Vector) -> float:
-    by[0] += 1.0
-    return times(value, 2.0) + by[1]
-
-
-@callback(OTHER)
-def other(by: Vector, value: float) -> float:
-    return by[0] + value
-
-
-@entry("real", SHIFT, Pair, "frozen_matrix", "integer")
-def combine(function, pair: Pair, matrix: FrozenMatrix, row: int) -> float:
-    total = 0.0
-    for i in range(matrix.shape[1]):
-        total += function(matrix[row, i], pair.values)
-    pair.counts[0] += matrix.shape[0]
-    return total * pair.factor
-
-
-@entry("integer", "codes")
-def tens(codes) -> int:
-    for i in range(len(codes)):
-        codes[i] = 10 * i
-    return len(codes)
-
-
-@entry("none", "vector")
-def careless(values: Vector) -> None:
-    if values[0] > 1.0:
-        raise ValueError
 
 
 @pytest.fixture(autouse=True)
@@ -79,78 +38,266 @@ def folder(tmp_path, monkeypatch):
     return tmp_path / "code"
 
 
-def arguments():
-    matrix = np.arange(12.0).reshape(3, 4)
-    matrix.setflags(write=False)
-    return [shift, Pair(np.array([0.0, 0.5]), np.array([5]), 3.0), matrix, 2]
+@kernel
+def cubed(x: float) -> float:
+    return x * x * x
 
 
-def test_it_computes_what_python_computes():
-    given = arguments()
-    assert combine(*given) == 3.0 * (2.0 * (8 + 9 + 10 + 11) + 4 * 0.5)
-    assert given[1].values.tolist() == [4.0, 0.5]
-    assert given[1].counts.tolist() == [8]
-    plain = arguments()
-    assert combine.__wrapped__(*plain) == combine(*arguments())
-    assert plain[1].values.tolist() == [4.0, 0.5]
+class Linear(NamedTuple):
+    slope: float
+
+    @inlined
+    def force_at(self, x: float) -> float:
+        return self.slope * x
+
+    @inlined
+    def own(self) -> tuple[float, ...]:
+        return ()
 
 
-def test_empty_arrays_and_small_integers():
-    assert tens(np.empty(0, np.int16)) == 0
-    codes = np.empty(4, np.int16)
-    assert tens(codes) == 4
-    assert codes.tolist() == [0, 10, 20, 30]
+class Hardening(NamedTuple):
+    slope: float
+    share: float
+    order: int
+    turned: bool
+
+    @inlined
+    def force_at(self, x: float) -> float:
+        force = self.slope * x + self.share * cubed(x) * self.order
+        return -force if self.turned else force
+
+    @inlined
+    def own(self) -> tuple[float, ...]:
+        return self.slope, self.share
 
 
-@pytest.mark.parametrize(
-    ("place", "value"),
-    [
-        ("values", np.zeros(2, np.float32)),
-        ("values", np.zeros((2, 2))),
-        ("values", np.zeros(4)[::2]),
-        ("counts", np.zeros(1, np.int32)),
-        ("counts", np.zeros(1)),
-    ],
+class Pair(NamedTuple):
+    first: Any
+    second: Any
+
+    @kernel
+    def total_at(self, x: float) -> float:
+        return self.first.force_at(x) - self.second.force_at(-x)
+
+    @kernel
+    def all_own(self) -> tuple[float, ...]:
+        return self.first.own() + constant(0.5, self.second.own()) + self.second.own()
+
+
+class Arrays(NamedTuple):
+    values: Vector
+    counts: Integers
+
+
+PAIRS = (
+    Pair(Linear(2.0), Hardening(3.0, 0.25, 2, False)),
+    Pair(Hardening(1.0, 4.0, 3, True), Linear(-1.5)),
+    Pair(Linear(2.0), Linear(0.5)),
 )
-def test_arrays_of_another_type_are_refused(place, value):
-    given = arguments()
-    given[1] = given[1]._replace(**{place: value})
-    with pytest.raises(TypeError, match=r"combine needs a (vector|integers): 1 dimensions of"):
-        combine(*given)
 
 
-def test_an_array_that_must_be_writeable_is_refused_when_it_is_not():
-    given = arguments()
-    given[1].values.setflags(write=False)
-    with pytest.raises(TypeError, match="writeable"):
-        combine(*given)
+@entry
+def tabulate(pair: Pair, given: Matrix, row: int, arrays: Arrays, codes: Codes, out: Vector) -> int:
+    found = 0
+    for i in range(given.shape[1]):
+        arrays.values[i] += pair.total_at(given[row, i])
+        codes[i] = 10 * i - arrays.counts[0]
+        if arrays.values[i] < 0.0:
+            found += 1
+    put(pair.all_own(), 2, out)
+    out[0] = 1.0 if some_negative((out[2], out[3])) else 0.0
+    out[1] = 1.0 if some_reversed(out, 2, (1.0, -1.0)) else 0.0
+    arrays.counts[0] += len(out)
+    return found
 
 
-def test_a_matrix_in_another_order_is_refused():
-    given = arguments()
-    given[2] = np.zeros((3, 4), order="F")
-    with pytest.raises(TypeError, match="not in C order"):
-        combine(*given)
+def arguments(pair):
+    given = np.linspace(-2.0, 1.7, 12).reshape(3, 4)
+    given.setflags(write=False)
+    arrays = Arrays(np.array([1.0, -0.5, 0.25, 0.0]), np.array([5]))
+    return pair, given, 1, arrays, np.zeros(4, np.int16), np.full(6, -7.0)
 
 
-@pytest.mark.parametrize("function", [other, times, len])
-def test_a_function_of_another_signature_is_refused(function):
-    with pytest.raises(TypeError, match="is no callback of the signature"):
-        combine(function, *arguments()[1:])
+def contents(given):
+    _, _, _, arrays, codes, out = given
+    return [part.tolist() for part in (*arrays, codes, out)]
 
 
-def test_too_few_or_too_many_arguments_are_refused():
-    with pytest.raises(ValueError, match="zip"):
-        combine(*arguments()[:-1])
-    with pytest.raises(ValueError, match="zip"):
-        combine(*arguments(), 1)
-    function, pair, *rest = arguments()
-    with pytest.raises(ValueError, match="zip"):
-        combine(function, (*pair, 1.0), *rest)
+def test_kernels_and_methods_compute_what_python_computes():
+    """The methods are told apart by the class of the tuple, whatever stands in it."""
+    for pair in PAIRS:
+        compiled, plain = arguments(pair), arguments(pair)
+        assert tabulate(*compiled) == tabulate.__wrapped__(*plain)
+        assert contents(compiled) == contents(plain)
+    assert None not in tabulate._routines.values()
+
+
+@kernel
+def force_of(pair: Pair, x: float, out: Vector) -> float:
+    out[0] += 1.0
+    return pair.total_at(x)
+
+
+@kernel
+def count_in(pair: Pair, number: int, out: Vector) -> int:
+    out[1] = pair.total_at(float(number))
+    return number + 1
+
+
+@entry
+def call_all(forces: Any, counting: Any, numbers: Vector, values: Vector, out: Vector) -> None:
+    for i in range(len(values)):
+        values[i] = forces(values[i], out, numbers)
+    out[2] = counting(len(values), out, numbers)
+
+
+def test_one_compiled_function_serves_all_bound_ones():
+    for pair in PAIRS:
+        functions, numbers = bound((force_of, count_in), pair), numbers_in(pair)
+        values, out = np.array([0.5, -1.25, 2.0]), np.zeros(3)
+        expected = [pair.total_at(value) for value in values]
+        call_all(*functions, numbers, values, out)
+        assert values.tolist() == expected
+        assert out.tolist() == [3.0, pair.total_at(3.0), 4.0]
+    assert numbers_in(PAIRS[1]).tolist() == [1.0, 4.0, 3.0, 1.0, -1.5]
+    assert len([routine for routine in call_all._routines.values() if routine]) == 1
+
+
+def test_arrays_in_another_order_and_other_things_are_refused():
+    _, _, row, arrays, codes, out = arguments(PAIRS[0])
+    for given, held, words in (
+        (np.zeros((3, 4), order="F"), arrays, "arrays in C order"),
+        (np.zeros((3, 8))[:, ::2], arrays, "arrays in C order"),
+        (np.zeros((3, 4)), arrays._replace(values=np.zeros(8)[::2]), "arrays in C order"),
+        (np.zeros((3, 4)), arrays._replace(counts=[5]), "numbers, arrays and tuples"),
+        ("a word", arrays, "numbers, arrays and tuples"),
+        (len, arrays, "numbers, arrays and tuples"),
+    ):
+        with pytest.raises(TypeError, match=words):
+            tabulate(PAIRS[0], given, row, held, codes, out)
+
+
+@entry
+def import_inside(values: Vector) -> int:
+    from math import floor
+
+    values[1] = values[0]
+    return floor(2.5)
+
+
+def test_what_cannot_be_compiled_runs_as_python_and_is_told_once(caplog, fallbacks):
+    for first in (3.0, 4.0):
+        values = np.array([first, 0.0])
+        assert import_inside(values) == 2
+        assert values.tolist() == [first, first]
+    told = [text for text in caplog.messages if "could not" in text]
+    assert len(told) == 1
+    assert told[0].startswith(f"{__name__}.import_inside could not be compiled, and runs as plain")
+    assert len(told[0].splitlines()) == 1
+    assert fallbacks == told
+    fallbacks.clear()
+
+
+def test_methods_of_one_name_take_equally_many_arguments():
+    class One(NamedTuple):
+        number: float
+
+        @kernel
+        def raised_by(self, other: float) -> float:
+            return self.number + other
+
+    assert One(1.0).raised_by(2.0) == 3.0
+    with pytest.raises(TypeError, match=r"Other\.raised_by takes 3 arguments, .* take 2"):
+
+        class Other(NamedTuple):
+            number: float
+
+            @kernel
+            def raised_by(self, other: float, factor: float) -> float:
+                return self.number + factor * other
+
+
+def test_names_that_would_be_taken_for_one_another_are_refused(fallbacks):
+    class Law(NamedTuple):
+        number: float
+
+        @kernel
+        def state(self) -> float:  # a field of the integrator's named tuples
+            return self.number
+
+    class Other(NamedTuple):
+        coordinates: float  # a method of systems
+
+    @entry
+    def of_law(law: Law) -> int:
+        return int(law.state())
+
+    @entry
+    def of_other(other: Other) -> int:
+        return int(other.coordinates)
+
+    importlib.import_module("rockframe.solve.workspace")
+    importlib.import_module("rockframe.dynamics.alone")
+    assert of_law(Law(3.0)) == of_other(Other(3.0)) == 3
+    assert len(fallbacks) == 2
+    assert "Law has a field, or a method, 'state'" in fallbacks[0]
+    assert "Other has a field, or a method, 'coordinates'" in fallbacks[1]
+    fallbacks.clear()
+    # what has been refused does the package no harm
+    from rockframe.compiled.registration import clashes_of
+    from rockframe.solve.workspace import Output
+
+    assert "state" in Output._fields
+    assert clashes_of(Output) == set()
+
+
+def test_arrays_that_are_read_only_stay_so(fallbacks):
+    @entry
+    def write(out: Vector) -> None:
+        out[0] = 5.0
+
+    kept = np.zeros(2)
+    kept.flags.writeable = False
+    with pytest.raises(ValueError, match="read-only"):
+        write(kept)
+    assert len(fallbacks) == 1
+    fallbacks.clear()
+
+
+def test_damaged_machine_code_is_made_anew(tmp_path):
+    told = "from rockframe.compiled import entry\nimport own\nprint(own.twice(4))\n"
+    (tmp_path / "own.py").write_text(
+        "from rockframe.compiled import entry\n"
+        "@entry\n"
+        "def twice(number: int) -> int:\n"
+        "    return 2 * number\n"
+    )
+    environment = {**os.environ, "ROCKFRAME_CACHE_DIR": str(tmp_path / "code")}
+    environment["PYTHONPATH"] = os.pathsep.join([str(tmp_path), *sys.path])
+
+    def run() -> str:
+        found = subprocess.run(
+            [sys.executable, "-c", told], env=environment, capture_output=True, text=True,
+            check=True,
+        )  # fmt: skip
+        assert "plain Python" not in found.stderr
+        return found.stdout.strip()
+
+    assert run() == "8"
+    kept = list((tmp_path / "code").rglob("*.nb[ci]"))
+    assert len(kept) == 2
+    for file in kept:
+        file.write_bytes(b"damaged")
+    assert run() == "8"
+    assert all(file.read_bytes() != b"damaged" for file in kept)
 
 
 def test_compilation_can_be_turned_off():
-    told = "from rockframe.compiled import COMPILED; print(COMPILED)"
+    told = (
+        "from rockframe.compiled import COMPILED, entry\n"
+        "def function(): pass\n"
+        "print(COMPILED, entry(function) is function)"
+    )
     done = subprocess.run(
         [sys.executable, "-c", told],
         env=os.environ | {"ROCKFRAME_COMPILE": "0"},
@@ -158,74 +305,4 @@ def test_compilation_can_be_turned_off():
         text=True,
         check=True,
     )
-    assert done.stdout.strip() == "False"
-
-
-def test_code_is_made_for_one_processor(monkeypatch):
-    from rockframe.compiled import machine_code
-
-    makers = set()
-    for features in ("+some", "+some,+other"):
-        monkeypatch.setattr(machine_code, "_features", lambda features=features: features)
-        makers.add(machine_code._maker())
-    assert len(makers) == 2
-
-
-def test_functions_of_one_name_are_not_mixed_up(folder):
-    def made(number):
-        @entry("real", "vector")
-        def first(values: Vector) -> float:
-            return values[0] + number
-
-        return first
-
-    assert made(1.0)(np.ones(1)) == 2.0
-    assert made(2.0)(np.ones(1)) == 3.0
-    # their source is none of rockframe's: whether stored code is up to date could not be told
-    assert not folder.exists()
-
-
-def test_code_that_can_raise_is_refused():
-    with pytest.raises(RuntimeError, match="careless could not be compiled") as caught:
-        careless(np.zeros(1))
-    assert "can raise an exception" in str(caught.value.__cause__)
-
-
-SPECTRUM = """
-import logging, sys
-logging.basicConfig(stream=sys.stdout, format="%(message)s")
-import rockframe as rf
-spectrum = rf.response_spectrum(rf.GroundMotion.sine_pulse(), ([0.5, 1.0], "s"))
-print("numba" in sys.modules, spectrum.spectral_displacement.values.tolist())
-"""
-
-
-def lines_of_a_process():
-    done = subprocess.run(
-        [sys.executable, "-c", SPECTRUM], capture_output=True, text=True, check=True
-    )
-    return done.stdout.splitlines()
-
-
-def test_the_next_process_does_without_numba(folder):
-    first, second = lines_of_a_process(), lines_of_a_process()
-    assert first[0].startswith("rockframe compiles what this needs for this machine")
-    assert first[1].startswith("True")
-    assert second == [first[1].replace("True", "False")]
-    for file in folder.iterdir():
-        file.write_bytes(b"damaged")
-    assert lines_of_a_process() == first
-
-
-def test_the_announcement_is_a_message_of_rockframe(caplog):
-    from rockframe.compiled import machine_code
-
-    machine_code._announced.clear()
-    with caplog.at_level(logging.WARNING, logger="rockframe"):
-        times_two(np.ones(1))
-    assert "compiles what this needs" in caplog.text
-
-
-@entry("none", "vector")
-def times_two(values: Vector) -> None:
-    values[0] *= 2.0
+    assert done.stdout.strip() == "False True"

@@ -1,15 +1,66 @@
-"""Machine code on disk: what is written is read, what is damaged or out of date is not."""
+"""Machine code on disk: kept for other processes, and made anew when a source has changed."""
 
+import importlib
+import itertools
 import os
-import stat
+import re
+import subprocess
 import sys
+import time
+from pathlib import Path
 
+import numpy as np
 import pytest
 
-from rockframe.compiled import store
+from rockframe.compiled import COMPILED, Vector, entry, sources, store
 
-NAME, MAKER = "rockframe.some.function", "a compiler for a processor"
-CODE = bytes(range(256)) * 7
+pytestmark = [
+    pytest.mark.unit,
+    pytest.mark.skipif(not COMPILED, reason="this run does without compilation"),
+]
+
+HELP = """
+from rockframe.compiled import kernel
+
+@kernel
+def twice(x: float) -> float:
+    return 2.0 * x
+"""
+OWN = """
+from typing import NamedTuple
+from own_help import twice
+from rockframe.compiled import Vector, entry, kernel
+
+class Law(NamedTuple):
+    slope: float
+
+    @kernel
+    def doubled_at(self, x: float) -> float:
+        return twice(self.slope * x)
+
+@entry
+def apply_law(law: Law, values: Vector) -> None:
+    for i in range(len(values)):
+        values[i] = law.doubled_at(values[i])
+
+@entry
+def add_one(values: Vector) -> None:
+    values[0] += 1.0
+"""
+RUN = """
+import logging, sys
+logging.basicConfig(stream=sys.stdout, format="%(message)s")
+import numpy as np
+import own
+if "reuse" in sys.argv:
+    from numba.core import compiler
+    compiler.compile_extra = None
+values = np.array([1.0, -3.0])
+own.apply_law(own.Law(1.5), values)
+own.add_one(values)
+print(values.tolist())
+"""
+ANNOUNCEMENT = "rockframe compiles what this needs for this machine"
 
 
 @pytest.fixture(autouse=True)
@@ -18,122 +69,208 @@ def folder(tmp_path, monkeypatch):
     return tmp_path / "code"
 
 
+@pytest.fixture
+def own(tmp_path, monkeypatch):
+    """Give the folder of two modules of a user's."""
+    (tmp_path / "own.py").write_text(OWN)
+    (tmp_path / "own_help.py").write_text(HELP)
+    path = os.pathsep.join([str(tmp_path), *filter(None, [os.environ.get("PYTHONPATH")])])
+    monkeypatch.setenv("PYTHONPATH", path)
+    monkeypatch.setenv("PYTHONDONTWRITEBYTECODE", "1")  # a source may change within a second
+    return tmp_path
+
+
+def edit(file, old, new):
+    text = file.read_text()
+    assert text.count(old) == 1
+    file.write_text(text.replace(old, new))
+
+
+def start(*arguments):
+    return subprocess.Popen(
+        [sys.executable, "-c", RUN, *arguments], text=True, stdout=subprocess.PIPE
+    )
+
+
+def lines_of(process):
+    lines = process.communicate(timeout=120)[0].splitlines()
+    assert process.returncode == 0
+    return lines
+
+
+def run(*arguments):
+    return lines_of(start(*arguments))
+
+
 def written(folder):
-    return sorted(path.name for path in folder.iterdir())
+    return sorted(path for path in folder.rglob("*") if path.is_file())
 
 
-def test_what_is_written_is_read():
-    assert store.read(NAME, MAKER) is None
-    store.write(NAME, MAKER, CODE)
-    assert store.read(NAME, MAKER) == CODE
+def test_the_next_process_compiles_nothing_unless_a_source_has_changed(own, folder):
+    first = run()
+    assert first[0].startswith(ANNOUNCEMENT)
+    assert first[1:] == ["[4.0, -9.0]"]
+    before = {path: path.stat().st_mtime_ns for path in written(folder)}
+    assert run("reuse") == first[1:]
+    assert {path: path.stat().st_mtime_ns for path in written(folder)} == before
+    edit(own / "own_help.py", "2.0 * x", "20.0 * x")
+    changed = run()
+    assert changed[0].startswith(ANNOUNCEMENT)
+    assert changed[1:] == ["[31.0, -90.0]"]
+    assert before.keys() < set(written(folder))
 
 
-def test_another_function_or_maker_has_its_own(folder):
-    store.write(NAME, MAKER, CODE)
-    assert store.read(f"{NAME}s", MAKER) is None
-    assert store.read(NAME, f"{MAKER} of another sort") is None
-    store.write(f"{NAME}s", MAKER, CODE[:10])
-    assert store.read(NAME, MAKER) == CODE
-    assert len(written(folder)) == 2
+def test_processes_that_start_at_once_do_not_harm_each_other(own, folder):
+    for process in [start() for _ in range(2)]:
+        assert lines_of(process)[-1] == "[4.0, -9.0]"
+    assert run("reuse") == ["[4.0, -9.0]"]
+    assert {path.suffix for path in written(folder)} == {".py", ".nbc", ".nbi"}
 
 
-@pytest.mark.parametrize("damage", ["cut", "changed", "emptied"])
-def test_damaged_code_is_not_used(folder, damage):
-    store.write(NAME, MAKER, CODE)
-    (file,) = folder.iterdir()
-    content = bytearray(file.read_bytes())
-    if damage == "cut":
-        content = content[:-5]
-    elif damage == "changed":
-        content[100] ^= 1
-    else:
-        content.clear()
-    file.write_bytes(content)
-    assert store.read(NAME, MAKER) is None
-    store.write(NAME, MAKER, CODE)
-    assert store.read(NAME, MAKER) == CODE
+def test_a_helper_compiles_what_it_can_import(own, folder, monkeypatch):
+    from rockframe.compiled import together
+    from rockframe.compiled.jobs import Job
+
+    monkeypatch.setattr(together, "_processors", lambda: 2)
+    job = Job(load(own, monkeypatch).add_one.source, (("float64", 1, True),), False)
+    with together._helper([job]) as helper:
+        assert helper.wait(timeout=120) == 0
+    assert job.is_stored
+    values = np.array([1.0])
+    job.make()(values)
+    assert values.tolist() == [2.0]
 
 
-def test_a_changed_source_makes_it_stale_and_replaces_it(folder, monkeypatch):
-    store.write(NAME, MAKER, CODE)
-    before = written(folder)
-    monkeypatch.setattr(store, "_sources", lambda: "edited")
-    assert store.read(NAME, MAKER) is None
-    store.write(NAME, MAKER, CODE[::-1])
-    assert store.read(NAME, MAKER) == CODE[::-1]
-    assert len(written(folder)) == 1
-    assert written(folder) != before
+def test_what_a_helper_cannot_import_is_compiled_all_the_same(monkeypatch):
+    from rockframe.compiled import together
+    from rockframe.compiled.jobs import Job
+
+    monkeypatch.setattr(together, "_processors", lambda: 2)
+    structure = (("float64", 1, True),)
+    jobs = [Job(one.source, structure, False) for one in (add_two, add_three)]
+    monkeypatch.delitem(sys.modules, __name__, raising=False)
+    values = np.zeros(1)
+    for made in together.make_all(jobs):
+        made(values)
+    assert values.tolist() == [5.0]
 
 
-def test_the_text_of_a_source_counts(tmp_path, monkeypatch):
-    monkeypatch.setattr(store, "_ROOT", tmp_path)
-    monkeypatch.setattr(store, "_files", store._files.__wrapped__)
-    source = tmp_path / "dynamics" / "some.py"
-    source.parent.mkdir()
-    digests = set()
-    for text in ("a = 1", "a = 2"):
-        source.write_text(text)
-        digests.add(store._sources.__wrapped__())
-    source.rename(source.with_name("other.py"))
-    digests.add(store._sources.__wrapped__())
-    assert len(digests) == 3
+def load(own, monkeypatch):
+    """Import the user's module here."""
+    for name in ("own", "own_help"):
+        monkeypatch.delitem(sys.modules, name, raising=False)
+    monkeypatch.syspath_prepend(own)
+    return importlib.import_module("own")
 
 
-def test_another_numba_has_its_own(monkeypatch):
-    numba = pytest.importorskip("numba")
-    assert numba.__version__ in store._numba()
-    store.write(NAME, MAKER, CODE)
-    monkeypatch.setattr(store, "_numba", lambda: "a later one")
-    assert store.read(NAME, MAKER) is None
+def some_function():
+    """Stand for a function that is compiled."""
 
 
-def test_every_source_that_is_compiled_counts():
-    from rockframe.compiled import registry
-    from rockframe.dynamics import coupled, rigid_ground, two_spring, winkler
-    from rockframe.signals import oscillator
-    from rockframe.solve import driver
+def test_every_state_of_the_sources_has_a_folder_of_its_own(own, tmp_path, monkeypatch):
+    package = tmp_path / "package"
+    for name in ("constants.py", "compiled/marks.py", "dynamics/alone.py", "dynamics/a/b.py"):
+        (package / name).parent.mkdir(parents=True, exist_ok=True)
+        (package / name).write_text("A = 1\n")
+    monkeypatch.setattr(sources, "PACKAGE", package)
+    monkeypatch.setattr(sources, "_package_digest", sources._package_digest.__wrapped__)
+    module = load(own, monkeypatch)
 
-    for module in (coupled, rigid_ground, two_spring, winkler, oscillator, driver):
-        assert store.knows(module.__file__)
-    for function in (*registry.KERNELS, *registry.CALLBACKS):
-        if function.__module__.startswith("rockframe."):
-            assert store.knows(function.__code__.co_filename), function.__module__
-    assert not store.knows(__file__)
+    def file(text="pass", classes=(module.Law,)):
+        return store.file_of(some_function, text, classes)
+
+    first = file()
+    assert first == file()
+    assert first.read_text() == "pass"
+    assert file("return").parent == first.parent
+    assert file("return") != first
+    folders = {first.parent, file(classes=()).parent}
+    edited = [own / "own.py", own / "own_help.py", *package.rglob("*.py")]
+    for source in edited:
+        edit(source, source.read_text(), source.read_text() + "\n# edited")
+        folders.add(file().parent)
+    assert len(folders) == 2 + len(edited)
+    # other files of the package are not compiled
+    (package / "system").mkdir()
+    (package / "system" / "scenes.py").write_text("A = 1\n")
+    assert file().parent in folders
+    # a notebook has no file that could be compared
+    monkeypatch.delattr(module, "__file__")
+    assert file() is None
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="permissions of another kind")
-def test_others_may_read_what_the_user_lets_them(folder):
-    mask = os.umask(0o022)
-    try:
-        store.write(NAME, MAKER, CODE)
-    finally:
-        os.umask(mask)
-    (file,) = folder.iterdir()
-    assert stat.S_IMODE(file.stat().st_mode) == 0o644
+def test_the_module_of_an_entry_counts_whatever_it_is_called_with(own, monkeypatch):
+    module = load(own, monkeypatch)
+    before = store.file_of(module.add_one.__wrapped__, "pass", ())
+    edit(own / "own.py", "+= 1.0", "+= 5.0")
+    assert store.file_of(module.add_one.__wrapped__, "pass", ()).parent != before.parent
 
 
-def test_where_nothing_can_be_written_nothing_is(tmp_path, monkeypatch):
+def test_a_module_counts_if_its_functions_are_named_by_it(own, monkeypatch):
+    edit(own / "own.py", "from own_help import twice", "import own_help")
+    edit(own / "own.py", "twice(", "own_help.twice(")
+    module = load(own, monkeypatch)
+    before = store.file_of(some_function, "pass", (module.Law,))
+    edit(own / "own_help.py", "2.0 * x", "20.0 * x")
+    assert store.file_of(some_function, "pass", (module.Law,)).parent != before.parent
+
+
+def test_every_source_of_the_package_that_is_compiled_counts():
+    marks = re.compile(r"^\s*@(kernel|inlined|entry)\b", re.MULTILINE)
+    counted = set(
+        itertools.chain.from_iterable(sources.PACKAGE.glob(each) for each in sources._SOURCES)
+    )
+    marked = {path for path in sources.PACKAGE.rglob("*.py") if marks.search(path.read_text())}
+    assert len(marked) > 20
+    assert marked <= counted
+
+
+def test_code_of_other_sources_is_removed_after_a_month(folder):
+    times = {"code-old": time.time() - 40 * 24 * 3600.0, "code-young": time.time() - 3600.0}
+    for name, moment in times.items():
+        kept = folder / name / "__pycache__"
+        kept.mkdir(parents=True)
+        (kept / "some.nbc").write_bytes(b"code")
+        os.utime(folder / name, (moment, moment))
+    made = store.file_of(some_function, "pass", ())
+    assert {path.name for path in folder.iterdir()} == {"code-young", made.parent.name}
+
+
+@entry
+def add_two(values: Vector) -> None:
+    values[0] += 2.0
+
+
+@entry
+def add_three(values: Vector) -> None:
+    values[0] += 3.0
+
+
+def test_where_nothing_can_be_written_a_warning_is_all(tmp_path, monkeypatch, caplog):
+    from rockframe.compiled import jobs
+
+    monkeypatch.setattr(jobs, "_said", set())
     blocked = tmp_path / "a file, no folder"
     blocked.write_text("")
     monkeypatch.setenv("ROCKFRAME_CACHE_DIR", str(blocked))
-    store.write(NAME, MAKER, CODE)
-    assert store.read(NAME, MAKER) is None
-
-
-def test_one_folder_is_written_to(tmp_path, monkeypatch):
-    folders = [tmp_path / "one", tmp_path / "other"]
-    monkeypatch.setattr(store, "_folders", lambda: folders)
-    store.write(NAME, MAKER, CODE)
-    assert len(written(folders[0])) == 1
-    assert not folders[1].exists()
+    values = np.zeros(1)
+    add_two(values)
+    add_three(values)
+    assert values.tolist() == [5.0]
+    assert len(caplog.messages) == 1
+    assert None not in (*add_two._routines.values(), *add_three._routines.values())
 
 
 def test_the_next_folder_serves_where_the_first_cannot(tmp_path, monkeypatch):
     monkeypatch.delenv("ROCKFRAME_CACHE_DIR")
-    blocked = tmp_path / "a file, no folder"
-    blocked.write_text("")
-    monkeypatch.setattr(store, "_ROOT", blocked)
     for variable in ("XDG_CACHE_HOME", "LOCALAPPDATA", "HOME"):
         monkeypatch.setenv(variable, str(tmp_path / "own"))
-    store.write(NAME, MAKER, CODE)
-    assert store.read(NAME, MAKER) == CODE
+    monkeypatch.setattr(store, "PACKAGE", tmp_path / "package")
+    first = store.file_of(some_function, "pass", ())
+    assert first.is_relative_to(tmp_path / "own")
+    assert not (tmp_path / "package").exists()
+    (tmp_path / "own").rename(tmp_path / "away")
+    Path(tmp_path / "own").write_text("")
+    second = store.file_of(some_function, "pass", ())
+    assert second.is_relative_to(tmp_path / "package" / "__pycache__")
+    assert second.read_text() == "pass"

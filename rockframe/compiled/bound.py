@@ -1,0 +1,105 @@
+"""Functions of a tuple of numbers, bound to one such tuple.
+
+Compiled code calls them by their address, whatever the class of the tuple: its numbers are
+the elements of the last argument, a vector.
+"""
+
+from collections.abc import Callable, Iterator
+from functools import cache, cached_property
+from typing import Any
+
+import numpy as np
+
+from rockframe.compiled.arrays import Vector
+
+
+def numbers_in(bundle: Any) -> Vector:
+    """Give the numbers of a tuple and of the tuples in it, one after the other."""
+    return np.array(list(_flat(bundle)), dtype=np.float64)
+
+
+def _flat(bundle: Any) -> Iterator[float]:
+    for value in bundle:
+        if isinstance(value, tuple):
+            yield from _flat(value)
+        else:
+            yield float(value)
+
+
+def structure_of(bundle: Any) -> tuple[Any, ...]:
+    """Give the class of a tuple and, in their order, the kinds of what it holds."""
+    return (type(bundle), *(
+        structure_of(value) if isinstance(value, tuple) else type(value) for value in bundle
+    ))  # fmt: skip
+
+
+class Source:
+    """A function and the structure of a tuple that it can be bound to.
+
+    Parameters
+    ----------
+    function : callable
+        Its source; the first argument is the tuple.
+    structure : tuple
+        Of that, see :func:`structure_of`.
+    """
+
+    def __init__(self, function: Callable[..., Any], structure: tuple[Any, ...]) -> None:
+        self.function = function
+        self.structure = structure
+        self.code: Any = None  # once it has been compiled
+
+    @cached_property
+    def signature(self) -> Any:
+        """Numba's signature of the function."""
+        from rockframe.compiled.jobs import signature_of
+
+        return signature_of(self.function)
+
+
+class Bound:
+    """A function bound to a tuple: plain Python, and what entries call in its place.
+
+    Parameters
+    ----------
+    source : Source
+        The function.
+    bundle : named tuple
+        That it is bound to.
+    """
+
+    __slots__ = ("_bundle", "source")
+
+    def __init__(self, source: Source, bundle: Any) -> None:
+        self.source = source
+        self._bundle = bundle
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Call the function with the tuple in place of its numbers, the last argument."""
+        return self.source.function(self._bundle, *arguments[:-1])
+
+
+def bound(functions: tuple[Callable[..., Any], ...], bundle: Any) -> tuple[Bound, ...]:
+    """Bind functions to the tuple that is their first argument.
+
+    Parameters
+    ----------
+    functions : tuple of callable
+        Marked functions, annotated with ``int``, ``float`` and ``Vector``; they give a number
+        or none.
+    bundle : named tuple
+        Of numbers, and named tuples of them.
+
+    Returns
+    -------
+    tuple of Bound
+        They take another last argument, which is :func:`numbers_in` the bundle. They are
+        compiled with the entry that is first called with them.
+    """
+    structure = structure_of(bundle)
+    return tuple(Bound(_source(function, structure), bundle) for function in functions)
+
+
+@cache
+def _source(function: Callable[..., Any], structure: tuple[Any, ...]) -> Source:
+    return Source(function, structure)

@@ -1,0 +1,174 @@
+"""Arrays as compiled functions see them: an address and a shape, and nothing to keep count of.
+
+Indices are not checked, and none counts from the end.
+
+numba counts the references to its own arrays, a matter of nanoseconds each time one is taken
+out of a tuple, which is most of the time of a step. A buffer belongs to whoever called.
+Made with numba's documented extension interface; imported only where numba is.
+"""
+
+import operator
+from collections.abc import Callable
+from importlib import import_module
+from typing import Any, Final
+
+from rockframe.compiled import tuples
+
+# numba's own annotations are partial
+numba: Final[Any] = import_module("numba")
+extending: Final[Any] = import_module("numba.extending")
+cgutils: Final[Any] = import_module("numba.core.cgutils")
+
+
+_INTO_CALLERS: Final = {"forceinline": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+
+
+class BufferType(numba.types.Type):
+    """numba's type of a buffer.
+
+    Parameters
+    ----------
+    dtype : numba type
+        Of its elements.
+    dimensions : int
+        Number of its indices.
+    writeable : bool
+        Whether elements can be set.
+    """
+
+    def __init__(self, dtype: Any, dimensions: int, writeable: bool) -> None:
+        self.dtype = dtype
+        self.dimensions = dimensions
+        self.writeable = writeable
+        super().__init__(name=f"buffer({dtype}, {dimensions}, {writeable})")
+
+
+@extending.register_model(BufferType)
+class _BufferModel(extending.models.StructModel):
+    def __init__(self, manager: Any, kind: BufferType) -> None:
+        members = [
+            ("address", numba.types.CPointer(kind.dtype)),
+            ("shape", numba.types.UniTuple(numba.int64, kind.dimensions)),
+        ]
+        super().__init__(manager, kind, members)
+
+
+extending.make_attribute_wrapper(BufferType, "address", "address")
+extending.make_attribute_wrapper(BufferType, "shape", "shape")
+
+
+@extending.intrinsic
+def buffer_of(_: Any, array: Any) -> Any:
+    """Give the buffer of an array that somebody else keeps, in compiled code."""
+
+    def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        given = context.make_array(signature.args[0])(context, builder, values[0])
+        made = cgutils.create_struct_proxy(signature.return_type)(context, builder)
+        made.address, made.shape = given.data, given.shape
+        return made._getvalue()
+
+    return BufferType(array.dtype, array.ndim, array.mutable)(array), code
+
+
+@extending.intrinsic
+def _load(_: Any, address: Any, offset: Any) -> Any:
+    """Read the element at an offset, in compiled code."""
+
+    def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        return builder.load(builder.gep(values[0], [values[1]]))
+
+    return address.dtype(address, numba.intp), code
+
+
+@extending.intrinsic
+def _store(_: Any, address: Any, offset: Any, value: Any) -> Any:
+    """Write the element at an offset, in compiled code."""
+
+    def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        builder.store(values[2], builder.gep(values[0], [values[1]]))
+        return context.get_dummy_value()
+
+    return numba.void(address, numba.intp, address.dtype), code
+
+
+@extending.intrinsic
+def _shifted(_: Any, kept: Any, first: Any) -> Any:
+    """Give a buffer from an index on, in compiled code."""
+
+    def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        given = cgutils.create_struct_proxy(kept)(context, builder, value=values[0])
+        made = cgutils.create_struct_proxy(kept)(context, builder)
+        made.address = builder.gep(given.address, [values[1]])
+        length = builder.sub(builder.extract_value(given.shape, 0), values[1])
+        made.shape = builder.insert_value(given.shape, length, 0)
+        return made._getvalue()
+
+    return kept(kept, numba.intp), code
+
+
+@extending.overload(tuples.part_of, strict=False, jit_options=_INTO_CALLERS)
+def _part_of(array: Any, first: Any) -> Callable[..., Any]:
+    return lambda array, first: _shifted(array, first)
+
+
+@extending.overload(operator.getitem, strict=False, jit_options=_INTO_CALLERS)
+def _get(kept: Any, place: Any) -> Callable[..., Any] | None:
+    if not (isinstance(kept, BufferType) and _is_place(place)):
+        return None
+    if kept.dimensions == 1:
+        return lambda kept, place: _load(kept.address, place)
+    return lambda kept, place: _load(kept.address, place[0] * kept.shape[1] + place[1])
+
+
+@extending.overload(operator.setitem, strict=False, jit_options=_INTO_CALLERS)
+def _set(kept: Any, place: Any, value: Any) -> Callable[..., Any] | None:
+    if not (isinstance(kept, BufferType) and kept.writeable and _is_place(place)):
+        return None
+    if kept.dimensions == 1:
+        return lambda kept, place, value: _store(kept.address, place, value)
+    return lambda kept, place, value: _store(
+        kept.address, place[0] * kept.shape[1] + place[1], value
+    )
+
+
+@extending.overload(len, strict=False, jit_options=_INTO_CALLERS)
+def _length(kept: Any) -> Callable[..., Any] | None:
+    if not isinstance(kept, BufferType):
+        return None
+    return lambda kept: kept.shape[0]
+
+
+@extending.overload(tuples.constant, strict=False, jit_options=_INTO_CALLERS)
+def _constant(value: Any, like: Any) -> Callable[..., Any]:
+    return _written("value, like", f"return ({'value, ' * len(like)})")
+
+
+@extending.overload(tuples.put, strict=False, jit_options=_INTO_CALLERS)
+def _put(numbers: Any, first: Any, out: Any) -> Callable[..., Any]:
+    lines = [f"out[first + {i}] = numbers[{i}]" for i in range(len(numbers))]
+    return _written("numbers, first, out", "; ".join(lines) or "pass")
+
+
+@extending.overload(tuples.some_negative, strict=False, jit_options=_INTO_CALLERS)
+def _some_negative(numbers: Any) -> Callable[..., Any]:
+    tests = [f"(numbers[{i}] < 0.0)" for i in range(len(numbers))]
+    return _written("numbers", f"return {' | '.join(tests)}")
+
+
+@extending.overload(tuples.some_reversed, strict=False, jit_options=_INTO_CALLERS)
+def _some_reversed(before: Any, first: Any, now: Any) -> Callable[..., Any]:
+    tests = [f"((before[first + {i}] < 0.0) & (now[{i}] > 0.0))" for i in range(len(now))]
+    return _written("before, first, now", f"return {' | '.join(tests)}")
+
+
+def _is_place(place: Any) -> bool:
+    """Whether an index is a number, or one for each dimension; slices are not known."""
+    numbers = place if isinstance(place, numba.types.BaseTuple) else (place,)
+    return all(isinstance(number, numba.types.Integer) for number in numbers)
+
+
+def _written(arguments: str, line: str) -> Callable[..., Any]:
+    """Make a function of one line, as long as some tuple is."""
+    scope: dict[str, Any] = {}
+    exec(f"def written({arguments}):\n    {line}\n", scope)  # noqa: S102
+    return scope["written"]

@@ -1,0 +1,138 @@
+"""What is compiled: a module of a few lines for each function and structure of its arguments.
+
+numba keeps machine code beside the module that a function is defined in, and throws it away
+when that file changes. It knows nothing of the files of the functions that are called: their
+contents are part of the name of the folder that the module is written to.
+"""
+
+import inspect
+import logging
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from types import ModuleType
+from typing import Any, Final, get_type_hints
+
+from rockframe.compiled import store
+from rockframe.compiled.buffers import buffer_of
+from rockframe.compiled.registration import OPTIONS, numba, register_kernels
+from rockframe.compiled.writer import KINDS, VECTOR, Writer
+
+_logger = logging.getLogger("rockframe")
+_said: Final[set[str]] = set()
+
+_WAIT: Final = (
+    "rockframe compiles what this needs for this machine, which takes some 20 s for a block on "
+    "pads, 30 s with cap and soil"
+)
+
+
+def signature_of(function: Callable[..., Any]) -> Any:
+    """Give numba's signature of a function that is to be bound to a tuple, from its annotations."""
+    names = list(inspect.signature(function).parameters)[1:]
+    hints = get_type_hints(function, include_extras=True)
+    return KINDS[hints["return"]](*(KINDS[hints[name]] for name in names), VECTOR)
+
+
+@dataclass(frozen=True)
+class Job:
+    """A function to compile for one structure of its arguments.
+
+    Parameters
+    ----------
+    function : callable
+        Its source.
+    structure : tuple
+        Of the tuple that it is bound to, :func:`rockframe.compiled.bound.structure_of`; of
+        all its arguments, as :class:`rockframe.compiled.entries.Entry` describes them.
+    bound : bool
+        Which of these.
+    """
+
+    function: Callable[..., Any]
+    structure: tuple[Any, ...]
+    bound: bool
+
+    @cached_property
+    def _written(self) -> tuple[str, dict[str, Any], Any]:
+        """Text of the module, the names in it, and the signature of its function."""
+        register_kernels()
+        writer = Writer()
+        if self.bound:
+            names = list(inspect.signature(self.function).parameters)[1:]
+            text = (
+                f"def run({', '.join(names)}, numbers):\n"
+                f"    return function({', '.join([writer.tuple_of(self.structure), *names])})\n"
+            )
+            return text, writer.scope, signature_of(self.function)
+        taken = ", ".join(writer.argument(part) for part in self.structure)
+        words = ", ".join(f"word_{i}" for i in range(len(writer.kinds)))
+        text = f"def run({words}):\n    return function({taken})\n"
+        gives = get_type_hints(self.function)["return"] is int
+        signature = (numba.int64 if gives else numba.void)(*writer.kinds)
+        return text, writer.scope | {"buffer_of": buffer_of}, signature
+
+    @cached_property
+    def file(self) -> Path | None:
+        """The module's file; None where it cannot be kept."""
+        text, scope, signature = self._written
+        classes = [kind for kind in scope.values() if isinstance(kind, type)]
+        return store.file_of(self.function, f"{text}\n# {signature}\n", classes)
+
+    @property
+    def is_stored(self) -> bool:
+        """Whether its machine code has been kept."""
+        return self.file is not None and store.has_code(self.file)
+
+    def make(self, waiting: Callable[[], bool] = lambda: True) -> Any:
+        """Give the compiled function: compiled now, or as it was kept.
+
+        Parameters
+        ----------
+        waiting : callable
+            Whether to go on waiting for another process that compiles it.
+
+        Returns
+        -------
+        callable
+            Of a vector as its last argument where it is bound, else of words.
+        """
+        file = self.file
+        if file is None:
+            _say_once(f"{_WAIT}; it is not kept, for want of a folder or of a file of its source")
+            return self._compiled(keep=False)
+        if self.is_stored:
+            try:
+                return self._compiled(keep=True)
+            except Exception:  # damaged: whatever comes of reading it
+                store.forget_code(file)
+        _say_once(f"{_WAIT}, once")
+        with store.compiling(file, waiting):
+            try:
+                return self._compiled(keep=True)
+            except (RuntimeError, OSError) as problem:  # no place that numba could write to
+                _say_once(f"machine code is not kept on disk, and made anew each time: {problem}")
+                return self._compiled(keep=False)
+
+    def _compiled(self, *, keep: bool) -> Any:
+        text, scope, signature = self._written
+        name = self.file.stem if self.file else f"{self.function.__name__}_{len(sys.modules)}"
+        module = ModuleType(name)
+        module.__dict__.update(scope, function=self.function)
+        sys.modules[name] = module  # where numba looks for it when it reads its store
+        place = str(self.file) if self.file else f"<{name}>"
+        exec(compile(text, place, "exec"), module.__dict__)  # noqa: S102
+        options = {**OPTIONS, "cache": True} if keep else OPTIONS
+        if self.bound:
+            made = numba.cfunc(signature, **options)(module.__dict__["run"])
+            made.signature = signature
+            return made
+        return numba.njit(signature, nogil=True, **options)(module.__dict__["run"])
+
+
+def _say_once(text: str) -> None:
+    if text not in _said:
+        _said.add(text)
+        _logger.warning(text)
