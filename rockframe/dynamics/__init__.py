@@ -1,1 +1,1 @@
-"""Equations of motion, guards and switches of every contact state; SI floats only."""
+"""Equations of rocking bodies: pure functions of numbers, in SI units and per unit mass."""

@@ -1,48 +1,32 @@
 """A bed of springs and dashpots without tension under a straight base, :eq:`eq-bed`.
 
-Functions of plain numbers, for a block as for a cap. Along the base everything is
-linear: the compression u = delta - w of the springs, its rate -v, the pressure
-p = k u - c v and the lever of a point. So each resultant is exact from the values at
-both ends of the bearing part, without a division by the rotation. A place on the base
-is its share of the way from the left end (0) to the right end (1).
+Along the base everything is linear: the compression u = delta - w of the springs, its rate
+-v, the pressure p = k u - c v and the lever of a point. So each resultant is exact from the
+values at both ends of the bearing part, without a division by the rotation. A place on the
+base is its share of the way from the left end (0) to the right end (1). A
+:class:`rockframe.dynamics.base.Base`.
 """
 
 from typing import Final, NamedTuple
 
-from rockframe.compiled import inlined, kernel
-from rockframe.dynamics.protocol import REENGAGEMENT, SEPARATION
+from rockframe.compiled import Vector, inlined, kernel
+from rockframe.dynamics.base import BaseForce, EndEvent, Guards, Variables
+from rockframe.dynamics.body import BaseLine
+from rockframe.dynamics.events import REENGAGEMENT, SEPARATION
 
 # an end of the base
 DOWN: Final = 0  # below the level of the unloaded bed
 RAISED: Final = 1
-
-# A bed's mode is left end + 2 * right end + 4 * gliding + 8 * pivot. Gliding: the end that is
-# down only touches, and the hold gives way, see :mod:`rockframe.dynamics.gliding`.
-GLIDING: Final = 1
-PIVOT_FACTOR: Final = 8
-BED_MODES: Final = 24
-
-# guards of a bed
-LEFT_END: Final = 0
-RIGHT_END: Final = 1
-SLIP: Final = 2  # of a base that glides
-BED_GUARDS: Final = 3
+# Both ends in one integer: left end + 2 * right end.
+END: Final = 2
+CONTACTS: Final = END * END
 
 SIMULTANEOUS: Final = 1e-9
 """Share of the settlement within which both ends land, or both leave, together."""
 
 
-class Bed(NamedTuple):
-    """Properties of a bed, per unit length of base."""
-
-    stiffness: float
-    damping: float
-    settlement: float
-    by_pressure: float  # 1 where tension is cut off as well, else 0
-
-
 class Ends(NamedTuple):
-    """The base's ends: compression of the bed under them, and its rate with opposite sign."""
+    """Compression of the bed under the base's ends, and its rate with opposite sign."""
 
     u_left: float
     u_right: float
@@ -76,7 +60,7 @@ def first_place(near: float, far: float) -> float:
 
 @inlined
 def compressed_part(left: int, right: int, ends: Ends) -> tuple[float, float]:
-    """Give the places between which the base is down, by its ends' modes."""
+    """Give the places between which the base is down, by its ends."""
     if left == RAISED and right == RAISED:
         return 0.0, 0.0
     start = first_place(ends.u_left, ends.u_right) if left == RAISED else 0.0
@@ -85,145 +69,260 @@ def compressed_part(left: int, right: int, ends: Ends) -> tuple[float, float]:
 
 
 @inlined
-def pressure(place: float, ends: Ends, bed: Bed) -> float:
-    """Give the pressure at a place of the base."""
-    u = between(ends.u_left, ends.u_right, place)
-    return bed.stiffness * u - bed.damping * between(ends.v_left, ends.v_right, place)
-
-
-@inlined
-def bearing_part(left: int, right: int, gliding: int, ends: Ends, bed: Bed) -> tuple[float, float]:
-    """Give the places between which the base bears."""
-    start, end = compressed_part(left, right, ends)
-    if gliding == GLIDING:
-        return start, start
-    if bed.by_pressure == 0.0:
-        return start, end
-    p0 = pressure(start, ends, bed)
-    p1 = pressure(end, ends, bed)
-    if p0 < 0.0 < p1:
-        start += (end - start) * p0 / (p0 - p1)
-    elif p1 < 0.0 < p0:
-        end -= (end - start) * p1 / (p1 - p0)
-    elif p0 <= 0.0 and p1 <= 0.0:
-        end = start
-    return start, end
-
-
-@inlined
-def bed_resultants(
-    left: int,
-    right: int,
-    gliding: int,
-    ends: Ends,
-    bed: Bed,
-    width: float,
-    lever_left: float,
-    lever_right: float,
-) -> tuple[float, float, float]:
-    """Give the bed's force, its generalised force on the rotation, and what dashpots burn.
-
-    The levers are those of the base's ends. Where the base is down without bearing,
-    the springs under it feed their own dashpots.
-    """
-    start, end = bearing_part(left, right, gliding, ends, bed)
-    k, c = bed.stiffness, bed.damping
-    v0 = between(ends.v_left, ends.v_right, start)
-    v1 = between(ends.v_left, ends.v_right, end)
-    p0 = k * between(ends.u_left, ends.u_right, start) - c * v0
-    p1 = k * between(ends.u_left, ends.u_right, end) - c * v1
-    l0 = between(lever_left, lever_right, start)
-    l1 = between(lever_left, lever_right, end)
-    length = width * (end - start)
-    force = 0.5 * length * (p0 + p1)
-    moment = length * mean_product(p0, p1, l0, l1)
-    burnt = c * length * mean_product(v0, v1, v0, v1)
-    # without dashpots all that is down bears
-    if bed.by_pressure != 0.0 and c > 0.0 and gliding != GLIDING:
-        down = compressed_part(left, right, ends)
-        burnt += spring_power(down, ends, k, width) - spring_power((start, end), ends, k, width)
-    return force, moment, burnt
-
-
-@kernel
-def spring_power(part: tuple[float, float], ends: Ends, stiffness: float, width: float) -> float:
-    """Give the power that the springs of a part of the bed give away."""
-    start, end = part
-    u0 = between(ends.u_left, ends.u_right, start)
-    u1 = between(ends.u_left, ends.u_right, end)
-    v0 = between(ends.v_left, ends.v_right, start)
-    v1 = between(ends.v_left, ends.v_right, end)
-    return stiffness * width * (end - start) * mean_product(u0, u1, v0, v1)
-
-
-@kernel
-def bed_energy(ends: Ends, bed: Bed, width: float) -> tuple[float, float]:
-    """Give the energy of the compressed springs, and that less the energy at rest."""
-    delta = bed.settlement
-    half = 0.5 * bed.stiffness * width
-    start, end = compressed_part(end_state(ends.u_left), end_state(ends.u_right), ends)
-    u0 = between(ends.u_left, ends.u_right, start)
-    u1 = between(ends.u_left, ends.u_right, end)
-    stored = half * (end - start) * mean_product(u0, u1, u0, u1)
-    if end - start < 1.0:
-        return stored, stored - half * delta * delta
-    # u^2 - delta^2 as a product, to all digits
-    return stored, half * mean_product(u0 - delta, u1 - delta, u0 + delta, u1 + delta)
-
-
-@inlined
-def end_state(u: float) -> int:
-    """Give whether an end is down or raised."""
+def end_of(u: float) -> int:
+    """Give whether an end is down or raised, by the compression under it."""
     return DOWN if u > 0.0 else RAISED
 
 
-@inlined
-def bed_guards(left: int, right: int, ends: Ends, settlement: float) -> tuple[float, ...]:
-    """Give the guards of the ends, then their rates."""
-    left_sign = (1.0 if left == DOWN else -1.0) / settlement
-    right_sign = (1.0 if right == DOWN else -1.0) / settlement
-    return (
-        left_sign * ends.u_left,
-        right_sign * ends.u_right,
-        -left_sign * ends.v_left,
-        -right_sign * ends.v_right,
-    )
+class Bed(NamedTuple):
+    """A bed, per unit length of base and unit mass of the body on it."""
 
+    stiffness: float  # k0/m
+    damping: float  # c0/m
+    settlement: float  # delta
+    width: float  # of the base, B
+    by_pressure: bool  # whether tension is cut off as well
 
-@kernel
-def switch_bed(which: int, left: int, right: int, ends: Ends, bed: Bed) -> tuple[int, int, int]:
-    """Give the ends' states and the event after a guard.
+    @kernel
+    def contacts(self) -> int:
+        """Give the number of both ends' contacts."""
+        return CONTACTS
 
-    An end that lands together with the other one, or leaves together with it, takes
-    it along if that moves so, too.
-    """
-    on_left = which == LEFT_END
-    end = left if on_left else right
-    other = right if on_left else left
-    level = abs(ends.u_right if on_left else ends.u_left)
-    speed = ends.v_right if on_left else ends.v_left
-    along = speed > 0.0 if end == DOWN else speed < 0.0
-    symmetric = ends.u_left == ends.u_right and ends.v_left == ends.v_right
-    if other == end and level <= SIMULTANEOUS * bed.settlement and (along or symmetric):
-        other = RAISED - other
-    end = RAISED - end
-    event = REENGAGEMENT if end == DOWN else SEPARATION
-    return end if on_left else other, other if on_left else end, event
+    @kernel
+    def end_guards(self) -> int:
+        """Give the number of guards of an end."""
+        return 1
 
+    @kernel
+    def variables(self) -> int:
+        """Give 0: an elastic bed has no variables of its own."""
+        return 0
 
-@kernel
-def airborne(left: int, right: int) -> bool:
-    """Whether the base is in flight."""
-    return left == RAISED and right == RAISED
+    @kernel
+    def read(self, state: Vector, first: int) -> Variables:
+        """Give none."""
+        return ()
 
+    @kernel
+    def flow(self, contact: int, line: BaseLine, own: Variables) -> Variables:
+        """Give none."""
+        return ()
 
-@kernel
-def equilibrium_middle(sine: float, half_width: float, settlement: float) -> float:
-    """Give the rise of the base's middle at which the bed carries the weight at rest.
+    @inlined
+    def is_held(self, contact: int, left: bool) -> bool:
+        """Whether an end is down."""
+        return (contact % END if left else contact // END) == DOWN
 
-    With one end raised, the bearing part is 2 sqrt(b delta/|sin a|) long.
-    """
-    tilt = half_width * abs(sine)
-    if tilt <= settlement:
+    @inlined
+    def touches(self, contact: int, left: bool) -> bool:
+        """Whether an end is down."""
+        return self.is_held(contact, left)
+
+    @kernel
+    def tilt(self, contact: int) -> float:
+        """Give the side of the end that is raised, as the other one is pressed upwards."""
+        return float(contact // END - contact % END)
+
+    @inlined
+    def ends(self, line: BaseLine) -> Ends:
+        """Give the compression under both ends, and its rate."""
+        delta = self.settlement
+        return Ends(delta - line.left, delta - line.right, line.left_speed, line.right_speed)
+
+    @inlined
+    def pressure(self, place: float, ends: Ends) -> float:
+        """Give the pressure at a place of the base."""
+        u = between(ends.u_left, ends.u_right, place)
+        return self.stiffness * u - self.damping * between(ends.v_left, ends.v_right, place)
+
+    @inlined
+    def bearing_part(self, contact: int, ends: Ends) -> tuple[float, float]:
+        """Give the places between which the base bears."""
+        start, end = compressed_part(contact % END, contact // END, ends)
+        if not self.by_pressure:
+            return start, end
+        p0, p1 = self.pressure(start, ends), self.pressure(end, ends)
+        if p0 < 0.0 < p1:
+            start += (end - start) * p0 / (p0 - p1)
+        elif p1 < 0.0 < p0:
+            end -= (end - start) * p1 / (p1 - p0)
+        elif p0 <= 0.0 and p1 <= 0.0:
+            end = start
+        return start, end
+
+    @inlined
+    def force(self, contact: int, line: BaseLine, own: Variables) -> BaseForce:
+        """Give the bed's force, its generalised force on the rotation, and what is dissipated.
+
+        Where the base is down without bearing, the springs under it feed their own dashpots.
+        """
+        ends = self.ends(line)
+        start, end = self.bearing_part(contact, ends)
+        v0 = between(ends.v_left, ends.v_right, start)
+        v1 = between(ends.v_left, ends.v_right, end)
+        p0 = self.stiffness * between(ends.u_left, ends.u_right, start) - self.damping * v0
+        p1 = self.stiffness * between(ends.u_left, ends.u_right, end) - self.damping * v1
+        l0 = between(line.left_lever, line.right_lever, start)
+        l1 = between(line.left_lever, line.right_lever, end)
+        length = self.width * (end - start)
+        dissipated = self.damping * length * mean_product(v0, v1, v0, v1)
+        # without dashpots all that is down bears
+        if self.by_pressure and self.damping > 0.0:
+            down, up = compressed_part(contact % END, contact // END, ends)
+            dissipated += self.spring_power(down, up, ends) - self.spring_power(start, end, ends)
+        return BaseForce(
+            0.5 * length * (p0 + p1), length * mean_product(p0, p1, l0, l1), dissipated
+        )
+
+    @kernel
+    def spring_power(self, start: float, end: float, ends: Ends) -> float:
+        """Give the power that the springs of a part of the bed give away."""
+        u0 = between(ends.u_left, ends.u_right, start)
+        u1 = between(ends.u_left, ends.u_right, end)
+        v0 = between(ends.v_left, ends.v_right, start)
+        v1 = between(ends.v_left, ends.v_right, end)
+        return self.stiffness * self.width * (end - start) * mean_product(u0, u1, v0, v1)
+
+    @kernel
+    def energy(self, line: BaseLine, own: Variables) -> tuple[float, float]:
+        """Give the energy of the compressed springs, and that less the energy at rest."""
+        ends, delta = self.ends(line), self.settlement
+        half = 0.5 * self.stiffness * self.width
+        start, end = compressed_part(end_of(ends.u_left), end_of(ends.u_right), ends)
+        u0 = between(ends.u_left, ends.u_right, start)
+        u1 = between(ends.u_left, ends.u_right, end)
+        stored = half * (end - start) * mean_product(u0, u1, u0, u1)
+        if end - start < 1.0:
+            return stored, stored - half * delta * delta
+        # u^2 - delta^2 as a product, to all digits
+        return stored, half * mean_product(u0 - delta, u1 - delta, u0 + delta, u1 + delta)
+
+    @inlined
+    def guards_of(
+        self, contact: int, left: bool, line: BaseLine, acceleration: float, own: Variables
+    ) -> Guards:
+        """Give the guard of an end, its level above or below the unloaded bed, and its rate."""
+        scale = (1.0 if self.is_held(contact, left) else -1.0) / self.settlement
+        level = line.left if left else line.right
+        speed = line.left_speed if left else line.right_speed
+        return Guards((scale * (self.settlement - level),), (-scale * speed,))
+
+    @kernel
+    def switch(
+        self, contact: int, left: bool, which: int, line: BaseLine, own: Variables
+    ) -> EndEvent:
+        """Give the contact and the event after the guard of an end.
+
+        An end that lands together with the other one, or leaves together with it, takes
+        it along if that moves so, too.
+        """
+        ends = self.ends(line)
+        end = contact % END if left else contact // END
+        other = contact // END if left else contact % END
+        level = abs(ends.u_right if left else ends.u_left)
+        speed = ends.v_right if left else ends.v_left
+        along = speed > 0.0 if end == DOWN else speed < 0.0
+        symmetric = ends.u_left == ends.u_right and ends.v_left == ends.v_right
+        if other == end and level <= SIMULTANEOUS * self.settlement and (along or symmetric):
+            other = RAISED - other
+        end = RAISED - end
+        both = end + END * other if left else other + END * end
+        return EndEvent(both, REENGAGEMENT if end == DOWN else SEPARATION, True)
+
+    @kernel
+    def variables_after(self, was: int, contact: int, line: BaseLine, own: Variables) -> Variables:
+        """Give none."""
+        return ()
+
+    @kernel
+    def level(self, left: bool, line: BaseLine, own: Variables) -> float:
+        """Give how much higher than an end the unloaded bed is."""
+        return self.settlement - (line.left if left else line.right)
+
+    @kernel
+    def is_level(self, left: bool, line: BaseLine, own: Variables) -> bool:
+        """Give True: an end that slides is at the level of the unloaded bed."""
+        return True
+
+    @inlined
+    def follows(self, contact: int, left: bool) -> int:
+        """Give the contact in flight: an end that slides touches the unloaded bed only."""
+        return RAISED + END * RAISED
+
+    @kernel
+    def following_speed(self, left: bool, line: BaseLine, own: Variables) -> float:
+        """Give 0: an unloaded bed is at its level."""
         return 0.0
-    return settlement + tilt - 2.0 * (tilt * settlement) ** 0.5
+
+    @inlined
+    def following_rate(self) -> float:
+        """Give 0: an unloaded bed is at its level."""
+        return 0.0
+
+    @kernel
+    def least_landing(self) -> float:
+        """Give 0: a bed answers a landing by its length in contact, from zero on."""
+        return 0.0
+
+    @kernel
+    def released(self, contact: int, left: bool, line: BaseLine, own: Variables) -> int:
+        """Give the contact in flight."""
+        return RAISED + END * RAISED
+
+    @kernel
+    def presses(self, contact: int, left: bool, line: BaseLine, own: Variables) -> bool:
+        """Give False: an end that has left is above the bed."""
+        return False
+
+    @kernel
+    def will_press(self, left: bool, line: BaseLine, acceleration: float, own: Variables) -> bool:
+        """Give False: an end that has left is above the bed."""
+        return False
+
+    @kernel
+    def held(self, contact: int, left: bool) -> int:
+        """Give the contact with an end that is down."""
+        return contact - contact % END if left else contact % END
+
+    @kernel
+    def waiting(self, contact: int, left: bool) -> int:
+        """Give the contact itself: nothing waits."""
+        return contact
+
+    @kernel
+    def engaged(self, contact: int, left: bool, line: BaseLine, own: Variables) -> int:
+        """Give the contact itself."""
+        return contact
+
+    @kernel
+    def disturbed(self, contact: int) -> int:
+        """Give the contact itself: it follows from the levels alone."""
+        return contact
+
+    @kernel
+    def rebound(self) -> float:
+        """Give 1: a bed has no impacts."""
+        return 1.0
+
+    @kernel
+    def starting(self, line: BaseLine, own: Variables) -> int:
+        """Give the contact at the start of a run."""
+        ends = self.ends(line)
+        return end_of(ends.u_left) + END * end_of(ends.u_right)
+
+    @kernel
+    def resting_height(self, left: float, right: float, own: Variables) -> float:
+        """Give the height of the ends' middle at which the bed carries the weight at rest.
+
+        With one end raised, the bearing part is 2 sqrt(b delta/|sin a|) long.
+        """
+        tilt, middle = 0.5 * abs(left - right), 0.5 * (left + right)
+        if tilt <= self.settlement:
+            return 0.0 - middle
+        return self.settlement + tilt - 2.0 * (tilt * self.settlement) ** 0.5 - middle
+
+    @kernel
+    def observed(self, contact: int, line: BaseLine, own: Variables) -> Variables:
+        """Give the bed's reaction and the length in contact."""
+        start, end = self.bearing_part(contact, self.ends(line))
+        return self.force(contact, line, own).upward, self.width * (end - start)

@@ -1,109 +1,135 @@
-"""What a contact model is to the integrator: five functions, a few tables and numbers.
+"""What a contact model is to the integrator: equations of a system, a few tables and numbers.
 
-The integrator knows nothing of blocks, pads or soil. A model describes itself
-by second-order equations ``q'' = f(contact mode, q, q', ground)``, by *guards*
-(functions of the state that stay positive as long as the mode lasts) and by a
-*switch* (what happens when a guard falls through zero).
+The integrator knows nothing of blocks, pads or soil. A system is a named tuple of numbers
+whose methods are second-order equations ``q'' = f(mode, q, q', z, ground)`` with variables of
+first order ``z' = g(...)``, *guards* (functions of the state that stay positive as long as the
+mode lasts), and a *switch* (what happens when a guard falls through zero).
 
-State vector: ``state[:n]`` holds the coordinates, ``state[n:]`` their rates.
-All energies and powers are per unit mass. Modes are small integers private to
-the model; ``contact`` maps them to the contact states users see.
+State vector: n coordinates, their n rates, then the variables of first order. All energies
+and powers are per unit mass. Modes are whole numbers, which the system packs and unpacks;
+``contact`` maps them to the contact states that users see.
 """
 
-import sys
 from collections.abc import Callable
 from dataclasses import dataclass
-from enum import IntEnum
-from typing import Final
+from typing import Final, NamedTuple, Protocol, TypeAlias
 
-from rockframe.compiled import Integers, Signature, Vector
+from rockframe.compiled import Integers, Vector
 
-ACCELERATE: Final = Signature("none", "integer", "vector", "real", "real", "vector", "vector")
-"""accelerate(mode, state, ground_x, ground_y, parameters, out): accelerations of
-the coordinates, then the power burnt by dashpots and the power put in by the ground.
-Coordinates that do not move in the mode are not to be read."""
+Slope: TypeAlias = tuple[float, ...] | Vector
+"""Accelerations, rates of the variables of first order, and powers, in this order."""
 
-GUARD: Final = Signature("none", "integer", "vector", "vector", "real", "real", "vector", "vector")
-"""guard(mode, state, accelerations, ground_x, ground_y, parameters, out): values of
-the guards (positive: no switch), then their rates. The last guard is the distance
-of the rotation from ``parameters[ROTATION_LIMIT]``."""
 
-SWITCH: Final = Signature(
-    "integer", "integer", "integer", "vector", "real", "real", "vector", "vector"
-)
-"""switch(mode, guard, state, ground_x, ground_y, parameters, memory) -> new mode.
-Changes the state where it jumps and keeps the books in `memory`."""
+class Ground(NamedTuple):
+    """Acceleration of the ground [m s^-2]."""
 
-ENERGY: Final = Signature("none", "integer", "vector", "vector", "vector")
-"""energy(mode, state, parameters, out): kinetic, gravity, elastic, and elastic less
-that at rest."""
+    x: float  # to the right
+    y: float  # upwards
 
-OBSERVE: Final = Signature(
-    "none", "integer", "vector", "vector", "real", "real", "vector", "vector"
-)
-"""observe(mode, state, memory, ground_x, ground_y, parameters, out): the columns
-that the model names in ``columns``."""
 
-ROTATION_LIMIT: Final = 0
-"""Index into the parameters: rotation at which the run stops or is marked [rad]."""
-
-# Memory: what a model must remember besides its state.
-HORIZONTAL_REFERENCE: Final = 0
-"""Index into the memory: constant of the horizontal displacement [m]."""
-IMPACT_LOSS: Final = 1
+# Memory: what a system must remember besides its state.
+IMPACT_LOSS: Final = 0
 """Index into the memory: energy lost in impacts so far, per unit mass [m^2 s^-2]."""
-REPINNING_LOSS: Final = 2
+REPINNING_LOSS: Final = 1
 """Index into the memory: energy lost in changes of the restraint so far [m^2 s^-2]."""
-LAST_EVENT: Final = 3
-"""Index into the memory: kind of the last switch, an :class:`EventKind`."""
-IMPULSIVE_INPUT: Final = 4
+IMPULSIVE_INPUT: Final = 2
 """Index into the memory: work of jumps of the velocity of a body's ground so far, per unit
 mass [m^2 s^-2]."""
-MEMORY_SIZE: Final = 5
-"""Least length of a memory; a model may keep more behind."""
+LAST_EVENT: Final = 3
+"""Index into the memory: kind of the last switch, see :mod:`rockframe.dynamics.events`."""
+HELD_PLACE: Final = 4
+"""Index into the memory: horizontal place of the point that holds the first body [m]; those of
+further bodies follow, then whatever else a system keeps."""
+MEMORY: Final = (
+    "impact_loss", "repinning_loss", "impulsive_input", "last_event", "held_place",
+)  # fmt: skip
+"""Names of what every system keeps."""
 
-ROUNDING: Final = 4.0 * sys.float_info.epsilon
-"""Rounding noise of a guard that is no difference of large terms."""
-
-
-class ContactState(IntEnum):
-    """The corner, or the part of the base, that bears."""
-
-    FULL = 0
-    LEFT = 1
-    RIGHT = 2
-    FLIGHT = 3
+POWERS: Final = 2
+"""Powers that stand behind the accelerations: dissipated, and supplied by the ground."""
 
 
-class EventKind(IntEnum):
-    """What happened at an event; kernels use the plain integers below."""
+class Energies(NamedTuple):
+    """Energies of a state, per unit mass."""
 
-    SEPARATION = 1
-    IMPACT = 2
-    REENGAGEMENT = 3
-    PIVOT_CHANGE = 4
-    UPLIFT = 5
-    REST = 6
-    OVERTURNING = 7
-    TOPPLED = 8
-    SOIL_SEPARATION = 9
-    SOIL_CONTACT = 10
-    SOIL_PIVOT_CHANGE = 11
+    kinetic: float
+    gravity: float
+    elastic: float
+    from_rest: float  # elastic less that at rest
 
 
-# Plain integers for the kernels: compiled code cannot store an enumeration's member.
-SILENT: Final = 0  # bookkeeping of a model; stored, but not shown to users
-SEPARATION: Final = int(EventKind.SEPARATION)
-IMPACT: Final = int(EventKind.IMPACT)
-REENGAGEMENT: Final = int(EventKind.REENGAGEMENT)
-PIVOT_CHANGE: Final = int(EventKind.PIVOT_CHANGE)
-UPLIFT: Final = int(EventKind.UPLIFT)
-REST: Final = int(EventKind.REST)
-OVERTURNING: Final = int(EventKind.OVERTURNING)
-TOPPLED: Final = int(EventKind.TOPPLED)
-SOIL_SEPARATION: Final = int(EventKind.SOIL_SEPARATION)
-SOIL_CONTACT: Final = int(EventKind.SOIL_CONTACT)
-SOIL_PIVOT_CHANGE: Final = int(EventKind.SOIL_PIVOT_CHANGE)
+class Guards(NamedTuple):
+    """Functions of the state that stay positive as long as a mode lasts, and their rates."""
+
+    values: tuple[float, ...]
+    changes: tuple[float, ...]
+
+
+class System(Protocol):
+    """The equations of a scene."""
+
+    def coordinates(self) -> int:
+        """Give n, the number of coordinates."""
+        ...
+
+    def variables(self) -> int:
+        """Give the number of variables of first order."""
+        ...
+
+    def guards(self) -> int:
+        """Give the number of guards."""
+        ...
+
+    def accelerate(self, mode: int, state: Vector, ground: Ground) -> tuple[float, ...]:
+        """Give accelerations, rates of the variables of first order, and powers.
+
+        The powers are that dissipated and that put in by the ground. Coordinates that do
+        not move in the mode are not to be read.
+        """
+        ...
+
+    def guards_in(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
+        """Give the guards (positive: no switch), and their rates.
+
+        `slope` is what :meth:`accelerate` gave for the state.
+        """
+        ...
+
+    def switch(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:
+        """Carry out what the fall of a guard calls for; give the new mode.
+
+        Changes the state where it jumps, and keeps losses and the kind of event in the memory.
+        """
+        ...
+
+    def energies(self, mode: int, state: Vector) -> Energies:
+        """Give the energies."""
+        ...
+
+    def observe(
+        self, mode: int, state: Vector, slope: Slope, ground: Ground, memory: Vector
+    ) -> tuple[float, ...]:
+        """Give the columns that the model names; `slope` is what :meth:`accelerate` gave."""
+        ...
+
+
+@dataclass(frozen=True)
+class Column:
+    """A history that a system can be observed by.
+
+    Parameters
+    ----------
+    name : str
+        In the results' schema.
+    per_mass : bool
+        Whether the system gives it per unit mass, so that it is multiplied by the mass.
+    mass_ratio : float
+        That mass over the model's [1].
+    """
+
+    name: str
+    per_mass: bool = False
+    mass_ratio: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -134,10 +160,10 @@ class Ending:
     ----------
     mode : int
         Of the model.
-    state : ndarray, shape (2 n,)
-        Coordinates, then their rates.
+    state : ndarray, shape (2 n + variables,)
+        As the system has it.
     memory : ndarray, shape (memory,)
-        The model's memory.
+        The system's memory.
     """
 
     mode: int
@@ -145,7 +171,7 @@ class Ending:
     memory: Vector
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class ContactModel:
     """A scene's equations, ready for the integrator.
 
@@ -153,61 +179,59 @@ class ContactModel:
     ----------
     name : str
         Name of the model.
-    accelerate, guard, switch, energy, observe : callable
-        Functions of the signatures above.
+    system : System
+        The equations: a named tuple of SI floats, per unit mass.
     active : ndarray of int64, shape (modes,)
         Number of leading coordinates that move in each mode.
     contact : ndarray of int64, shape (modes,)
-        :class:`ContactState` of each mode.
-    parameters : ndarray, shape (parameters,)
-        SI floats, per unit mass.
-    scales : ndarray, shape (2 n,)
-        Typical size of each coordinate and rate.
-    rotation_weights : ndarray, shape (n,)
-        The block's rotation as a sum of coordinates.
-    guard_tolerance : ndarray, shape (guards,)
-        Rounding noise of each guard.
+        :class:`rockframe.dynamics.events.ContactState` of each mode.
+    soil_contact : ndarray of int64, shape (modes,), or None
+        The same of the cap on the soil, where `contact` is that of a block on a cap.
     relaxation : ndarray, shape (modes,)
         Rate at which a constraint of a mode decays, 0 where there is none; fixed steps must
         be short beside it [s^-1].
-    columns : tuple of str
-        Names of what `observe` gives.
+    rotation_limits : tuple of float
+        Rotations to the left and to the right at which the run stops or is marked [rad].
+    rotation_weights : ndarray, shape (n,)
+        The block's rotation as a sum of coordinates.
+    scales : ndarray, shape (2 n + variables,)
+        Typical size of everything in the state.
+    guard_tolerance : ndarray, shape (guards,)
+        Rounding noise of each guard.
+    columns : tuple of Column
+        What `observe` gives.
+    memory : tuple of str
+        Names of what the system remembers.
+    mass : float
+        Mass that turns the energies into joules [kg].
     fastest_frequency : float
         Highest angular frequency of the model [rad s^-1].
     damping_rate : float
         Bound of twice damping ratio times angular frequency of its vibrations [s^-1].
     energy_scale : float
         Typical energy per unit mass, by which rounding noise is known [m^2 s^-2].
-    rounding : callable or None
-        ``rounding(rotation)``: noise of each coordinate and rate in one step about a
-        rotation, where the model's forces are differences of large terms.
-    soil_contact : ndarray of int64, shape (modes,), or None
-        :class:`ContactState` of the cap on the soil in each mode, where `contact` is
-        that of a block on a cap.
-    mass : float
-        Mass that turns the energies into joules [kg].
     initial : callable
         ``initial(start) -> (mode, state, memory)``.
+    rounding : callable or None
+        ``rounding(rotation)``: noise of everything in the state in one step about a
+        rotation, where the model's forces are differences of large terms.
     """
 
     name: str
-    accelerate: Callable[..., None]
-    guard: Callable[..., None]
-    switch: Callable[..., int]
-    energy: Callable[..., None]
-    observe: Callable[..., None]
+    system: System
     active: Integers
     contact: Integers
-    parameters: Vector
-    scales: Vector
-    rotation_weights: Vector
-    guard_tolerance: Vector
+    soil_contact: Integers | None = None
     relaxation: Vector
-    columns: tuple[str, ...]
+    rotation_limits: tuple[float, float]
+    rotation_weights: Vector
+    scales: Vector
+    guard_tolerance: Vector
+    columns: tuple[Column, ...]
+    memory: tuple[str, ...] = MEMORY
+    mass: float
     fastest_frequency: float
     damping_rate: float
     energy_scale: float
-    mass: float
     initial: Callable[[Start], tuple[int, Vector, Vector]]
     rounding: Callable[[float], Vector] | None = None
-    soil_contact: Integers | None = None

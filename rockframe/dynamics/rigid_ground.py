@@ -1,42 +1,30 @@
 """A block on rigid ground (Housner), section "Rigid ground" of the theory manual.
 
+The ground gives no force by its compression: it constrains the block to rotate about one corner.
 Equation of motion :eq:`eq-rigid-rocking`, impact :eq:`eq-rigid-impact`, energies
 :eq:`eq-rigid-energy`. All quantities per unit mass.
 """
 
 import math
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
-from rockframe.compiled import Vector, callback, kernel
+from rockframe.compiled import Vector, inlined, kernel
+from rockframe.dynamics.base import Guards
+from rockframe.dynamics.events import IMPACT, REST, UPLIFT, ContactState
 from rockframe.dynamics.protocol import (
-    ACCELERATE,
-    ENERGY,
-    GUARD,
-    IMPACT,
     IMPACT_LOSS,
     LAST_EVENT,
-    MEMORY_SIZE,
-    OBSERVE,
-    REST,
-    ROTATION_LIMIT,
-    SWITCH,
-    UPLIFT,
+    MEMORY,
+    Column,
     ContactModel,
-    ContactState,
+    Energies,
+    Ground,
+    Slope,
     Start,
 )
-
-# parameters, after ROTATION_LIMIT
-GRAVITY: Final = 1  # g
-ANGLE: Final = 2  # theta
-RADIUS: Final = 3  # R0
-CORNER_INERTIA: Final = 4  # I_O/m + R0^2
-RESTITUTION: Final = 5  # eps
-SMALL: Final = 6  # 1 for small rotation
-TANGENT: Final = 7  # tan theta; theta for small rotation
-PARAMETERS: Final = 8
+from rockframe.dynamics.trigonometry import sine_cosine
 
 # modes; rocking on the right corner has alpha > 0
 RESTING: Final = 0
@@ -47,189 +35,168 @@ ON_LEFT: Final = 2
 IMPACT_GUARD: Final = 0
 UPLIFT_ON_RIGHT: Final = 1
 UPLIFT_ON_LEFT: Final = 2
-LIMIT_GUARD: Final = 3
-GUARDS: Final = 4
+GUARDS: Final = 3
 
 REST_AMPLITUDE: Final = 1e-10
 """Share of theta below which a rebound is taken for rest. It is far below what any
 accuracy setting resolves, and ends the endless series of ever smaller impacts."""
 
 COLUMNS: Final = (
-    "rotation",
-    "angular_velocity",
-    "vertical_displacement",
-    "vertical_velocity",
-    "horizontal_displacement",
-    "left_reaction",
-    "right_reaction",
+    Column("rotation"),
+    Column("angular_velocity"),
+    Column("vertical_displacement"),
+    Column("vertical_velocity"),
+    Column("horizontal_displacement"),
+    Column("base_shear", per_mass=True),
+    Column("left_reaction", per_mass=True),
+    Column("right_reaction", per_mass=True),
 )
 
 
-@kernel
-def side_of(mode: int) -> float:
-    """Give s = sgn(alpha) of a rocking mode, 0 at rest."""
-    if mode == ON_RIGHT:
-        return 1.0
-    if mode == ON_LEFT:
-        return -1.0
-    return 0.0
+class Corner(NamedTuple):
+    """A corner that a block rotates about, seen from its centre of mass."""
+
+    angle: float  # theta, of the line to the corner with the vertical
+    radius: float  # R0
+    inertia: float  # I_O/m + R0^2
+    tangent: float  # tan theta; theta for small rotation
 
 
-@kernel
-def rise_and_reach(p: Vector, side: float, rotation: float) -> tuple[float, float]:
-    """Give the sine and cosine of theta s - alpha, or their small-rotation forms."""
-    lean = p[ANGLE] * side - rotation
-    if p[SMALL] != 0.0:
-        return lean, 1.0
-    return math.sin(lean), math.cos(lean)
+class RigidGround(NamedTuple):
+    """A block on rigid ground, per unit mass: a system."""
 
+    left: Corner
+    right: Corner
+    gravity: float  # g
+    restitution: float  # eps, of the angular velocity
+    small: bool  # whether sines and cosines are expanded
 
-@kernel
-def turning_acceleration(
-    p: Vector, sine: float, cosine: float, ground_x: float, ground_y: float
-) -> float:
-    """Give the angular acceleration of Housner's block, :eq:`eq-rigid-rocking`."""
-    moment = (p[GRAVITY] + ground_y) * sine + ground_x * cosine
-    return -p[RADIUS] * moment / p[CORNER_INERTIA]
+    @kernel
+    def coordinates(self) -> int:
+        """Give 1, the rotation."""
+        return 1
 
+    @kernel
+    def variables(self) -> int:
+        """Give 0."""
+        return 0
 
-@kernel
-def rocking_acceleration(
-    p: Vector, side: float, rotation: float, ground_x: float, ground_y: float
-) -> float:
-    """Give the angular acceleration at a rotation on one side."""
-    sine, cosine = rise_and_reach(p, side, rotation)
-    return turning_acceleration(p, sine, cosine, ground_x, ground_y)
+    @kernel
+    def guards(self) -> int:
+        """Give the number of guards."""
+        return GUARDS
 
+    @inlined
+    def corner(self, mode: int) -> Corner:
+        """Give the corner that bears in a mode; the right one at rest."""
+        return self.left if mode == ON_LEFT else self.right
 
-@callback(ACCELERATE)
-def accelerate(
-    mode: int, state: Vector, ground_x: float, ground_y: float, p: Vector, out: Vector
-) -> None:
-    """Acceleration, dashpot power (none) and input power."""
-    out[0] = 0.0
-    out[1] = 0.0
-    out[2] = 0.0
-    if mode == RESTING:
-        return
-    sine, cosine = rise_and_reach(p, side_of(mode), state[0])
-    out[0] = turning_acceleration(p, sine, cosine, ground_x, ground_y)
-    out[2] = -p[RADIUS] * (ground_x * cosine + ground_y * sine) * state[1]
+    @inlined
+    def side(self, mode: int) -> float:
+        """Give s = sgn(alpha) of a rocking mode, 0 at rest."""
+        if mode == RESTING:
+            return 0.0
+        return 1.0 if mode == ON_RIGHT else -1.0
 
+    @inlined
+    def lean(self, mode: int, rotation: float) -> tuple[float, float]:
+        """Give the sine and cosine of theta s - alpha, or their small-rotation forms."""
+        angle = self.corner(mode).angle * self.side(mode) - rotation
+        if self.small:
+            return angle, 1.0
+        return sine_cosine(angle)
 
-@callback(GUARD)
-def guard(
-    mode: int,
-    state: Vector,
-    accelerations: Vector,
-    ground_x: float,
-    ground_y: float,
-    p: Vector,
-    out: Vector,
-) -> None:
-    """Impact while rocking, uplift while at rest, and the rotation's limit."""
-    for i in range(2 * GUARDS):
-        out[i] = 1.0 if i < GUARDS else 0.0
-    rotation = state[0]
-    if mode == RESTING:
-        threshold = (p[GRAVITY] + ground_y) * p[TANGENT]
-        out[UPLIFT_ON_RIGHT] = (threshold + ground_x) / p[GRAVITY]
-        out[UPLIFT_ON_LEFT] = (threshold - ground_x) / p[GRAVITY]
-        return
-    side = side_of(mode)
-    out[IMPACT_GUARD] = side * rotation / p[ANGLE]
-    out[GUARDS + IMPACT_GUARD] = side * state[1] / p[ANGLE]
-    out[LIMIT_GUARD] = p[ROTATION_LIMIT] - abs(rotation)
-    out[GUARDS + LIMIT_GUARD] = -side * state[1]
+    @inlined
+    def angular_acceleration(self, mode: int, rotation: float, ground: Ground) -> float:
+        """Give the angular acceleration of Housner's block, :eq:`eq-rigid-rocking`."""
+        corner = self.corner(mode)
+        sine, cosine = self.lean(mode, rotation)
+        moment = (self.gravity + ground.y) * sine + ground.x * cosine
+        return -corner.radius * moment / corner.inertia
 
+    @inlined
+    def accelerate(self, mode: int, state: Vector, ground: Ground) -> tuple[float, ...]:
+        """Give acceleration, dashpot power (none) and input power."""
+        if mode == RESTING:
+            return 0.0, 0.0, 0.0
+        sine, cosine = self.lean(mode, state[0])
+        supplied = -self.corner(mode).radius * (ground.x * cosine + ground.y * sine) * state[1]
+        return self.angular_acceleration(mode, state[0], ground), 0.0, supplied
 
-@callback(SWITCH)
-def switch(
-    mode: int,
-    guard_index: int,
-    state: Vector,
-    ground_x: float,
-    ground_y: float,
-    p: Vector,
-    memory: Vector,
-) -> int:
-    """Uplift from rest, or an impact that ends in rocking on the other corner or in rest."""
-    if mode == RESTING:
-        memory[LAST_EVENT] = UPLIFT
-        if p[GRAVITY] + ground_y <= 0.0:  # no weight left: the ground decides the side
-            return ON_LEFT if ground_x > 0.0 else ON_RIGHT
-        return ON_RIGHT if guard_index == UPLIFT_ON_RIGHT else ON_LEFT
-    before = state[1]
-    after = p[RESTITUTION] * before
-    side = -side_of(mode)
-    state[0] = 0.0
-    restoring = -side * rocking_acceleration(p, side, 0.0, ground_x, ground_y)
-    rebound = after * after / (2.0 * restoring) if restoring > 0.0 else math.inf
-    memory[LAST_EVENT] = IMPACT
-    mode = ON_RIGHT if side > 0.0 else ON_LEFT
-    if rebound < REST_AMPLITUDE * p[ANGLE]:
-        memory[LAST_EVENT] = REST
-        after = 0.0
-        mode = RESTING
-    memory[IMPACT_LOSS] += 0.5 * p[CORNER_INERTIA] * (before * before - after * after)
-    state[1] = after
-    return mode
+    @inlined
+    def guards_in(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
+        """Give the guards of impact while rocking, and of uplift while at rest."""
+        if mode == RESTING:
+            weight = self.gravity + ground.y
+            right = (weight * self.right.tangent + ground.x) / self.gravity
+            left = (weight * self.left.tangent - ground.x) / self.gravity
+            return Guards((1.0, right, left), (0.0, 0.0, 0.0))
+        scale = self.side(mode) / self.corner(mode).angle
+        return Guards((scale * state[0], 1.0, 1.0), (scale * state[1], 0.0, 0.0))
 
+    @kernel
+    def switch(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:
+        """Lift off from rest, or rock on the other corner after an impact, or come to rest."""
+        if mode == RESTING:
+            memory[LAST_EVENT] = UPLIFT
+            if self.gravity + ground.y <= 0.0:  # no weight left: the ground decides the side
+                return ON_LEFT if ground.x > 0.0 else ON_RIGHT
+            return ON_RIGHT if guard == UPLIFT_ON_RIGHT else ON_LEFT
+        before = state[1]
+        after = self.restitution * before
+        new = ON_LEFT if mode == ON_RIGHT else ON_RIGHT
+        state[0] = 0.0
+        restoring = -self.side(new) * self.angular_acceleration(new, 0.0, ground)
+        rebound = after * after / (2.0 * restoring) if restoring > 0.0 else math.inf
+        memory[LAST_EVENT] = IMPACT
+        if rebound < REST_AMPLITUDE * self.corner(new).angle:
+            memory[LAST_EVENT] = REST
+            after, new = 0.0, RESTING
+        old, now = self.corner(mode).inertia, self.corner(new).inertia
+        memory[IMPACT_LOSS] += 0.5 * (old * before * before - now * after * after)
+        state[1] = after
+        return new
 
-@kernel
-def centre_rise(p: Vector, angle: float) -> float:
-    """Give the rise of the centre of mass, R0 [cos(theta - a) - cos theta], to all digits."""
-    if p[SMALL] != 0.0:
-        return p[RADIUS] * angle * (p[ANGLE] - 0.5 * angle)
-    return 2.0 * p[RADIUS] * math.sin(p[ANGLE] - 0.5 * angle) * math.sin(0.5 * angle)
+    @kernel
+    def centre_rise(self, mode: int, rotation: float) -> float:
+        """Give the rise of the centre of mass, R0 [cos(theta - a) - cos theta], to all digits."""
+        corner, angle = self.corner(mode), abs(rotation)
+        if self.small:
+            return corner.radius * angle * (corner.angle - 0.5 * angle)
+        sine, _ = sine_cosine(corner.angle - 0.5 * angle)
+        half, _ = sine_cosine(0.5 * angle)
+        return 2.0 * corner.radius * sine * half
 
+    @kernel
+    def energies(self, mode: int, state: Vector) -> Energies:
+        """Give kinetic and gravity energy, :eq:`eq-rigid-energy`; nothing is elastic."""
+        kinetic = 0.5 * self.corner(mode).inertia * state[1] * state[1]
+        return Energies(kinetic, self.gravity * self.centre_rise(mode, state[0]), 0.0, 0.0)
 
-@callback(ENERGY)
-def energy(mode: int, state: Vector, p: Vector, out: Vector) -> None:
-    """Kinetic and gravity energy, :eq:`eq-rigid-energy`; nothing is elastic."""
-    angle = abs(state[0])
-    out[0] = 0.5 * p[CORNER_INERTIA] * state[1] * state[1]
-    out[1] = p[GRAVITY] * centre_rise(p, angle)
-    out[2] = 0.0
-    out[3] = 0.0
-
-
-@callback(OBSERVE)
-def observe(
-    mode: int,
-    state: Vector,
-    memory: Vector,
-    ground_x: float,
-    ground_y: float,
-    p: Vector,
-    out: Vector,
-) -> None:
-    """Displacements of the centre of mass and the corners' reactions."""
-    rotation, rate = state[0], state[1]
-    side = side_of(mode)
-    sine, cosine = rise_and_reach(p, side, rotation)
-    radius = p[RADIUS]
-    weight = p[GRAVITY] + ground_y
-    out[0] = rotation
-    out[1] = rate
-    out[2] = centre_rise(p, abs(rotation))
-    if mode == RESTING:
-        out[3] = 0.0
-        out[4] = 0.0
-        # moments about the middle of the base: (N_R - N_L) b = -m h x_g''
-        tilt = ground_x / p[TANGENT]
-        out[5] = 0.5 * (weight + tilt)
-        out[6] = 0.5 * (weight - tilt)
-        return
-    out[3] = radius * sine * rate
-    if p[SMALL] != 0.0:
-        out[4] = radius * rotation
-    else:
-        out[4] = radius * (side * math.sin(p[ANGLE]) - sine)
-    acceleration = rocking_acceleration(p, side, rotation, ground_x, ground_y)
-    bearing = weight + radius * (sine * acceleration - cosine * rate * rate)
-    out[5] = bearing if mode == ON_LEFT else 0.0
-    out[6] = bearing if mode == ON_RIGHT else 0.0
+    @kernel
+    def observe(
+        self, mode: int, state: Vector, slope: Slope, ground: Ground, memory: Vector
+    ) -> tuple[float, ...]:
+        """Give motion of the centre of mass, base shear and the corners' reactions."""
+        rotation, rate = state[0], state[1]
+        weight = self.gravity + ground.y
+        height = self.centre_rise(mode, rotation)
+        if mode == RESTING:
+            # moments about the middle of the base: (N_R - N_L) b = -m h x_g''
+            tilt = 2.0 * ground.x / (self.left.tangent + self.right.tangent)
+            left, right = 0.5 * (weight + tilt), 0.5 * (weight - tilt)
+            return rotation, rate, height, 0.0, 0.0, ground.x, left, right
+        corner = self.corner(mode)
+        sine, cosine = self.lean(mode, rotation)
+        start, _ = sine_cosine(corner.angle)
+        x = corner.radius * (self.side(mode) * start - sine)
+        sway = corner.radius * (cosine * slope[0] + sine * rate * rate)
+        if self.small:
+            x, sway = corner.radius * rotation, corner.radius * slope[0]
+        bearing = weight + corner.radius * (sine * slope[0] - cosine * rate * rate)
+        left, right = (bearing, 0.0) if mode == ON_LEFT else (0.0, bearing)
+        speed = corner.radius * sine * rate
+        return rotation, rate, height, speed, x, sway + ground.x, left, right
 
 
 def rigid_ground(
@@ -265,40 +232,30 @@ def rigid_ground(
     -------
     ContactModel
     """
-    p = np.zeros(PARAMETERS)
-    p[ROTATION_LIMIT] = p[ANGLE] = overturning_angle
-    p[GRAVITY] = gravity
-    p[RADIUS] = radius
-    p[CORNER_INERTIA] = radius**2 * (1.0 + 1.0 / shape_factor)
-    p[RESTITUTION] = restitution
-    p[SMALL] = float(small_rotation)
-    p[TANGENT] = overturning_angle if small_rotation else math.tan(overturning_angle)
-    frequency = math.sqrt(gravity * radius / p[CORNER_INERTIA])
+    tangent = overturning_angle if small_rotation else math.tan(overturning_angle)
+    corner = Corner(overturning_angle, radius, radius**2 * (1.0 + 1.0 / shape_factor), tangent)
+    frequency = math.sqrt(gravity * radius / corner.inertia)
 
     def initial(start: Start) -> tuple[int, Vector, Vector]:
         rotation, rate = start.rotation, start.angular_velocity
         direction = rotation or rate
         mode = RESTING if direction == 0.0 else (ON_RIGHT if direction > 0.0 else ON_LEFT)
-        return mode, np.array([rotation, rate]), np.zeros(MEMORY_SIZE)
+        return mode, np.array([rotation, rate]), np.zeros(len(MEMORY))
 
     return ContactModel(
         name="rigid ground",
-        accelerate=accelerate,
-        guard=guard,
-        switch=switch,
-        energy=energy,
-        observe=observe,
+        system=RigidGround(corner, corner, gravity, restitution, small_rotation),
         active=np.array([0, 1, 1]),
         contact=np.array([ContactState.FULL, ContactState.RIGHT, ContactState.LEFT]),
-        parameters=p,
-        scales=overturning_angle * np.array([1.0, frequency]),
-        rotation_weights=np.ones(1),
-        guard_tolerance=np.array([1e-15, 1e-14, 1e-14, 1e-15]),
         relaxation=np.zeros(3),
+        rotation_limits=(overturning_angle, overturning_angle),
+        rotation_weights=np.ones(1),
+        scales=overturning_angle * np.array([1.0, frequency]),
+        guard_tolerance=np.array([1e-15, 1e-14, 1e-14]),
         columns=COLUMNS,
+        mass=mass,
         fastest_frequency=frequency,
         damping_rate=0.0,
         energy_scale=gravity * radius * overturning_angle,
-        mass=mass,
         initial=initial,
     )

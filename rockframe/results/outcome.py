@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rockframe.dynamics.events import SILENT
 from rockframe.dynamics.protocol import (
     IMPACT_LOSS,
     IMPULSIVE_INPUT,
     REPINNING_LOSS,
-    SILENT,
     ContactModel,
 )
 from rockframe.results.variables.runs import Direction
@@ -23,9 +23,6 @@ from rockframe.solve.trajectory import Summary, Trajectory
 Array = NDArray[np.float64]
 Generic = NDArray[Any]
 Values = Mapping[str, "Generic | float | int | bool"]
-
-REACTION = "_reaction"
-"""Ending of the names of forces, which models give per unit mass."""
 
 
 @dataclass(frozen=True)
@@ -61,11 +58,7 @@ def histories(model: ContactModel, run: Trajectory, ground: Array) -> dict[str, 
     dict of str to ndarray
         By their names in the schema.
     """
-    observed = observe_trajectory(model, run, ground)
-    values: dict[str, Generic] = {
-        name: model.mass * column if name.endswith(REACTION) else column
-        for name, column in observed.items()
-    }
+    values: dict[str, Generic] = dict(observe_trajectory(model, run, ground))
     values["contact_state"] = model.contact[run.mode].astype(np.int8)
     if model.soil_contact is not None:
         values["soil_contact_state"] = model.soil_contact[run.mode].astype(np.int8)
@@ -101,12 +94,12 @@ def cap_histories(values: Mapping[str, Generic], scales: Scales) -> dict[str, Ge
         sine, versine = rotation, 0.5 * rotation**2
     else:
         sine, versine = np.sin(rotation), 2.0 * np.sin(0.5 * rotation) ** 2
-    spin = values["angular_velocity"]
+    rate = values["angular_velocity"]
     return {
         "cap_rotation": rotation.copy(),
-        "cap_angular_velocity": spin.copy(),
+        "cap_angular_velocity": rate.copy(),
         "cap_vertical_displacement": values["vertical_displacement"] - offset * versine,
-        "cap_vertical_velocity": values["vertical_velocity"] - offset * sine * spin,
+        "cap_vertical_velocity": values["vertical_velocity"] - offset * sine * rate,
         "soil_contact_state": values["contact_state"].copy(),
     }
 
@@ -145,8 +138,8 @@ def event_columns(model: ContactModel, run: Trajectory) -> dict[str, Generic]:
         "contact_state_before": model.contact[events.mode_before[shown]].astype(np.int8),
         "contact_state_after": model.contact[events.mode_after[shown]].astype(np.int8),
         "event_rotation": events.state_after[shown, :size] @ weights,
-        "angular_velocity_before": events.state_before[shown, size:] @ weights,
-        "angular_velocity_after": events.state_after[shown, size:] @ weights,
+        "angular_velocity_before": events.state_before[shown, size : 2 * size] @ weights,
+        "angular_velocity_after": events.state_after[shown, size : 2 * size] @ weights,
     }
 
 

@@ -1,11 +1,10 @@
 """Finding where a guard falls through zero inside a step."""
 
 import math
-from collections.abc import Callable
 from typing import Final
 
-from rockframe.compiled import Vector, kernel
-from rockframe.solve.ground import TERMS, ground_acceleration
+from rockframe.compiled import kernel
+from rockframe.solve.equations import Equations, write_guards
 from rockframe.solve.hermite import interpolate
 from rockframe.solve.workspace import Span, Tables, Workspace
 
@@ -21,12 +20,11 @@ ROOT_TOLERANCE: Final = 1e-13
 
 @kernel
 def earliest_crossing(
-    guard: Callable[..., None],
-    tables: Tables,
+    equations: Equations,
     mode: int,
     count: int,
     span: Span,
-    p: Vector,
+    tables: Tables,
     w: Workspace,
 ) -> tuple[int, float]:
     """Give the guard that falls through zero first, and where (a fraction of the step).
@@ -47,9 +45,9 @@ def earliest_crossing(
             rise = span.h * w.after[guards + i]
             bottom, depth = _dip(w.before[i], fall, w.after[i], rise)
             if depth < DIP_MARGIN * (rise - fall):
-                end = _point_below_zero(guard, i, bottom, mode, count, span, p, w)
+                end = _point_below_zero(equations, i, bottom, mode, count, span, tables, w)
         if end >= 0.0:
-            root = _first_root(guard, i, end, tables, mode, count, span, p, w)
+            root = _first_root(equations, i, end, mode, count, span, tables, w)
             if root < place:
                 found = i
                 place = root
@@ -68,33 +66,30 @@ def _dip(g0: float, fall: float, g1: float, rise: float) -> tuple[float, float]:
 
 @kernel
 def _guard_inside(
-    guard: Callable[..., None],
+    equations: Equations,
     which: int,
     fraction: float,
     mode: int,
     count: int,
     span: Span,
-    p: Vector,
+    tables: Tables,
     w: Workspace,
 ) -> float:
     """Give a guard's value at a fraction of the step, from the dense solution."""
-    interpolate(count, fraction, span.h, w)
-    u = span.u + fraction * span.du
-    x = ground_acceleration(u, span.degree_x, 0, w.ground)
-    y = ground_acceleration(u, span.degree_y, TERMS, w.ground)
-    guard(mode, w.scratch, w.scratch_rates, x, y, p, w.inside)
+    interpolate(equations, count, fraction, span.h, w)
+    write_guards(equations, mode, w.scratch, w.scratch_rates, fraction, span, w.inside, w)
     return w.inside[which]
 
 
 @kernel
 def _point_below_zero(
-    guard: Callable[..., None],
+    equations: Equations,
     which: int,
     bottom: float,
     mode: int,
     count: int,
     span: Span,
-    p: Vector,
+    tables: Tables,
     w: Workspace,
 ) -> float:
     """Search around a predicted dip (golden section); -1 if the guard stays positive."""
@@ -103,10 +98,10 @@ def _point_below_zero(
     for _ in range(40):
         left = low + 0.381966 * (high - low)
         right = low + 0.618034 * (high - low)
-        g_left = _guard_inside(guard, which, left, mode, count, span, p, w)
+        g_left = _guard_inside(equations, which, left, mode, count, span, tables, w)
         if g_left < 0.0:
             return left
-        g_right = _guard_inside(guard, which, right, mode, count, span, p, w)
+        g_right = _guard_inside(equations, which, right, mode, count, span, tables, w)
         if g_right < 0.0:
             return right
         if g_left < g_right:
@@ -118,13 +113,13 @@ def _point_below_zero(
 
 @kernel
 def _positive_place(
-    guard: Callable[..., None],
+    equations: Equations,
     which: int,
     end: float,
     mode: int,
     count: int,
     span: Span,
-    p: Vector,
+    tables: Tables,
     w: Workspace,
 ) -> float:
     """Give a place before `end` where a guard that rises from zero is positive.
@@ -134,21 +129,20 @@ def _positive_place(
     place = end
     for _ in range(HALVINGS):
         place *= 0.5
-        if _guard_inside(guard, which, place, mode, count, span, p, w) > 0.0:
+        if _guard_inside(equations, which, place, mode, count, span, tables, w) > 0.0:
             return place
     return 0.0
 
 
 @kernel
 def _first_root(
-    guard: Callable[..., None],
+    equations: Equations,
     which: int,
     end: float,
-    tables: Tables,
     mode: int,
     count: int,
     span: Span,
-    p: Vector,
+    tables: Tables,
     w: Workspace,
 ) -> float:
     """Give the first root between the step's start and `end` (negative).
@@ -159,15 +153,15 @@ def _first_root(
     just left is not about to land.
     """
     low, high = 0.0, end
-    g_low = _guard_inside(guard, which, low, mode, count, span, p, w)
-    g_high = _guard_inside(guard, which, high, mode, count, span, p, w)
+    g_low = _guard_inside(equations, which, low, mode, count, span, tables, w)
+    g_high = _guard_inside(equations, which, high, mode, count, span, tables, w)
     if g_high >= 0.0:
         return high
     rise = span.h * w.before[len(tables.tolerance) + which]
     tolerance = tables.tolerance[which]
     if g_low <= tolerance and rise > 0.0:
-        low = _positive_place(guard, which, end, mode, count, span, p, w)
-        g_low = _guard_inside(guard, which, low, mode, count, span, p, w)
+        low = _positive_place(equations, which, end, mode, count, span, tables, w)
+        g_low = _guard_inside(equations, which, low, mode, count, span, tables, w)
     last = 0
     for _ in range(100):
         if high - low <= ROOT_TOLERANCE:
@@ -177,7 +171,7 @@ def _first_root(
             trial = (low * g_high - high * g_low) / (g_high - g_low)
             if low < trial < high:
                 middle = trial
-        g = _guard_inside(guard, which, middle, mode, count, span, p, w)
+        g = _guard_inside(equations, which, middle, mode, count, span, tables, w)
         if g == 0.0:
             return middle
         if g > 0.0:

@@ -1,90 +1,50 @@
 """The event-driven integration of any contact model, page "Numerics" of the manual.
 
-Written once: compiled where numba is installed, plain Python where not. The
-driver knows a model only by the callbacks of :mod:`rockframe.dynamics.protocol`.
-It can be left for want of room in the event table and entered again.
+Written once: compiled where numba is installed, plain Python where not. The driver knows a
+scene only by its :class:`rockframe.solve.equations.Equations`. It can be left for want of room in
+the event table and entered again.
 """
 
 import math
-from collections.abc import Callable
-from typing import Final, NamedTuple
+from typing import Final
 
-from rockframe.compiled import Vector, entry, inlined, kernel
-from rockframe.dynamics.protocol import (
-    ACCELERATE,
-    ENERGY,
-    GUARD,
-    LAST_EVENT,
-    SWITCH,
-)
+from rockframe.compiled import Integers, Vector, entry, inlined, kernel
+from rockframe.dynamics.protocol import LAST_EVENT, Ground
 from rockframe.solve import layout as at
-from rockframe.solve.books import (
+from rockframe.solve.bookkeeping import (
     FLIGHT,
+    ON_SAMPLE,
     accept,
     audit,
-    book_event,
     follow_peak,
     reach_limit,
+    record_event,
     store_outputs,
 )
 from rockframe.solve.crossings import earliest_crossing
-from rockframe.solve.dormand_prince import runge_kutta_step
-from rockframe.solve.fixed_step import finite, fixed_step
-from rockframe.solve.ground import TERMS, ground_acceleration, load_interval
-from rockframe.solve.step_control import EASY, excess_error, next_step
+from rockframe.solve.equations import Equations, energies_at, slope_at, write_guards
+from rockframe.solve.ground import ground_in, load_interval
+from rockframe.solve.march import AT_END, EXHAUSTED, GUARDED, JUMPED, SHORTEST, TOO_SMALL
+from rockframe.solve.schemes import adapted, rest_of
 from rockframe.solve.workspace import (
+    TERMS,
     EventTable,
-    MotionTables,
     Output,
+    Pieces,
     Progress,
     Span,
     Tables,
+    Work,
     Workspace,
+    swapped,
 )
 
-SHORTEST: Final = 1e-14
-"""Shortest step, as a share of the run's duration."""
 POLISHING: Final = 4
 """Corrections of an event's time on the Runge-Kutta solution itself."""
 ROUNDING: Final = 1e-15
 """Share of the time so far below which such a correction is rounding."""
 FIXED_STEPS: Final = 0.0
 """Stands for the tolerance of a run with fixed sub-steps."""
-JUMP: Final = 1e-12
-"""Share of the ground acceleration by which it must differ to have jumped at a sample."""
-
-
-class Interval(NamedTuple):
-    """Where an interval of the motion begins, and the degrees of its polynomials."""
-
-    begin: float
-    degree_x: int
-    degree_y: int
-
-
-@inlined
-def jumps(now: float, before: float) -> bool:
-    """Whether the ground acceleration jumped between two intervals."""
-    return abs(now - before) > JUMP * abs(now)
-
-
-@inlined
-def fit_step(h: float, remaining: float) -> float:
-    """Give a step that ends on the interval's end, or leaves a fair rest of it."""
-    if h >= 0.999999 * remaining:
-        return remaining
-    return min(h, 0.5 * remaining)
-
-
-@inlined
-def suspicious(guards: int, w: Workspace) -> bool:
-    """Whether some guard is negative at the step's end, or fell first and rose last."""
-    for i in range(guards):
-        if w.after[i] < 0.0:
-            return True
-        if w.before[guards + i] < 0.0 and w.after[guards + i] > 0.0:
-            return True
-    return False
 
 
 @kernel
@@ -99,118 +59,94 @@ def broken_guard(tables: Tables, w: Workspace) -> int:
     return -1
 
 
-@inlined
-def look_ahead(
-    accelerate: Callable[..., None],
-    guard: Callable[..., None],
-    mode: int,
-    u: float,
-    interval: Interval,
-    p: Vector,
-    clock: Vector,
-    w: Workspace,
-) -> None:
+@kernel
+def look_ahead(equations: Equations, mode: int, progress: Progress, w: Workspace) -> None:
     """Evaluate accelerations and guards anew, after a switch or a jump of the ground."""
-    x = ground_acceleration(u, interval.degree_x, 0, w.ground)
-    y = ground_acceleration(u, interval.degree_y, TERMS, w.ground)
-    clock[at.GROUND_X] = x
-    clock[at.GROUND_Y] = y
-    accelerate(mode, w.state, x, y, p, w.slope)
-    for i in range(len(w.slope)):
-        w.slopes[0, i] = w.slope[i]
-    guard(mode, w.state, w.slope, x, y, p, w.before)
+    clock, here = progress.clock, span_of(0.0, progress)
+    ground = ground_in(0.0, here, w.ground)
+    clock[at.GROUND_X] = ground.x
+    clock[at.GROUND_Y] = ground.y
+    slope_at(equations, mode, w.state, ground, w.first)
+    write_guards(equations, mode, w.state, w.first, 0.0, here, w.before, w)
 
 
 @inlined
+def span_of(h: float, progress: Progress) -> Span:
+    """Give a step of some length from where the run is."""
+    clock, counters, time_step = progress.clock, progress.counters, progress.controls[at.TIME_STEP]
+    return Span(
+        h, clock[at.INTO_INTERVAL] / time_step, h / time_step, counters[at.DEGREE_X],
+        counters[at.DEGREE_Y],
+    )  # fmt: skip
+
+
+@inlined
+def march(
+    equations: Equations, mode: int, trial: float, tables: Tables, pieces: Pieces,
+    progress: Progress, w: Workspace,
+) -> int:  # fmt: skip
+    """Make steps until something happens, or try one; see :mod:`rockframe.solve.march`."""
+    flies = int(tables.contact[mode] == FLIGHT)
+    return equations.march(
+        mode, int(tables.active[mode]), flies, tables.longest[mode], trial, pieces.x, pieces.y,
+        w.both_ends, w.stages, w.works, w.reference, w.limits, w.ground, progress.controls,
+        progress.clock, progress.counters, equations.numbers,
+    )  # fmt: skip
+
+
+@kernel
+def step_to_event(
+    equations: Equations, mode: int, whole: float, tables: Tables, pieces: Pieces,
+    progress: Progress, w: Workspace,
+) -> tuple[float, int]:  # fmt: skip
+    """Repeat a step up to the first crossing of a guard; give its length and the guard, or -1.
+
+    The place is found on the dense solution, and corrected (Newton) on the Runge-Kutta solution
+    itself.
+    """
+    count, span = int(tables.active[mode]), span_of(whole, progress)
+    crossed, place = earliest_crossing(equations, mode, count, span, tables, w)
+    if crossed < 0:
+        return whole, -1
+    counters = progress.counters
+    now = counters[at.INTERVAL] * progress.controls[at.TIME_STEP]
+    now += progress.clock[at.INTO_INTERVAL]
+    h, rates = place * whole, equations.guard_count + 1
+    for correction in range(1 + POLISHING):
+        if h > 0.0:
+            march(equations, mode, h, tables, pieces, progress, w)
+        else:
+            stand_still(w)
+        fall = w.after[rates + crossed]
+        settled = abs(w.after[crossed]) <= tables.tolerance[crossed]
+        if fall >= 0.0 or settled or correction == POLISHING:
+            break
+        moved = min(max(h - w.after[crossed] / fall, 0.0), whole)
+        if abs(moved - h) <= ROUNDING * (now + h):
+            break
+        h = moved
+    return h, crossed
+
+
+@kernel
 def stand_still(w: Workspace) -> None:
-    """Make a step in a mode in which nothing moves."""
+    """Make a step of no length."""
     for i in range(len(w.state)):
         w.new[i] = w.state[i]
-    for i in range(len(w.slope)):
-        w.slope[i] = w.slopes[0, i]
-        w.slopes[6, i] = w.slopes[0, i]
-
-
-class Step(NamedTuple):
-    """A step made: where, its works, its error over that allowed, the guard that crossed."""
-
-    span: Span
-    burnt: float
-    supplied: float
-    excess: float
-    crossed: int  # or -1
-    ground_x: float  # at its end
-    ground_y: float
-
-
-@inlined
-def make_step(
-    accelerate: Callable[..., None],
-    guard: Callable[..., None],
-    tables: Tables,
-    mode: int,
-    interval: Interval,
-    tau: float,
-    whole: float,
-    controls: Vector,
-    energy_scale: float,
-    p: Vector,
-    w: Workspace,
-) -> Step:
-    """Make a step of length `whole`, and repeat it up to the first crossing of a guard."""
-    guards = len(tables.tolerance)
-    count = int(tables.active[mode])
-    scale = controls[at.TIME_STEP]
-    fixed = controls[at.RTOL] == FIXED_STEPS
-    degree_x, degree_y = interval.degree_x, interval.degree_y
-    h, crossed, attempt = whole, -1, 0
-    burnt = supplied = excess = x = y = 0.0
-    while True:
-        span = Span(h, tau / scale, h / scale, degree_x, degree_y)
-        if count == 0:
-            stand_still(w)
-        elif fixed:
-            burnt, supplied = fixed_step(accelerate, mode, count, span, p, w)
-            if not finite(count, w):
-                excess = math.inf
-                break
-        else:
-            burnt, supplied, imbalance = runge_kutta_step(accelerate, mode, count, span, p, w)
-            if attempt == 0:
-                excess = excess_error(count, imbalance, energy_scale, controls, w)
-                if not excess <= 1.0:
-                    break
-        x = ground_acceleration(span.u + span.du, degree_x, 0, w.ground)
-        y = ground_acceleration(span.u + span.du, degree_y, TERMS, w.ground)
-        guard(mode, w.new, w.slope, x, y, p, w.after)
-        if attempt == 0:
-            if not suspicious(guards, w):
-                break
-            crossed, place = earliest_crossing(guard, tables, mode, count, span, p, w)
-            if crossed < 0:
-                break
-            h = place * whole
-        else:  # Newton's correction on the Runge-Kutta solution itself
-            fall = w.after[guards + crossed]
-            settled = abs(w.after[crossed]) <= tables.tolerance[crossed]
-            if fall >= 0.0 or settled or attempt > POLISHING:
-                break
-            moved = min(max(h - w.after[crossed] / fall, 0.0), whole)
-            if abs(moved - h) <= ROUNDING * (interval.begin + tau + h):
-                break
-            h = moved
-        attempt += 1
-    return Step(span, burnt, supplied, excess, crossed, x, y)
+    for i in range(len(w.first)):
+        w.last[i] = w.first[i]
+    for i in range(len(w.before)):
+        w.after[i] = w.before[i]
+    w.works[0] = w.works[1] = 0.0
 
 
 @kernel
 def carry_out(
+    equations: Equations,
     crossed: int,
     time: float,
     mode: int,
-    switch: Callable[..., int],
     tables: Tables,
-    p: Vector,
     memory: Vector,
     progress: Progress,
     events: EventTable,
@@ -223,40 +159,33 @@ def carry_out(
         events.values[row, 1 + i] = w.state[i]
     new_mode = mode
     status = at.COMPLETED
-    if crossed == len(tables.tolerance) - 1:
-        kind, status = reach_limit(time, mode, tables, p, progress, w)
+    if crossed == equations.guard_count:
+        kind, status = reach_limit(time, mode, tables, progress, w)
     else:
-        x, y = clock[at.GROUND_X], clock[at.GROUND_Y]
-        new_mode = switch(mode, crossed, w.state, x, y, p, memory)
+        ground = Ground(clock[at.GROUND_X], clock[at.GROUND_Y])
+        new_mode = equations.switching(
+            mode, crossed, w.state, ground.x, ground.y, memory, equations.numbers
+        )
         kind = int(memory[LAST_EVENT])
-    chatter = book_event(time, kind, mode, new_mode, tables, memory, progress, events, w)
+    chatter = record_event(time, kind, mode, new_mode, tables, memory, progress, events, w)
     return new_mode, max(status, chatter)
 
 
-@entry(
-    "integer",
-    ACCELERATE,
-    GUARD,
-    SWITCH,
-    ENERGY,
-    Tables,
-    "vector",
-    "vector",
-    MotionTables,
-    Progress,
-    Output,
-    EventTable,
-    Workspace,
-)
+@inlined
+def next_output(controls: Vector, counters: Integers, output: Output) -> float:
+    """Give the time from which on a step's end has an output to store."""
+    row = counters[at.OUTPUTS]
+    if row >= len(output.mode):
+        return math.inf
+    return (row - ON_SAMPLE) * controls[at.OUTPUT_STEP]
+
+
+@entry
 def advance(
-    accelerate: Callable[..., None],
-    guard: Callable[..., None],
-    switch: Callable[..., int],
-    energy: Callable[..., None],
+    equations: Equations,
     tables: Tables,
-    p: Vector,
     memory: Vector,
-    motion: MotionTables,
+    pieces: Pieces,
     progress: Progress,
     output: Output,
     events: EventTable,
@@ -266,13 +195,13 @@ def advance(
 
     Parameters
     ----------
-    accelerate, guard, switch, energy : callback
-        The model's functions.
-    tables, p : Tables, ndarray
-        The model's tables and parameters.
+    equations : Equations
+        Of the scene.
+    tables : Tables
+        The model's tables.
     memory : ndarray
         The model's memory; changed in place.
-    motion : MotionTables
+    pieces : Pieces
         Ground motion.
     progress : Progress
         Settings and progress; changed in place.
@@ -289,98 +218,78 @@ def advance(
         A :class:`rockframe.solve.layout.Status`, or ``MORE_ROOM``.
     """
     controls, clock, counters = progress.controls, progress.clock, progress.counters
-    duration, time_step = controls[at.DURATION], controls[at.TIME_STEP]
-    intervals = max(len(motion.samples_x), len(motion.samples_y)) - 1
-    shortest = SHORTEST * duration
     mode = counters[at.MODE]
     if math.isnan(clock[at.START_ENERGY]):
-        energy(mode, w.state, p, w.energies)
-        clock[at.START_ENERGY] = w.energies[0] + w.energies[1] + w.energies[3]
-        audit(energy, mode, p, memory, clock, w)
+        start = energies_at(equations, mode, w.state, w.energy_room)
+        clock[at.START_ENERGY] = start.kinetic + start.gravity + start.from_rest
+        audit(equations, mode, memory, clock, w)
+    home, half = w.state, 0
+    counters[at.HALF] = 0
     index = counters[at.INTERVAL]
-    tau = clock[at.INTO_INTERVAL]
-    h_next = clock[at.NEXT_STEP]
+    counters[at.DEGREE_X] = load_interval(index, pieces.x, 0, w.ground)
+    counters[at.DEGREE_Y] = load_interval(index, pieces.y, TERMS, w.ground)
+    fixed, shortest = controls[at.RTOL] == FIXED_STEPS, SHORTEST * controls[at.DURATION]
     crossed = counters[at.PENDING]
-    fixed = controls[at.RTOL] == FIXED_STEPS
     stale = True  # accelerations and guards at the state, after a switch or a jump
     status = at.COMPLETED
     while True:
-        begin = index * time_step
-        length = duration - begin
-        if index < intervals:
-            length = min(time_step, length)
-        interval = Interval(
-            begin,
-            load_interval(index, motion.samples_x, motion.pieces_x, 0, w.ground),
-            load_interval(index, motion.samples_y, motion.pieces_y, TERMS, w.ground),
-        )
-        if jumps(w.ground[0], clock[at.GROUND_X]) or jumps(w.ground[TERMS], clock[at.GROUND_Y]):
-            stale = True
-        while True:
-            if stale:
-                look_ahead(accelerate, guard, mode, tau / time_step, interval, p, clock, w)
-                stale = False
-                if crossed < 0:
-                    crossed = broken_guard(tables, w)
-            if crossed >= 0:
-                if counters[at.EVENTS] >= len(events.codes):
-                    status = at.MORE_ROOM
-                    break
-                mode, status = carry_out(
-                    crossed, begin + tau, mode, switch, tables, p, memory, progress, events, w
-                )
-                audit(energy, mode, p, memory, clock, w)
-                crossed = -1
-                stale = True
-                if status != at.COMPLETED:
-                    break
-                continue
-            remaining = length - tau
-            if remaining <= shortest:
+        if stale:
+            look_ahead(equations, mode, progress, w)
+            stale = False
+            if crossed < 0:
+                crossed = broken_guard(tables, w)
+        if crossed >= 0:
+            if counters[at.EVENTS] >= len(events.codes):
+                status = at.MORE_ROOM
                 break
-            if counters[at.STEPS] + counters[at.REJECTED] >= counters[at.MAX_STEPS]:
-                status = at.STEP_LIMIT
-                break
-            asked = fit_step(min(h_next, controls[at.MAX_STEP]), remaining)
-            whole = min(asked, tables.longest[mode]) if fixed else asked
-            energy_scale = max(clock[at.LARGEST_TERM], clock[at.BURNT], abs(clock[at.SUPPLIED]))
-            step = make_step(
-                accelerate, guard, tables, mode, interval, tau, whole, controls, energy_scale, p, w
+            time = counters[at.INTERVAL] * controls[at.TIME_STEP] + clock[at.INTO_INTERVAL]
+            mode, status = carry_out(
+                equations, crossed, time, mode, tables, memory, progress, events, w
             )
-            if not step.excess <= 1.0:
-                counters[at.REJECTED] += 1
-                h_next = next_step(whole, whole, step.excess)
-                if h_next <= shortest:
-                    status = at.STEP_TOO_SMALL
-                    break
-                continue
-            crossed = step.crossed
-            if fixed:  # after an event or a shorter step, on to the end of the sub-step
-                rest = asked - step.span.h
-                h_next = rest if rest > shortest else controls[at.MAX_STEP]
-            elif crossed < 0 and (step.excess > EASY or whole < time_step or whole >= h_next):
-                h_next = next_step(whole, h_next, step.excess)
-            h = step.span.h
-            tau += h
-            count = int(tables.active[mode])
-            store_outputs(
-                accelerate, begin + tau, step.span, mode, count, step.burnt, step.supplied, p,
-                progress, output, w,
-            )  # fmt: skip
-            if h > 0.0:
-                follow_peak(count, h, tables.weights, clock, w)
-            if tables.contact[mode] == FLIGHT:
-                clock[at.FLIGHT_TIME] += h
-            accept(step.burnt, step.supplied, step.ground_x, step.ground_y, clock, counters, w)
-        if status != at.COMPLETED or index >= intervals or begin + length >= duration:
+            audit(equations, mode, memory, clock, w)
+            crossed = -1
+            stale = True
+            if status != at.COMPLETED:
+                break
+            continue
+        clock[at.NEXT_OUTPUT] = next_output(controls, counters, output)
+        happened = march(equations, mode, 0.0, tables, pieces, progress, w)
+        if counters[at.HALF] != half:
+            half = 1 - half
+            w = swapped(w)
+        if happened == JUMPED:
+            stale = True
+            continue
+        if happened == EXHAUSTED:
+            status = at.STEP_LIMIT
+        elif happened == TOO_SMALL:
+            status = at.STEP_TOO_SMALL
+        if happened in (AT_END, EXHAUSTED, TOO_SMALL):
             break
-        index += 1
-        tau = 0.0
-    audit(energy, mode, p, memory, clock, w)
-    clock[at.TIME] = index * time_step + tau
-    clock[at.INTO_INTERVAL] = tau
-    clock[at.NEXT_STEP] = h_next
+        h = whole = clock[at.STEP]
+        if happened == GUARDED:
+            h, crossed = step_to_event(equations, mode, whole, tables, pieces, progress, w)
+        if fixed:
+            clock[at.NEXT_STEP] = rest_of(clock[at.ASKED], h, shortest, controls)
+        elif crossed < 0:
+            clock[at.NEXT_STEP] = adapted(whole, clock[at.NEXT_STEP], clock[at.EXCESS], controls)
+        count, span = int(tables.active[mode]), span_of(h, progress)
+        work, ground = Work(w.works[0], w.works[1]), ground_in(1.0, span, w.ground)
+        clock[at.INTO_INTERVAL] += h
+        end = counters[at.INTERVAL] * controls[at.TIME_STEP] + clock[at.INTO_INTERVAL]
+        store_outputs(equations, end, span, mode, count, work, progress, output, w)
+        if h > 0.0:
+            follow_peak(equations, count, h, clock, w)
+        if tables.contact[mode] == FLIGHT:
+            clock[at.FLIGHT_TIME] += h
+        accept(fixed, work, ground, clock, counters, w)
+        half = 1 - half
+        counters[at.HALF] = half
+        w = swapped(w)
+    audit(equations, mode, memory, clock, w)
+    for i in range(len(home)):  # where the caller looks for it
+        home[i] = w.state[i]
+    clock[at.TIME] = counters[at.INTERVAL] * controls[at.TIME_STEP] + clock[at.INTO_INTERVAL]
     counters[at.MODE] = mode
-    counters[at.INTERVAL] = index
     counters[at.PENDING] = crossed
     return status

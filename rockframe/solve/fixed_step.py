@@ -4,71 +4,59 @@ Equations :eq:`eq-fixed-stages` and :eq:`eq-fixed-step`.
 """
 
 import math
-from collections.abc import Callable
 
-from rockframe.compiled import Vector, inlined
-from rockframe.solve.ground import TERMS, ground_acceleration
-from rockframe.solve.workspace import Span, Workspace
+from rockframe.compiled import Vector, inlined, put
+from rockframe.dynamics.protocol import System
+from rockframe.solve.ground import ground_in
+from rockframe.solve.workspace import Span
 
 
 @inlined
 def fixed_step(
-    accelerate: Callable[..., None],
-    mode: int,
-    count: int,
-    span: Span,
-    p: Vector,
-    w: Workspace,
-) -> tuple[float, float]:
-    """Step the first `count` coordinates; ``slopes[0]`` holds the start's accelerations.
+    system: System, mode: int, count: int, span: Span, ground: Vector, state: Vector,
+    first: Vector, new: Vector, last: Vector, stage: Vector, works: Vector,
+) -> bool:  # fmt: skip
+    """Step the first `count` coordinates and all variables of first order.
 
-    Fills ``new`` and, with the last stage's accelerations, ``slopes[6]``; they serve
-    as the start's of the next step. Gives the energies burnt by dashpots and put in
-    by the ground, integrated with the weights of the velocities.
+    Arguments as in :func:`rockframe.solve.attempts.attempt_fixed`. Gives the energies
+    dissipated and put in by the ground, integrated with the weights of the velocities, and
+    whether the step has ended in numbers.
     """
-    h = span.h
-    half = 0.5 * h
-    sixth = h / 6.0
-    state, new, stage, slope, slopes, ground = (
-        w.state, w.new, w.stage, w.slope, w.slopes, w.ground,
-    )  # fmt: skip
-    size = len(state) // 2
-    for i in range(count, size):
-        new[i] = state[i]
-        new[size + i] = state[size + i]
-    for i in range(count):
+    h, size = span.h, system.coordinates()
+    half, sixth = 0.5 * h, h / 6.0
+    powers = size + system.variables()
+    for i in range(size):  # what does not move makes steps of no length
+        own_half = half if i < count else 0.0
         j = size + i
-        stage[i] = state[i] + half * (state[j] + 0.5 * half * slopes[0, i])
-        stage[j] = state[j] + half * slopes[0, i]
-    u = span.u + 0.5 * span.du
-    x = ground_acceleration(u, span.degree_x, 0, ground)
-    y = ground_acceleration(u, span.degree_y, TERMS, ground)
-    accelerate(mode, stage, x, y, p, slope)
-    burnt = slopes[0, size] + 4.0 * slope[size]
-    supplied = slopes[0, size + 1] + 4.0 * slope[size + 1]
-    for i in range(count):
+        stage[i] = state[i] + own_half * (state[j] + 0.5 * half * first[i])
+        stage[j] = state[j] + own_half * first[i]
+    for i in range(size, powers):
+        stage[size + i] = state[size + i] + half * first[i]
+    middle = system.accelerate(mode, stage, ground_in(0.5, span, ground))
+    put(middle, 0, last)
+    for i in range(size):
+        own, own_sixth = (h, sixth) if i < count else (0.0, 0.0)
         j = size + i
-        v, a1, a2 = state[j], slopes[0, i], slope[i]
-        new[i] = state[i] + h * (v + sixth * (a1 + 2.0 * a2))
-        new[j] = v + sixth * (a1 + 4.0 * a2)
+        v, a1, a2 = state[j], first[i], last[i]
+        new[i] = state[i] + own * (v + sixth * (a1 + 2.0 * a2))
+        new[j] = v + own_sixth * (a1 + 4.0 * a2)
         # off the solution by as much as makes up for the stage before, and for this one
         # when it serves as the first of the next step
-        stage[i] = state[i] + h * (v + 0.5 * sixth * (a1 + 5.0 * a2))
-        stage[j] = v + half * (3.0 * a2 - a1)
-    u = span.u + span.du
-    x = ground_acceleration(u, span.degree_x, 0, ground)
-    y = ground_acceleration(u, span.degree_y, TERMS, ground)
-    accelerate(mode, stage, x, y, p, slope)
-    for i in range(count):
-        new[size + i] += sixth * slope[i]
-        slopes[6, i] = slope[i]
-    return sixth * (burnt + slope[size]), sixth * (supplied + slope[size + 1])
-
-
-@inlined
-def finite(count: int, w: Workspace) -> bool:
-    """Whether a step has ended in numbers."""
+        stage[i] = state[i] + own * (v + 0.5 * sixth * (a1 + 5.0 * a2))
+        stage[j] = v + 3.0 * own_sixth * (3.0 * a2 - a1)
+    for i in range(size, powers):
+        z, r1, r2 = state[size + i], first[i], last[i]
+        new[size + i] = z + sixth * (r1 + 4.0 * r2)
+        stage[size + i] = z + half * (3.0 * r2 - r1)
+    end = system.accelerate(mode, stage, ground_in(1.0, span, ground))
+    put(end, 0, last)
     total = 0.0
-    for i in range(count):
-        total += w.new[len(w.state) // 2 + i]
+    for i in range(size):
+        new[size + i] += (sixth if i < count else 0.0) * last[i]
+        total += new[size + i]
+    for i in range(size, powers):
+        new[size + i] += sixth * last[i]
+        total += new[size + i]
+    works[0] = sixth * (first[powers] + 4.0 * middle[powers] + end[powers])
+    works[1] = sixth * (first[powers + 1] + 4.0 * middle[powers + 1] + end[powers + 1])
     return math.isfinite(total)

@@ -1,31 +1,33 @@
 """From a model, a start and a ground motion to a trajectory."""
 
 import math
+from time import perf_counter
 
 import numpy as np
 
-from rockframe.compiled import Vector
+from rockframe.compiled import Matrix, Vector, say_slow
+from rockframe.dynamics.events import ContactState
 from rockframe.dynamics.protocol import (
     IMPACT_LOSS,
     IMPULSIVE_INPUT,
     REPINNING_LOSS,
     ContactModel,
-    ContactState,
     Ending,
     Start,
 )
+from rockframe.signals import Motion
 from rockframe.solve import layout as at
 from rockframe.solve.accuracy import Accuracy
-from rockframe.solve.books import ON_SAMPLE
+from rockframe.solve.bookkeeping import ON_SAMPLE, ROUNDING
 from rockframe.solve.driver import FIXED_STEPS, advance
-from rockframe.solve.ground_table import Ground
+from rockframe.solve.equations import equations_of
 from rockframe.solve.layout import Status
 from rockframe.solve.substeps import STABLE, substeps_of
 from rockframe.solve.trajectory import Events, Trajectory
 from rockframe.solve.workspace import (
     EventTable,
-    MotionTables,
     Output,
+    Pieces,
     Progress,
     Tables,
     make_workspace,
@@ -40,12 +42,14 @@ CHATTER_SHARE = 1e-6
 ENERGY_NOISE = 1e-12
 """Share of the model's typical energy below which energies are rounding noise."""
 EVENT_ROOM = 256
+STILL_INTERVAL = 0.01
+"""Interval into which time is cut where the ground has no samples [s]."""
 
 
 def integrate(
     model: ContactModel,
     start: Start | Ending,
-    ground: Ground,
+    motion: Motion | None,
     accuracy: Accuracy,
     *,
     duration: float,
@@ -61,8 +65,8 @@ def integrate(
         The equations.
     start : Start or Ending
         Where the run starts, or another run of the same model ended.
-    ground : Ground
-        Its motion; the ground stands still beyond its last sample.
+    motion : Motion or None
+        Of the ground, which stands still beyond its last sample, or all the time.
     accuracy : Accuracy
         Settings.
     duration : float
@@ -82,14 +86,15 @@ def integrate(
     mode, state, memory = _beginning(model, start)
     shortest_period = 2.0 * math.pi / model.fastest_frequency
     controls = np.zeros(at.CONTROLS)
-    substeps = substeps_of(accuracy, model, ground)
+    interval = STILL_INTERVAL if motion is None else motion.time_step
+    substeps = substeps_of(accuracy, model, interval)
     controls[at.RTOL] = accuracy.rtol or FIXED_STEPS
     controls[at.FLOOR] = accuracy.floor
     controls[at.MAX_STEP] = (
-        ground.interval / substeps if substeps else shortest_period / accuracy.steps_per_period
+        interval / substeps if substeps else shortest_period / accuracy.steps_per_period
     )
     controls[at.DURATION] = duration
-    controls[at.TIME_STEP] = ground.time_step
+    controls[at.TIME_STEP] = interval
     controls[at.OUTPUT_STEP] = output_step or 1.0
     controls[at.CHATTER_TIME] = CHATTER_SHARE * shortest_period
     clock = np.zeros(at.CLOCK)
@@ -109,7 +114,7 @@ def integrate(
     rows = 0 if output_step is None else 1 + math.floor(duration / output_step * (1.0 + 1e-12))
     width = len(state)
     out_state = np.empty((rows, width))
-    out_mode = np.empty(rows, dtype=np.int16)
+    out_mode = np.empty(rows, dtype=np.int32)
     out_work = np.zeros((rows if with_work else 0, 2))
     if rows:
         out_state[0], out_mode[0] = state, mode
@@ -121,7 +126,6 @@ def integrate(
         # no step is short enough for an error below the rounding of the forces
         noise = model.rounding(clock[at.PEAK])
         reference = np.maximum(reference, noise / (accuracy.rtol * accuracy.floor))
-    parameters = model.parameters.copy()
     progress = Progress(controls, clock, counters)
     output = Output(out_state, out_mode, out_work)
     events = EventTable(
@@ -132,23 +136,19 @@ def integrate(
         model.active,
         model.contact,
         _longest_steps(model),
-        model.guard_tolerance,
-        model.rotation_weights,
+        np.append(model.guard_tolerance, ROUNDING),
     )
-    motion = MotionTables(
-        ground.horizontal, ground.vertical, ground.horizontal_pieces, ground.vertical_pieces
-    )
-    workspace = make_workspace(state, reference, len(model.guard_tolerance))
+    pieces = _pieces_of(motion)
+    equations = equations_of(model.system, fixed_steps=accuracy.rtol is None)
+    limits = np.array([*model.rotation_limits, *model.rotation_weights])
+    workspace = make_workspace(equations, state, reference, limits)
+    began = perf_counter()
     while True:
         result = advance(
-            model.accelerate,
-            model.guard,
-            model.switch,
-            model.energy,
+            equations,
             tables,
-            parameters,
             memory,
-            motion,
+            pieces,
             progress,
             output,
             events,
@@ -161,6 +161,8 @@ def integrate(
             np.concatenate([events.codes, np.empty_like(events.codes)]),
         )
 
+    say_slow(perf_counter() - began)
+
     stored = int(counters[at.OUTPUTS])
     time: Vector = np.arange(stored, dtype=np.float64) * (output_step or 1.0)
     end = float(clock[at.TIME])
@@ -169,10 +171,10 @@ def integrate(
     if rows and unfinished and end - time[-1] > ON_SAMPLE * (output_step or 1.0):
         # the instant at which the run ended belongs to its history
         time = np.concatenate([time, np.array([end])])
-        out_state = np.vstack([out_state, state])
-        out_mode = np.append(out_mode, np.int16(counters[at.MODE]))
+        out_state = np.vstack([out_state, workspace.state])
+        out_mode = np.append(out_mode, np.int32(counters[at.MODE]))
         if with_work:
-            out_work = np.vstack([out_work, [clock[at.BURNT], clock[at.SUPPLIED]]])
+            out_work = np.vstack([out_work, [clock[at.DISSIPATED], clock[at.SUPPLIED]]])
     return Trajectory(
         time=time,
         state=out_state,
@@ -194,16 +196,30 @@ def integrate(
         rejected_count=int(counters[at.REJECTED]),
         substeps=substeps,
         energy_residual=_ratio(float(clock[at.RESIDUAL]), float(clock[at.LARGEST_MOVED])),
-        ending=Ending(int(counters[at.MODE]), state.copy(), memory.copy()),
+        ending=Ending(int(counters[at.MODE]), workspace.state.copy(), memory.copy()),
         start_energy=float(clock[at.START_ENERGY]),
     )
+
+
+def _pieces_of(motion: Motion | None) -> Pieces:
+    """Give the polynomials of both directions."""
+    if motion is None:
+        return Pieces(_STILL, _STILL)
+    vertical = _STILL if motion.vertical is None else _read_only(motion.vertical.pieces)
+    return Pieces(_read_only(motion.horizontal.pieces), vertical)
+
+
+def _read_only(array: Matrix) -> Matrix:
+    view = array.view()
+    view.flags.writeable = False
+    return view
 
 
 def _beginning(model: ContactModel, start: Start | Ending) -> tuple[int, Vector, Vector]:
     if isinstance(start, Start):
         return model.initial(start)
     memory = start.memory.copy()
-    # the books of losses begin anew with each run
+    # losses are counted anew in each run
     memory[IMPACT_LOSS] = memory[REPINNING_LOSS] = memory[IMPULSIVE_INPUT] = 0.0
     return start.mode, start.state.copy(), memory
 
@@ -235,3 +251,6 @@ def _time_or_nan(value: float) -> float:
 
 def _ratio(part: float, whole: float) -> float:
     return part / whole if whole > 0.0 else 0.0
+
+
+_STILL = _read_only(np.zeros((0, 2)))

@@ -56,7 +56,7 @@ FIRST_UPLIFT: Final = 3
 PEAK: Final = 4
 OVERTURNING_TIME: Final = 5
 OVERTURNING_SIDE: Final = 6
-BURNT: Final = 7
+DISSIPATED: Final = 7
 SUPPLIED: Final = 8
 RESIDUAL: Final = 9
 LARGEST_TERM: Final = 10
@@ -66,7 +66,11 @@ GROUND_X: Final = 13
 GROUND_Y: Final = 14
 TIME: Final = 15
 LARGEST_MOVED: Final = 16
-CLOCK: Final = 17
+STEP: Final = 17
+ASKED: Final = 18
+EXCESS: Final = 19
+NEXT_OUTPUT: Final = 20
+CLOCK: Final = 21
 
 # counters: integer progress and switches
 MODE: Final = 0
@@ -81,7 +85,10 @@ PENDING: Final = 8
 CLOSE_EVENTS: Final = 9
 MAX_STEPS: Final = 10
 STOP_AT_OVERTURNING: Final = 11
-COUNTERS: Final = 12
+HALF: Final = 12
+DEGREE_X: Final = 13
+DEGREE_Y: Final = 14
+COUNTERS: Final = 15
 
 CLOSE_EVENTS_LIMIT: Final = 1000
 """Events in a row, each within CHATTER_TIME of the one before, that end a run as chatter."""

@@ -1,35 +1,86 @@
 """From states to the quantities a model can be observed by."""
 
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 
-from rockframe.compiled import Integers, Matrix, Vector, entry
-from rockframe.dynamics.protocol import ENERGY, OBSERVE, ContactModel
+from rockframe.compiled import Integers, Matrix, Vector, bound, entry, kernel, numbers_in, put
+from rockframe.dynamics.protocol import ContactModel, Ground, System
+from rockframe.solve.equations import energies
 from rockframe.solve.trajectory import Trajectory
 
 
-@entry("none", OBSERVE, "integers", "matrix", "matrix", "integers", "matrix", "vector", "matrix")
-def _observe_rows(
-    observe: Callable[..., None],
+class Room(NamedTuple):
+    """Room for one row."""
+
+    state: Vector
+    memory: Vector
+    columns: Vector
+
+
+@kernel
+def copy_row(rows: Matrix, i: int, out: Vector) -> None:
+    """Copy a row of a matrix."""
+    for j in range(len(out)):
+        out[j] = rows[i, j]
+
+
+@kernel
+def observed(
+    system: System, mode: int, state: Vector, ground_x: float, ground_y: float, memory: Vector,
+    out: Vector,
+) -> None:  # fmt: skip
+    """Write the columns of a state."""
+    ground = Ground(ground_x, ground_y)
+    slope = system.accelerate(mode, state, ground)
+    put(system.observe(mode, state, slope, ground, memory), 0, out)
+
+
+class Bound(NamedTuple):
+    """A function of a system, and the system's numbers."""
+
+    call: Callable[..., None]
+    numbers: Vector
+
+
+def _bound(function: Callable[..., None], system: System) -> Bound:
+    return Bound(bound((function,), system)[0], numbers_in(system))
+
+
+@entry
+def observe_rows(
+    observing: Bound,
     mode: Integers,
     state: Matrix,
     memory: Matrix,
     memory_row: Integers,
     ground: Matrix,
-    p: Vector,
+    room: Room,
     out: Matrix,
 ) -> None:
+    """Fill a row of columns for each row of states."""
     for i in range(len(mode)):
-        observe(mode[i], state[i], memory[memory_row[i]], ground[i, 0], ground[i, 1], p, out[i])
+        copy_row(state, i, room.state)
+        copy_row(memory, memory_row[i], room.memory)
+        observing.call(
+            mode[i], room.state, ground[i, 0], ground[i, 1], room.memory, room.columns,
+            observing.numbers,
+        )  # fmt: skip
+        for j in range(len(room.columns)):
+            out[i, j] = room.columns[j]
 
 
-@entry("none", ENERGY, "integers", "matrix", "vector", "matrix")
-def _energy_rows(
-    energy: Callable[..., None], mode: Integers, state: Matrix, p: Vector, out: Matrix
+@entry
+def energy_rows(
+    storing: Bound, mode: Integers, state: Matrix, row: Vector, stored: Vector, out: Matrix
 ) -> None:
+    """Fill a row of energies for each row of states; `row` and `stored` are room for one."""
     for i in range(len(mode)):
-        energy(mode[i], state[i], p, out[i])
+        copy_row(state, i, row)
+        storing.call(mode[i], row, stored, storing.numbers)
+        for j in range(len(stored)):
+            out[i, j] = stored[j]
 
 
 def memory_at_outputs(trajectory: Trajectory) -> tuple[Matrix, Integers]:
@@ -64,21 +115,26 @@ def observe_trajectory(
     Returns
     -------
     dict of str to ndarray
-        By the names in ``model.columns``; forces per unit mass.
+        By the names in ``model.columns``.
     """
     out = np.empty((len(trajectory.time), len(model.columns)))
     memory, row = memory_at_outputs(trajectory)
-    _observe_rows(
-        model.observe,
+    sizes = trajectory.state.shape[1], memory.shape[1], out.shape[1]
+    room = Room(*(np.zeros(size) for size in sizes))
+    observe_rows(
+        _bound(observed, model.system),
         trajectory.mode.astype(np.int64),
         np.ascontiguousarray(trajectory.state),
         memory,
         row,
         ground,
-        model.parameters,
+        room,
         out,
     )
-    return {name: np.ascontiguousarray(out[:, i]) for i, name in enumerate(model.columns)}
+    return {
+        column.name: out[:, i] * (model.mass * column.mass_ratio if column.per_mass else 1.0)
+        for i, column in enumerate(model.columns)
+    }
 
 
 def energies_of(model: ContactModel, trajectory: Trajectory) -> Matrix:
@@ -90,11 +146,12 @@ def energies_of(model: ContactModel, trajectory: Trajectory) -> Matrix:
         Per unit mass [m^2 s^-2].
     """
     out = np.empty((len(trajectory.time), 4))
-    _energy_rows(
-        model.energy,
+    energy_rows(
+        _bound(energies, model.system),
         trajectory.mode.astype(np.int64),
         np.ascontiguousarray(trajectory.state),
-        model.parameters,
+        np.zeros(trajectory.state.shape[1]),
+        np.zeros(4),
         out,
     )
     return out

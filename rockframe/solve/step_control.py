@@ -4,9 +4,10 @@ import math
 from typing import Final
 
 from rockframe.compiled import Vector, inlined, kernel
+from rockframe.dynamics.protocol import System
 from rockframe.solve import layout as at
 from rockframe.solve.dormand_prince_tableau import ORDER
-from rockframe.solve.workspace import Workspace
+from rockframe.solve.workspace import ERRORS
 
 # step-size control, after Hairer, Norsett, Wanner, "Solving Ordinary Differential
 # Equations I", 2nd ed., section II.4
@@ -19,19 +20,24 @@ EASY: Final = 0.5
 
 @inlined
 def excess_error(
-    count: int, imbalance: float, energy_scale: float, controls: Vector, w: Workspace
-) -> float:
-    """Give the largest error of a step, of the state or of its works, over the error allowed."""
-    size = len(w.state) // 2
+    system: System, count: int, imbalance: float, new: Vector, works: Vector, reference: Vector,
+    controls: Vector,
+) -> float:  # fmt: skip
+    """Give the largest error of a step, of the state or of its works, over the error allowed.
+
+    `imbalance` is the error of the works over the largest energy.
+    """
+    size, floor = system.coordinates(), controls[at.FLOOR]
     if not math.isfinite(imbalance):
         return math.inf
-    largest = abs(imbalance) / energy_scale
-    for i in range(2 * count):
-        j = i if i < count else size + i - count
-        if not math.isfinite(w.error[j]):
-            return math.inf
-        allowed = max(abs(w.new[j]), controls[at.FLOOR] * w.reference[j])
-        largest = max(largest, abs(w.error[j]) / allowed)
+    largest = abs(imbalance)
+    for i in range(2 * size + system.variables()):
+        # what does not move has no error
+        if i < count or size <= i < size + count or i >= 2 * size:
+            if not math.isfinite(works[ERRORS + i]):
+                return math.inf
+            allowed = max(abs(new[i]), floor * reference[i])
+            largest = max(largest, abs(works[ERRORS + i]) / allowed)
     return largest / controls[at.RTOL]
 
 

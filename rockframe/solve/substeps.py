@@ -6,7 +6,6 @@ from typing import Final
 from rockframe.dynamics.protocol import ContactModel
 from rockframe.errors import SolverError
 from rockframe.solve.accuracy import FEWEST, Accuracy
-from rockframe.solve.ground_table import Ground
 
 STABLE: Final = 0.85
 """Largest step times fastest rate for which the method damps every damped vibration;
@@ -21,7 +20,7 @@ def fastest_rate(model: ContactModel) -> float:
     return half + math.hypot(model.fastest_frequency, half)
 
 
-def substeps_of(accuracy: Accuracy, model: ContactModel, ground: Ground) -> int:
+def substeps_of(accuracy: Accuracy, model: ContactModel, interval: float) -> int:
     """Give the number of fixed steps in each interval of a motion, 0 if by tolerance.
 
     Parameters
@@ -30,8 +29,8 @@ def substeps_of(accuracy: Accuracy, model: ContactModel, ground: Ground) -> int:
         Settings.
     model : ContactModel
         The equations.
-    ground : Ground
-        The motion.
+    interval : float
+        Of the motion [s].
 
     Returns
     -------
@@ -47,11 +46,11 @@ def substeps_of(accuracy: Accuracy, model: ContactModel, ground: Ground) -> int:
     rate = fastest_rate(model)
     if accuracy.substeps == FEWEST:
         longest = 2.0 * math.pi / rate / accuracy.steps_per_period
-        return math.ceil(ground.interval / longest * (1.0 - WHOLE))
-    least = math.ceil(ground.interval * rate / STABLE * (1.0 - WHOLE))
+        return math.ceil(interval / longest * (1.0 - WHOLE))
+    least = math.ceil(interval * rate / STABLE * (1.0 - WHOLE))
     if accuracy.substeps < least:
         msg = (
-            f"Accuracy: substeps={accuracy.substeps} in each interval of {ground.interval:.6g} s "
+            f"Accuracy: substeps={accuracy.substeps} in each interval of {interval:.6g} s "
             f"are too few for the model's fastest vibration "
             f"({model.fastest_frequency / (2.0 * math.pi):.4g} Hz); give at least {least}, or "
             f"substeps={FEWEST!r}, or an rtol"

@@ -17,8 +17,8 @@ class Events:
     time : ndarray, shape (events,)
         [s].
     kind : ndarray of int64, shape (events,)
-        :class:`rockframe.dynamics.protocol.EventKind`, or ``SILENT`` where a
-        model only kept its books.
+        :class:`rockframe.dynamics.events.EventKind`, or ``SILENT`` where
+        users are shown none.
     mode_before, mode_after : ndarray of int64, shape (events,)
         Modes of the model.
     state_before, state_after : ndarray, shape (events, 2 n)
@@ -86,10 +86,10 @@ class Trajectory(Summary):
         Output times [s].
     state : ndarray, shape (samples, 2 n)
         Coordinates, then their rates.
-    mode : ndarray of int16, shape (samples,)
+    mode : ndarray of int32, shape (samples,)
         Modes of the model.
     work : ndarray, shape (samples, 2) or (0, 2)
-        Energies burnt by dashpots and put in by the ground, if asked for.
+        Energies dissipated by dashpots and put in by the ground, if asked for.
     start_mode : int
         The model's mode at the start.
     start_memory : ndarray, shape (memory,)

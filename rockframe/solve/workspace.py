@@ -1,20 +1,29 @@
 """The arrays of a run, in named tuples: what the integrator reads, works on and fills."""
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
 from rockframe.compiled import (
     Codes,
-    FrozenMatrix,
-    FrozenVector,
     IntegerMatrix,
     Integers,
     Matrix,
+    ReadOnlyMatrix,
     Vector,
+    inlined,
 )
+from rockframe.dynamics.protocol import POWERS
 from rockframe.solve.dormand_prince_tableau import STAGES
-from rockframe.solve.ground import TERMS
+
+if TYPE_CHECKING:
+    from rockframe.solve.equations import Equations
+
+TERMS: Final = 6
+"""Most coefficients per direction and interval; a record needs two, an analytic pulse six."""
+
+ERRORS: Final = 3
+"""Place of the errors of the state behind the works of a step."""
 
 
 class Tables(NamedTuple):
@@ -23,17 +32,14 @@ class Tables(NamedTuple):
     active: Integers
     contact: Integers
     longest: Vector
-    tolerance: Vector
-    weights: Vector
+    tolerance: Vector  # of the system's guards, and of the limit of the rotation
 
 
-class MotionTables(NamedTuple):
-    """Ground motion: samples, and polynomials in between where it has them."""
+class Pieces(NamedTuple):
+    """Ground acceleration as polynomials, a row for each interval; none where it stands still."""
 
-    samples_x: FrozenVector
-    samples_y: FrozenVector
-    pieces_x: FrozenMatrix
-    pieces_y: FrozenMatrix
+    x: ReadOnlyMatrix
+    y: ReadOnlyMatrix
 
 
 class Progress(NamedTuple):
@@ -60,24 +66,38 @@ class EventTable(NamedTuple):
 
 
 class Workspace(NamedTuple):
-    """Arrays of one step."""
+    """Arrays of one step.
 
+    A *slope* holds accelerations, rates of variables of first order, and powers.
+    """
+
+    both_ends: Vector  # both ends of a step, of which the next six are parts
     state: Vector  # at its start
-    new: Vector  # at its end
+    first: Vector  # slope
+    before: Vector  # guards and their rates
+    new: Vector  # state at its end
+    last: Vector  # slope
+    after: Vector  # guards and their rates
+    stages: Vector  # room for stages
+    works: Vector  # energies dissipated and put in, the error of their difference, other errors
     reference: Vector  # largest size so far of each variable
-    stage: Vector
-    slope: Vector  # accelerations and powers of the stage at hand
-    error: Vector
-    slopes: Matrix  # accelerations and powers of all stages
-    speeds: Matrix  # rates of all stages
-    before: Vector  # guards and their rates at the start
-    after: Vector  # at the end
-    inside: Vector  # and in between
-    scratch: Vector  # state and accelerations in between
+    limits: Vector  # of the rotation, see rockframe.solve.guards
+    scratch: Vector  # state and its slope in between
     scratch_rates: Vector
-    powers: Vector  # accelerations and powers in between
+    inside: Vector  # guards in between
+    powers: Vector  # another slope in between
     ground: Vector  # coefficients of the ground motion in this interval
-    energies: Vector
+    energy_room: Vector
+
+
+@inlined
+def swapped(w: Workspace) -> Workspace:
+    """Give the workspace in which a step's end is the start of the next."""
+    return Workspace(
+        w.both_ends, w.new, w.last, w.after, w.state, w.first, w.before, w.stages, w.works,
+        w.reference,
+        w.limits, w.scratch, w.scratch_rates, w.inside, w.powers, w.ground, w.energy_room,
+    )  # fmt: skip
 
 
 class Span(NamedTuple):
@@ -90,37 +110,54 @@ class Span(NamedTuple):
     degree_y: int
 
 
-def make_workspace(state: Vector, reference: Vector, guards: int) -> Workspace:
-    """Allocate the arrays beside the state and the reference sizes of a run.
+class Work(NamedTuple):
+    """Energies that dashpots have dissipated and that the ground has put in."""
+
+    dissipated: float
+    supplied: float
+
+
+def make_workspace(
+    equations: "Equations", state: Vector, reference: Vector, limits: Vector
+) -> Workspace:
+    """Allocate the arrays beside those that a run begins with.
 
     Parameters
     ----------
-    state, reference : ndarray, shape (2 n,)
-        State vector, changed in place; largest size so far of each variable.
-    guards : int
-        Number of guards.
+    equations : Equations
+        Of the scene.
+    state, reference : ndarray, shape (2 n + variables,)
+        State vector; largest size so far of each variable.
+    limits : ndarray, shape (2 + n,)
+        Of the rotation, and weights of the coordinates in it.
 
     Returns
     -------
     Workspace
     """
-    width = len(state)
-    size = width // 2
+    size = equations.coordinate_count
+    slope = size + equations.variable_count + POWERS
+    guards = 2 * (equations.guard_count + 1)
+    parts = [len(state), len(state) + slope, len(state) + slope + guards]
+    ends = np.zeros(2 * parts[-1])
+    start, end = ends[: parts[-1]], ends[parts[-1] :]
+    start[: parts[0]] = state
     return Workspace(
-        state=state,
-        new=state.copy(),
+        both_ends=ends,
+        state=start[: parts[0]],
+        first=start[parts[0] : parts[1]],
+        before=start[parts[1] :],
+        new=end[: parts[0]],
+        last=end[parts[0] : parts[1]],
+        after=end[parts[1] :],
+        stages=np.zeros(STAGES * (size + slope)),
+        works=np.zeros(ERRORS + len(state)),
         reference=reference,
-        stage=np.zeros(width),
-        slope=np.zeros(size + 2),
-        error=np.zeros(width),
-        slopes=np.zeros((STAGES, size + 2)),
-        speeds=np.zeros((STAGES, size)),
-        before=np.zeros(2 * guards),
-        after=np.zeros(2 * guards),
-        inside=np.zeros(2 * guards),
-        scratch=np.zeros(width),
-        scratch_rates=np.zeros(size),
-        powers=np.zeros(size + 2),
+        limits=limits,
+        scratch=state.copy(),
+        scratch_rates=np.zeros(slope),
+        inside=np.zeros(guards),
+        powers=np.zeros(slope),
         ground=np.zeros(2 * TERMS),
-        energies=np.zeros(4),
+        energy_room=np.zeros(4),
     )

@@ -1,0 +1,159 @@
+"""One body on a base: what the integrator asks for, and how an impulse changes it."""
+
+from typing import Any, Final, NamedTuple
+
+from rockframe.compiled import Vector, inlined, kernel
+from rockframe.dynamics.base import Guards
+from rockframe.dynamics.bodies import InState
+from rockframe.dynamics.on_base import IDLE, Mode, OnBase, Response
+from rockframe.dynamics.protocol import HELD_PLACE, Column, Energies, Ground, Slope
+from rockframe.dynamics.switching import lift_by_slip, switch_part
+
+# places in the state
+ROTATION: Final = 0
+VERTICAL: Final = 1
+HORIZONTAL: Final = 2
+COORDINATES: Final = 3
+
+COLUMNS: Final = (
+    Column("rotation"),
+    Column("angular_velocity"),
+    Column("vertical_displacement"),
+    Column("vertical_velocity"),
+    Column("horizontal_displacement"),
+    Column("base_shear", per_mass=True),
+)
+
+
+class OnePart(NamedTuple):
+    """What a system of one body is made of."""
+
+    part: OnBase
+
+
+class Alone(InState, OnePart):
+    """One body on a base, per unit mass: a system."""
+
+    __slots__ = ()
+
+    @inlined
+    def bodies(self) -> int:
+        """Give the number of bodies."""
+        return 1
+
+    @kernel
+    def variables(self) -> int:
+        """Give the number of variables of first order: the base's own."""
+        return self.part.base.variables()
+
+    @kernel
+    def guards(self) -> int:
+        """Give the number of guards."""
+        return self.part.guards()
+
+    @inlined
+    def own_place(self, k: int) -> int:
+        """Give the place of the variables of the base's own in the state."""
+        return 2 * COORDINATES
+
+    @inlined
+    def own_in(self, state: Vector) -> Any:
+        """Read the variables of the base's own."""
+        return self.part.base.read(state, 2 * COORDINATES)
+
+    @inlined
+    def accelerate(self, mode: int, state: Vector, ground: Ground) -> tuple[float, ...]:
+        """Give accelerations, rates of the base's own variables, and powers."""
+        standing = self.part.mode_of(mode)
+        body, own = self.state_of(0, state), self.own_in(state)
+        rates = self.part.rates_in(standing, body, own, ground)
+        accelerations = (rates.rotation, rates.vertical, rates.horizontal)
+        flow = self.part.flow_in(standing, body, own)
+        return accelerations + flow + (rates.dissipated, rates.supplied)
+
+    @inlined
+    def guards_in(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
+        """Give all guards, and their rates, :eq:`eq-guards`."""
+        standing, body = self.part.mode_of(mode), self.state_of(0, state)
+        sliding = IDLE
+        if standing.slides:
+            push = slope[HORIZONTAL] + ground.x
+            sliding = self.part.sliding_guards(
+                standing, body, slope[ROTATION], slope[HORIZONTAL], push,
+                lift_by_slip(self, self.part, 0, mode, state),
+            )  # fmt: skip
+        own = self.own_in(state)
+        return self.part.guards_with(standing, body, own, slope[VERTICAL], slope[ROTATION], sliding)
+
+    @kernel
+    def switch(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:
+        """Carry out the switch that a guard calls for; give the new mode."""
+        return switch_part(self, self.part, 0, guard, mode, state, ground, memory)
+
+    @kernel
+    def energies(self, mode: int, state: Vector) -> Energies:
+        """Give kinetic, gravity and elastic energy, and elastic less that at rest."""
+        body = self.state_of(0, state)
+        elastic, change = self.part.elastic_energy(body, self.own_in(state))
+        kinetic = self.part.kinetic_energy(self.part.mode_of(mode), body)
+        return Energies(kinetic, self.part.body.gravity * body.vertical, elastic, change)
+
+    @kernel
+    def observe(
+        self, mode: int, state: Vector, slope: Slope, ground: Ground, memory: Vector
+    ) -> tuple[float, ...]:
+        """Give motion of the centre of mass, base shear, and what the base shows."""
+        body = self.state_of(0, state)
+        return (
+            body.rotation,
+            body.angular_velocity,
+            body.vertical,
+            body.vertical_velocity,
+            self.place(0, mode, state, memory),
+            slope[HORIZONTAL] + ground.x,
+        ) + self.part.observed_base(self.part.mode_of(mode), body, self.own_in(state))
+
+    @kernel
+    def part_mode(self, mode: int, k: int) -> Mode:
+        """Give how the body stands."""
+        return self.part.mode_of(mode)
+
+    @kernel
+    def with_part(self, mode: int, k: int, part: Mode) -> int:
+        """Give the mode in which the body stands otherwise."""
+        return self.part.number_of(part)
+
+    @kernel
+    def place(self, k: int, mode: int, state: Vector, memory: Vector) -> float:
+        """Give x of the centre of mass: about the held point, or free."""
+        standing = self.part.mode_of(mode)
+        return self.part.horizontal_place(standing, self.state_of(k, state), memory[HELD_PLACE])
+
+    @kernel
+    def response(
+        self, k: int, mode: int, press: float, moment: float, slip: float, state: Vector
+    ) -> Response:
+        """Give how the velocities change by an impulse, or as the hold stops a slip."""
+        attitude = self.part.body.attitude(state[ROTATION])
+        return self.part.response_in(self.part.mode_of(mode), attitude, press, moment, slip)
+
+    @kernel
+    def velocities(self, state: Vector) -> tuple[float, ...]:
+        """Give all velocities."""
+        return state[COORDINATES], state[COORDINATES + 1], state[COORDINATES + 2]
+
+    @kernel
+    def end_acceleration(
+        self, k: int, left: bool, mode: int, state: Vector, ground: Ground
+    ) -> float:
+        """Give the acceleration of an end of the base in a mode, upwards."""
+        body, own = self.state_of(0, state), self.own_in(state)
+        rates = self.part.rates_in(self.part.mode_of(mode), body, own, ground)
+        return self.part.end_rises(left, body, rates.vertical, rates.rotation)
+
+    @kernel
+    def tendency(self, k: int, mode: int, state: Vector, ground: Ground) -> float:
+        """Give the side to which the ground, or the contact, will rotate the body."""
+        if ground.x != 0.0:
+            return -ground.x
+        return self.part.base.tilt(self.part.mode_of(mode).contact)

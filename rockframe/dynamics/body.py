@@ -1,0 +1,155 @@
+"""A rigid body on a base: kinematics of its base line and of its centre of mass.
+
+Equation :eq:`eq-kinematics`. The body need not be symmetric: its centre of mass stands at a
+height h above the base, b_l from its left and b_r from its right end.
+"""
+
+from typing import NamedTuple
+
+from rockframe.compiled import inlined, kernel
+from rockframe.dynamics.restraint import PIVOT_LEFT, PIVOT_RIGHT
+from rockframe.dynamics.trigonometry import sine_cosine
+
+
+class BodyState(NamedTuple):
+    """Placement and rates of a body relative to its base; the centre of mass, from rest.
+
+    The horizontal coordinate is one of its own only while the base does not hold the body.
+    """
+
+    rotation: float
+    vertical: float
+    horizontal: float
+    angular_velocity: float
+    vertical_velocity: float
+    horizontal_velocity: float
+
+
+class Attitude(NamedTuple):
+    """Sine and cosine of a rotation, and h(1 - cos a); or their small-rotation forms."""
+
+    sine: float
+    cosine: float
+    rise: float
+
+
+class BaseLine(NamedTuple):
+    """Both ends of a base: heights above their places at rest, speeds upwards, levers.
+
+    A lever is the rate of an end's height with the rotation.
+    """
+
+    left: float
+    right: float
+    left_speed: float
+    right_speed: float
+    left_lever: float
+    right_lever: float
+
+
+class Reach(NamedTuple):
+    """First and second derivative of the centre's horizontal place by the rotation."""
+
+    rate: float  # dx/da
+    bend: float  # d2x/da2
+
+
+class Body(NamedTuple):
+    """Shape and inertia of a body, and how it is held; lengths in metres, per unit mass."""
+
+    height: float  # h, of the centre of mass above the base
+    left: float  # b_l, from the centre of mass to the left end
+    right: float  # b_r
+    inertia: float  # I_O/m
+    gravity: float  # g
+    angle: float  # theta, which rotations are measured by
+    restraint: int  # a rule of rockframe.dynamics.restraint
+    small: bool  # whether the kinematics are expanded to second order in the rotation
+
+    @inlined
+    def attitude(self, rotation: float) -> Attitude:
+        """Give sine, cosine and rise at a rotation."""
+        if self.small:
+            return Attitude(rotation, 1.0, 0.5 * self.height * rotation * rotation)
+        sine, cosine = sine_cosine(rotation)
+        # sin^2/(1 + cos) keeps its digits at small rotation; past a right angle 1 - cos does
+        if cosine > 0.0:
+            return Attitude(sine, cosine, self.height * sine * sine / (1.0 + cosine))
+        return Attitude(sine, cosine, self.height * (1.0 - cosine))
+
+    @inlined
+    def base_line(self, state: BodyState, attitude: Attitude) -> BaseLine:
+        """Give the ends of the base."""
+        middle = state.vertical + attitude.rise
+        swing = self.height * attitude.sine
+        left = swing + self.left * attitude.cosine
+        right = swing - self.right * attitude.cosine
+        return BaseLine(
+            middle + self.left * attitude.sine,
+            middle - self.right * attitude.sine,
+            state.vertical_velocity + left * state.angular_velocity,
+            state.vertical_velocity + right * state.angular_velocity,
+            left,
+            right,
+        )
+
+    @kernel
+    def base_line_at(self, state: BodyState) -> BaseLine:
+        """Give the ends of the base of a body whose attitude is not known yet."""
+        return self.base_line(state, self.attitude(state.rotation))
+
+    @inlined
+    def end_accelerations(
+        self,
+        attitude: Attitude,
+        angular_velocity: float,
+        vertical: float,
+        angular: float,
+    ) -> tuple[float, float]:
+        """Give the vertical accelerations of the left and of the right end.
+
+        `vertical` and `angular` are the accelerations of the centre of mass and of the rotation;
+        the levers change by h cos a -/+ b sin a.
+        """
+        square = angular_velocity * angular_velocity
+        if self.small:
+            middle = vertical + self.height * (attitude.sine * angular + square)
+            return (
+                middle + self.left * angular,
+                middle - self.right * angular,
+            )
+        middle = vertical + self.height * (attitude.sine * angular + attitude.cosine * square)
+        tilt = attitude.cosine * angular - attitude.sine * square
+        return middle + self.left * tilt, middle - self.right * tilt
+
+    @inlined
+    def pin(self, pivot: int) -> float:
+        """Give e, the held point, from beneath the centre of mass to the right."""
+        if pivot == PIVOT_RIGHT:
+            return self.right
+        if pivot == PIVOT_LEFT:
+            return -self.left
+        return 0.5 * (self.right - self.left)
+
+    @inlined
+    def reach(self, pin: float, attitude: Attitude) -> Reach:
+        """Give how the centre of mass moves horizontally about the held point."""
+        if self.small:
+            return Reach(self.height, 0.0)
+        return Reach(
+            self.height * attitude.cosine + pin * attitude.sine,
+            pin * attitude.cosine - self.height * attitude.sine,
+        )
+
+    @kernel
+    def about_pin(self, pin: float, rotation: float) -> float:
+        """Give h sin a - e cos a, the centre of mass seen from the held point."""
+        if self.small:
+            return self.height * rotation - pin
+        sine, cosine = sine_cosine(rotation)
+        return self.height * sine - pin * cosine
+
+    @kernel
+    def size(self) -> float:
+        """Give half the width and the height together, a length that levers are measured by."""
+        return 0.5 * (self.left + self.right) + self.height

@@ -1,0 +1,1 @@
+"""A body on a base, and on its cap another body that does not act back, Eq. (20)."""

@@ -1,0 +1,94 @@
+"""Assembly of a cascade from the models of its two bodies."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from rockframe.compiled import Vector
+from rockframe.dynamics.alone import COLUMNS as ALONE_COLUMNS
+from rockframe.dynamics.alone import Alone
+from rockframe.dynamics.cascade.system import COLUMNS, Cascade
+from rockframe.dynamics.on_base import OnBase
+from rockframe.dynamics.protocol import HELD_PLACE, MEMORY, ContactModel, Start
+from rockframe.dynamics.stacked import COORDINATES
+
+
+def cascade(
+    first: ContactModel, second: ContactModel, *, top: float, cap_centre: float
+) -> ContactModel:
+    """Assemble the model of a block on the cap of a body on a base.
+
+    Parameters
+    ----------
+    first : ContactModel
+        Block and cap as one body, :func:`rockframe.dynamics.alone_model.alone`.
+    second : ContactModel
+        The block on its base, likewise.
+    top, cap_centre : float
+        Heights of the cap's top and of its centre above the first body's centre of mass [m].
+
+    Returns
+    -------
+    ContactModel
+    """
+    ratio = first.mass / second.mass
+    system = Cascade(_part_of(second), _part_of(first), ratio, top, cap_centre)
+    count = len(first.contact)
+    sways = np.maximum(np.repeat(first.active, len(second.active)), np.tile(second.active, count))
+    shown = len(ALONE_COLUMNS)
+    under = tuple(replace(column, mass_ratio=ratio) for column in first.columns[shown:])
+
+    def initial(start: Start) -> tuple[int, Vector, Vector]:
+        lower, below, memory = first.initial(Start())
+        upper, above, kept = second.initial(start)
+        mode = upper + system.upper.modes() * lower
+        return mode, _in_turn(above, below), np.append(kept, memory[HELD_PLACE])
+
+    return ContactModel(
+        name="cascade",
+        system=system,
+        active=np.where(sways > 2, COORDINATES, COORDINATES - 2),
+        contact=np.tile(second.contact, count),
+        soil_contact=np.repeat(first.contact, len(second.contact)),
+        relaxation=np.maximum(
+            np.tile(second.relaxation, count), np.repeat(first.relaxation, len(second.relaxation))
+        ),
+        rotation_limits=second.rotation_limits,
+        rotation_weights=np.array([1.0, 0.0, 1.0, 0.0, 0.0, 0.0]),
+        scales=_in_turn(second.scales, first.scales),
+        guard_tolerance=np.concatenate([second.guard_tolerance, first.guard_tolerance]),
+        columns=(*COLUMNS, *second.columns[shown:], *under),
+        memory=(*MEMORY, "held_place_of_first"),
+        mass=second.mass,
+        fastest_frequency=max(first.fastest_frequency, second.fastest_frequency),
+        damping_rate=max(first.damping_rate, second.damping_rate),
+        energy_scale=second.energy_scale,
+        initial=initial,
+        rounding=_rounding(first, second),
+    )
+
+
+def _part_of(model: ContactModel) -> OnBase:
+    if not isinstance(model.system, Alone):
+        msg = f"a cascade is made of two models of one body on a base, got {model.name!r}"
+        raise TypeError(msg)
+    return model.system.part
+
+
+def _in_turn(second: Vector, first: Vector) -> Vector:
+    """Put together what belongs to the states of both bodies."""
+    coordinates = (second[0], second[1], first[0], first[1], second[2], first[2])
+    rates = (second[3], second[4], first[3], first[4], second[5], first[5])
+    return np.array([*coordinates, *rates, *second[6:], *first[6:]])
+
+
+def _rounding(first: ContactModel, second: ContactModel) -> Callable[[float], Vector] | None:
+    below, above = first.rounding, second.rounding
+    if below is None or above is None:
+        return None
+
+    def noise(rotation: float) -> Vector:
+        return _in_turn(above(rotation), below(0.0))
+
+    return noise

@@ -1,0 +1,278 @@
+"""A building on pads on a cap on soil by two stages, Eq. (20), page "Cap and soil" of the manual.
+
+The lower body, block and cap as one on the soil, is shaken by the ground. The middle of its top
+shakes the upper one, the block on its pads, which does not act back. Both are integrated together,
+so that one control rules the errors of both. Energies are per unit mass of the block.
+"""
+
+from typing import Final, NamedTuple
+
+from rockframe.compiled import Vector, inlined, kernel
+from rockframe.dynamics.base import Guards
+from rockframe.dynamics.body import BodyState
+from rockframe.dynamics.on_base import IDLE, Mode, OnBase, Rates, Response
+from rockframe.dynamics.protocol import (
+    HELD_PLACE,
+    IMPACT_LOSS,
+    IMPULSIVE_INPUT,
+    REPINNING_LOSS,
+    Column,
+    Energies,
+    Ground,
+    Slope,
+)
+from rockframe.dynamics.stacked import COLUMNS as STACK_COLUMNS
+from rockframe.dynamics.stacked import (
+    COORDINATES,
+    HORIZONTAL,
+    LOWER,
+    LOWER_HORIZONTAL,
+    LOWER_ROTATION,
+    ROTATION,
+    UPPER,
+    VERTICAL,
+    Stacked,
+    tell_of_soil,
+)
+from rockframe.dynamics.switching import disturbed, lift_by_slip, switch_part
+
+COLUMNS: Final = (
+    *STACK_COLUMNS,
+    Column("cap_acceleration"),
+    Column("cap_vertical_acceleration"),
+)
+
+
+class PointMotion(NamedTuple):
+    """Velocity and acceleration of a point, relative to the ground."""
+
+    velocity_x: float
+    velocity_y: float
+    acceleration_x: float
+    acceleration_y: float
+
+
+class Stages(NamedTuple):
+    """What a cascade is made of: the block on its base, and the body that carries it."""
+
+    upper: OnBase  # per unit of its own mass, that of the block
+    lower: OnBase  # block and cap as one, per unit of its own mass
+    mass_ratio: float  # mass of the lower body over that of the block
+    top: float  # height of the cap's top above the lower centre of mass
+    cap_centre: float  # the same of the cap's centre
+
+
+class Cascade(Stacked, Stages):
+    """Two bodies of which the upper one does not act back: a system."""
+
+    __slots__ = ()
+
+    @inlined
+    def carried(
+        self, mode: Mode, state: BodyState, angular: float, vertical: float, horizontal: float
+    ) -> PointMotion:
+        """Give the motion of the middle of the cap's top, :eq:`eq-carried`.
+
+        `angular`, `vertical` and `horizontal` are the accelerations of the lower body.
+        """
+        attitude, rate = self.lower.body.attitude(state.rotation), state.angular_velocity
+        sway = self.lower.sway(mode, state, attitude)
+        arch = 0.0 if self.lower.body.small else attitude.sine
+        sine, cosine = attitude.sine, attitude.cosine
+        return PointMotion(
+            sway + self.top * cosine * rate,
+            state.vertical_velocity - self.top * sine * rate,
+            horizontal + self.top * (cosine * angular - arch * rate * rate),
+            vertical - self.top * (sine * angular + cosine * rate * rate),
+        )
+
+    @inlined
+    def lower_rates(self, mode: int, state: Vector, ground: Ground) -> Rates:
+        """Give the accelerations and powers of the lower body."""
+        standing, body = self.modes_in(mode).lower, self.state_of(LOWER, state)
+        return self.lower.rates_in(standing, body, self.lower_own(state), ground)
+
+    @inlined
+    def ground_of_upper(self, mode: int, state: Vector, below: Rates, ground: Ground) -> Ground:
+        """Give the absolute acceleration of the cap's top."""
+        top = self.carried(
+            self.modes_in(mode).lower, self.state_of(LOWER, state), below.rotation, below.vertical,
+            below.horizontal,
+        )  # fmt: skip
+        return Ground(ground.x + top.acceleration_x, ground.y + top.acceleration_y)
+
+    @inlined
+    def accelerate(self, mode: int, state: Vector, ground: Ground) -> tuple[float, ...]:
+        """Give accelerations of both bodies, rates of their bases' own variables, and powers."""
+        modes, states, ratio = self.modes_in(mode), self.states_in(state), self.mass_ratio
+        upper_own, lower_own = self.upper_own(state), self.lower_own(state)
+        below = self.lower.rates_in(modes.lower, states.lower, lower_own, ground)
+        on_top = self.ground_of_upper(mode, state, below, ground)
+        above = self.upper.rates_in(modes.upper, states.upper, upper_own, on_top)
+        # a held body's own horizontal coordinate rests while the other one's moves
+        sway = above.horizontal if self.upper.is_free(modes.upper) else 0.0
+        lower_sway = below.horizontal if self.lower.is_free(modes.lower) else 0.0
+        return (
+            (above.rotation, above.vertical, below.rotation, below.vertical, sway, lower_sway)
+            + self.upper.flow_in(modes.upper, states.upper, upper_own)
+            + self.lower.flow_in(modes.lower, states.lower, lower_own)
+            + (
+                ratio * below.dissipated + above.dissipated,
+                ratio * below.supplied + above.supplied,
+            )
+        )
+
+    @inlined
+    def guards_in(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
+        """Give the guards of the block on its pads, then of the lower body."""
+        modes, states = self.modes_in(mode), self.states_in(state)
+        of_upper, of_lower = IDLE, IDLE
+        if modes.upper.slides:
+            below = self.lower_rates(mode, state, ground)
+            push = slope[HORIZONTAL] + self.ground_of_upper(mode, state, below, ground).x
+            of_upper = self.upper.sliding_guards(
+                modes.upper, states.upper, slope[ROTATION], slope[HORIZONTAL], push,
+                lift_by_slip(self, self.upper, UPPER, mode, state),
+            )  # fmt: skip
+        if modes.lower.slides:
+            push = slope[LOWER_HORIZONTAL] + ground.x
+            of_lower = self.lower.sliding_guards(
+                modes.lower, states.lower, slope[LOWER_ROTATION], slope[LOWER_HORIZONTAL], push,
+                lift_by_slip(self, self.lower, LOWER, mode, state),
+            )  # fmt: skip
+        return self.guards_of_both(modes, state, slope, of_upper, of_lower)
+
+    @kernel
+    def switch(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:
+        """Carry out the switch that a guard calls for; give the new mode."""
+        count = self.upper.guards()
+        if guard < count:
+            below = self.lower_rates(mode, state, ground)
+            on_top = self.ground_of_upper(mode, state, below, ground)
+            new = switch_part(self, self.upper, UPPER, guard, mode, state, on_top, memory)
+        else:
+            new = self.switch_lower(mode, guard - count, state, ground, memory)
+        if not self.lower.is_free(self.modes_in(new).lower):
+            state[COORDINATES + LOWER_HORIZONTAL] = 0.0
+        if not self.upper.is_free(self.modes_in(new).upper):
+            state[COORDINATES + HORIZONTAL] = 0.0
+        return new
+
+    @kernel
+    def switch_lower(
+        self, mode: int, which: int, state: Vector, ground: Ground, memory: Vector
+    ) -> int:
+        """Carry out a switch of the lower body, and jolt the upper one, :eq:`eq-carried-jump`."""
+        lost, struck = memory[REPINNING_LOSS], memory[IMPACT_LOSS]
+        before = self.carried(self.modes_in(mode).lower, self.state_of(LOWER, state), 0.0, 0.0, 0.0)
+        new = switch_part(self, self.lower, LOWER, which, mode, state, ground, memory)
+        memory[REPINNING_LOSS] = lost + self.mass_ratio * (memory[REPINNING_LOSS] - lost)
+        memory[IMPACT_LOSS] = struck + self.mass_ratio * (memory[IMPACT_LOSS] - struck)
+        tell_of_soil(memory)
+        after = self.carried(self.modes_in(new).lower, self.state_of(LOWER, state), 0.0, 0.0, 0.0)
+        self.jolt(
+            new, after.velocity_x - before.velocity_x, after.velocity_y - before.velocity_y, state,
+            memory,
+        )  # fmt: skip
+        return disturbed(self, self.upper, UPPER, new, state)
+
+    @kernel
+    def jolt(self, mode: int, jump_x: float, jump_y: float, state: Vector, memory: Vector) -> None:
+        """Let the velocity of the upper body's ground jump, :eq:`eq-carried-jump`."""
+        standing, body = self.modes_in(mode).upper, self.state_of(UPPER, state)
+        attitude = self.upper.body.attitude(body.rotation)
+        sway = self.upper.sway(standing, body, attitude)
+        state[COORDINATES + VERTICAL] -= jump_y
+        if self.upper.is_free(standing):
+            state[COORDINATES + HORIZONTAL] -= jump_x
+        else:
+            response = self.upper.response_in(standing, attitude, 0.0, 0.0, -jump_x)
+            state[COORDINATES + ROTATION] += response.rotation
+        after = self.state_of(UPPER, state)
+        swayed = self.upper.sway(standing, after, attitude)
+        memory[IMPULSIVE_INPUT] -= 0.5 * (
+            jump_x * (sway + swayed) + jump_y * (body.vertical_velocity + after.vertical_velocity)
+        )
+
+    @kernel
+    def energies(self, mode: int, state: Vector) -> Energies:
+        """Add up the energies of both bodies, each relative to its own ground."""
+        modes, states, ratio = self.modes_in(mode), self.states_in(state), self.mass_ratio
+        above, above_change = self.upper.elastic_energy(states.upper, self.upper_own(state))
+        below, below_change = self.lower.elastic_energy(states.lower, self.lower_own(state))
+        kinetic = self.upper.kinetic_energy(modes.upper, states.upper)
+        kinetic += ratio * self.lower.kinetic_energy(modes.lower, states.lower)
+        height = states.upper.vertical + ratio * states.lower.vertical
+        return Energies(
+            kinetic, self.upper.body.gravity * height, above + ratio * below,
+            above_change + ratio * below_change,
+        )  # fmt: skip
+
+    @kernel
+    def observe(
+        self, mode: int, state: Vector, slope: Slope, ground: Ground, memory: Vector
+    ) -> tuple[float, ...]:
+        """Give motion of block and cap, base shear, what shakes the block, and the bases' own."""
+        upper, lower = self.states_in(state)
+        rates = self.lower_rates(mode, state, ground)
+        on_top = self.ground_of_upper(mode, state, rates, ground)
+        # a point above the centre of mass sinks by what the centre would rise over it
+        attitude = self.lower.body.attitude(lower.rotation)
+        versine = attitude.rise / self.lower.body.height
+        return (
+            upper.rotation + lower.rotation,
+            upper.angular_velocity + lower.angular_velocity,
+            upper.vertical + lower.vertical,
+            upper.vertical_velocity + lower.vertical_velocity,
+            self.place(UPPER, mode, state, memory) + self.place(LOWER, mode, state, memory),
+            self.mass_ratio * (rates.horizontal + ground.x),
+            lower.rotation,
+            lower.angular_velocity,
+            lower.vertical - self.cap_centre * versine,
+            lower.vertical_velocity - self.cap_centre * attitude.sine * lower.angular_velocity,
+            upper.rotation,
+            upper.vertical,
+            on_top.x,
+            on_top.y,
+        ) + self.bases_observed(mode, state)
+
+    @kernel
+    def place(self, k: int, mode: int, state: Vector, memory: Vector) -> float:
+        """Give x of a centre of mass: about the held point, or free."""
+        modes, body = self.modes_in(mode), self.state_of(k, state)
+        if k == UPPER:
+            return self.upper.horizontal_place(modes.upper, body, memory[HELD_PLACE])
+        return self.lower.horizontal_place(modes.lower, body, memory[HELD_PLACE + LOWER])
+
+    @kernel
+    def response(
+        self, k: int, mode: int, press: float, moment: float, slip: float, state: Vector
+    ) -> Response:
+        """Give how the velocities of a body change by an impulse, or as its hold stops a slip."""
+        modes, rotation = self.modes_in(mode), self.state_of(k, state).rotation
+        if k == UPPER:
+            attitude = self.upper.body.attitude(rotation)
+            return self.upper.response_in(modes.upper, attitude, press, moment, slip)
+        attitude = self.lower.body.attitude(rotation)
+        return self.lower.response_in(modes.lower, attitude, press, moment, slip)
+
+    @kernel
+    def end_acceleration(
+        self, k: int, left: bool, mode: int, state: Vector, ground: Ground
+    ) -> float:
+        """Give the acceleration of an end of a base; `ground` is what the body stands on."""
+        modes, body = self.modes_in(mode), self.state_of(k, state)
+        if k == UPPER:
+            rates = self.upper.rates_in(modes.upper, body, self.upper_own(state), ground)
+            return self.upper.end_rises(left, body, rates.vertical, rates.rotation)
+        rates = self.lower_rates(mode, state, ground)
+        return self.lower.end_rises(left, body, rates.vertical, rates.rotation)
+
+    @kernel
+    def tendency(self, k: int, mode: int, state: Vector, ground: Ground) -> float:
+        """Give the side to which what a body stands on, or its contact, will rotate it."""
+        if ground.x != 0.0:
+            return -ground.x
+        if k == UPPER:
+            return self.upper.base.tilt(self.modes_in(mode).upper.contact)
+        return self.lower.base.tilt(self.modes_in(mode).lower.contact)

@@ -1,0 +1,126 @@
+"""Assembly of the model of a block on a base on a cap on a base."""
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from rockframe.compiled import Vector
+from rockframe.dynamics.alone_model import (
+    part_tolerance,
+    radius_of,
+    rocking_rate,
+    rounding_at,
+    starting_state,
+)
+from rockframe.dynamics.base_numbers import mode_table
+from rockframe.dynamics.body import BodyState
+from rockframe.dynamics.coupled.stack import Stack, fastest_vibration
+from rockframe.dynamics.coupled.system import Coupled
+from rockframe.dynamics.on_base import OnBase
+from rockframe.dynamics.protocol import HELD_PLACE, MEMORY, ContactModel, Start
+from rockframe.dynamics.stacked import (
+    COLUMNS,
+    COORDINATES,
+    HORIZONTAL,
+    LOWER,
+    ROTATION,
+    UPPER,
+    VERTICAL,
+)
+
+
+def coupled(stack: Stack, mass: float) -> ContactModel:
+    """Assemble the model of a block on a base on a cap on a base.
+
+    Parameters
+    ----------
+    stack : Stack
+        Its parts.
+    mass : float
+        Of the block [kg].
+
+    Returns
+    -------
+    ContactModel
+    """
+    block, pads, cap, soil, cap_mass = stack
+    system = Coupled(OnBase(block, pads.law), OnBase(cap, soil.law), cap_mass, cap.height)
+    upper, lower = mode_table(pads.law), mode_table(soil.law)
+    count = len(lower.contact)
+    fastest, damping_rate = fastest_vibration(stack)
+    slides = np.tile(np.where(upper.slides, pads.law.following_rate(), 0.0), count)
+    cap_slides = np.repeat(np.where(lower.slides, soil.law.following_rate(), 0.0),
+                           len(upper.contact))  # fmt: skip
+    return ContactModel(
+        name="coupled",
+        system=system,
+        active=np.where(np.repeat(lower.free, len(upper.contact)), COORDINATES, COORDINATES - 1),
+        contact=np.tile(upper.contact, count),
+        soil_contact=np.repeat(lower.contact, len(upper.contact)),
+        relaxation=np.maximum(slides, cap_slides),
+        rotation_limits=(
+            math.atan2(block.left, block.height),
+            math.atan2(block.right, block.height),
+        ),
+        rotation_weights=np.array([1.0, 0.0, 1.0, 0.0, 0.0, 0.0]),
+        scales=_scales(stack),
+        guard_tolerance=np.concatenate([part_tolerance(pads), part_tolerance(soil)]),
+        columns=(*COLUMNS, *pads.columns, *soil.columns),
+        memory=(*MEMORY, "held_place_of_cap"),
+        mass=mass,
+        fastest_frequency=fastest,
+        damping_rate=damping_rate,
+        energy_scale=block.gravity * radius_of(block) * block.angle,
+        initial=_starting(system),
+        rounding=_rounding(stack, fastest),
+    )
+
+
+def _scales(stack: Stack) -> Vector:
+    block, pads, _, soil, cap_mass = stack
+    sway, rocking = radius_of(block) * block.angle, rocking_rate(block)
+    on_pads = math.sqrt(pads.vertical_stiffness)
+    on_soil = math.sqrt(soil.vertical_stiffness / (1.0 + cap_mass))
+    sizes = np.array([block.angle, pads.settlement, block.angle, soil.settlement, sway, sway])
+    rates = np.array([rocking, on_pads, rocking, on_soil, rocking, rocking])
+    return np.concatenate([sizes, sizes * rates, pads.variable_scales, soil.variable_scales])
+
+
+def _rounding(stack: Stack, fastest: float) -> Callable[[float], Vector]:
+    """Estimate the rounding noise of everything in the state, as of a body on its base."""
+    block, pads, cap, soil, _ = stack
+    rotating = 0.5 * (block.left + block.right) / (block.inertia + block.height**2)
+    sizes = radius_of(block), radius_of(cap)
+    answers = np.array([rotating, 1.0, 1.0 / sizes[1], 1.0, 1.0, 1.0])
+    variables = len(pads.variable_scales) + len(soil.variable_scales)
+    return rounding_at(sum(sizes), pads.settlement + soil.settlement, answers, fastest, variables)
+
+
+def _starting(system: Coupled) -> Callable[[Start], tuple[int, Vector, Vector]]:
+    """Make the function that starts a run: the cap upright and at rest, the block as told on it."""
+
+    def initial(start: Start) -> tuple[int, Vector, Vector]:
+        state = np.zeros(2 * COORDINATES + system.variables())
+        memory = np.zeros(len(MEMORY) + 1)
+        upper, lower = system.upper, system.lower
+        block, standing = starting_state(upper, start, system.upper_own(state))
+        cap = BodyState(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        contact = lower.base.starting(lower.body.base_line_at(cap), system.lower_own(state))
+        # upright and at rest the cap leans nowhere yet; it follows the block
+        leaning = BodyState(start.rotation, 0.0, 0.0, start.angular_velocity, 0.0, 0.0)
+        of_cap = lower.standing(contact, leaning)
+        pin = upper.body.pin(standing.pivot)
+        state[ROTATION], state[VERTICAL] = block.rotation, block.vertical
+        state[COORDINATES + ROTATION] = block.angular_velocity
+        state[COORDINATES + VERTICAL] = block.vertical_velocity
+        state[HORIZONTAL] = pin + upper.body.about_pin(pin, block.rotation)
+        if not upper.is_free(standing):
+            reach = upper.body.reach(pin, upper.body.attitude(block.rotation))
+            state[COORDINATES + HORIZONTAL] = reach.rate * block.angular_velocity
+        memory[HELD_PLACE + UPPER] = pin
+        memory[HELD_PLACE + LOWER] = lower.body.pin(of_cap.pivot)
+        mode = system.with_part(upper.number_of(standing), LOWER, of_cap)
+        return mode, state, memory
+
+    return initial

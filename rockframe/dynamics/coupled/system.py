@@ -1,0 +1,294 @@
+"""A block on a base on a cap on its base, section "Coupled" of the theory manual.
+
+Equations :eq:`eq-coupled`. Each base acts as under one body; momentum is projected, and
+impulses act, in the coupled system: :eq:`eq-coupled-impulse`. Per unit mass of the block.
+"""
+
+from rockframe.compiled import Vector, inlined, kernel
+from rockframe.dynamics.base import Guards
+from rockframe.dynamics.body import Attitude
+from rockframe.dynamics.coupled.motion import (
+    Configuration,
+    Forces,
+    Given,
+    Pair,
+    along_rate,
+    block_height,
+    block_velocity,
+    cap_sway,
+    configuration,
+    normal_change,
+    placed,
+    solve_motion,
+)
+from rockframe.dynamics.coupled.sliding import slide_both, sliding_end
+from rockframe.dynamics.on_base import IDLE, Response
+from rockframe.dynamics.protocol import HELD_PLACE, Energies, Ground, Slope
+from rockframe.dynamics.stacked import (
+    COORDINATES,
+    HORIZONTAL,
+    LOWER,
+    LOWER_HORIZONTAL,
+    LOWER_ROTATION,
+    LOWER_VERTICAL,
+    ROTATION,
+    UPPER,
+    VERTICAL,
+    Stacked,
+    States,
+    tell_of_soil,
+)
+from rockframe.dynamics.switching import checked_sliding, disturbed, lift_by_slip, switch_part
+
+
+class Coupled(Stacked, Pair):
+    """Two bodies, one on the other: a system."""
+
+    __slots__ = ()
+
+    @inlined
+    def attitudes(self, states: States) -> tuple[Attitude, Attitude]:
+        """Give the attitudes of block and cap on their bases."""
+        upper = self.upper.body.attitude(states.upper.rotation)
+        return upper, self.lower.body.attitude(states.lower.rotation)
+
+    @kernel
+    def place_in(self, mode: int, states: States) -> Configuration:
+        """Give the geometry of states, in the restraints of a mode."""
+        upper, lower = self.attitudes(states)
+        return configuration(self, self.modes_in(mode), states, upper, lower)
+
+    @inlined
+    def accelerate(self, mode: int, state: Vector, ground: Ground) -> tuple[float, ...]:
+        """Give accelerations, rates of the bases' own variables, and powers."""
+        modes, states = self.modes_in(mode), self.states_in(state)
+        upper, lower = self.attitudes(states)
+        block_line = self.upper.body.base_line(states.upper, upper)
+        cap_line = self.lower.body.base_line(states.lower, lower)
+        block_own, cap_own = self.upper_own(state), self.lower_own(state)
+        block_contact = self.upper.contact_with_force(modes.upper)
+        cap_contact = self.lower.contact_with_force(modes.lower)
+        on_block = self.upper.base.force(block_contact, block_line, block_own)
+        on_cap = self.lower.base.force(cap_contact, cap_line, cap_own)
+        forces = Forces(on_block.upward, on_block.moment, on_cap.upward, on_cap.moment)
+        dissipated = on_block.dissipated + on_cap.dissipated
+        place = configuration(self, modes, states, upper, lower)
+        free = place
+        block_rate, cap_rate = states.upper.angular_velocity, states.lower.angular_velocity
+        s, c = place.sine, place.cosine
+        load_y = self.upper.body.gravity + ground.y
+        load_along = ground.x * c - load_y * s
+        load_normal = ground.x * s + load_y * c
+        slip = along_rate(place, states)
+        coriolis = (
+            2.0 * states.upper.vertical_velocity * cap_rate - place.across * cap_rate * cap_rate
+        )
+        normal = (2.0 * slip + place.arm * cap_rate) * cap_rate - load_normal
+        swing = place.cap_reach.bend * cap_rate * cap_rate
+        drift = place.block_reach.bend * block_rate * block_rate
+        if modes.upper.slides or modes.lower.slides:
+            place = placed(
+                self, modes, states, upper, lower,
+                place.block_free and not modes.upper.slides,
+                place.cap_free and not modes.lower.slides,
+            )  # fmt: skip
+            slips = slide_both(
+                self, modes, states, place,
+                sliding_end(self.upper, modes.upper, upper, block_line),
+                sliding_end(self.lower, modes.lower, lower, cap_line),
+                forces, Given(swing, drift + coriolis + load_along, ground.x, load_y), normal,
+            )  # fmt: skip
+            swing += slips.swing
+            drift += slips.drift
+            dissipated -= slips.power
+        motion = solve_motion(
+            self, place, forces, Given(swing, drift + coriolis + load_along, ground.x, load_y)
+        )
+        cap_along = c * motion.cap_horizontal - s * motion.cap_vertical
+        lift = forces.press + normal + normal_change(place, motion)
+        along = place.block_reach.rate * motion.angular + drift
+        if place.block_free:
+            along = -load_along - cap_along - place.arm * motion.cap_angular - coriolis
+        across_speed, up_speed = block_velocity(free, states)
+        supplied = -ground.x * (across_speed + self.cap_mass * cap_sway(free, states))
+        supplied -= ground.y * (up_speed + self.cap_mass * states.lower.vertical_velocity)
+        angular, cap_angular = motion.angular, motion.cap_angular
+        return (
+            (angular, lift, cap_angular, motion.cap_vertical, along, motion.cap_horizontal)
+            + self.upper.base.flow(block_contact, block_line, block_own)
+            + self.lower.base.flow(cap_contact, cap_line, cap_own)
+            + (dissipated, supplied)
+        )
+
+    @inlined
+    def guards_in(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
+        """Give the guards of the block, then of the cap, and their rates."""
+        modes, states = self.modes_in(mode), self.states_in(state)
+        of_block, of_cap = IDLE, IDLE
+        if modes.upper.slides or modes.lower.slides:
+            thrust, push = self.holds(mode, states, slope, ground)
+            if modes.upper.slides:
+                of_block = self.upper.sliding_guards(
+                    modes.upper, states.upper, slope[ROTATION], slope[HORIZONTAL], thrust,
+                    lift_by_slip(self, self.upper, UPPER, mode, state),
+                )  # fmt: skip
+            if modes.lower.slides:
+                of_cap = self.lower.sliding_guards(
+                    modes.lower, states.lower, slope[LOWER_ROTATION], slope[LOWER_HORIZONTAL], push,
+                    lift_by_slip(self, self.lower, LOWER, mode, state),
+                )  # fmt: skip
+        return self.guards_of_both(modes, state, slope, of_block, of_cap)
+
+    @kernel
+    def holds(self, mode: int, states: States, slope: Slope, ground: Ground) -> tuple[float, float]:
+        """Give the force of the cap on the block along it, and of the ground on the cap.
+
+        From the accelerations, :eq:`eq-coupled`.
+        """
+        place = self.place_in(mode, states)
+        s, c, cap_rate = place.sine, place.cosine, states.lower.angular_velocity
+        sway = slope[LOWER_HORIZONTAL]
+        if not place.cap_free:  # a coordinate that rests has no acceleration of its own
+            sway = (
+                place.cap_reach.rate * slope[LOWER_ROTATION]
+                + place.cap_reach.bend * cap_rate * cap_rate
+            )
+        x = sway + ground.x
+        y = slope[LOWER_VERTICAL] + self.upper.body.gravity + ground.y
+        thrust = (
+            c * x - s * y + slope[HORIZONTAL] + place.arm * slope[LOWER_ROTATION]
+            + 2.0 * states.upper.vertical_velocity * cap_rate - place.across * cap_rate * cap_rate
+        )  # fmt: skip
+        press = (
+            s * x + c * y + slope[VERTICAL] - place.across * slope[LOWER_ROTATION]
+            - 2.0 * along_rate(place, states) * cap_rate - place.arm * cap_rate * cap_rate
+        )  # fmt: skip
+        return thrust, self.cap_mass * x + c * thrust + s * press
+
+    @kernel
+    def switch(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:
+        """Carry out the switch that a guard calls for; give the new mode."""
+        count = self.upper.guards()
+        if guard < count:
+            new = switch_part(self, self.upper, UPPER, guard, mode, state, ground, memory)
+            return checked_sliding(self, self.lower, LOWER, new, state)
+        new = switch_part(self, self.lower, LOWER, guard - count, mode, state, ground, memory)
+        tell_of_soil(memory)
+        return disturbed(self, self.upper, UPPER, new, state)
+
+    @kernel
+    def energies(self, mode: int, state: Vector) -> Energies:
+        """Give the energies, :eq:`eq-coupled-energy`."""
+        states = self.states_in(state)
+        place = self.place_in(mode, states)
+        across, up = block_velocity(place, states)
+        sway, lift = cap_sway(place, states), states.lower.vertical_velocity
+        cap_rate = states.lower.angular_velocity
+        block_rate = cap_rate + states.upper.angular_velocity
+        kinetic = 0.5 * (
+            across * across
+            + up * up
+            + self.upper.body.inertia * block_rate * block_rate
+            + self.cap_mass * (sway * sway + lift * lift)
+            + self.lower.body.inertia * cap_rate * cap_rate
+        )
+        height = block_height(place, states) + self.cap_mass * states.lower.vertical
+        by_upper, upper_change = self.upper.elastic_energy(states.upper, self.upper_own(state))
+        by_lower, lower_change = self.lower.elastic_energy(states.lower, self.lower_own(state))
+        return Energies(
+            kinetic, self.upper.body.gravity * height, by_upper + by_lower,
+            upper_change + lower_change,
+        )  # fmt: skip
+
+    @kernel
+    def observe(
+        self, mode: int, state: Vector, slope: Slope, ground: Ground, memory: Vector
+    ) -> tuple[float, ...]:
+        """Give motion of block and cap, base shear, and what both bases show."""
+        states = self.states_in(state)
+        place = self.place_in(mode, states)
+        _, up = block_velocity(place, states)
+        along = place.arm * place.sine + states.upper.horizontal * place.cosine
+        _, push = self.holds(mode, states, slope, ground)
+        return (
+            states.upper.rotation + states.lower.rotation,
+            states.upper.angular_velocity + states.lower.angular_velocity,
+            block_height(place, states),
+            up,
+            self.place(LOWER, mode, state, memory) + along,
+            push,
+            states.lower.rotation,
+            states.lower.angular_velocity,
+            states.lower.vertical,
+            states.lower.vertical_velocity,
+            states.upper.rotation,
+            states.upper.vertical,
+        ) + self.bases_observed(mode, state)
+
+    @kernel
+    def place(self, k: int, mode: int, state: Vector, memory: Vector) -> float:
+        """Give the horizontal place of a centre of mass: along the cap, or from the ground."""
+        if k == UPPER:
+            return state[HORIZONTAL]
+        standing, body = self.modes_in(mode).lower, self.state_of(LOWER, state)
+        return self.lower.horizontal_place(standing, body, memory[HELD_PLACE + LOWER])
+
+    @kernel
+    def response(
+        self, k: int, mode: int, press: float, moment: float, slip: float, state: Vector
+    ) -> Response:
+        """Give how velocities change by an impulse, or as a hold stops a slip."""
+        states = self.states_in(state)
+        place = self.place_in(mode, states)
+        if k == UPPER:
+            forces, given = Forces(press, moment, 0.0, 0.0), Given(0.0, -slip, 0.0, 0.0)
+        else:
+            forces, given = Forces(0.0, 0.0, press, moment), Given(-slip, 0.0, 0.0, 0.0)
+        motion = solve_motion(self, place, forces, given)
+        s, c = place.sine, place.cosine
+        normal = forces.press + normal_change(place, motion)
+        along = place.block_reach.rate * motion.angular
+        if place.block_free:
+            cap_along = c * motion.cap_horizontal - s * motion.cap_vertical
+            along = -cap_along - place.arm * motion.cap_angular
+        elif k == UPPER:
+            along -= slip
+        restraint = motion.thrust
+        cap_rate, lift = motion.angular, normal
+        if k == LOWER:
+            restraint = c * motion.thrust + s * forces.press
+            restraint += self.cap_mass * motion.cap_horizontal
+            cap_rate, lift = motion.cap_angular, motion.cap_vertical
+        sway = motion.cap_horizontal if place.cap_free else 0.0
+        others = (motion.angular, normal, motion.cap_angular, motion.cap_vertical, along, sway)
+        return Response(cap_rate, lift, restraint, others)
+
+    @kernel
+    def respond(self, k: int, mode: int, response: Response, state: Vector) -> None:
+        """Change the velocities."""
+        for i in range(COORDINATES):
+            state[COORDINATES + i] += response.others[i]
+        place = self.place_in(mode, self.states_in(state))
+        if not place.block_free:
+            held = place.block_reach.rate * state[COORDINATES + ROTATION]
+            state[COORDINATES + HORIZONTAL] = held
+
+    @kernel
+    def end_acceleration(
+        self, k: int, left: bool, mode: int, state: Vector, ground: Ground
+    ) -> float:
+        """Give the acceleration of an end of a base in a mode, upwards from what it stands on."""
+        slope, states = self.accelerate(mode, state, ground), self.states_in(state)
+        if k == UPPER:
+            return self.upper.end_rises(left, states.upper, slope[VERTICAL], slope[ROTATION])
+        return self.lower.end_rises(
+            left, states.lower, slope[LOWER_VERTICAL], slope[LOWER_ROTATION]
+        )
+
+    @kernel
+    def tendency(self, k: int, mode: int, state: Vector, ground: Ground) -> float:
+        """Give the side to which a body will rotate; a first guess will do at rest."""
+        if ground.x != 0.0:
+            return -ground.x
+        other = state[ROTATION] if k == LOWER else -state[COORDINATES + LOWER_ROTATION]
+        return other if other != 0.0 else 1.0

@@ -1,0 +1,46 @@
+"""What happens in a run: contact states and kinds of events.
+
+Compiled functions use the plain integers below the enumerations.
+"""
+
+from enum import IntEnum
+from typing import Final
+
+
+class ContactState(IntEnum):
+    """The corner, or the part of the base, that bears."""
+
+    FULL = 0
+    LEFT = 1
+    RIGHT = 2
+    FLIGHT = 3
+
+
+class EventKind(IntEnum):
+    """What happened at an event."""
+
+    SEPARATION = 1
+    IMPACT = 2
+    REENGAGEMENT = 3
+    PIVOT_CHANGE = 4
+    UPLIFT = 5
+    REST = 6
+    OVERTURNING = 7
+    TOPPLED = 8
+    SOIL_SEPARATION = 9
+    SOIL_CONTACT = 10
+    SOIL_PIVOT_CHANGE = 11
+
+
+SILENT: Final = 0  # a change that users are not shown
+SEPARATION: Final = int(EventKind.SEPARATION)
+IMPACT: Final = int(EventKind.IMPACT)
+REENGAGEMENT: Final = int(EventKind.REENGAGEMENT)
+PIVOT_CHANGE: Final = int(EventKind.PIVOT_CHANGE)
+UPLIFT: Final = int(EventKind.UPLIFT)
+REST: Final = int(EventKind.REST)
+OVERTURNING: Final = int(EventKind.OVERTURNING)
+TOPPLED: Final = int(EventKind.TOPPLED)
+SOIL_SEPARATION: Final = int(EventKind.SOIL_SEPARATION)
+SOIL_CONTACT: Final = int(EventKind.SOIL_CONTACT)
+SOIL_PIVOT_CHANGE: Final = int(EventKind.SOIL_PIVOT_CHANGE)

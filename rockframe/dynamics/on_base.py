@@ -1,0 +1,273 @@
+"""A body and the base that it stands on: how it moves, and when that changes.
+
+One equation of motion, :eq:`eq-two-spring`, serves all contact states and all bases: the
+paper's Eqs. (12), (15), (18) and (19), corrected, are its special cases. What happens at
+events stands in :mod:`rockframe.dynamics.switching`. All quantities per unit mass.
+"""
+
+import math
+from typing import Any, Final, NamedTuple
+
+from rockframe.compiled import constant, inlined, kernel
+from rockframe.dynamics.base import Guards
+from rockframe.dynamics.body import Attitude, BaseLine, Body, BodyState
+from rockframe.dynamics.protocol import Ground
+from rockframe.dynamics.restraint import PIVOTS, pivot_guard, pivot_of
+from rockframe.dynamics.sliding import NO_LEVER
+
+# guards of a body, behind those of both ends of its base
+HOLD: Final = 0  # of an end that slides: the force that keeps it at its level
+SLIP: Final = 1  # of its slip
+PIVOT: Final = 2  # of the restraint rule
+BODY_GUARDS: Final = 3
+
+
+class Mode(NamedTuple):
+    """How a body stands on its base."""
+
+    contact: int  # of the base
+    pivot: int  # the point that is held, or would be if nothing slid or flew
+    slides: bool  # whether the end that touches slides
+
+
+class Rates(NamedTuple):
+    """Accelerations of a body, and the powers dissipated and supplied by the ground."""
+
+    rotation: float
+    vertical: float
+    horizontal: float
+    dissipated: float
+    supplied: float
+
+
+class Response(NamedTuple):
+    """Changes of a body's velocities by impulses, and the impulse of its restraint."""
+
+    rotation: float
+    vertical: float
+    restraint: float
+    others: tuple[float, ...]  # changes of all velocities, where other bodies answer, too
+
+
+class SlidingGuards(NamedTuple):
+    """Guards of an end that slides: of its hold, of its slip, and the rate of the latter."""
+
+    hold: float
+    slip: float
+    slip_rate: float
+
+
+IDLE: Final = SlidingGuards(1.0, 1.0, 0.0)
+"""Where no end slides."""
+
+
+class OnBase(NamedTuple):
+    """A body and the base that it stands on."""
+
+    body: Body
+    base: Any  # a rockframe.dynamics.base.Base
+
+    @kernel
+    def modes(self) -> int:
+        """Give the number of modes."""
+        return 2 * PIVOTS * self.base.contacts()
+
+    @kernel
+    def guards(self) -> int:
+        """Give the number of guards."""
+        return 2 * self.base.end_guards() + BODY_GUARDS
+
+    @inlined
+    def mode_of(self, mode: int) -> Mode:
+        """Read a mode from its number."""
+        held = mode // self.base.contacts()
+        return Mode(mode % self.base.contacts(), held % PIVOTS, held >= PIVOTS)
+
+    @kernel
+    def number_of(self, mode: Mode) -> int:
+        """Give the number of a mode."""
+        held = mode.pivot + (PIVOTS if mode.slides else 0)
+        return mode.contact + self.base.contacts() * held
+
+    @inlined
+    def flies(self, contact: int) -> bool:
+        """Whether no end is held."""
+        return not (self.base.is_held(contact, True) or self.base.is_held(contact, False))
+
+    @inlined
+    def is_free(self, mode: Mode) -> bool:
+        """Whether nothing holds the body horizontally."""
+        return mode.slides or self.flies(mode.contact)
+
+    @kernel
+    def standing(self, contact: int, state: BodyState) -> Mode:
+        """Give the mode of a contact, with the pivot of the restraint rule."""
+        if self.flies(contact):
+            return Mode(contact, 0, False)
+        pivot = pivot_of(
+            self.body.restraint,
+            self.base.is_held(contact, True),
+            self.base.is_held(contact, False),
+            state.rotation,
+            state.angular_velocity,
+        )
+        return Mode(contact, pivot, False)
+
+    @inlined
+    def contact_with_force(self, mode: Mode) -> int:
+        """Give the contact as far as forces go: an end that slides has none."""
+        if mode.slides:
+            return self.base.follows(mode.contact, self.base.is_held(mode.contact, True))
+        return mode.contact
+
+    @inlined
+    def sway(self, mode: Mode, state: BodyState, attitude: Attitude) -> float:
+        """Give the horizontal velocity: about the held point, or free."""
+        if self.is_free(mode):
+            return state.horizontal_velocity
+        reach = self.body.reach(self.body.pin(mode.pivot), attitude)
+        return reach.rate * state.angular_velocity
+
+    @inlined
+    def rates_in(self, mode: Mode, state: BodyState, own: Any, ground: Ground) -> Rates:
+        """Give the accelerations of :eq:`eq-two-spring`, with the powers."""
+        body, attitude = self.body, self.body.attitude(state.rotation)
+        line = body.base_line(state, attitude)
+        rate, speed = state.angular_velocity, state.vertical_velocity
+        base = self.base.force(self.contact_with_force(mode), line, own)
+        vertical = base.upward - body.gravity - ground.y
+        reach = body.reach(body.pin(mode.pivot), attitude)
+        supplied = -ground.y * speed
+        if not self.is_free(mode):
+            push = reach.rate * (ground.x + reach.bend * rate * rate)
+            angular = (base.moment - push) / (body.inertia + reach.rate * reach.rate)
+            horizontal = reach.rate * angular + reach.bend * rate * rate
+            supplied -= ground.x * reach.rate * rate
+            return Rates(angular, vertical, horizontal, base.dissipated, supplied)
+        supplied -= ground.x * state.horizontal_velocity
+        if not mode.slides:
+            return Rates(0.0, vertical, -ground.x, base.dissipated, supplied)
+        # the end follows the base, which gives way without pressing, eq-sliding-contact
+        left = self.base.is_held(mode.contact, True)
+        on_left, on_right = body.end_accelerations(attitude, rate, vertical, 0.0)
+        lever = line.left_lever if left else line.right_lever
+        end_speed = line.left_speed if left else line.right_speed
+        free = (on_left if left else on_right) + self.base.following_rate() * end_speed
+        angular = -free / lever
+        hold = -body.inertia * angular / reach.rate
+        lost = hold * (state.horizontal_velocity - reach.rate * rate)
+        return Rates(angular, vertical, hold - ground.x, base.dissipated - lost, supplied)
+
+    @inlined
+    def flow_in(self, mode: Mode, state: BodyState, own: Any) -> tuple[float, ...]:
+        """Give the rates of the base's own variables."""
+        line = self.body.base_line_at(state)
+        return self.base.flow(self.contact_with_force(mode), line, own)
+
+    @inlined
+    def end_guards_in(
+        self, mode: Mode, left: bool, line: BaseLine, acceleration: float, own: Any
+    ) -> Guards:
+        """Give the guards of an end of the base; those of an end that slides are idle."""
+        found = self.base.guards_of(mode.contact, left, line, acceleration, own)
+        if mode.slides and self.base.is_held(mode.contact, left):
+            return Guards(constant(1.0, found.values), constant(0.0, found.values))
+        return found
+
+    @inlined
+    def pivot_guard_in(self, mode: Mode, state: BodyState, angular: float) -> tuple[float, float]:
+        """Give the guard of the restraint rule, and its rate."""
+        if self.flies(mode.contact):
+            return 1.0, 0.0
+        return pivot_guard(
+            self.body.restraint, mode.pivot, self.body.angle, state.rotation,
+            state.angular_velocity, angular,
+        )  # fmt: skip
+
+    @inlined
+    def guards_with(
+        self, mode: Mode, state: BodyState, own: Any, vertical: float, angular: float,
+        sliding: SlidingGuards,
+    ) -> Guards:  # fmt: skip
+        """Give all guards of the body, :eq:`eq-guards`: of both ends, and its own.
+
+        `vertical` and `angular` are the accelerations of vertical coordinate and rotation.
+        """
+        attitude = self.body.attitude(state.rotation)
+        line = self.body.base_line(state, attitude)
+        on_left, on_right = self.body.end_accelerations(
+            attitude, state.angular_velocity, vertical, angular
+        )
+        left = self.end_guards_in(mode, True, line, on_left, own)
+        right = self.end_guards_in(mode, False, line, on_right, own)
+        pivot, pivot_rate = self.pivot_guard_in(mode, state, angular)
+        return Guards(
+            left.values + right.values + (sliding.hold, sliding.slip, pivot),
+            left.changes + right.changes + (0.0, sliding.slip_rate, pivot_rate),
+        )
+
+    @kernel
+    def sliding_guards(
+        self, mode: Mode, state: BodyState, angular: float, horizontal: float, push: float,
+        rise: float,
+    ) -> SlidingGuards:  # fmt: skip
+        """Give the guards of the hold that lifts and of the slip.
+
+        `angular` and `horizontal` are the accelerations of rotation and horizontal coordinate,
+        `push` is the force of the hold, `rise` the speed at which the end rises per unit of slip.
+        """
+        body, rate = self.body, state.angular_velocity
+        reach = body.reach(body.pin(mode.pivot), body.attitude(state.rotation))
+        upwards = 1.0 if rise < 0.0 else -1.0
+        hold = -upwards * push / body.gravity
+        if abs(rise) < NO_LEVER:
+            # with the held point beneath the centre of mass to hold it is not to lift it
+            return SlidingGuards(hold, -1.0, 0.0)
+        slip = state.horizontal_velocity - reach.rate * rate
+        change = horizontal - reach.rate * angular - reach.bend * rate * rate
+        scale = upwards / math.sqrt(body.gravity * body.size())
+        return SlidingGuards(hold, scale * slip, scale * change)
+
+    @kernel
+    def kinetic_energy(self, mode: Mode, state: BodyState) -> float:
+        """Give the kinetic energy relative to the ground, :eq:`eq-energy`."""
+        sway = self.sway(mode, state, self.body.attitude(state.rotation))
+        rate, speed = state.angular_velocity, state.vertical_velocity
+        return 0.5 * (self.body.inertia * rate * rate + speed * speed + sway * sway)
+
+    @kernel
+    def horizontal_place(self, mode: Mode, state: BodyState, held_at: float) -> float:
+        """Give x of the centre of mass: about the held point, or free."""
+        if self.is_free(mode):
+            return state.horizontal
+        return held_at + self.body.about_pin(self.body.pin(mode.pivot), state.rotation)
+
+    @kernel
+    def end_rises(self, left: bool, state: BodyState, vertical: float, angular: float) -> float:
+        """Give the acceleration of an end of the base, upwards, from those of the body."""
+        on_left, on_right = self.body.end_accelerations(
+            self.body.attitude(state.rotation), state.angular_velocity, vertical, angular
+        )
+        return on_left if left else on_right
+
+    @kernel
+    def elastic_energy(self, state: BodyState, own: Any) -> tuple[float, float]:
+        """Give the energy that the base stores, and that less the energy at rest."""
+        return self.base.energy(self.body.base_line_at(state), own)
+
+    @kernel
+    def observed_base(self, mode: Mode, state: BodyState, own: Any) -> tuple[float, ...]:
+        """Give what users see of the base."""
+        line = self.body.base_line_at(state)
+        return self.base.observed(self.contact_with_force(mode), line, own)
+
+    @inlined
+    def response_in(
+        self, mode: Mode, attitude: Attitude, press: float, moment: float, slip: float
+    ) -> Response:
+        """Give how velocities change by an impulse of the base, or as the hold stops a slip."""
+        if self.is_free(mode):
+            return Response(moment / self.body.inertia, press, 0.0, ())
+        reach = self.body.reach(self.body.pin(mode.pivot), attitude).rate
+        angular = (moment + reach * slip) / (self.body.inertia + reach * reach)
+        return Response(angular, press, reach * angular - slip, ())

@@ -1,0 +1,59 @@
+"""Sliding contact: an end that touches without bearing, held only as far as it stays so.
+
+An end can come down while the hold that its contact brings would lift it off again. Then
+neither contact nor flight is a motion: held, the end leaves; free, it comes back. The hold
+can act only while the end presses, so its impulse ends when the end's speed has come to that
+of the base beneath it, :eq:`eq-partial-hold`. What is left of the slip makes the end *slide*:
+it stays at its level with no reaction, and the held point slips against a force that is just
+enough to keep it there, :eq:`eq-sliding-contact`.
+"""
+
+import sys
+from typing import Final
+
+from rockframe.compiled import inlined
+
+NOISE: Final = 16.0 * sys.float_info.epsilon
+"""Share of its parts by which the speed of an end may differ from zero."""
+NO_LEVER: Final = 1e-7
+"""Lever of the hold, as a share of the body's size, below which it cannot lift."""
+DISTURBED: Final = 1e3
+"""Speed of a sliding end beside its own, over its rounding noise, from which on it flies."""
+
+
+@inlined
+def speed_noise(speed: float, lever: float, angular_velocity: float) -> float:
+    """Give the rounding noise of an end's speed, the sum of two velocities."""
+    return NOISE * (abs(speed) + abs(lever * angular_velocity))
+
+
+@inlined
+def is_lifted(before: float, after: float, noise: float) -> bool:
+    """Whether a hold would stop or lift an end that comes down.
+
+    One that rises, though it stands a rounding below its level, is about to leave anyway.
+    """
+    return before <= noise and after >= -noise
+
+
+@inlined
+def share_until_lifted(before: float, after: float) -> float:
+    """Give the share of the hold's impulse that stops a landing end, :eq:`eq-partial-hold`.
+
+    `before` and `after` are the end's speeds without the impulse and with all of it.
+    """
+    if before >= 0.0:
+        return 0.0
+    return min(before / (before - after), 1.0) if before < after else 1.0
+
+
+@inlined
+def blend(before: float, after: float, share: float) -> float:
+    """Give a rate after a share of an impulse, from the rates without and with all of it."""
+    return before + share * (after - before)
+
+
+@inlined
+def share_of_loss(share: float) -> float:
+    """Give the loss of a share of a plastic impulse, over that of the whole impulse."""
+    return share * (2.0 - share)

@@ -1,0 +1,172 @@
+"""Two bodies, one on the other: what all equations of stacks share.
+
+The upper body stands on a base on the lower one, the lower one on a base on the ground. A mode
+is that of the upper body and, behind it, that of the lower one.
+"""
+
+from typing import Any, Final, NamedTuple
+
+from rockframe.compiled import Vector, inlined, kernel
+from rockframe.dynamics.base import Guards
+from rockframe.dynamics.bodies import InState
+from rockframe.dynamics.body import BodyState
+from rockframe.dynamics.events import (
+    PIVOT_CHANGE,
+    SEPARATION,
+    SILENT,
+    SOIL_CONTACT,
+    SOIL_PIVOT_CHANGE,
+    SOIL_SEPARATION,
+)
+from rockframe.dynamics.on_base import Mode, OnBase, SlidingGuards
+from rockframe.dynamics.protocol import LAST_EVENT, Column, Slope
+
+UPPER: Final = 0
+LOWER: Final = 1
+"""Numbers of the bodies."""
+
+# places in the state, see rockframe.dynamics.bodies
+ROTATION: Final = 0
+VERTICAL: Final = 1
+LOWER_ROTATION: Final = 2
+LOWER_VERTICAL: Final = 3
+HORIZONTAL: Final = 4
+LOWER_HORIZONTAL: Final = 5
+COORDINATES: Final = 6
+
+COLUMNS: Final = (
+    Column("rotation"),
+    Column("angular_velocity"),
+    Column("vertical_displacement"),
+    Column("vertical_velocity"),
+    Column("horizontal_displacement"),
+    Column("base_shear", per_mass=True),
+    Column("cap_rotation"),
+    Column("cap_angular_velocity"),
+    Column("cap_vertical_displacement"),
+    Column("cap_vertical_velocity"),
+    Column("rotation_on_cap"),
+    Column("vertical_displacement_on_cap"),
+)
+
+
+class Modes(NamedTuple):
+    """How both bodies stand."""
+
+    upper: Mode
+    lower: Mode
+
+
+class States(NamedTuple):
+    """Placement and rates of both bodies, each relative to its base."""
+
+    upper: BodyState
+    lower: BodyState
+
+
+class Stacked(InState):
+    """What both systems of a stack share. A mixin of named tuples with both bodies."""
+
+    __slots__ = ()
+    upper: OnBase
+    lower: OnBase
+
+    @inlined
+    def bodies(self) -> int:
+        """Give the number of bodies."""
+        return 2
+
+    @kernel
+    def variables(self) -> int:
+        """Give the number of variables of first order: those of both bases."""
+        return self.upper.base.variables() + self.lower.base.variables()
+
+    @kernel
+    def guards(self) -> int:
+        """Give the number of guards: of the upper body, then of the lower one."""
+        return self.upper.guards() + self.lower.guards()
+
+    @inlined
+    def modes_in(self, mode: int) -> Modes:
+        """Read a mode from its number."""
+        count = self.upper.modes()
+        return Modes(self.upper.mode_of(mode % count), self.lower.mode_of(mode // count))
+
+    @inlined
+    def states_in(self, state: Vector) -> States:
+        """Read placement and rates of both bodies."""
+        return States(self.state_of(UPPER, state), self.state_of(LOWER, state))
+
+    @inlined
+    def own_place(self, k: int) -> int:
+        """Give the place of the variables of a base's own in the state."""
+        return 2 * COORDINATES + (0 if k == UPPER else self.upper.base.variables())
+
+    @inlined
+    def upper_own(self, state: Vector) -> Any:
+        """Read the variables of the upper base."""
+        return self.upper.base.read(state, self.own_place(UPPER))
+
+    @inlined
+    def lower_own(self, state: Vector) -> Any:
+        """Read the variables of the lower base."""
+        return self.lower.base.read(state, self.own_place(LOWER))
+
+    @kernel
+    def part_mode(self, mode: int, k: int) -> Mode:
+        """Give how a body stands."""
+        modes = self.modes_in(mode)
+        return modes.upper if k == UPPER else modes.lower
+
+    @kernel
+    def with_part(self, mode: int, k: int, part: Mode) -> int:
+        """Give the mode in which a body stands otherwise."""
+        count = self.upper.modes()
+        if k == UPPER:
+            return mode - mode % count + self.upper.number_of(part)
+        return mode % count + count * self.lower.number_of(part)
+
+    @kernel
+    def velocities(self, state: Vector) -> tuple[float, ...]:
+        """Give all velocities."""
+        n = COORDINATES
+        return state[n], state[n + 1], state[n + 2], state[n + 3], state[n + 4], state[n + 5]
+
+    @inlined
+    def guards_of_both(
+        self, modes: Modes, state: Vector, slope: Slope, upper: SlidingGuards, lower: SlidingGuards
+    ) -> Guards:
+        """Give the guards of both bodies, with those of ends that slide, and their rates."""
+        states = self.states_in(state)
+        above = self.upper.guards_with(
+            modes.upper,
+            states.upper,
+            self.upper_own(state),
+            slope[VERTICAL],
+            slope[ROTATION],
+            upper,
+        )
+        below = self.lower.guards_with(
+            modes.lower, states.lower, self.lower_own(state), slope[LOWER_VERTICAL],
+            slope[LOWER_ROTATION], lower,
+        )  # fmt: skip
+        return Guards(above.values + below.values, above.changes + below.changes)
+
+    @kernel
+    def bases_observed(self, mode: int, state: Vector) -> tuple[float, ...]:
+        """Give what both bases show."""
+        modes, states = self.modes_in(mode), self.states_in(state)
+        upper = self.upper.observed_base(modes.upper, states.upper, self.upper_own(state))
+        return upper + self.lower.observed_base(modes.lower, states.lower, self.lower_own(state))
+
+
+@kernel
+def tell_of_soil(memory: Vector) -> None:
+    """Call the last event by its name for the lower body."""
+    event = int(memory[LAST_EVENT])
+    if event == PIVOT_CHANGE:
+        memory[LAST_EVENT] = SOIL_PIVOT_CHANGE
+    elif event == SEPARATION:
+        memory[LAST_EVENT] = SOIL_SEPARATION
+    elif event != SILENT:
+        memory[LAST_EVENT] = SOIL_CONTACT

@@ -1,0 +1,421 @@
+"""What happens to a body and its base at an event: separation, landing, re-pinning, sliding.
+
+Written once for all scenes. `system` is the whole of bodies, which knows how the velocities of
+all of them answer an impulse; `part` is the body in question with its base, and `k` its number
+in the system. Re-pinning :eq:`eq-repinning`, impact :eq:`eq-impact`, partial hold
+:eq:`eq-partial-hold`, leaving :eq:`eq-leaving-into-flight`.
+"""
+
+from typing import Protocol
+
+from rockframe.compiled import Vector, kernel, put
+from rockframe.dynamics.body import BodyState
+from rockframe.dynamics.events import (
+    IMPACT,
+    PIVOT_CHANGE,
+    REENGAGEMENT,
+    SEPARATION,
+    SILENT,
+)
+from rockframe.dynamics.on_base import HOLD, PIVOT, SLIP, Mode, OnBase, Response
+from rockframe.dynamics.protocol import (
+    HELD_PLACE,
+    IMPACT_LOSS,
+    LAST_EVENT,
+    REPINNING_LOSS,
+    Ground,
+)
+from rockframe.dynamics.restraint import PIVOT_CENTRE, PIVOT_LEFT, PIVOT_RIGHT, leading_pivot
+from rockframe.dynamics.sliding import (
+    DISTURBED,
+    blend,
+    is_lifted,
+    share_of_loss,
+    share_until_lifted,
+    speed_noise,
+)
+
+
+class Bodies(Protocol):
+    """What a system of bodies knows of body `k`, and does to it."""
+
+    def part_mode(self, mode: int, k: int) -> Mode:
+        """Give how the body stands in a mode."""
+        ...
+
+    def with_part(self, mode: int, k: int, part: Mode) -> int:
+        """Give the mode in which the body stands otherwise."""
+        ...
+
+    def state_of(self, k: int, state: Vector) -> BodyState:
+        """Give placement and rates of the body relative to its base."""
+        ...
+
+    def own_place(self, k: int) -> int:
+        """Give the place of the variables of its base's own in the state."""
+        ...
+
+    def place(self, k: int, mode: int, state: Vector, memory: Vector) -> float:
+        """Give the horizontal place of its centre of mass, relative to its base."""
+        ...
+
+    def change(self, k: int, rise: float, speed: float, state: Vector) -> None:
+        """Add to its height and to its vertical velocity."""
+        ...
+
+    def stand_upright(self, k: int, state: Vector) -> None:
+        """Set its rotation to zero."""
+        ...
+
+    def set_sway(self, k: int, place: float, velocity: float, state: Vector) -> None:
+        """Set its horizontal coordinate and velocity."""
+        ...
+
+    def response(
+        self, k: int, mode: int, press: float, moment: float, slip: float, state: Vector
+    ) -> Response:
+        """Give how velocities change by an impulse of its base, or as the hold stops a slip."""
+        ...
+
+    def respond(self, k: int, mode: int, response: Response, state: Vector) -> None:
+        """Change the velocities."""
+        ...
+
+    def velocities(self, state: Vector) -> tuple[float, ...]:
+        """Give all velocities."""
+        ...
+
+    def blend_velocities(self, before: tuple[float, ...], share: float, state: Vector) -> None:
+        """Take back all but a share of what has changed the velocities since."""
+        ...
+
+    def end_acceleration(
+        self, k: int, left: bool, mode: int, state: Vector, ground: Ground
+    ) -> float:
+        """Give the acceleration of an end of its base in a mode, upwards."""
+        ...
+
+    def tendency(self, k: int, mode: int, state: Vector, ground: Ground) -> float:
+        """Give the side to which it will rotate, upright and at rest."""
+        ...
+
+
+@kernel
+def has_same_hold(part: OnBase, one: Mode, other: Mode) -> bool:
+    """Whether two modes hold a body at the same point, or both do not."""
+    if part.is_free(one) or part.is_free(other):
+        return part.is_free(one) and part.is_free(other)
+    return one.pivot == other.pivot
+
+
+@kernel
+def end_speed(part: OnBase, left: bool, state: BodyState) -> tuple[float, float]:
+    """Give the speed of an end of the base, and its rounding noise."""
+    line = part.body.base_line_at(state)
+    lever = line.left_lever if left else line.right_lever
+    noise = speed_noise(state.vertical_velocity, lever, state.angular_velocity)
+    return line.left_speed if left else line.right_speed, noise
+
+
+@kernel
+def set_end_speed(
+    system: Bodies, part: OnBase, k: int, left: bool, speed: float, direction: float, state: Vector
+) -> None:
+    """Give an end a speed, or one on the side of it that rounding cannot leave."""
+    now, noise = end_speed(part, left, system.state_of(k, state))
+    beside = direction * max(noise, part.base.least_landing())
+    system.change(k, 0.0, speed + beside - now, state)
+
+
+@kernel
+def following_speed(system: Bodies, part: OnBase, k: int, left: bool, state: Vector) -> float:
+    """Give the speed at which an end rises with its base without a force between them."""
+    line = part.body.base_line_at(system.state_of(k, state))
+    return part.base.following_speed(left, line, part.base.read(state, system.own_place(k)))
+
+
+@kernel
+def repin(
+    system: Bodies, part: OnBase, k: int, old: int, new: int, state: Vector, memory: Vector
+) -> None:
+    """Project the momentum on the horizontal restraint of a new mode, :eq:`eq-repinning`.
+
+    The restraint's impulse does no work on what it lets through: the loss is that of the slip
+    between the old velocity and the new one.
+    """
+    body = system.state_of(k, state)
+    attitude = part.body.attitude(body.rotation)
+    place = system.place(k, old, state, memory)
+    sway = part.sway(system.part_mode(old, k), body, attitude)
+    mode = system.part_mode(new, k)
+    if part.is_free(mode):
+        system.set_sway(k, place, sway, state)
+        return
+    pin = part.body.pin(mode.pivot)
+    memory[HELD_PLACE + k] = place - part.body.about_pin(pin, body.rotation)
+    slip = sway - part.body.reach(pin, attitude).rate * body.angular_velocity
+    response = system.response(k, new, 0.0, 0.0, slip, state)
+    system.respond(k, new, response, state)
+    memory[REPINNING_LOSS] -= 0.5 * response.restraint * slip
+
+
+@kernel
+def lift_by_slip(system: Bodies, part: OnBase, k: int, mode: int, state: Vector) -> float:
+    """Give the speed at which the end that slides rises where its hold lets a slip of 1 go."""
+    was = system.part_mode(mode, k)
+    held = system.with_part(mode, k, Mode(was.contact, was.pivot, False))
+    line = part.body.base_line_at(system.state_of(k, state))
+    left = part.base.is_held(was.contact, True)
+    response = system.response(k, held, 0.0, 0.0, -1.0, state)
+    lever = line.left_lever if left else line.right_lever
+    return response.vertical + lever * response.rotation
+
+
+@kernel
+def strike(
+    system: Bodies, part: OnBase, k: int, mode: int, left: bool, right: bool, state: Vector,
+    memory: Vector,
+) -> None:  # fmt: skip
+    """Reduce the speeds of the landing ends to eps times what they were, :eq:`eq-impact`."""
+    line = part.body.base_line_at(system.state_of(k, state))
+    share = 1.0 - part.base.rebound()
+    gain_left = -share * min(line.left_speed, 0.0)
+    gain_right = -share * min(line.right_speed, 0.0)
+    # what unit impulses at either end do to the speeds of the ends
+    at_left = system.response(k, mode, 1.0, line.left_lever, 0.0, state)
+    at_right = system.response(k, mode, 1.0, line.right_lever, 0.0, state)
+    left_left = at_left.vertical + line.left_lever * at_left.rotation
+    right_right = at_right.vertical + line.right_lever * at_right.rotation
+    mixed = at_right.vertical + line.left_lever * at_right.rotation
+    on_left = on_right = 0.0
+    if left and right:
+        determinant = left_left * right_right - mixed * mixed
+        on_left = (right_right * gain_left - mixed * gain_right) / determinant
+        on_right = (left_left * gain_right - mixed * gain_left) / determinant
+    elif left:
+        on_left = gain_left / left_left
+    else:
+        on_right = gain_right / right_right
+    moment = on_left * line.left_lever + on_right * line.right_lever
+    response = system.response(k, mode, on_left + on_right, moment, 0.0, state)
+    system.respond(k, mode, response, state)
+    # work of the impulses, at the mean of each end's speeds before and after
+    after = part.body.base_line_at(system.state_of(k, state))
+    memory[IMPACT_LOSS] -= 0.5 * (
+        on_left * (line.left_speed + after.left_speed)
+        + on_right * (line.right_speed + after.right_speed)
+    )
+
+
+@kernel
+def repin_landing(
+    system: Bodies, part: OnBase, k: int, old: int, new: int, left: bool, target: float,
+    state: Vector, memory: Vector,
+) -> bool:  # fmt: skip
+    """Hold a body out of flight that has come down on one end; give whether it slides.
+
+    The hold's impulse ends where the end has got the speed `target`, at which the base no
+    longer presses, :eq:`eq-partial-hold`.
+    """
+    speed, _ = end_speed(part, left, system.state_of(k, state))
+    before, lost, place = (
+        system.velocities(state), memory[REPINNING_LOSS], memory[HELD_PLACE + k],
+    )  # fmt: skip
+    was_at = system.state_of(k, state).horizontal
+    repin(system, part, k, old, new, state, memory)
+    body = system.state_of(k, state)
+    held_speed, noise = end_speed(part, left, body)
+    speed, after = speed - target, held_speed - target
+    noise = max(noise, part.base.least_landing())
+    idle = target > 0.0 and after - speed <= noise  # no slip to stop: forces decide
+    if idle or not is_lifted(speed, after, noise):
+        return False
+    share = share_until_lifted(speed, after)
+    attitude = part.body.attitude(body.rotation)
+    held = part.sway(system.part_mode(new, k), body, attitude)
+    system.set_sway(k, was_at, held, state)
+    system.blend_velocities(before, share, state)
+    memory[HELD_PLACE + k] = place
+    memory[REPINNING_LOSS] = blend(lost, memory[REPINNING_LOSS], share_of_loss(share))
+    now, _ = end_speed(part, left, system.state_of(k, state))
+    system.change(k, 0.0, target - now, state)
+    return True
+
+
+@kernel
+def after_separation(
+    system: Bodies, part: OnBase, k: int, left: bool, mode: int, new: int, state: Vector,
+    ground: Ground, memory: Vector,
+) -> int:  # fmt: skip
+    """Give the mode after an end has left, and re-pin.
+
+    An end that its base would press at once in flight slides, :eq:`eq-leaving-into-flight`.
+    One that the re-pinning of its own separation leaves pressed waits until it is let go.
+    """
+    was, now = system.part_mode(mode, k), system.part_mode(new, k)
+    repins = not has_same_hold(part, was, now)
+    if repins:
+        repin(system, part, k, mode, new, state, memory)
+    line = part.body.base_line_at(system.state_of(k, state))
+    own = part.base.read(state, system.own_place(k))
+    if not part.base.presses(now.contact, left, line, own):
+        return new
+    if part.flies(now.contact):
+        if not part.base.touches(was.contact, not left):
+            acceleration = system.end_acceleration(k, left, new, state, ground)
+            if part.base.will_press(left, line, acceleration, own):
+                contact = part.base.held(now.contact, left)
+                return system.with_part(new, k, Mode(contact, was.pivot, True))
+    elif repins:
+        waits = part.base.waiting(now.contact, left)
+        return system.with_part(new, k, Mode(waits, now.pivot, False))
+    return new
+
+
+@kernel
+def switch_end(
+    system: Bodies, part: OnBase, k: int, left: bool, which: int, mode: int, state: Vector,
+    ground: Ground, memory: Vector,
+) -> int:  # fmt: skip
+    """Carry out the switch of an end's contact with its base."""
+    was = system.part_mode(mode, k)
+    line = part.body.base_line_at(system.state_of(k, state))
+    own = part.base.read(state, system.own_place(k))
+    found = part.base.switch(was.contact, left, which, line, own)
+    memory[LAST_EVENT] = found.event
+    after = part.base.variables_after(was.contact, found.contact, line, own)
+    put(after, system.own_place(k), state)
+    if found.crossed:
+        # the crossed level is set exactly, so that rounding cannot undo the switch
+        system.change(k, part.base.level(left, line, after), 0.0, state)
+    if found.event == SILENT:
+        return system.with_part(mode, k, Mode(found.contact, was.pivot, was.slides))
+    now = part.standing(found.contact, system.state_of(k, state))
+    new = system.with_part(mode, k, now)
+    if found.event == SEPARATION:
+        return after_separation(system, part, k, left, mode, new, state, ground, memory)
+    flies = part.flies(was.contact)
+    both = flies and part.base.is_held(now.contact, not left)
+    if flies and not both:
+        target = 0.0
+        if found.event == REENGAGEMENT:
+            target = following_speed(system, part, k, left, state)
+        if repin_landing(system, part, k, mode, new, left, target, state, memory):
+            return system.with_part(new, k, Mode(now.contact, now.pivot, True))
+    elif not has_same_hold(part, was, now):
+        repin(system, part, k, mode, new, state, memory)
+    if found.event == REENGAGEMENT:
+        line = part.body.base_line_at(system.state_of(k, state))
+        contact = part.base.engaged(now.contact, left, line, own)
+        return system.with_part(new, k, Mode(contact, now.pivot, False))
+    if found.event == IMPACT:
+        strike(system, part, k, new, left or both, both or not left, state, memory)
+    return new
+
+
+@kernel
+def change_pivot(
+    system: Bodies, part: OnBase, k: int, mode: int, state: Vector, ground: Ground, memory: Vector
+) -> int:
+    """Change the corner that leads; upright and at rest, the first lean decides."""
+    was = system.part_mode(mode, k)
+    if was.pivot == PIVOT_CENTRE:
+        memory[LAST_EVENT] = SILENT
+        body = system.state_of(k, state)
+        tendency = body.angular_velocity
+        if tendency == 0.0:
+            tendency = system.tendency(k, mode, state, ground)
+        pivot = leading_pivot(body.rotation, tendency)
+    else:
+        memory[LAST_EVENT] = PIVOT_CHANGE
+        system.stand_upright(k, state)
+        pivot = PIVOT_LEFT if was.pivot == PIVOT_RIGHT else PIVOT_RIGHT
+    new = system.with_part(mode, k, Mode(was.contact, pivot, was.slides))
+    if not was.slides:
+        repin(system, part, k, mode, new, state, memory)
+    return new
+
+
+@kernel
+def end_sliding(
+    system: Bodies, part: OnBase, k: int, flies: bool, mode: int, state: Vector, memory: Vector
+) -> int:
+    """Let an end that slides fly, or hold it as its slip has come to zero."""
+    was = system.part_mode(mode, k)
+    left = part.base.is_held(was.contact, True)
+    line = part.body.base_line_at(system.state_of(k, state))
+    own = part.base.read(state, system.own_place(k))
+    if part.base.is_level(left, line, own):
+        system.change(k, part.base.level(left, line, own), 0.0, state)
+    speed = following_speed(system, part, k, left, state)
+    if flies:
+        set_end_speed(system, part, k, left, speed, 1.0, state)
+        memory[LAST_EVENT] = SEPARATION
+        return fly(system, part, k, mode, state)
+    new = system.with_part(mode, k, Mode(was.contact, was.pivot, False))
+    repin(system, part, k, mode, new, state, memory)
+    set_end_speed(system, part, k, left, speed, -1.0, state)
+    memory[LAST_EVENT] = PIVOT_CHANGE
+    return new
+
+
+@kernel
+def fly(system: Bodies, part: OnBase, k: int, mode: int, state: Vector) -> int:
+    """Give the mode after an end that slid has left."""
+    was = system.part_mode(mode, k)
+    left = part.base.is_held(was.contact, True)
+    line = part.body.base_line_at(system.state_of(k, state))
+    contact = part.base.released(
+        was.contact, left, line, part.base.read(state, system.own_place(k))
+    )
+    return system.with_part(mode, k, Mode(contact, PIVOT_CENTRE, False))
+
+
+@kernel
+def checked_sliding(system: Bodies, part: OnBase, k: int, mode: int, state: Vector) -> int:
+    """Give the mode after an event that may have disturbed an end that slides.
+
+    An end that has got another speed than its base flies, and lands again at once if it comes
+    down.
+    """
+    was = system.part_mode(mode, k)
+    if not was.slides:
+        return mode
+    left = part.base.is_held(was.contact, True)
+    speed, noise = end_speed(part, left, system.state_of(k, state))
+    target = following_speed(system, part, k, left, state)
+    if abs(speed - target) <= DISTURBED * max(noise, part.base.least_landing()):
+        system.change(k, 0.0, target - speed, state)
+        return mode
+    return fly(system, part, k, mode, state)
+
+
+@kernel
+def disturbed(system: Bodies, part: OnBase, k: int, mode: int, state: Vector) -> int:
+    """Give the mode after an event of another body, which changed the speeds of this one."""
+    was = system.part_mode(mode, k)
+    if was.slides:
+        return checked_sliding(system, part, k, mode, state)
+    contact = part.base.disturbed(was.contact)
+    return system.with_part(mode, k, Mode(contact, was.pivot, False))
+
+
+@kernel
+def switch_part(
+    system: Bodies, part: OnBase, k: int, which: int, mode: int, state: Vector, ground: Ground,
+    memory: Vector,
+) -> int:  # fmt: skip
+    """Carry out the switch that a guard of a body calls for; give the new mode."""
+    count = part.base.end_guards()
+    if which == 2 * count + PIVOT:
+        new = change_pivot(system, part, k, mode, state, ground, memory)
+    elif which == 2 * count + HOLD:
+        new = end_sliding(system, part, k, True, mode, state, memory)
+    elif which == 2 * count + SLIP:
+        new = end_sliding(system, part, k, False, mode, state, memory)
+    else:
+        left = which < count
+        new = switch_end(
+            system, part, k, left, which if left else which - count, mode, state, ground, memory
+        )
+    return checked_sliding(system, part, k, new, state)

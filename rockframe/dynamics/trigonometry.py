@@ -1,0 +1,52 @@
+"""Sine and cosine as polynomials: the same bits on every machine.
+
+An angle is reduced to a quarter turn about the nearest multiple of half a turn; there the
+Taylor polynomials of degree 19 and 20 are exact to the last bit or two.
+"""
+
+import math
+from typing import Final
+
+from rockframe.compiled import inlined
+
+_SINE: Final = tuple((-1.0) ** j / math.factorial(2 * j + 1) for j in range(10))
+_COSINE: Final = tuple((-1.0) ** j / math.factorial(2 * j) for j in range(11))
+S1, S2, S3, S4, S5, S6, S7, S8, S9 = _SINE[1:]
+C1, C2, C3, C4, C5, C6, C7, C8, C9, C10 = _COSINE[1:]
+
+QUARTER_TURN: Final = 0.5 * math.pi
+PER_HALF_TURN: Final = 1.0 / math.pi
+HALF_TURN: Final = math.pi
+REST_OF_HALF_TURN: Final = 1.2246467991473532e-16  # pi less its double, sin(math.pi)
+TO_WHOLE: Final = 6755399441055744.0
+"""1.5 * 2^52: what is added and taken away again is rounded to a whole number."""
+
+
+@inlined
+def quarter_sine_cosine(x: float) -> tuple[float, float]:
+    """Give sine and cosine of an angle up to a quarter turn, either way [rad].
+
+    The terms are added in pairs, so that few of them wait for another.
+    """
+    z = x * x
+    w = z * z
+    v = w * w
+    low = (S1 + S2 * z) + w * (S3 + S4 * z)
+    high = (S5 + S6 * z) + w * (S7 + S8 * z)
+    sine = x + x * (z * (low + v * (high + v * S9)))
+    low = (C2 + C3 * z) + w * (C4 + C5 * z)
+    high = (C6 + C7 * z) + w * (C8 + C9 * z)
+    cosine = 1.0 + z * (C1 + z * (low + v * (high + v * C10)))
+    return sine, cosine
+
+
+@inlined
+def sine_cosine(angle: float) -> tuple[float, float]:
+    """Give sine and cosine of an angle [rad]."""
+    if abs(angle) <= QUARTER_TURN:
+        return quarter_sine_cosine(angle)
+    turns = (angle * PER_HALF_TURN + TO_WHOLE) - TO_WHOLE
+    half = (0.5 * turns + TO_WHOLE) - TO_WHOLE
+    sign = 1.0 - 2.0 * abs(turns - 2.0 * half)
+    sine, cosine = quarter_sine_cosine((angle - turns * HALF_TURN) - turns * REST_OF_HALF_TURN)
+    return sign * sine, sign * cosine

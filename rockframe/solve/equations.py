@@ -1,0 +1,111 @@
+"""A system's equations as the integrator calls them: functions of arrays, of fixed types.
+
+So one integrator, compiled once, serves every system: it knows these functions by their
+addresses, and the system's numbers as a vector.
+"""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+from rockframe.compiled import Vector, bound, inlined, kernel, numbers_in, put
+from rockframe.dynamics.protocol import Energies, Ground, System
+from rockframe.solve.ground import ground_in
+from rockframe.solve.guards import guards_at
+from rockframe.solve.march import march_by_tolerance, march_fixed
+from rockframe.solve.workspace import Span, Workspace
+
+
+@kernel
+def slope(
+    system: System, mode: int, state: Vector, ground_x: float, ground_y: float, out: Vector
+) -> None:
+    """Write accelerations, rates of variables of first order, and powers."""
+    put(system.accelerate(mode, state, Ground(ground_x, ground_y)), 0, out)
+
+
+@kernel
+def guards_of_state(
+    system: System, mode: int, state: Vector, slope: Vector, ground_x: float, ground_y: float,
+    limits: Vector, before: Vector, after: Vector,
+) -> int:  # fmt: skip
+    """Write the guards of a state and their rates, as at a step's end."""
+    return guards_at(system, mode, state, slope, Ground(ground_x, ground_y), limits, before, after)
+
+
+@kernel
+def switched(
+    system: System, mode: int, guard: int, state: Vector, ground_x: float, ground_y: float,
+    memory: Vector,
+) -> int:  # fmt: skip
+    """Carry out what the fall of a guard calls for; give the new mode."""
+    return system.switch(mode, guard, state, Ground(ground_x, ground_y), memory)
+
+
+@kernel
+def energies(system: System, mode: int, state: Vector, out: Vector) -> None:
+    """Write the energies of a state."""
+    put(system.energies(mode, state), 0, out)
+
+
+class Equations(NamedTuple):
+    """A system, bound: its functions, its numbers, and how many there are of everything."""
+
+    slope: Callable[..., None]
+    guarding: Callable[..., int]
+    march: Callable[..., int]
+    switching: Callable[..., int]
+    stored: Callable[..., None]
+    numbers: Vector
+    coordinate_count: int
+    variable_count: int
+    guard_count: int
+
+
+def equations_of(system: System, *, fixed_steps: bool) -> Equations:
+    """Bind a system's equations for the integrator.
+
+    Parameters
+    ----------
+    system : System
+        A named tuple.
+    fixed_steps : bool
+        Whether steps are of fixed length, else by a tolerance.
+
+    Returns
+    -------
+    Equations
+    """
+    march = march_fixed if fixed_steps else march_by_tolerance
+    functions = bound((slope, guards_of_state, march, switched, energies), system)
+    return Equations(
+        *functions,  # type: ignore[call-arg]
+        numbers=numbers_in(system),
+        coordinate_count=system.coordinates(),
+        variable_count=system.variables(),
+        guard_count=system.guards(),
+    )
+
+
+@inlined
+def slope_at(equations: Equations, mode: int, state: Vector, ground: Ground, out: Vector) -> None:
+    """Write the slope of a state."""
+    equations.slope(mode, state, ground.x, ground.y, out, equations.numbers)
+
+
+@inlined
+def energies_at(equations: Equations, mode: int, state: Vector, room: Vector) -> Energies:
+    """Give the energies of a state; `room` is for four numbers."""
+    equations.stored(mode, state, room, equations.numbers)
+    return Energies(room[0], room[1], room[2], room[3])
+
+
+@inlined
+def write_guards(
+    equations: Equations, mode: int, state: Vector, slope: Vector, fraction: float, span: Span,
+    out: Vector, w: Workspace,
+) -> None:  # fmt: skip
+    """Write the guards of a state at a fraction of a step, and their rates."""
+    ground = ground_in(fraction, span, w.ground)
+    equations.guarding(
+        mode, state, slope, ground.x, ground.y, w.limits, out, out, equations.numbers
+    )

@@ -1,0 +1,203 @@
+"""Steps on end, until something happens: what most of a run is made of.
+
+Written for any system and compiled for each, so that the equations are compiled into the loop;
+the driver calls it by its address, and sees to all that is not a quiet step.
+"""
+
+from typing import Final, TypeAlias
+
+from rockframe.compiled import Integers, ReadOnlyMatrix, Vector, inlined, kernel, part_of
+from rockframe.dynamics.protocol import POWERS, System
+from rockframe.solve import layout as at
+from rockframe.solve.ground import ground_in, load_interval
+from rockframe.solve.guards import WEIGHTS, guards_at
+from rockframe.solve.schemes import FixedSteps, StepsByTolerance
+from rockframe.solve.step_control import next_step
+from rockframe.solve.workspace import TERMS, Span
+
+Scheme: TypeAlias = FixedSteps | StepsByTolerance
+
+# why a march ended
+AT_END: Final = 0  # of the run
+JUMPED: Final = 1  # the ground, from one interval to the next
+GUARDED: Final = 2  # a step was made, and some guard asks for a closer look
+TO_BE_SEEN: Final = 3  # a step was made that holds an output time, or a reversal of the rotation
+EXHAUSTED: Final = 4  # the limit of steps
+TOO_SMALL: Final = 5  # no step was small enough
+
+SHORTEST: Final = 1e-14
+"""Shortest step, as a share of the run's duration."""
+JUMP: Final = 1e-12
+"""Share of the ground acceleration by which it must differ to have jumped at a sample."""
+
+
+@inlined
+def jumps(now: float, before: float) -> bool:
+    """Whether the ground acceleration jumped between two intervals."""
+    return abs(now - before) > JUMP * abs(now)
+
+
+@inlined
+def fit_step(h: float, remaining: float) -> float:
+    """Give a step that ends on the interval's end, or leaves a fair rest of it."""
+    if h >= 0.999999 * remaining:
+        return remaining
+    return min(h, 0.5 * remaining)
+
+
+@inlined
+def length_of(index: int, intervals: int, controls: Vector) -> float:
+    """Give the length of an interval of the motion; of the rest of the run behind the last."""
+    rest = controls[at.DURATION] - index * controls[at.TIME_STEP]
+    return min(controls[at.TIME_STEP], rest) if index < intervals else rest
+
+
+@inlined
+def march(
+    scheme: Scheme, system: System, mode: int, count: int, flies: int, trial: float,
+    pieces_x: ReadOnlyMatrix, pieces_y: ReadOnlyMatrix, ends: Vector, stages: Vector, works: Vector,
+    reference: Vector, limits: Vector, ground: Vector, controls: Vector, clock: Vector,
+    counters: Integers,
+) -> int:  # fmt: skip
+    """Make steps until something happens that the driver must see to.
+
+    Parameters
+    ----------
+    scheme : Scheme
+        Way to step.
+    system : System
+        The equations.
+    mode, count, flies : int
+        Contact mode, how many leading coordinates move in it, and whether it is flight.
+    trial : float
+        Length of a step that is only tried; 0 to go on [s].
+    pieces_x, pieces_y : ndarray
+        Ground motion.
+    ends : ndarray
+        State, slope and guards with their rates at both ends of a step; ``counters[HALF]``
+        tells which half is the start.
+    stages, works : ndarray
+        Room for stages; the energies dissipated and put in by a step, the error of their
+        difference, and the errors of everything in the state.
+    reference, limits : ndarray
+        Largest size so far of each variable; limits of the rotation.
+    ground : ndarray
+        Coefficients of the ground motion in the interval.
+    controls, clock, counters : ndarray
+        Settings and progress, laid out in :mod:`rockframe.solve.layout`.
+
+    Returns
+    -------
+    int
+        Why it ended; of a trial, what :func:`rockframe.solve.guards.guards_at` gives.
+    """
+    size = system.coordinates()
+    width = 2 * size + system.variables()
+    slope_end = width + size + system.variables() + POWERS
+    stride = slope_end + 2 * (system.guards() + 1)
+    half = counters[at.HALF]
+    index, tau, h_next = counters[at.INTERVAL], clock[at.INTO_INTERVAL], clock[at.NEXT_STEP]
+    time_step = controls[at.TIME_STEP]
+    intervals = max(len(pieces_x), len(pieces_y))
+    shortest = SHORTEST * controls[at.DURATION]
+    degree_x, degree_y = counters[at.DEGREE_X], counters[at.DEGREE_Y]
+    begin, length = index * time_step, length_of(index, intervals, controls)
+    result = AT_END
+    while True:
+        remaining = length - tau
+        if remaining <= shortest and trial == 0.0:
+            if index >= intervals or begin + length >= controls[at.DURATION]:
+                break
+            index += 1
+            tau = 0.0
+            begin, length = index * time_step, length_of(index, intervals, controls)
+            degree_x = load_interval(index, pieces_x, 0, ground)
+            degree_y = load_interval(index, pieces_y, TERMS, ground)
+            if jumps(ground[0], clock[at.GROUND_X]) or jumps(ground[TERMS], clock[at.GROUND_Y]):
+                result = JUMPED
+                break
+            continue
+        tried = counters[at.STEPS] + counters[at.REJECTED]
+        if tried >= counters[at.MAX_STEPS] and trial == 0.0:
+            result = EXHAUSTED
+            break
+        asked = fit_step(min(h_next, controls[at.MAX_STEP]), remaining)
+        h = trial if trial > 0.0 else scheme.step_length(asked)
+        span = Span(h, tau / time_step, h / time_step, degree_x, degree_y)
+        here, there = half * stride, stride - half * stride
+        state, new = part_of(ends, here), part_of(ends, there)
+        first, last = part_of(ends, here + width), part_of(ends, there + width)
+        before, after = part_of(ends, here + slope_end), part_of(ends, there + slope_end)
+        done = scheme.make_step(
+            system, mode, count, span, ground, state, first, new, last, stages, works
+        )
+        now = ground_in(1.0, span, ground)
+        found = guards_at(system, mode, new, last, now, limits, before, after)
+        if trial > 0.0:
+            return found
+        scale = max(clock[at.LARGEST_TERM], clock[at.DISSIPATED], abs(clock[at.SUPPLIED]))
+        excess = scheme.excess_of(system, count, done, scale, new, works, reference, controls)
+        if not excess <= 1.0:
+            counters[at.REJECTED] += 1
+            h_next = next_step(h, h, excess)
+            if h_next <= shortest:
+                result = TOO_SMALL
+                break
+            continue
+        r0 = v0 = r1 = v1 = 0.0
+        for i in range(size):
+            r0 += limits[WEIGHTS + i] * state[i]
+            v0 += limits[WEIGHTS + i] * state[size + i]
+            r1 += limits[WEIGHTS + i] * new[i]
+            v1 += limits[WEIGHTS + i] * new[size + i]
+        top = max(abs(r0), abs(r1))
+        peaks = v0 * v1 < 0.0 and top + 0.5 * h * max(abs(v0), abs(v1)) > clock[at.PEAK]
+        if found != 0 or peaks or begin + tau + h >= clock[at.NEXT_OUTPUT]:
+            clock[at.STEP], clock[at.ASKED], clock[at.EXCESS] = h, asked, excess
+            result = GUARDED if found != 0 else TO_BE_SEEN
+            break
+        h_next = scheme.step_after(h, asked, h_next, excess, shortest, controls)
+        tau += h
+        clock[at.PEAK] = max(clock[at.PEAK], top)
+        if flies == 1:
+            clock[at.FLIGHT_TIME] += h
+        scheme.keep_sizes(system, new, reference)
+        clock[at.DISSIPATED] += works[0]
+        clock[at.SUPPLIED] += works[1]
+        clock[at.LARGEST_MOVED] = max(clock[at.LARGEST_MOVED], abs(clock[at.SUPPLIED]))
+        clock[at.GROUND_X], clock[at.GROUND_Y] = now.x, now.y
+        counters[at.STEPS] += 1
+        half = 1 - half
+    counters[at.HALF] = half
+    counters[at.INTERVAL] = index
+    counters[at.DEGREE_X], counters[at.DEGREE_Y] = degree_x, degree_y
+    clock[at.INTO_INTERVAL], clock[at.NEXT_STEP] = tau, h_next
+    return result
+
+
+@kernel
+def march_fixed(
+    system: System, mode: int, count: int, flies: int, longest: float, trial: float,
+    pieces_x: ReadOnlyMatrix, pieces_y: ReadOnlyMatrix, ends: Vector, stages: Vector, works: Vector,
+    reference: Vector, limits: Vector, ground: Vector, controls: Vector, clock: Vector,
+    counters: Integers,
+) -> int:  # fmt: skip
+    """Make steps of fixed length, see :func:`march`."""
+    return march(
+        FixedSteps(longest), system, mode, count, flies, trial, pieces_x, pieces_y, ends, stages,
+        works, reference, limits, ground, controls, clock, counters,
+    )  # fmt: skip
+
+
+@kernel
+def march_by_tolerance(
+    system: System, mode: int, count: int, flies: int, longest: float, trial: float,
+    pieces_x: ReadOnlyMatrix, pieces_y: ReadOnlyMatrix, ends: Vector, stages: Vector, works: Vector,
+    reference: Vector, limits: Vector, ground: Vector, controls: Vector, clock: Vector,
+    counters: Integers,
+) -> int:  # fmt: skip
+    """Make steps of the Dormand-Prince pair, see :func:`march`."""
+    return march(
+        StepsByTolerance(longest), system, mode, count, flies, trial, pieces_x, pieces_y, ends,
+        stages, works, reference, limits, ground, controls, clock, counters,
+    )  # fmt: skip
