@@ -10,7 +10,8 @@ from rockframe.system.describe import describe
 from rockframe.system.fitting import misfits, missizes
 from rockframe.system.options import Coupling, Options, Restraint, Rotation, read_option
 from rockframe.system.parts import Parts, sort_parts
-from rockframe.system.scenes import SCENES, Scene, Setting
+from rockframe.system.scenes import SCENES, Scene
+from rockframe.system.setting import Setting
 from rockframe.units import ACCELERATION, POSITIVE, to_si
 
 
@@ -41,7 +42,7 @@ class Assembly:
 
     def describe(self) -> str:
         """Tell which model was picked, by which equations, and what it leaves out."""
-        return describe(self.scene, self.setting, self.parts)
+        return describe(self.setting, self.parts)
 
     def to_dict(self) -> dict[str, object]:
         """Give parts and options as plain values, fit for JSON; without the motion."""

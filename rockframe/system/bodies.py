@@ -15,11 +15,28 @@ class Body:
     centre_height: float  # of the centre of mass above the base, h
     mass: float
     inertia: float  # about the centre of mass
+    shape_factor: float  # mu
 
     @property
     def overturning_angle(self) -> float:
         """Rotation at which the centre of mass stands above the end of the base [rad]."""
         return math.atan2(self.half_width, self.centre_height)
+
+    @property
+    def radius(self) -> float:
+        """R0, from an end of the base to the centre of mass [m]."""
+        return math.hypot(self.half_width, self.centre_height)
+
+    def frequency_at(self, gravity: float) -> float:
+        """Angular frequency omega of Eq. (6) under a given gravity [rad s^-1]."""
+        mu = self.shape_factor
+        return math.sqrt(mu / (1.0 + mu) * gravity / self.radius)
+
+    @property
+    def maximum_restitution(self) -> float:
+        """eps_max = (1 + mu cos 2 theta)/(1 + mu), Eq. (4)."""
+        mu = self.shape_factor
+        return (1.0 + mu * math.cos(2.0 * self.overturning_angle)) / (1.0 + mu)
 
     @property
     def base_inertia(self) -> float:
@@ -39,7 +56,7 @@ class Cap:
 
 def body_of(block: BlockSI) -> Body:
     """Give a block as a body."""
-    return Body(block.half_width, block.half_height, block.mass, block.inertia)
+    return Body(block.half_width, block.half_height, block.mass, block.inertia, block.shape_factor)
 
 
 def cap_under(block: BlockSI, cap: CushionCapSI) -> Cap:
@@ -59,4 +76,5 @@ def one_body(block: BlockSI, cap: Cap) -> Body:
         + cap.inertia
         + cap.mass * (height - cap.half_height) ** 2
     )
-    return Body(cap.half_width, height, mass, inertia)
+    shape_factor = mass * (cap.half_width**2 + height**2) / inertia
+    return Body(cap.half_width, height, mass, inertia, shape_factor)

@@ -5,18 +5,16 @@ from textwrap import wrap
 
 from rockframe.system.angles import angle_words
 from rockframe.system.parts import Parts
-from rockframe.system.scenes import Scene, Setting
+from rockframe.system.setting import Setting
 
 _WIDTH = 100
 
 
-def describe(scene: Scene, setting: Setting, parts: Parts) -> str:
+def describe(setting: Setting, parts: Parts) -> str:
     """Tell the model, its equations, its numbers and its limits.
 
     Parameters
     ----------
-    scene : Scene
-        Row of the table of scenes.
     setting : Setting
         The scene's numbers.
     parts : Parts
@@ -27,20 +25,21 @@ def describe(scene: Scene, setting: Setting, parts: Parts) -> str:
     str
         Lines of at most 100 letters, but for words that are longer.
     """
-    lines = [f"Model: {scene.model}"]
+    words = setting.words()
+    lines = [f"Model: {setting.model}"]
     lines += _section("Parts", [("", repr(part)) for part in parts.given()])
-    lines += _section("Contact states and their equations", setting.equations())
-    lines += _section("Horizontal restraint", [("", setting.restraint_rule())])
+    lines += _section("Contact states and their equations", words.equations)
+    lines += _section("Horizontal restraint", [("", words.restraint)])
     lines += _section(
         "Numbers",
         [
             ("gravity", f"{setting.gravity:.6g} m s^-2"),
             ("overturning angle theta, Eq. (1)", angle_words(setting.overturning_angle)),
-            *setting.uplift_rows(),
-            *setting.numbers(),
+            *words.uplift,
+            *words.numbers,
         ],
     )
-    lines += _section("Left out", [("", ", ".join(setting.left_out()))])
+    lines += _section("Left out", [("", ", ".join(words.left_out))])
     return "\n".join(lines)
 
 

@@ -2,7 +2,9 @@
 
 import math
 
+from rockframe.components import Component
 from rockframe.system.bodies import cap_under
+from rockframe.system.own_base import OwnBase
 from rockframe.system.parts import Parts
 
 _ROUNDING = 1e-12
@@ -34,12 +36,21 @@ def misfits(parts: Parts) -> list[str]:
             )
     if cap is not None and soil is None:
         faults.append("a CushionCap is given without a WinklerSoil for it to stand on")
+    names = [_named(part) for part in (pads, soil)]
     if pads is not None and soil is not None and cap is None:
         faults.append(
-            "a TwoSpringSupport and a WinklerSoil are given without a CushionCap; the cap "
-            "carries the pads and spreads their reactions over the soil"
+            f"{names[0]} and {names[1]} are given without a CushionCap; the cap carries the pads "
+            "and spreads their reactions over the soil"
         )
+    given = {slot: part for slot, part in vars(parts).items() if isinstance(part, Component)}
+    for part in given.values():
+        if isinstance(part, OwnBase):
+            faults += part.misfits(given)
     return faults
+
+
+def _named(part: Component | None) -> str:
+    return f"a {type(part).__name__}"
 
 
 def missizes(parts: Parts) -> list[str]:

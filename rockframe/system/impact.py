@@ -1,14 +1,12 @@
 """Restitution of a scene: the user's, or the greatest one."""
 
-from rockframe.components.block import BlockSI
-
 ROUNDING = 1e-12
 """Excess over the greatest restitution that is taken for rounding."""
 
 
-def resolve_restitution(given: float | None, block: BlockSI) -> float:
+def resolve_restitution(given: float | None, greatest: float) -> float:
     """Give the restitution of a scene: eps_max of Eq. (4) unless the user chose one."""
-    return block.maximum_restitution if given is None else given
+    return greatest if given is None else given
 
 
 def restitution_cautions(restitution: float, greatest: float) -> list[str]:

@@ -23,10 +23,10 @@ def restraint_words(restraint: Restraint, rotation: Rotation, end: str = "corner
 
 def restraint_code(restraint: Restraint) -> int:
     """Give the equations' code of a rule."""
-    from rockframe.dynamics import kinematics
+    from rockframe.dynamics import restraint as rules
 
     return {
-        Restraint.CONTACT_STATE: kinematics.BY_CONTACT,
-        Restraint.LEADING_CORNER: kinematics.LEADING_CORNER,
-        Restraint.CENTRE: kinematics.CENTRE,
+        Restraint.CONTACT_STATE: rules.BY_CONTACT,
+        Restraint.LEADING_CORNER: rules.LEADING_CORNER,
+        Restraint.CENTRE: rules.CENTRE,
     }[restraint]

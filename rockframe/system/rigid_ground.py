@@ -1,4 +1,4 @@
-"""The scene of a block on rigid ground: its numbers and its words."""
+"""The scene of a block on rigid ground: its numbers and its model."""
 
 import math
 from dataclasses import dataclass
@@ -8,8 +8,10 @@ from rockframe.components.block import BlockSI
 from rockframe.system.impact import resolve_restitution, restitution_cautions
 from rockframe.system.options import Options, Rotation
 from rockframe.system.parts import Parts
+from rockframe.system.rigid_ground_words import rigid_ground_words
 from rockframe.system.small_motion import SmallMotion
 from rockframe.system.statics import Statics
+from rockframe.system.words import Words
 
 if TYPE_CHECKING:
     from rockframe.dynamics.protocol import ContactModel
@@ -26,6 +28,11 @@ class RigidGroundSetting:
     restitution: float
     rotation: Rotation
     gravity: float
+
+    @property
+    def model(self) -> str:
+        """Name of the model."""
+        return "rigid ground"
 
     @property
     def overturning_angle(self) -> float:
@@ -66,45 +73,9 @@ class RigidGroundSetting:
             ]
         return []
 
-    def equations(self) -> list[tuple[str, str]]:
-        """Give each contact state with the equation that governs it."""
-        form = "small rotation: " if self.rotation is Rotation.SMALL else ""
-        rocking = (
-            form + "a'' = -omega^2 [(1 + yg''/g) sin(theta s - a) + (xg''/g) cos(theta s - a)]"
-            if not form
-            else form + "a'' = -omega^2 [(1 + yg''/g) (theta s - a) + xg''/g]"
-        )
-        return [
-            ("full", f"at rest until |xg''| exceeds (g + yg'') tan(theta), "
-             f"{self.uplift_acceleration:.4g} m s^-2 without vertical motion"),
-            ("left, right", f"{rocking}, s = sgn(a) (Housner; Eq. (6) for omega)"),
-            ("impact", f"a' after = {self.restitution:.6g} a' before, at a = 0 (Eq. (4) is the "
-             "greatest value)"),
-        ]  # fmt: skip
-
-    def uplift_rows(self) -> list[tuple[str, str]]:
-        """Give the uplift angle, zero."""
-        return [("uplift angle", "0 rad: any rotation lifts a corner")]
-
-    def numbers(self) -> list[tuple[str, str]]:
-        """Give the rocking frequency and the restitution."""
-        omega = self.block.frequency_at(self.gravity)
-        return [
-            ("rocking frequency omega, Eq. (6)", f"{omega:.6g} rad/s"),
-            ("restitution eps", f"{self.restitution:.6g}"),
-        ]
-
-    def restraint_rule(self) -> str:
-        """Say which point is held."""
-        return "the bearing corner does not slide (the restraint options make no difference)"
-
-    def left_out(self) -> list[str]:
-        """Say what the model does not have."""
-        return [
-            "sliding",
-            "elasticity of block and ground",
-            "flight (a vertical ground acceleration beyond gravity would need it)",
-        ]
+    def words(self) -> Words:
+        """Tell the block on rigid ground."""
+        return rigid_ground_words(self)
 
     def compile(self) -> "ContactModel":
         """Give the equations, ready for the integrator."""
@@ -163,9 +134,7 @@ class RigidGroundSetting:
 
 def rigid_ground_setting(parts: Parts, options: Options) -> RigidGroundSetting:
     """Resolve the parts of a scene on rigid ground."""
-    block = parts.block.si if parts.block is not None else None
-    if block is None:  # the scene's signature has a block
-        raise TypeError
+    block = parts.the_block
     given = parts.ground.si.restitution if parts.ground is not None else None
-    restitution = resolve_restitution(given, block)
+    restitution = resolve_restitution(given, block.maximum_restitution)
     return RigidGroundSetting(block, restitution, options.rotation, options.gravity)

@@ -1,96 +1,18 @@
-"""The table of scenes: which parts make which model.
-
-A new scene is a row here, a setting (its numbers) and a model (its equations).
-"""
+"""The table of scenes: which slots make which scene."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
 
+from rockframe.errors import AssemblyError
+from rockframe.system.alone import AloneSetting
+from rockframe.system.bodies import Cap, body_of, cap_under, one_body
+from rockframe.system.load import Load
 from rockframe.system.options import Coupling, Options
 from rockframe.system.parts import Parts
 from rockframe.system.rigid_ground import rigid_ground_setting
-from rockframe.system.small_motion import SmallMotion
-from rockframe.system.stacked import cascade_setting, coupled_setting
-from rockframe.system.statics import Statics
-from rockframe.system.two_spring import two_spring_setting
-from rockframe.system.winkler import winkler_setting
-
-if TYPE_CHECKING:
-    from rockframe.dynamics.protocol import ContactModel
-
-
-class Setting(Protocol):
-    """A scene's numbers in SI units, and what follows from them."""
-
-    @property
-    def gravity(self) -> float:
-        """Acceleration of gravity [m s^-2]."""
-        ...
-
-    @property
-    def overturning_angle(self) -> float:
-        """Theta [rad]."""
-        ...
-
-    @property
-    def uplift_angle(self) -> float:
-        """Rotation at which contact is first lost; NaN if never [rad]."""
-        ...
-
-    @property
-    def settlement(self) -> float | None:
-        """Settlement under the weight, where the base gives way [m]."""
-        ...
-
-    @property
-    def cap_offset(self) -> float | None:
-        """Height of a cap's centre above that of a body of which it is a part [m]."""
-        ...
-
-    def cautions(self) -> list[str]:
-        """Give warnings about values near or beyond the model's validity."""
-        ...
-
-    def start_faults(self, rotation: float, has_vertical_start: bool) -> list[str]:
-        """Give faults of an initial state."""
-        ...
-
-    def equations(self) -> list[tuple[str, str]]:
-        """Give each contact state with the equation that governs it."""
-        ...
-
-    def uplift_rows(self) -> list[tuple[str, str]]:
-        """Give each uplift angle in words, with its name and where it comes from."""
-        ...
-
-    def numbers(self) -> list[tuple[str, str]]:
-        """Give the numbers a reader wants to see, with their names."""
-        ...
-
-    def restraint_rule(self) -> str:
-        """Say which point of the base is held horizontally."""
-        ...
-
-    def left_out(self) -> list[str]:
-        """Say what the model does not have."""
-        ...
-
-    def compile(self) -> "ContactModel":
-        """Give the equations, ready for the integrator."""
-        ...
-
-    def small_motion(self) -> SmallMotion | None:
-        """Give the linear equations of small motion about rest, if there are any."""
-        ...
-
-    def statics(self, rotation: float) -> Statics:
-        """Give the quasi-static state at a rotation."""
-        ...
-
-    def equilibrium(self) -> dict[str, float]:
-        """Give settlements and reactions at rest, by their names in the schema."""
-        ...
+from rockframe.system.setting import Setting
+from rockframe.system.slots import support_of
+from rockframe.system.stacked import CascadeSetting, CoupledSetting
 
 
 @dataclass(frozen=True)
@@ -101,18 +23,15 @@ class Scene:
     ----------
     title : str
         The parts, as users write them.
-    model : str
-        Name of the model.
     signature : frozenset of str
         Slots of :class:`rockframe.system.parts.Parts` that must be filled.
     make_setting : callable
-        From parts and options to the scene's numbers.
+        From parts and options to the scene's setting.
     coupling : Coupling, optional
         The option that picks this one of two models of the same parts.
     """
 
     title: str
-    model: str
     signature: frozenset[str]
     make_setting: Callable[[Parts, Options], Setting]
     coupling: Coupling | None = None
@@ -122,40 +41,71 @@ class Scene:
         return self.signature == parts.signature and self.coupling in (None, coupling)
 
 
+def _on_pads(parts: Parts, options: Options) -> AloneSetting:
+    return AloneSetting(support_of(parts.base("pads"), Load(body_of(parts.the_block), options)))
+
+
+def _on_soil(parts: Parts, options: Options) -> AloneSetting:
+    return AloneSetting(support_of(parts.base("soil"), Load(body_of(parts.the_block), options)))
+
+
+def _with_cap(parts: Parts, options: Options) -> AloneSetting:
+    """Put block and cap as one body on the soil."""
+    cap = cap_under(parts.the_block, parts.the_cap)
+    body = one_body(parts.the_block, cap)
+    support = support_of(parts.base("soil"), Load(body, options))
+    return AloneSetting(support, cap.half_height - body.centre_height)
+
+
+def _refuse_twins(parts: Parts, upper: AloneSetting, lower: AloneSetting) -> None:
+    """Refuse two bases that show the same column, which would hide one of them."""
+    shown = [{column.name for column in each.support.own_law.columns} for each in (upper, lower)]
+    twins = sorted(shown[0] & shown[1])
+    if twins:
+        pads, soil = (type(parts.base(slot)).__name__ for slot in ("pads", "soil"))
+        fault = f"{pads} and {soil} both show {' and '.join(twins)}; give those of one other names"
+        raise AssemblyError([fault])
+
+
+def _stack(parts: Parts, options: Options) -> tuple[AloneSetting, AloneSetting, Cap, Options]:
+    upper, lower = _on_pads(parts, options), _with_cap(parts, options)
+    _refuse_twins(parts, upper, lower)
+    return upper, lower, cap_under(parts.the_block, parts.the_cap), options
+
+
+def _coupled(parts: Parts, options: Options) -> CoupledSetting:
+    return CoupledSetting(*_stack(parts, options))
+
+
+def _cascade(parts: Parts, options: Options) -> CascadeSetting:
+    return CascadeSetting(*_stack(parts, options))
+
+
 _STACK = frozenset({"block", "pads", "cap", "soil"})
 
 SCENES: tuple[Scene, ...] = (
     Scene(
         "Block (on rigid ground; RigidGround(restitution=...) to choose its restitution)",
-        "rigid ground",
         frozenset({"block"}),
         rigid_ground_setting,
     ),
-    Scene(
-        "Block + TwoSpringSupport",
-        "two-spring",
-        frozenset({"block", "pads"}),
-        two_spring_setting,
-    ),
-    Scene("Block + WinklerSoil", "Winkler", frozenset({"block", "soil"}), winkler_setting),
+    Scene("Block + TwoSpringSupport", frozenset({"block", "pads"}), _on_pads),
+    Scene("Block + WinklerSoil", frozenset({"block", "soil"}), _on_soil),
     Scene(
         "Block + CushionCap + WinklerSoil (block and cap as one body)",
-        "Winkler",
         frozenset({"block", "cap", "soil"}),
-        winkler_setting,
+        _with_cap,
     ),
     Scene(
         "Block + TwoSpringSupport + CushionCap + WinklerSoil, coupling='coupled'",
-        "coupled",
         _STACK,
-        coupled_setting,
+        _coupled,
         Coupling.COUPLED,
     ),
     Scene(
         "Block + TwoSpringSupport + CushionCap + WinklerSoil, coupling='cascade'",
-        "cascade",
         _STACK,
-        cascade_setting,
+        _cascade,
         Coupling.CASCADE,
     ),
 )

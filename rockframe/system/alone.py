@@ -1,0 +1,116 @@
+"""The scene of one body on a base that gives way: its numbers, its words and its model."""
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rockframe.system.restraints import restraint_words
+from rockframe.system.small_motion import SmallMotion
+from rockframe.system.statics import Statics, contact_of, sine_cosine_rise
+from rockframe.system.support import Support
+from rockframe.system.words import Words
+
+if TYPE_CHECKING:
+    from rockframe.dynamics.protocol import ContactModel
+
+
+@dataclass(frozen=True)
+class AloneSetting:
+    """A body on a base.
+
+    Parameters
+    ----------
+    support : Support
+        The base, with the body on it.
+    cap_offset : float, optional
+        Height of a cap's centre above that of the body, where a cap is part of the body [m].
+    """
+
+    support: Support
+    cap_offset: float | None = None
+
+    @property
+    def model(self) -> str:
+        """Name of the model."""
+        return self.support.model
+
+    @property
+    def gravity(self) -> float:
+        """Acceleration of gravity [m s^-2]."""
+        return self.support.load.gravity
+
+    @property
+    def overturning_angle(self) -> float:
+        """Theta, of the body about the end of its base [rad]."""
+        return self.support.load.body.overturning_angle
+
+    @property
+    def uplift_angle(self) -> float:
+        """Rotation at which contact is first lost; NaN if it never is [rad]."""
+        return self.support.uplift_angle
+
+    @property
+    def settlement(self) -> float | None:
+        """Settlement under the weight [m]."""
+        return self.support.settlement
+
+    def cautions(self) -> list[str]:
+        """Give the warnings of the base."""
+        return self.support.cautions()
+
+    def start_faults(self, rotation: float, has_vertical_start: bool) -> list[str]:
+        """Give the faults that the base finds in an initial state."""
+        return self.support.start_faults(rotation, has_vertical_start)
+
+    def words(self) -> Words:
+        """Tell the base, and what the body on it lacks."""
+        base, options = self.support.words(), self.support.load.options
+        return Words(
+            equations=base.equations,
+            restraint=restraint_words(options.restraint, options.rotation, base.end),
+            uplift=[base.uplift],
+            numbers=base.numbers,
+            left_out=["sliding", f"elasticity of the {base.body}", *base.left_out],
+        )
+
+    def compile(self) -> "ContactModel":
+        """Give the equations, ready for the integrator."""
+        from rockframe.dynamics.alone_model import alone
+
+        load = self.support.load
+        mass = load.body.mass
+        return alone(self.model, load.law(mass), self.support.own_law, mass)
+
+    def small_motion(self) -> SmallMotion:
+        """Give the equations of small motion in full contact, to first order."""
+        body, law = self.support.load.body, self.support.own_law
+        springs = body.mass * np.diag([law.vertical_stiffness, law.rotational_stiffness])
+        raising = self.support.load.weight * body.centre_height
+        return SmallMotion(
+            ("vertical_displacement", "rotation"),
+            np.diag([body.mass, body.base_inertia]),
+            law.damping_time * springs,
+            springs - np.diag([0.0, raising]),
+        )
+
+    def statics(self, rotation: float) -> Statics:
+        """Give the vertical equilibrium at a rotation."""
+        load = self.support.load
+        height = load.body.centre_height
+        sine, cosine, rise = sine_cosine_rise(height, load.options.rotation, rotation)
+        held = self.support.held(sine, cosine, load.weight)
+        return Statics(
+            vertical_displacement=held.rise - rise,
+            base_moment=held.moment,
+            restoring_moment=held.moment - load.weight * height * sine,
+            contact_state=contact_of(held.left, held.right),
+            reactions=held.reactions,
+        )
+
+    def equilibrium(self) -> dict[str, float]:
+        """Give settlement, reactions and moment at uplift, by their names in the schema."""
+        uplift = self.uplift_angle
+        moment = math.nan if math.isnan(uplift) else self.statics(uplift).base_moment
+        return {"uplift_moment": moment, **self.support.at_rest()}

@@ -1,0 +1,50 @@
+"""What stands on a base: a body, and how it is held."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from rockframe.system.bodies import Body
+from rockframe.system.options import Options
+from rockframe.system.restraints import restraint_code
+
+if TYPE_CHECKING:
+    from rockframe.dynamics.body import Body as BodyLaw
+
+
+@dataclass(frozen=True)
+class Load:
+    """A body on a base, with the options of its system.
+
+    Parameters
+    ----------
+    body : Body
+        In SI units.
+    options : Options
+        Restraint, kinematics, and gravity.
+    """
+
+    body: Body
+    options: Options
+
+    @property
+    def gravity(self) -> float:
+        """Acceleration of gravity [m s^-2]."""
+        return self.options.gravity
+
+    @property
+    def weight(self) -> float:
+        """Weight of the body [N]."""
+        return self.body.mass * self.gravity
+
+    def law(self, mass: float) -> "BodyLaw":
+        """Give the body as the equations take it, per unit of some mass [kg]."""
+        from rockframe.dynamics.alone_model import body_of
+
+        return body_of(
+            half_width=self.body.half_width,
+            height=self.body.centre_height,
+            inertia=self.body.inertia / mass,
+            restraint=restraint_code(self.options.restraint),
+            small_rotation=self.options.small,
+            gravity=self.gravity,
+        )

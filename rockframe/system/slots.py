@@ -1,0 +1,127 @@
+"""Which component fills which slot of a scene, and what it is under a body."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from inspect import getattr_static
+from typing import Any, Final
+
+from rockframe.components import (
+    Block,
+    Component,
+    CushionCap,
+    FrameEquivalent,
+    RigidGround,
+    TwoSpringSupport,
+    WinklerSoil,
+)
+from rockframe.components.parameters import Declared
+from rockframe.motion import GroundMotion
+from rockframe.system.load import Load
+from rockframe.system.own_base import OwnBase
+from rockframe.system.pads import pads_under
+from rockframe.system.soil import bed_under
+from rockframe.system.support import Support
+
+
+@dataclass(frozen=True)
+class Kind:
+    """What scenes know of a class of parts.
+
+    Parameters
+    ----------
+    slot : str
+        That it fills.
+    support : callable, optional
+        From a part and its load to what it is under a body, where it is a base.
+    """
+
+    slot: str
+    support: Callable[[Any, Load], Support] | None = None
+
+
+_KINDS: Final[dict[type, Kind]] = {
+    Block: Kind("block"),
+    FrameEquivalent: Kind("block"),
+    TwoSpringSupport: Kind("pads", pads_under),
+    CushionCap: Kind("cap"),
+    WinklerSoil: Kind("soil", bed_under),
+    RigidGround: Kind("ground"),
+    GroundMotion: Kind("motion"),
+}
+
+
+def add_kind(kind: type[OwnBase]) -> None:
+    """Make a user's own base known."""
+    _KINDS[kind] = Kind(kind.slot, kind.support)
+
+
+def known_kind(of: type) -> type | None:
+    """Give the nearest class, among a class and its ancestors, that scenes know."""
+    return next((kind for kind in of.__mro__ if kind in _KINDS), None)
+
+
+def slot_of(part: object) -> str | None:
+    """Give the slot that a part fills; None if it is no part."""
+    kind = known_kind(type(part))
+    return None if kind is None else _KINDS[kind].slot
+
+
+def support_of(part: Component, load: Load) -> Support:
+    """Give a base as it is under a body.
+
+    Parameters
+    ----------
+    part : Component
+        Pads or soil, or a user's own.
+    load : Load
+        What stands on it.
+
+    Returns
+    -------
+    Support
+    """
+    kind = known_kind(type(part))
+    make = None if kind is None else _KINDS[kind].support
+    if make is None:  # only bases are in the slots of bases
+        raise TypeError
+    return make(part, load)
+
+
+def beyond_models(part: object) -> list[str]:
+    """Refuse a part that adds to a class which scenes know something that they do not."""
+    known = known_kind(type(part))
+    if known is None or not isinstance(part, Component):
+        return []
+    own = type(part)
+    added = sorted(
+        name for name in vars(part.given) if _declares(own, name) and not _declares(known, name)
+    )
+    if added:
+        return [
+            f"{own.__name__} adds {' and '.join(added)} to {known.__name__}, of which no model "
+            f"knows; it would be simulated as a {known.__name__}"
+        ]
+    between = own.__mro__[: own.__mro__.index(known)]
+    if any("support" in vars(kind) for kind in between):
+        return [f"{own.__name__} carries a body in its own way, but {_to_register(own)}"]
+    return []
+
+
+def _declares(kind: type, name: str) -> bool:
+    """Whether a class has a parameter of a name; a property of that name is none."""
+    return isinstance(getattr_static(kind, name, None), Declared)
+
+
+def hint_for(part: object) -> str:
+    """Say what something that is no part lacks to be one; nothing if that is not known."""
+    if isinstance(part, type) and known_kind(part) is not None:
+        return "; it is the class itself: call it with its values"
+    if isinstance(part, OwnBase):
+        return f"; it {_to_register(type(part))}"
+    return ""
+
+
+def _to_register(kind: type) -> str:
+    if issubclass(kind, OwnBase):
+        return f"is not registered; call rockframe.register({kind.__name__}) first"
+    return "is no OwnBase; derive it from rockframe.extension.OwnBase, and register it"

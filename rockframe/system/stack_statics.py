@@ -1,0 +1,123 @@
+"""A block held at a rotation on pads on a cap on soil, in equilibrium, :eq:`eq-static-stack`."""
+
+import math
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from rockframe.errors import SolverError
+from rockframe.system.options import Restraint
+from rockframe.system.statics import Statics, contact_of, sine_cosine_rise
+from rockframe.system.support import Held
+
+if TYPE_CHECKING:
+    from rockframe.system.stacked import StackedSetting
+
+STEPS: Final = 200
+"""Steps in which the cap's tilt under a held block is searched."""
+
+
+@dataclass(frozen=True)
+class _Balance:
+    """A stack with the cap at some tilt, which need not be in balance."""
+
+    lack: float  # of the moments on the cap
+    couple: float  # that holds the block
+    height: float  # of the block's centre of mass above its place at rest
+    upper: Held
+    lower: Held
+
+
+def stack_statics(stack: "StackedSetting", rotation: float) -> Statics:
+    """Give the equilibrium of a stack with the block held at a rotation.
+
+    Parameters
+    ----------
+    stack : StackedSetting
+        The stack.
+    rotation : float
+        Of the block [rad].
+
+    Returns
+    -------
+    Statics
+
+    Raises
+    ------
+    SolverError
+        The soil cannot carry the moment.
+    """
+    tilt = _tilt_under(stack, rotation)
+    found = _balance(stack, tilt, rotation)
+    return Statics(
+        vertical_displacement=found.height,
+        base_moment=found.lower.moment,
+        restoring_moment=found.couple,
+        contact_state=contact_of(found.upper.left, found.upper.right),
+        reactions={**found.upper.reactions, **found.lower.reactions, "cap_rotation": tilt},
+    )
+
+
+def _tilt_under(stack: "StackedSetting", rotation: float) -> float:
+    """Give the least rotation of the cap at which it is in balance under the held block."""
+    from scipy.optimize import root_scalar
+
+    def lack(tilt: float) -> float:
+        return math.copysign(1.0, rotation) * _balance(stack, tilt, rotation).lack
+
+    if rotation == 0.0:
+        return 0.0
+    # a far held block leaves the cap a second, larger tilt, which is not stable
+    steps = np.linspace(0.0, rotation, STEPS + 1).tolist()
+    for low, high in pairwise(steps):
+        if lack(low) <= 0.0 < lack(high):
+            return root_scalar(lack, bracket=(low, high), xtol=1e-15, rtol=1e-14).root
+    msg = (
+        f"no equilibrium of cap and soil was found with the block held at {rotation:.6g} rad: "
+        "the soil cannot carry the moment"
+    )
+    raise SolverError(msg)
+
+
+def _balance(stack: "StackedSetting", tilt: float, rotation: float) -> _Balance:
+    upper, cap, options = stack.upper.support, stack.cap, stack.options
+    block, weight = upper.load.body, upper.load.weight
+    h = block.centre_height
+    frame_sine, frame_cosine = math.sin(tilt), math.cos(tilt)
+    # the block on the cap, under the weight along the cap's normal
+    sine, cosine, rise = sine_cosine_rise(h, options.rotation, rotation - tilt)
+    press = weight * frame_cosine
+    held = upper.held(sine, cosine, press)
+    normal = held.rise - rise
+    pad_moment = press * h * sine - held.moment
+    pin = _pin(stack, held, rotation - tilt)
+    across = pin + h * sine - pin * cosine
+    slide = h if options.small else h * cosine + pin * sine
+    # the cap: thrust along it, its own weight on the soil
+    thrust = -weight * frame_sine
+    sine, cosine, cap_rise = sine_cosine_rise(cap.half_height, options.rotation, tilt)
+    all_weight = stack.lower.support.load.weight
+    under = stack.lower.support.held(sine, cosine, all_weight)
+    soil = all_weight * cap.half_height * sine - under.moment
+    arm = cap.half_height + h + normal
+    drop = (cap.half_height + h) * 2.0 * math.sin(0.5 * tilt) ** 2
+    return _Balance(
+        lack=(arm - slide) * thrust - across * press + pad_moment - soil,
+        couple=slide * thrust - pad_moment,
+        height=under.rise - cap_rise + normal * frame_cosine - across * frame_sine - drop,
+        upper=held,
+        lower=under,
+    )
+
+
+def _pin(stack: "StackedSetting", held: Held, rotation: float) -> float:
+    """Give the held point of the block's base in a static state."""
+    options = stack.options
+    if options.small or options.restraint is Restraint.CENTRE:
+        return 0.0
+    half = stack.upper.support.load.body.half_width
+    if options.restraint is Restraint.CONTACT_STATE:
+        return 0.0 if held.left and held.right else (half if held.right else -half)
+    return math.copysign(half, rotation) if rotation != 0.0 else 0.0
