@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from rockframe import errors as errors
+    from rockframe import extension as extension
     from rockframe import plot as plot
     from rockframe.comparison import Recommendation as Recommendation
     from rockframe.comparison import model_ladder as model_ladder
@@ -41,6 +42,7 @@ if TYPE_CHECKING:
     from rockframe.measures import velocity_and_displacement as velocity_and_displacement
     from rockframe.motion import GroundMotion as GroundMotion
     from rockframe.simulation.certification import Certification as Certification
+    from rockframe.simulation.registration import register as register
     from rockframe.simulation.system import System as System
     from rockframe.solve.accuracy import Accuracy as Accuracy
     from rockframe.version import __version__ as __version__
@@ -84,6 +86,7 @@ _HOMES = {
     ),
     "rockframe.motion": ("GroundMotion",),
     "rockframe.simulation.certification": ("Certification",),
+    "rockframe.simulation.registration": ("register",),
     "rockframe.simulation.system": ("System",),
     "rockframe.solve.accuracy": ("Accuracy",),
     "rockframe.version": ("__version__",),
@@ -118,11 +121,13 @@ __all__ = [
     "WinklerSoil",
     "__version__",
     "errors",
+    "extension",
     "fourier_spectrum",
     "intensity_measures",
     "model_ladder",
     "plot",
     "recommend",
+    "register",
     "response_spectrum",
     "tradeoff",
     "velocity_and_displacement",
@@ -134,7 +139,7 @@ def __getattr__(name: str) -> Any:
     # never waits for the integrator.
     if name in _HOME_OF:
         value = getattr(import_module(_HOME_OF[name]), name)
-    elif name in ("errors", "plot"):
+    elif name in ("errors", "extension", "plot"):
         value = import_module(f"{__name__}.{name}")
     else:
         msg = f"module {__name__!r} has no attribute {name!r}"

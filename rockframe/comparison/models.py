@@ -1,23 +1,28 @@
 """Models to compare: what a scene becomes when parts and effects are left out."""
 
 import warnings
-from typing import Any
+from collections.abc import Iterator, Mapping
+from typing import Any, Final
 
+from rockframe.components import Component
 from rockframe.errors import ComponentError, ModelWarning
 from rockframe.simulation.system import System
 from rockframe.system.options import Coupling, Rotation
+from rockframe.system.own_base import OwnBase
 
 _STACK = (
     ("rigid ground", ("block",), Coupling.COUPLED),
-    ("two pads", ("block", "pads"), Coupling.COUPLED),
-    ("pads, cap and soil by cascade", ("block", "pads", "cap", "soil"), Coupling.CASCADE),
-    ("pads, cap and soil coupled", ("block", "pads", "cap", "soil"), Coupling.COUPLED),
+    ("{two pads}", ("block", "pads"), Coupling.COUPLED),
+    ("{pads}, cap and {soil} by cascade", ("block", "pads", "cap", "soil"), Coupling.CASCADE),
+    ("{pads}, cap and {soil} coupled", ("block", "pads", "cap", "soil"), Coupling.COUPLED),
 )
 _BED = (
     ("rigid ground", ("block",), Coupling.COUPLED),
-    ("soil", ("block", "soil"), Coupling.COUPLED),
-    ("cap and soil", ("block", "cap", "soil"), Coupling.COUPLED),
+    ("{soil}", ("block", "soil"), Coupling.COUPLED),
+    ("cap and {soil}", ("block", "cap", "soil"), Coupling.COUPLED),
 )
+_WORDS: Final = {"two pads": "pads", "pads": "pads", "soil": "soil"}
+"""Words of rungs, and the slots of the bases that they name."""
 
 
 def check_system(given: object, owner: str) -> None:
@@ -31,8 +36,8 @@ def model_ladder(system: System) -> dict[str, System]:
     """Give the models of a scene, from the simplest to the scene itself.
 
     From rigid ground over pads to pads, cap and soil, first by cascade, then coupled; or
-    from rigid ground to soil, without the cap and with it. Each with small rotations first,
-    then with finite ones.
+    from rigid ground to soil, without the cap and with it. A base of a user's own comes after
+    those that it calls simpler. Each with small rotations first, then with finite ones.
 
     Parameters
     ----------
@@ -73,15 +78,39 @@ def model_ladder(system: System) -> dict[str, System]:
         for name, slots, coupling in rows:
             if not set(slots) <= present or not _reached(slots, coupling, system):
                 continue
-            parts = [given[slot] for slot in slots]
-            if slots == ("block",) and given["ground"] is not None:
-                parts.append(given["ground"])
-            for rotation in Rotation.SMALL, Rotation.FINITE:
-                if rotation is Rotation.FINITE and system.rotation is Rotation.SMALL:
-                    continue
-                words = f"{name}, small rotations" if rotation is Rotation.SMALL else name
-                models[words] = System(*parts, rotation=rotation, coupling=coupling, **options)
+            for bases in _bases(given, slots):
+                parts = {**{slot: given[slot] for slot in slots}, **bases}
+                if slots == ("block",) and given["ground"] is not None:
+                    parts["ground"] = given["ground"]
+                words = name.format(**_named(bases))
+                for rotation in Rotation.SMALL, Rotation.FINITE:
+                    if rotation is Rotation.FINITE and system.rotation is Rotation.SMALL:
+                        continue
+                    rung = f"{words}, small rotations" if rotation is Rotation.SMALL else words
+                    models[rung] = System(
+                        *parts.values(), rotation=rotation, coupling=coupling, **options
+                    )
     return models
+
+
+def _bases(given: Mapping[str, Any], slots: tuple[str, ...]) -> Iterator[dict[str, Component]]:
+    """Give the bases of a rung: all simpler ones of users' own bases first, then themselves."""
+    bases = {slot: given[slot] for slot in ("pads", "soil") if slot in slots}
+    simpler = {
+        slot: part.simpler() if isinstance(part, OwnBase) else () for slot, part in bases.items()
+    }
+    for step in range(max((len(parts) for parts in simpler.values()), default=0)):
+        yield {
+            slot: (*simpler[slot], part)[min(step, len(simpler[slot]))]
+            for slot, part in bases.items()
+        }
+    yield bases
+
+
+def _named(bases: Mapping[str, Component]) -> dict[str, str]:
+    """Give the words of a rung: users' own bases are called by their classes."""
+    own = {slot: type(part).__name__ for slot, part in bases.items() if isinstance(part, OwnBase)}
+    return {words: own.get(slot, words) for words, slot in _WORDS.items()}
 
 
 def _reached(slots: tuple[str, ...], coupling: Coupling, system: System) -> bool:

@@ -25,7 +25,7 @@ _TABLES: Final = (
 )
 
 SCHEMA: Final = {row.name: row for table in _TABLES for row in table}
-"""All variables by name."""
+"""All variables by name, with those that users have registered."""
 
 COORDINATES: Final = ("time", "angle", "mode")
 """Variables that label a dimension."""
@@ -33,4 +33,4 @@ COORDINATES: Final = ("time", "angle", "mode")
 ENERGIES: Final = tuple(row.name for row in ENERGY_HISTORIES)
 """Histories that are computed only on request."""
 
-SCHEMA_VERSION: Final = 1
+SCHEMA_VERSION: Final = 2

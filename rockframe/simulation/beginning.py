@@ -11,6 +11,7 @@ import xarray as xr
 
 from rockframe.components import InitialState
 from rockframe.dynamics.protocol import Ending, Start
+from rockframe.results.schema import SCHEMA_VERSION
 from rockframe.system.assembly import Assembly
 
 _ATTRIBUTE = "end_state"
@@ -83,6 +84,11 @@ def continuation_of(
     if _ATTRIBUTE not in attributes or "system_json" not in attributes:
         faults.append("initial is a dataset that holds no end of a run; expected one of simulate()")
         return InitialState()
+    if attributes.get("schema_version") != SCHEMA_VERSION:
+        faults.append(
+            f"initial is the end of a run of rockframe {attributes.get('rockframe_version')}, "
+            "which kept states in another way; run it again"
+        )
     if json.loads(attributes["system_json"]) != system.to_dict():
         faults.append("initial is the end of a run of another system")
     if not math.isnan(float(attributes.get("overturning_time", math.nan))):

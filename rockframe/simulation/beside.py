@@ -7,7 +7,7 @@ from typing import Final, TypeAlias
 
 import numpy as np
 
-from rockframe.dynamics.protocol import EventKind
+from rockframe.dynamics.events import EventKind
 from rockframe.results.outcome import Array, Generic
 from rockframe.simulation.plan import Plan
 from rockframe.solve.trajectory import Summary

@@ -14,7 +14,7 @@ from rockframe.signals import Signal
 from rockframe.signals.signal import COEFFICIENTS
 from rockframe.simulation.plan import Plan
 from rockframe.solve.accuracy import LEVELS, Accuracy, AccuracyLevel
-from rockframe.solve.ground_table import STILL_INTERVAL
+from rockframe.solve.integrate import STILL_INTERVAL
 from rockframe.system.assembly import Assembly
 
 TIGHTER: Final = 0.01

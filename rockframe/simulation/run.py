@@ -26,6 +26,7 @@ from rockframe.results.outcome import (
     verdict,
 )
 from rockframe.results.variables.runs import Direction
+from rockframe.signals import Motion, Signal
 from rockframe.signals.arrays import Array
 from rockframe.simulation.audit import unbalanced
 from rockframe.simulation.beginning import end_attributes, start_of
@@ -34,7 +35,6 @@ from rockframe.simulation.certificate import certify
 from rockframe.simulation.certification import Certification
 from rockframe.simulation.plan import Plan
 from rockframe.simulation.provenance import motion_attributes
-from rockframe.solve.ground_table import Ground
 from rockframe.solve.integrate import integrate
 from rockframe.solve.trajectory import Summary
 from rockframe.system.assembly import Assembly
@@ -52,16 +52,9 @@ Caution: TypeAlias = tuple[type[RockframeWarning], str]
 """A warning's kind and text."""
 
 
-def ground_of(motion: GroundMotion | None) -> Ground:
+def si_motion(motion: GroundMotion | None) -> Motion | None:
     """Give a motion as the integrator takes it."""
-    if motion is None:
-        return Ground()
-    components = {"horizontal": motion.si.horizontal, "vertical": motion.si.vertical}
-    given = {name: signal.samples for name, signal in components.items() if signal is not None}
-    for name, signal in components.items():
-        if signal is not None and signal.polynomials is not None:
-            given[f"{name}_pieces"] = signal.polynomials
-    return Ground(time_step=motion.si.time_step, **given)
+    return None if motion is None else motion.si
 
 
 def ground_at(motion: GroundMotion | None, time: Array) -> Array:
@@ -97,9 +90,8 @@ def run(system: Assembly, plan: Plan, certification: Certification | None = None
     -------
     xarray.Dataset
     """
-    ground = ground_of(plan.motion)
     scales = _scales(system)
-    response = _respond(system, plan, ground, scales)
+    response = _respond(system, plan, scales)
     summary = response.summary
     attributes = _attributes(system, plan, summary, scales) | end_attributes(response.ending)
     base = _showed(response, plan, scales)
@@ -107,7 +99,7 @@ def run(system: Assembly, plan: Plan, certification: Certification | None = None
     cautions = [
         *_unfinished(summary, scales),
         *([] if audit is None else [(SolverWarning, audit)]),
-        *_lost_weight(system, ground),
+        *_lost_weight(system, plan.motion),
         *_pulling(system, response.values, summary.overturning_time),
     ]
     for kind, text in cautions:
@@ -136,7 +128,7 @@ def outcome(system: Assembly, plan: Plan) -> Summary:
     -------
     Summary
     """
-    return _respond(system, plan, ground_of(plan.motion), _scales(system)).summary
+    return _respond(system, plan, _scales(system)).summary
 
 
 def beside(system: Assembly, plan: Plan) -> Beside:
@@ -154,7 +146,7 @@ def beside(system: Assembly, plan: Plan) -> Beside:
     Beside
     """
     scales = _scales(system)
-    return _showed(_respond(system, plan, ground_of(plan.motion), scales), plan, scales)
+    return _showed(_respond(system, plan, scales), plan, scales)
 
 
 def _showed(response: Response, plan: Plan, scales: Scales) -> Beside:
@@ -174,12 +166,12 @@ def _scales(system: Assembly) -> Scales:
     )
 
 
-def _respond(system: Assembly, plan: Plan, ground: Ground, scales: Scales) -> Response:
+def _respond(system: Assembly, plan: Plan, scales: Scales) -> Response:
     """Integrate; give histories and events by their names in the schema."""
     equations = system.setting.compile()
     wanted = plan.output_step is not None
     trajectory = integrate(
-        equations, start_of(plan.initial), ground, plan.accuracy,
+        equations, start_of(plan.initial), si_motion(plan.motion), plan.accuracy,
         duration=plan.duration, output_step=plan.output_step,
         stop_at_overturning=plan.stop_at_overturning, with_work=bool(plan.energies),
     )  # fmt: skip
@@ -193,7 +185,9 @@ def _respond(system: Assembly, plan: Plan, ground: Ground, scales: Scales) -> Re
         if equations.soil_contact is None:
             values |= cap_histories(values, scales)
         values |= relative_histories(values, scales)
-        values |= ground_histories(acceleration, has_vertical_motion=len(ground.vertical) > 0)
+        values |= ground_histories(
+            acceleration, has_vertical_motion=_vertical(plan.motion) is not None
+        )
         values["time"] = time
     values |= {name: energies[name] for name in plan.energies}
     return Response(values | events, trajectory, trajectory.ending)
@@ -208,7 +202,7 @@ def _attributes(
         "overturned": int(bool(summary.overturned)),
         "overturning_time": summary.overturning_time,
         "overturning_direction": Direction(summary.overturning_direction).name.lower(),
-        "model": system.scene.model,
+        "model": system.setting.model,
         "restraint": str(system.options.restraint),
         "kinematics": str(system.options.rotation),
         **coupling,
@@ -231,10 +225,15 @@ def _unfinished(summary: Summary, scales: Scales) -> Iterator[Caution]:
         yield SolverWarning, verdict(summary, scales)
 
 
-def _lost_weight(system: Assembly, ground: Ground) -> Iterator[Caution]:
-    if system.setting.settlement is not None or len(ground.vertical) == 0:
+def _vertical(motion: GroundMotion | None) -> Signal | None:
+    return None if motion is None else motion.si.vertical
+
+
+def _lost_weight(system: Assembly, motion: GroundMotion | None) -> Iterator[Caution]:
+    vertical = _vertical(motion)
+    if system.setting.settlement is not None or vertical is None:
         return
-    lowest = float(np.min(ground.vertical))
+    lowest = float(np.min(vertical.samples))
     if lowest < -system.options.gravity:
         found = f"the vertical ground acceleration falls to {lowest:.4g} m s^-2, beyond gravity"
         yield ModelWarning, f"{found}: {_LEAVES}"

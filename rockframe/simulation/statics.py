@@ -7,10 +7,11 @@ from collections.abc import Iterable
 import numpy as np
 import xarray as xr
 
-from rockframe.dynamics.protocol import ContactState
+from rockframe.dynamics.events import ContactState
 from rockframe.errors import AssemblyError
 from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import Generic
+from rockframe.results.schema import SCHEMA
 from rockframe.system.assembly import Assembly
 from rockframe.system.small_motion import modes_of
 from rockframe.units import ANGLE, to_si_values
@@ -20,7 +21,7 @@ def equilibrium(system: Assembly) -> xr.Dataset:
     """Give settlements and reactions at rest, and the bounds of full contact."""
     setting = system.setting
     values: dict[str, float] = {
-        **setting.equilibrium(),
+        **{name: value for name, value in setting.equilibrium().items() if name in SCHEMA},
         "overturning_angle": setting.overturning_angle,
         "uplift_angle": setting.uplift_angle,
     }
@@ -41,7 +42,8 @@ def moment_rotation(system: Assembly, angles: object) -> xr.Dataset:
         ),
     }
     for name in states[0].reactions if states else ():
-        values[f"held_{name}"] = _column(state.reactions[name] for state in states)
+        if f"held_{name}" in SCHEMA:
+            values[f"held_{name}"] = _column(state.reactions[name] for state in states)
     return build_dataset(
         values, _about(system), title="Moment and rotation", source="vertical equilibrium"
     )
@@ -78,7 +80,7 @@ def frequencies(system: Assembly) -> xr.Dataset:
 
 def _about(system: Assembly) -> dict[str, str]:
     return {
-        "model": system.scene.model,
+        "model": system.setting.model,
         "model_description": system.describe(),
         "system_json": json.dumps(system.to_dict()),
     }

@@ -27,7 +27,8 @@ from rockframe.system.options import (
     RotationLike,
 )
 from rockframe.system.parts import Parts
-from rockframe.system.scenes import Scene, Setting
+from rockframe.system.scenes import Scene
+from rockframe.system.setting import Setting
 from rockframe.units import ACCELERATION, QuantityLike, quantity
 
 if TYPE_CHECKING:

@@ -82,12 +82,12 @@ def test_resultants_are_those_of_many_small_springs(separation, finite):
         pressure = 700.0 * depth - 40.0 * rate
         below = depth > 0.0
         bears = below & (pressure > 0.0) if separation == "pressure" else below
-        burnt = np.where(bears, 40.0 * rate**2, np.where(below, 700.0 * depth * rate, 0.0))
+        dissipated = np.where(bears, 40.0 * rate**2, np.where(below, 700.0 * depth * rate, 0.0))
         found = bed.resultants(ends, alpha, y, alpha_dot, y_dot)
         brute = [
             np.sum(pressure * bears) * piece,
             np.sum(pressure * arm * bears) * piece,
-            np.sum(burnt) * piece,
+            np.sum(dissipated) * piece,
         ]
         np.testing.assert_allclose(found, brute, rtol=1e-3, atol=5e-3)
         stored = np.sum(np.where(below, 350.0 * depth**2, 0.0)) * piece

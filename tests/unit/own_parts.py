@@ -15,10 +15,10 @@ class Stop(Component):
     friction = Ratio(NOT_NEGATIVE, doc="Coefficient of friction.", default=0.3)
 
 
-class YieldingPads(rf.TwoSpringSupport):
-    """Pads that yield."""
+class BreakingPads(rf.TwoSpringSupport):
+    """Pads that break."""
 
-    strength = Parameter(FORCE, POSITIVE, doc="Force at which a pad yields.")
+    strength = Parameter(FORCE, POSITIVE, doc="Force at which a pad breaks.")
 
 
 class HeavyBlock(rf.Block):

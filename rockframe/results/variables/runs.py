@@ -3,7 +3,7 @@
 from enum import IntEnum
 from typing import Final
 
-from rockframe.dynamics.protocol import ContactState, EventKind
+from rockframe.dynamics.events import ContactState, EventKind
 from rockframe.results.variables.variable import EVENT, TIME, Variable, count, flag
 from rockframe.solve.layout import Status
 from rockframe.units import Unit
@@ -52,6 +52,12 @@ HISTORIES: Final = (
         Unit.METRE_PER_SECOND_SQUARED,
         "vertical ground acceleration, upwards",
     ),
+    Variable(
+        "base_shear",
+        TIME,
+        Unit.NEWTON,
+        "horizontal force of the ground on what stands on it, to the right",
+    ),
     Variable("left_reaction", TIME, Unit.NEWTON, "reaction of the base at the left corner"),
     Variable("right_reaction", TIME, Unit.NEWTON, "reaction of the base at the right corner"),
     # soil and cap
@@ -98,7 +104,7 @@ ENERGY_HISTORIES: Final = (
     Variable("kinetic_energy", TIME, Unit.JOULE, "kinetic energy relative to the ground"),
     Variable("potential_energy", TIME, Unit.JOULE, "gravity energy from rest"),
     Variable("elastic_energy", TIME, Unit.JOULE, "energy of the compressed springs"),
-    Variable("dissipated_energy", TIME, Unit.JOULE, "energy burnt by the dashpots so far"),
+    Variable("dissipated_energy", TIME, Unit.JOULE, "energy dissipated by the base so far"),
     Variable("impact_energy", TIME, Unit.JOULE, "energy lost in impacts so far"),
     Variable(
         "repinning_energy",

@@ -2,7 +2,7 @@
 
 from typing import Final
 
-from rockframe.dynamics.protocol import ContactState
+from rockframe.dynamics.events import ContactState
 from rockframe.results.variables.variable import ANGLE, MODE, Variable, flag, number
 from rockframe.units import Unit
 

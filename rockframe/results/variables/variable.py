@@ -26,7 +26,7 @@ class Variable:
         Name in the dataset.
     dims : tuple of str
         Dimensions, such as ``("time",)``; none for a scalar.
-    unit : Unit or None
+    unit : Unit, str or None
         None for flags and truth values.
     long_name : str
         Meaning.
@@ -38,7 +38,7 @@ class Variable:
 
     name: str
     dims: tuple[str, ...]
-    unit: Unit | None
+    unit: Unit | str | None
     long_name: str
     flags: type[IntEnum] | None = None
     dtype: str = "float64"

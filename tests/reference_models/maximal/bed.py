@@ -120,6 +120,6 @@ def bed_energy(contact, z, p):
     for i in range(3):
         weight = 5.0 / 9.0 if i != 1 else 8.0 / 9.0
         u, rate, _, _ = bed_pressure(z, p, middle + (i - 1.0) * _GAUSS * half)
-        # outside the bearing part the springs' power is burnt, inside that of the dashpots
+        # outside the bearing part the springs' power is dissipated, inside that of the dashpots
         power += weight * half * rate * (p[BED_DAMPING] * rate - p[BED_STIFFNESS] * u)
     return energy, power

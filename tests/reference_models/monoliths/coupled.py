@@ -259,14 +259,14 @@ class _Run(March):
         mass = self.matrix(answers[: len(PAIRS)], shape)
         force = [0.0 * q[X] - pull for pull in answers[len(PAIRS) :]]
         corners = self.pads(z, xp)
-        burnt = 0.0 * q[X]
+        dissipated = 0.0 * q[X]
         for name, (rise, rate, push, arm, _) in corners.items():
             if self.corner[name] == TOUCHING:
                 force[R] += push
                 force[PSI] += push * arm
-                burnt = burnt + self.c * rate * rate
+                dissipated = dissipated + self.c * rate * rate
             elif self.corner[name] == RELAXING:
-                burnt = burnt + self.k * (self.delta - rise) * rate
+                dissipated = dissipated + self.k * (self.delta - rise) * rate
         ends = self.bed.ends(q[PHI], q[Y], v[PHI], v[Y], xp)
         lift, moment, power = self.bed.resultants(ends, q[PHI], q[Y], v[PHI], v[Y], xp)
         force[Y] += lift
@@ -275,16 +275,16 @@ class _Run(March):
         turned = np.swapaxes(basis, -1, -2)
         load = turned @ (np.array(force).T[..., None] - mass @ bias[..., None])
         accelerations = (basis @ np.linalg.solve(turned @ mass @ basis, load))[..., 0] + bias
-        return accelerations.T, corners, ends, burnt + power
+        return accelerations.T, corners, ends, dissipated + power
 
     def rhs(self, t, z):
         z = z.tolist()  # plain floats: several times as fast as NumPy's own
-        accelerations, _, _, burnt = self.motion(t, z)
+        accelerations, _, _, dissipated = self.motion(t, z)
         v = self.rates(z)
         _, _, x_dot, y_dot = self.functions[math][1](z[:6], v, self.parameters)
         work = -self.ground_x(t) * (self.m * x_dot + self.m_c * v[X])
         work -= self.ground_y(t) * (self.m * y_dot + self.m_c * v[Y])
-        return [*v, *accelerations.tolist(), burnt, work]
+        return [*v, *accelerations.tolist(), dissipated, work]
 
     def energies(self, z):
         v = np.array(self.rates(z))

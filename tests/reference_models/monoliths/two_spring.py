@@ -211,14 +211,14 @@ class _Run:
         alpha_acc, y_acc, x_acc, ends, ax, ay = self.motion(t, z)
         alpha_dot, y_dot = z[3], z[4]
         x_dot = z[5] if self.contact == "flight" else self.lever(z[0])[0] * alpha_dot
-        burnt = 0.0
+        dissipated = 0.0
         for name, (rise, rate, *_) in ends.items():
             if self.corner[name] == TOUCHING:
-                burnt += self.c * rate * rate
+                dissipated += self.c * rate * rate
             elif self.corner[name] == RELAXING:
-                burnt += self.k * (self.delta - rise) * rate
+                dissipated += self.k * (self.delta - rise) * rate
         work = -(ax * x_dot + ay * y_dot)
-        return [alpha_dot, y_dot, x_dot, alpha_acc, y_acc, x_acc, burnt, work]
+        return [alpha_dot, y_dot, x_dot, alpha_acc, y_acc, x_acc, dissipated, work]
 
     # energy ---------------------------------------------------------------------------------
     def energies(self, z):

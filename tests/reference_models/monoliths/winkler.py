@@ -197,15 +197,15 @@ class Bed:
 
     def resultants(self, ends, alpha, y, alpha_dot, y_dot, xp=math):
         """Give lift, moment about the centre of mass, and the power the dashpots burn."""
-        lift = moment = burnt = 0.0 * alpha
+        lift = moment = dissipated = 0.0 * alpha
         motion = (alpha, y, alpha_dot, y_dot, xp)
         below = self.below()
         if self.bounds is not None:
-            lift, moment, burnt, relaxing = self.sum_up(self.bounds, ends, *motion)
-            burnt = burnt - relaxing if self.by_pressure else burnt
+            lift, moment, dissipated, relaxing = self.sum_up(self.bounds, ends, *motion)
+            dissipated = dissipated - relaxing if self.by_pressure else dissipated
         if self.by_pressure and below is not None:
-            burnt = burnt + self.sum_up(below, ends, *motion)[3]
-        return lift, moment, burnt
+            dissipated = dissipated + self.sum_up(below, ends, *motion)[3]
+        return lift, moment, dissipated
 
     def energy(self, alpha, y):
         """Integrate the energy of all springs that are below their unloaded level."""
@@ -497,10 +497,10 @@ class _Run(March):
         return self.h * cosine + e * sine, e * cosine - self.h * sine
 
     def motion(self, t, z, xp=math):
-        """Accelerations, the ends and their accelerations, and the power burnt."""
+        """Accelerations, the ends and their accelerations, and the power dissipated."""
         alpha, y, _, alpha_dot, y_dot = z[:5]
         ends = self.bed.ends(alpha, y, alpha_dot, y_dot, xp)
-        lift, moment, burnt = self.bed.resultants(ends, alpha, y, alpha_dot, y_dot, xp)
+        lift, moment, dissipated = self.bed.resultants(ends, alpha, y, alpha_dot, y_dot, xp)
         ax, ay = self.ground_x(t), self.ground_y(t)
         y_acc = lift - (self.g + ay)
         if self.contact == "flight":
@@ -515,15 +515,15 @@ class _Run(March):
             name: y_acc + end.arm * alpha_acc + end.bend * alpha_dot**2
             for name, end in ends.items()
         }
-        return (alpha_acc, y_acc, x_acc), ends, accelerations, burnt
+        return (alpha_acc, y_acc, x_acc), ends, accelerations, dissipated
 
     def rhs(self, t, z):
         z = z.tolist()  # plain floats: several times as fast as NumPy's own
-        (alpha_acc, y_acc, x_acc), *_, burnt = self.motion(t, z)
+        (alpha_acc, y_acc, x_acc), *_, dissipated = self.motion(t, z)
         alpha_dot, y_dot = z[3], z[4]
         x_dot = z[5] if self.contact == "flight" else self.lever(z[0])[0] * alpha_dot
         work = -(self.ground_x(t) * x_dot + self.ground_y(t) * y_dot)
-        return [alpha_dot, y_dot, x_dot, alpha_acc, y_acc, x_acc, burnt, work]
+        return [alpha_dot, y_dot, x_dot, alpha_acc, y_acc, x_acc, dissipated, work]
 
     def energies(self, z):
         alpha, y, _, alpha_dot, y_dot, x_dot = z[:6]

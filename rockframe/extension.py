@@ -1,0 +1,76 @@
+"""What a file with a part of your own needs: declarations, supports, laws, and columns.
+
+A base of your own is a class derived from :class:`OwnBase`, a :class:`Support` that says how
+it carries a body, and a law: a named tuple of numbers with the methods of
+:class:`~rockframe.dynamics.base.Base`. :func:`rockframe.register` makes it known.
+"""
+
+from rockframe.compiled import Vector, inlined, kernel
+from rockframe.components import Choice, Component, OneOf, Parameter, Ratio, Text
+from rockframe.components.damping import DampingRatio
+from rockframe.dynamics.base import Base, BaseForce, EndEvent, Guards
+from rockframe.dynamics.base_numbers import BaseNumbers
+from rockframe.dynamics.bed import Bed
+from rockframe.dynamics.body import BaseLine, Body
+from rockframe.dynamics.events import SILENT, EventKind
+from rockframe.dynamics.on_pads import on_pads
+from rockframe.dynamics.pads import CONTACTS, CORNER_GUARDS, Pads, sunk_pads
+from rockframe.dynamics.protocol import Column
+from rockframe.results.variables.variable import TIME, Variable
+from rockframe.system.load import Load
+from rockframe.system.numeric_support import NumericSupport
+from rockframe.system.own_base import OwnBase
+from rockframe.system.pads import PadSupport, pads_under
+from rockframe.system.soil import BedSupport, bed_under
+from rockframe.system.support import BaseWords, Held, Support
+from rockframe.units import NOT_NEGATIVE, POSITIVE, UNIT_INTERVAL, Measure, Unit
+
+__all__ = [
+    "CONTACTS",
+    "CORNER_GUARDS",
+    "NOT_NEGATIVE",
+    "POSITIVE",
+    "SILENT",
+    "TIME",
+    "UNIT_INTERVAL",
+    "Base",
+    "BaseForce",
+    "BaseLine",
+    "BaseNumbers",
+    "BaseWords",
+    "Bed",
+    "BedSupport",
+    "Body",
+    "Choice",
+    "Column",
+    "Component",
+    "DampingRatio",
+    "EndEvent",
+    "EventKind",
+    "Guards",
+    "Held",
+    "Load",
+    "Measure",
+    "NumericSupport",
+    "OneOf",
+    "OwnBase",
+    "PadSupport",
+    "Pads",
+    "Parameter",
+    "Ratio",
+    "Support",
+    "Text",
+    "Unit",
+    "Variable",
+    "Vector",
+    "bed_under",
+    "inlined",
+    "kernel",
+    "on_pads",
+    "pads_under",
+    "sunk_pads",
+]
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -1,0 +1,523 @@
+"""A base of a user's own, from the example's file: all that holds for parts holds for it."""
+
+import importlib
+import json
+import os
+import subprocess
+import sys
+from contextlib import contextmanager
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+from own_example import FILE, NAME, example
+
+import rockframe as rf
+from rockframe import extension as ext
+from rockframe.compiled import store
+from rockframe.components import component_from_dict
+from rockframe.results.schema import SCHEMA
+from rockframe.system import slots
+
+BLOCK = rf.Block(width="1 m", height="4 m", mass="10 t")
+CAP = rf.CushionCap(height="0.5 m", mass="4 t")
+SOIL = rf.WinklerSoil(stiffness="20 MPa", damping_ratio=0.2)
+GIVEN = {"frequency_ratio": 15, "damping_ratio": 0.05, "strength": 0.6, "hardening": 0.1}
+PULSE = rf.GroundMotion.sine_pulse(amplitude="-4 m/s^2", frequency="1 Hz")
+SCENES = {
+    "alone": ((), {}),
+    "coupled": ((CAP, SOIL), {"coupling": "coupled"}),
+    "cascade": ((CAP, SOIL), {"coupling": "cascade"}),
+}
+SETS = ("left_set", "right_set")
+every_scene = pytest.mark.parametrize("scene", SCENES)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def yielding():
+    """Give the module of the example, its base registered."""
+    with example() as module:
+        yield module
+
+
+@pytest.fixture
+def pads(yielding):
+    return yielding.YieldingPads(**GIVEN)
+
+
+@pytest.fixture
+def system(pads):
+    return rf.System(BLOCK, pads)
+
+
+@pytest.fixture
+def response(system):
+    return system.simulate(PULSE, duration="2.5 s", outputs="energy")
+
+
+def in_scene(pads, scene, **options):
+    parts, coupling = SCENES[scene]
+    return rf.System(BLOCK, pads, *parts, **coupling, **options)
+
+
+def noise(sign=1.0):
+    """A rough motion, or its mirror image."""
+    rng = np.random.default_rng(12)
+    across, upwards = (np.convolve(rng.normal(size=100), np.ones(5) / 5, "same") for _ in "xy")
+    return rf.GroundMotion.from_arrays(
+        (sign * 6.0 * across, "m/s^2"), "0.02 s", vertical=(3.0 * upwards, "m/s^2")
+    )
+
+
+class TestWords:
+    def test_the_model_and_its_numbers_are_told(self, system):
+        text = system.describe()
+        assert text.startswith("Model: yielding pads\n")
+        assert repr(system.parts.pads) in text
+        strength = 0.6 * 1e4 * 9.80665
+        assert f"strength of one pad                {strength:.6g} N" in text
+        assert "the set z grows by (1 - r) u'" in text
+
+    @every_scene
+    def test_they_are_told_in_a_stack(self, pads, scene):
+        assert "strength of one pad" in in_scene(pads, scene).describe()
+
+    def test_the_file_is_short(self):
+        lines = FILE.read_text(encoding="utf-8").splitlines()
+        assert sum(bool(line.strip()) for line in lines) < 200
+
+
+class TestComponent:
+    def test_equality_and_hash(self, yielding, pads):
+        same = yielding.YieldingPads(**GIVEN)
+        assert pads == same
+        assert hash(pads) == hash(same)
+        for name, value in GIVEN.items():
+            assert pads != pads.replace(**{name: 1.01 * value})
+        assert rf.System(BLOCK, pads) == rf.System(same, BLOCK)
+
+    def test_replace(self, pads):
+        stronger = pads.replace(strength=0.9)
+        assert stronger.si.strength == 0.9
+        assert stronger.si.hardening == pads.si.hardening
+        assert pads.si.strength == GIVEN["strength"]
+
+    def test_it_comes_back_from_a_description(self, pads):
+        description = json.loads(json.dumps(pads.to_dict()))
+        assert description == {"type": "YieldingPads", **GIVEN}
+        assert component_from_dict(description) == pads
+        assert type(pads).from_dict(description) == pads
+
+    @every_scene
+    def test_a_system_comes_back_from_a_description(self, pads, scene):
+        system = in_scene(pads, scene)
+        assert rf.System.from_dict(json.loads(json.dumps(system.to_dict()))) == system
+
+    @pytest.mark.parametrize("strength", [0.5, 0.2])
+    @every_scene
+    def test_pads_too_weak_for_the_weight_are_refused(self, pads, scene, strength):
+        weak = pads.replace(strength=strength)
+        with pytest.raises(rf.AssemblyError, match=rf"strength above 0\.5, not {strength:g}"):
+            in_scene(weak, scene)
+
+    @pytest.mark.parametrize("changed", [{"strength": 0.0}, {"hardening": 0.0}, {"hardening": 1.1}])
+    def test_values_out_of_range_are_refused(self, pads, changed):
+        with pytest.raises(rf.ComponentError, match=next(iter(changed))):
+            pads.replace(**changed)
+
+
+class TestDataset:
+    def test_its_own_histories_are_labelled(self, response):
+        for side in ("left", "right"):
+            history = response[f"{side}_set"]
+            assert history.dims == ("time",)
+            assert history.dtype == "float64"
+            assert history.attrs == {"units": "m", "long_name": f"plastic set of the {side} pad"}
+            assert history.values[0] == 0.0
+            assert history.values[-1] > 0.0
+            assert (np.diff(history.values) >= 0.0).all()
+        assert response.attrs["model"] == "yielding pads"
+
+    def test_netcdf_and_back(self, response, system, tmp_path):
+        file = tmp_path / "response.nc"
+        response.to_netcdf(file)
+        with xr.open_dataset(file) as read:
+            for name in (*SETS, "rotation", "left_reaction"):
+                np.testing.assert_array_equal(read[name], response[name])
+                assert read[name].attrs == response[name].attrs
+            again = rf.System.from_dataset(read)
+        assert again.parts.pads == system.parts.pads
+        assert again.parts.block == BLOCK
+        assert again.motion == PULSE
+        repeated = again.simulate(duration="2.5 s", outputs="energy")
+        for name in response.variables:
+            np.testing.assert_array_equal(repeated[name], response[name], err_msg=name)
+
+    def test_a_run_goes_on_with_its_sets(self, system, response):
+        first = system.simulate(PULSE, duration="1.5 s")
+        rest = system.simulate(initial=first, duration="1 s")
+        for name in SETS:
+            assert rest[name].values[0] == first[name].values[-1] > 0.0
+            assert rest[name].values[-1] == pytest.approx(response[name].values[-1], rel=1e-9)
+
+
+class TestLadder:
+    def test_two_pads_come_before_yielding_pads(self, system):
+        assert list(rf.model_ladder(system)) == [
+            "rigid ground, small rotations",
+            "rigid ground",
+            "two pads, small rotations",
+            "two pads",
+            "YieldingPads, small rotations",
+            "YieldingPads",
+        ]
+
+    def test_in_a_stack_too(self, pads):
+        names = list(rf.model_ladder(in_scene(pads, "coupled")))
+        for kind in ("by cascade", "coupled"):
+            elastic, own = (
+                next(i for i, name in enumerate(names) if name.startswith(who) and kind in name)
+                for who in ("pads, cap", "YieldingPads, cap")
+            )
+            assert elastic < own
+        assert names[-1] == "YieldingPads, cap and soil coupled"
+
+    def test_tradeoff_tells_what_yielding_changes(self, system):
+        study = rf.tradeoff(
+            system, PULSE, models=["two pads", "YieldingPads"], accuracies="standard", repeats=1,
+            duration="2 s",
+        )  # fmt: skip
+        assert study.model.values.tolist() == ["two pads", "YieldingPads"]
+        errors = study.peak_error.values[:, 0]
+        assert errors[0] > 0.01
+        assert errors[1] < 1e-6
+
+
+class TestMechanics:
+    @every_scene
+    def test_energy_balances_while_pads_yield(self, pads, scene):
+        pads = pads.replace(strength=0.52)
+        response = in_scene(pads, scene).simulate(
+            noise(), duration="2 s", accuracy="reference", outputs="energy"
+        )
+        for name in SETS:
+            assert response[name].values[-1] > 1e-3
+        assert float(response.energy_residual) <= 1e-8
+
+    @every_scene
+    def test_a_mirrored_motion_gives_mirrored_histories(self, pads, scene):
+        """Bit for bit on pads alone; the moments of soil are rounded otherwise on either side."""
+        system = in_scene(pads, scene)
+        rounding = 0.0 if scene == "alone" else 1e-12
+        one, other = (system.simulate(noise(sign), duration="2 s") for sign in (1.0, -1.0))
+        exchanged = {
+            f"{side}_{what}": f"{opposite}_{what}"
+            for what in ("set", "reaction")
+            for side, opposite in (("left", "right"), ("right", "left"))
+        }
+        turned = ("rotation", "horizontal_displacement", "base_shear")
+        for name, opposite, sign in [
+            *((name, opposite, 1.0) for name, opposite in exchanged.items()),
+            *((name, name, -1.0) for name in turned),
+        ]:
+            mine, theirs = one[name].values, sign * other[opposite].values
+            largest = rounding * np.abs(mine).max()
+            np.testing.assert_allclose(mine, theirs, rtol=0.0, atol=largest, err_msg=name)
+        assert one.left_set.values[-1] > 0.0
+        assert one.left_set.values[-1] != one.right_set.values[-1]
+
+    @every_scene
+    @pytest.mark.parametrize("changed", [{"strength": 1e6}, {"hardening": 1.0}])
+    def test_pads_that_cannot_yield_are_elastic(self, pads, scene, changed):
+        pads = pads.replace(**changed)
+        motion = noise()
+        ours = in_scene(pads, scene).simulate(motion, duration="2 s")
+        elastic = in_scene(*pads.simpler(), scene).simulate(motion, duration="2 s")
+        difference = np.abs(ours.rotation - elastic.rotation).max()
+        assert difference <= 1e-12 * float(elastic.overturning_angle)
+        assert int(ours.impact_count) == int(elastic.impact_count)
+        for name in SETS:
+            assert (ours[name] == 0.0).all()
+
+    def test_energy_balances_with_landings_on_a_ground_of_ones_own(self, pads):
+        """Stage 1 lands on pads under the cap; its energies are those of a larger mass."""
+        with as_before():
+            rf.register(Stilts)
+            system = rf.System(
+                BLOCK, *pads.simpler(), CAP, Stilts(frequency_ratio=10), coupling="cascade"
+            )
+            response = system.simulate(
+                rf.GroundMotion.sine_pulse(amplitude="-2 m/s^2", frequency="1 Hz"),
+                duration="2 s",
+                accuracy="reference",
+            )
+        assert (response.soil_contact_state != 0).any()
+        assert float(response.energy_residual) <= 1e-8
+
+    def test_a_start_beyond_the_strength_is_refused(self, system):
+        for start in {"rotation": "0.03 rad"}, {"vertical_displacement": "-50 mm"}:
+            with pytest.raises(rf.AssemblyError, match="starts in equilibrium, before any yields"):
+                system.simulate(initial=rf.InitialState(**start), duration="1 s")
+
+    def test_yielding_follows_its_line(self, system):
+        """While a pad yields, its spring's force is strength + r k z/(1 - r)."""
+        quiet = system.parts.pads.replace(damping_ratio=0.0)
+        response = rf.System(BLOCK, quiet).simulate(
+            PULSE, duration="1 s", output_step="1 ms", accuracy="reference"
+        )
+        weight = 1e4 * 9.80665
+        stiffness = 0.5 * weight / float(rf.System(BLOCK, quiet).equilibrium().pad_settlement)
+        for side in ("left", "right"):
+            plastic = response[f"{side}_set"].values
+            line = 0.6 * weight + 0.1 * stiffness * plastic / 0.9
+            force = response[f"{side}_reaction"].values
+            assert (force <= line + 1e-8 * weight).all()
+            grows = np.flatnonzero((np.diff(plastic[:-1]) > 0.0) & (np.diff(plastic[1:]) > 0.0))
+            assert grows.size > 10
+            np.testing.assert_allclose(force[grows + 1], line[grows + 1], rtol=1e-8)
+
+
+PLAIN = f"""
+import importlib.util, json, sys
+import rockframe as rf
+
+spec = importlib.util.spec_from_file_location({NAME!r}, {str(FILE)!r})
+module = importlib.util.module_from_spec(spec)
+sys.modules[{NAME!r}] = module
+spec.loader.exec_module(module)
+system = rf.System.from_dict(json.loads(sys.argv[1]))
+response = system.simulate(duration="0.8 s")
+print(json.dumps([float(response[name][-1]) for name in ("rotation", "left_set", "right_set")]
+                 + [float(response.peak_rotation)]))
+"""
+
+
+@pytest.mark.skipif(
+    os.environ.get("ROCKFRAME_COMPILE") == "0", reason="this run does without compilation"
+)
+@every_scene
+def test_compiled_and_plain_agree(pads, scene):
+    pytest.importorskip("numba")
+    parts, coupling = SCENES[scene]
+    system = rf.System(BLOCK, pads, *parts, PULSE, **coupling)
+    response = system.simulate(duration="0.8 s")
+    compiled = [float(response[name][-1]) for name in ("rotation", *SETS)]
+    compiled.append(float(response.peak_rotation))
+    done = subprocess.run(
+        [sys.executable, "-c", PLAIN, json.dumps(system.to_dict())],
+        env=os.environ | {"ROCKFRAME_COMPILE": "0"},
+        check=True,
+        capture_output=True,
+        text=True,
+    )
+    assert max(compiled[1:3]) > 0.0
+    np.testing.assert_allclose(compiled, json.loads(done.stdout), rtol=1e-12, atol=1e-15)
+
+
+def test_code_is_kept_for_each_name_of_a_module(tmp_path, monkeypatch):
+    """As for a script that is run, and then imported; numba looks for the module by its name."""
+    monkeypatch.setenv("ROCKFRAME_CACHE_DIR", str(tmp_path / "code"))
+    monkeypatch.syspath_prepend(tmp_path)
+    text = (
+        "from typing import NamedTuple\n\n"
+        "from rockframe.compiled import kernel\n\n\n"
+        "class Law(NamedTuple):\n"
+        "    slope: float\n\n"
+        "    @kernel\n"
+        "    def twice(self) -> float:\n"
+        "        return 2.0 * self.slope\n"
+    )
+    files = []
+    for name in ("law_as_one", "law_as_another"):
+        (tmp_path / f"{name}.py").write_text(text)
+        law = importlib.import_module(name).Law
+        files.append(store.file_of(as_before, "as is", [law]))
+    assert files[0] != files[1]
+
+
+@contextmanager
+def as_before():
+    """Take back all registrations at the end."""
+    rows, kinds = dict(SCHEMA), dict(slots._KINDS)
+    try:
+        yield
+    finally:
+        for table, was in ((SCHEMA, rows), (slots._KINDS, kinds)):
+            table.clear()
+            table.update(was)
+
+
+class Bare(ext.OwnBase):
+    """A base that does not say how it carries a body."""
+
+    slot = "pads"
+
+
+class Roof(ext.OwnBase):
+    """A base for a place that is none."""
+
+    slot = "roof"
+
+    def support(self, load):
+        return ext.pads_under(rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1), load)
+
+
+class Copied(ext.OwnBase):
+    """Elastic pads, by the way of users."""
+
+    slot = "pads"
+    frequency_ratio = ext.Ratio(ext.POSITIVE, doc="Vertical over rocking frequency.")
+
+    def support(self, load):
+        ratio = self.si.frequency_ratio
+        return ext.pads_under(rf.TwoSpringSupport(frequency_ratio=ratio, damping_ratio=0.1), load)
+
+
+class Stilts(ext.OwnBase):
+    """Pads in the place of soil."""
+
+    slot = "soil"
+    frequency_ratio = ext.Ratio(ext.POSITIVE, doc="Vertical over rocking frequency.")
+
+    def support(self, load):
+        ratio = self.si.frequency_ratio
+        pads = ext.pads_under(rf.TwoSpringSupport(frequency_ratio=ratio, damping_ratio=0.1), load)
+        return StiltSupport(load, pads.stiffness, pads.damping, pads.restitution)
+
+
+class StiltSupport(ext.PadSupport):
+    """Pads that show their reactions by other names than those under the block."""
+
+    def law(self, body, mass, load_mass):
+        names = "soil_reaction", "contact_length"  # for want of names of their own
+        columns = tuple(ext.Column(name, per_mass=True) for name in names)
+        return replace(super().law(body, mass, load_mass), columns=columns)
+
+
+class Doubled(rf.TwoSpringSupport):
+    """Pads with a support of their own that nobody has registered."""
+
+    def support(self, load):
+        return ext.pads_under(self.replace(frequency_ratio=40), load)
+
+
+def column(**changed):
+    given = {"name": "wear", "dims": ext.TIME, "unit": ext.Unit.METRE, "long_name": "wear of it"}
+    return ext.Variable(**{**given, **changed})
+
+
+class TestRegistration:
+    @pytest.fixture(autouse=True)
+    def restored(self):
+        with as_before():
+            yield
+
+    def test_a_registered_base_stands_in_scenes(self):
+        rf.register(Copied, columns=[column()])
+        assert SCHEMA["wear"] == column()
+        own = rf.System(BLOCK, Copied(frequency_ratio=20))
+        elastic = rf.System(BLOCK, rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1))
+        one, other = (each.simulate(PULSE, duration="1 s") for each in (own, elastic))
+        np.testing.assert_array_equal(one.rotation, other.rotation)
+        rf.register(Copied, columns=[column()])  # once more, as when a notebook's cell is run again
+
+    def test_one_that_is_not_registered_is_no_part(self):
+        with pytest.raises(rf.AssemblyError, match=r"Copied\(frequency_ratio=20\.0\) is not a par"):
+            rf.System(BLOCK, Copied(frequency_ratio=20))
+
+    @pytest.mark.parametrize("kind", [rf.TwoSpringSupport, rf.Block, int, 3, "pads", None])
+    def test_what_is_no_base_is_refused(self, kind):
+        with pytest.raises(rf.ComponentError, match="a class derived from OwnBase, got"):
+            rf.register(kind)
+
+    def test_an_instance_is_refused(self):
+        with pytest.raises(rf.ComponentError, match="a class derived from OwnBase, got Copied"):
+            rf.register(Copied(frequency_ratio=20))
+
+    def test_a_wrong_slot_is_refused(self):
+        with pytest.raises(
+            rf.ComponentError, match=r"Roof\.slot must be 'pads' or 'soil', got 'roof'"
+        ):
+            rf.register(Roof)
+
+    def test_a_missing_support_is_refused(self):
+        with pytest.raises(rf.ComponentError, match=r"Bare has no method support\(load\)"):
+            rf.register(Bare)
+
+    @pytest.mark.parametrize(
+        ("wrong", "words"),
+        [
+            ("wear", "columns must be Variables, got 'wear'"),
+            (column(name="the wear"), "a column is called 'the wear'"),
+            (column(dims=("event",)), r"'wear' needs the dimensions \('time',\), got \('event',\)"),
+            (column(dims=()), r"'wear' needs the dimensions \('time',\), got \(\)"),
+            (column(name="rotation"), "there is a variable 'rotation' of another meaning"),
+            (column(name="left_set"), "there is a variable 'left_set' of another meaning"),
+            (column(unit="metros"), "'wear' has the unit 'metros', which pint cannot read"),
+        ],
+    )
+    def test_wrong_columns_are_refused(self, wrong, words):
+        with pytest.raises(rf.ComponentError, match=words):
+            rf.register(Copied, columns=[wrong])
+
+    def test_all_faults_are_told_and_nothing_is_registered(self):
+        class Nowhere(ext.OwnBase):
+            """Neither a slot nor a support."""
+
+        rows, kinds = dict(SCHEMA), dict(slots._KINDS)
+        with pytest.raises(rf.ComponentError) as caught:
+            rf.register(
+                Nowhere,
+                columns=[column(), column(name="2nd", dims=("mode",), unit="metros"), None],
+            )
+        told = str(caught.value)
+        assert told.startswith("register: ")
+        for fault in ("Nowhere.slot", "no method support", "'2nd'", "('mode',)", "metros", "None"):
+            assert fault in told
+        assert rows == SCHEMA
+        assert kinds == slots._KINDS
+
+    def test_a_support_that_is_not_registered_is_refused(self):
+        with pytest.raises(rf.AssemblyError, match="Doubled carries a body in its own way, but is"):
+            rf.System(BLOCK, Doubled(frequency_ratio=20, damping_ratio=0.1))
+
+    def test_a_subclass_with_another_support_needs_its_own_registration(self, yielding):
+        class SofterPads(yielding.YieldingPads):
+            """Pads of another stiffness."""
+
+            def support(self, load):
+                return yielding.YieldingPads(**{**GIVEN, "frequency_ratio": 10}).support(load)
+
+        with pytest.raises(rf.AssemblyError, match=r"call rockframe\.register\(SofterPads\) first"):
+            rf.System(BLOCK, SofterPads(**GIVEN))
+        rf.register(SofterPads)
+        assert rf.System(BLOCK, SofterPads(**GIVEN)).setting.settlement == pytest.approx(
+            rf.System(BLOCK, yielding.YieldingPads(**GIVEN)).setting.settlement * 2.25
+        )
+
+    def test_a_history_that_nobody_registered_is_told(self, pads):
+        for name in SETS:
+            del SCHEMA[name]
+        with pytest.raises(rf.SchemaError, match="'left_set' is not in the schema of results"):
+            rf.System(BLOCK, pads).simulate(PULSE, duration="0.1 s")
+
+    def test_bases_of_a_stack_that_show_the_same_are_refused(self, pads):
+        class Twins(Stilts):
+            """Pads under the cap that show what those under the block show."""
+
+            def support(self, load):
+                return ext.pads_under(*pads.simpler(), load)
+
+        rf.register(Twins)
+        parts = BLOCK, *pads.simpler(), CAP, Twins(frequency_ratio=10)
+        with pytest.raises(rf.AssemblyError, match="both show left_reaction and right_reaction"):
+            rf.System(*parts)
+
+    def test_who_is_not_registered_is_told(self):
+        with pytest.raises(rf.AssemblyError, match=r"call rockframe.register\(Copied\) first"):
+            rf.System(BLOCK, Copied(frequency_ratio=20))
+        with pytest.raises(rf.AssemblyError, match=r"derive it from .*OwnBase, and"):
+            rf.System(BLOCK, Doubled(frequency_ratio=20, damping_ratio=0.1))
+        with pytest.raises(rf.ComponentError, match="two columns are called 'wear'"):
+            rf.register(Copied, columns=[column(), column(long_name="other wear")])
