@@ -6,7 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 import rockframe as rf
-from rockframe.dynamics.protocol import Start
+from rockframe.dynamics.protocol import Ground, Start
+
+STILL = Ground(0.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -88,13 +90,10 @@ def at_rest(model, rotation, height):
 
 def accelerations(model, mode, state):
     """Call the equations of a model as plain Python; the ground stands still."""
-    out = np.zeros(len(state) // 2 + 2)
-    model.accelerate(int(mode), state, 0.0, 0.0, model.parameters, out)
-    return out[:-2]
+    system = model.system
+    return np.array(system.accelerate(int(mode), state, STILL)[: system.coordinates()])
 
 
 def energies(model, mode, state):
     """Kinetic, gravity and elastic energy, and elastic less that at rest, per unit mass."""
-    out = np.zeros(4)
-    model.energy(int(mode), state, model.parameters, out)
-    return out
+    return model.system.energies(int(mode), state)

@@ -6,22 +6,23 @@ import math
 import numpy as np
 import pytest
 
-from rockframe.dynamics import bed as b
-from rockframe.dynamics import winkler as w
-from rockframe.dynamics.kinematics import sine_cosine_rise
-from rockframe.system.options import Restraint
-from rockframe.system.restraints import restraint_code
+from rockframe.dynamics.alone_model import alone, body_of
+from rockframe.dynamics.base_numbers import bed_under
+from rockframe.dynamics.bed import END, Bed, Ends, end_of
+from rockframe.dynamics.body import BaseLine
+from rockframe.dynamics.protocol import Ground, Start
+from rockframe.dynamics.restraint import CENTRE
 
 pytestmark = pytest.mark.analytical
 
 SETTLEMENT, STIFFNESS, WIDTH, HEIGHT = 0.013, 710.0, 2.6, 4.1
 POINTS, WEIGHTS = np.polynomial.legendre.leggauss(3)
 DAMPINGS = (0.0, 45.0)
-SEPARATIONS = (0.0, 1.0)  # of `Bed.by_pressure`
+SEPARATIONS = (False, True)  # of `Bed.by_pressure`
 
 
 def make_bed(damping, by_pressure):
-    return b.Bed(STIFFNESS, damping, SETTLEMENT, by_pressure)
+    return Bed(STIFFNESS, damping, SETTLEMENT, WIDTH, by_pressure)
 
 
 def states(count, seed):
@@ -39,16 +40,29 @@ def states(count, seed):
             v[1] = v[0]
         if i % 13 == 0:
             v[:] = 0.0
-        yield b.Ends(*map(float, (*u, *v)))
+        yield Ends(*map(float, (*u, *v)))
 
 
 def modes(ends):
     """Give the states of the ends that belong to a state of the base."""
-    return int(b.end_state(ends.u_left)), int(b.end_state(ends.u_right))
+    return end_of(ends.u_left), end_of(ends.u_right)
+
+
+def contact_of(ends):
+    left, right = modes(ends)
+    return left + END * right
+
+
+def line_of(ends, bed, lever_left=0.0, lever_right=0.0):
+    """Give the base line that presses the bed so."""
+    heights = bed.settlement - ends.u_left, bed.settlement - ends.u_right
+    return BaseLine(*heights, ends.v_left, ends.v_right, lever_left, lever_right)
 
 
 def resultants(ends, bed, lever_left, lever_right):
-    return b.bed_resultants(*modes(ends), 0, ends, bed, WIDTH, lever_left, lever_right)
+    """Give force, moment and power; heights count from the unloaded bed, to keep their digits."""
+    bed = bed._replace(settlement=0.0)
+    return bed.force(contact_of(ends), line_of(ends, bed, lever_left, lever_right), ())
 
 
 def by_quadrature(ends, bed, lever_left, lever_right):
@@ -61,7 +75,7 @@ def by_quadrature(ends, bed, lever_left, lever_right):
     for line in (u, p):
         if line(0.0) * line(1.0) < 0.0:
             kinks.add(line(0.0) / (line(0.0) - line(1.0)))
-    force = moment = burnt = stored = length = 0.0
+    force = moment = dissipated = stored = length = 0.0
     edges = sorted(kinks)
     for start, end in itertools.pairwise(edges):
         middle = 0.5 * (start + end)
@@ -71,14 +85,14 @@ def by_quadrature(ends, bed, lever_left, lever_right):
         ds = 0.5 * (end - start) * WIDTH * WEIGHTS
         stored += np.sum(0.5 * bed.stiffness * u(s) ** 2 * ds)
         if bed.by_pressure and p(middle) <= 0.0:
-            # held back by its own dashpot, the spring relaxes: all it gives is burnt
-            burnt += np.sum(bed.stiffness * u(s) * v(s) * ds)
+            # held back by its own dashpot, the spring relaxes: all it gives is dissipated
+            dissipated += np.sum(bed.stiffness * u(s) * v(s) * ds)
             continue
         length += WIDTH * (end - start)
         force += np.sum(p(s) * ds)
         moment += np.sum(p(s) * lever(s) * ds)
-        burnt += np.sum(bed.damping * v(s) ** 2 * ds)
-    return force, moment, burnt, stored, length
+        dissipated += np.sum(bed.damping * v(s) ** 2 * ds)
+    return force, moment, dissipated, stored, length
 
 
 def scales(ends, bed):
@@ -95,39 +109,42 @@ def test_resultants_are_exact(damping, by_pressure):
     seen = set()
     for ends in states(3000, seed=1):
         levers = rng.normal(size=2)
-        force, moment, burnt = resultants(ends, bed, *levers)
+        force, moment, dissipated = resultants(ends, bed, *levers)
         exact = by_quadrature(ends, bed, *levers)
         size, power = scales(ends, bed)
         assert abs(force - exact[0]) <= 1e-12 * size
         assert abs(moment - exact[1]) <= 1e-12 * size * np.abs(levers).max()
-        assert abs(burnt - exact[2]) <= 1e-12 * power
-        stored, change = b.bed_energy(ends, bed, WIDTH)
-        energy = WIDTH * STIFFNESS * max(ends.u_left**2, ends.u_right**2)
-        assert abs(stored - exact[3]) <= 1e-12 * energy
-        at_rest = 0.5 * WIDTH * STIFFNESS * SETTLEMENT**2
-        assert abs(change - (exact[3] - at_rest)) <= 1e-12 * (energy + at_rest)
-        start, end = b.bearing_part(*modes(ends), 0, ends, bed)
+        assert abs(dissipated - exact[2]) <= 1e-12 * power
+        start, end = bed.bearing_part(contact_of(ends), ends)
         assert 0.0 <= start <= end <= 1.0
         assert abs(WIDTH * (end - start) - exact[4]) <= 1e-12 * WIDTH
+        line = line_of(ends, bed)
+        stored, change = bed.energy(line, ())
+        pressed = bed.ends(line)  # as far as the heights tell it
+        exact_energy = by_quadrature(pressed, bed, *levers)[3]
+        energy = WIDTH * STIFFNESS * max(pressed.u_left**2, pressed.u_right**2)
+        assert abs(stored - exact_energy) <= 1e-12 * energy
+        at_rest = 0.5 * WIDTH * STIFFNESS * SETTLEMENT**2
+        assert abs(change - (exact_energy - at_rest)) <= 1e-12 * (energy + at_rest)
         if by_pressure:
             assert force >= -1e-15 * size
-            assert burnt >= -1e-15 * power
+            assert dissipated >= -1e-15 * power
         deep = max(ends.u_left, ends.u_right) > 1e-6 * SETTLEMENT
         seen.add((*modes(ends), start == end and deep))
     assert {mode[:2] for mode in seen} == {(0, 0), (0, 1), (1, 0), (1, 1)}
     # down without bearing: it rises faster than the bed can follow
     tears = any(nothing for left, right, nothing in seen if not left or not right)
-    assert tears == (by_pressure == 1.0 and damping > 0.0)
+    assert tears == (by_pressure and damping > 0.0)
 
 
 @pytest.mark.parametrize("by_pressure", SEPARATIONS)
 @pytest.mark.parametrize("damping", DAMPINGS)
 def test_work_of_the_bed_is_what_its_springs_and_dashpots_take(damping, by_pressure):
-    """dE/dt + burnt + power on the base = 0; the springs' power by finite differences."""
+    """dE/dt + dissipated + power on the base = 0; the springs' power by finite differences."""
     bed = make_bed(damping, by_pressure)
     for ends in states(1500, seed=2):
         # the base's motion at its left and right end, as its middle's and a rotation's
-        force, moment, burnt = resultants(ends, bed, 0.5 * WIDTH, -0.5 * WIDTH)
+        force, moment, dissipated = resultants(ends, bed, 0.5 * WIDTH, -0.5 * WIDTH)
         rise = 0.5 * (ends.v_left + ends.v_right)
         spin = (ends.v_left - ends.v_right) / WIDTH
         speed = max(abs(ends.v_left), abs(ends.v_right))
@@ -137,43 +154,41 @@ def test_work_of_the_bed_is_what_its_springs_and_dashpots_take(damping, by_press
 
         def stored(t, ends=ends):
             u_left, u_right = ends.u_left - t * ends.v_left, ends.u_right - t * ends.v_right
-            moved = b.Ends(u_left, u_right, ends.v_left, ends.v_right)
-            return b.bed_energy(moved, bed, WIDTH)[1]
+            moved = Ends(u_left, u_right, ends.v_left, ends.v_right)
+            return bed.energy(line_of(moved, bed), ())[1]
 
         rate = (stored(step) - stored(-step)) / (2.0 * step)
         _, power = scales(ends, bed)
         noise = 1e-14 * WIDTH * STIFFNESS * SETTLEMENT**2 / step
-        assert abs(rate + burnt + force * rise + moment * spin) <= 1e-8 * power + noise
+        assert abs(rate + dissipated + force * rise + moment * spin) <= 1e-8 * power + noise
 
 
 # special states of a body ---------------------------------------------------------------------
 
 
-def body(alpha, y, spin, speed, *, small, damping=45.0, by_pressure=0.0, rule=Restraint.CENTRE):
-    """Give a model's parameters, its state and the mode that belongs to it."""
-    from rockframe.dynamics.winkler_model import winkler
-
-    model = winkler(
+def shape(*, small):
+    return body_of(
         half_width=0.5 * WIDTH,
-        centre_height=HEIGHT,
+        height=HEIGHT,
         inertia=7.0,
-        mass=1.0,
-        stiffness=STIFFNESS,
-        damping=damping,
-        by_pressure=bool(by_pressure),
-        restraint=restraint_code(rule),
+        restraint=CENTRE,
         small_rotation=small,
         gravity=9.81,
     )
-    from rockframe.dynamics.protocol import Start
 
+
+def body(alpha, y, spin, speed, *, small, damping=45.0, by_pressure=False):
+    """Give a model, its state and the mode that belongs to it."""
+    block = shape(small=small)
+    bed = bed_under(block, stiffness=STIFFNESS, damping=damping, by_pressure=by_pressure)
+    model = alone("Winkler", block, bed, mass=1.0)
     mode, state, _ = model.initial(Start(alpha, spin, y, speed))
     return model, mode, state
 
 
 def by_strips(model, state, alpha, small, *, by_pressure, damping):
     """The acceleration of a body from pressures along its base, of the theory's definition."""
-    p = model.parameters
+    settlement = model.system.part.base.settlement
     sine, cosine = (alpha, 1.0) if small else (math.sin(alpha), math.cos(alpha))
     rise = HEIGHT * (0.5 * alpha**2 if small else 2.0 * math.sin(0.5 * alpha) ** 2)
     spin, speed = state[3], state[4]
@@ -186,10 +201,10 @@ def by_strips(model, state, alpha, small, *, by_pressure, damping):
         return speed + HEIGHT * sine * spin - s * cosine * spin
 
     def p_of(s):
-        return STIFFNESS * (p[w.SETTLEMENT] - w_of(s)) - damping * rate_of(s)
+        return STIFFNESS * (settlement - w_of(s)) - damping * rate_of(s)
 
     edges = {-half, half}
-    for line in (lambda s: p[w.SETTLEMENT] - w_of(s), p_of):
+    for line in (lambda s: settlement - w_of(s), p_of):
         if line(-half) * line(half) < 0.0:
             edges.add(half * (line(-half) + line(half)) / (line(-half) - line(half)))
     edges = sorted(edges)
@@ -198,7 +213,7 @@ def by_strips(model, state, alpha, small, *, by_pressure, damping):
         s = 0.5 * (start + end) + 0.5 * (end - start) * POINTS
         ds = 0.5 * (end - start) * WEIGHTS
         middle = 0.5 * (start + end)
-        if w_of(middle) >= p[w.SETTLEMENT] or (by_pressure and p_of(middle) <= 0.0):
+        if w_of(middle) >= settlement or (by_pressure and p_of(middle) <= 0.0):
             continue
         force += np.sum(p_of(s) * ds)
         moment += np.sum(p_of(s) * (HEIGHT * sine - s * cosine) * ds)
@@ -217,8 +232,7 @@ def test_accelerations_of_a_body_are_those_of_its_pressures(alpha, by_pressure, 
         y = SETTLEMENT * rng.normal() * 2.0 - 0.5 * HEIGHT * alpha**2
         spin, speed = 0.3 * rng.normal(), 0.3 * rng.normal()
         model, mode, state = body(alpha, y, spin, speed, small=small, by_pressure=by_pressure)
-        out = np.zeros(5)
-        model.accelerate(mode, state, 0.4, -0.2, model.parameters, out)
+        out = model.system.accelerate(mode, state, Ground(0.4, -0.2))
         force, moment = by_strips(model, state, alpha, small, by_pressure=by_pressure, damping=45.0)
         gravity = 9.81
         size = 1e-12 * (abs(force) + gravity + STIFFNESS * WIDTH * (abs(y) + abs(alpha)))
@@ -235,12 +249,11 @@ def test_accelerations_of_a_body_are_those_of_its_pressures(alpha, by_pressure, 
 
 def test_the_resultants_are_continuous_through_the_level_base():
     """No division by the rotation: nothing blows up, nothing jumps, from either side."""
-    bed = make_bed(45.0, 0.0)
+    bed = make_bed(45.0, by_pressure=False)
     for level in (SETTLEMENT, 0.1 * SETTLEMENT, 1e-12):
-        base = b.bed_resultants(0, 0, 0, b.Ends(level, level, 0.1, 0.1), bed, WIDTH, 1.3, -1.3)
+        base = resultants(Ends(level, level, 0.1, 0.1), bed, 1.3, -1.3)
         for tilt in (1e-18, -1e-18, 1e-15, -1e-15, 5e-324):
-            ends = b.Ends(level + tilt, level - tilt, 0.1, 0.1)
-            near = b.bed_resultants(0, 0, 0, ends, bed, WIDTH, 1.3, -1.3)
+            near = resultants(Ends(level + tilt, level - tilt, 0.1, 0.1), bed, 1.3, -1.3)
             # k b^2 (2/3) tilt and rounding
             room = 1e-14 * WIDTH * (STIFFNESS * level + 4.5) + 2.0 * STIFFNESS * WIDTH * abs(tilt)
             np.testing.assert_allclose(near, base, atol=room)
@@ -251,30 +264,30 @@ def test_the_resultants_are_continuous_through_the_level_base():
 def test_a_base_that_grazes_the_bed_bears_nothing(by_pressure, tilt):
     bed = make_bed(0.0, by_pressure)
     for level in (0.0, -1e-15, -1e-300):
-        ends = b.Ends(level + tilt, level - tilt, 0.2, -0.1)
-        force, moment, burnt = resultants(ends, bed, 1.0, -1.0)
+        ends = Ends(level + tilt, level - tilt, 0.2, -0.1)
+        force, moment, dissipated = resultants(ends, bed, 1.0, -1.0)
         assert abs(force) <= 1e-14 * STIFFNESS * WIDTH
         assert abs(moment) <= 1e-14 * STIFFNESS * WIDTH
-        assert abs(burnt) <= 1e-14 * STIFFNESS * WIDTH
-        assert b.bed_energy(ends, bed, WIDTH)[0] <= 1e-25
+        assert abs(dissipated) <= 1e-14 * STIFFNESS * WIDTH
+        assert bed.energy(line_of(ends, bed), ())[0] <= 1e-25
 
 
 @pytest.mark.parametrize("by_pressure", SEPARATIONS)
 @pytest.mark.parametrize("damping", DAMPINGS)
-def test_in_flight_nothing_bears_burns_or_is_stored(damping, by_pressure):
+def test_in_flight_nothing_bears_dissipates_or_is_stored(damping, by_pressure):
     bed = make_bed(damping, by_pressure)
-    for ends in (b.Ends(-1e-300, -0.1, -3.0, -4.0), b.Ends(-0.2, -0.2, 1.0, 1.0)):
+    for ends in (Ends(-1e-300, -0.1, -3.0, -4.0), Ends(-0.2, -0.2, 1.0, 1.0)):
         assert resultants(ends, bed, 1.0, -1.0) == (0.0, 0.0, 0.0)
-        stored, change = b.bed_energy(ends, bed, WIDTH)
+        stored, change = bed.energy(line_of(ends, bed), ())
         assert stored == 0.0
         assert change == pytest.approx(-0.5 * STIFFNESS * WIDTH * SETTLEMENT**2, rel=1e-14)
-        assert b.airborne(*modes(ends))
+        assert not any(bed.is_held(contact_of(ends), left) for left in (True, False))
 
 
 def test_where_the_springs_alone_hold_both_rules_are_one():
     for ends in states(500, seed=4):
         one, other = (resultants(ends, make_bed(0.0, rule), 1.1, -1.2) for rule in SEPARATIONS)
-        size, power = scales(ends, make_bed(0.0, 0.0))
+        size, power = scales(ends, make_bed(0.0, by_pressure=False))
         np.testing.assert_allclose(one[:2], other[:2], atol=1e-14 * size)
         assert abs(one[2] - other[2]) <= 1e-14 * power
 
@@ -283,7 +296,7 @@ def test_where_the_springs_alone_hold_both_rules_are_one():
 def test_the_mirror_image_bears_the_mirror_image(by_pressure):
     bed = make_bed(45.0, by_pressure)
     for ends in states(500, seed=6):
-        turned = b.Ends(ends.u_right, ends.u_left, ends.v_right, ends.v_left)
+        turned = Ends(ends.u_right, ends.u_left, ends.v_right, ends.v_left)
         one = resultants(ends, bed, 1.1, -1.1)
         other = resultants(turned, bed, 1.1, -1.1)
         size, power = scales(ends, bed)
@@ -297,36 +310,40 @@ def test_the_mirror_image_bears_the_mirror_image(by_pressure):
 
 def test_guards_change_as_their_rates_say():
     rng = np.random.default_rng(8)
+    bed = make_bed(45.0, by_pressure=False)
     checked = 0
     for ends in states(1500, seed=9):
-        a_left, a_right = rng.normal(size=2)
-        left, right = modes(ends)
+        accelerations = rng.normal(size=2)
+        contact = contact_of(ends)
         speed = max(abs(ends.v_left), abs(ends.v_right), 1e-3)
         step = 1e-5 * SETTLEMENT / speed
 
-        def moved(t, ends=ends, a_left=a_left, a_right=a_right):
-            return b.Ends(
+        def moved(t, ends=ends, accelerations=accelerations):
+            a_left, a_right = accelerations
+            return Ends(
                 ends.u_left - ends.v_left * t - 0.5 * a_left * t * t,
                 ends.u_right - ends.v_right * t - 0.5 * a_right * t * t,
                 ends.v_left + a_left * t,
                 ends.v_right + a_right * t,
             )
 
-        values = b.bed_guards(left, right, ends, SETTLEMENT)
-        ahead, behind = (b.bed_guards(left, right, moved(t), SETTLEMENT) for t in (step, -step))
-        slopes = (np.array(ahead[:2]) - np.array(behind[:2])) / (2.0 * step)
         size = (speed + 1.0) / SETTLEMENT
-        np.testing.assert_allclose(slopes, values[2:], atol=1e-5 * size)
-        assert values[0] >= 0.0
-        assert values[1] >= 0.0
+        for left, acceleration in zip((True, False), accelerations, strict=True):
+            now, ahead, behind = (
+                bed.guards_of(contact, left, line_of(moved(t), bed), acceleration, ())
+                for t in (0.0, step, -step)
+            )
+            slope = (ahead.values[0] - behind.values[0]) / (2.0 * step)
+            np.testing.assert_allclose(slope, now.changes[0], atol=1e-5 * size)
+            assert now.values[0] >= 0.0
         checked += 1
     assert checked > 300
 
 
 def test_kinematics_at_small_and_finite_rotation_agree_to_second_order():
     for alpha in (1e-3, 1e-4):
-        finite = sine_cosine_rise(HEIGHT, 0.0, alpha)
-        small = sine_cosine_rise(HEIGHT, 1.0, alpha)
+        finite = shape(small=False).attitude(alpha)
+        small = shape(small=True).attitude(alpha)
         np.testing.assert_allclose(finite, small, atol=5.0 * alpha**2 * (alpha + 0.2))
 
 
@@ -339,7 +356,7 @@ def springs(ends, bed, levers, count):
     u = ends.u_left + s * (ends.u_right - ends.u_left)
     v = ends.v_left + s * (ends.v_right - ends.v_left)
     p = bed.stiffness * u - bed.damping * v
-    p = np.where((u > 0.0) & ((p > 0.0) | (bed.by_pressure == 0.0)), p, 0.0) * WIDTH / count
+    p = np.where((u > 0.0) & ((p > 0.0) | (not bed.by_pressure)), p, 0.0) * WIDTH / count
     return p.sum(), (p * (levers[0] + s * (levers[1] - levers[0]))).sum()
 
 
@@ -368,8 +385,8 @@ def test_many_springs_tend_to_the_bed(damping, order, by_pressure):
 
 def test_many_springs_under_a_whole_base_differ_in_the_moment_alone():
     """The midpoint rule is exact for the force; of b^3/3 it misses the share 1/N^2."""
-    bed = make_bed(45.0, 0.0)
-    ends = b.Ends(1.4 * SETTLEMENT, 0.6 * SETTLEMENT, 0.01, -0.02)
+    bed = make_bed(45.0, by_pressure=False)
+    ends = Ends(1.4 * SETTLEMENT, 0.6 * SETTLEMENT, 0.01, -0.02)
     force, moment, _ = resultants(ends, bed, 1.3, -1.3)
     for count in COUNTS:
         summed, turning = springs(ends, bed, (1.3, -1.3), count)

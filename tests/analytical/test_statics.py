@@ -8,7 +8,18 @@ from analytical.pads import Pads
 from analytical.soil import accelerations, at_rest, energies
 
 import rockframe as rf
+from rockframe.dynamics.bed import END
+from rockframe.dynamics.pads import CLEAR, CORNER
 from rockframe.dynamics.protocol import Start
+from rockframe.dynamics.stacked import (
+    COORDINATES,
+    HORIZONTAL,
+    LOWER,
+    LOWER_ROTATION,
+    LOWER_VERTICAL,
+    ROTATION,
+    VERTICAL,
+)
 
 pytestmark = pytest.mark.analytical
 
@@ -146,14 +157,14 @@ class Held:
         self.system = stack(name, rotation=rotation, restraint=rule)
         self.setting = self.system.setting
         self.state = held(self.system, angle)
-        cap, soil = self.setting.cap, self.setting.lower
+        cap, soil = self.setting.cap, self.setting.lower.support
         self.small = rotation == "small"
         self.phi = self.state.held_cap_rotation.item()
         self.psi = angle - self.phi
         left, right = self.state.held_left_reaction.item(), self.state.held_right_reaction.item()
         # the corner that bears more tells how far the block has sunk on its pads
         bears, side = (right, -1.0) if right >= left else (left, 1.0)
-        k = self.setting.upper.stiffness
+        k = self.setting.upper.support.stiffness
         level = 0.5 * M * GRAVITY / k - bears / k
         self.r = level - side * B * self.sine(self.psi) - H * self.versine(self.psi)
         # the end of the cap that bears: its pressure is that of a triangle or of a trapezium
@@ -203,7 +214,7 @@ class Held:
     def mass_matrix(self):
         q = np.array([self.rise, self.phi, self.r, self.psi], dtype=complex)
         total = np.zeros((4, 4))
-        cap, block = self.setting.cap, self.setting.upper.block
+        cap, block = self.setting.cap, self.setting.upper.support.load.body
         for body, mass in ((0, cap.mass), (1, M)):
             slopes = np.empty((2, 4))
             for i in range(4):
@@ -218,23 +229,20 @@ class Held:
     def moves(self):
         """Mode and state of the equations of motion, at rest in this place."""
         model = self.setting.compile()
-        from rockframe.dynamics import coupled_layout as c
-        from rockframe.dynamics.two_spring_switches import mode_of as block_mode_of
-        from rockframe.dynamics.winkler import mode_of as bed_mode_of
-
-        x = np.zeros(2 * c.COORDINATES)
-        x[c.CAP_VERTICAL], x[c.CAP_ROTATION] = self.rise, self.phi
-        x[c.NORMAL], x[c.ROTATION] = self.r, self.psi
-        x[c.ALONG] = self.block_pin + self.about(self.block_pin, H, self.psi)
-        rule = model.parameters[c.RESTRAINT]
+        system = model.system
+        x = np.zeros(2 * COORDINATES)
+        x[LOWER_VERTICAL], x[LOWER_ROTATION] = self.rise, self.phi
+        x[VERTICAL], x[ROTATION] = self.r, self.psi
+        x[HORIZONTAL] = self.block_pin + self.about(self.block_pin, H, self.psi)
         free = [
             int(self.state[f"held_{side}_reaction"].item() <= 0.0) for side in ("left", "right")
         ]
         whole = self.state.held_contact_length.item() >= 2.0 * self.setting.cap.half_width
         ends = [int(not whole and self.phi > 0.0), int(not whole and self.phi < 0.0)]
-        mode = block_mode_of(3 * free[0], 3 * free[1], self.psi, 0.0, rule)
-        mode += c.BLOCK_MODES * bed_mode_of(*ends, self.phi, 0.0, rule)
-        return model, int(mode), x
+        states = system.states_in(x)
+        block = system.upper.standing(CLEAR * free[0] + CORNER * CLEAR * free[1], states.upper)
+        cap = system.lower.standing(ends[0] + END * ends[1], states.lower)
+        return model, system.with_part(system.upper.number_of(block), LOWER, cap), x
 
 
 @pytest.mark.parametrize("rule", RULES)
@@ -245,7 +253,8 @@ def test_a_stack_moves_as_the_holding_couple_lets_it_go(name, rotation, rule):
     for angle in ANGLES:
         one = Held(name, angle, rotation, rule)
         model, mode, x = one.moves()
-        found = one.mass_matrix() @ accelerations(model, mode, x)[:4]
+        order = [LOWER_VERTICAL, LOWER_ROTATION, VERTICAL, ROTATION]
+        found = one.mass_matrix() @ accelerations(model, mode, x)[order]
         couple = one.state.restoring_moment.item()
         scale = np.array([one.weight, one.weight * H, one.weight, one.weight * H])
         np.testing.assert_allclose(
@@ -315,8 +324,8 @@ def test_a_stack_at_small_rotation_has_the_stiffnesses_of_pads_and_soil_in_a_row
 
 
 def _matrices(system):
-    block, cap = system.setting.upper.block, system.setting.cap
-    pads, soil = system.setting.upper.stiffness, system.setting.lower.stiffness
+    block, cap = system.setting.upper.support.load.body, system.setting.cap
+    pads, soil = system.setting.upper.support.stiffness, system.setting.lower.support.stiffness
     lifting = GRAVITY * (cap.mass * cap.half_height + block.mass * (2 * cap.half_height + H))
     k = np.zeros((4, 4))
     k[1, 1] = soil * cap.half_width**3 / 1.5 - lifting

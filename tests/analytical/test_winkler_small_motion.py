@@ -311,8 +311,8 @@ def linearised():
     potential += sp.integrate(sp.expand(k0 * (soft - ground) ** 2 / 2), (s, -bc, bc))
     rates = [sp.Matrix([w]).jacobian(q).dot(v) for w in corners]
     sinking = sp.Matrix([ground]).jacobian(q).dot(v)
-    burnt = sum(c * rate**2 / 2 for rate in rates)
-    burnt += sp.integrate(sp.expand(c0 * sinking**2 / 2), (s, -bc, bc))
+    dissipated = sum(c * rate**2 / 2 for rate in rates)
+    dissipated += sp.integrate(sp.expand(c0 * sinking**2 / 2), (s, -bc, bc))
     at_rest = {**dict.fromkeys(q, 0), **dict.fromkeys(v, 0)}
     numbers = {symbol: STACK[name] for name, symbol in zip(
         names.split(), (b, h, m, i, k, c, bc, hc, mc, ic, k0, c0, g), strict=True)}  # fmt: skip
@@ -320,7 +320,7 @@ def linearised():
     assert max(abs(float(one)) for one in gradient) < 1e-6
     return tuple(
         np.array(sp.hessian(f, list(x)).subs(at_rest).subs(numbers).tolist(), dtype=float)
-        for f, x in ((kinetic, v), (burnt, v), (potential, q))
+        for f, x in ((kinetic, v), (dissipated, v), (potential, q))
     )
 
 

@@ -12,9 +12,10 @@ import pytest
 from records import record_path
 
 import rockframe as rf
-from rockframe.dynamics.protocol import SILENT, Start
+from rockframe.dynamics.events import SILENT
+from rockframe.dynamics.protocol import Start
+from rockframe.signals import Motion
 from rockframe.solve.accuracy import accuracy_of
-from rockframe.solve.ground_table import Ground
 from rockframe.solve.integrate import integrate
 
 ROUNDS = 20
@@ -50,7 +51,7 @@ def systems() -> dict[str, tuple[rf.System, float]]:
     }
 
 
-def solve(model, ground: Ground, level: str):
+def solve(model, ground: Motion, level: str):
     options = {"duration": LENGTH, "output_step": STEP, "stop_at_overturning": False}
     return integrate(model, Start(), ground, accuracy_of(level), **options)
 
@@ -64,7 +65,7 @@ def ratios():
     record = rf.GroundMotion.read(Path(record_path("PEERSMD_CHICHI_TCU128-N.AT2")))
     samples = record.window("30 s", "90 s").si.horizontal.samples
     scenes = {
-        name: (system.setting.compile(), Ground(time_step=STEP, horizontal=factor * samples))
+        name: (system.setting.compile(), Motion.of_samples(STEP, factor * samples))
         for name, (system, factor) in systems().items()
     }
     best: dict[tuple[str, str], float] = {}

@@ -66,22 +66,19 @@ def c_loop(tmp_path_factory):
 
 
 def test_against_a_c_loop(c_loop):
-    from rockframe.dynamics import single_body as body
-    from rockframe.dynamics import two_spring as two
     from rockframe.dynamics.protocol import Start
+    from rockframe.signals import Motion
     from rockframe.solve.accuracy import LEVELS
-    from rockframe.solve.ground_table import Ground
     from rockframe.solve.integrate import integrate
 
     # so weak that the block stays in full contact: the loop in C knows no other state
     weak = motion(0.3)
     model = system().setting.compile()
-    p = model.parameters
+    body, pads = model.system.part
     block = (ctypes.c_double * 7)(
-        *(p[i] for i in (body.GRAVITY, body.HALF_HEIGHT, body.HALF_WIDTH, body.INERTIA,
-                         two.STIFFNESS, two.DAMPING, two.SETTLEMENT))
-    )  # fmt: skip
-    ground = Ground(time_step=STEP, horizontal=weak)
+        body.gravity, body.height, body.right, body.inertia, pads.stiffness, pads.damping, pads.rest
+    )
+    ground = Motion.of_samples(STEP, weak)
     settings = LEVELS["standard"]
     duration = (COUNT - 1) * STEP
 

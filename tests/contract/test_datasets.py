@@ -39,6 +39,7 @@ HISTORIES = {
     "relative_rotation",
     "contact_state",
     "ground_acceleration",
+    "base_shear",
 }
 CORNERS = {"left_reaction", "right_reaction"}
 BED = {"soil_reaction", "contact_length"}

@@ -25,7 +25,8 @@ RECORDS = {"record.AT2": "NIS090.AT2", "TCU128-N.AT2": "PEERSMD_CHICHI_TCU128-N.
 def test_snippets_run_from_first_to_last(page, tmp_path, monkeypatch, capsys):
     text = page.read_text(encoding="utf-8")
     snippets = SNIPPET.findall(text)
-    assert snippets, f"{page.name} shows no code"
+    # a page on an example shows the file itself, which runs as it stands
+    assert snippets or "literalinclude} ../../examples/" in text, f"{page.name} shows no code"
     for name, source in RECORDS.items():
         if name in text:
             shutil.copy(record_path(source), tmp_path / name)

@@ -24,6 +24,7 @@ DIMENSIONS = {
     "relative_vertical_displacement": (0, 0, 0, 0),
     "ground_acceleration": (0, 1, -2, 0),
     "vertical_ground_acceleration": (0, 1, -2, 0),
+    "base_shear": (1, 1, -2, 0),
     "left_reaction": (1, 1, -2, 0),
     "right_reaction": (1, 1, -2, 0),
     "soil_reaction": (1, 1, -2, 0),

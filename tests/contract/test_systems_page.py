@@ -89,7 +89,7 @@ def test_the_energies_of_a_block_released_or_shaken():
         "theory/energy.md",
         "# separations and # landings, and a drift of # (`leading-corner`) and # (`centre`)",
     )
-    burnt, most = said("theory/energy.md", "re-pinnings cost # J of # MJ in the same run")
+    dissipated, most = said("theory/energy.md", "re-pinnings cost # J of # MJ in the same run")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", rf.ModelWarning)  # a restitution of one
         elastic = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0, restitution=1)
@@ -110,7 +110,7 @@ def test_the_energies_of_a_block_released_or_shaken():
         kinds = run.event_kind.values.tolist()
         assert (kinds.count(1), kinds.count(2)) == (separations, landings)
     run = runs["contact-state"]
-    assert float(run.repinning_energy[-1]) == pytest.approx(burnt, rel=0.01)
+    assert float(run.repinning_energy[-1]) == pytest.approx(dissipated, rel=0.01)
     assert float(run.kinetic_energy.max()) == pytest.approx(1e6 * most, rel=0.01)
 
     lost, put_in = said(

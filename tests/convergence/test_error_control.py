@@ -14,7 +14,6 @@ import pytest
 
 import rockframe as rf
 from rockframe.dynamics.protocol import Start
-from rockframe.simulation.run import ground_of
 from rockframe.solve.integrate import integrate
 
 SCENES = int(os.environ.get("ROCKFRAME_SCENES", "60"))
@@ -84,7 +83,7 @@ def outcomes(kind, rng):
             output_step=duration / 300.0,
         )
 
-    ground = ground_of(motion)
+    ground = motion.si
     exact = run(TIGHT, ground)
     size = np.abs(exact.state).max(axis=0)
     size[size == 0.0] = 1.0
@@ -93,7 +92,7 @@ def outcomes(kind, rng):
         count = min(len(other.state), len(exact.state))
         return float((np.abs(other.state[:count] - exact.state[:count]) / size).max())
 
-    growth = error(run(TIGHT, ground_of(motion.scaled(1.0 + NUDGE)))) / NUDGE
+    growth = error(run(TIGHT, motion.scaled(1.0 + NUDGE).si)) / NUDGE
     if growth > GROWTH:
         return None
     found = []

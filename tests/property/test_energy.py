@@ -103,7 +103,7 @@ def test_the_residual_is_over_the_largest_term_of_the_whole_run(scene):
 @example(Scenario(base="contact-state", beta=20.0, xi=0.1, rotation="finite", vertical=0.0, **HARD))
 @settings(max_examples=60, deadline=None)
 def test_energy_balances_in_the_histories(scenario):
-    """At every sample: what is stored, burnt and lost is what came in."""
+    """At every sample: what is stored, dissipated and lost is what came in."""
     response = scenario.run(outputs="energy", output_step="5 ms", accuracy="reference")
     stored = sum(response[f"{kind}_energy"].values for kind in ("kinetic", "potential", "elastic"))
     gone = sum(response[f"{kind}_energy"].values for kind in ("dissipated", "impact", "repinning"))
@@ -124,18 +124,21 @@ def test_losses_only_grow(scenario):
         assert (steps >= -slack).all(), name
     assert (response.kinetic_energy.values >= 0.0).all()
     assert (response.elastic_energy.values >= 0.0).all()
-    # after a flight the block may glide, which burns as well
+    # after a flight an end may slide, which dissipates as well
     if scenario.base == "rigid" or (scenario.xi == 0.0 and response.flight_count.item() == 0):
         np.testing.assert_allclose(response.dissipated_energy.values, 0.0, atol=slack)
     if scenario.base in ("rigid", "centre") or scenario.rotation == "small":
         pinned = response.flight_count.item() == 0
-        assert not pinned or (response.repinning_energy.values == 0.0).all()
+        # a slip that has come to zero is stopped, but for its rounding
+        assert (
+            not pinned or (response.repinning_energy.values <= 1e-12 * energy_scale(response)).all()
+        )
 
 
 @given(scenarios())
 @settings(max_examples=60, deadline=None)
 def test_energy_never_rises_at_an_event(scenario):
-    # a corner that ends gliding is set on its level, from as far off as the run is accurate
+    # a corner that ends sliding is set on its level, from as far off as the run is accurate
     check_energy_at_events(scenario, "reference", stop_at_overturning=False)
 
 

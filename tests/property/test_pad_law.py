@@ -8,10 +8,8 @@ import numpy as np
 import pytest
 
 import rockframe as rf
-from rockframe.dynamics import coupled_corners, coupled_layout, two_spring, two_spring_switches
-from rockframe.dynamics.pad import RELAXING, corners_in
+from rockframe.dynamics.pads import RELAXING, corner_contact, corner_level
 from rockframe.dynamics.protocol import Start
-from rockframe.simulation.run import ground_of
 from rockframe.solve.accuracy import accuracy_of
 from rockframe.solve.integrate import integrate
 
@@ -52,21 +50,24 @@ def scene(kind, rule, rng):
     return rf.System(*parts, restraint=rule, **coupling), excitation(rng, 1.0 / slenderness)
 
 
+def block_on_pads(kind, system):
+    """Give the block with its pads; among the bodies of a system it is the first."""
+    return system.part if kind == "pads" else system.upper
+
+
 def free_forces(kind, model, run):
     """Give the law's force in weights at each free corner below its pad's level, at each sample."""
-    p = model.parameters
-    if kind == "cascade":
-        p = p[len(p) - 3 - two_spring.PARAMETERS : -3]
-    law = coupled_corners.reaction if kind == "coupled" else two_spring_switches.reaction
-    level = coupled_corners.corner_level if kind == "coupled" else two_spring_switches.corner_level
-    delta = p[coupled_layout.PAD_SETTLEMENT if kind == "coupled" else two_spring.SETTLEMENT]
+    system = model.system
+    body, pads = block_on_pads(kind, system)
     gravity = 9.80665
     found = []
     for mode, state in zip(run.mode, run.state, strict=True):
-        own = state[1::2] if kind == "cascade" else state
-        for first, contact in zip((0, 3), corners_in(int(mode)), strict=True):
-            if contact == RELAXING and level(first, own, p) < delta:
-                found.append(law(first, own, p) / gravity)
+        contact = system.part_mode(int(mode), 0).contact
+        line = body.base_line_at(system.state_of(0, state))
+        for left in (True, False):
+            below = corner_level(line, left) < pads.settlement_of(left)
+            if corner_contact(contact, left) == RELAXING and below:
+                found.append(pads.reaction(left, line) / gravity)
     return found
 
 
@@ -79,7 +80,7 @@ def test_a_free_corner_is_nowhere_pressed(kind, rule):
         system, motion = scene(kind, rule, rng)
         model = system.setting.compile()
         run = integrate(
-            model, Start(), ground_of(motion), accuracy_of("standard"),
+            model, Start(), motion.si, accuracy_of("standard"),
             duration=3.0, output_step=1e-3, stop_at_overturning=True,
         )  # fmt: skip
         found = free_forces(kind, model, run)

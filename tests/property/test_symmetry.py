@@ -15,6 +15,7 @@ TURNS_ROUND = {
     "horizontal_displacement",
     "relative_rotation",
     "ground_acceleration",
+    "base_shear",
     "event_rotation",
     "angular_velocity_before",
     "angular_velocity_after",

@@ -17,9 +17,11 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
 import rockframe as rf
-from rockframe.dynamics.kinematics import PIVOT_LEFT, PIVOT_RIGHT
-from rockframe.dynamics.pad import CLEAR, CONTACTS, TOUCHING, both_corners
-from rockframe.dynamics.single_body import COORDINATES, ROTATION, VERTICAL
+from rockframe.dynamics.alone import ROTATION, VERTICAL
+from rockframe.dynamics.on_base import Mode
+from rockframe.dynamics.pads import CLEAR, CORNER, TOUCHING
+from rockframe.dynamics.protocol import Ground
+from rockframe.dynamics.restraint import PIVOT_CENTRE, PIVOT_LEFT, PIVOT_RIGHT
 
 G = 9.80665
 STATES = 200
@@ -397,26 +399,20 @@ def model_of(case, restraint="contact-state"):
     return rf.System(block, pads, restraint=restraint).setting.compile()
 
 
-def evaluate(model, mode, state, ground_x, ground_y):
-    """Call the right-hand side as Python."""
-    out = np.zeros(COORDINATES + 2)
-    model.accelerate(mode, state, ground_x, ground_y, model.parameters, out)
-    return out
-
-
 MODES = {
-    FULL: 0,
-    LEFT: both_corners(TOUCHING, CLEAR) + CONTACTS * PIVOT_LEFT,
-    RIGHT: both_corners(CLEAR, TOUCHING) + CONTACTS * PIVOT_RIGHT,
+    FULL: Mode(TOUCHING + CORNER * TOUCHING, PIVOT_CENTRE, False),
+    LEFT: Mode(TOUCHING + CORNER * CLEAR, PIVOT_LEFT, False),
+    RIGHT: Mode(CLEAR + CORNER * TOUCHING, PIVOT_RIGHT, False),
 }
 
 
 @pytest.mark.parametrize("contact", [FULL, LEFT, RIGHT], ids=["full", "left", "right"])
 def test_rockframe_solves_newton_and_eulers_equations(contact):
     for case in cases(contact)[:50]:
-        model = model_of(case)
+        system = model_of(case).system
+        mode = system.part.number_of(MODES[contact])
         state = np.array([case.alpha, case.y, 0.0, case.spin, case.speed, 0.0])
-        out = evaluate(model, MODES[contact], state, case.ground_x, case.ground_y)
+        out = system.accelerate(mode, state, Ground(case.ground_x, case.ground_y))
         _, y_acc, alpha_acc, _, pads = newton_euler(case, contact)
         sizes = [G, *map(abs, pads.values())]
         assert abs(out[VERTICAL] - y_acc) < 10.0 * EXACT * max(sizes)

@@ -3,70 +3,90 @@
 import numpy as np
 import pytest
 
-from rockframe.dynamics import pad
-from rockframe.dynamics.kinematics import PIVOT_RIGHT
-from rockframe.dynamics.two_spring import (
-    DAMPING,
-    LEFT_GUARDS,
-    RIGHT_GUARDS,
-    SETTLEMENT,
-    STIFFNESS,
-    in_flight,
+from rockframe.dynamics.alone import COORDINATES, ROTATION, VERTICAL
+from rockframe.dynamics.alone_model import alone, body_of
+from rockframe.dynamics.base_numbers import pads_under
+from rockframe.dynamics.on_base import Mode
+from rockframe.dynamics.pads import (
+    CORNER,
+    CORNER_GUARDS,
+    ENGAGING,
+    LEAVE,
+    LEAVING,
+    REENGAGE,
+    RELAXING,
+    REVERSE,
+    TOUCHING,
+    corner_contact,
 )
-from rockframe.dynamics.two_spring_model import two_spring
-from rockframe.dynamics.two_spring_switches import corner_level, judged_anew_in, switch
+from rockframe.dynamics.protocol import MEMORY, Ground
+from rockframe.dynamics.restraint import BY_CONTACT, PIVOT_RIGHT
+from rockframe.dynamics.switching import disturbed
 
 G = 9.81
-MODEL = two_spring(
-    half_width=0.5, half_height=2.0, shape_factor=3.0, mass=1.0, stiffness=4e3, damping=60.0,
-    restitution=0.9, restraint=0, small_rotation=False, gravity=G,
+BODY = body_of(
+    half_width=0.5, height=2.0, inertia=4.25 / 3.0, restraint=BY_CONTACT, small_rotation=False,
+    gravity=G,
 )  # fmt: skip
-P = MODEL.parameters
+SYSTEM = alone(
+    "two-spring", BODY, pads_under(BODY, stiffness=4e3, damping=60.0, restitution=0.9), mass=1.0
+).system
+PADS = SYSTEM.part.base
+LEFT_GUARDS, RIGHT_GUARDS = 0, CORNER_GUARDS
 
 
 def state_with(*, right_force):
     """Give a state with the left corner up, and the right one at a force of its pad's law."""
-    state = np.zeros(6)
-    state[0] = 0.001
-    state[1] = 0.5 * P[SETTLEMENT] - corner_level(RIGHT_GUARDS, state, P)
+    state = np.zeros(2 * COORDINATES)
+    state[ROTATION] = 0.001
+    level = BODY.base_line_at(SYSTEM.state_of(0, state)).right
+    state[VERTICAL] = 0.5 * PADS.rest - level
     # the force by the speed alone, without rotation
-    state[4] = (P[STIFFNESS] * 0.5 * P[SETTLEMENT] - right_force) / P[DAMPING]
+    speed = (PADS.stiffness * 0.5 * PADS.rest - right_force) / PADS.damping
+    state[COORDINATES + VERTICAL] = speed
     return state
 
 
+def mode_of(left, right):
+    return SYSTEM.part.number_of(Mode(left + CORNER * right, PIVOT_RIGHT, False))
+
+
+def corners_in(mode):
+    contact = SYSTEM.part.mode_of(mode).contact
+    return corner_contact(contact, True), corner_contact(contact, False)
+
+
+def pivot_in(mode):
+    return SYSTEM.part.mode_of(mode).pivot
+
+
 def switched(left, right, guard, state):
-    memory = np.zeros(5)
-    mode = pad.both_corners(left, right) + pad.CONTACTS * PIVOT_RIGHT
-    new = switch(mode, guard, state, 0.0, 0.0, P, memory)
-    return new, *pad.corners_in(new)
+    memory = np.zeros(len(MEMORY))
+    return SYSTEM.switch(mode_of(left, right), guard, state, Ground(0.0, 0.0), memory)
 
 
-@pytest.mark.parametrize("contact", [pad.LEAVING, pad.ENGAGING])
+@pytest.mark.parametrize("contact", [LEAVING, ENGAGING])
 def test_what_waits_beside_a_corner_that_leaves_is_judged_by_its_force(contact):
     """The block flies: nothing is held, and nothing of its own re-pinning is left to wait for."""
-    new, left, _ = switched(
-        contact, pad.TOUCHING, RIGHT_GUARDS + pad.LEAVE, state_with(right_force=0.0)
-    )
-    assert left == pad.RELAXING
-    assert in_flight(new) or pad.corners_in(new)[1] == pad.TOUCHING
+    new = switched(contact, TOUCHING, RIGHT_GUARDS + LEAVE, state_with(right_force=0.0))
+    left, right = corners_in(new)
+    assert left == RELAXING
+    assert SYSTEM.part.flies(SYSTEM.part.mode_of(new).contact) or right == TOUCHING
 
 
 def test_a_silent_event_of_one_corner_leaves_the_other_as_it_is():
-    state = state_with(right_force=G)
-    new, left, right = switched(pad.LEAVING, pad.ENGAGING, RIGHT_GUARDS + pad.TURN, state)
-    assert (left, right) == (pad.LEAVING, pad.TOUCHING)
-    assert new // pad.CONTACTS == PIVOT_RIGHT
+    new = switched(LEAVING, ENGAGING, RIGHT_GUARDS + REVERSE, state_with(right_force=G))
+    assert corners_in(new) == (LEAVING, TOUCHING)
+    assert pivot_in(new) == PIVOT_RIGHT
 
 
 def test_a_leaving_corner_that_its_pad_lets_go_is_relaxing():
-    _, left, right = switched(
-        pad.LEAVING, pad.TOUCHING, LEFT_GUARDS + pad.REENGAGE, state_with(right_force=G)
-    )
-    assert (left, right) == (pad.RELAXING, pad.TOUCHING)
+    new = switched(LEAVING, TOUCHING, LEFT_GUARDS + REENGAGE, state_with(right_force=G))
+    assert corners_in(new) == (RELAXING, TOUCHING)
 
 
 def test_a_jolt_of_the_ground_makes_a_leaving_corner_relax():
-    mode = pad.both_corners(pad.LEAVING, pad.TOUCHING) + pad.CONTACTS * PIVOT_RIGHT
-    new = judged_anew_in(mode, state_with(right_force=G), P)
-    assert pad.corners_in(new) == (pad.RELAXING, pad.TOUCHING)
-    assert new // pad.CONTACTS == PIVOT_RIGHT
+    state = state_with(right_force=G)
+    new = disturbed(SYSTEM, SYSTEM.part, 0, mode_of(LEAVING, TOUCHING), state)
+    assert corners_in(new) == (RELAXING, TOUCHING)
+    assert pivot_in(new) == PIVOT_RIGHT

@@ -228,26 +228,26 @@ class TestOwnParts:
         assert "Force at which it breaks; greater than zero [N]." in inspect.getdoc(own.Stop)
 
     def test_a_class_with_one_parameter_more(self):
-        pads = own.YieldingPads(frequency_ratio=20, damping_ratio=0.1, strength="80 kN")
+        pads = own.BreakingPads(frequency_ratio=20, damping_ratio=0.1, strength="80 kN")
         assert isinstance(pads, rf.TwoSpringSupport)
         assert pads.strength.m_as("kN") == pytest.approx(80.0)
         assert pads.frequency_ratio == 20.0
-        assert list(inspect.signature(own.YieldingPads).parameters)[-1] == "strength"
+        assert list(inspect.signature(own.BreakingPads).parameters)[-1] == "strength"
         assert pads.replace(stiffness="12 MN/m").frequency_ratio is None
-        with pytest.raises(rf.ComponentError, match="YieldingPads: give frequency_ratio or stif"):
-            own.YieldingPads(damping_ratio=0.1, strength="80 kN")
-        with pytest.raises(rf.UnitsError, match="YieldingPads: strength needs a force with a uni"):
-            own.YieldingPads(frequency_ratio=20, damping_ratio=0.1, strength=80)
-        with pytest.raises(TypeError, match=r"YieldingPads\.__init__\(\) missing 1 required keyw"):
-            own.YieldingPads(frequency_ratio=20, damping_ratio=0.1)
-        with pytest.warns(rf.ModelWarning, match="YieldingPads: damping_ratio = 5 is 500 %"):
-            own.YieldingPads(frequency_ratio=20, damping_ratio=5, strength="80 kN")
+        with pytest.raises(rf.ComponentError, match="BreakingPads: give frequency_ratio or stif"):
+            own.BreakingPads(damping_ratio=0.1, strength="80 kN")
+        with pytest.raises(rf.UnitsError, match="BreakingPads: strength needs a force with a uni"):
+            own.BreakingPads(frequency_ratio=20, damping_ratio=0.1, strength=80)
+        with pytest.raises(TypeError, match=r"BreakingPads\.__init__\(\) missing 1 required keyw"):
+            own.BreakingPads(frequency_ratio=20, damping_ratio=0.1)
+        with pytest.warns(rf.ModelWarning, match="BreakingPads: damping_ratio = 5 is 500 %"):
+            own.BreakingPads(frequency_ratio=20, damping_ratio=5, strength="80 kN")
 
     @pytest.mark.parametrize("twin", [copy.copy, copy.deepcopy, pickled])
     def test_they_survive_what_other_parts_do(self, twin):
         for part in (
             own.Stop(strength="3 kN", gap="2 mm"),
-            own.YieldingPads(frequency_ratio=20, damping_ratio=0.1, strength="80 kN"),
+            own.BreakingPads(frequency_ratio=20, damping_ratio=0.1, strength="80 kN"),
             own.HeavyBlock(width="2 m", height="8 m", mass="50 t"),
         ):
             assert twin(part) == part
@@ -261,9 +261,9 @@ class TestOwnParts:
         assert rf.Block(**size) != own.HeavyBlock(**size)
 
     def test_what_no_model_knows_is_not_simulated_as_something_else(self):
-        pads = own.YieldingPads(frequency_ratio=20, damping_ratio=0.1, strength="80 kN")
+        pads = own.BreakingPads(frequency_ratio=20, damping_ratio=0.1, strength="80 kN")
         with pytest.raises(
-            rf.AssemblyError, match="YieldingPads adds strength to TwoSpringSupport"
+            rf.AssemblyError, match="BreakingPads adds strength to TwoSpringSupport"
         ):
             rf.System(BLOCK, pads)
 

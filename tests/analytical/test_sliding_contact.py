@@ -1,4 +1,7 @@
-"""A gliding corner is the limit of dry friction, keeps its level, burns, and has no side."""
+"""A sliding contact is the limit of dry friction, keeps its level, dissipates, and has no side.
+
+Equations eq-sliding-contact, eq-partial-hold and eq-leaving-into-flight of the theory manual.
+"""
 
 from itertools import pairwise
 
@@ -6,13 +9,13 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from rockframe.dynamics.pad import CONTACTS
-from rockframe.dynamics.protocol import EventKind, Start
-from rockframe.dynamics.two_spring import GLIDING
-from rockframe.dynamics.two_spring_model import two_spring
-from rockframe.dynamics.winkler_model import winkler
+from rockframe.dynamics.alone_model import alone, body_of
+from rockframe.dynamics.base_numbers import bed_under, pads_under
+from rockframe.dynamics.events import EventKind
+from rockframe.dynamics.protocol import Start
+from rockframe.dynamics.restraint import CENTRE
+from rockframe.signals import Motion
 from rockframe.solve.accuracy import accuracy_of
-from rockframe.solve.ground_table import Ground
 from rockframe.solve.integrate import integrate
 
 pytestmark = pytest.mark.analytical
@@ -22,7 +25,7 @@ INERTIA = (B * B + H * H) / 3.0
 K, C = 4e3, 60.0  # of one pad, per unit mass
 DELTA = 0.5 * G / K
 TILT, SPIN = 1.0, -1.5  # far beyond overturning, and on its way back
-STILL = Ground(time_step=1.0, horizontal=np.zeros(2), vertical=np.zeros(2))
+STILL = Motion.of_samples(1.0, np.zeros(2), np.zeros(2))
 TIME = 0.12
 
 
@@ -34,34 +37,35 @@ def level(alpha, y, side):
     return y + H * (1.0 - np.cos(alpha)) + side * B * np.sin(alpha)
 
 
-def pads(restraint=0):
-    return two_spring(
-        half_width=B,
-        half_height=H,
-        shape_factor=3.0,
-        mass=1.0,
-        stiffness=K,
-        damping=C,
-        restitution=0.9,
+def block(half_width, height, restraint):
+    return body_of(
+        half_width=half_width,
+        height=height,
+        inertia=(half_width**2 + height**2) / 3.0,
         restraint=restraint,
         small_rotation=False,
         gravity=G,
     )
+
+
+def on_pads(body, stiffness, damping):
+    base = pads_under(body, stiffness=stiffness, damping=damping, restitution=0.9)
+    return alone("two-spring", body, base, mass=1.0)
+
+
+def pads(restraint=0):
+    return on_pads(block(B, H, restraint), K, C)
 
 
 def bed(restraint=0):
-    return winkler(
-        half_width=B,
-        centre_height=H,
-        inertia=INERTIA,
-        mass=1.0,
-        stiffness=K / B,
-        damping=C / B,
-        by_pressure=False,
-        restraint=restraint,
-        small_rotation=False,
-        gravity=G,
-    )
+    body = block(B, H, restraint)
+    base = bed_under(body, stiffness=K / B, damping=C / B, by_pressure=False)
+    return alone("Winkler", body, base, mass=1.0)
+
+
+def slides(model, modes):
+    """Tell in which modes an end of the base slides."""
+    return np.array([model.system.part.mode_of(int(mode)).slides for mode in modes])
 
 
 def drop(model, sign=1.0, speed=-0.05, duration=TIME):
@@ -98,17 +102,18 @@ def by_friction(start, coefficient, times):
     ).y  # fmt: skip
 
 
-def test_gliding_is_the_limit_of_dry_friction():
-    run = drop(pads())
+def test_sliding_contact_is_the_limit_of_dry_friction():
+    model = pads()
+    run = drop(model)
     landing = list(run.events.kind).index(EventKind.IMPACT)
-    assert run.events.mode_after[landing] // CONTACTS >= GLIDING
-    gliding = (run.time > run.events.time[landing]) & (run.mode // CONTACTS >= GLIDING)
-    assert gliding.sum() > 20
-    times = run.time[gliding] - run.events.time[landing]
+    assert slides(model, run.events.mode_after)[landing]
+    sliding = (run.time > run.events.time[landing]) & slides(model, run.mode)
+    assert sliding.sum() > 20
+    times = run.time[sliding] - run.events.time[landing]
     differences = []
     for coefficient in (40.0, 160.0, 640.0):
         z = by_friction(run.events.state_after[landing], coefficient, times)
-        gap = np.abs(z[[0, 3, 5]] - run.state[gliding][:, [0, 3, 5]].T).max(axis=1)
+        gap = np.abs(z[[0, 3, 5]] - run.state[sliding][:, [0, 3, 5]].T).max(axis=1)
         differences.append(gap)
     # the distance falls with the reciprocal of the coefficient
     for coarse, fine in pairwise(differences):
@@ -118,27 +123,26 @@ def test_gliding_is_the_limit_of_dry_friction():
 
 @pytest.mark.parametrize("model", [pads, bed])
 @pytest.mark.parametrize("restraint", range(3))
-def test_a_gliding_corner_keeps_its_level_and_burns(model, restraint):
+def test_a_corner_that_slides_keeps_its_level_and_dissipates(model, restraint):
     one = model(restraint)
     run = drop(one)
-    gliding = one.active[run.mode] == 3
-    gliding &= one.contact[run.mode] != 3
-    assert gliding.sum() > 5
-    alpha, y, _, spin, speed, _ = run.state[gliding].T
+    sliding = slides(one, run.mode)
+    assert sliding.sum() > 5
+    assert (one.active[run.mode[sliding]] == 3).all()
+    alpha, y, _, spin, speed, _ = run.state[sliding].T
     assert np.abs(level(alpha, y, -1.0) - DELTA).max() < 1e-9
     assert np.abs(speed + lever(alpha, -1.0) * spin).max() < 1e-9
     assert run.energy_residual < 1e-9
-    out = np.zeros(4)
     stored = []
-    for mode, state in zip(run.mode[gliding], run.state[gliding], strict=True):
-        one.energy(int(mode), state, one.parameters, out)
-        stored.append(out[0] + out[1] + out[3])
+    for mode, state in zip(run.mode[sliding], run.state[sliding], strict=True):
+        kinetic, gravity, _, from_rest = one.system.energies(int(mode), state)
+        stored.append(kinetic + gravity + from_rest)
     assert (np.diff(stored) < 0.0).all()
 
 
 @pytest.mark.parametrize("model", [pads, bed])
 @pytest.mark.parametrize("restraint", range(3))
-def test_gliding_on_the_left_mirrors_gliding_on_the_right(model, restraint):
+def test_sliding_on_the_left_mirrors_sliding_on_the_right(model, restraint):
     one, other = (drop(model(restraint), sign, duration=0.6) for sign in (1.0, -1.0))
     turned = np.array([-1.0, 1.0, -1.0, -1.0, 1.0, -1.0])
     # pads are mirrored bit for bit; along a bed places are counted from its left end
@@ -148,24 +152,22 @@ def test_gliding_on_the_left_mirrors_gliding_on_the_right(model, restraint):
     np.testing.assert_array_equal(other.events.kind, one.events.kind)
 
 
-def test_a_corner_that_presses_after_the_hold_does_not_glide():
+def test_a_corner_that_presses_after_the_hold_does_not_slide():
     """It comes down so fast that the hold cannot stop it."""
-    run = drop(pads(), speed=-3.0)
+    model = pads()
+    run = drop(model, speed=-3.0)
     landing = list(run.events.kind).index(EventKind.IMPACT)
-    assert run.events.mode_after[landing] // CONTACTS < GLIDING
+    assert not slides(model, run.events.mode_after)[landing]
 
 
 # a corner that leaves into flight ---------------------------------------------------------------
 
-SQUAT = {"half_width": 1.0, "half_height": 1.7, "stiffness": 770.0, "damping": 20.0}
+SQUAT_B, SQUAT_H, SQUAT_K, SQUAT_C = 1.0, 1.7, 770.0, 20.0
 
 
 def leaving(sign=1.0, duration=0.3):
     """Throw a squat block, held at the middle of its base, off its right pad."""
-    model = two_spring(
-        **SQUAT, shape_factor=3.0, mass=1.0, restitution=0.9, restraint=2, small_rotation=False,
-        gravity=G,
-    )  # fmt: skip
+    model = on_pads(block(SQUAT_B, SQUAT_H, CENTRE), SQUAT_K, SQUAT_C)
     run = integrate(
         model,
         Start(sign * 0.5, sign * 1.86, None, 0.38),
@@ -180,7 +182,7 @@ def leaving(sign=1.0, duration=0.3):
 
 def right_pad(alpha, y, spin, speed):
     """Give the force of the right pad's law."""
-    b, h, k, c = SQUAT.values()
+    b, h, k, c = SQUAT_B, SQUAT_H, SQUAT_K, SQUAT_C
     rise = y + h * (1.0 - np.cos(alpha)) - b * np.sin(alpha)
     rate = speed + (h * np.sin(alpha) - b * np.cos(alpha)) * spin
     return k * (0.5 * G / k - rise) - c * rate
@@ -188,7 +190,7 @@ def right_pad(alpha, y, spin, speed):
 
 def squat_by_friction(start, coefficient, times):
     """Integrate the same block with dry friction at the middle of its base, regularised."""
-    b, h, _, _ = SQUAT.values()
+    b, h = SQUAT_B, SQUAT_H
     inertia = (b * b + h * h) / 3.0
 
     def rates(t, z):
@@ -204,27 +206,25 @@ def squat_by_friction(start, coefficient, times):
     ).y  # fmt: skip
 
 
-def test_a_corner_that_flight_would_press_glides_along_its_relaxing_pad():
+def test_a_corner_that_flight_would_press_slides_along_its_relaxing_pad():
     """Held it leaves, free it would be pressed at once: the limit of dry friction lies between."""
-    _, run = leaving()
-    left = next(
-        i for i, mode in enumerate(run.events.mode_after)
-        if run.events.kind[i] == EventKind.SEPARATION and mode // CONTACTS >= GLIDING
-    )  # fmt: skip
+    model, run = leaving()
+    separates = run.events.kind == EventKind.SEPARATION
+    left = np.flatnonzero(separates & slides(model, run.events.mode_after))[0]
     begin = run.events.time[left]
-    gliding = (run.time > begin) & (run.mode // CONTACTS >= GLIDING)
-    assert gliding.sum() > 50
-    alpha, y, _, spin, speed, _ = run.state[gliding].T
+    sliding = (run.time > begin) & slides(model, run.mode)
+    assert sliding.sum() > 50
+    alpha, y, _, spin, speed, _ = run.state[sliding].T
     # below the level of the unloaded pad, with no force
     rise = y + 1.7 * (1.0 - np.cos(alpha)) - np.sin(alpha)
     assert (rise < 0.99 * 0.5 * G / 770.0).sum() > 10
     assert np.abs(right_pad(alpha, y, spin, speed)).max() < 1e-9 * G
     assert run.energy_residual < 1e-11
-    times = run.time[gliding] - begin
+    times = run.time[sliding] - begin
     gaps = []
     for coefficient in (20.0, 80.0, 320.0):
         z = squat_by_friction(run.events.state_after[left], coefficient, times)
-        gaps.append(np.abs(z[[0, 3, 5]] - run.state[gliding][:, [0, 3, 5]].T).max(axis=1))
+        gaps.append(np.abs(z[[0, 3, 5]] - run.state[sliding][:, [0, 3, 5]].T).max(axis=1))
     for coarse, fine in pairwise(gaps):
         assert (fine < 0.4 * coarse).all()
     assert gaps[-1].max() < 5e-3
@@ -237,13 +237,10 @@ def test_leaving_into_flight_has_no_side():
     np.testing.assert_array_equal(other.events.kind, one.events.kind)
 
 
-def test_fixed_steps_are_cut_to_what_a_fast_pad_asks_for_while_a_corner_glides():
+def test_fixed_steps_are_cut_to_what_a_fast_pad_asks_for_while_a_corner_slides():
     """A weak dashpot relaxes in a sixth of the step that the vibrations need."""
-    model = two_spring(
-        half_width=1.0, half_height=1.705, stiffness=840.0, damping=1.45, shape_factor=3.0,
-        mass=1.0, restitution=0.9, restraint=2, small_rotation=False, gravity=G,
-    )  # fmt: skip
-    ground = Ground(time_step=0.01, horizontal=np.zeros(51), vertical=np.zeros(51))
+    model = on_pads(block(1.0, 1.705, CENTRE), 840.0, 1.45)
+    ground = Motion.of_samples(0.01, np.zeros(51), np.zeros(51))
     fast, exact = (
         integrate(
             model,
@@ -257,7 +254,7 @@ def test_fixed_steps_are_cut_to_what_a_fast_pad_asks_for_while_a_corner_glides()
         for level in ("fast", "reference")
     )
     assert 840.0 / 1.45 * 0.01 / fast.substeps > 3.0
-    assert (fast.mode // CONTACTS >= GLIDING).sum() > 10
+    assert slides(model, fast.mode).sum() > 10
     assert fast.step_count > 1.5 * 50 * fast.substeps
     assert np.abs(fast.state - exact.state).max() < 2e-3
     assert fast.energy_residual < 1e-3
