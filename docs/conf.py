@@ -3,6 +3,7 @@
 import os
 import re
 import sys
+from collections import namedtuple
 from pathlib import Path
 
 from rockframe.version import __version__
@@ -40,11 +41,20 @@ autodoc_member_order = "bysource"
 numpydoc_show_class_members = False
 
 
+_FIELD = type(namedtuple("Pair", "field").field)
+
+
 def _keep_bars(app, what, name, obj, options, lines):
     """Keep |x| in docstrings an absolute value: reStructuredText would substitute it."""
     lines[:] = [re.sub(r"\|(\w[\w ]*)\|", r"\\|\1\\|", line) for line in lines]
 
 
+def _leave_out_fields(app, what, name, obj, skip, options):
+    """Leave out the fields of named tuples: the class's signature names them."""
+    return True if isinstance(obj, _FIELD) else None
+
+
 def setup(app):
-    """Register the hook."""
+    """Register the hooks."""
     app.connect("autodoc-process-docstring", _keep_bars)
+    app.connect("autodoc-skip-member", _leave_out_fields)

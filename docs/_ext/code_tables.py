@@ -6,7 +6,8 @@ from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
-from rockframe.dynamics.protocol import ContactState, EventKind
+import rockframe as rf
+from rockframe.dynamics.events import ContactState, EventKind
 from rockframe.results.variables.comparison import COMPARISON
 from rockframe.results.variables.runs import (
     CERTIFICATE,
@@ -25,6 +26,13 @@ from rockframe.units import Unit
 
 Rows = Iterable[tuple[str, ...]]
 
+_PARTS = {
+    "block": rf.Block(width="1 m", height="4 m", mass="10 t"),
+    "pads": rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1),
+    "cap": rf.CushionCap(height="0.5 m", mass="5 t"),
+    "soil": rf.WinklerSoil(stiffness="20 MPa", damping_ratio=0.2),
+}
+
 
 def _variables(rows: Iterable[Variable], dims: tuple[str, ...] | None = None) -> Rows:
     yield "name", "unit", "type", "meaning"
@@ -41,7 +49,10 @@ def _flags(kind: type) -> Rows:
 
 def _scenes() -> Rows:
     yield "parts", "model"
-    yield from ((scene.title, scene.model) for scene in SCENES)
+    for scene in SCENES:
+        coupling = {} if scene.coupling is None else {"coupling": scene.coupling}
+        system = rf.System(*(_PARTS[slot] for slot in scene.signature), **coupling)
+        yield scene.title, system.setting.model
 
 
 def _options(kind: type) -> Rows:

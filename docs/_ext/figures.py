@@ -47,11 +47,11 @@ def rungs() -> Figure:
 def conventions() -> Figure:
     """Draw a block that leans to the right, with the symbols of the notation."""
     b, h, alpha = 1.0, 2.2, 0.2
-    turn = np.array([[np.cos(alpha), np.sin(alpha)], [-np.sin(alpha), np.cos(alpha)]])
+    rotation = np.array([[np.cos(alpha), np.sin(alpha)], [-np.sin(alpha), np.cos(alpha)]])
     right = np.array([b, 0.0])
 
     def place(s: float, height: float) -> np.ndarray:
-        return right + turn @ (np.array([s, height]) - right)
+        return right + rotation @ (np.array([s, height]) - right)
 
     figure = Figure(figsize=(4.6, 5.0), layout="constrained")
     axes = figure.subplots()
