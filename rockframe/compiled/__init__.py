@@ -12,11 +12,13 @@ from rockframe.compiled.arrays import Integers as Integers
 from rockframe.compiled.arrays import Matrix as Matrix
 from rockframe.compiled.arrays import ReadOnlyMatrix as ReadOnlyMatrix
 from rockframe.compiled.arrays import Vector as Vector
+from rockframe.compiled.bound import Bound as Bound
 from rockframe.compiled.bound import bound as bound
 from rockframe.compiled.bound import numbers_in as numbers_in
 from rockframe.compiled.entries import COMPILED as COMPILED
 from rockframe.compiled.entries import entry as entry
 from rockframe.compiled.entries import say_slow as say_slow
+from rockframe.compiled.entries import table as table
 from rockframe.compiled.marks import inlined as inlined
 from rockframe.compiled.marks import kernel as kernel
 from rockframe.compiled.tuples import constant as constant

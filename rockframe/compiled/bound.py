@@ -33,6 +33,26 @@ def structure_of(bundle: Any) -> tuple[Any, ...]:
     ))  # fmt: skip
 
 
+class Signature:
+    """Numba's signature of a function, which is looked up in each call of an entry: hashed once.
+
+    Parameters
+    ----------
+    value : numba signature
+        The signature.
+    """
+
+    def __init__(self, value: Any) -> None:
+        self.value = value
+        self._hash = hash(value)
+
+    def __hash__(self) -> int:
+        return self._hash
+
+    def __eq__(self, other: object) -> bool:
+        return self is other or (isinstance(other, Signature) and self.value == other.value)
+
+
 class Source:
     """A function and the structure of a tuple that it can be bound to.
 
@@ -48,13 +68,14 @@ class Source:
         self.function = function
         self.structure = structure
         self.code: Any = None  # once it has been compiled
+        self.address = 0  # of that
 
     @cached_property
-    def signature(self) -> Any:
-        """Numba's signature of the function."""
+    def signature(self) -> Signature:
+        """Its signature; functions of equal signatures share one."""
         from rockframe.compiled.jobs import signature_of
 
-        return signature_of(self.function)
+        return _shared(signature_of(self.function))
 
 
 class Bound:
@@ -74,7 +95,7 @@ class Bound:
         self.source = source
         self._bundle = bundle
 
-    def __call__(self, *arguments: Any) -> Any:
+    def call(self, *arguments: Any) -> Any:
         """Call the function with the tuple in place of its numbers, the last argument."""
         return self.source.function(self._bundle, *arguments[:-1])
 
@@ -103,3 +124,8 @@ def bound(functions: tuple[Callable[..., Any], ...], bundle: Any) -> tuple[Bound
 @cache
 def _source(function: Callable[..., Any], structure: tuple[Any, ...]) -> Source:
     return Source(function, structure)
+
+
+@cache
+def _shared(signature: Any) -> Signature:
+    return Signature(signature)

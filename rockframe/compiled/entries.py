@@ -7,15 +7,17 @@ kinds of its arrays and numbers.
 import logging
 import os
 from collections.abc import Callable
-from functools import update_wrapper
+from functools import update_wrapper, wraps
 from importlib.util import find_spec
 from threading import RLock
 from typing import Any, Final, TypeVar, cast
 
 import numpy as np
 
+from rockframe.compiled.arrays import Vector
 from rockframe.compiled.bound import Bound, Source
 from rockframe.compiled.marks import inlined
+from rockframe.compiled.plain import viewed
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -37,7 +39,21 @@ def entry(function: Function) -> Function:
     (:mod:`rockframe.compiled.bound`) and named tuples of these; its result is an integer or
     none.
     """
-    return cast("Function", Entry(function)) if COMPILED else function
+    return cast("Function", Entry(function) if COMPILED else _as_python(function))
+
+
+def _as_python(function: Callable[..., Any]) -> Callable[..., Any]:
+    @wraps(function)
+    def call(*arguments: Any) -> Any:
+        return function(*map(viewed, arguments))
+
+    return call
+
+
+def table(values: Any) -> Vector:
+    """Give a table of constants, of one or two dimensions, as equations read it fastest."""
+    kept = np.array(values, dtype=np.float64)
+    return kept if COMPILED else viewed(kept)
 
 
 def _could_not(function: Callable[..., Any], problem: Exception) -> None:
@@ -79,6 +95,7 @@ class Entry:
 
     def __init__(self, function: Callable[..., Any]) -> None:
         self.source = inlined(function)
+        self._plain = _as_python(function)
         self._routines: dict[tuple[Any, ...], Callable[..., Any] | None] = {}
         update_wrapper(self, function)
 
@@ -94,13 +111,12 @@ class Entry:
         sources: list[Source] = []
         structure = tuple(_structure_of(argument, words, sources) for argument in arguments)
         routine = self._routines.get(structure)
-        if routine is None or any(source.code is None for source in sources):
+        if routine is None or not all(source.address for source in sources):
             with _lock:
                 routine = self._compiled(structure, sources)
             if routine is None:
-                return self.source(*arguments)
-            codes = {id(source): source.code for source in sources}
-            words = [codes.get(id(word), word) for word in words]
+                return self._plain(*arguments)
+            words = [word.address if isinstance(word, Source) else word for word in words]
         return routine(*words)
 
     def _compiled(
@@ -120,7 +136,7 @@ class Entry:
             self._routines[structure] = None
             return None
         for source, code in zip(missing, codes, strict=True):
-            source.code = code
+            source.code, source.address = code, code.address
         self._routines[structure] = routine
         return routine
 
@@ -133,7 +149,7 @@ def _structure_of(argument: Any, words: list[Any], sources: list[Source]) -> Any
     if isinstance(argument, Bound):
         source = argument.source
         sources.append(source)
-        words.append(source if source.code is None else source.code)
+        words.append(source.address or source)
         return ("function", source.signature)
     words.append(argument)
     if isinstance(argument, np.ndarray):
@@ -143,7 +159,7 @@ def _structure_of(argument: Any, words: list[Any], sources: list[Source]) -> Any
                 f"compiled functions need arrays in C order, got one of strides {argument.strides}"
             )
             raise TypeError(msg)
-        return (argument.dtype.name, argument.ndim, flags.writeable)
+        return (argument.dtype.char, argument.ndim, flags.writeable)
     if isinstance(argument, float):
         return "real"
     if isinstance(argument, int | np.integer):

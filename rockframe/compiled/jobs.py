@@ -69,7 +69,7 @@ class Job:
             return text, writer.scope, signature_of(self.function)
         taken = ", ".join(writer.argument(part) for part in self.structure)
         words = ", ".join(f"word_{i}" for i in range(len(writer.kinds)))
-        text = f"def run({words}):\n    return function({taken})\n"
+        text = f"def run({words}):\n    return function({taken})\n{''.join(writer.notes)}"
         gives = get_type_hints(self.function)["return"] is int
         signature = (numba.int64 if gives else numba.void)(*writer.kinds)
         return text, writer.scope | {"buffer_of": buffer_of}, signature
@@ -126,9 +126,7 @@ class Job:
         exec(compile(text, place, "exec"), module.__dict__)  # noqa: S102
         options = {**OPTIONS, "cache": True} if keep else OPTIONS
         if self.bound:
-            made = numba.cfunc(signature, **options)(module.__dict__["run"])
-            made.signature = signature
-            return made
+            return numba.cfunc(signature, **options)(module.__dict__["run"])
         return numba.njit(signature, nogil=True, **options)(module.__dict__["run"])
 
 

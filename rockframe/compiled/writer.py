@@ -6,6 +6,7 @@ import numpy as np
 
 from rockframe.compiled.arrays import Integers, ReadOnlyMatrix, Vector
 from rockframe.compiled.buffers import BufferType
+from rockframe.compiled.calls import code_at
 from rockframe.compiled.registration import clashes_of, numba
 
 VECTOR: Final = BufferType(numba.float64, 1, True)
@@ -27,6 +28,7 @@ class Writer:
     def __init__(self) -> None:
         self.kinds: list[Any] = []
         self.scope: dict[str, Any] = {}
+        self.notes: list[str] = []  # what the text depends on and does not show
 
     def tuple_of(self, structure: tuple[Any, ...]) -> str:
         """Give the expression that makes a tuple of the elements of ``numbers``."""
@@ -51,8 +53,11 @@ class Writer:
             self.kinds.append({"real": numba.float64, "integer": numba.int64}[structure])
             return word
         if structure[0] == "function":
-            self.kinds.append(numba.types.FunctionType(structure[1]))
-            return word
+            self.kinds.append(numba.int64)
+            cast = f"code_{len(self.kinds)}"
+            self.scope[cast] = code_at(structure[1].value)
+            self.notes.append(f"# {cast}: {structure[1].value}\n")
+            return f"{cast}({word})"
         dtype, dimensions, writeable = structure
         element = numba.from_dtype(np.dtype(dtype))
         self.kinds.append(numba.types.Array(element, dimensions, "C", readonly=not writeable))

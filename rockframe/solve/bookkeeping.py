@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from rockframe.compiled import Integers, Vector, inlined, kernel
+from rockframe.compiled import Integers, Vector, inlined, kernel, table
 from rockframe.dynamics.events import IMPACT, OVERTURNING, REST, TOPPLED, ContactState
 from rockframe.dynamics.protocol import (
     IMPACT_LOSS,
@@ -40,8 +40,8 @@ ON_SAMPLE: Final = 1e-9
 
 # Gauss-Legendre rule on (0, 1), exact for polynomials of the ninth degree
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(5)
-GAUSS_POINTS: Final = 0.5 + 0.5 * _POINTS
-GAUSS_WEIGHTS: Final = 0.5 * _WEIGHTS
+GAUSS_POINTS: Final = table(0.5 + 0.5 * _POINTS)
+GAUSS_WEIGHTS: Final = table(0.5 * _WEIGHTS)
 
 
 @kernel

@@ -20,7 +20,7 @@ def runge_kutta_step(
 ) -> None:  # fmt: skip
     """Step the first `count` coordinates and all variables of first order.
 
-    Arguments as in :func:`rockframe.solve.attempts.attempt_by_tolerance`. Gives the energies
+    Arguments as in :func:`rockframe.solve.march.march`. Gives the energies
     dissipated and put in by the ground, integrated with the weights of the fifth order, the
     error of their difference, and the local errors of what moves.
     """

@@ -7,15 +7,15 @@ is the first of the next.
 
 from typing import Final
 
-import numpy as np
+from rockframe.compiled import table
 
 ORDER: Final = 5
 STAGES: Final = 7
 
-NODES: Final = np.array([0.0, 1 / 5, 3 / 10, 4 / 5, 8 / 9, 1.0, 1.0])
+NODES: Final = table([0.0, 1 / 5, 3 / 10, 4 / 5, 8 / 9, 1.0, 1.0])
 """Share of the step at which each stage stands."""
 
-STAGE_WEIGHTS: Final = np.array(
+STAGE_WEIGHTS: Final = table(
     [
         [0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
         [1 / 5, 0.0, 0.0, 0.0, 0.0, 0.0],
@@ -28,10 +28,10 @@ STAGE_WEIGHTS: Final = np.array(
 )
 """Weights of the stages before, by which each is made; the last row makes the step."""
 
-WEIGHTS: Final = np.array([*STAGE_WEIGHTS[6], 0.0])
+WEIGHTS: Final = table([*(STAGE_WEIGHTS[6, j] for j in range(6)), 0.0])
 """Weights of the fifth order."""
 
-ERROR_WEIGHTS: Final = np.array(
+ERROR_WEIGHTS: Final = table(
     [71 / 57600, 0.0, -71 / 16695, 71 / 1920, -17253 / 339200, 22 / 525, -1 / 40]
 )
 """Weights of the fifth order less those of the fourth."""

@@ -87,7 +87,7 @@ def march(
 ) -> int:  # fmt: skip
     """Make steps until something happens, or try one; see :mod:`rockframe.solve.march`."""
     flies = int(tables.contact[mode] == FLIGHT)
-    return equations.march(
+    return equations.march.call(
         mode, int(tables.active[mode]), flies, tables.longest[mode], trial, pieces.x, pieces.y,
         w.both_ends, w.stages, w.works, w.reference, w.limits, w.ground, progress.controls,
         progress.clock, progress.counters, equations.numbers,
@@ -163,7 +163,7 @@ def carry_out(
         kind, status = reach_limit(time, mode, tables, progress, w)
     else:
         ground = Ground(clock[at.GROUND_X], clock[at.GROUND_Y])
-        new_mode = equations.switching(
+        new_mode = equations.switching.call(
             mode, crossed, w.state, ground.x, ground.y, memory, equations.numbers
         )
         kind = int(memory[LAST_EVENT])

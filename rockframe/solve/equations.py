@@ -4,10 +4,9 @@ So one integrator, compiled once, serves every system: it knows these functions 
 addresses, and the system's numbers as a vector.
 """
 
-from collections.abc import Callable
 from typing import NamedTuple
 
-from rockframe.compiled import Vector, bound, inlined, kernel, numbers_in, put
+from rockframe.compiled import Bound, Vector, bound, inlined, kernel, numbers_in, put
 from rockframe.dynamics.protocol import Energies, Ground, System
 from rockframe.solve.ground import ground_in
 from rockframe.solve.guards import guards_at
@@ -50,11 +49,11 @@ def energies(system: System, mode: int, state: Vector, out: Vector) -> None:
 class Equations(NamedTuple):
     """A system, bound: its functions, its numbers, and how many there are of everything."""
 
-    slope: Callable[..., None]
-    guarding: Callable[..., int]
-    march: Callable[..., int]
-    switching: Callable[..., int]
-    stored: Callable[..., None]
+    slope: Bound
+    guarding: Bound
+    march: Bound
+    switching: Bound
+    stored: Bound
     numbers: Vector
     coordinate_count: int
     variable_count: int
@@ -89,13 +88,13 @@ def equations_of(system: System, *, fixed_steps: bool) -> Equations:
 @inlined
 def slope_at(equations: Equations, mode: int, state: Vector, ground: Ground, out: Vector) -> None:
     """Write the slope of a state."""
-    equations.slope(mode, state, ground.x, ground.y, out, equations.numbers)
+    equations.slope.call(mode, state, ground.x, ground.y, out, equations.numbers)
 
 
 @inlined
 def energies_at(equations: Equations, mode: int, state: Vector, room: Vector) -> Energies:
     """Give the energies of a state; `room` is for four numbers."""
-    equations.stored(mode, state, room, equations.numbers)
+    equations.stored.call(mode, state, room, equations.numbers)
     return Energies(room[0], room[1], room[2], room[3])
 
 
@@ -106,6 +105,6 @@ def write_guards(
 ) -> None:  # fmt: skip
     """Write the guards of a state at a fraction of a step, and their rates."""
     ground = ground_in(fraction, span, w.ground)
-    equations.guarding(
+    equations.guarding.call(
         mode, state, slope, ground.x, ground.y, w.limits, out, out, equations.numbers
     )

@@ -18,7 +18,7 @@ def fixed_step(
 ) -> bool:  # fmt: skip
     """Step the first `count` coordinates and all variables of first order.
 
-    Arguments as in :func:`rockframe.solve.attempts.attempt_fixed`. Gives the energies
+    Arguments as in :func:`rockframe.solve.march.march`. Gives the energies
     dissipated and put in by the ground, integrated with the weights of the velocities, and
     whether the step has ended in numbers.
     """

@@ -5,7 +5,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rockframe.compiled import Integers, Matrix, Vector, bound, entry, kernel, numbers_in, put
+from rockframe.compiled import (
+    Bound,
+    Integers,
+    Matrix,
+    Vector,
+    bound,
+    entry,
+    kernel,
+    numbers_in,
+    put,
+)
 from rockframe.dynamics.protocol import ContactModel, Ground, System
 from rockframe.solve.equations import energies
 from rockframe.solve.trajectory import Trajectory
@@ -37,20 +47,20 @@ def observed(
     put(system.observe(mode, state, slope, ground, memory), 0, out)
 
 
-class Bound(NamedTuple):
+class OfSystem(NamedTuple):
     """A function of a system, and the system's numbers."""
 
-    call: Callable[..., None]
+    function: Bound
     numbers: Vector
 
 
-def _bound(function: Callable[..., None], system: System) -> Bound:
-    return Bound(bound((function,), system)[0], numbers_in(system))
+def _of(system: System, function: Callable[..., None]) -> OfSystem:
+    return OfSystem(bound((function,), system)[0], numbers_in(system))
 
 
 @entry
 def observe_rows(
-    observing: Bound,
+    observing: OfSystem,
     mode: Integers,
     state: Matrix,
     memory: Matrix,
@@ -63,7 +73,7 @@ def observe_rows(
     for i in range(len(mode)):
         copy_row(state, i, room.state)
         copy_row(memory, memory_row[i], room.memory)
-        observing.call(
+        observing.function.call(
             mode[i], room.state, ground[i, 0], ground[i, 1], room.memory, room.columns,
             observing.numbers,
         )  # fmt: skip
@@ -73,12 +83,12 @@ def observe_rows(
 
 @entry
 def energy_rows(
-    storing: Bound, mode: Integers, state: Matrix, row: Vector, stored: Vector, out: Matrix
+    storing: OfSystem, mode: Integers, state: Matrix, row: Vector, stored: Vector, out: Matrix
 ) -> None:
     """Fill a row of energies for each row of states; `row` and `stored` are room for one."""
     for i in range(len(mode)):
         copy_row(state, i, row)
-        storing.call(mode[i], row, stored, storing.numbers)
+        storing.function.call(mode[i], row, stored, storing.numbers)
         for j in range(len(stored)):
             out[i, j] = stored[j]
 
@@ -122,7 +132,7 @@ def observe_trajectory(
     sizes = trajectory.state.shape[1], memory.shape[1], out.shape[1]
     room = Room(*(np.zeros(size) for size in sizes))
     observe_rows(
-        _bound(observed, model.system),
+        _of(model.system, observed),
         trajectory.mode.astype(np.int64),
         np.ascontiguousarray(trajectory.state),
         memory,
@@ -147,7 +157,7 @@ def energies_of(model: ContactModel, trajectory: Trajectory) -> Matrix:
     """
     out = np.empty((len(trajectory.time), 4))
     energy_rows(
-        _bound(energies, model.system),
+        _of(model.system, energies),
         trajectory.mode.astype(np.int64),
         np.ascontiguousarray(trajectory.state),
         np.zeros(trajectory.state.shape[1]),
