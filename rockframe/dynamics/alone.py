@@ -68,8 +68,7 @@ class Alone(InState, OnePart):
         body, own = self.state_of(0, state), self.own_in(state)
         rates = self.part.rates_in(standing, body, own, ground)
         accelerations = (rates.rotation, rates.vertical, rates.horizontal)
-        flow = self.part.flow_in(standing, body, own)
-        return accelerations + flow + (rates.dissipated, rates.supplied)
+        return accelerations + rates.own_rates + (rates.dissipated, rates.supplied)
 
     @inlined
     def guards_in(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:

@@ -31,13 +31,14 @@ class Mode(NamedTuple):
 
 
 class Rates(NamedTuple):
-    """Accelerations of a body, and the powers dissipated and supplied by the ground."""
+    """Accelerations of a body, rates of its base's own variables, and powers."""
 
     rotation: float
     vertical: float
     horizontal: float
+    own_rates: tuple[float, ...]
     dissipated: float
-    supplied: float
+    supplied: float  # by the ground
 
 
 class Response(NamedTuple):
@@ -134,7 +135,9 @@ class OnBase(NamedTuple):
         body, attitude = self.body, self.body.attitude(state.rotation)
         line = body.base_line(state, attitude)
         rate, speed = state.angular_velocity, state.vertical_velocity
-        base = self.base.force(self.contact_with_force(mode), line, own)
+        contact = self.contact_with_force(mode)
+        base = self.base.force(contact, line, own)
+        own_rates = self.base.flow(contact, line, own)
         vertical = base.upward - body.gravity - ground.y
         reach = body.reach(body.pin(mode.pivot), attitude)
         supplied = -ground.y * speed
@@ -143,10 +146,10 @@ class OnBase(NamedTuple):
             angular = (base.moment - push) / (body.inertia + reach.rate * reach.rate)
             horizontal = reach.rate * angular + reach.bend * rate * rate
             supplied -= ground.x * reach.rate * rate
-            return Rates(angular, vertical, horizontal, base.dissipated, supplied)
+            return Rates(angular, vertical, horizontal, own_rates, base.dissipated, supplied)
         supplied -= ground.x * state.horizontal_velocity
         if not mode.slides:
-            return Rates(0.0, vertical, -ground.x, base.dissipated, supplied)
+            return Rates(0.0, vertical, -ground.x, own_rates, base.dissipated, supplied)
         # the end follows the base, which gives way without pressing, eq-sliding-contact
         left = self.base.is_held(mode.contact, True)
         on_left, on_right = body.end_accelerations(attitude, rate, vertical, 0.0)
@@ -156,13 +159,8 @@ class OnBase(NamedTuple):
         angular = -free / lever
         hold = -body.inertia * angular / reach.rate
         lost = hold * (state.horizontal_velocity - reach.rate * rate)
-        return Rates(angular, vertical, hold - ground.x, base.dissipated - lost, supplied)
-
-    @inlined
-    def flow_in(self, mode: Mode, state: BodyState, own: Any) -> tuple[float, ...]:
-        """Give the rates of the base's own variables."""
-        line = self.body.base_line_at(state)
-        return self.base.flow(self.contact_with_force(mode), line, own)
+        dissipated = base.dissipated - lost
+        return Rates(angular, vertical, hold - ground.x, own_rates, dissipated, supplied)
 
     @inlined
     def end_guards_in(

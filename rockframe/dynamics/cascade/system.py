@@ -105,17 +105,16 @@ class Cascade(Stacked, Stages):
     def accelerate(self, mode: int, state: Vector, ground: Ground) -> tuple[float, ...]:
         """Give accelerations of both bodies, rates of their bases' own variables, and powers."""
         modes, states, ratio = self.modes_in(mode), self.states_in(state), self.mass_ratio
-        upper_own, lower_own = self.upper_own(state), self.lower_own(state)
-        below = self.lower.rates_in(modes.lower, states.lower, lower_own, ground)
+        below = self.lower_rates(mode, state, ground)
         on_top = self.ground_of_upper(mode, state, below, ground)
-        above = self.upper.rates_in(modes.upper, states.upper, upper_own, on_top)
+        above = self.upper.rates_in(modes.upper, states.upper, self.upper_own(state), on_top)
         # a held body's own horizontal coordinate rests while the other one's moves
         sway = above.horizontal if self.upper.is_free(modes.upper) else 0.0
         lower_sway = below.horizontal if self.lower.is_free(modes.lower) else 0.0
         return (
             (above.rotation, above.vertical, below.rotation, below.vertical, sway, lower_sway)
-            + self.upper.flow_in(modes.upper, states.upper, upper_own)
-            + self.lower.flow_in(modes.lower, states.lower, lower_own)
+            + above.own_rates
+            + below.own_rates
             + (
                 ratio * below.dissipated + above.dissipated,
                 ratio * below.supplied + above.supplied,
