@@ -69,6 +69,7 @@ class Source:
         self.structure = structure
         self.code: Any = None  # once it has been compiled
         self.address = 0  # of that
+        self.failed = False  # to be compiled
 
     @cached_property
     def signature(self) -> Signature:

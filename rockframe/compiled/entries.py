@@ -123,17 +123,22 @@ class Entry:
         self, structure: tuple[Any, ...], sources: list[Source]
     ) -> Callable[..., Any] | None:
         from rockframe.compiled.jobs import Job
-        from rockframe.compiled.together import make_all
+        from rockframe.compiled.together import NotCompiledError, make_all
 
-        if structure in self._routines and self._routines[structure] is None:
+        failed = structure in self._routines and self._routines[structure] is None
+        if failed or any(source.failed for source in sources):
             return None
-        missing = {id(source): source for source in sources if source.code is None}.values()
+        missing = [*{id(source): source for source in sources if not source.address}.values()]
         jobs = [Job(source.function, source.structure, True) for source in missing]
+        jobs.append(Job(self.source, structure, False))
         try:
-            *codes, routine = make_all([*jobs, Job(self.source, structure, False)])
-        except Exception as problem:  # whatever happens inside a compiler
-            _could_not(self.source, problem)
-            self._routines[structure] = None
+            *codes, routine = make_all(jobs)
+        except NotCompiledError as found:
+            _could_not(jobs[found.place].function, found.problem)
+            if found.place < len(missing):  # the entry still serves other systems
+                missing[found.place].failed = True
+            else:
+                self._routines[structure] = None
             return None
         for source, code in zip(missing, codes, strict=True):
             source.code, source.address = code, code.address

@@ -8,13 +8,31 @@ import os
 import pickle
 import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Generator, Sequence
+from contextlib import contextmanager, suppress
 from importlib import import_module
-from typing import Any
+from typing import IO, Any, cast
 
 from rockframe.compiled import store
 from rockframe.compiled.entries import Entry
 from rockframe.compiled.jobs import Job
+
+
+class NotCompiledError(Exception):
+    """A job failed, whatever happened inside the compiler.
+
+    Parameters
+    ----------
+    place : int
+        Of the job in its list.
+    problem : Exception
+        What happened.
+    """
+
+    def __init__(self, place: int, problem: Exception) -> None:
+        super().__init__(str(problem))
+        self.place = place
+        self.problem = problem
 
 
 def make_all(jobs: Sequence[Job]) -> list[Any]:
@@ -29,35 +47,55 @@ def make_all(jobs: Sequence[Job]) -> list[Any]:
     -------
     list of callable
         In the order of the jobs.
+
+    Raises
+    ------
+    NotCompiledError
+        The first job that failed.
     """
-    missing = [job for job in jobs if not job.is_stored]
-    helper = _helper(missing) if len(missing) > 1 else None
+    with _helped(jobs) as waiting:
+        return [_made(place, job, waiting) for place, job in enumerate(jobs)]
+
+
+def _made(place: int, job: Job, waiting: Callable[[], bool]) -> Any:
+    try:
+        return job.make(waiting)
+    except Exception as problem:  # whatever happens inside a compiler
+        raise NotCompiledError(place, problem) from problem
+
+
+@contextmanager
+def _helped(jobs: Sequence[Job]) -> Generator[Callable[[], bool]]:
+    """Have a process compile from the last job on; give whether it is still worth waiting for."""
+    helper = _helper(jobs)
     if helper is None:
-        return [job.make() for job in jobs]
-    with helper as process:
+        yield lambda: True
+        return
+    with helper:
         try:
-            return [job.make(lambda: process.poll() is None) for job in jobs]
+            yield lambda: helper.poll() is None
         except BaseException:
-            process.kill()
+            helper.kill()
             raise
 
 
 def _helper(jobs: Sequence[Job]) -> "subprocess.Popen[bytes] | None":
-    """Start a process that compiles jobs from the last one on; None where there can be none."""
+    """Start a process that compiles what is missing; None where there can be none."""
     if _processors() < 2 or getattr(sys, "frozen", False) or not sys.executable:
         return None
-    if any(job.file is None for job in jobs):
-        return None
     try:
-        order = pickle.dumps([_told(job) for job in reversed(jobs)])
+        missing = [job for job in jobs if not job.is_stored]
+        if len(missing) < 2 or any(job.file is None for job in missing):
+            return None
+        order = pickle.dumps([_told(job) for job in reversed(missing)])
         helper = subprocess.Popen(
             [sys.executable, "-c", _PROGRAM, *sys.path], stdin=subprocess.PIPE,
             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
         )  # fmt: skip
-        with helper.stdin:  # type: ignore[union-attr]
-            helper.stdin.write(order)  # type: ignore[union-attr]
-    except (OSError, pickle.PicklingError, AttributeError, TypeError):
-        return None  # this process will do it all
+    except Exception:  # this process will do it all, and say what is wrong
+        return None
+    with suppress(OSError), cast("IO[bytes]", helper.stdin) as told:
+        told.write(order)
     return helper
 
 

@@ -129,10 +129,9 @@ def test_losses_only_grow(scenario):
         np.testing.assert_allclose(response.dissipated_energy.values, 0.0, atol=slack)
     if scenario.base in ("rigid", "centre") or scenario.rotation == "small":
         pinned = response.flight_count.item() == 0
-        # a slip that has come to zero is stopped, but for its rounding
-        assert (
-            not pinned or (response.repinning_energy.values <= 1e-12 * energy_scale(response)).all()
-        )
+        # a slip that has come to zero is stopped: its energy is a rounding squared
+        lost = response.repinning_energy.values
+        assert not pinned or (lost <= 1e-24 * energy_scale(response)).all()
 
 
 @given(scenarios())

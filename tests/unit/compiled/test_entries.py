@@ -167,6 +167,32 @@ def test_one_compiled_function_serves_all_bound_ones():
     assert len([routine for routine in call_all._routines.values() if routine]) == 1
 
 
+@kernel
+def import_bound(pair: Pair, x: float, out: Vector) -> float:
+    from math import floor
+
+    return floor(x) + pair.total_at(x)
+
+
+def test_a_bound_function_that_cannot_be_compiled_spoils_no_other(fallbacks):
+    pair = PAIRS[0]
+    numbers = numbers_in(pair)
+    forces, broken, counting = bound((force_of, import_bound, count_in), pair)
+    values, out = np.array([0.5]), np.zeros(3)
+    for _ in range(2):
+        values[0] = 0.5
+        call_all(broken, counting, numbers, values, out)
+        assert values.tolist() == [pair.total_at(0.5)]
+    assert len(fallbacks) == 1
+    assert "import_bound could not be compiled" in fallbacks[0]
+    fallbacks.clear()
+    called = out[0]
+    call_all(forces, counting, numbers, values, out)
+    assert out[0] == called + 1.0
+    assert forces.source.address != 0 != counting.source.address
+    assert None not in call_all._routines.values()
+
+
 def test_arrays_in_another_order_and_other_things_are_refused():
     _, _, row, arrays, codes, out = arguments(PAIRS[0])
     for given, held, words in (

@@ -133,7 +133,7 @@ def test_a_helper_compiles_what_it_can_import(own, folder, monkeypatch):
 
     monkeypatch.setattr(together, "_processors", lambda: 2)
     job = Job(load(own, monkeypatch).add_one.source, (("float64", 1, True),), False)
-    with together._helper([job]) as helper:
+    with together._helper([job, job]) as helper:  # for one alone it would not start
         assert helper.wait(timeout=120) == 0
     assert job.is_stored
     values = np.array([1.0])
