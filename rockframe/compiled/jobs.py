@@ -24,8 +24,8 @@ _logger = logging.getLogger("rockframe")
 _said: Final[set[str]] = set()
 
 _WAIT: Final = (
-    "rockframe compiles what this needs for this machine, which takes some 20 s for a block on "
-    "pads, 30 s with cap and soil"
+    "rockframe compiles what this needs for this machine, which takes 20 to 30 s for a block on "
+    "pads, 30 to 45 s with cap and soil, on two cores"
 )
 
 
@@ -58,7 +58,6 @@ class Job:
     @cached_property
     def _written(self) -> tuple[str, dict[str, Any], Any]:
         """Text of the module, the names in it, and the signature of its function."""
-        register_kernels()
         writer = Writer()
         if self.bound:
             names = list(inspect.signature(self.function).parameters)[1:]
@@ -101,6 +100,7 @@ class Job:
         """
         file = self.file
         if file is None:
+            register_kernels()
             _say_once(f"{_WAIT}; it is not kept, for want of a folder or of a file of its source")
             return self._compiled(keep=False)
         if self.is_stored:
@@ -109,6 +109,7 @@ class Job:
             except Exception:  # damaged: whatever comes of reading it
                 store.forget_code(file)
         _say_once(f"{_WAIT}, once")
+        register_kernels()
         with store.compiling(file, waiting):
             try:
                 return self._compiled(keep=True)

@@ -20,20 +20,15 @@ HELPER: Final = OPTIONS | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 """Division by zero gives infinities and NaN, as numpy's, and is not checked for."""
 
 _known: Final[set[Any]] = set()
-"""Functions, and names of methods."""
+"""Functions, and names of methods, that numba has been told of."""
 
 
 def register_kernels() -> None:
-    """Make all functions, and all names of methods, known that were marked since the last time.
-
-    Names of methods from outside the package give way to the fields of its named tuples, which
-    numba would take for them; see :func:`clashes_of`.
-    """
+    """Make all functions, and all names of methods, known that were marked since the last time."""
+    methods = method_names()
     for function, into_caller in list(KERNELS.items()):
         key = function.__name__ if is_method(function) else function
-        if key in _known:
-            continue
-        if not _is_own(function.__module__) and key in fields_of_package():
+        if key in _known or (is_method(function) and key not in methods):
             continue
         _known.add(key)
         options = {**HELPER, "forceinline": into_caller}
@@ -41,6 +36,17 @@ def register_kernels() -> None:
             _register_method(function.__name__, METHODS[function.__name__], options)
         else:
             extending.register_jitable(**options)(function)
+
+
+def method_names() -> set[str]:
+    """Give the names of methods that numba is told of.
+
+    Those from outside the package give way to the fields of its named tuples, which numba
+    would take for them; see :func:`clashes_of`.
+    """
+    own = {function.__name__ for function in KERNELS if _is_own(function.__module__)}
+    foreign = METHODS.keys() - own
+    return (METHODS.keys() & own) | (foreign - fields_of_package() if foreign else set())
 
 
 def clashes_of(kind: Any) -> set[str]:
@@ -56,9 +62,9 @@ def clashes_of(kind: Any) -> set[str]:
     set of str
         Fields that are called like a method, and methods like a field of the package.
     """
-    fields = set(kind._fields)
+    known, fields = method_names(), set(kind._fields)
     methods = {name for name in METHODS if name not in fields and hasattr(kind, name)}
-    return (_known & fields) | (methods - _known)
+    return (known & fields) | (methods - known)
 
 
 def _is_own(module: str) -> bool:

@@ -46,13 +46,28 @@ def energies(system: System, mode: int, state: Vector, out: Vector) -> None:
     put(system.energies(mode, state), 0, out)
 
 
-class Equations(NamedTuple):
-    """A system, bound: its functions, its numbers, and how many there are of everything."""
+@kernel
+def observed(
+    system: System, mode: int, state: Vector, ground_x: float, ground_y: float, memory: Vector,
+    out: Vector,
+) -> None:  # fmt: skip
+    """Write the columns of a state."""
+    ground = Ground(ground_x, ground_y)
+    slope = system.accelerate(mode, state, ground)
+    put(system.observe(mode, state, slope, ground, memory), 0, out)
 
+
+class Equations(NamedTuple):
+    """A system, bound: its functions, its numbers, and how many there are of everything.
+
+    Two processes compile the functions from both ends, those that take longest first.
+    """
+
+    switching: Bound
     slope: Bound
     guarding: Bound
+    observing: Bound
     march: Bound
-    switching: Bound
     stored: Bound
     numbers: Vector
     coordinate_count: int
@@ -75,7 +90,7 @@ def equations_of(system: System, *, fixed_steps: bool) -> Equations:
     Equations
     """
     march = march_fixed if fixed_steps else march_by_tolerance
-    functions = bound((slope, guards_of_state, march, switched, energies), system)
+    functions = bound((switched, slope, guards_of_state, observed, march, energies), system)
     return Equations(
         *functions,  # type: ignore[call-arg]
         numbers=numbers_in(system),

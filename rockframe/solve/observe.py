@@ -14,10 +14,9 @@ from rockframe.compiled import (
     entry,
     kernel,
     numbers_in,
-    put,
 )
-from rockframe.dynamics.protocol import ContactModel, Ground, System
-from rockframe.solve.equations import energies
+from rockframe.dynamics.protocol import ContactModel, System
+from rockframe.solve.equations import energies, observed
 from rockframe.solve.trajectory import Trajectory
 
 
@@ -34,17 +33,6 @@ def copy_row(rows: Matrix, i: int, out: Vector) -> None:
     """Copy a row of a matrix."""
     for j in range(len(out)):
         out[j] = rows[i, j]
-
-
-@kernel
-def observed(
-    system: System, mode: int, state: Vector, ground_x: float, ground_y: float, memory: Vector,
-    out: Vector,
-) -> None:  # fmt: skip
-    """Write the columns of a state."""
-    ground = Ground(ground_x, ground_y)
-    slope = system.accelerate(mode, state, ground)
-    put(system.observe(mode, state, slope, ground, memory), 0, out)
 
 
 class OfSystem(NamedTuple):
