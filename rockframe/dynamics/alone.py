@@ -4,25 +4,13 @@ from typing import Any, Final, NamedTuple
 
 from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics.base import Guards
-from rockframe.dynamics.bodies import InState
+from rockframe.dynamics.bodies import DEGREES, ROTATION, VERTICAL, InState
 from rockframe.dynamics.on_base import IDLE, Mode, OnBase, Response
-from rockframe.dynamics.protocol import HELD_PLACE, Column, Energies, Ground, Slope
+from rockframe.dynamics.protocol import HELD_PLACE, Energies, Ground, Slope
 from rockframe.dynamics.switching import lift_by_slip, switch_part
 
-# places in the state
-ROTATION: Final = 0
-VERTICAL: Final = 1
 HORIZONTAL: Final = 2
-COORDINATES: Final = 3
-
-COLUMNS: Final = (
-    Column("rotation"),
-    Column("angular_velocity"),
-    Column("vertical_displacement"),
-    Column("vertical_velocity"),
-    Column("horizontal_displacement"),
-    Column("base_shear", per_mass=True),
-)
+"""Place in the state, see :mod:`rockframe.dynamics.bodies`."""
 
 
 class OnePart(NamedTuple):
@@ -54,12 +42,12 @@ class Alone(InState, OnePart):
     @inlined
     def own_place(self, k: int) -> int:
         """Give the place of the variables of the base's own in the state."""
-        return 2 * COORDINATES
+        return 2 * DEGREES
 
     @inlined
     def own_in(self, state: Vector) -> Any:
         """Read the variables of the base's own."""
-        return self.part.base.read(state, 2 * COORDINATES)
+        return self.part.base.read(state, 2 * DEGREES)
 
     @inlined
     def accelerate(self, mode: int, state: Vector, ground: Ground) -> tuple[float, ...]:
@@ -139,7 +127,7 @@ class Alone(InState, OnePart):
     @kernel
     def velocities(self, state: Vector) -> tuple[float, ...]:
         """Give all velocities."""
-        return state[COORDINATES], state[COORDINATES + 1], state[COORDINATES + 2]
+        return state[DEGREES], state[DEGREES + 1], state[DEGREES + 2]
 
     @kernel
     def end_acceleration(

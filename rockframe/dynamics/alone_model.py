@@ -6,12 +6,13 @@ from collections.abc import Callable
 import numpy as np
 
 from rockframe.compiled import Vector
-from rockframe.dynamics.alone import COLUMNS, COORDINATES, HORIZONTAL, ROTATION, VERTICAL, Alone
+from rockframe.dynamics.alone import HORIZONTAL, Alone
 from rockframe.dynamics.base_numbers import BaseNumbers, mode_table
+from rockframe.dynamics.bodies import DEGREES, ROTATION, VERTICAL
 from rockframe.dynamics.body import Body, BodyState
 from rockframe.dynamics.on_base import BODY_GUARDS, Mode, OnBase
 from rockframe.dynamics.pads import ROUNDING
-from rockframe.dynamics.protocol import HELD_PLACE, MEMORY, ContactModel, Start
+from rockframe.dynamics.protocol import BODY_COLUMNS, HELD_PLACE, MEMORY, ContactModel, Start
 from rockframe.dynamics.restraint import CENTRE
 
 
@@ -88,7 +89,7 @@ def alone(name: str, body: Body, base: BaseNumbers, mass: float) -> ContactModel
         rotation_weights=np.array([1.0, 0.0, 0.0]),
         scales=np.concatenate([*_sizes(body, base, vertical), base.variable_scales]),
         guard_tolerance=part_tolerance(base),
-        columns=(*COLUMNS, *base.columns),
+        columns=(*BODY_COLUMNS, *base.columns),
         memory=MEMORY,
         mass=mass,
         fastest_frequency=fastest,
@@ -165,10 +166,10 @@ def starting_state(part: OnBase, start: Start, own: tuple[float, ...]) -> tuple[
 
 def _starting(part: OnBase) -> Callable[[Start], tuple[int, Vector, Vector]]:
     def initial(start: Start) -> tuple[int, Vector, Vector]:
-        state = np.zeros(2 * COORDINATES + part.base.variables())
+        state = np.zeros(2 * DEGREES + part.base.variables())
         memory = np.zeros(len(MEMORY))
-        body, mode = starting_state(part, start, part.base.read(state, 2 * COORDINATES))
-        state[[ROTATION, VERTICAL, COORDINATES + ROTATION, COORDINATES + VERTICAL]] = (
+        body, mode = starting_state(part, start, part.base.read(state, 2 * DEGREES))
+        state[[ROTATION, VERTICAL, DEGREES + ROTATION, DEGREES + VERTICAL]] = (
             body.rotation, body.vertical, body.angular_velocity, body.vertical_velocity,
         )  # fmt: skip
         # the held point starts where it is when the body rests, so that x = 0 there

@@ -132,6 +132,17 @@ class Column:
     mass_ratio: float = 1.0
 
 
+BODY_COLUMNS: Final = (
+    Column("rotation"),
+    Column("angular_velocity"),
+    Column("vertical_displacement"),
+    Column("vertical_velocity"),
+    Column("horizontal_displacement"),
+    Column("base_shear", per_mass=True),
+)
+"""What every system gives of the body that the scene is about, in this order."""
+
+
 @dataclass(frozen=True)
 class Start:
     """Where a run starts, in SI units.

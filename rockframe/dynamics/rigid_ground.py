@@ -14,6 +14,7 @@ from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics.base import Guards
 from rockframe.dynamics.events import IMPACT, REST, UPLIFT, ContactState
 from rockframe.dynamics.protocol import (
+    BODY_COLUMNS,
     IMPACT_LOSS,
     LAST_EVENT,
     MEMORY,
@@ -42,12 +43,7 @@ REST_AMPLITUDE: Final = 1e-10
 accuracy setting resolves, and ends the endless series of ever smaller impacts."""
 
 COLUMNS: Final = (
-    Column("rotation"),
-    Column("angular_velocity"),
-    Column("vertical_displacement"),
-    Column("vertical_velocity"),
-    Column("horizontal_displacement"),
-    Column("base_shear", per_mass=True),
+    *BODY_COLUMNS,
     Column("left_reaction", per_mass=True),
     Column("right_reaction", per_mass=True),
 )

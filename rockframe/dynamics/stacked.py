@@ -8,7 +8,7 @@ from typing import Any, Final, NamedTuple
 
 from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics.base import Guards
-from rockframe.dynamics.bodies import InState
+from rockframe.dynamics.bodies import DEGREES, ROTATION, VERTICAL, InState
 from rockframe.dynamics.body import BodyState
 from rockframe.dynamics.events import (
     PIVOT_CHANGE,
@@ -19,28 +19,21 @@ from rockframe.dynamics.events import (
     SOIL_SEPARATION,
 )
 from rockframe.dynamics.on_base import Mode, OnBase, SlidingGuards
-from rockframe.dynamics.protocol import LAST_EVENT, Column, Slope
+from rockframe.dynamics.protocol import BODY_COLUMNS, LAST_EVENT, Column, Slope
 
 UPPER: Final = 0
 LOWER: Final = 1
 """Numbers of the bodies."""
 
-# places in the state, see rockframe.dynamics.bodies
-ROTATION: Final = 0
-VERTICAL: Final = 1
+# places in the state behind rotation and height of the upper body, see rockframe.dynamics.bodies
 LOWER_ROTATION: Final = 2
 LOWER_VERTICAL: Final = 3
 HORIZONTAL: Final = 4
 LOWER_HORIZONTAL: Final = 5
-COORDINATES: Final = 6
+COORDINATES: Final = 2 * DEGREES
 
 COLUMNS: Final = (
-    Column("rotation"),
-    Column("angular_velocity"),
-    Column("vertical_displacement"),
-    Column("vertical_velocity"),
-    Column("horizontal_displacement"),
-    Column("base_shear", per_mass=True),
+    *BODY_COLUMNS,
     Column("cap_rotation"),
     Column("cap_angular_velocity"),
     Column("cap_vertical_displacement"),

@@ -6,9 +6,8 @@ in the system. Re-pinning :eq:`eq-repinning`, impact :eq:`eq-impact`, partial ho
 :eq:`eq-partial-hold`, leaving :eq:`eq-leaving-into-flight`.
 """
 
-from typing import Protocol
-
 from rockframe.compiled import Vector, kernel, put
+from rockframe.dynamics.bodies import Bodies
 from rockframe.dynamics.body import BodyState
 from rockframe.dynamics.events import (
     IMPACT,
@@ -17,7 +16,7 @@ from rockframe.dynamics.events import (
     SEPARATION,
     SILENT,
 )
-from rockframe.dynamics.on_base import HOLD, PIVOT, SLIP, Mode, OnBase, Response
+from rockframe.dynamics.on_base import HOLD, PIVOT, SLIP, Mode, OnBase
 from rockframe.dynamics.protocol import (
     HELD_PLACE,
     IMPACT_LOSS,
@@ -34,70 +33,6 @@ from rockframe.dynamics.sliding import (
     share_until_lifted,
     speed_noise,
 )
-
-
-class Bodies(Protocol):
-    """What a system of bodies knows of body `k`, and does to it."""
-
-    def part_mode(self, mode: int, k: int) -> Mode:
-        """Give how the body stands in a mode."""
-        ...
-
-    def with_part(self, mode: int, k: int, part: Mode) -> int:
-        """Give the mode in which the body stands otherwise."""
-        ...
-
-    def state_of(self, k: int, state: Vector) -> BodyState:
-        """Give placement and rates of the body relative to its base."""
-        ...
-
-    def own_place(self, k: int) -> int:
-        """Give the place of the variables of its base's own in the state."""
-        ...
-
-    def place(self, k: int, mode: int, state: Vector, memory: Vector) -> float:
-        """Give the horizontal place of its centre of mass, relative to its base."""
-        ...
-
-    def change(self, k: int, rise: float, speed: float, state: Vector) -> None:
-        """Add to its height and to its vertical velocity."""
-        ...
-
-    def stand_upright(self, k: int, state: Vector) -> None:
-        """Set its rotation to zero."""
-        ...
-
-    def set_sway(self, k: int, place: float, velocity: float, state: Vector) -> None:
-        """Set its horizontal coordinate and velocity."""
-        ...
-
-    def response(
-        self, k: int, mode: int, press: float, moment: float, slip: float, state: Vector
-    ) -> Response:
-        """Give how velocities change by an impulse of its base, or as the hold stops a slip."""
-        ...
-
-    def respond(self, k: int, mode: int, response: Response, state: Vector) -> None:
-        """Change the velocities."""
-        ...
-
-    def velocities(self, state: Vector) -> tuple[float, ...]:
-        """Give all velocities."""
-        ...
-
-    def blend_velocities(self, before: tuple[float, ...], share: float, state: Vector) -> None:
-        """Take back all but a share of what has changed the velocities since."""
-        ...
-
-    def end_acceleration(
-        self, k: int, left: bool, mode: int, state: Vector, ground: Ground
-    ) -> float:
-        """Give the acceleration of an end of its base in a mode, upwards."""
-        ...
-
-    def tendency(self, k: int, mode: int, state: Vector, ground: Ground) -> float:
-        """Give the side to which it will rotate, upright and at rest."""
-        ...
 
 
 @kernel

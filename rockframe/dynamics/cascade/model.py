@@ -6,11 +6,10 @@ from dataclasses import replace
 import numpy as np
 
 from rockframe.compiled import Vector
-from rockframe.dynamics.alone import COLUMNS as ALONE_COLUMNS
 from rockframe.dynamics.alone import Alone
 from rockframe.dynamics.cascade.system import COLUMNS, Cascade
 from rockframe.dynamics.on_base import OnBase
-from rockframe.dynamics.protocol import HELD_PLACE, MEMORY, ContactModel, Start
+from rockframe.dynamics.protocol import BODY_COLUMNS, HELD_PLACE, MEMORY, ContactModel, Start
 from rockframe.dynamics.stacked import COORDINATES
 
 
@@ -36,7 +35,7 @@ def cascade(
     system = Cascade(_part_of(second), _part_of(first), ratio, top, cap_centre)
     count = len(first.contact)
     sways = np.maximum(np.repeat(first.active, len(second.active)), np.tile(second.active, count))
-    shown = len(ALONE_COLUMNS)
+    shown = len(BODY_COLUMNS)
     under = tuple(replace(column, mass_ratio=ratio) for column in first.columns[shown:])
 
     def initial(start: Start) -> tuple[int, Vector, Vector]:

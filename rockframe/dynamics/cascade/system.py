@@ -9,6 +9,7 @@ from typing import Final, NamedTuple
 
 from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics.base import Guards
+from rockframe.dynamics.bodies import ROTATION, VERTICAL
 from rockframe.dynamics.body import BodyState
 from rockframe.dynamics.on_base import IDLE, Mode, OnBase, Rates, Response
 from rockframe.dynamics.protocol import (
@@ -28,9 +29,7 @@ from rockframe.dynamics.stacked import (
     LOWER,
     LOWER_HORIZONTAL,
     LOWER_ROTATION,
-    ROTATION,
     UPPER,
-    VERTICAL,
     Stacked,
     tell_of_soil,
 )

@@ -14,6 +14,7 @@ from rockframe.dynamics.alone_model import (
     starting_state,
 )
 from rockframe.dynamics.base_numbers import mode_table
+from rockframe.dynamics.bodies import ROTATION, VERTICAL
 from rockframe.dynamics.body import BodyState
 from rockframe.dynamics.coupled.stack import Stack, fastest_vibration
 from rockframe.dynamics.coupled.system import Coupled
@@ -24,9 +25,7 @@ from rockframe.dynamics.stacked import (
     COORDINATES,
     HORIZONTAL,
     LOWER,
-    ROTATION,
     UPPER,
-    VERTICAL,
 )
 
 

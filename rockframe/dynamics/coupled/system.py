@@ -6,6 +6,7 @@ impulses act, in the coupled system: :eq:`eq-coupled-impulse`. Per unit mass of 
 
 from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics.base import Guards
+from rockframe.dynamics.bodies import ROTATION, VERTICAL
 from rockframe.dynamics.body import Attitude
 from rockframe.dynamics.coupled.motion import (
     Configuration,
@@ -31,9 +32,7 @@ from rockframe.dynamics.stacked import (
     LOWER_HORIZONTAL,
     LOWER_ROTATION,
     LOWER_VERTICAL,
-    ROTATION,
     UPPER,
-    VERTICAL,
     Stacked,
     States,
     tell_of_soil,
