@@ -1,0 +1,131 @@
+"""A stack of which both bases have states and variables of their own.
+
+Those do nothing here: each variable grows at a rate of its own, and no end changes its state.
+So all else is as without them, although modes go beyond sixteen bits.
+"""
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+
+from rockframe.compiled import inlined, kernel
+from rockframe.dynamics.alone_model import body_of
+from rockframe.dynamics.base_numbers import BaseNumbers, pads_under
+from rockframe.dynamics.coupled.model import coupled
+from rockframe.dynamics.coupled.stack import Stack
+from rockframe.dynamics.on_pads import on_pads
+from rockframe.dynamics.pads import CONTACTS, Pads
+from rockframe.dynamics.protocol import Column, Start
+from rockframe.dynamics.restraint import LEADING_CORNER
+from rockframe.signals import Motion
+from rockframe.solve.accuracy import accuracy_of
+from rockframe.solve.integrate import integrate
+from rockframe.solve.observe import observe_trajectory
+
+RATES = (3.0, 5.0)
+"""Of the upper base's variable and of the lower one's [s^-1]."""
+CAP_MASS = 0.4
+
+
+class Age(NamedTuple):
+    """How long a base has stood, in a unit of its own."""
+
+    age: float
+
+
+@on_pads
+class AgeingPads(NamedTuple):
+    """Pads that remember how long they have stood."""
+
+    pads: Pads
+    rate: float
+
+    @kernel
+    def states(self):
+        return 4
+
+    @kernel
+    def variables(self):
+        return 1
+
+    @inlined
+    def read(self, state, first):
+        return Age(state[first])
+
+    @inlined
+    def flow(self, contact, line, own):
+        return (self.rate,)
+
+    @inlined
+    def now(self, own):
+        return self.pads
+
+    @kernel
+    def observed(self, contact, line, own):
+        left, right = self.pads.observed(contact % CONTACTS, line, ())
+        return left, right, own.age
+
+
+def aged(base: BaseNumbers, name: str, rate: float) -> BaseNumbers:
+    """Give pads that age."""
+    return replace(
+        base,
+        law=AgeingPads(base.law, rate),
+        columns=(*base.columns, Column(name)),
+        end_tolerance=np.append(base.end_tolerance, 1e-15),
+        variable_scales=np.ones(1),
+    )
+
+
+def stack(above, below):
+    """Give the model of a block on a cap; `above` and `below` make bases of pads."""
+    block, cap = (
+        body_of(
+            half_width=half_width,
+            height=height,
+            inertia=mass * (half_width**2 + height**2) / 3.0,
+            restraint=LEADING_CORNER,
+            small_rotation=False,
+            gravity=9.81,
+        )
+        for half_width, height, mass in ((0.5, 2.0, 1.0), (0.5, 0.25, CAP_MASS))
+    )
+    pads = pads_under(block, stiffness=4e3, damping=20.0, restitution=0.9)
+    soil = pads_under(cap, stiffness=2e3, damping=30.0, restitution=1.0)
+    return coupled(Stack(block, above(pads), cap, below(soil), CAP_MASS), mass=1e4)
+
+
+def shaken(model):
+    samples = 6.0 * np.sin(2.0 * np.pi * np.arange(101) / 100.0)
+    motion = Motion.of_samples(0.01, samples, np.zeros(101))
+    return integrate(
+        model, Start(), motion, accuracy_of("reference"), duration=1.5, output_step=0.01
+    )
+
+
+@pytest.mark.reference_models
+def test_each_base_has_its_own_variables_and_states():
+    plain = stack(lambda pads: pads, lambda pads: pads)
+    model = stack(
+        lambda pads: aged(pads, "age_above", RATES[0]),
+        lambda pads: aged(pads, "age_below", RATES[1]),
+    )
+    expected, run = shaken(plain), shaken(model)
+    assert len(expected.events.time) > 4
+    np.testing.assert_allclose(run.events.time, expected.events.time, atol=1e-9)
+    ground = np.zeros((len(run.time), 2))
+    before = observe_trajectory(plain, expected, ground)
+    found = observe_trajectory(model, run, ground)
+    for name, history in before.items():
+        np.testing.assert_allclose(
+            found[name], history, atol=1e-7 * (1e-9 + np.abs(history).max()), err_msg=name
+        )
+    for name, rate in zip(("age_above", "age_below"), RATES, strict=True):
+        np.testing.assert_allclose(found[name], rate * run.time, rtol=1e-12)
+    assert run.mode.max() > np.iinfo(np.int16).max
+    for table in ("contact", "soil_contact"):
+        np.testing.assert_array_equal(
+            getattr(model, table)[run.mode], getattr(plain, table)[expected.mode]
+        )
