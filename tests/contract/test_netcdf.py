@@ -1,6 +1,7 @@
 """Through a file with plain xarray, and back to a system that gives the same bits."""
 
 import json
+from inspect import signature
 
 import cf_xarray  # noqa: F401
 import netCDF4
@@ -23,60 +24,79 @@ def through_file(dataset, folder, **options):
         return again.load()
 
 
-class TestEveryFile:
-    def test_it_comes_back_identical(self, response, tmp_path):
-        again = through_file(response, tmp_path)
-        xr.testing.assert_identical(again, response)
-        for name, variable in response.variables.items():
-            assert again[name].dtype == variable.dtype, name
-            np.testing.assert_array_equal(again[name].values, variable.values)
-        for name, value in response.attrs.items():
-            assert np.array_equal(again.attrs[name], value, equal_nan=isinstance(value, float))
-        assert ((again.contact_state.cf == "full") == (response.contact_state.cf == "full")).all()
+def it_comes_back_identical(response, tmp_path):
+    again = through_file(response, tmp_path)
+    xr.testing.assert_identical(again, response)
+    for name, variable in response.variables.items():
+        assert again[name].dtype == variable.dtype, name
+        np.testing.assert_array_equal(again[name].values, variable.values)
+    for name, value in response.attrs.items():
+        assert np.array_equal(again.attrs[name], value, equal_nan=isinstance(value, float))
+    assert ((again.contact_state.cf == "full") == (response.contact_state.cf == "full")).all()
 
-    def test_writing_leaves_the_dataset_alone(self, response, tmp_path):
-        before = response.copy(deep=True)
-        response.to_netcdf(tmp_path / "one.nc")
-        response.to_netcdf(tmp_path / "two.nc")
-        xr.testing.assert_identical(before, response)
 
-    def test_the_file_itself_is_clean(self, response, tmp_path):
-        path = tmp_path / "response.nc"
-        response.to_netcdf(path)
-        with netCDF4.Dataset(path) as file:
-            for name, variable in file.variables.items():
-                attributes = variable.ncattrs()
-                assert "long_name" in attributes
-                if name == "time" or "flag_values" in attributes:
-                    assert "_FillValue" not in attributes, name
-                    assert "missing_value" not in attributes, name
-                if "flag_values" in attributes:
-                    assert variable.dtype == np.int8
-                    assert variable.getncattr("flag_values").dtype == np.int8
-                if variable.dtype == np.float64:
-                    assert "units" in attributes, name
-                assert "coordinates" not in attributes, name
-            assert not any(dimension.isunlimited() for dimension in file.dimensions.values())
-            assert "coordinates" not in file.ncattrs()
+def writing_leaves_the_dataset_alone(response, tmp_path):
+    before = response.copy(deep=True)
+    response.to_netcdf(tmp_path / "one.nc")
+    response.to_netcdf(tmp_path / "two.nc")
+    xr.testing.assert_identical(before, response)
 
-    def test_it_rebuilds_the_system_and_the_bits(self, scene, motion_name, response, tmp_path):
-        again = through_file(response, tmp_path)
-        system = rf.System.from_dataset(again)
-        assert system.assembly.to_dict() == SCENES[scene]().to_dict()
-        motion = system.motion
-        if motion_name == "pulse and vertical":
-            # two analytic pulses in one: only the digest is on record
-            assert motion is None or motion.sha256 == MOTIONS[motion_name]().sha256
-            motion = MOTIONS[motion_name]()
-        assert motion is not None
-        assert motion.sha256 == MOTIONS[motion_name]().sha256
-        rerun = system.simulate(motion, free_vibration="0.5 s", outputs="energy")
-        for attribute in WHEN:
-            del rerun.attrs[attribute], again.attrs[attribute]
-        for name in again.variables:
-            np.testing.assert_array_equal(rerun[name].values, again[name].values, err_msg=name)
-        assert rerun.attrs["system_json"] == again.attrs["system_json"]
-        assert rerun.attrs["motion_sha256"] == again.attrs["motion_sha256"]
+
+def the_file_itself_is_clean(response, tmp_path):
+    path = tmp_path / "response.nc"
+    response.to_netcdf(path)
+    with netCDF4.Dataset(path) as file:
+        for name, variable in file.variables.items():
+            attributes = variable.ncattrs()
+            assert "long_name" in attributes
+            if name == "time" or "flag_values" in attributes:
+                assert "_FillValue" not in attributes, name
+                assert "missing_value" not in attributes, name
+            if "flag_values" in attributes:
+                assert variable.dtype == np.int8
+                assert variable.getncattr("flag_values").dtype == np.int8
+            if variable.dtype == np.float64:
+                assert "units" in attributes, name
+            assert "coordinates" not in attributes, name
+        assert not any(dimension.isunlimited() for dimension in file.dimensions.values())
+        assert "coordinates" not in file.ncattrs()
+
+
+def it_rebuilds_the_system_and_the_bits(scene, motion_name, response, tmp_path):
+    again = through_file(response, tmp_path)
+    system = rf.System.from_dataset(again)
+    assert system.assembly.to_dict() == SCENES[scene]().to_dict()
+    motion = system.motion
+    if motion_name == "pulse and vertical":
+        # two analytic pulses in one: only the digest is on record
+        assert motion is None or motion.sha256 == MOTIONS[motion_name]().sha256
+        motion = MOTIONS[motion_name]()
+    assert motion is not None
+    assert motion.sha256 == MOTIONS[motion_name]().sha256
+    rerun = system.simulate(motion, free_vibration="0.5 s", outputs="energy")
+    for attribute in WHEN:
+        del rerun.attrs[attribute], again.attrs[attribute]
+    for name in again.variables:
+        np.testing.assert_array_equal(rerun[name].values, again[name].values, err_msg=name)
+    assert rerun.attrs["system_json"] == again.attrs["system_json"]
+    assert rerun.attrs["motion_sha256"] == again.attrs["motion_sha256"]
+
+
+CHECKS = (
+    it_comes_back_identical,
+    writing_leaves_the_dataset_alone,
+    the_file_itself_is_clean,
+    it_rebuilds_the_system_and_the_bits,
+)
+
+
+def test_every_file(subtests, scene, motion_name, response, tmp_path):
+    known = {
+        "scene": scene, "motion_name": motion_name, "response": response, "tmp_path": tmp_path,
+    }  # fmt: skip
+    for function in CHECKS:
+        with subtests.test(function.__name__):
+            function(**{name: known[name] for name in signature(function).parameters})
 
 
 ANSWERS = {
