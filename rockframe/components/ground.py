@@ -4,21 +4,21 @@ from typing import ClassVar
 
 from rockframe.components.base import Component
 from rockframe.components.parameters import Ratio
-from rockframe.units import UNIT_INTERVAL, RatioLike
+from rockframe.units import NOT_NEGATIVE, UNIT_INTERVAL, RatioLike
 
 
 class RigidGround(Component):
     """Rigid ground under a rocking block (Housner's model).
 
     A scene with a block alone stands on rigid ground; this part is needed only
-    to choose a restitution.
+    to choose a restitution or a friction.
 
     Raises
     ------
     UnitsError
         Not a pure ratio.
     ComponentError
-        Outside (0, 1].
+        `restitution` is outside (0, 1], or `friction` negative.
     """
 
     noun: ClassVar[str] = "base"
@@ -31,5 +31,15 @@ class RigidGround(Component):
         example="0.9",
     )
 
-    def __init__(self, *, restitution: RatioLike | None = None) -> None:
-        super().__init__(restitution=restitution)
+    friction = Ratio(
+        NOT_NEGATIVE,
+        doc="Coefficient of friction under the block: a run that needs more of it warns; the "
+        "model holds the base all the same.",
+        default=None,
+        example="0.5",
+    )
+
+    def __init__(
+        self, *, restitution: RatioLike | None = None, friction: RatioLike | None = None
+    ) -> None:
+        super().__init__(restitution=restitution, friction=friction)

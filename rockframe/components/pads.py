@@ -72,6 +72,14 @@ class TwoSpringSupport(Component):
         example="0.9",
     )
 
+    friction = Ratio(
+        NOT_NEGATIVE,
+        doc="Coefficient of friction under the block: a run that needs more of it warns; the "
+        "model holds the base all the same.",
+        default=None,
+        example="0.5",
+    )
+
     def __init__(
         self,
         *,
@@ -80,6 +88,7 @@ class TwoSpringSupport(Component):
         damping_ratio: RatioLike | None = None,
         damping: QuantityLike | None = None,
         restitution: RatioLike | None = None,
+        friction: RatioLike | None = None,
     ) -> None:
         super().__init__(
             frequency_ratio=frequency_ratio,
@@ -87,4 +96,5 @@ class TwoSpringSupport(Component):
             damping_ratio=damping_ratio,
             damping=damping,
             restitution=restitution,
+            friction=friction,
         )

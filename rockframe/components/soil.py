@@ -6,7 +6,7 @@ from typing import ClassVar, Literal, Self, TypeAlias
 from rockframe.components.alternatives import OneOf
 from rockframe.components.base import Component
 from rockframe.components.damping import DampingRatio
-from rockframe.components.parameters import Choice, Parameter
+from rockframe.components.parameters import Choice, Parameter, Ratio
 from rockframe.units import (
     BED_DAMPING,
     BED_STIFFNESS,
@@ -78,6 +78,14 @@ class WinklerSoil(Component):
         "paper; or also where the dashpots would have to pull.",
     )
 
+    friction = Ratio(
+        NOT_NEGATIVE,
+        doc="Coefficient of friction of the base on the soil: a run that needs more of it warns; "
+        "the model holds the base all the same.",
+        default=None,
+        example="0.5",
+    )
+
     def __init__(
         self,
         *,
@@ -85,12 +93,14 @@ class WinklerSoil(Component):
         damping: QuantityLike | None = None,
         damping_ratio: RatioLike | None = None,
         separation: SeparationLike = Separation.DISPLACEMENT,
+        friction: RatioLike | None = None,
     ) -> None:
         super().__init__(
             stiffness=stiffness,
             damping=damping,
             damping_ratio=damping_ratio,
             separation=separation,
+            friction=friction,
         )
 
     @classmethod
@@ -102,6 +112,7 @@ class WinklerSoil(Component):
         damping: QuantityLike | None = None,
         damping_ratio: RatioLike | None = None,
         separation: SeparationLike = Separation.DISPLACEMENT,
+        friction: RatioLike | None = None,
     ) -> Self:
         """Build the bed from the soil's subgrade modulus.
 
@@ -111,7 +122,7 @@ class WinklerSoil(Component):
             Pressure per settlement [Pa m^-1].
         depth : str or Quantity
             Depth of the base out of the plane of rocking [m].
-        damping, damping_ratio, separation
+        damping, damping_ratio, separation, friction
             As for :class:`WinklerSoil`.
 
         Returns
@@ -131,4 +142,5 @@ class WinklerSoil(Component):
             damping=damping,
             damping_ratio=damping_ratio,
             separation=separation,
+            friction=friction,
         )

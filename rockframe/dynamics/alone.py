@@ -89,16 +89,23 @@ class Alone(InState, OnePart):
     def observe(
         self, mode: int, state: Vector, slope: Slope, ground: Ground, memory: Vector
     ) -> tuple[float, ...]:
-        """Give motion of the centre of mass, base shear, and what the base shows."""
-        body = self.state_of(0, state)
+        """Give motion of the centre of mass, reactions, and what the base shows."""
+        standing, body = self.part.mode_of(mode), self.state_of(0, state)
+        shear = slope[HORIZONTAL] + ground.x
         return (
             body.rotation,
             body.angular_velocity,
             body.vertical,
             body.vertical_velocity,
             self.place(0, mode, state, memory),
-            slope[HORIZONTAL] + ground.x,
-        ) + self.part.observed_base(self.part.mode_of(mode), body, self.own_in(state))
+            shear,
+            self.part.sway(standing, body, self.part.body.attitude(body.rotation)),
+            slope[ROTATION],
+            slope[HORIZONTAL],
+            slope[VERTICAL],
+            shear,
+            slope[VERTICAL] + self.part.body.gravity + ground.y,
+        ) + self.part.observed_base(standing, body, self.own_in(state))
 
     @kernel
     def part_mode(self, mode: int, k: int) -> Mode:

@@ -107,7 +107,11 @@ def bed_under(
     size = math.hypot(0.5 * width, body.height)
     return BaseNumbers(
         Bed(stiffness, damping, settlement, width, by_pressure),
-        (Column("soil_reaction", per_mass=True), Column("contact_length")),
+        (
+            Column("soil_reaction", per_mass=True),
+            Column("contact_length"),
+            Column("toe_pressure", per_mass=True),
+        ),
         settlement=settlement,
         vertical_stiffness=width * stiffness,
         rotational_stiffness=stiffness * (body.left**3 + body.right**3) / 3.0,

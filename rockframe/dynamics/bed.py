@@ -323,6 +323,9 @@ class Bed(NamedTuple):
 
     @kernel
     def observed(self, contact: int, line: BaseLine, own: Variables) -> Variables:
-        """Give the bed's reaction and the length in contact."""
-        start, end = self.bearing_part(contact, self.ends(line))
-        return self.force(contact, line, own).upward, self.width * (end - start)
+        """Give the bed's reaction, the length in contact, and the greater pressure at its ends."""
+        ends = self.ends(line)
+        start, end = self.bearing_part(contact, ends)
+        left, right = self.pressure(start, ends), self.pressure(end, ends)
+        toe = max(left, right) if end > start else 0.0
+        return self.force(contact, line, own).upward, self.width * (end - start), toe

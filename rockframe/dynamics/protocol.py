@@ -139,8 +139,18 @@ BODY_COLUMNS: Final = (
     Column("vertical_velocity"),
     Column("horizontal_displacement"),
     Column("base_shear", per_mass=True),
+    Column("horizontal_velocity"),
+    Column("angular_acceleration"),
+    Column("horizontal_acceleration"),
+    Column("vertical_acceleration"),
+    Column("horizontal_reaction", per_mass=True),
+    Column("vertical_reaction", per_mass=True),
 )
-"""What every system gives of the body that the scene is about, in this order."""
+"""What every system gives of the body that the scene is about, in this order.
+
+Velocities and accelerations are those of the centre of mass, relative to the ground; the
+reactions are those of the body's own base, along and normal to what that stands on.
+"""
 
 
 @dataclass(frozen=True)

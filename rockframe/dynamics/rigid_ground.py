@@ -173,7 +173,7 @@ class RigidGround(NamedTuple):
     def observe(
         self, mode: int, state: Vector, slope: Slope, ground: Ground, memory: Vector
     ) -> tuple[float, ...]:
-        """Give motion of the centre of mass, base shear and the corners' reactions."""
+        """Give motion of the centre of mass, and the reactions, of both corners together too."""
         rotation, rate = state[0], state[1]
         weight = self.gravity + ground.y
         height = self.centre_rise(mode, rotation)
@@ -181,7 +181,8 @@ class RigidGround(NamedTuple):
             # moments about the middle of the base: (N_R - N_L) b = -m h x_g''
             tilt = 2.0 * ground.x / (self.left.tangent + self.right.tangent)
             left, right = 0.5 * (weight + tilt), 0.5 * (weight - tilt)
-            return rotation, rate, height, 0.0, 0.0, ground.x, left, right
+            rest = (rotation, rate, height, 0.0, 0.0, ground.x)
+            return rest + (0.0, 0.0, 0.0, 0.0, ground.x, weight, left, right)
         corner = self.corner(mode)
         sine, cosine = self.lean(mode, rotation)
         start, _ = sine_cosine(corner.angle)
@@ -189,10 +190,12 @@ class RigidGround(NamedTuple):
         sway = corner.radius * (cosine * slope[0] + sine * rate * rate)
         if self.small:
             x, sway = corner.radius * rotation, corner.radius * slope[0]
-        bearing = weight + corner.radius * (sine * slope[0] - cosine * rate * rate)
+        rise = corner.radius * (sine * slope[0] - cosine * rate * rate)
+        bearing, shear = weight + rise, sway + ground.x
         left, right = (bearing, 0.0) if mode == ON_LEFT else (0.0, bearing)
-        speed = corner.radius * sine * rate
-        return rotation, rate, height, speed, x, sway + ground.x, left, right
+        across, up = corner.radius * cosine * rate, corner.radius * sine * rate
+        moved = (rotation, rate, height, up, x, shear)
+        return moved + (across, slope[0], sway, rise, shear, bearing, left, right)
 
 
 def rigid_ground(

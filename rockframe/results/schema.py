@@ -4,6 +4,14 @@ from typing import Final
 
 from rockframe.results.variables.comparison import COMPARISON
 from rockframe.results.variables.motions import MEASURES
+from rockframe.results.variables.requests import (
+    ACCELERATIONS,
+    FORCE_SCALARS,
+    IMPULSES,
+    OTHERS,
+    POINTS,
+    REACTIONS,
+)
 from rockframe.results.variables.runs import (
     CERTIFICATE,
     ENERGY_HISTORIES,
@@ -15,7 +23,13 @@ from rockframe.results.variables.statics import HELD, MODES, REST
 _TABLES: Final = (
     HISTORIES,
     ENERGY_HISTORIES,
+    ACCELERATIONS,
+    REACTIONS,
+    OTHERS,
+    IMPULSES,
+    POINTS,
     EVENTS_AND_SCALARS,
+    FORCE_SCALARS,
     CERTIFICATE,
     HELD,
     REST,
@@ -27,10 +41,24 @@ _TABLES: Final = (
 SCHEMA: Final = {row.name: row for table in _TABLES for row in table}
 """All variables by name, with those that users have registered."""
 
-COORDINATES: Final = ("time", "angle", "mode")
+COORDINATES: Final = ("time", "angle", "mode", "point", "point_x", "point_y")
 """Variables that label a dimension."""
 
 ENERGIES: Final = tuple(row.name for row in ENERGY_HISTORIES)
-"""Histories that are computed only on request."""
+"""Histories that are integrated only on request."""
+
+GROUPS: Final = {
+    "energy": ENERGIES,
+    "acceleration": tuple(row.name for row in ACCELERATIONS),
+    "reaction": tuple(row.name for row in REACTIONS),
+    "impulse": tuple(row.name for row in IMPULSES),
+}
+"""Names that ask for several variables."""
+
+ON_REQUEST: Final = (
+    *(name for group in GROUPS.values() for name in group),
+    *(row.name for row in OTHERS),
+)
+"""All variables that are given only on request."""
 
 SCHEMA_VERSION: Final = 2

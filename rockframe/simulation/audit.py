@@ -54,7 +54,7 @@ def unbalanced(
     if residual <= DOUBTFUL:
         return None
     standard = LEVELS[AccuracyLevel.STANDARD]
-    other = run(replace(plan, accuracy=standard, output_step=None, energies=()))
+    other = run(replace(plan, accuracy=standard, output_step=None, requested=(), points=()))
     if other.overturned is None:
         return None
     difference = abs(other.peak - base.peak)

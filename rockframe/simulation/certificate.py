@@ -109,7 +109,7 @@ def certify(
     """
     if base.overturned is None:
         return NONE
-    bare = replace(plan, output_step=None, energies=())
+    bare = replace(plan, output_step=None, requested=(), points=())
     with warnings.catch_warnings():
         # the run itself has given them
         warnings.simplefilter("ignore", ModelWarning)

@@ -49,6 +49,8 @@ def parameters(system: Assembly) -> Iterator[tuple[str, SceneAt]]:
 
     for place, part in enumerate(parts):
         for name in part.parameters():
+            if name == "friction":  # it changes no motion
+                continue
             yield f"{name.replace('_', ' ')} of the {part.noun}", changed(place, name)
 
 

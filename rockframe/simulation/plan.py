@@ -1,7 +1,7 @@
 """The arguments of a run, checked against the system and one another."""
 
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import xarray as xr
@@ -9,14 +9,15 @@ import xarray as xr
 from rockframe.components import InitialState
 from rockframe.errors import AssemblyError, shown
 from rockframe.motion import GroundMotion
-from rockframe.results.schema import ENERGIES, SCHEMA
+from rockframe.results.points import Point
+from rockframe.results.schema import ENERGIES
+from rockframe.simulation.asked import lacking, names_of, points_of
 from rockframe.simulation.beginning import Beginning, continuation_of
 from rockframe.solve.accuracy import Accuracy, accuracy_of
 from rockframe.system.assembly import Assembly
 from rockframe.system.options import AccuracyLike, Overturning, OverturningLike, read_option
-from rockframe.units import POSITIVE, TIME, TIME_STEP, QuantityLike, to_si
+from rockframe.units import LENGTH, POSITIVE, TIME, TIME_STEP, QuantityLike, to_si
 
-ENERGY_GROUP = "energy"
 MOST_SAMPLES = 1e8
 """Samples of the histories beyond which a run is refused: some ten gigabytes."""
 STILL_GROUND_OUTPUT_STEP = 0.005
@@ -33,8 +34,14 @@ class Plan:
     accuracy: Accuracy
     accuracy_name: str
     output_step: float | None
-    energies: tuple[str, ...]
+    requested: tuple[str, ...]
+    points: tuple[Point, ...]
     stop_at_overturning: bool
+
+    @property
+    def energies(self) -> tuple[str, ...]:
+        """Energies among what is requested."""
+        return tuple(name for name in self.requested if name in ENERGIES)
 
     def to_json(self) -> str:
         """Give the plan as JSON, without the motion."""
@@ -44,7 +51,11 @@ class Plan:
                 "initial": self.initial.to_dict(),
                 "accuracy": vars(self.accuracy),
                 "output_step": self.output_step and f"{self.output_step!r} {TIME.unit}",
-                "outputs": list(self.energies),
+                "outputs": list(self.requested),
+                "points": {
+                    point.name: [f"{each!r} {LENGTH.unit}" for each in (point.x, point.y)]
+                    for point in self.points
+                },
                 "overturning": "stop" if self.stop_at_overturning else "continue",
             }
         )
@@ -60,6 +71,7 @@ def plan_run(
     accuracy: AccuracyLike,
     output_step: QuantityLike | None,
     outputs: Sequence[str] | None,
+    points: Mapping[str, tuple[QuantityLike, QuantityLike]] | None = None,
     overturning: OverturningLike,
 ) -> Plan:
     """Check the arguments of a run against the system and one another.
@@ -93,7 +105,8 @@ def plan_run(
             f"{step:.6g} s); give a longer output_step, or outputs=None"
         )
     course = read_option(Overturning, overturning, "overturning", faults)
-    energies = _energies(outputs, faults)
+    requested, named = names_of(outputs, faults), points_of(points, faults)
+    faults += lacking(system, requested)
     if faults:
         raise AssemblyError(faults)
     settings = accuracy_of(accuracy)
@@ -104,7 +117,8 @@ def plan_run(
         accuracy=settings,
         accuracy_name=str(accuracy) if isinstance(accuracy, str) else "own",
         output_step=step,
-        energies=energies,
+        requested=requested,
+        points=named,
         stop_at_overturning=course is Overturning.STOP,
     )
 
@@ -153,22 +167,3 @@ def _length(
     if motion is None:
         faults.append("nothing to simulate: give a motion, or a duration for a still ground")
     return length
-
-
-def _energies(outputs: object, faults: list[str]) -> tuple[str, ...]:
-    if outputs is None:
-        return ()
-    if isinstance(outputs, Iterable) and not isinstance(outputs, str):
-        names: list[object] = list(outputs)
-    else:
-        names = [outputs]
-    histories = {name for name, row in SCHEMA.items() if row.dims == ("time",)}
-    for name in names:
-        if not (isinstance(name, str) and (name in histories or name == ENERGY_GROUP)):
-            known = ", ".join(repr(other) for other in (ENERGY_GROUP, *ENERGIES))
-            faults.append(
-                f"outputs has no {shown(name)}; every run has its response, and on request {known}"
-            )
-    if ENERGY_GROUP in names:
-        return ENERGIES
-    return tuple(name for name in ENERGIES if name in names)

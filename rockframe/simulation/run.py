@@ -13,21 +13,18 @@ from rockframe.dynamics.protocol import Ending
 from rockframe.errors import ModelWarning, RockframeWarning, SolverWarning, warn
 from rockframe.motion import GroundMotion
 from rockframe.results.dataset import build_dataset
+from rockframe.results.forces import friction_words
 from rockframe.results.outcome import (
     Generic,
     Scales,
-    cap_histories,
     energy_histories,
     event_columns,
-    ground_histories,
-    histories,
-    relative_histories,
     scalars,
     verdict,
 )
 from rockframe.results.variables.runs import Direction
 from rockframe.signals import Motion, Signal
-from rockframe.signals.arrays import Array
+from rockframe.simulation.answers import answers_of
 from rockframe.simulation.audit import unbalanced
 from rockframe.simulation.beginning import end_attributes, start_of
 from rockframe.simulation.beside import Beside, what_showed
@@ -57,19 +54,13 @@ def si_motion(motion: GroundMotion | None) -> Motion | None:
     return None if motion is None else motion.si
 
 
-def ground_at(motion: GroundMotion | None, time: Array) -> Array:
-    """Evaluate a motion: horizontal and vertical accelerations, shape (times, 2) [m s^-2]."""
-    still = np.zeros_like(time)
-    components = () if motion is None else (motion.si.horizontal, motion.si.vertical)
-    found = [still if signal is None else signal.at(time) for signal in components]
-    return np.column_stack(found or [still, still])
-
-
 @dataclass(frozen=True)
 class Response:
     """A run before it is labelled: histories and events, what became of it, where it ended."""
 
     values: dict[str, Generic]
+    forces: dict[str, float]  # scalars, of runs with histories
+    slips: list[str]
     summary: Summary
     ending: Ending
 
@@ -94,6 +85,8 @@ def run(system: Assembly, plan: Plan, certification: Certification | None = None
     response = _respond(system, plan, scales)
     summary = response.summary
     attributes = _attributes(system, plan, summary, scales) | end_attributes(response.ending)
+    if summary.status.finished:
+        attributes["verdict"] = f"{attributes['verdict']}{friction_words(response.forces)}"
     base = _showed(response, plan, scales)
     audit = unbalanced(plan, summary, base, lambda other: beside(system, other))
     cautions = [
@@ -101,6 +94,7 @@ def run(system: Assembly, plan: Plan, certification: Certification | None = None
         *([] if audit is None else [(SolverWarning, audit)]),
         *_lost_weight(system, plan.motion),
         *_pulling(system, response.values, summary.overturning_time),
+        *((ModelWarning, text) for text in response.slips),
     ]
     for kind, text in cautions:
         warn(text, kind)
@@ -111,7 +105,8 @@ def run(system: Assembly, plan: Plan, certification: Certification | None = None
         found = certify(system, plan, base, certification, beside)
         certificate = found.values()
         attributes |= found.attributes(certification)
-    return build_dataset({**response.values, **scalars(summary, scales), **certificate}, attributes)
+    told = scalars(summary, scales) | response.forces
+    return build_dataset({**response.values, **told, **certificate}, attributes)
 
 
 def outcome(system: Assembly, plan: Plan) -> Summary:
@@ -169,28 +164,21 @@ def _scales(system: Assembly) -> Scales:
 def _respond(system: Assembly, plan: Plan, scales: Scales) -> Response:
     """Integrate; give histories and events by their names in the schema."""
     equations = system.setting.compile()
-    wanted = plan.output_step is not None
     trajectory = integrate(
         equations, start_of(plan.initial), si_motion(plan.motion), plan.accuracy,
         duration=plan.duration, output_step=plan.output_step,
         stop_at_overturning=plan.stop_at_overturning, with_work=bool(plan.energies),
     )  # fmt: skip
-    time = trajectory.time
-    values: dict[str, Generic] = {}
     energies = energy_histories(equations, trajectory) if plan.energies else {}
-    events = event_columns(equations, trajectory)
-    if wanted:
-        acceleration = ground_at(plan.motion, time)
-        values |= histories(equations, trajectory, acceleration)
-        if equations.soil_contact is None:
-            values |= cap_histories(values, scales)
-        values |= relative_histories(values, scales)
-        values |= ground_histories(
-            acceleration, has_vertical_motion=_vertical(plan.motion) is not None
-        )
-        values["time"] = time
+    values = event_columns(equations, trajectory)
+    told: dict[str, float] = {}
+    slips: list[str] = []
+    if plan.output_step is not None:
+        answers = answers_of(system, plan, equations, trajectory, scales)
+        values |= answers.values
+        told, slips = answers.scalars, answers.slips
     values |= {name: energies[name] for name in plan.energies}
-    return Response(values | events, trajectory, trajectory.ending)
+    return Response(values, told, slips, trajectory, trajectory.ending)
 
 
 def _attributes(

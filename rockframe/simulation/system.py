@@ -179,6 +179,7 @@ class System:
         accuracy: AccuracyLike = AccuracyLevel.STANDARD,
         output_step: QuantityLike | None = None,
         outputs: Sequence[str] | None = (),
+        points: Mapping[str, tuple[QuantityLike, QuantityLike]] | None = None,
         overturning: OverturningLike = Overturning.STOP,
         certify: "bool | Certification" = False,
     ) -> xr.Dataset:
@@ -201,9 +202,14 @@ class System:
         output_step : str or Quantity, optional
             Spacing of the histories; the motion's time step unless given [s].
         outputs : sequence of str, optional
-            Histories beyond those every run has: names such as
-            ``"kinetic_energy"``, or ``"energy"`` for all energies. None keeps
-            no histories at all, only events and scalars.
+            Histories beyond those every run has: names such as ``"friction_demand"``
+            or ``"toe_pressure"``, and the groups ``"acceleration"``, ``"reaction"``,
+            ``"impulse"`` and ``"energy"``. None keeps no histories at all, only events
+            and scalars.
+        points : mapping of str to (str or Quantity, str or Quantity), optional
+            Points of the body, by names of your own: how far to the right of the middle
+            of its base and how high above it they are at rest. Their displacements and
+            absolute accelerations are given over ``point`` and ``time`` [m].
         overturning : {"stop", "continue"}
             Whether the run ends when the rotation reaches the overturning
             angle, or goes on until the block lies flat.
@@ -241,6 +247,7 @@ class System:
             accuracy=accuracy,
             output_step=output_step,
             outputs=outputs,
+            points=points,
             overturning=overturning,
         )
         return run(self._assembly, plan, certification_of(certify))

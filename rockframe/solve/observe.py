@@ -7,6 +7,7 @@ import numpy as np
 
 from rockframe.compiled import (
     Bound,
+    Codes,
     Integers,
     Matrix,
     Vector,
@@ -115,16 +116,49 @@ def observe_trajectory(
     dict of str to ndarray
         By the names in ``model.columns``.
     """
-    out = np.empty((len(trajectory.time), len(model.columns)))
     memory, row = memory_at_outputs(trajectory)
-    sizes = trajectory.state.shape[1], memory.shape[1], out.shape[1]
+    return observe_states(model, trajectory.mode, trajectory.state, memory, row, ground)
+
+
+def observe_states(
+    model: ContactModel,
+    mode: Codes | Integers,
+    state: Matrix,
+    memory: Matrix,
+    memory_row: Integers,
+    ground: Matrix,
+) -> dict[str, Vector]:
+    """Give the model's columns for any states.
+
+    Parameters
+    ----------
+    model : ContactModel
+        The equations.
+    mode : ndarray of int, shape (states,)
+        Modes of the model.
+    state : ndarray, shape (states, 2 n + variables)
+        As the system has them.
+    memory : ndarray, shape (memories, memory)
+        Memories of the system.
+    memory_row : ndarray of int, shape (states,)
+        Which of them holds for each state.
+    ground : ndarray, shape (states, 2)
+        Horizontal and vertical ground acceleration [m s^-2].
+
+    Returns
+    -------
+    dict of str to ndarray
+        By the names in ``model.columns``.
+    """
+    out = np.empty((len(mode), len(model.columns)))
+    sizes = state.shape[1], memory.shape[1], out.shape[1]
     room = Room(*(np.zeros(size) for size in sizes))
     observe_rows(
         _of(model.system, observed),
-        trajectory.mode.astype(np.int64),
-        np.ascontiguousarray(trajectory.state),
+        mode.astype(np.int64),
+        np.ascontiguousarray(state),
         memory,
-        row,
+        memory_row.astype(np.int64),
         ground,
         room,
         out,

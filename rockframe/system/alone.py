@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rockframe.system.bodies import Body
 from rockframe.system.restraints import restraint_words
 from rockframe.system.small_motion import SmallMotion
 from rockframe.system.statics import Statics, contact_of, sine_cosine_rise
@@ -40,6 +41,11 @@ class AloneSetting:
     def gravity(self) -> float:
         """Acceleration of gravity [m s^-2]."""
         return self.support.load.gravity
+
+    @property
+    def body(self) -> Body:
+        """The body on the base."""
+        return self.support.load.body
 
     @property
     def overturning_angle(self) -> float:

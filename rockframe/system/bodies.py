@@ -23,6 +23,11 @@ class Body:
         return math.atan2(self.half_width, self.centre_height)
 
     @property
+    def least_friction(self) -> float:
+        """b/h: with less, the base slides before an end of it lifts [1]."""
+        return self.half_width / self.centre_height
+
+    @property
     def radius(self) -> float:
         """R0, from an end of the base to the centre of mass [m]."""
         return math.hypot(self.half_width, self.centre_height)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rockframe.components.block import BlockSI
+from rockframe.system.bodies import Body, body_of
 from rockframe.system.impact import resolve_restitution, restitution_cautions
 from rockframe.system.options import Options, Rotation
 from rockframe.system.parts import Parts
@@ -33,6 +34,11 @@ class RigidGroundSetting:
     def model(self) -> str:
         """Name of the model."""
         return "rigid ground"
+
+    @property
+    def body(self) -> Body:
+        """The block."""
+        return body_of(self.block)
 
     @property
     def overturning_angle(self) -> float:

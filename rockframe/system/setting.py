@@ -2,6 +2,7 @@
 
 from typing import TYPE_CHECKING, Protocol
 
+from rockframe.system.bodies import Body
 from rockframe.system.small_motion import SmallMotion
 from rockframe.system.statics import Statics
 from rockframe.system.words import Words
@@ -36,6 +37,11 @@ class Numbers(Protocol):
     @property
     def cap_offset(self) -> float | None:
         """Height of a cap's centre above that of a body of which it is a part [m]."""
+        ...
+
+    @property
+    def body(self) -> Body:
+        """The body that the response is of."""
         ...
 
     def small_motion(self) -> SmallMotion | None:

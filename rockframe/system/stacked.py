@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rockframe.system.alone import AloneSetting
-from rockframe.system.bodies import Cap
+from rockframe.system.bodies import Body, Cap
 from rockframe.system.options import Options
 from rockframe.system.restraints import restraint_words
 from rockframe.system.small_motion import SmallMotion
@@ -61,6 +61,11 @@ class StackedSetting(ABC):
     def gravity(self) -> float:
         """Acceleration of gravity [m s^-2]."""
         return self.options.gravity
+
+    @property
+    def body(self) -> Body:
+        """The block."""
+        return self.upper.body
 
     @property
     def overturning_angle(self) -> float:

@@ -37,6 +37,32 @@ DIMENSIONS = {
     "cap_vertical_acceleration": (0, 1, -2, 0),
     "rotation_on_cap": (0, 0, 0, 1),
     "vertical_displacement_on_cap": (0, 1, 0, 0),
+    "horizontal_velocity": (0, 1, -1, 0),
+    "angular_acceleration": (0, 0, -2, 1),
+    "horizontal_acceleration": (0, 1, -2, 0),
+    "vertical_acceleration": (0, 1, -2, 0),
+    "absolute_horizontal_acceleration": (0, 1, -2, 0),
+    "absolute_vertical_acceleration": (0, 1, -2, 0),
+    "horizontal_reaction": (1, 1, -2, 0),
+    "vertical_reaction": (1, 1, -2, 0),
+    "base_overturning_moment": (1, 2, -2, 0),
+    "friction_demand": (0, 0, 0, 0),
+    "soil_friction_demand": (0, 0, 0, 0),
+    "toe_pressure": (1, 0, -2, 0),
+    "event_horizontal_impulse": (1, 1, -1, 0),
+    "event_vertical_impulse": (1, 1, -1, 0),
+    "point_x": (0, 1, 0, 0),
+    "point_y": (0, 1, 0, 0),
+    "point_horizontal_displacement": (0, 1, 0, 0),
+    "point_vertical_displacement": (0, 1, 0, 0),
+    "point_horizontal_acceleration": (0, 1, -2, 0),
+    "point_vertical_acceleration": (0, 1, -2, 0),
+    "peak_friction_demand": (0, 0, 0, 0),
+    "peak_friction_demand_time": (0, 0, 1, 0),
+    "peak_impulsive_friction_demand": (0, 0, 0, 0),
+    "peak_base_shear": (1, 1, -2, 0),
+    "residual_rotation": (0, 0, 0, 1),
+    "residual_settlement": (0, 1, 0, 0),
     "kinetic_energy": (1, 2, -2, 0),
     "potential_energy": (1, 2, -2, 0),
     "elastic_energy": (1, 2, -2, 0),
@@ -118,7 +144,9 @@ DIMENSIONS = {
     "fourier_amplitude": (0, 1, -1, 0),
     "fourier_phase": (0, 0, 0, 1),
 }
-DIMENSION_NAMES = {"time", "event", "angle", "mode", "damping_ratio", "period", "frequency"}
+DIMENSION_NAMES = {
+    "time", "event", "point", "angle", "mode", "damping_ratio", "period", "frequency",
+}  # fmt: skip
 PLAIN = pint.UnitRegistry(cache_folder=None)
 FLAGS = {
     "contact_state",
@@ -194,8 +222,8 @@ def test_flags_follow_cf():
         attributes = row.attributes()
         if row.flags is None:
             assert "flag_values" not in attributes, name
-            assert (row.unit is None) == (row.dtype == "bool"), name
-            assert row.dtype in ("float64", "int64", "bool"), name
+            assert (row.unit is None) == (row.dtype in ("bool", "str")), name
+            assert row.dtype in ("float64", "int64", "bool", "str"), name
             continue
         assert row.dtype == "int8", name
         assert "units" not in attributes, name

@@ -210,13 +210,17 @@ class Cascade(Stacked, Stages):
     def observe(
         self, mode: int, state: Vector, slope: Slope, ground: Ground, memory: Vector
     ) -> tuple[float, ...]:
-        """Give motion of block and cap, base shear, what shakes the block, and the bases' own."""
-        upper, lower = self.states_in(state)
+        """Give motion of block and cap, reactions, what shakes the block, and the bases' own."""
+        modes, states = self.modes_in(mode), self.states_in(state)
+        upper, lower = states
         rates = self.lower_rates(mode, state, ground)
         on_top = self.ground_of_upper(mode, state, rates, ground)
+        above = self.upper.rates_in(modes.upper, upper, self.upper_own(state), on_top)
+        swaying = self.upper.sway(modes.upper, upper, self.upper.body.attitude(upper.rotation))
         # a point above the centre of mass sinks by what the centre would rise over it
         attitude = self.lower.body.attitude(lower.rotation)
         versine = attitude.rise / self.lower.body.height
+        swaying += self.lower.sway(modes.lower, lower, attitude)
         return (
             upper.rotation + lower.rotation,
             upper.angular_velocity + lower.angular_velocity,
@@ -224,6 +228,12 @@ class Cascade(Stacked, Stages):
             upper.vertical_velocity + lower.vertical_velocity,
             self.place(UPPER, mode, state, memory) + self.place(LOWER, mode, state, memory),
             self.mass_ratio * (rates.horizontal + ground.x),
+            swaying,
+            above.rotation + rates.rotation,
+            above.horizontal + rates.horizontal,
+            above.vertical + rates.vertical,
+            above.horizontal + on_top.x,
+            above.vertical + self.upper.body.gravity + on_top.y,
             lower.rotation,
             lower.angular_velocity,
             lower.vertical - self.cap_centre * versine,

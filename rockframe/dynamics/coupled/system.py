@@ -4,6 +4,8 @@ Equations :eq:`eq-coupled`. Each base acts as under one body; momentum is projec
 impulses act, in the coupled system: :eq:`eq-coupled-impulse`. Per unit mass of the block.
 """
 
+from typing import NamedTuple
+
 from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics.base import Guards
 from rockframe.dynamics.bodies import ROTATION, VERTICAL
@@ -38,6 +40,14 @@ from rockframe.dynamics.stacked import (
     tell_of_soil,
 )
 from rockframe.dynamics.switching import checked_sliding, disturbed, lift_by_slip, switch_part
+
+
+class Holding(NamedTuple):
+    """Forces on the bodies of a stack, per unit mass of the block."""
+
+    thrust: float  # of the cap on the block, along the cap
+    press: float  # along its normal
+    push: float  # of the ground on the cap, horizontally
 
 
 class Coupled(Stacked, Pair):
@@ -125,7 +135,8 @@ class Coupled(Stacked, Pair):
         modes, states = self.modes_in(mode), self.states_in(state)
         of_block, of_cap = IDLE, IDLE
         if modes.upper.slides or modes.lower.slides:
-            thrust, push = self.holds(mode, states, slope, ground)
+            holding = self.holds(mode, states, slope, ground)
+            thrust, push = holding.thrust, holding.push
             if modes.upper.slides:
                 of_block = self.upper.sliding_guards(
                     modes.upper, states.upper, slope[ROTATION], slope[HORIZONTAL], thrust,
@@ -139,10 +150,10 @@ class Coupled(Stacked, Pair):
         return self.guards_of_both(modes, state, slope, of_block, of_cap)
 
     @kernel
-    def holds(self, mode: int, states: States, slope: Slope, ground: Ground) -> tuple[float, float]:
-        """Give the force of the cap on the block along it, and of the ground on the cap.
+    def holds(self, mode: int, states: States, slope: Slope, ground: Ground) -> Holding:
+        """Give the forces between ground, cap and block, from the accelerations.
 
-        From the accelerations, :eq:`eq-coupled`.
+        Equation :eq:`eq-coupled`.
         """
         place = self.place_in(mode, states)
         s, c, cap_rate = place.sine, place.cosine, states.lower.angular_velocity
@@ -162,7 +173,7 @@ class Coupled(Stacked, Pair):
             s * x + c * y + slope[VERTICAL] - place.across * slope[LOWER_ROTATION]
             - 2.0 * along_rate(place, states) * cap_rate - place.arm * cap_rate * cap_rate
         )  # fmt: skip
-        return thrust, self.cap_mass * x + c * thrust + s * press
+        return Holding(thrust, press, self.cap_mass * x + c * thrust + s * press)
 
     @kernel
     def switch(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:
@@ -203,12 +214,12 @@ class Coupled(Stacked, Pair):
     def observe(
         self, mode: int, state: Vector, slope: Slope, ground: Ground, memory: Vector
     ) -> tuple[float, ...]:
-        """Give motion of block and cap, base shear, and what both bases show."""
+        """Give motion of block and cap, reactions, and what both bases show."""
         states = self.states_in(state)
         place = self.place_in(mode, states)
-        _, up = block_velocity(place, states)
+        across, up = block_velocity(place, states)
         along = place.arm * place.sine + states.upper.horizontal * place.cosine
-        _, push = self.holds(mode, states, slope, ground)
+        thrust, press, push = self.holds(mode, states, slope, ground)
         return (
             states.upper.rotation + states.lower.rotation,
             states.upper.angular_velocity + states.lower.angular_velocity,
@@ -216,6 +227,12 @@ class Coupled(Stacked, Pair):
             up,
             self.place(LOWER, mode, state, memory) + along,
             push,
+            across,
+            slope[ROTATION] + slope[LOWER_ROTATION],
+            place.cosine * thrust + place.sine * press - ground.x,
+            place.cosine * press - place.sine * thrust - self.upper.body.gravity - ground.y,
+            thrust,
+            press,
             states.lower.rotation,
             states.lower.angular_velocity,
             states.lower.vertical,

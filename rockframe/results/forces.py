@@ -1,0 +1,198 @@
+"""Accelerations, reactions and what they ask of the friction under a body.
+
+The sums and quotients that follow from a model's columns, page "Forces and accelerations" of
+the manual.
+"""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockframe.results.outcome import Array, Generic
+
+Values = Mapping[str, Generic]
+
+
+@dataclass(frozen=True)
+class BodyNumbers:
+    """The body that histories are of, in SI units.
+
+    Parameters
+    ----------
+    mass : float
+        m [kg].
+    inertia : float
+        I_O about the centre of mass [kg m^2].
+    centre_height : float
+        h, of the centre of mass above the base [m].
+    small_rotation : bool
+        Whether the kinematics are expanded in the rotation.
+    """
+
+    mass: float
+    inertia: float
+    centre_height: float
+    small_rotation: bool
+
+    def sine_cosine(self, rotation: Array) -> tuple[Array, Array]:
+        """Give the sine and cosine of rotations, or their small-rotation forms."""
+        if self.small_rotation:
+            return rotation, np.ones_like(rotation)
+        return np.sin(rotation), np.cos(rotation)
+
+
+STACKED = "rotation_on_cap"
+"""A column of scenes in which a block stands on a cap."""
+
+
+def force_histories(values: Values, ground: Array, body: BodyNumbers) -> dict[str, Generic]:
+    """Give absolute accelerations, the moment of the base, and the friction demand.
+
+    Parameters
+    ----------
+    values : mapping of str to ndarray
+        Histories of a model, by their names in the schema.
+    ground : ndarray, shape (samples, 2)
+        Ground acceleration at the same times.
+    body : BodyNumbers
+        The body that they are of.
+
+    Returns
+    -------
+    dict of str to ndarray
+        By their names in the schema, :eq:`eq-base-moment`, :eq:`eq-friction-demand`.
+    """
+    thrust, press = values["horizontal_reaction"], values["vertical_reaction"]
+    sine, cosine = body.sine_cosine(values.get(STACKED, values["rotation"]))
+    weight_arm, thrust_arm = body.centre_height * sine, body.centre_height * cosine
+    found: dict[str, Generic] = {
+        "absolute_horizontal_acceleration": values["horizontal_acceleration"] + ground[:, 0],
+        "absolute_vertical_acceleration": values["vertical_acceleration"] + ground[:, 1],
+        "base_overturning_moment": weight_arm * press
+        - thrust_arm * thrust
+        - body.inertia * values["angular_acceleration"],
+        "friction_demand": friction_demand(thrust, press, body.mass),
+    }
+    if STACKED in values:
+        found["soil_friction_demand"] = friction_demand(
+            values["base_shear"], values["soil_reaction"], body.mass
+        )
+    return found
+
+
+NO_FORCE = 1e-9
+"""Acceleration below which a force per mass is rounding [m s^-2]."""
+
+
+def friction_demand(thrust: Array, press: Array, mass: float) -> Array:
+    """Give the coefficient of friction that keeps a body from sliding, :eq:`eq-friction-demand`.
+
+    Parameters
+    ----------
+    thrust, press : ndarray
+        Force of the base along its plane, and normal to it [N].
+    mass : float
+        Of the body [kg].
+
+    Returns
+    -------
+    ndarray
+        Infinite where the base holds the body without pressing, 0 where it does neither [1].
+    """
+    least = NO_FORCE * mass
+    held = np.abs(thrust) > least
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ratio = np.abs(thrust) / press
+    return np.where(held, np.where(press > least, ratio, math.inf), 0.0)
+
+
+@dataclass(frozen=True)
+class EventStates:
+    """What a model shows just before and just after the events of a run.
+
+    Parameters
+    ----------
+    time : ndarray, shape (events,)
+        Of the events [s].
+    is_impact : ndarray of bool, shape (events,)
+        Whether an event is an impact.
+    before, after : mapping of str to ndarray
+        Columns and what follows from them, by their names in the schema.
+    """
+
+    time: Array
+    is_impact: NDArray[np.bool_]
+    before: Values
+    after: Values
+
+    def until(self, time: float) -> "EventStates":
+        """Give the events up to a time; all, where it is NaN [s]."""
+        kept = ~(self.time > time)
+        before, after = (
+            {name: values[kept] for name, values in side.items()}
+            for side in (self.before, self.after)
+        )
+        return EventStates(self.time[kept], self.is_impact[kept], before, after)
+
+    def impulses(self, mass: float) -> dict[str, Generic]:
+        """Give the impulses of the base on the body at the events [N s]."""
+        return {
+            f"event_{name}_impulse": mass
+            * (self.after[f"{name}_velocity"] - self.before[f"{name}_velocity"])
+            for name in ("horizontal", "vertical")
+        }
+
+
+def friction_words(scalars: Mapping[str, float]) -> str:
+    """Say in a sentence what friction a run needed; nothing without its forces."""
+    if "peak_friction_demand" not in scalars:
+        return ""
+    most, when = scalars["peak_friction_demand"], scalars["peak_friction_demand_time"]
+    if math.isfinite(most):
+        return f" Friction needed: {most:.3g}."
+    return f" Friction needed: more than any, where the base holds without pressing ({when:.4g} s)."
+
+
+def force_scalars(values: Values, events: EventStates, body: BodyNumbers) -> dict[str, float]:
+    """Give peaks of forces over samples and events, and what is left at the end.
+
+    Parameters
+    ----------
+    values : mapping of str to ndarray
+        Histories with those of :func:`force_histories`, up to overturning.
+    events : EventStates
+        Up to overturning, too.
+    body : BodyNumbers
+        The body.
+
+    Returns
+    -------
+    dict of str to float
+        By their names in the schema.
+    """
+    sides = (events.before, events.after)
+    time = np.concatenate([values["time"], events.time, events.time])
+
+    def all_of(name: str) -> Array:
+        return np.concatenate([values[name], *(side[name] for side in sides)])
+
+    demand = all_of("friction_demand")
+    most = int(np.argmax(demand))
+    impulses = events.impulses(body.mass)
+    struck = friction_demand(
+        impulses["event_horizontal_impulse"], impulses["event_vertical_impulse"], body.mass
+    )[events.is_impact]
+    rotation = float(values["rotation"][-1])
+    sine, _ = body.sine_cosine(np.array([0.5 * rotation]))
+    sunk = -float(values["vertical_displacement"][-1])
+    return {
+        "peak_friction_demand": float(demand[most]),
+        "peak_friction_demand_time": float(time[most]),
+        "peak_impulsive_friction_demand": float(struck.max(initial=0.0)),
+        "peak_base_shear": float(np.abs(all_of("base_shear")).max()),
+        "residual_rotation": rotation,
+        "residual_settlement": sunk - 2.0 * body.centre_height * float(sine[0]) ** 2,
+    }

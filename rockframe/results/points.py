@@ -1,0 +1,76 @@
+"""The motion of points of a rigid body, from that of its centre of mass, :eq:`eq-point-motion`."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from rockframe.results.forces import BodyNumbers
+from rockframe.results.outcome import Generic
+
+
+@dataclass(frozen=True)
+class Point:
+    """A point of a body.
+
+    Parameters
+    ----------
+    name : str
+        That it is called by.
+    x, y : float
+        To the right of the middle of the base and above it, at rest [m].
+    """
+
+    name: str
+    x: float
+    y: float
+
+
+def point_histories(
+    points: Sequence[Point], values: Mapping[str, Generic], body: BodyNumbers
+) -> dict[str, Generic]:
+    """Give displacements and absolute accelerations of points.
+
+    Parameters
+    ----------
+    points : sequence of Point
+        Of the body.
+    values : mapping of str to ndarray
+        Histories of the body with absolute accelerations, by their names in the schema.
+    body : BodyNumbers
+        The body.
+
+    Returns
+    -------
+    dict of str to ndarray
+        Shape (points, samples), and (points,) for names and places.
+    """
+    rotation, rate = values["rotation"], values["angular_velocity"]
+    angular = values["angular_acceleration"]
+    right = np.array([point.x for point in points])[:, None]
+    up = np.array([point.y for point in points])[:, None] - body.centre_height
+    sine, cosine = body.sine_cosine(rotation)
+    half, _ = body.sine_cosine(0.5 * rotation)
+    rise = 2.0 * half * half  # 1 - cos a, to all digits
+    # derivatives of the place about the centre of mass by the rotation
+    across_rate, up_rate = up * cosine - right * sine, -right * cosine - up * sine
+    across_bend, up_bend = -right * cosine - up * sine, right * sine - up * cosine
+    if body.small_rotation:  # heights to second order, widths to first
+        across_rate, up_rate = up + 0.0 * rotation, -right - up * rotation
+        across_bend, up_bend = np.zeros_like(up_rate), -up + 0.0 * rotation
+        across, above = up * rotation, -right * rotation - up * rise
+    else:
+        across, above = up * sine - right * rise, -right * sine - up * rise
+    square = rate * rate
+    x, y = values["horizontal_displacement"], values["vertical_displacement"]
+    a_x = values["absolute_horizontal_acceleration"]
+    a_y = values["absolute_vertical_acceleration"]
+    return {
+        "point": np.array([point.name for point in points]),
+        "point_x": right[:, 0],
+        "point_y": up[:, 0] + body.centre_height,
+        "point_horizontal_displacement": x + across,
+        "point_vertical_displacement": y + above,
+        "point_horizontal_acceleration": a_x + across_rate * angular + across_bend * square,
+        "point_vertical_acceleration": a_y + up_rate * angular + up_bend * square,
+    }

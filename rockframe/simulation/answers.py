@@ -1,0 +1,123 @@
+"""Histories, forces and points of a run, as far as they are asked for."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rockframe.dynamics.events import IMPACT, REST, SILENT
+from rockframe.dynamics.protocol import ContactModel
+from rockframe.motion import GroundMotion
+from rockframe.results.forces import BodyNumbers, EventStates, force_histories, force_scalars
+from rockframe.results.outcome import (
+    Generic,
+    Scales,
+    cap_histories,
+    ground_histories,
+    histories,
+    relative_histories,
+)
+from rockframe.results.points import point_histories
+from rockframe.results.schema import ON_REQUEST
+from rockframe.signals.arrays import Array
+from rockframe.simulation.friction import slips
+from rockframe.simulation.plan import Plan
+from rockframe.solve.observe import observe_states
+from rockframe.solve.trajectory import Trajectory
+from rockframe.system.assembly import Assembly
+
+
+@dataclass(frozen=True)
+class Answers:
+    """What histories tell.
+
+    Parameters
+    ----------
+    values : dict of str to ndarray
+        By their names in the schema.
+    scalars : dict of str to float
+        Peaks of forces, and what is left at the end.
+    slips : list of str
+        Where a base has too little friction.
+    """
+
+    values: dict[str, Generic]
+    scalars: dict[str, float]
+    slips: list[str]
+
+
+def ground_at(motion: GroundMotion | None, time: Array) -> Array:
+    """Evaluate a motion: horizontal and vertical accelerations, shape (times, 2) [m s^-2]."""
+    still = np.zeros_like(time)
+    components = () if motion is None else (motion.si.horizontal, motion.si.vertical)
+    found = [still if signal is None else signal.at(time) for signal in components]
+    return np.column_stack(found or [still, still])
+
+
+def answers_of(
+    system: Assembly, plan: Plan, model: ContactModel, run: Trajectory, scales: Scales
+) -> Answers:
+    """Give the histories of a run, with what is asked for beyond them.
+
+    Parameters
+    ----------
+    system : Assembly
+        The checked scene.
+    plan : Plan
+        The checked arguments.
+    model : ContactModel
+        The scene's equations.
+    run : Trajectory
+        The run.
+    scales : Scales
+        What the response is made relative to.
+
+    Returns
+    -------
+    Answers
+    """
+    ground, body = ground_at(plan.motion, run.time), _body_of(system)
+    values = histories(model, run, ground)
+    if model.soil_contact is None:
+        values |= cap_histories(values, scales)
+    values |= relative_histories(values, scales)
+    vertical = plan.motion is not None and plan.motion.si.vertical is not None
+    values |= ground_histories(ground, has_vertical_motion=vertical)
+    values["time"] = run.time
+    values |= force_histories(values, ground, body)
+    events = _events(plan, model, run, body)
+    stands = ~(run.time > run.overturning_time)  # how a block falls is another matter
+    upright = {name: each[stands] for name, each in values.items()}
+    events_upright = events.until(run.overturning_time)
+    told = force_scalars(upright, events_upright, body)
+    if plan.points:
+        values |= point_histories(plan.points, values, body)
+    shown = run.events.kind != SILENT
+    impulses = {name: each[shown] for name, each in events.impulses(body.mass).items()}
+    asked = {name: each for name, each in impulses.items() if name in plan.requested}
+    kept = {
+        name: each
+        for name, each in values.items()
+        if name not in ON_REQUEST or name in plan.requested
+    }
+    return Answers(kept | asked, told, [*slips(system, upright, events_upright)])
+
+
+def _body_of(system: Assembly) -> BodyNumbers:
+    body = system.setting.body
+    return BodyNumbers(body.mass, body.inertia, body.centre_height, system.options.small)
+
+
+def _events(plan: Plan, model: ContactModel, run: Trajectory, body: BodyNumbers) -> EventStates:
+    """Give what a model shows on both sides of a run's events."""
+    events = run.events
+    ground = ground_at(plan.motion, events.time)
+    memory = np.vstack([run.start_memory, events.memory])
+    row = np.arange(len(events.time))
+    sides: list[dict[str, Generic]] = []
+    for mode, state, at in (
+        (events.mode_before, events.state_before, row),
+        (events.mode_after, events.state_after, row + 1),
+    ):
+        side: dict[str, Generic] = dict(observe_states(model, mode, state, memory, at, ground))
+        sides.append(side | force_histories(side, ground, body))
+    return EventStates(events.time, np.isin(events.kind, (IMPACT, REST)), *sides)

@@ -1,0 +1,109 @@
+"""What a run is asked for beyond what every run has: outputs by name, and points."""
+
+from collections.abc import Iterable, Mapping
+from typing import Any, Final, cast
+
+from rockframe.errors import RockframeError, shown
+from rockframe.results.forces import STACKED
+from rockframe.results.points import Point
+from rockframe.results.schema import GROUPS, ON_REQUEST, SCHEMA
+from rockframe.system.assembly import Assembly
+from rockframe.units import LENGTH, to_si
+
+EXAMPLE: Final = 'points={"roof": ("0 m", "18 m")}'
+
+
+def names_of(outputs: object, faults: list[str]) -> tuple[str, ...]:
+    """Read the argument ``outputs``: names of variables and of groups; note what is unknown.
+
+    Parameters
+    ----------
+    outputs : object
+        As given by the user.
+    faults : list of str
+        To which what is wrong is added.
+
+    Returns
+    -------
+    tuple of str
+        Names that are given on request only, in the order of the schema.
+    """
+    if outputs is None:
+        return ()
+    if isinstance(outputs, Iterable) and not isinstance(outputs, str):
+        names = list(cast("Iterable[object]", outputs))
+    else:
+        names = [outputs]
+    always = {name for name, row in SCHEMA.items() if row.dims == ("time",)}
+    wanted: set[str] = set()
+    for name in names:
+        if isinstance(name, str) and name in GROUPS:
+            wanted.update(GROUPS[name])
+        elif isinstance(name, str) and (name in ON_REQUEST or name in always):
+            wanted.add(name)
+        else:
+            known = ", ".join(repr(other) for other in (*GROUPS, *ON_REQUEST))
+            faults.append(
+                f"outputs has no {shown(name)}; every run has its response, and on request {known}"
+            )
+    return tuple(name for name in ON_REQUEST if name in wanted)
+
+
+NEEDED: Final = {
+    "toe_pressure": ("toe_pressure", "a WinklerSoil"),
+    "soil_friction_demand": (STACKED, "a CushionCap between block and soil"),
+}
+"""Columns of a model without which it has no such output, and what gives them."""
+
+
+def lacking(system: Assembly, names: Iterable[str]) -> list[str]:
+    """Give the faults of asking for outputs that the scene does not have."""
+    depend = [name for name in names if name in NEEDED]
+    if not depend:
+        return []
+    columns = {column.name for column in system.setting.compile().columns}
+    return [
+        f"there is no {name!r} in this scene; it needs {NEEDED[name][1]}"
+        for name in depend
+        if NEEDED[name][0] not in columns
+    ]
+
+
+def points_of(given: object, faults: list[str]) -> tuple[Point, ...]:
+    """Read the argument ``points``: names and places on the body; note what is wrong.
+
+    Parameters
+    ----------
+    given : object
+        As given by the user.
+    faults : list of str
+        To which what is wrong is added.
+
+    Returns
+    -------
+    tuple of Point
+    """
+    if given is None:
+        return ()
+    if not isinstance(given, Mapping):
+        faults.append(f"points must name places, such as {EXAMPLE}, got {shown(given)}")
+        return ()
+    points: list[Point] = []
+    for name, place in cast("Mapping[Any, Any]", given).items():
+        if not (isinstance(name, str) and name.strip()):
+            faults.append(f"points needs names, such as {EXAMPLE}, got {shown(name)}")
+        elif not (isinstance(place, tuple | list) and len(cast("tuple[object]", place)) == 2):
+            faults.append(
+                f"point {name!r} needs two lengths, to the right of the middle of the base and "
+                f"above it, such as {EXAMPLE}, got {shown(place)}"
+            )
+        else:
+            try:
+                x, y = (
+                    to_si(each, LENGTH, owner="simulate", name=f"points[{name!r}]")
+                    for each in cast("tuple[Any, Any]", place)
+                )
+                points.append(Point(name, x, y))
+            except RockframeError as problem:
+                faults.append(str(problem))
+    return tuple(points)

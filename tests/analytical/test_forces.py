@@ -1,0 +1,277 @@
+"""Accelerations, reactions, friction demand and points against Newton's law and closed forms."""
+
+import math
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import rockframe as rf
+from rockframe.results.schema import GROUPS, ON_REQUEST
+
+pytestmark = pytest.mark.analytical
+
+G = 9.80665
+B, H, MASS = 1.2, 4.8, 50e3
+BLOCK = rf.Block(width="2.4 m", height="9.6 m", mass="50 t")
+PADS = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
+CAP = rf.CushionCap(width="3.2 m", height="0.4 m", mass="10 t")
+SOIL = rf.WinklerSoil(stiffness="30 MPa", damping_ratio=0.1)
+PULSE = rf.GroundMotion.sine_pulse("-5 m/s^2", "1 Hz").with_vertical(
+    rf.GroundMotion.sine_pulse("2 m/s^2", "1 Hz")
+)
+SCENES = {
+    "rigid ground": rf.System(BLOCK),
+    "rigid ground, small": rf.System(BLOCK, rotation="small"),
+    "pads": rf.System(BLOCK, PADS),
+    "pads, small": rf.System(BLOCK, PADS, rotation="small"),
+    "soil": rf.System(BLOCK, SOIL),
+    "one body": rf.System(BLOCK, CAP, SOIL),
+    "coupled": rf.System(BLOCK, PADS, CAP, SOIL),
+    "cascade": rf.System(BLOCK, PADS, CAP, SOIL, coupling="cascade"),
+}
+POINTS = {"roof": ("0 m", "9.6 m"), "right corner": ("1.2 m", "0 m"), "left": ("-1.2 m", "0 m")}
+ALL = (*GROUPS, "friction_demand", "horizontal_velocity")
+
+
+def mass_of(scene):
+    return 60e3 if scene == "one body" else MASS
+
+
+@pytest.fixture(scope="module", params=SCENES)
+def scene(request):
+    return request.param
+
+
+@pytest.fixture(scope="module")
+def response(scene):
+    return SCENES[scene].simulate(
+        PULSE, free_vibration="1 s", outputs=ALL, points=POINTS, output_step="0.25 ms"
+    )
+
+
+def twice(response, history):
+    """Differentiate a history twice where no event is near; NaN elsewhere, and at both ends."""
+    time, events = response.time.values, np.unique(response.event_time.values)
+    found = np.full(time.size, np.nan)
+    calm = np.searchsorted(events, time[:-2]) == np.searchsorted(events, time[2:])
+    even = np.isclose(np.diff(time, 2), 0.0, atol=1e-12)
+    step = time[1] - time[0]
+    found[1:-1] = np.where(calm & even, np.diff(history, 2) / step**2, np.nan)
+    return found
+
+
+def agree(found, expected, share):
+    known = ~np.isnan(found)
+    assert known.mean() > 0.5
+    error = np.abs(found - expected)[known].max()
+    assert error < share * np.abs(expected).max(), error
+
+
+def test_accelerations_are_the_second_derivatives_of_displacements(response):
+    for displacement, acceleration in (
+        ("rotation", "angular_acceleration"),
+        ("horizontal_displacement", "horizontal_acceleration"),
+        ("vertical_displacement", "vertical_acceleration"),
+    ):
+        slope = twice(response, response[displacement].values)
+        agree(slope, response[acceleration].values, 1e-3)
+
+
+def test_points_move_with_the_body(response):
+    for name in POINTS:
+        point = response.sel(point=name)
+        for way, ground in (
+            ("horizontal", response.ground_acceleration),
+            ("vertical", response.vertical_ground_acceleration),
+        ):
+            slope = twice(response, point[f"point_{way}_displacement"].values)
+            agree(slope + ground.values, point[f"point_{way}_acceleration"].values, 1e-3)
+    # a rigid body: its corners stay as far apart as they are
+    right, left = response.sel(point="right corner"), response.sel(point="left")
+    wide = 2.0 * B + right.point_horizontal_displacement - left.point_horizontal_displacement
+    high = right.point_vertical_displacement - left.point_vertical_displacement
+    if response.attrs["kinematics"] == "finite":
+        np.testing.assert_allclose(np.hypot(wide, high), 2.0 * B, rtol=1e-14)
+
+
+def test_the_bearing_corner_of_a_block_on_rigid_ground_stands_still():
+    response = SCENES["rigid ground"].simulate(PULSE, points=POINTS)
+    for name, state in (("right corner", 2), ("left", 1)):
+        bears = response.contact_state.values == state
+        assert bears.any()
+        corner = response.sel(point=name).isel(time=bears)
+        for way, ground in (("horizontal", ""), ("vertical", "vertical_")):
+            assert np.abs(corner[f"point_{way}_displacement"]).max() < 1e-14
+            np.testing.assert_allclose(
+                corner[f"point_{way}_acceleration"], corner[f"{ground}ground_acceleration"],
+                atol=1e-12,
+            )  # fmt: skip
+
+
+def test_reactions_follow_from_newtons_law(scene, response):
+    mass = mass_of(scene)
+    force = mass * response.absolute_horizontal_acceleration.values
+    press = mass * (response.absolute_vertical_acceleration.values + G)
+    if scene in ("coupled", "cascade"):
+        tilt = response.cap_rotation.values if scene == "coupled" else 0.0
+        s, c = np.sin(tilt), np.cos(tilt)
+        force, press = c * force - s * press, s * force + c * press
+    if scene != "cascade":  # of which the total is a sum of displacements, not one body's
+        for found, expected in (("horizontal", force), ("vertical", press)):
+            np.testing.assert_allclose(
+                response[f"{found}_reaction"], expected, atol=1e-9 * mass * G
+            )
+    if scene not in ("coupled", "cascade"):
+        np.testing.assert_allclose(response.base_shear, force, atol=1e-9 * mass * G)
+    shown = response.soil_reaction if scene in ("soil", "one body") else (
+        response.left_reaction + response.right_reaction
+    )  # fmt: skip
+    np.testing.assert_allclose(response.vertical_reaction, shown, atol=1e-9 * mass * G)
+
+
+def test_the_moment_of_the_base_is_that_of_its_pads():
+    """Held in the middle, the horizontal reaction has no lever about it."""
+    system = rf.System(BLOCK, PADS, restraint="centre")
+    response = system.simulate(PULSE, outputs="reaction")
+    arm = B * np.cos(response.rotation)
+    expected = arm * (response.right_reaction - response.left_reaction)
+    np.testing.assert_allclose(response.base_overturning_moment, expected, atol=1e-8 * MASS * G * B)
+
+
+def test_the_pressure_under_the_toe():
+    system = rf.System(BLOCK, rf.WinklerSoil(stiffness="30 MPa", damping_ratio=0))
+    response = system.simulate(PULSE, outputs="toe_pressure")
+    tilt = response.rotation
+    middle = response.vertical_displacement + H * (1.0 - np.cos(tilt))
+    lowest = middle - B * np.abs(np.sin(tilt))
+    expected = np.maximum(MASS * G / (2.0 * B) - 30e6 * lowest, 0.0)
+    np.testing.assert_allclose(response.toe_pressure, expected, rtol=1e-9, atol=1.0)
+    assert float(response.toe_pressure.max()) > 1.5 * MASS * G / (2.0 * B)
+
+
+def test_the_friction_that_a_released_block_needs():
+    """Of a rocking block, from the energy that it has at each angle."""
+    start, share, theta, radius = 0.15, 0.75, math.atan2(B, H), math.hypot(B, H)
+    system = rf.System(BLOCK)
+    response = system.simulate(
+        duration="3 s", initial=rf.InitialState(rotation="0.15 rad"), outputs="friction_demand"
+    )
+    falls = response.isel(time=response.time.values < response.event_time.values[0])
+    lean = theta - falls.rotation
+    pull = share * G / radius  # over the sine of the lean: minus the angular acceleration
+    square = 2.0 * pull * (math.cos(theta - start) - np.cos(lean))
+    across = radius * (-pull * np.sin(lean) * np.cos(lean) + np.sin(lean) * square)
+    up = G + radius * (-pull * np.sin(lean) ** 2 - np.cos(lean) * square)
+    assert falls.time.size > 50
+    np.testing.assert_allclose(falls.friction_demand, np.abs(across) / up, rtol=1e-8)
+    # about its lower corner a block falls flatter the lower it is: the demand grows to impact
+    assert response.peak_friction_demand == pytest.approx(
+        share * math.sin(theta) * math.cos(theta) / (1.0 - share * math.sin(theta) ** 2), rel=0.2
+    )
+
+
+def test_the_friction_of_an_impact():
+    """Momentum about the new corner: J_x/J_y = h (1 - e)/(b (1 + e))."""
+    for e in (0.8, 0.9):
+        system = rf.System(BLOCK, rf.RigidGround(restitution=e))
+        response = system.simulate(
+            duration="3 s", initial=rf.InitialState(rotation="0.1 rad"), outputs="impulse"
+        )
+        expected = H * (1.0 - e) / (B * (1.0 + e))
+        ratio = np.abs(response.event_horizontal_impulse / response.event_vertical_impulse)
+        assert response.impact_count > 1
+        np.testing.assert_allclose(ratio, expected, rtol=1e-9)
+        assert response.peak_impulsive_friction_demand == pytest.approx(expected, rel=1e-9)
+
+
+def test_peaks_stand_over_all_that_is_shown(response):
+    assert response.peak_base_shear >= np.abs(response.base_shear).max()
+    assert response.peak_friction_demand >= response.friction_demand.max()
+    at = response.peak_friction_demand_time.item()
+    assert 0.0 <= at <= response.time.values[-1]
+    assert response.residual_rotation == response.rotation[-1]
+
+
+def test_a_block_that_came_to_rest_has_no_residual_displacement():
+    response = rf.System(BLOCK, PADS).simulate(PULSE, duration="300 s", output_step="1 s")
+    assert abs(response.residual_rotation) < 1e-6
+    assert abs(response.residual_settlement) < 1e-6
+
+
+def test_only_what_is_asked_for_is_given(scene):
+    system = SCENES[scene]
+    assert not set(ON_REQUEST) & set(system.simulate(PULSE).variables)
+    for group, names in GROUPS.items():
+        found = system.simulate(PULSE, duration="0.5 s", outputs=[group])
+        assert set(ON_REQUEST) & set(found.variables) == set(names)
+    assert "peak_friction_demand" not in system.simulate(PULSE, outputs=None)
+
+
+def test_points_go_through_a_file(tmp_path):
+    response = rf.System(BLOCK, PADS).simulate(PULSE, points=POINTS, outputs="acceleration")
+    assert response.point.values.tolist() == list(POINTS)
+    assert response.point_y.sel(point="roof") == 9.6
+    response.to_netcdf(tmp_path / "points.nc")
+    with xr.open_dataset(tmp_path / "points.nc") as again:
+        xr.testing.assert_identical(again.load(), response)
+
+
+def test_what_is_not_known_is_refused():
+    system = rf.System(BLOCK, PADS)
+    for outputs in ("shear", ["rotation", "acelleration"], [3]):
+        with pytest.raises(rf.AssemblyError, match=r"outputs has no .*'friction_demand'"):
+            system.simulate(PULSE, outputs=outputs)
+    for points, words in (
+        ({"roof": "18 m"}, "two lengths"),
+        ({"roof": ("0 m", "18 m", "0 m")}, "two lengths"),
+        ({"roof": (0, 18)}, r"points\['roof'\] needs a length"),
+        ({"roof": ("0 m", "18 s")}, r"points\['roof'\] needs a length"),
+        ({3: ("0 m", "18 m")}, "needs names"),
+        ({"": ("0 m", "18 m")}, "needs names"),
+        ([("0 m", "18 m")], "must name places"),
+    ):
+        with pytest.raises(rf.RockframeError, match=words):
+            system.simulate(PULSE, points=points)
+    with pytest.raises(
+        rf.AssemblyError, match="no 'toe_pressure' in this scene; it needs a WinklerSoil"
+    ):
+        system.simulate(PULSE, outputs="toe_pressure")
+
+
+def test_a_verdict_tells_the_friction_that_it_needed():
+    response = SCENES["rigid ground"].simulate(PULSE)
+    needed = response.peak_friction_demand.item()
+    assert response.attrs["verdict"].endswith(f"Friction needed: {needed:.3g}.")
+    assert "Friction" not in SCENES["rigid ground"].simulate(PULSE, outputs=None).attrs["verdict"]
+    assert "friction that rocking needs, at least b/h  0.25\n" in rf.System(BLOCK).describe()
+
+
+def test_too_little_friction_warns_with_time_and_duration():
+    reference = SCENES["rigid ground"].simulate(PULSE, outputs="friction_demand")
+    demand, time = reference.friction_demand.values, reference.time.values
+    ground = rf.RigidGround(friction=0.25)
+    with pytest.warns(rf.ModelWarning, match="the block would slide") as caught:
+        response = rf.System(BLOCK, ground).simulate(PULSE)
+    text = str(caught[0].message)
+    first = time[demand > 0.25][0]
+    lasted = (demand > 0.25).sum() * (time[1] - time[0])
+    told = float(text.split(" from ")[1].split(" s on")[0])
+    assert first - (time[1] - time[0]) <= told <= first
+    assert float(text.split("for ")[1].split(" s in all")[0]) == pytest.approx(lasted, rel=0.05)
+    assert f"up to {reference.peak_friction_demand.item():.3g}" in text
+    assert response.attrs["cautions"] == text
+    np.testing.assert_array_equal(response.rotation, reference.rotation)
+    enough = rf.RigidGround(friction=1.01 * reference.peak_friction_demand.item())
+    assert "cautions" not in rf.System(BLOCK, enough).simulate(PULSE).attrs
+
+
+def test_the_friction_of_a_stack_is_that_of_both_its_bases():
+    pads, soil = PADS.replace(friction=0.05), SOIL.replace(friction=0.05)
+    with pytest.warns(rf.ModelWarning) as caught:
+        rf.System(BLOCK, pads, CAP, soil).simulate(PULSE)
+    words = [str(each.message) for each in caught]
+    assert any(word.startswith("the block would slide") for word in words)
+    assert any(word.startswith("the cap would slide") for word in words)
+    with pytest.warns(rf.ModelWarning, match="the block would slide"):
+        rf.System(BLOCK, soil).simulate(PULSE)
