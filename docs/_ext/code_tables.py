@@ -9,6 +9,14 @@ from sphinx.util.docutils import SphinxDirective
 import rockframe as rf
 from rockframe.dynamics.events import ContactState, EventKind
 from rockframe.results.variables.comparison import COMPARISON
+from rockframe.results.variables.requests import (
+    ACCELERATIONS,
+    FORCE_SCALARS,
+    IMPULSES,
+    OTHERS,
+    POINTS,
+    REACTIONS,
+)
 from rockframe.results.variables.runs import (
     CERTIFICATE,
     ENERGY_HISTORIES,
@@ -76,6 +84,12 @@ def _units() -> Rows:
 TABLES: dict[str, Callable[[], Rows]] = {
     "histories": lambda: _variables(HISTORIES),
     "energies": lambda: _variables(ENERGY_HISTORIES),
+    "accelerations": lambda: _variables(ACCELERATIONS),
+    "reactions": lambda: _variables(REACTIONS),
+    "others": lambda: _variables(OTHERS),
+    "impulses": lambda: _variables(IMPULSES),
+    "points": lambda: _variables(POINTS),
+    "force-scalars": lambda: _variables(FORCE_SCALARS),
     "events": lambda: _variables(EVENTS_AND_SCALARS, EVENT),
     "scalars": lambda: _variables(EVENTS_AND_SCALARS, ()),
     "certificate": lambda: _variables(CERTIFICATE),

@@ -89,7 +89,7 @@ class Alone(InState, OnePart):
     def observe(
         self, mode: int, state: Vector, slope: Slope, ground: Ground, memory: Vector
     ) -> tuple[float, ...]:
-        """Give motion of the centre of mass, reactions, and what the base shows."""
+        """Give motion and reactions, :eq:`eq-reactions`, and what the base shows."""
         standing, body = self.part.mode_of(mode), self.state_of(0, state)
         shear = slope[HORIZONTAL] + ground.x
         return (

@@ -138,7 +138,10 @@ class EventStates:
         return EventStates(self.time[kept], self.is_impact[kept], before, after)
 
     def impulses(self, mass: float) -> dict[str, Generic]:
-        """Give the impulses of the base on the body at the events [N s]."""
+        """Give the impulses of the base on the body at the events [N s].
+
+        Their ratio at an impact on rigid ground is :eq:`eq-impact-friction`.
+        """
         return {
             f"event_{name}_impulse": mass
             * (self.after[f"{name}_velocity"] - self.before[f"{name}_velocity"])
