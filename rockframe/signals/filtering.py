@@ -16,10 +16,9 @@ from rockframe.signals.oscillator import (
     QUANTITIES,
     STEPS_PER_PERIOD,
     fill_step,
-    shift_piece,
     turning_value,
 )
-from rockframe.signals.polynomials import knots_of, slopes_of
+from rockframe.signals.polynomials import divided, knots_of, slopes_of
 
 Rows: TypeAlias = NDArray[np.intp]
 
@@ -65,7 +64,7 @@ def filter_all(pieces: Array, time_step: float, damping: float, periods: Array) 
         oscillators = np.flatnonzero(parts == count).tolist()
         rows = max(1, _STEPS_AT_ONCE // count)
         for first in range(0, len(pieces), rows):
-            steps = _Steps(time_step / count, _split(pieces[first : first + rows], count))
+            steps = _Steps(time_step / count, divided(pieces[first : first + rows], count))
             for k in oscillators:
                 _follow(steps, float(periods[k]), damping, state[k], found[k])
     still = np.zeros((STEPS_PER_PERIOD, pieces.shape[1]))
@@ -83,20 +82,6 @@ def _may_swing_higher(periods: Array, damping: float, state: Array, found: Array
         [1.0 / frequency, np.ones_like(frequency), (1.0 + 2.0 * damping) * frequency]
     )
     return (bounds > found).any(axis=1)
-
-
-def _split(pieces: Array, parts: int) -> Array:
-    if parts == 1:
-        return pieces
-    powers = pieces.shape[1]
-    shift, column = np.empty((powers, powers)), np.empty(powers)
-    split = np.empty((len(pieces), parts, powers))
-    for part in range(parts):
-        for j in range(powers):
-            shift_piece(np.eye(powers), j, part, parts, column)
-            shift[j] = column
-        split[:, part] = pieces @ shift
-    return split.reshape(-1, powers)
 
 
 def _follow(steps: _Steps, period: float, damping: float, state: Array, greatest: Array) -> None:

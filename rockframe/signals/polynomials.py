@@ -4,6 +4,7 @@ A row of coefficients, lowest power first, is a polynomial in x, from 0 to 1 ove
 one time step.
 """
 
+import math
 from typing import Final
 
 import numpy as np
@@ -67,6 +68,33 @@ def integral_of(pieces: Array, time_step: float) -> Array:
     rising = pieces * (time_step / np.arange(1.0, pieces.shape[1] + 1.0))
     start = np.concatenate([[0.0], np.cumsum(rising.sum(axis=1))[:-1]])
     return np.column_stack([start, rising])
+
+
+def divided(pieces: Array, parts: int) -> Array:
+    """Divide every interval into equal parts, each with its own x.
+
+    Parameters
+    ----------
+    pieces : ndarray, shape (n, m)
+        Coefficients.
+    parts : int
+        How many.
+
+    Returns
+    -------
+    ndarray, shape (n parts, m)
+        The same function of time.
+    """
+    if parts == 1:
+        return pieces
+    powers = range(pieces.shape[1])
+    # Taylor's expansion of every power about the start of the part
+    shifts = np.zeros((parts, len(powers), len(powers)))
+    starts = np.arange(parts) / parts
+    for j in powers:
+        for k in range(j + 1):
+            shifts[:, j, k] = math.comb(j, k) * starts ** (j - k) / float(parts) ** k
+    return np.einsum("nj,pjk->npk", pieces, shifts).reshape(-1, len(powers))
 
 
 def knots_of(pieces: Array) -> Array:

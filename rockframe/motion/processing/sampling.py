@@ -8,6 +8,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from rockframe.signals import polynomials
 from rockframe.signals.arrays import Array
 from rockframe.signals.signal import Signal
 
@@ -173,3 +174,29 @@ def padded(signal: Signal, count: int) -> Signal:
         pieces = np.concatenate([pieces, np.zeros((missing, pieces.shape[1]))])
     samples = np.concatenate([signal.samples, np.zeros(missing)])
     return replace(signal, samples=samples, polynomials=pieces)
+
+
+def divided(signal: Signal, parts: int) -> Signal:
+    """Divide every interval into equal parts.
+
+    Parameters
+    ----------
+    signal : Signal
+        The signal.
+    parts : int
+        How many.
+
+    Returns
+    -------
+    Signal
+        The same function of time; the old samples are among the new ones.
+    """
+    if parts == 1:
+        return signal
+    step = signal.time_step / parts
+    if signal.polynomials is None:
+        return replace(signal, time_step=step, samples=refined(signal, step))
+    pieces = polynomials.divided(signal.polynomials, parts)
+    samples = np.append(pieces[:, 0], signal.samples[-1])
+    samples[::parts] = signal.samples
+    return replace(signal, time_step=step, samples=samples, polynomials=pieces)
