@@ -95,7 +95,7 @@ class SolverWarning(RockframeWarning):
 
 
 class RecordWarning(RockframeWarning):
-    """A ground-motion file was read, but something in it disagrees."""
+    """A ground-motion file disagrees with itself, or a motion is sampled too coarsely."""
 
 
 def shown(value: object) -> str:

@@ -40,6 +40,7 @@ OPERATIONS: Final = (
     "baseline_corrected",
     "with_vertical",
     "rotated",
+    "through_storeys",
 )
 """Operations that a recipe may name."""
 

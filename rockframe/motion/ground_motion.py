@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from rockframe.errors import ComponentError, shown
 from rockframe.motion import dataset, description
 from rockframe.motion.constructors import cycloidal, records, synthetic, wavelets
-from rockframe.motion.operations import combining, correcting, scaling, timing
+from rockframe.motion.operations import combining, correcting, scaling, storeys, timing
 from rockframe.motion.value import MotionValue
 from rockframe.signals import Motion
 
@@ -102,3 +102,4 @@ class GroundMotion(MotionValue):
     baseline_corrected = correcting.baseline_corrected
     with_vertical = combining.with_vertical
     rotated = combining.rotated
+    through_storeys = storeys.through_storeys

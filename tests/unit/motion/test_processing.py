@@ -38,6 +38,7 @@ ALL_STEPS = {
     "filtered": lambda m: m.filtered(low="0.5 Hz", high="20 Hz"),
     "baseline": lambda m: m.baseline_corrected(),
     "vertical": lambda m: m.with_vertical(m),
+    "through storeys": lambda m: m.through_storeys(["0.5 s"]),
 }
 
 

@@ -1,0 +1,265 @@
+"""The motion of a floor of a building, instead of the ground's."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from enum import StrEnum
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+
+from rockframe.arguments import one_of_words
+from rockframe.errors import ComponentError, RecordWarning, warn
+from rockframe.motion.operations.following import following, lost_pieces
+from rockframe.motion.operations.storey_arguments import read_building
+from rockframe.motion.processing.floors import decay_time, passed_on
+from rockframe.motion.processing.sampling import divided, padded
+from rockframe.signals import Motion
+from rockframe.signals.signal import MAXIMUM_SAMPLES
+from rockframe.signals.spectra import MAXIMUM_PARTS
+from rockframe.units import NOT_NEGATIVE, POSITIVE, TIME, TIME_STEP, to_si
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from rockframe.motion.processing.floors import Modes
+    from rockframe.motion.quantities import ArrayLike, QuantityLike, RatioLike
+    from rockframe.motion.value import Made
+    from rockframe.signals import Signal
+
+_SNAP: Final = 1e-9
+_MODES_TOLD: Final = 10
+_COARSE: Final = 0.02
+"""Deviation between samples, as a share of the peak, beyond which there is a warning."""
+
+
+class VerticalComponent(StrEnum):
+    """What becomes of the vertical component on the way up."""
+
+    UNCHANGED = "unchanged"
+    OMITTED = "omitted"
+
+
+def through_storeys(
+    motion: Made,
+    periods: ArrayLike | Iterable[QuantityLike] | QuantityLike | None = None,
+    damping_ratio: RatioLike | Iterable[RatioLike] = 0.05,
+    *,
+    floor_participations: RatioLike | Iterable[RatioLike] | None = None,
+    storeys: int | None = None,
+    period: QuantityLike | None = None,
+    masses: ArrayLike | Iterable[QuantityLike] | None = None,
+    stiffnesses: ArrayLike | Iterable[QuantityLike] | None = None,
+    floor: int | None = None,
+    modes: int | None = None,
+    free_vibration: QuantityLike | None = None,
+    time_step: QuantityLike | None = None,
+    vertical: VerticalComponent | str = VerticalComponent.UNCHANGED,
+) -> Made:
+    """Give the motion of a floor of an elastic building that stands on the ground.
+
+    Describe the building by `periods` (one for a single oscillator, several with
+    `floor_participations`), by `storeys`, `period` and `floor` for equal storeys, or by
+    `masses`, `stiffnesses` and `floor`.
+
+    Parameters
+    ----------
+    periods : (sequence, unit), Quantity or sequence of str, optional
+        Undamped periods of the modes; zero is rigid [s].
+    damping_ratio : float, or sequence of float, optional
+        Share of critical damping, from 0 to 1, of all modes or of each [1].
+    floor_participations : sequence of float, optional
+        Of each mode, its participation factor times the displacement of the floor in the
+        mode shape; 1 unless given, if there is one period [1].
+    storeys : int, optional
+        Number of equal storeys.
+    period : str or Quantity, optional
+        First period of the building of equal storeys [s].
+    masses : (sequence, unit), Quantity or sequence of str, shape (n,), optional
+        Of the floors, from the lowest up [kg].
+    stiffnesses : (sequence, unit), Quantity or sequence of str, shape (n,), optional
+        Of the storeys under them against shear [N m^-1].
+    floor : int, optional
+        The floor on which the object stands: 1 is on top of the lowest storey, the number
+        of storeys is the roof.
+    modes : int, optional
+        How many modes of the storeys to keep, from the longest period down; all unless given.
+    free_vibration : str or Quantity, optional
+        How long the motion goes on after the ground has come to rest; until every mode has
+        decayed to a hundredth of its amplitude unless given [s].
+    time_step : str or Quantity, optional
+        The greatest admitted between samples of the floor's motion: the motion's own is
+        divided into equal parts. The motion's own unless given [s].
+    vertical : {"unchanged", "omitted"}, optional
+        What becomes of the vertical component. Columns and walls are stiff along their
+        length: the floor has the ground's.
+
+    Returns
+    -------
+    GroundMotion
+        The absolute acceleration of the floor.
+
+    Raises
+    ------
+    UnitsError
+        A value without a unit, or of another kind.
+    ComponentError
+        No building, or several; a value out of range, or as many values as there are not
+        modes; no `free_vibration` where a mode is undamped; periods too short or a motion
+        too long to be sampled.
+
+    Warns
+    -----
+    RecordWarning
+        Between its samples the floor's acceleration departs from straight lines by more
+        than 2 % of its peak: a shorter `time_step` is needed.
+
+    Notes
+    -----
+    The sum over the modes, :eq:`eq-floor-acceleration`, from rest. What participations lack
+    to 1 moves with the ground: so do the modes that are left out. The acceleration is
+    exact at the samples for the ground as it is, straight or polynomial between its samples;
+    between its own samples the floor's is straight. The object does not act back on the
+    building.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> pulse = rf.GroundMotion.sine_pulse("1 m/s^2", "2 Hz")
+    >>> roof = pulse.through_storeys(["0.5 s"], damping_ratio=0.05)
+    >>> round(roof.peak_acceleration.m_as("m/s^2"), 3)
+    2.708
+    """
+    owner, si = f"{type(motion).__name__}.through_storeys", motion.si
+    building = read_building(
+        {
+            "periods": periods,
+            "floor_participations": floor_participations,
+            "storeys": storeys,
+            "period": period,
+            "masses": masses,
+            "stiffnesses": stiffnesses,
+            "floor": floor,
+            "modes": modes,
+        },
+        damping_ratio,
+        owner=owner,
+    )
+    upwards = one_of_words(VerticalComponent, vertical, owner=owner, name="vertical")
+    moving = building.modes.moving
+    still = _still_time(free_vibration, moving, owner)
+    parts = _parts(time_step, si.time_step, owner)
+    _check_size(si, moving, still, parts, owner)
+    zeros = math.ceil(still / si.time_step * (1.0 - _SNAP))
+    count = len(motion) + zeros
+    across = _floor(padded(si.horizontal, count), building.modes, parts)
+    above = None
+    if si.vertical is not None and upwards is VerticalComponent.UNCHANGED:
+        above = divided(padded(si.vertical, count), parts)
+    result = Motion(across.signal, above)
+    if across.deviation > _COARSE:
+        # the deviation falls with the square of the time step, :eq:`eq-floor-chords`
+        finer = parts * math.ceil(math.sqrt(across.deviation / _COARSE))
+        msg = (
+            f"{owner}: between samples {result.time_step:.4g} s apart the floor's acceleration "
+            f"departs from straight lines by up to {100.0 * across.deviation:.2g} % of its peak; "
+            f"give a shorter time_step, for example time_step='{si.time_step / finer:.4g} s'"
+        )
+        warn(msg, RecordWarning)
+    steps = [
+        f"absolute acceleration of a floor, {building.words}: {_told(building.modes)}",
+        f"followed for {zeros * si.time_step:.9g} s after the ground's motion",
+    ]
+    if parts > 1:
+        steps.append(f"time step divided by {parts}, to {result.time_step!r} s")
+    steps.append(
+        "straight between samples, where the floor's acceleration departs from that by up to "
+        f"{100.0 * across.deviation:.2g} % of its peak"
+    )
+    if si.vertical is not None:
+        steps.append(f"vertical component {upwards}")
+    operation = {
+        "through_storeys": {
+            **building.arguments,
+            "free_vibration": f"{still!r} {TIME.unit}",
+            "time_step": f"{result.time_step!r} {TIME.unit}",
+            "vertical": str(upwards),
+        }
+    }
+    dropped = lost_pieces(Motion(si.horizontal))
+    return following(motion, result, *steps, *dropped, operation=operation)
+
+
+class _Floor(NamedTuple):
+    signal: Signal
+    deviation: float
+    """From straight lines, amid the samples, as a share of the peak."""
+
+
+def _floor(ground: Signal, modes: Modes, parts: int) -> _Floor:
+    halves = divided(ground, 2 * parts)
+    rigid = modes.rigid_share * divided(ground, parts).samples
+    added = passed_on(halves.pieces, halves.time_step, modes.moving)
+    samples = rigid + added[::2]
+    peak = float(np.max(np.abs(samples)))
+    amid = np.abs(added[1::2] - 0.5 * (added[:-1:2] + added[2::2]))
+    deviation = float(np.max(amid)) / peak if peak > 0.0 else 0.0
+    step = ground.time_step / parts
+    return _Floor(replace(ground, time_step=step, samples=samples, polynomials=None), deviation)
+
+
+def _still_time(given: QuantityLike | None, moving: Modes, owner: str) -> float:
+    if given is not None:
+        return to_si(given, TIME, owner=owner, name="free_vibration", condition=NOT_NEGATIVE)
+    needed = decay_time(moving)
+    if math.isfinite(needed):
+        return needed
+    msg = (
+        f"{owner}: a mode without damping never comes to rest; give free_vibration, how long "
+        "it is followed, for example free_vibration='20 s'"
+    )
+    raise ComponentError(msg)
+
+
+def _parts(given: QuantityLike | None, own: float, owner: str) -> int:
+    if given is None:
+        return 1
+    step = to_si(given, TIME_STEP, owner=owner, name="time_step", condition=POSITIVE)
+    if step > own * (1.0 + _SNAP):
+        msg = (
+            f"{owner}: time_step = {step:.6g} s is longer than the motion's own, {own:.6g} s; "
+            "leave it out, and use resampled afterwards"
+        )
+        raise ComponentError(msg)
+    return math.ceil(min(own / step * (1.0 - _SNAP), float(MAXIMUM_SAMPLES)))
+
+
+def _check_size(si: Motion, moving: Modes, still: float, parts: int, owner: str) -> None:
+    if (si.duration + still) / si.time_step * parts > MAXIMUM_SAMPLES:
+        msg = (
+            f"{owner}: {si.duration + still:.6g} s in steps of {si.time_step / parts:.6g} s "
+            f"are more than {MAXIMUM_SAMPLES} samples; give a shorter free_vibration"
+        )
+        raise ComponentError(msg)
+    shortest = si.time_step / MAXIMUM_PARTS
+    if (moving.periods < shortest).any():
+        msg = (
+            f"{owner}: a period of {moving.periods.min():.6g} s is too short beside the time "
+            f"step, {si.time_step:.6g} s; a rigid mode has the period '0 s'"
+        )
+        raise ComponentError(msg)
+
+
+def _told(modes: Modes) -> str:
+    rows = np.column_stack(modes).tolist()
+    each = [
+        f"period {period:.9g} s, damping ratio {damping:.9g}, participation {participation:.9g}"
+        for period, damping, participation in rows[:_MODES_TOLD]
+    ]
+    if len(rows) > _MODES_TOLD:
+        each.append(f"{len(rows) - _MODES_TOLD} further modes")
+    rigid = modes.rigid_share
+    if abs(rigid) > _SNAP:
+        each.append(f"participation {rigid:.9g} with the ground")
+    return "; ".join(each)

@@ -1,0 +1,141 @@
+"""The acceleration of a floor: what the modes of a building make of the ground's."""
+
+from __future__ import annotations
+
+import math
+from itertools import accumulate, chain
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+
+from rockframe.signals.arrays import Array
+from rockframe.signals.oscillator import STEPS_PER_PERIOD, fill_step
+
+DECAYED: Final = 0.01
+"""Share of its amplitude to which a free vibration is followed unless told otherwise."""
+
+
+class Modes(NamedTuple):
+    """Modes of vibration of a building, as one of its floors feels them.
+
+    Parameters
+    ----------
+    periods : ndarray, shape (m,)
+        Undamped periods; that of a rigid mode is zero [s].
+    damping_ratios : ndarray, shape (m,)
+        Shares of critical damping, from 0 to 1 [1].
+    participations : ndarray, shape (m,)
+        Participation factors times the displacement of the floor in the mode shape [1].
+    """
+
+    periods: Array
+    damping_ratios: Array
+    participations: Array
+
+    @property
+    def moving(self) -> Modes:
+        """Those that are not rigid and that the floor feels."""
+        kept = (self.periods > 0.0) & (self.participations != 0.0)
+        return Modes(*(values[kept] for values in self))
+
+    @property
+    def rigid_share(self) -> float:
+        """What of the floor moves with the ground [1]."""
+        return 1.0 - math.fsum(self.moving.participations)
+
+
+def interval_matrix(time_step: float, period: float, damping: float, powers: int) -> Array:
+    """Compute what an interval makes of an oscillator's state, :eq:`eq-interval-matrix`.
+
+    Parameters
+    ----------
+    time_step : float
+        Length of the interval [s].
+    period : float
+        Undamped period, greater than zero [s].
+    damping : float
+        Damping ratio [1].
+    powers : int
+        Coefficients of the ground's polynomial.
+
+    Returns
+    -------
+    ndarray, shape (2, 2 + powers)
+        Displacement [m] and, times the period over 2 pi, velocity at the interval's end for
+        a unit of, by column, these two at its start, and the coefficients [m s^-2].
+    """
+    from scipy import linalg as module
+
+    linalg: Any = module
+    parts = math.ceil(STEPS_PER_PERIOD * time_step / period)
+    kappa = 2.0 * math.pi * time_step / (parts * period)
+    step = np.empty((2, 2 + powers))
+    fill_step(kappa, damping, step)
+    both = np.zeros((2 + powers, 2 + powers))
+    both[:2] = step
+    both[:2, 2:] *= (time_step / parts) ** 2
+    both[2:, 2:] = linalg.pascal(powers, kind="upper", exact=False)
+    whole: Array = np.linalg.matrix_power(both, parts)[:2]
+    whole[:, 2:] /= float(parts) ** np.arange(powers)
+    whole[1] /= kappa
+    whole[:, 1] *= kappa
+    return whole
+
+
+def passed_on(pieces: Array, time_step: float, modes: Modes) -> Array:
+    """Compute what the modes add to a floor's absolute acceleration, from rest.
+
+    Parameters
+    ----------
+    pieces : ndarray, shape (n, m)
+        Acceleration of the ground in every interval [m s^-2].
+    time_step : float
+        Length of an interval [s].
+    modes : Modes
+        Those that move.
+
+    Returns
+    -------
+    ndarray, shape (n + 1,)
+        The sum in :eq:`eq-floor-acceleration` at the ends of all intervals [m s^-2].
+    """
+    total = np.zeros(len(pieces) + 1)
+    for period, damping, participation in np.column_stack(modes).tolist():
+        total += participation * _oscillator(pieces, time_step, period, damping)
+    return total
+
+
+def decay_time(modes: Modes) -> float:
+    """Give the time in which all modes come to rest, :eq:`eq-floor-decay`.
+
+    Parameters
+    ----------
+    modes : Modes
+        Those that move.
+
+    Returns
+    -------
+    float
+        Infinite if a mode is not damped [s].
+    """
+    with np.errstate(divide="ignore"):
+        periods = 1.0 - math.log(DECAYED) / (2.0 * math.pi * modes.damping_ratios)
+    return max((modes.periods * periods).tolist(), default=0.0)
+
+
+def _oscillator(pieces: Array, time_step: float, period: float, damping: float) -> Array:
+    """Give the absolute acceleration of one oscillator, :eq:`eq-oscillator-acceleration`."""
+    matrix = interval_matrix(time_step, period, damping, pieces.shape[1])
+    (uu, uv), (vu, vv) = matrix[:, :2].tolist()
+    driven = matrix[:, 2:] @ pieces.T
+
+    def following(state: tuple[float, float], force: tuple[float, float]) -> tuple[float, float]:
+        u, v = state
+        return uu * u + uv * v + force[0], vu * u + vv * v + force[1]
+
+    forces = zip(*driven.tolist(), strict=True)
+    # one line of the state at a time, as a filter, would lose digits for long periods
+    states = accumulate(forces, following, initial=(0.0, 0.0))
+    numbers = np.fromiter(chain.from_iterable(states), np.float64, 2 * len(pieces) + 2)
+    frequency = 2.0 * math.pi / period
+    return -(frequency**2) * (numbers[::2] + 2.0 * damping * numbers[1::2])

@@ -1,0 +1,61 @@
+"""Modes of shear buildings: storeys that deform by shear under floors that stay level."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from rockframe.signals.arrays import Array
+
+
+def uniform_modes(storeys: int, floor: int, period: float) -> tuple[Array, Array]:
+    """Give the modes of equal storeys in closed form, :eq:`eq-uniform-building`.
+
+    Parameters
+    ----------
+    storeys : int
+        Number of storeys, all of one mass and one stiffness.
+    floor : int
+        The floor looked at: 1 stands on the lowest storey, the last one is the roof.
+    period : float
+        Of the first mode [s].
+
+    Returns
+    -------
+    periods, participations : ndarray, shape (storeys,)
+        From the longest period down [s]; at the floor [1].
+    """
+    angles = np.pi * np.arange(1.0, 2.0 * storeys, 2.0) / (2 * storeys + 1)
+    periods = period * np.sin(0.5 * angles[0]) / np.sin(0.5 * angles)
+    participations = 2.0 * np.sin(floor * angles) / ((2 * storeys + 1) * np.tan(0.5 * angles))
+    return periods, participations
+
+
+def building_modes(masses: Array, stiffnesses: Array, floor: int) -> tuple[Array, Array]:
+    """Compute the modes of any storeys, :eq:`eq-shear-building`.
+
+    Parameters
+    ----------
+    masses : ndarray, shape (n,)
+        Of the floors, from the lowest up [kg].
+    stiffnesses : ndarray, shape (n,)
+        Of the storeys under them [N m^-1].
+    floor : int
+        The floor looked at, from 1 up.
+
+    Returns
+    -------
+    periods, participations : ndarray, shape (n,)
+        From the longest period down [s]; at the floor [1].
+    """
+    from scipy import linalg as module
+
+    linalg: Any = module
+    above = np.append(stiffnesses[1:], 0.0)
+    stiffness = (
+        np.diag(stiffnesses + above) - np.diag(above[:-1], 1) - np.diag(above[:-1], -1)
+    )  # fmt: skip
+    squares, shapes = linalg.eigh(stiffness, np.diag(masses))
+    # shapes are of unit modal mass
+    return 2.0 * np.pi / np.sqrt(squares), (masses @ shapes) * shapes[floor - 1]
