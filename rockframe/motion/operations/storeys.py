@@ -105,9 +105,9 @@ def through_storeys(
     UnitsError
         A value without a unit, or of another kind.
     ComponentError
-        No building, or several; a value out of range, or as many values as there are not
-        modes; no `free_vibration` where a mode is undamped; periods too short or a motion
-        too long to be sampled.
+        No building, or several; a value out of range, or another number of values than
+        of modes; no `free_vibration` where a mode is undamped; periods too short or a
+        motion too long to be sampled.
 
     Warns
     -----
