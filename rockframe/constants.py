@@ -7,3 +7,6 @@ STANDARD_GRAVITY: Final = 9.80665
 
 PAPER_TITLE: Final = "Analysis of a Simplified Model of a Rigid Rocking Block on Winkler Foundation"
 """Title of the paper whose equation numbers are cited throughout."""
+
+CONVENTIONS: Final = "CF-1.11"
+"""Metadata conventions that datasets follow (cfconventions.org)."""

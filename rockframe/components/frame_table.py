@@ -7,7 +7,9 @@ from typing import Any, Final
 import xarray as xr
 
 from rockframe.components.frame_members import Member
+from rockframe.constants import CONVENTIONS
 from rockframe.units import Unit
+from rockframe.version import __version__
 
 _Column = tuple[str, str, str, Callable[[Member, float], float | None]]
 _COLUMNS: Final[tuple[_Column, ...]] = (
@@ -92,7 +94,11 @@ def members_table(
         variables,
         coords=labels,
         attrs={
+            "Conventions": CONVENTIONS,
             "title": "Members of a building and their part in its inertia",
+            # without the time: equal frames have equal tables
+            "history": f"computed by rockframe {__version__}",
+            "source": f"rockframe {__version__}, geometry of the members",
             "comment": "Numbers in these attributes are in SI units.",
             **known,
         },

@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe.arguments import checked_dataset
+from rockframe.constants import CONVENTIONS
 from rockframe.errors import ComponentError, SchemaError
 from rockframe.signals import Motion, Signal
 from rockframe.signals.arrays import OWNER, Array
@@ -93,9 +94,10 @@ def to_dataset(motion: MotionValue) -> xr.Dataset:
         if values is not None
     }
     time = np.arange(len(motion)) * si.time_step
-    axis = {"units": str(Unit.SECOND), "long_name": "time", "axis": "T"}
+    # no axis and no standard name: CF 4.4 keeps them for times since a date
+    axis = {"units": str(Unit.SECOND), "long_name": "time from the first sample"}
     attributes: dict[str, str | float] = {
-        "Conventions": "CF-1.11",
+        "Conventions": CONVENTIONS,
         "title": f"Ground motion {motion.name}",
         "motion_name": motion.name,
         "motion_sha256": motion.sha256,

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from rockframe.constants import PAPER_TITLE
+from rockframe.constants import CONVENTIONS, PAPER_TITLE
 from rockframe.errors import SchemaError
 from rockframe.results.outcome import Values
 from rockframe.results.schema import COORDINATES, SCHEMA, SCHEMA_VERSION
@@ -66,12 +66,17 @@ def build_dataset(
     return dataset
 
 
-def _attributes(given: Mapping[str, str | float | int], title: str, source: str) -> dict[str, Any]:
+def dated(done: str) -> str:
+    """Give a line of a dataset's history: when, and what was done by which version."""
     now = datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
+    return f"{now} {done} by rockframe {__version__}"
+
+
+def _attributes(given: Mapping[str, str | float | int], title: str, source: str) -> dict[str, Any]:
     return {
-        "Conventions": "CF-1.11",
+        "Conventions": CONVENTIONS,
         "title": title,
-        "history": f"{now} computed by rockframe {__version__}",
+        "history": dated("computed"),
         "source": f"rockframe {__version__}, {source}",
         "references": PAPER_TITLE,
         "rockframe_version": __version__,

@@ -221,7 +221,7 @@ def test_flags_follow_cf():
     for name, row in SCHEMA.items():
         attributes = row.attributes()
         if row.flags is None:
-            assert "flag_values" not in attributes, name
+            assert ("flag_values" in attributes) == (row.dtype == "bool"), name
             assert (row.unit is None) == (row.dtype in ("bool", "str")), name
             assert row.dtype in ("float64", "int64", "bool", "str"), name
             continue
@@ -251,6 +251,13 @@ def test_contact_states_have_the_agreed_names(name, dims):
     attributes = row.attributes()
     assert attributes["flag_meanings"] == "full left right flight"
     assert attributes["flag_values"].tolist() == [0, 1, 2, 3]
+
+
+def test_truth_values_are_flags_too():
+    attributes = SCHEMA["overturned"].attributes()
+    assert attributes["flag_values"].dtype == np.int8
+    assert attributes["flag_values"].tolist() == [0, 1]
+    assert attributes["flag_meanings"] == "false true"
 
 
 def test_events_on_the_soil_have_names_of_their_own():

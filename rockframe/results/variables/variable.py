@@ -15,6 +15,9 @@ MODE: Final = ("mode",)
 OSCILLATOR: Final = ("damping_ratio", "period")
 FREQUENCY: Final = ("frequency",)
 
+TRUTH: Final = ("false", "true")
+"""Meanings of 0 and 1, as which files hold truth values."""
+
 
 @dataclass(frozen=True)
 class Variable:
@@ -52,6 +55,10 @@ class Variable:
             members = sorted(self.flags, key=int)
             attributes["flag_values"] = np.array([int(m) for m in members], dtype=self.dtype)
             attributes["flag_meanings"] = " ".join(m.name.lower() for m in members)
+        if self.dtype == "bool":
+            # in a file they are bytes (CF 3.5)
+            attributes["flag_values"] = np.array([0, 1], dtype="int8")
+            attributes["flag_meanings"] = " ".join(TRUTH)
         return attributes
 
 
