@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from rockframe.measures import response_spectrum as response_spectrum
     from rockframe.measures import velocity_and_displacement as velocity_and_displacement
     from rockframe.motion import GroundMotion as GroundMotion
+    from rockframe.results.joining import concat as concat
     from rockframe.simulation.certification import Certification as Certification
     from rockframe.simulation.registration import register as register
     from rockframe.simulation.system import System as System
@@ -85,6 +86,7 @@ _HOMES = {
         "velocity_and_displacement",
     ),
     "rockframe.motion": ("GroundMotion",),
+    "rockframe.results.joining": ("concat",),
     "rockframe.simulation.certification": ("Certification",),
     "rockframe.simulation.registration": ("register",),
     "rockframe.simulation.system": ("System",),
@@ -120,6 +122,7 @@ __all__ = [
     "UnitsError",
     "WinklerSoil",
     "__version__",
+    "concat",
     "errors",
     "extension",
     "fourier_spectrum",

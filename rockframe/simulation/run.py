@@ -98,8 +98,8 @@ def run(system: Assembly, plan: Plan, certification: Certification | None = None
     ]
     for kind, text in cautions:
         warn(text, kind)
-    if cautions:
-        attributes["cautions"] = "; ".join(text for _, text in cautions)
+    # said of every run: what only some datasets say, xarray.concat would take for all
+    attributes["cautions"] = "; ".join(text for _, text in cautions) or "none"
     certificate: dict[str, float | bool] = {}
     if certification is not None:
         found = certify(system, plan, base, certification, beside)

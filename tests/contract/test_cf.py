@@ -40,6 +40,7 @@ GIVEN = {
     "still": lambda: ON_PADS.simulate(duration="0.1 s"),
     "overturned": lambda: ON_PADS.simulate(FALL),
     "certified": lambda: ON_PADS.simulate(pulse(), certify=rf.Certification(runs=60)),
+    "joined": lambda: rf.concat([ON_PADS.simulate(motion) for motion in (pulse(), FALL)], "case"),
     "rest": STACK.equilibrium,
     "held": lambda: STACK.moment_rotation(([-0.1, 0.0, 0.2], "rad")),
     "modes": STACK.frequencies,

@@ -1,0 +1,206 @@
+"""Many runs in one dataset, which says of all only what holds for each."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, Final, cast
+
+import numpy as np
+import xarray as xr
+
+from rockframe.arguments import checked_dataset
+from rockframe.errors import SchemaError, shown
+from rockframe.results.dataset import dated
+from rockframe.results.variables.variable import EVENT, TIME
+
+OF_ONE_RUN: Final = frozenset(
+    {
+        "verdict",
+        "overturned",
+        "overturning_time",
+        "overturning_direction",
+        "cautions",
+        "certificate",
+        "certificate_runs",
+        "solver_substeps",
+        "solver_steps",
+        "solver_rejected_steps",
+        "solver_end_time",
+        "end_state",
+    }
+)
+"""Attributes that tell what became of one run; of several none of them is said."""
+
+MOTION: Final = "motion"
+"""The attribute, and the coordinate, that names the ground motion."""
+
+_OWNER: Final = "concat"
+
+
+def concat(
+    runs: Iterable[xr.Dataset],
+    dim: str = "run",
+    labels: Sequence[Any] | np.ndarray | xr.DataArray | None = None,
+    *,
+    histories: bool = False,
+) -> xr.Dataset:
+    """Join runs, or what was joined before, along a dimension.
+
+    Parameters
+    ----------
+    runs : iterable of xarray.Dataset
+        Results of :meth:`rockframe.System.simulate`, of
+        :func:`rockframe.intensity_measures` or of this function.
+    dim : str, optional
+        The dimension, such as ``"scale"``; a new one, or one that all of them have.
+    labels : sequence or DataArray, optional
+        Values along the dimension, one for each run; those of a DataArray come with its
+        attributes, such as ``units``.
+    histories : bool, optional
+        Whether histories are joined too; their times must be the same in all runs.
+
+    Returns
+    -------
+    xarray.Dataset
+        The variables that all runs have, without events and, unless asked for, without
+        histories. Where motions differ, or `dim` is ``"motion"``, their names are a
+        coordinate ``motion``.
+
+    Raises
+    ------
+    SchemaError
+        No runs, something else than datasets, labels of another number, or runs that do not
+        fit one another.
+
+    Notes
+    -----
+    An attribute is kept if every run has it with the same value, and if it is none of
+    `verdict`, `overturned`, `overturning_time`, `overturning_direction`, `cautions`,
+    `certificate`, `certificate_runs`, `solver_substeps`, `solver_steps`,
+    `solver_rejected_steps`, `solver_end_time` and `end_state`, which tell of one run and are
+    left out however many agree. So it does not matter in which order runs are joined.
+    `xarray.concat` with ``combine_attrs="drop_conflicts"`` keeps what some of its datasets do
+    not have: of a row of runs in which some overturned and a row in which none did, it says
+    that none did.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> block = rf.Block(width="0.8 m", height="4 m", mass="2 t")
+    >>> system = rf.System(block, rf.RigidGround())
+    >>> pulse = rf.GroundMotion.sine_pulse("1 m/s^2", "1 Hz")
+    >>> scales = [1.0, 2.5, 9.0]
+    >>> runs = [system.simulate(pulse.scaled(scale), free_vibration="5 s") for scale in scales]
+    >>> study = rf.concat(runs, "scale", scales)
+    >>> study.overturned.values
+    array([False, False,  True])
+    >>> "overturned" in study.attrs
+    False
+    """
+    given = [checked_dataset(run, owner=_OWNER) for run in _each(runs)]
+    if not given:
+        msg = f"{_OWNER}: found no runs; expected one at least"
+        raise SchemaError(msg)
+    _check_dimension(given, dim)
+    parts = [_without(run, EVENT if histories else (*EVENT, *TIME)) for run in given]
+    common = set[Any].intersection(*(set(part.data_vars) for part in parts))
+    if not common:
+        msg = (
+            f"{_OWNER}: the runs share no variables besides histories and events; "
+            "rf.table(runs, 'histories') puts histories one below the other"
+        )
+        raise SchemaError(msg)
+    kept = [name for name in parts[0].data_vars if name in common]
+    rows = [part[kept].drop_encoding() for part in parts]
+    rows = [row if dim in row.dims else row.expand_dims(dim) for row in rows]
+    try:
+        joined = xr.concat(
+            _with_motions(rows, dim),
+            dim=dim,
+            data_vars="minimal",
+            coords="different",
+            compat="equals",
+            join="exact",
+            combine_attrs=_shared,
+        )
+    except ValueError as problem:
+        msg = f"{_OWNER}: the runs do not fit one another: {problem}"
+        raise SchemaError(msg) from problem
+    joined.attrs["history"] = dated(f"{joined.sizes[dim]} joined along {dim!r}")
+    if labels is not None:
+        joined = _labelled(joined, dim, labels)
+    for name in joined.coords:
+        # a coordinate has no missing values, so it needs no fill value (CF 2.5.1)
+        joined[name].encoding["_FillValue"] = None
+    return joined
+
+
+def _each(runs: object) -> Iterable[Any]:
+    if isinstance(runs, Iterable) and not isinstance(runs, str | xr.Dataset | xr.DataArray):
+        return cast("Iterable[Any]", runs)
+    msg = f"{_OWNER}: found {shown(runs)}; expected a list of datasets"
+    raise SchemaError(msg)
+
+
+def _check_dimension(runs: Sequence[xr.Dataset], dim: object) -> None:
+    if not isinstance(dim, str) or dim in (*TIME, *EVENT):
+        msg = (
+            f"{_OWNER}: dim must be the name of a dimension of many runs, such as 'run' or "
+            f"'scale', got {shown(dim)}"
+        )
+        raise SchemaError(msg)
+    having = sum(dim in run.dims for run in runs)
+    if 0 < having < len(runs):
+        msg = f"{_OWNER}: {having} of {len(runs)} datasets have the dimension {dim!r}; expected "
+        raise SchemaError(msg + "all or none")
+
+
+def _without(run: xr.Dataset, dims: tuple[str, ...]) -> xr.Dataset:
+    return run.drop_dims([dim for dim in dims if dim in run.dims])
+
+
+def _with_motions(rows: Sequence[xr.Dataset], dim: str) -> list[xr.Dataset]:
+    """Give rows their motions' names, which differ and so are no attribute of all."""
+    bare = [row for row in rows if MOTION not in row.variables and MOTION not in row.dims]
+    unnamed = [row for row in rows if dim == MOTION and MOTION not in row.variables]
+    names = [row.attrs.get(MOTION) for row in rows]
+    known = all(isinstance(row.attrs.get(MOTION), str) for row in (*bare, *unnamed))
+    alike = len(bare) == len(rows) and len(set(names)) == 1
+    if not known or (alike and dim != MOTION):
+        return list(rows)
+    return [
+        row
+        if MOTION in row.variables
+        else row.assign_coords(
+            {MOTION: (dim, [row.attrs[MOTION]] * row.sizes[dim], {"long_name": "ground motion"})}
+        )
+        for row in rows
+    ]
+
+
+def _shared(given: Sequence[Mapping[Any, Any]], context: object = None) -> dict[Any, Any]:
+    """Give the attributes that all have alike, without those of one run."""
+    del context
+    first, *others = given
+    return {
+        name: value
+        for name, value in first.items()
+        if name not in OF_ONE_RUN
+        and all(name in other and _same(value, other[name]) for other in others)
+    }
+
+
+def _same(one: object, other: object) -> bool:
+    a, b = np.asarray(one), np.asarray(other)
+    return np.array_equal(a, b, equal_nan=a.dtype.kind == b.dtype.kind == "f")
+
+
+def _labelled(
+    joined: xr.Dataset, dim: str, labels: Sequence[Any] | np.ndarray | xr.DataArray
+) -> xr.Dataset:
+    values = labels.to_numpy() if isinstance(labels, xr.DataArray) else np.asarray(list(labels))
+    if values.shape != (joined.sizes[dim],):
+        found = f"{len(values)} labels" if values.ndim == 1 else f"labels of shape {values.shape}"
+        msg = f"{_OWNER}: found {found} for {joined.sizes[dim]} runs along {dim!r}"
+        raise SchemaError(msg)
+    attributes = dict(labels.attrs) if isinstance(labels, xr.DataArray) else {}
+    attributes.setdefault("long_name", dim.replace("_", " "))
+    return joined.assign_coords({dim: (dim, values, attributes)})

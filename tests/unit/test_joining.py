@@ -1,0 +1,198 @@
+"""Many runs in one dataset: nothing that is said of one run is said of all."""
+
+import itertools
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import rockframe as rf
+from rockframe.results.joining import OF_ONE_RUN
+
+pytestmark = pytest.mark.unit
+
+BLOCK = rf.Block(width="0.8 m", height="4 m", mass="2 t")
+SYSTEM = rf.System(BLOCK, rf.RigidGround())
+PULSE = rf.GroundMotion.sine_pulse("1 m/s^2", "1 Hz")
+CAUTION = "the motion is not one to trust"
+STANDS, FALLS = 2.5, 9.0
+
+
+def run(scale, motion=PULSE, **options):
+    return SYSTEM.simulate(motion.scaled(scale), free_vibration="3 s", **options)
+
+
+@pytest.fixture(scope="module")
+def runs():
+    return {scale: run(scale) for scale in (2.0, STANDS, FALLS, 10.0)}
+
+
+def row(runs, *scales):
+    return [runs[scale] for scale in scales]
+
+
+def of_one_run(dataset):
+    return OF_ONE_RUN & set(dataset.attrs)
+
+
+def test_the_names_are_those_of_what_differs_between_a_run_that_stands_and_one_that_falls():
+    asked = {"history", "run_json", "motion_sha256", "motion_json", "motion_history"}
+    with pytest.warns(rf.SolverWarning):
+        cut = run(STANDS, accuracy=rf.Accuracy(rtol=1e-7, max_steps=40), certify=True)
+    others = [
+        run(STANDS, accuracy=1e-7, certify=rf.Certification(runs=60)),
+        run(FALLS, accuracy=1e-7, certify=rf.Certification(runs=61)),
+        cut,
+    ]
+    told = [set(other.attrs) for other in others]
+    assert told[0] == told[1] == told[2]
+    differing = {
+        name
+        for name in told[0]
+        if any(not np.array_equal(others[0].attrs[name], other.attrs[name]) for other in others)
+    }
+    settings = {"accuracy", "certificate_nudge", "certificate_reach", "certificate_resolution"}
+    # no step is of fixed length here
+    assert differing - asked - settings == OF_ONE_RUN - {"solver_substeps"}
+
+
+def test_no_order_of_joining_leaves_the_verdict_of_one_run(runs):
+    """All stand, all overturn, some do, in one step and in two, by files too."""
+    rows = [row(runs, 2.0, STANDS), row(runs, FALLS, 10.0), row(runs, STANDS, FALLS)]
+    for chosen in (*rows, [runs[STANDS]], [runs[STANDS]] * 2, [runs[FALLS]] * 2):
+        assert not of_one_run(rf.concat(chosen, "scale"))
+    for chosen in itertools.permutations(rows):
+        nested = rf.concat([rf.concat(part, "scale") for part in chosen], "case")
+        assert not of_one_run(nested)
+        assert nested.sizes == {"case": 3, "scale": 2}
+        whole = [one.overturned.item() for part in chosen for one in part]
+        assert nested.overturned.values.ravel().tolist() == whole
+        assert nested.overturned.dtype == bool
+        deeper = rf.concat([nested, nested], "system")
+        assert not of_one_run(deeper)
+        longer = rf.concat([nested, nested], "case")
+        assert longer.sizes == {"case": 6, "scale": 2}
+        assert not of_one_run(longer)
+
+
+def test_what_plain_xarray_keeps_is_dropped_when_it_is_joined_further(runs):
+    """The fault: a row that all stand, beside one of which some fell, says that none did."""
+    plain = [
+        xr.concat(
+            [one.drop_dims(["time", "event"]) for one in part],
+            "scale",
+            data_vars="all",
+            combine_attrs="drop_conflicts",
+        )
+        for part in (row(runs, STANDS, FALLS), row(runs, 2.0, STANDS))
+    ]
+    assert plain[1].attrs["overturned"] == 0
+    assert "overturned" not in plain[0].attrs
+    fault = xr.concat(plain, "case", data_vars="all", combine_attrs="drop_conflicts")
+    assert fault.attrs["overturned"] == 0
+    assert fault.overturned.any()
+    assert not of_one_run(rf.concat(plain, "case"))
+
+
+def test_one_step_of_plain_xarray_tells_no_mixed_verdict_and_no_caution_of_one(runs):
+    """Every run says all of it, so that what differs conflicts."""
+    assert runs[STANDS].attrs["cautions"] == runs[FALLS].attrs["cautions"] == "none"
+    warned = runs[STANDS].assign_attrs(cautions=CAUTION)
+    for chosen in (row(runs, STANDS, FALLS), [runs[STANDS], warned], [warned, runs[FALLS]]):
+        bare = [one.drop_dims(["time", "event"]) for one in chosen]
+        joined = xr.concat(bare, "run", data_vars="all", combine_attrs="drop_conflicts")
+        for name in OF_ONE_RUN & set(joined.attrs):
+            values = {str(one.attrs[name]) for one in chosen}
+            assert len(values) == 1, name
+        assert ("cautions" in joined.attrs) == all(
+            one.attrs["cautions"] == "none" for one in chosen
+        )
+
+
+def test_cautions_are_those_of_the_run(runs):
+    warned = runs[STANDS].assign_attrs(cautions=CAUTION)
+    for chosen in ([warned, runs[2.0]], [runs[2.0], warned], [warned, warned]):
+        assert "cautions" not in rf.concat(chosen).attrs
+    with pytest.warns(rf.SolverWarning):
+        cut = run(STANDS, accuracy=rf.Accuracy(rtol=1e-7, max_steps=40))
+    assert cut.attrs["cautions"].startswith("Not finished")
+
+
+def test_what_is_shared_stays(runs):
+    joined = rf.concat(runs.values(), "scale", list(runs))
+    assert joined.scale.values.tolist() == list(runs)
+    for name in ("Conventions", "system_json", "model", "motion", "solver_rtol", "run_json"):
+        assert joined.attrs[name] == runs[STANDS].attrs[name]
+    assert "motion_sha256" not in joined.attrs
+    assert "4 joined along 'scale'" in joined.attrs["history"]
+    assert rf.System.from_dataset(joined) == SYSTEM
+    for name, values in joined.data_vars.items():
+        assert values.attrs.keys() == runs[STANDS][name].attrs.keys()
+        assert values.dtype == runs[STANDS][name].dtype
+        np.testing.assert_array_equal(values, [one[name] for one in runs.values()])
+    elsewhere = rf.System(BLOCK, rf.RigidGround(), gravity="3.7 m/s^2").simulate(PULSE)
+    mixed = rf.concat([runs[STANDS], elsewhere])
+    assert "system_json" not in mixed.attrs
+    with pytest.raises(rf.SchemaError, match="system_json"):
+        rf.System.from_dataset(mixed)
+
+
+def test_motions_that_differ_are_named_along_the_dimension(runs, tmp_path):
+    other = run(STANDS, rf.GroundMotion.sine_pulse("1 m/s^2", "2 Hz"))
+    names = [runs[STANDS].attrs["motion"], other.attrs["motion"]]
+    along = rf.concat([runs[STANDS], other])
+    assert along.motion.dims == ("run",)
+    assert along.motion.values.tolist() == names
+    assert "motion" not in along.attrs
+    rows = [rf.concat([one, one], "scale", [1.0, 2.0]) for one in (runs[STANDS], other)]
+    grid = rf.concat(rows, "motion")
+    assert grid.sizes == {"motion": 2, "scale": 2}
+    assert grid.motion.values.tolist() == names
+    grid.to_netcdf(tmp_path / "study.nc")
+    with xr.open_dataset(tmp_path / "study.nc") as again:
+        xr.testing.assert_identical(again.load(), grid)
+        for name, values in rf.concat([again, again], "case").isel(case=0).data_vars.items():
+            xr.testing.assert_identical(values, grid[name])
+
+
+def test_labels_may_have_a_unit(runs):
+    labels = xr.DataArray([3.0, 9.0], attrs={"units": "m s^-2", "long_name": "amplitude"})
+    joined = rf.concat(row(runs, STANDS, FALLS), "amplitude", labels)
+    assert joined.amplitude.attrs == labels.attrs
+    placed = [one.assign_coords(scale=scale) for scale, one in runs.items()]
+    assert rf.concat(placed, "scale").scale.values.tolist() == list(runs)
+
+
+def test_histories_are_joined_where_their_times_are_the_same(runs):
+    both = rf.concat(row(runs, 2.0, STANDS), "scale", histories=True)
+    assert both.rotation.dims == ("scale", "time")
+    assert both.contact_state.dtype == np.int8
+    with pytest.raises(rf.SchemaError, match="do not fit one another"):
+        rf.concat(row(runs, STANDS, FALLS), "scale", histories=True)
+
+
+def test_other_answers_are_joined_too():
+    motions = [PULSE, rf.GroundMotion.sine_pulse("2 m/s^2", "3 Hz")]
+    measures = rf.concat([rf.intensity_measures(motion) for motion in motions], "motion")
+    assert measures.motion.values.tolist() == [motion.name for motion in motions]
+    spectra = rf.concat([rf.response_spectrum(m, ["0.5 s", "1 s"]) for m in motions], "motion")
+    assert spectra.spectral_displacement.dims == ("motion", "damping_ratio", "period")
+
+
+def test_what_cannot_be_joined(runs):
+    one = runs[STANDS]
+    joined = rf.concat([one, one], "scale", [1, 2])
+    for given, options, words in (
+        ([], {}, "found no runs"),
+        (one, {}, "expected a list of datasets"),
+        ("run.nc", {}, "expected a list of datasets"),
+        ([one, "run.nc"], {}, "open a file with xr.open_dataset first"),
+        ([one, one], {"dim": "time"}, "dim must be the name of a dimension"),
+        ([one, one], {"dim": 3}, "dim must be the name of a dimension"),
+        ([one, one], {"labels": [1, 2, 3]}, "found 3 labels for 2 runs along 'run'"),
+        ([one, joined], {"dim": "scale"}, "1 of 2 datasets have the dimension 'scale'"),
+        ([joined, joined.assign_coords(scale=[1, 3])], {}, "do not fit one another"),
+        ([one, rf.velocity_and_displacement(PULSE)], {}, "share no variables"),
+    ):
+        with pytest.raises(rf.SchemaError, match=words):
+            rf.concat(given, **options)
