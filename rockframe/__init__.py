@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from rockframe.measures import velocity_and_displacement as velocity_and_displacement
     from rockframe.motion import GroundMotion as GroundMotion
     from rockframe.results.joining import concat as concat
+    from rockframe.results.table import table as table
     from rockframe.simulation.certification import Certification as Certification
     from rockframe.simulation.registration import register as register
     from rockframe.simulation.system import System as System
@@ -87,6 +88,7 @@ _HOMES = {
     ),
     "rockframe.motion": ("GroundMotion",),
     "rockframe.results.joining": ("concat",),
+    "rockframe.results.table": ("table",),
     "rockframe.simulation.certification": ("Certification",),
     "rockframe.simulation.registration": ("register",),
     "rockframe.simulation.system": ("System",),
@@ -132,6 +134,7 @@ __all__ = [
     "recommend",
     "register",
     "response_spectrum",
+    "table",
     "tradeoff",
     "velocity_and_displacement",
 ]

@@ -1,0 +1,230 @@
+"""Results as tables: a row for each run, for each sample or for each event."""
+
+from collections.abc import Hashable, Iterable, Mapping, Sequence
+from enum import StrEnum
+from typing import TYPE_CHECKING, Any, Final, cast
+
+import xarray as xr
+
+from rockframe.arguments import checked_dataset, one_of_words
+from rockframe.errors import SchemaError
+from rockframe.results.joining import MOTION
+from rockframe.results.schema import SCHEMA
+from rockframe.results.variables.variable import EVENT, TIME, TRUTH
+from rockframe.units import Unit
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+_OWNER: Final = "table"
+_RUN: Final = "run"
+
+
+class Contents(StrEnum):
+    """What the rows of a table are."""
+
+    SCALARS = "scalars"
+    HISTORIES = "histories"
+    EVENTS = "events"
+
+
+_ALONG: Final = {Contents.HISTORIES: TIME[0], Contents.EVENTS: EVENT[0]}
+_MISSING: Final = {
+    Contents.SCALARS: "rf.table(response, 'histories') and 'events' give what is along time",
+    Contents.HISTORIES: "a run with outputs=None keeps none, nor does rf.concat unless asked to",
+    Contents.EVENTS: "rf.concat keeps none; give the runs themselves",
+}
+
+
+def table(
+    runs: xr.Dataset | Iterable[xr.Dataset] | Mapping[Any, xr.Dataset],
+    contents: str = Contents.SCALARS,
+) -> "pd.DataFrame":
+    """Give results as a pandas DataFrame, with units in the heads of its columns.
+
+    Parameters
+    ----------
+    runs : xarray.Dataset, or iterable or mapping of them
+        A run, several runs, or runs joined by :func:`rockframe.concat`; also any other
+        dataset of rockframe. The keys of a mapping are the labels of its runs.
+    contents : {"scalars", "histories", "events"}, optional
+        One row for each run; for each of its samples; or for each of its events.
+
+    Returns
+    -------
+    pandas.DataFrame
+        A column is headed by name and unit, such as ``peak_rotation [rad]``, and by the name
+        alone where there is no unit or it is 1. Flags are words, such as ``right``; truth
+        values are True and False.
+
+        Index, of joined runs: their dimensions, one row for each combination. Of a single run,
+        or of several: the name of the motion where all have one, and coordinates without
+        dimension; then the number of the run in the list, where these do not tell the runs
+        apart. Histories add ``time [s]``, events their number.
+
+    Raises
+    ------
+    SchemaError
+        No dataset, or one that holds nothing of the kind.
+    ComponentError
+        Unknown contents.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"), rf.RigidGround())
+    >>> pulse = rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz")
+    >>> response = system.simulate(pulse, free_vibration="2 s")
+    >>> rf.table(response)["peak_rotation [rad]"].round(4).item()
+    0.056
+    >>> rf.table(response, "events").event_kind[0]
+    'uplift'
+    """
+    kind = one_of_words(Contents, contents, owner=_OWNER, name="contents")
+    if isinstance(runs, xr.Dataset):
+        return _of_one(runs, kind)
+    labels: pd.MultiIndex | pd.Index | None = None
+    if isinstance(runs, Mapping):
+        labels, runs = _keys(runs), runs.values()
+    given = [checked_dataset(run, owner=_OWNER) for run in _each(runs)]
+    if not given:
+        msg = f"{_OWNER}: found no runs; expected one at least"
+        raise SchemaError(msg)
+    return _below_one_another(given, kind, _labels(given) if labels is None else labels)
+
+
+def _each(runs: object) -> Iterable[Any]:
+    several = isinstance(runs, Iterable) and not isinstance(runs, str | xr.DataArray)
+    return cast("Iterable[Any]", runs) if several else [runs]
+
+
+def _of_one(run: xr.Dataset, kind: Contents) -> "pd.DataFrame":
+    if kind is Contents.SCALARS and not _dimensions(run, _names(run, kind)):
+        return _below_one_another([run], kind, _labels([run]))
+    return _rows(run, kind)
+
+
+def _below_one_another(
+    runs: Sequence[xr.Dataset], kind: Contents, labels: "pd.Index"
+) -> "pd.DataFrame":
+    import pandas as pd
+
+    frames = [_rows(run, kind) for run in runs]
+    dims = {_dimensions(run, _names(run, kind)) for run in runs}
+    if len(dims) > 1:
+        msg = f"{_OWNER}: found datasets of different dimensions, {sorted(dims)}; expected the same"
+        raise SchemaError(msg)
+    if not any(dims):
+        found = pd.concat(frames, ignore_index=True)
+        found.index = labels
+        return found
+    names = [*labels.names, *frames[0].index.names]
+    return pd.concat(frames, keys=labels, names=names)
+
+
+def _keys(runs: Mapping[Any, xr.Dataset]) -> "pd.Index":
+    import pandas as pd
+
+    keys = list(runs)
+    if keys and all(isinstance(key, tuple) for key in keys):
+        return pd.MultiIndex.from_tuples(keys)
+    return pd.Index(keys, name=_RUN)
+
+
+def _labels(runs: Sequence[xr.Dataset]) -> "pd.Index":
+    """Tell runs apart by motions and scalar coordinates, or else by their number too."""
+    import pandas as pd
+
+    levels: dict[str, list[Any]] = {}
+    motions = [run.attrs.get(MOTION) for run in runs]
+    if all(isinstance(name, str) for name in motions) and MOTION not in runs[0].coords:
+        levels[MOTION] = motions
+    for name in runs[0].coords:
+        if all(name in run.coords and not run[name].dims for run in runs):
+            levels[_head(name, runs[0].variables[name])] = [run[name].item() for run in runs]
+    if len(set(zip(*levels.values(), strict=True))) < len(runs):
+        levels[_RUN] = list(range(len(runs)))
+    if len(levels) == 1:
+        ((name, values),) = levels.items()
+        return pd.Index(values, name=name)
+    return pd.MultiIndex.from_arrays(list(levels.values()), names=list(levels))
+
+
+def _rows(run: xr.Dataset, kind: Contents) -> "pd.DataFrame":
+    """Give a dataset's own rows, without the labels that all of them share."""
+    import pandas as pd
+
+    names = _names(run, kind)
+    if not names:
+        msg = f"{_OWNER}: the dataset holds no {kind}; {_MISSING[kind]}"
+        raise SchemaError(msg)
+    dims = _dimensions(run, names)
+    variables = run.variables
+    if not dims:
+        single = pd.DataFrame({name: [variables[name].values.item()] for name in names})
+        return _headed(single, variables, names)
+    part = run[names]
+    part = part.drop_vars([name for name in part.coords if not variables[name].dims])
+    frame = part.to_dataframe(dim_order=dims)
+    if kind in _ALONG and len(dims) > 1:
+        # joined histories and events are as long as the longest of them
+        floats = [name for name in names if variables[name].dtype.kind == "f"]
+        frame = frame.dropna(how="all", subset=floats)
+    beside = [str(name) for name in part.coords if name in frame.columns]
+    heads = [_head(n, variables[n]) if n in variables else n for n in frame.index.names]
+    frame.index = frame.index.set_names(heads)
+    return _headed(frame, variables, [*beside, *names])
+
+
+def _headed(
+    frame: "pd.DataFrame", variables: Mapping[Any, xr.Variable], names: Sequence[str]
+) -> "pd.DataFrame":
+    """Give columns their units, and words for flags."""
+    import pandas as pd
+
+    columns = {
+        _head(name, variables[name]): _in_words(frame[name], variables[name]) for name in names
+    }
+    return pd.DataFrame(columns, index=frame.index)
+
+
+def _names(run: xr.Dataset, kind: Contents) -> list[str]:
+    """Find the variables of a kind."""
+    if kind in _ALONG:
+        return [name for name, values in _variables(run) if _ALONG[kind] in values.dims]
+    still = {
+        name: set(values.dims)
+        for name, values in _variables(run)
+        if not {*TIME, *EVENT} & set(values.dims)
+    }
+    scalars = [dims for name, dims in still.items() if name in SCHEMA and not SCHEMA[name].dims]
+    # the dimensions of many runs are those of their scalars; an answer without scalars, such
+    # as a spectrum, has a row for each of its points
+    across = set[Hashable].union(*(scalars or still.values())) if still else set[Hashable]()
+    return [name for name, dims in still.items() if dims <= across]
+
+
+def _dimensions(run: xr.Dataset, names: Sequence[str]) -> tuple[Hashable, ...]:
+    """Give the dimensions of variables, those of time and events last."""
+    dims = dict.fromkeys(dim for name in names for dim in run.variables[name].dims)
+    return tuple(sorted(dims, key=lambda dim: dim in (*TIME, *EVENT)))
+
+
+def _variables(run: xr.Dataset) -> list[tuple[str, xr.Variable]]:
+    """Give the variables that are no coordinates."""
+    return [(str(name), run.variables[name]) for name in run.data_vars]
+
+
+def _head(name: Hashable, values: xr.Variable) -> str:
+    unit = values.attrs.get("units", str(Unit.ONE))
+    return str(name) if unit == str(Unit.ONE) else f"{name} [{unit}]"
+
+
+def _in_words(column: Any, values: xr.Variable) -> "pd.Series":
+    """Give flags as words, and truth values that were joined with gaps as such."""
+    meanings = str(values.attrs.get("flag_meanings", "")).split()
+    if values.dtype == bool or not meanings:
+        return column
+    if tuple(meanings) == TRUTH:
+        return column.astype("boolean")
+    return column.map(dict(zip(values.attrs["flag_values"], meanings, strict=True)))
