@@ -159,19 +159,19 @@ def _without(run: xr.Dataset, dims: tuple[str, ...]) -> xr.Dataset:
 
 def _with_motions(rows: Sequence[xr.Dataset], dim: str) -> list[xr.Dataset]:
     """Give rows their motions' names, which differ and so are no attribute of all."""
-    bare = [row for row in rows if MOTION not in row.variables and MOTION not in row.dims]
-    unnamed = [row for row in rows if dim == MOTION and MOTION not in row.variables]
-    names = [row.attrs.get(MOTION) for row in rows]
-    known = all(isinstance(row.attrs.get(MOTION), str) for row in (*bare, *unnamed))
-    alike = len(bare) == len(rows) and len(set(names)) == 1
-    if not known or (alike and dim != MOTION):
+    lacking = [row for row in rows if MOTION not in row.variables]
+    names = {row.attrs.get(MOTION) for row in lacking}
+    known = all(isinstance(name, str) for name in names)
+    alike = len(lacking) == len(rows) and len(names) == 1
+    along_another = any(MOTION in row.dims for row in rows)
+    if not known or (dim != MOTION and (alike or along_another)):
         return list(rows)
     return [
-        row
-        if MOTION in row.variables
-        else row.assign_coords(
+        row.assign_coords(
             {MOTION: (dim, [row.attrs[MOTION]] * row.sizes[dim], {"long_name": "ground motion"})}
         )
+        if MOTION not in row.variables
+        else row
         for row in rows
     ]
 
