@@ -47,6 +47,7 @@ if TYPE_CHECKING:
     from rockframe.simulation.registration import register as register
     from rockframe.simulation.system import System as System
     from rockframe.solve.accuracy import Accuracy as Accuracy
+    from rockframe.studies import critical_scale as critical_scale
     from rockframe.version import __version__ as __version__
 
 # Every scene needs these two. They are most of what has to be loaded: here, so that the
@@ -93,6 +94,7 @@ _HOMES = {
     "rockframe.simulation.registration": ("register",),
     "rockframe.simulation.system": ("System",),
     "rockframe.solve.accuracy": ("Accuracy",),
+    "rockframe.studies": ("critical_scale",),
     "rockframe.version": ("__version__",),
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
@@ -125,6 +127,7 @@ __all__ = [
     "WinklerSoil",
     "__version__",
     "concat",
+    "critical_scale",
     "errors",
     "extension",
     "fourier_spectrum",

@@ -19,6 +19,7 @@ from rockframe.results.variables.runs import (
     HISTORIES,
 )
 from rockframe.results.variables.statics import HELD, MODES, REST
+from rockframe.results.variables.studies import CRITICAL_SCALE
 
 _TABLES: Final = (
     HISTORIES,
@@ -36,12 +37,13 @@ _TABLES: Final = (
     MODES,
     MEASURES,
     COMPARISON,
+    CRITICAL_SCALE,
 )
 
 SCHEMA: Final = {row.name: row for table in _TABLES for row in table}
 """All variables by name, with those that users have registered."""
 
-COORDINATES: Final = ("time", "angle", "mode", "point", "point_x", "point_y")
+COORDINATES: Final = ("time", "angle", "mode", "point", "point_x", "point_y", "scale")
 """Variables that label a dimension."""
 
 ENERGIES: Final = tuple(row.name for row in ENERGY_HISTORIES)

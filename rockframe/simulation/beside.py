@@ -10,6 +10,7 @@ import numpy as np
 from rockframe.dynamics.events import EventKind
 from rockframe.results.outcome import Array, Generic
 from rockframe.simulation.plan import Plan
+from rockframe.solve.layout import Status
 from rockframe.solve.trajectory import Summary
 from rockframe.system.assembly import Assembly
 
@@ -48,6 +49,8 @@ class Beside:
         Of the whole run: root of the sum of squared rates at its events about some
         instants. Where the verdict hangs on what came before, as after many impacts, this
         tells of it long before a clearance does [rad s^-1].
+    status : Status
+        How it ended.
     """
 
     overturned: bool | None
@@ -57,6 +60,7 @@ class Beside:
     direction: int = 0
     step: float = math.nan
     course: tuple[float, ...] = ()
+    status: Status = Status.COMPLETED
 
     def alike(self, other: "Beside") -> bool:
         """Whether both take the same course: both stand, or both overturn in the same swing."""
@@ -109,6 +113,7 @@ def what_showed(
         summary.overturning_direction,
         summary.end_time / max(summary.step_count, 1),
         _course(events["event_time"] / duration, rates),
+        summary.status,
     )
 
 

@@ -65,8 +65,18 @@ class Scan:
 
 
 @dataclass
-class _Side:
-    """The runs to one side, by the size of their change."""
+class Side:
+    """The runs to one side, by the size of their change.
+
+    Parameters
+    ----------
+    sign : float
+        Of the changes.
+    shown : dict of float to Beside
+        The runs by their places, at first the nearest one only.
+    places : list of float
+        Sizes of the changes, rising.
+    """
 
     sign: float
     shown: dict[float, Beside]
@@ -75,6 +85,7 @@ class _Side:
     rough: list[tuple[float, float]] = field(default_factory=list)
 
     def add(self, place: float, shown: Beside) -> None:
+        """Put a run in its place."""
         insort(self.places, place)
         self.shown[place] = shown
         # intervals whose ends took other courses are remembered, with their lengths
@@ -93,6 +104,7 @@ class _Side:
         return count >= CROWD
 
     def intervals(self) -> Iterator[tuple[float, float]]:
+        """Give the ends of all intervals, from near to far."""
         yield from pairwise(self.places)
 
     def flip(self) -> tuple[float, float] | None:
@@ -134,10 +146,10 @@ def scan(
     -------
     Scan
     """
-    sides = [_Side(sign, {0.0: base}) for sign in (-1.0, 1.0)]
+    sides = [Side(sign, {0.0: base}) for sign in (-1.0, 1.0)]
     tried: dict[float, Beside] = {}
 
-    def try_at(side: _Side, place: float) -> bool:
+    def try_at(side: Side, place: float) -> bool:
         shown = look(side.sign * place)
         if shown is None:
             side.closed = True
@@ -180,10 +192,10 @@ def scan(
     )
 
 
-_Task = tuple[_Side, float, float]
+_Task = tuple[Side, float, float]
 
 
-def _nearest_flip(sides: Sequence[_Side]) -> _Task | None:
+def _nearest_flip(sides: Sequence[Side]) -> _Task | None:
     found = [(side, *flip) for side in sides if (flip := side.flip()) is not None]
     return min(found, key=lambda one: one[2], default=None)
 
@@ -192,7 +204,7 @@ def _wide(near: float, far: float, resolution: float) -> bool:
     return far - near > max(resolution * far, LEAST)
 
 
-def _first_doubt(sides: Sequence[_Side], end: float, resolution: float) -> _Task | None:
+def _first_doubt(sides: Sequence[Side], end: float, resolution: float) -> _Task | None:
     """Give the nearest interval, up to an end, in which the verdict might change and back."""
     found: list[_Task] = []
     for side, other in zip(sides, reversed(sides), strict=True):
@@ -201,20 +213,37 @@ def _first_doubt(sides: Sequence[_Side], end: float, resolution: float) -> _Task
                 break
             if side.shown[far].overturned != side.shown[0.0].overturned:
                 break
-            if _wide(near, far, resolution) and _doubtful(side, other, number):
+            if _wide(near, far, resolution) and doubtful(side, number, other):
                 found = [(side, near, far)]
                 break
     return found[0] if found else None
 
 
-def _doubtful(side: _Side, other: _Side, number: int) -> bool:
-    """Whether a clearance might go to zero between two runs of the same verdict."""
+def doubtful(side: Side, number: int, other: Side | None = None) -> bool:
+    """Tell whether a clearance might go to zero between two runs of the same verdict.
+
+    Parameters
+    ----------
+    side : Side
+        The runs.
+    number : int
+        Of the interval between them, from near to far.
+    other : Side, optional
+        The runs to the other side of the nearest one, where there are some.
+
+    Returns
+    -------
+    bool
+    """
     near, far = side.places[number], side.places[number + 1]
     first, last = side.shown[near], side.shown[far]
     if not first.alike(last) or side.crowded(near, far):
         return True
     length, here = far - near, _slopes(side, number)
-    before = _slopes(side, number - 1) if number > 0 else _slopes(other, 0).reversed()
+    if number > 0:
+        before = _slopes(side, number - 1)
+    else:
+        before = _NOT_ALIKE if other is None else _slopes(other, 0).reversed()
     after = _slopes(side, number + 1)
     beside = [one for one in (before, after) if one.of]
     for k, slope in enumerate(here.of):
@@ -250,9 +279,12 @@ class _Slopes:
         return _Slopes(self.length, tuple(-slope for slope in self.of))
 
 
-def _slopes(side: _Side, number: int) -> _Slopes:
+_NOT_ALIKE: Final = _Slopes(0.0, ())
+
+
+def _slopes(side: Side, number: int) -> _Slopes:
     if number + 1 >= len(side.places):
-        return _Slopes(0.0, ())
+        return _NOT_ALIKE
     near, far = side.places[number], side.places[number + 1]
     first, last = side.shown[near], side.shown[far]
     length = far - near

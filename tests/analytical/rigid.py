@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 import rockframe as rf
 
@@ -64,3 +65,31 @@ def peaks_between_impacts(response):
             share = rate[i] / (rate[i] - rate[i + 1])
             found.append(size[i] + 0.5 * rate[i] * share * step)
     return np.array(found)
+
+
+def half_sine_threshold(ratio):
+    """Give the amplitude over g theta of a half sine that overturns, its ratio to p given."""
+
+    def excess(psi):
+        left = ratio * math.sin(psi) - math.cos(psi)
+        return left - math.exp(-(math.pi - psi) / ratio)
+
+    return 1.0 / math.sin(brentq(excess, 1e-9, 0.5 * math.pi, xtol=1e-15, rtol=1e-14))
+
+
+def one_sine_threshold(ratio):
+    """Give that of one sine that overturns without an impact."""
+
+    def excess(psi):
+        left = math.cos(psi) - ratio * math.sin(psi)
+        return left - math.exp(-(2.0 * math.pi - psi) / ratio)
+
+    return 1.0 / math.sin(brentq(excess, 1e-9, 0.5 * math.pi, xtol=1e-15, rtol=1e-14))
+
+
+BANDS = {
+    2: [(1.225179, 2.314403)],
+    4: [(1.795442, 4.850111)],
+    6: [(5.164159, 7.669873)],
+}
+"""Amplitudes that overturn after impacts with restitution 0.9."""

@@ -4,8 +4,14 @@ import math
 
 import numpy as np
 import pytest
-from analytical.rigid import GRAVITY, P, rigid_block
-from scipy.optimize import brentq
+from analytical.rigid import (
+    BANDS,
+    GRAVITY,
+    P,
+    half_sine_threshold,
+    one_sine_threshold,
+    rigid_block,
+)
 
 import rockframe as rf
 
@@ -54,14 +60,6 @@ HALF_SINE = {
 }
 
 
-def half_sine_threshold(ratio):
-    def excess(psi):
-        left = ratio * math.sin(psi) - math.cos(psi)
-        return left - math.exp(-(math.pi - psi) / ratio)
-
-    return 1.0 / math.sin(brentq(excess, 1e-9, 0.5 * math.pi, xtol=1e-15, rtol=1e-14))
-
-
 def sampled_half_sine(amplitude, ratio, count):
     length = math.pi / (ratio * P)
     samples = -amplitude * GRAVITY * THETA * np.sin(np.linspace(0.0, math.pi, count))
@@ -104,20 +102,6 @@ ONE_SINE = {
     6: 9.416966,
     8: 14.871352,
 }
-BANDS = {
-    2: [(1.225179, 2.314403)],
-    4: [(1.795442, 4.850111)],
-    6: [(5.164159, 7.669873)],
-}
-"""Amplitudes that overturn after impacts with restitution 0.9."""
-
-
-def one_sine_threshold(ratio):
-    def excess(psi):
-        left = math.cos(psi) - ratio * math.sin(psi)
-        return left - math.exp(-(2.0 * math.pi - psi) / ratio)
-
-    return 1.0 / math.sin(brentq(excess, 1e-9, 0.5 * math.pi, xtol=1e-15, rtol=1e-14))
 
 
 @pytest.mark.parametrize(("ratio", "printed"), ONE_SINE.items())

@@ -143,10 +143,25 @@ DIMENSIONS = {
     "pseudo_spectral_acceleration": (0, 1, -2, 0),
     "fourier_amplitude": (0, 1, -1, 0),
     "fourier_phase": (0, 0, 0, 1),
+    "critical_scale": (0, 0, 0, 0),
+    "followed_scale": (0, 0, 0, 0),
+    "uplift_scale": (0, 0, 0, 0),
+    "scale_below": (0, 0, 0, 0),
+    "scale_above": (0, 0, 0, 0),
+    "scale": (0, 0, 0, 0),
 }
 DIMENSION_NAMES = {
-    "time", "event", "point", "angle", "mode", "damping_ratio", "period", "frequency",
-}  # fmt: skip
+    "time",
+    "event",
+    "point",
+    "angle",
+    "mode",
+    "damping_ratio",
+    "period",
+    "frequency",
+    "flip",
+    "scale",
+}
 PLAIN = pint.UnitRegistry(cache_folder=None)
 FLAGS = {
     "contact_state",
@@ -155,6 +170,7 @@ FLAGS = {
     "event_kind",
     "overturning_direction",
     "status",
+    "outcome",
 }
 
 WITH_UNIT = [row for row in SCHEMA.values() if row.unit is not None]

@@ -14,6 +14,8 @@ ANGLE: Final = ("angle",)
 MODE: Final = ("mode",)
 OSCILLATOR: Final = ("damping_ratio", "period")
 FREQUENCY: Final = ("frequency",)
+FLIP: Final = ("flip",)
+SCALE: Final = ("scale",)
 
 TRUTH: Final = ("false", "true")
 """Meanings of 0 and 1, as which files hold truth values."""

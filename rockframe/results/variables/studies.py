@@ -1,0 +1,49 @@
+"""Variables of studies: many runs that answer one question."""
+
+from enum import IntEnum
+from typing import Final
+
+from rockframe.results.variables.variable import FLIP, SCALE, Variable, flag
+from rockframe.units import Unit
+
+
+class Outcome(IntEnum):
+    """Verdict of a run among others."""
+
+    STANDS = 0
+    OVERTURNS = 1
+    UNDECIDED = 2
+
+
+CRITICAL_SCALE: Final = (
+    Variable(
+        "critical_scale",
+        (),
+        Unit.ONE,
+        "least scale of the motion that was found to overturn the block, NaN if none",
+    ),
+    Variable(
+        "followed_scale",
+        (),
+        Unit.ONE,
+        "scale of the motion up to which the runs are close enough together to tell of all flips",
+    ),
+    Variable(
+        "uplift_scale",
+        (),
+        Unit.ONE,
+        "scale of the motion up to which the block stays at rest, NaN if that needs runs",
+    ),
+    Variable("scale_below", FLIP, Unit.ONE, "greatest scale of the motion tried before the flip"),
+    Variable("scale_above", FLIP, Unit.ONE, "least scale of the motion tried after the flip"),
+    Variable(
+        "overturns_above",
+        FLIP,
+        None,
+        "whether the block overturns after the flip, and stands before it, or the other way round",
+        dtype="bool",
+    ),
+    Variable("scale", SCALE, Unit.ONE, "factor of the ground motion"),
+    flag("outcome", SCALE, "verdict of the run", Outcome),
+)
+"""Of a motion that is scaled until a block overturns."""

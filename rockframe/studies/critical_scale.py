@@ -1,0 +1,282 @@
+"""How much of a motion it takes to overturn a block."""
+
+import json
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+import xarray as xr
+
+from rockframe.arguments import whole_number
+from rockframe.comparison.models import check_system
+from rockframe.components import InitialState
+from rockframe.errors import ComponentError, SolverWarning, warn
+from rockframe.results.dataset import build_dataset
+from rockframe.results.variables.studies import Outcome
+from rockframe.signals.polynomials import greatest
+from rockframe.simulation.beside import Beside
+from rockframe.simulation.plan import Plan, plan_run
+from rockframe.simulation.provenance import motion_attributes
+from rockframe.simulation.run import beside, run
+from rockframe.solve.accuracy import AccuracyLevel
+from rockframe.solve.layout import Status
+from rockframe.studies.flip_words import least_overturning, sentence, unfinished
+from rockframe.studies.flips import Followed, follow
+from rockframe.studies.scaled_intensity import ScaledIntensity
+from rockframe.system.options import Overturning
+from rockframe.system.rigid_ground import RigidGroundSetting
+from rockframe.units import POSITIVE, Condition, to_ratio
+
+if TYPE_CHECKING:
+    from rockframe.motion import GroundMotion
+    from rockframe.simulation.system import System
+    from rockframe.system.options import AccuracyLike, OverturningLike
+    from rockframe.units import QuantityLike, RatioLike
+
+_OWNER: Final = "critical_scale"
+_WIDTH: Final = Condition("from 1e-12 to 0.1", lambda value: 1e-12 <= value <= 0.1)
+MOST_RUNS: Final = 1_000_000
+_OUTCOMES: Final = {
+    False: Outcome.STANDS, True: Outcome.OVERTURNS, None: Outcome.UNDECIDED,
+}  # fmt: skip
+
+
+def critical_scale(
+    system: "System",
+    motion: "GroundMotion | None" = None,
+    *,
+    largest: "RatioLike" = 4.0,
+    scales: int = 80,
+    runs: int = 400,
+    width: "RatioLike" = 1e-3,
+    intensity: str | None = None,
+    period: "QuantityLike | None" = None,
+    damping_ratio: "RatioLike" = 0.05,
+    duration: "QuantityLike | None" = None,
+    free_vibration: "QuantityLike | None" = None,
+    initial: "InitialState | xr.Dataset | None" = None,
+    accuracy: "AccuracyLike" = AccuracyLevel.STANDARD,
+    overturning: "OverturningLike" = Overturning.STOP,
+) -> xr.Dataset:
+    """Find the least factor of a ground motion that overturns a block, and every flip above.
+
+    Parameters
+    ----------
+    system : System
+        The scene.
+    motion : GroundMotion, optional
+        The motion to be scaled, both components alike; the one among the parts unless given.
+    largest : float, optional
+        Largest scale [1].
+    scales : int, optional
+        Number of equally spaced scales that are tried first.
+    runs : int, optional
+        Most runs of the scan, beside those that narrow brackets: what `scales` leaves goes
+        to intervals in which flips may hide.
+    width : float, optional
+        Width of a bracket, over its upper scale [1].
+    intensity : str, optional
+        Intensity measure whose value at the critical scale is wanted: a name of
+        :func:`rockframe.intensity_measures`, such as ``"peak_ground_acceleration"``, or of
+        :func:`rockframe.response_spectrum`, such as ``"pseudo_spectral_acceleration"``.
+    period : str or Quantity, optional
+        Of the oscillator of a spectral value [s].
+    damping_ratio : float, optional
+        Of that oscillator, or of the spectra behind a measure [1].
+    duration, free_vibration, initial, accuracy : optional
+        As for :meth:`rockframe.System.simulate`.
+    overturning : {"stop", "continue"}
+        What is called overturning: that the rotation reaches the overturning angle, or that
+        the block lies flat by the end of the run, for it may come back from beyond the
+        angle while the ground moves.
+
+    Returns
+    -------
+    xarray.Dataset
+        Scalars: ``critical_scale``, the least scale found to overturn, NaN if none did;
+        ``followed_scale``, up to which the runs are close enough together to tell of all
+        flips; ``uplift_scale``, up to which nothing happens on rigid ground [1]; and the
+        intensity measure, by its name. Over ``flip``, for each change of the verdict:
+        ``scale_below``, ``scale_above`` [1], and ``overturns_above``. Over ``scale``, for
+        each run: ``outcome``, ``peak_rotation`` [rad] and ``status``. The attribute
+        ``verdict`` says it in words.
+
+    Raises
+    ------
+    UnitsError
+        An argument has the wrong unit, or none.
+    ComponentError
+        Not a System, no motion to scale, an unknown measure, or an argument out of range.
+    AssemblyError, SolverError
+        As for :meth:`rockframe.System.simulate`.
+
+    Warns
+    -----
+    SolverWarning
+        Runs could not be finished. They have no verdict, and are neither counted as
+        standing nor as overturned. What the run at the critical scale warns of, it warns of here.
+
+    Notes
+    -----
+    Rocking is not monotone in the scale: above the critical one the verdict may flip back,
+    many times. Between two scales of the same verdict an even number of flips may hide, and
+    with them a lesser critical scale. The signs by which certificates look for flips
+    (``rf.Certification``) decide which intervals are halved, first below the least scale
+    that overturns, down to 0.2 % of the scale; ``followed_scale`` tells how far `runs`
+    sufficed. Flips that come in pairs closer together than that may still be missed.
+
+    A block at rest on rigid ground, without vertical motion, does not move before the peak
+    ground acceleration exceeds g tan(theta): the scan begins there.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> system = rf.System(rf.Block(width="1 m", height="5 m", mass="10 t"))
+    >>> pulse = rf.GroundMotion.half_sine_pulse("3 m/s^2", "1 s")
+    >>> found = rf.critical_scale(system, pulse, free_vibration="10 s", scales=20)
+    >>> round(float(found.critical_scale), 2)
+    1.13
+    """
+    check_system(system, _OWNER)
+    motion = system.motion if motion is None else motion
+    if motion is None:
+        msg = f"{_OWNER}: there is no motion to scale; give one"
+        raise ComponentError(msg)
+    greatest_scale = to_ratio(
+        largest, owner=_OWNER, name="largest", condition=POSITIVE, example="4"
+    )
+    share = to_ratio(width, owner=_OWNER, name="width", condition=_WIDTH, example="0.001")
+    count = whole_number(scales, owner=_OWNER, name="scales", lowest=2, highest=MOST_RUNS)
+    most = whole_number(runs, owner=_OWNER, name="runs", lowest=count, highest=MOST_RUNS)
+    plan = plan_run(
+        system.assembly,
+        motion,
+        duration=duration,
+        free_vibration=free_vibration,
+        initial=initial,
+        accuracy=accuracy,
+        output_step=None,
+        outputs=None,
+        overturning=overturning,
+    )
+    measure = None
+    if intensity is not None:
+        measure = ScaledIntensity(
+            system, motion, intensity, period=period, damping_ratio=damping_ratio, owner=_OWNER
+        )
+    elif period is not None:
+        msg = f"{_OWNER}: period is that of an intensity; give intensity too"
+        raise ComponentError(msg)
+
+    at_rest_to = _uplift_scale(system, plan)
+    least = 0.0 if math.isnan(at_rest_to) else min(at_rest_to, greatest_scale)
+    row = np.unique(np.linspace(least, greatest_scale, count)).tolist()
+
+    def plan_at(scale: float) -> Plan:
+        return replace(plan, motion=motion.scaled(scale))
+
+    look = _look(system, plan_at, stop=plan.stop_at_overturning)
+    found = follow(look, row, most=most, width=share)
+    critical = least_overturning(found.shown)
+    attributes = {
+        "verdict": sentence(found, width=share),
+        "largest_scale": greatest_scale,
+        "first_scales": count,
+        "most_runs": most,
+        "bracket_width": share,
+        "model": system.setting.model,
+        "accuracy": plan.accuracy_name,
+        **_cautions(system, plan_at, found, critical),
+        **motion_attributes(motion),
+        "system_json": json.dumps(system.assembly.to_dict()),
+        "run_json": plan.to_json(),
+    }
+    dataset = _labelled(found, critical, at_rest_to, attributes)
+    if measure is None:
+        return dataset
+    dataset = dataset.assign({measure.name: measure.at(critical)})
+    return dataset.assign_attrs(intensity=measure.name)
+
+
+def _look(
+    system: "System", plan_at: Callable[[float], Plan], *, stop: bool
+) -> Callable[[float], Beside]:
+    """Give what makes the run at a scale."""
+
+    def look(scale: float) -> Beside:
+        shown = beside(system.assembly, plan_at(scale))
+        return shown if stop else _lying(shown, system)
+
+    return look
+
+
+def _lying(shown: Beside, system: "System") -> Beside:
+    """Let a block that was beyond the overturning angle stand, unless it lies flat in the end."""
+    if not shown.overturned or shown.status is Status.TOPPLED:
+        return shown
+    beyond = shown.peak / system.setting.overturning_angle - 1.0
+    return replace(
+        shown,
+        overturned=False if shown.status.finished else None,
+        clearances=(beyond,),
+        time=math.nan,
+        direction=0,
+    )
+
+
+def _uplift_scale(system: "System", plan: Plan) -> float:
+    """Give the scale up to which a block at rest on rigid ground stays so; NaN otherwise."""
+    setting, motion = system.setting, plan.motion
+    if not isinstance(setting, RigidGroundSetting) or plan.initial != InitialState():
+        return math.nan
+    if motion is None or motion.si.vertical is not None:
+        return math.nan
+    peak = greatest(motion.si.horizontal.pieces)
+    return setting.uplift_acceleration / peak if peak > 0.0 else math.inf
+
+
+def _cautions(
+    system: "System", plan_at: Callable[[float], Plan], found: Followed, critical: float
+) -> dict[str, str]:
+    """Repeat what simulate warns of at the critical scale; warn of runs without a verdict."""
+    cautions: list[str] = []
+    undecided = [scale for scale, shown in found.shown.items() if shown.overturned is None]
+    if undecided:
+        cautions.append(f"{_OWNER}: {unfinished(undecided)}")
+        warn(cautions[0], SolverWarning)
+    if not math.isnan(critical):
+        again = run(system.assembly, plan_at(critical))
+        cautions += filter(None, [str(again.attrs.get("cautions", ""))])
+    return {"cautions": "; ".join(cautions)} if cautions else {}
+
+
+def _labelled(
+    found: Followed, critical: float, at_rest_to: float, attributes: dict[str, str | float | int]
+) -> xr.Dataset:
+    flips, shown = found.flips(), list(found.shown.values())
+    dataset = build_dataset(
+        {
+            "critical_scale": critical,
+            "followed_scale": found.up_to,
+            "uplift_scale": at_rest_to,
+            "scale_below": np.array([flip.below for flip in flips]),
+            "scale_above": np.array([flip.above for flip in flips]),
+            "overturns_above": np.array([flip.overturns_above for flip in flips], dtype=bool),
+            "scale": np.array(list(found.shown)),
+            "outcome": np.array([_OUTCOMES[one.overturned] for one in shown]),
+        },
+        attributes,
+        title="Critical scale of a ground motion",
+        source="scan and bisection of event-driven runs",
+    )
+    of_runs = build_dataset(
+        {
+            "peak_rotation": np.array([one.peak for one in shown]),
+            "status": np.array([one.status for one in shown]),
+        },
+        {},
+        over=("scale",),
+    )
+    return dataset.assign(of_runs.data_vars)

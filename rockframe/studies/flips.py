@@ -1,0 +1,168 @@
+"""Every change of the verdict along the scale of a motion, between brackets."""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Final
+
+from rockframe.simulation.beside import Beside
+from rockframe.simulation.scan import Side, doubtful
+
+FINEST: Final = 0.002
+"""Length of an interval of scales that is not looked into for hidden flips, over its far end."""
+
+CALM: Final = 0.1
+"""Share of the overturning angle: no flip is feared between two runs whose peaks are below it."""
+
+Look = Callable[[float], Beside]
+"""Makes the run at a scale."""
+
+
+@dataclass(frozen=True)
+class Flip:
+    """Two scales of unlike verdicts, between which no run has a verdict.
+
+    Parameters
+    ----------
+    below, above : float
+        The scales [1].
+    overturns_above : bool
+        Verdict of the upper one; the lower one has the other.
+    """
+
+    below: float
+    above: float
+    overturns_above: bool
+
+
+@dataclass(frozen=True)
+class Followed:
+    """The runs along the scale, and what they show.
+
+    Parameters
+    ----------
+    shown : dict of float to Beside
+        All runs by their scales, rising.
+    up_to : float
+        Scale up to which every run has a verdict, and no interval is left in which a
+        hidden flip is to be feared [1].
+    """
+
+    shown: dict[float, Beside]
+    up_to: float
+
+    def flips(self) -> list[Flip]:
+        """Give all changes of the verdict, from low to high."""
+        return list(_flips(self.shown))
+
+
+def follow(look: Look, row: Sequence[float], *, most: int, width: float) -> Followed:
+    """Scan scales, look into what is doubtful, and narrow every change of the verdict.
+
+    Between two runs of the same verdict an even number of flips may hide. Where that is to
+    be feared (:func:`rockframe.simulation.scan.doubtful`), the interval is halved: first
+    below the least scale that overturns, until none is left there, then above it.
+
+    Parameters
+    ----------
+    look : callable
+        Makes the run at a scale.
+    row : sequence of float
+        Scales of the first runs, rising.
+    most : int
+        Largest number of runs, those that narrow brackets not counted.
+    width : float
+        Length of a bracket, over its far end, at which it is narrow enough [1].
+
+    Returns
+    -------
+    Followed
+    """
+    least, *others = row
+    side = Side(1.0, {least: look(least)}, [least])
+    for scale in others:
+        side.add(scale, look(scale))
+    for up_to_first in (True, False):
+        while _halve(side, look, most, up_to_first=up_to_first):
+            pass
+    suspects = [near for near, _ in _suspects(side, up_to_first=False)]
+    for flip in list(_flips(_in_order(side))):
+        _narrow(side, look, flip, width)
+    return Followed(_in_order(side), min([*suspects, *_undecided(side), row[-1]]))
+
+
+def _halve(side: Side, look: Look, most: int, *, up_to_first: bool) -> bool:
+    """Halve what is suspect by now; tell whether there was something, and runs were left."""
+    suspects = list(_suspects(side, up_to_first=up_to_first))
+    # runs may not do for all: what comes nearest to overturning goes first
+    for near, far in sorted(suspects, key=lambda ends: _clearance(side, *ends)):
+        if len(side.places) >= most:
+            return False
+        middle = 0.5 * (near + far)
+        shown = look(middle)
+        side.add(middle, shown)
+        if up_to_first and shown.overturned:
+            break  # the others lie above the least scale that overturns
+    return bool(suspects)
+
+
+def _suspects(side: Side, *, up_to_first: bool) -> Iterator[tuple[float, float]]:
+    """Give the intervals in which flips may hide, from low to high.
+
+    Up to the first scale that overturns, the interval before it is one of them: flips may
+    hide on both sides of the one that is known.
+    """
+    for number, (near, far) in enumerate(side.intervals()):
+        before, after = side.shown[near].overturned, side.shown[far].overturned
+        if up_to_first and before:
+            return
+        if far - near <= FINEST * far or before is None or after is None:
+            continue
+        if _clearance(side, near, far) > 1.0 - CALM:
+            continue
+        if before != after:
+            if up_to_first:
+                yield near, far
+        elif doubtful(side, number):
+            yield near, far
+
+
+def _clearance(side: Side, near: float, far: float) -> float:
+    """Give what the larger peak left of the overturning angle; 0 where a run overturned."""
+    ends = side.shown[near], side.shown[far]
+    return min(0.0 if one.overturned else one.clearances[0] for one in ends)
+
+
+def _undecided(side: Side) -> Iterator[float]:
+    """Give the lower ends of intervals with an end that has no verdict."""
+    for near, far in side.intervals():
+        if None in (side.shown[near].overturned, side.shown[far].overturned):
+            yield near
+
+
+def _narrow(side: Side, look: Look, flip: Flip, width: float) -> None:
+    """Bisect a bracket, until it is narrow or a run in its middle has no verdict."""
+    below, above = flip.below, flip.above
+    while above - below > width * above:
+        middle = 0.5 * (below + above)
+        if middle in side.shown or not below < middle < above:
+            return
+        shown = look(middle)
+        side.add(middle, shown)
+        if shown.overturned is None:
+            return
+        if shown.overturned == flip.overturns_above:
+            above = middle
+        else:
+            below = middle
+
+
+def _flips(shown: Mapping[float, Beside]) -> Iterator[Flip]:
+    decided = [(at, run.overturned) for at, run in shown.items() if run.overturned is not None]
+    for (below, before), (above, after) in pairwise(decided):
+        if before != after:
+            yield Flip(below, above, after)
+
+
+def _in_order(side: Side) -> dict[float, Beside]:
+    return {scale: side.shown[scale] for scale in side.places}

@@ -1,0 +1,205 @@
+"""The least scale that overturns: labels, brackets, options, measures, refusals."""
+
+import warnings
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import rockframe as rf
+from rockframe.errors import AssemblyError, ComponentError, SolverError, UnitsError
+
+BLOCK = rf.Block(width="0.8 m", height="3.6 m", mass="4 t")
+RIGID = rf.System(BLOCK)
+ON_PADS = rf.System(BLOCK, rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1))
+ON_SOIL = rf.System(BLOCK, rf.WinklerSoil(stiffness="9 MPa", damping_ratio=0.2))
+SHAKING = rf.GroundMotion.stochastic(6.5, "8 km", seed=4).scaled(peak="3 m/s^2")
+PULSE = rf.GroundMotion.sine_pulse("2 m/s^2", "1 Hz")
+SPARING = {"scales": 30, "runs": 60, "free_vibration": "3 s", "accuracy": "fast"}
+CASES = {
+    "rigid ground": (RIGID, SHAKING, SPARING),
+    "pads, from a start": (
+        ON_PADS,
+        SHAKING,
+        {**SPARING, "initial": rf.InitialState(rotation="0.05 rad"), "accuracy": "standard"},
+    ),
+    "soil, a pulse": (ON_SOIL, PULSE, {**SPARING, "width": 1e-6}),
+    "pads, until it lies flat": (ON_PADS, PULSE, {**SPARING, "overturning": "continue"}),
+}
+OF_A_RUN = ("free_vibration", "initial", "accuracy", "overturning")
+
+
+@pytest.fixture(scope="module")
+def found():
+    return {
+        name: rf.critical_scale(system, motion, **options)
+        for name, (system, motion, options) in CASES.items()
+    }
+
+
+def overturns(response):
+    """Give the verdict of a run, by what the run was asked for."""
+    lies_flat = response.status.flag_meanings.split().index("toppled")
+    going_on = '"overturning": "continue"' in response.attrs["run_json"]
+    return response.status.item() == lies_flat if going_on else bool(response.overturned)
+
+
+def test_runs_at_both_ends_of_every_bracket_have_the_verdicts_told(found):
+    flips = 0
+    for name, (system, motion, options) in CASES.items():
+        told, of_run = found[name], {key: options[key] for key in OF_A_RUN if key in options}
+        for below, above, falls in zip(
+            told.scale_below.values, told.scale_above.values, told.overturns_above.values,
+            strict=True,
+        ):  # fmt: skip
+            assert above - below <= told.bracket_width * above
+            for scale, expected in ((below, not falls), (above, falls)):
+                run = system.simulate(motion.scaled(scale), **of_run, outputs=None)
+                assert overturns(run) == expected, (name, scale)
+            flips += 1
+        assert told.overturns_above[0].item()
+        assert told.critical_scale.item() == told.scale_above[0].item()
+    assert flips > len(CASES)
+
+
+def test_every_run_is_told(found):
+    for name, (system, motion, options) in CASES.items():
+        told, of_run = found[name], {key: options[key] for key in OF_A_RUN if key in options}
+        assert (np.diff(told.scale) > 0.0).all()
+        assert told.scale[-1].item() == 4.0
+        for k in range(0, told.scale.size, 9):
+            scale = told.scale[k].item()
+            run = system.simulate(motion.scaled(scale), **of_run, outputs=None)
+            assert told.outcome[k].item() == int(overturns(run)), (name, scale)
+            assert told.peak_rotation[k].item() == run.peak_rotation.item()
+            assert told.status[k].item() == run.status.item()
+        # flips are where neighbours differ
+        assert np.count_nonzero(np.diff(told.outcome)) == told.flip.size
+
+
+def test_a_mirrored_motion_gives_the_same_scales():
+    for system in (RIGID, ON_PADS):
+        one, other = (
+            rf.critical_scale(system, motion, **SPARING)
+            for motion in (SHAKING, SHAKING.scaled(-1.0))
+        )
+        xr.testing.assert_equal(one, other)
+
+
+def test_nothing_happens_on_rigid_ground_before_uplift(found):
+    told = found["rigid ground"]
+    acceleration = rf.intensity_measures(SHAKING, block=BLOCK).uplift_acceleration.item()
+    peak = rf.intensity_measures(SHAKING).peak_ground_acceleration.item()
+    assert told.uplift_scale.item() == pytest.approx(acceleration / peak, rel=1e-12)
+    assert told.scale[0].item() == told.uplift_scale.item()
+    assert told.peak_rotation[0].item() == pytest.approx(0.0, abs=1e-9)
+    for name in CASES:
+        if name != "rigid ground":
+            assert np.isnan(found[name].uplift_scale)
+            assert found[name].scale[0].item() == 0.0
+    leaning = rf.critical_scale(
+        RIGID, SHAKING, initial=rf.InitialState(rotation="0.01 rad"), **SPARING
+    )
+    lifted = rf.critical_scale(RIGID, SHAKING.with_vertical(SHAKING.scaled(0.5)), **SPARING)
+    assert np.isnan([leaning.uplift_scale, lifted.uplift_scale]).all()
+    never = rf.critical_scale(RIGID, SHAKING, largest=0.5 * told.uplift_scale.item(), **SPARING)
+    assert never.scale.size == 1
+
+
+def test_a_block_that_never_overturns_has_no_critical_scale():
+    told = rf.critical_scale(
+        RIGID, PULSE, largest=1.0, intensity="peak_ground_acceleration", **SPARING
+    )
+    assert np.isnan(told.critical_scale)
+    assert np.isnan(told.peak_ground_acceleration)
+    assert told.peak_ground_acceleration.attrs["units"] == "m s^-2"
+    assert told.flip.size == 0
+    assert told.verdict.startswith("Did not overturn up to 1 times the motion; looked at ")
+
+
+def test_a_block_that_falls_without_the_motion():
+    start = rf.InitialState(angular_velocity="3 rad/s")
+    told = rf.critical_scale(ON_PADS, PULSE, initial=start, **SPARING)
+    assert told.critical_scale.item() == 0.0
+    assert told.verdict.startswith("Overturns without the motion")
+
+
+def test_runs_that_were_cut_off_are_neither():
+    limit = rf.Accuracy(rtol=1e-6, max_steps=400)
+    options = {**SPARING, "accuracy": limit, "scales": 20, "runs": 20}
+    with pytest.warns(rf.SolverWarning, match="could not be finished") as caught:
+        told = rf.critical_scale(RIGID, SHAKING, **options)
+    assert caught[0].filename == __file__
+    meanings = told.outcome.flag_meanings.split()
+    undecided = told.outcome == meanings.index("undecided")
+    assert undecided.any()
+    assert (undecided == (told.status >= 3)).all()
+    assert "no verdict" in told.verdict
+    assert "could not be finished" in told.cautions
+    assert told.followed_scale.item() <= told.scale.where(undecided).min().item()
+
+
+def test_the_critical_scale_as_an_intensity(found):
+    critical = found["soil, a pulse"].critical_scale.item()
+    options = CASES["soil, a pulse"][2]
+    powers = {"peak_ground_acceleration": 1, "arias_intensity": 2, "mean_period": 0}
+    for name, power in powers.items():
+        told = rf.critical_scale(ON_SOIL, PULSE, intensity=name, **options)
+        one = rf.intensity_measures(PULSE)[name]
+        assert told.critical_scale.item() == critical
+        assert told[name].item() == pytest.approx(critical**power * one.item(), rel=1e-9)
+        assert told[name].attrs == one.attrs
+        assert told.intensity == name
+    name = "pseudo_spectral_acceleration"
+    told = rf.critical_scale(
+        ON_SOIL, PULSE, intensity=name, period="0.5 s", damping_ratio=0.02, **options
+    )
+    one = rf.response_spectrum(PULSE, ["0.5 s"], 0.02)[name].item()
+    assert told[name].item() == pytest.approx(critical * one, rel=1e-9)
+    assert (told.period.item(), told.damping_ratio.item()) == (0.5, 0.02)
+    relative = "relative_peak_ground_acceleration"
+    told = rf.critical_scale(ON_SOIL, PULSE, intensity=relative, **options)
+    expected = rf.intensity_measures(PULSE.scaled(critical), block=BLOCK)[relative].item()
+    assert told[relative].item() == expected
+
+
+def test_the_dataset_goes_through_a_file_and_back_to_its_system(found, tmp_path):
+    for told in found.values():
+        told.to_netcdf(tmp_path / "critical.nc")
+        with xr.open_dataset(tmp_path / "critical.nc") as again:
+            xr.testing.assert_identical(again.load(), told)
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore", rf.RecordWarning)
+                system = rf.System.from_dataset(again)
+            assert system.assembly.to_dict() in [case[0].to_dict() for case in CASES.values()]
+        assert told.Conventions == "CF-1.11"
+        assert told.motion_sha256 in (SHAKING.sha256, PULSE.sha256)
+
+
+def test_what_cannot_be_asked_is_refused():
+    wrong = [
+        ({"largest": 0.0}, ComponentError, "largest must be greater than zero"),
+        ({"largest": "4 m"}, UnitsError, "largest"),
+        ({"scales": 1}, ComponentError, "scales must be a whole number from 2"),
+        ({"scales": 50, "runs": 40}, ComponentError, "runs must be a whole number from 50"),
+        ({"width": 0.0}, ComponentError, "width must be from 1e-12 to 0.1"),
+        ({"intensity": "PGA"}, ComponentError, "must be one of .*peak_ground_acceleration"),
+        ({"intensity": "uplift_acceleration"}, ComponentError, "must be one of"),
+        ({"intensity": "spectral_displacement"}, ComponentError, "needs a period"),
+        (
+            {"intensity": "arias_intensity", "period": "1 s"},
+            ComponentError,
+            "'arias_intensity' has no period",
+        ),
+        ({"period": "1 s"}, ComponentError, "give intensity too"),
+        ({"duration": "1 s", "free_vibration": "1 s"}, AssemblyError, "not both"),
+        ({"overturning": "fall"}, AssemblyError, "overturning"),
+        ({"accuracy": "best"}, SolverError, "accuracy"),
+    ]
+    for arguments, error, words in wrong:
+        with pytest.raises(error, match=words):
+            rf.critical_scale(RIGID, PULSE, **arguments)
+    with pytest.raises(ComponentError, match="no motion to scale"):
+        rf.critical_scale(RIGID)
+    with pytest.raises(ComponentError, match="system needs a System"):
+        rf.critical_scale(BLOCK, PULSE)

@@ -1,0 +1,100 @@
+"""Finding flips along a scale: verdicts and clearances made up for the purpose."""
+
+import math
+from itertools import pairwise
+
+from rockframe.simulation.beside import Beside
+from rockframe.solve.layout import Status
+from rockframe.studies.flip_words import sentence
+from rockframe.studies.flips import FINEST, follow
+
+ROW = [0.1 * k for k in range(41)]
+
+
+def runs_of(peak, undecided=lambda scale: False):
+    """Make runs whose peak over the overturning angle is a function of the scale."""
+    asked = []
+
+    def look(scale):
+        asked.append(scale)
+        share = peak(scale)
+        if undecided(scale):
+            return Beside(None, min(share, 1.0), (1.0 - min(share, 1.0),), status=Status.CHATTER)
+        if share < 1.0:
+            return Beside(False, share, (1.0 - share,))
+        return Beside(
+            True, 1.0, (share - 1.0, 1.0), time=1.0, direction=1, status=Status.OVERTURNED
+        )
+
+    return look, asked
+
+
+def test_one_flip_is_bracketed_as_narrowly_as_asked():
+    for width in (1e-2, 1e-5, 1e-12):
+        look, _ = runs_of(lambda scale: scale / math.pi)
+        [flip] = follow(look, ROW, most=100, width=width).flips()
+        assert flip.overturns_above
+        assert flip.below < math.pi <= flip.above
+        assert flip.above - flip.below <= width * flip.above
+
+
+def test_an_island_between_two_scales_is_found_where_peaks_tell_of_it():
+    def peak(scale):
+        return 0.2 * scale + 0.8 * math.exp(-((10.0 * (scale - 1.55)) ** 2))
+
+    look, asked = runs_of(peak)
+    found = follow(look, ROW, most=100, width=1e-4)
+    assert not any(peak(scale) >= 1.0 for scale in ROW if scale < 5.0)
+    assert [flip.overturns_above for flip in found.flips()] == [True, False]
+    for flip in found.flips():
+        assert (peak(flip.below) < 1.0) != (peak(flip.above) < 1.0)
+    assert found.up_to == ROW[-1]
+    assert len(set(asked)) == len(asked) == len(found.shown) < 100
+
+
+def test_without_runs_to_spare_it_says_how_far_it_looked():
+    def peak(scale):
+        return 0.2 * scale + 0.8 * math.exp(-((10.0 * (scale - 1.55)) ** 2))
+
+    look, asked = runs_of(peak)
+    found = follow(look, ROW, most=len(ROW), width=1e-4)
+    assert len(asked) == len(ROW)
+    assert found.flips() == []
+    assert found.up_to < 1.55
+    assert "not close enough together" in sentence(found, width=1e-4)
+
+
+def test_runs_without_a_verdict_are_neither():
+    look, _ = runs_of(lambda scale: scale / 2.0, undecided=lambda scale: 1.8 < scale < 2.3)
+    found = follow(look, ROW, most=200, width=1e-4)
+    [flip] = found.flips()
+    assert flip.below <= 1.8 + 1e-12
+    assert flip.above >= 2.3 - 1e-12
+    assert 1.5 < found.up_to <= 1.8 + 1e-12
+    text = sentence(found, width=1e-3)
+    assert "5 runs could not be finished and have no verdict, the first at 1.9." in text
+    assert "Overturns from 2.3 times the motion on" in text
+
+
+def test_nothing_is_feared_far_from_overturning_nor_looked_into_for_ever():
+    look, asked = runs_of(lambda scale: 0.05 * abs(math.sin(40.0 * scale)))
+    follow(look, ROW, most=10_000, width=1e-3)
+    assert len(asked) == len(ROW)
+    look, _ = runs_of(lambda scale: 0.9 + 0.09 * math.sin(1e6 * scale))
+    found = follow(look, ROW, most=10_000, width=1e-3)
+    scales = list(found.shown)
+    assert len(scales) < 10_000
+    assert all(b - a > 0.49 * FINEST * b for a, b in pairwise(scales))
+
+
+def test_ranges_that_stand_again_are_named_up_to_three():
+    row = [0.05 + 0.1 * k for k in range(40)]
+    for length, ranges in ((2.0, 1), (1.0, 3), (0.5, 7)):
+        look, _ = runs_of(lambda at, length=length: 1.5 if at % length >= 0.5 * length else 0.5)
+        found = follow(look, row, most=len(row), width=1e-6)
+        text = sentence(found, width=1e-6)
+        assert sum(not flip.overturns_above for flip in found.flips()) == ranges
+        assert text.startswith(f"Overturns from {0.5 * length:g} times the motion on, stands again")
+        named = text.partition(";")[0].count("from") - 1
+        assert named == min(ranges, 3)
+        assert (f"and in {ranges - 3} further ranges;" in text) == (ranges > 3)
