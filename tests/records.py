@@ -9,6 +9,11 @@ RECORDS_VARIABLE = "ROCKFRAME_RECORDS"
 _BESIDE_THE_PROJECT = Path(__file__).resolve().parents[2] / "shared" / "records"
 
 
+def records_folder() -> Path:
+    """Give the folder where recorded motions are looked for."""
+    return Path(os.environ.get(RECORDS_VARIABLE, _BESIDE_THE_PROJECT))
+
+
 def record_path(name: str) -> Path:
     """Give the path of a recorded motion, or skip the test when it is not there.
 
@@ -21,7 +26,7 @@ def record_path(name: str) -> Path:
     -------
     Path
     """
-    folder = Path(os.environ.get(RECORDS_VARIABLE, _BESIDE_THE_PROJECT))
+    folder = records_folder()
     path = folder / name
     if not path.is_file():
         pytest.skip(f"the record {name} is not in {folder} (set {RECORDS_VARIABLE})")

@@ -25,6 +25,7 @@ from rockframe.results.variables.runs import (
     Direction,
 )
 from rockframe.results.variables.statics import HELD, MODES, REST
+from rockframe.results.variables.studies import CRITICAL_SCALE, Outcome
 from rockframe.results.variables.variable import EVENT, Variable
 from rockframe.solve.accuracy import LEVELS
 from rockframe.solve.layout import Status
@@ -94,6 +95,8 @@ TABLES: dict[str, Callable[[], Rows]] = {
     "scalars": lambda: _variables(EVENTS_AND_SCALARS, ()),
     "certificate": lambda: _variables(CERTIFICATE),
     "comparison": lambda: _variables(COMPARISON),
+    "critical-scale": lambda: _variables(CRITICAL_SCALE),
+    "outcomes": lambda: _flags(Outcome),
     "rest": lambda: _variables(REST),
     "held": lambda: _variables(HELD),
     "modes": lambda: _variables(MODES),

@@ -16,6 +16,7 @@ from pulse_figures import cycloidal_pulses, wavelets
 from speed_figures import cost_model, work_precision
 from sphinx.application import Sphinx
 from stochastic_figure import stochastic_motions
+from study_figures import critical_scale
 
 import rockframe as rf
 
@@ -159,6 +160,7 @@ FIGURES = (
     stochastic_motions,
     work_precision,
     cost_model,
+    critical_scale,
 )
 
 

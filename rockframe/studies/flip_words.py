@@ -40,7 +40,8 @@ def sentence(found: Followed, *, width: float) -> str:
         text = "Overturns without the motion"
     else:
         text = f"Overturns from {number(critical)} times the motion on"
-    gaps = [f"from {number(start)} to {number(end)}" for start, end in _gaps(flips, largest)]
+    ends = [(number(start), number(end)) for start, end in _gaps(flips, largest)]
+    gaps = [f"at {start}" if start == end else f"from {start} to {end}" for start, end in ends]
     if gaps:
         text += f", stands again {_listed(gaps)}"
     text += f"; looked at {len(scales)} scales up to {number(largest)}."

@@ -18,7 +18,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from benchmarks.certified_scenes import cases
-from records import FOLDER
+from records import records_folder
 
 import rockframe as rf
 from rockframe.signals.polynomials import greatest
@@ -55,14 +55,19 @@ def systems(*, on_soil: bool) -> Iterator[tuple[rf.System, float]]:
 def scenes() -> Iterator[tuple[str, rf.System, rf.GroundMotion]]:
     """Give all scenes by their kind."""
     for name in RECORDS:
-        if (FOLDER / name).exists():
-            motion = rf.GroundMotion.read(FOLDER / name).scaled(peak="4 m/s^2")
+        path = records_folder() / name
+        if path.is_file():
+            motion = rf.GroundMotion.read(path).scaled(peak="4 m/s^2")
             for system, _ in systems(on_soil=True):
                 yield "records", system, motion
     for system, frequency in systems(on_soil=False):
         for ratio, cycles in PULSES:
             hertz = f"{ratio * frequency / (2.0 * math.pi)!r} Hz"
-            yield "sines", system, rf.GroundMotion.sine_pulse(f"{1.47 * ratio} m/s^2", hertz, cycles)
+            yield (
+                "sines",
+                system,
+                rf.GroundMotion.sine_pulse(f"{1.47 * ratio} m/s^2", hertz, cycles),
+            )
     for case in cases(24):
         yield "random", case.system, case.motion
 
@@ -120,7 +125,9 @@ def main() -> None:
     warnings.simplefilter("ignore", rf.RockframeWarning)
     known = [dense(*scene) for scene in scenes()]
     known = [one for one in known if any(run.overturned for run in one.runs)]
-    print("scenes | first scales, runs | flips found | least scale found | latest | runs | followed")
+    print(
+        "scenes | first scales, runs | flips found | least scale found | latest | runs | followed"
+    )
     for kind in dict.fromkeys(one.kind for one in known):
         group = [one for one in known if one.kind == kind]
         flips = sum(len(one.flips()) for one in group)
