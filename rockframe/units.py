@@ -299,11 +299,15 @@ class Condition:
     holds: Callable[[float], bool]
     hint: Callable[[str], str] = lambda _: ""
     """What may have been meant by a value outside it, as it was written."""
+    bounds: tuple[float, float] = (-math.inf, math.inf)
+    """Numbers between which the range lies, for searches inside it."""
 
 
-POSITIVE: Final = Condition("greater than zero", lambda value: value > 0.0)
-NOT_NEGATIVE: Final = Condition("zero or more", lambda value: value >= 0.0)
-UNIT_INTERVAL: Final = Condition("above 0 and at most 1", lambda value: 0.0 < value <= 1.0)
+POSITIVE: Final = Condition("greater than zero", lambda value: value > 0.0, bounds=(0.0, math.inf))
+NOT_NEGATIVE: Final = Condition("zero or more", lambda value: value >= 0.0, bounds=(0.0, math.inf))
+UNIT_INTERVAL: Final = Condition(
+    "above 0 and at most 1", lambda value: 0.0 < value <= 1.0, bounds=(0.0, 1.0)
+)
 
 
 def _parse(value: object, measure: Measure, *, owner: str, name: str) -> pint.Quantity[Any]:
