@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from rockframe.errors import SolverError as SolverError
     from rockframe.errors import SolverWarning as SolverWarning
     from rockframe.errors import UnitsError as UnitsError
+    from rockframe.identification import fit_free_decay as fit_free_decay
     from rockframe.measures import fourier_spectrum as fourier_spectrum
     from rockframe.measures import intensity_measures as intensity_measures
     from rockframe.measures import response_spectrum as response_spectrum
@@ -81,6 +82,7 @@ _HOMES = {
         "UnitsError",
     ),
     "rockframe.comparison": ("Recommendation", "model_ladder", "recommend", "tradeoff"),
+    "rockframe.identification": ("fit_free_decay",),
     "rockframe.measures": (
         "fourier_spectrum",
         "intensity_measures",
@@ -130,6 +132,7 @@ __all__ = [
     "critical_scale",
     "errors",
     "extension",
+    "fit_free_decay",
     "fourier_spectrum",
     "intensity_measures",
     "model_ladder",

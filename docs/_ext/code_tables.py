@@ -17,6 +17,7 @@ from rockframe.results.variables.requests import (
     POINTS,
     REACTIONS,
 )
+from rockframe.results.variables.identification import FREE_DECAY, FitStatus
 from rockframe.results.variables.runs import (
     CERTIFICATE,
     ENERGY_HISTORIES,
@@ -83,6 +84,8 @@ def _units() -> Rows:
 
 
 TABLES: dict[str, Callable[[], Rows]] = {
+    "free-decay": lambda: _variables(FREE_DECAY),
+    "fit-statuses": lambda: _flags(FitStatus),
     "histories": lambda: _variables(HISTORIES),
     "energies": lambda: _variables(ENERGY_HISTORIES),
     "accelerations": lambda: _variables(ACCELERATIONS),

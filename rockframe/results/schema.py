@@ -3,6 +3,7 @@
 from typing import Final
 
 from rockframe.results.variables.comparison import COMPARISON
+from rockframe.results.variables.identification import FREE_DECAY
 from rockframe.results.variables.motions import MEASURES
 from rockframe.results.variables.requests import (
     ACCELERATIONS,
@@ -38,6 +39,7 @@ _TABLES: Final = (
     MEASURES,
     COMPARISON,
     CRITICAL_SCALE,
+    FREE_DECAY,
 )
 
 SCHEMA: Final = {row.name: row for table in _TABLES for row in table}

@@ -149,6 +149,31 @@ DIMENSIONS = {
     "scale_below": (0, 0, 0, 0),
     "scale_above": (0, 0, 0, 0),
     "scale": (0, 0, 0, 0),
+    "fitted_value": (0, 0, 0, 0),
+    "standard_error": (0, 0, 0, 0),
+    "lower_confidence_bound": (0, 0, 0, 0),
+    "upper_confidence_bound": (0, 0, 0, 0),
+    "start_value": (0, 0, 0, 0),
+    "initial_rotation": (0, 0, 0, 1),
+    "initial_rotation_error": (0, 0, 0, 1),
+    "release_time": (0, 0, 1, 0),
+    "release_time_error": (0, 0, 1, 0),
+    "gauge_offset": (0, 0, 0, 1),
+    "gauge_offset_error": (0, 0, 0, 1),
+    "correlation": (0, 0, 0, 0),
+    "measured_rotation": (0, 0, 0, 1),
+    "fitted_rotation": (0, 0, 0, 1),
+    "rotation_residual": (0, 0, 0, 1),
+    "measured_peak_rotation": (0, 0, 0, 1),
+    "fitted_peak_rotation": (0, 0, 0, 1),
+    "peak_rotation_residual": (0, 0, 0, 1),
+    "measured_peak_time": (0, 0, 1, 0),
+    "fitted_peak_time": (0, 0, 1, 0),
+    "peak_time_residual": (0, 0, 1, 0),
+    "rotation_rms_residual": (0, 0, 0, 1),
+    "time_rms_residual": (0, 0, 1, 0),
+    "residual_autocorrelation": (0, 0, 0, 0),
+    "trial_count": (0, 0, 0, 0),
 }
 DIMENSION_NAMES = {
     "time",
@@ -161,6 +186,10 @@ DIMENSION_NAMES = {
     "frequency",
     "flip",
     "scale",
+    "parameter",
+    "unknown",
+    "other_unknown",
+    "peak",
 }
 PLAIN = pint.UnitRegistry(cache_folder=None)
 FLAGS = {
@@ -171,6 +200,7 @@ FLAGS = {
     "overturning_direction",
     "status",
     "outcome",
+    "fit_status",
 }
 
 WITH_UNIT = [row for row in SCHEMA.values() if row.unit is not None]

@@ -1,0 +1,186 @@
+"""A free-decay test: the parameters of a system, from how it came to rest."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Final
+
+import xarray as xr
+
+from rockframe.arguments import one_of_words
+from rockframe.errors import ComponentError, shown
+from rockframe.identification.fitting import fit_history, fit_peaks
+from rockframe.identification.measured import (
+    History,
+    Peaks,
+    check_below_overturning,
+    read_history,
+    read_peaks,
+)
+from rockframe.identification.prediction import Prediction
+from rockframe.identification.report import report
+from rockframe.identification.starts import starts_of
+from rockframe.identification.swings import swings_of
+from rockframe.identification.unknowns import Circumstance, Trials
+from rockframe.simulation.system import System
+from rockframe.solve.accuracy import AccuracyLevel, accuracy_of
+from rockframe.units import Condition, to_ratio
+
+if TYPE_CHECKING:
+    from rockframe.system.options import AccuracyLike
+    from rockframe.units import QuantityLike, RatioLike
+
+_OWNER: Final = "fit_free_decay"
+_CONFIDENCE: Final = Condition("above 0 and below 1", lambda value: 0.0 < value < 1.0)
+
+
+def fit_free_decay(
+    system: System,
+    measured: "xr.DataArray | tuple[object, object] | None" = None,
+    parameters: Sequence[str] | str = ("restitution",),
+    *,
+    peaks: "tuple[object, object] | QuantityLike | None" = None,
+    circumstances: Sequence[str] | str | None = None,
+    confidence: "RatioLike" = 0.95,
+    accuracy: "AccuracyLike" = AccuracyLevel.STANDARD,
+) -> xr.Dataset:
+    """Find parameters of a system from a test in which it was tilted and let go.
+
+    Parameters
+    ----------
+    system : System
+        The system that was tested, with start values of what is to be found. A ground motion
+        among its parts is left out: the ground stands still.
+    measured : xarray.DataArray or ((times, unit), (rotations, unit)), optional
+        History of the block's rotation, from the release or from before it; or a DataArray
+        over its times, both with the attribute ``units``.
+    parameters : str or sequence of str, optional
+        Pure ratios among the parameters of the system's parts, such as ``"restitution"``,
+        ``"frequency_ratio"``, ``"damping_ratio"``; where several parts have one of the name,
+        with the class, as in ``"TwoSpringSupport.damping_ratio"``.
+    peaks : (rotations, unit), Quantity or ((times, unit), (rotations, unit)), optional
+        Instead of `measured`: successive peaks of the rotation to both sides, with or without
+        their signs, with or without their times. The first is the release.
+    circumstances : str or sequence of str, optional
+        What of the test is to be found as well, of ``"initial_rotation"``, ``"release_time"``
+        and ``"gauge_offset"``. Unless given: of a history all three; of peaks the initial
+        rotation, and with times the release time. What is not to be found is what the first
+        sample or peak says; the offset is then zero.
+    confidence : float, optional
+        Probability of the confidence intervals [1].
+    accuracy : {"fast", "standard", "reference"}, float or Accuracy, optional
+        Of the integration.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``parameter``: ``fitted_value``, ``standard_error``, ``lower_confidence_bound``,
+        ``upper_confidence_bound``, ``start_value`` [1]. ``initial_rotation`` [rad],
+        ``release_time`` [s] and ``gauge_offset`` [rad] with their standard errors, NaN where
+        they were not found. ``correlation`` of all unknowns. Over ``time``
+        ``measured_rotation``, ``fitted_rotation`` and ``rotation_residual`` [rad]; of peaks
+        the same over ``peak``. Root mean squares of the residuals, and their
+        ``residual_autocorrelation`` [1]. ``fit_status`` and ``trial_count``. The attribute
+        ``verdict`` is a sentence; :meth:`rockframe.System.from_dataset` gives the fitted
+        system.
+
+    Raises
+    ------
+    UnitsError
+        Arrays without a unit, or with a wrong one.
+    ComponentError
+        Data that are no test of this system: not finite, times that do not increase, rotations
+        beyond overturning, nothing that rocks, no more data than unknowns; or unknown
+        parameters.
+
+    Warns
+    -----
+    ModelWarning
+        A value stands at its bound, cannot be told from the data, or the residuals are not the
+        independent noise that the standard errors assume.
+
+    Notes
+    -----
+    Least squares, :func:`scipy.optimize.least_squares`. A history is fitted from the given
+    start values and from those of a fit to its peaks, each with that of the same number; the
+    better one is kept. On pads the squares have several valleys, some 15 % of the frequency
+    ratio apart: start within 10 %.
+    Standard errors come from the derivatives at the solution and from the residuals,
+    :eq:`eq-fit-covariance`. They assume that the system is right but for the unknowns, and that
+    the residuals are independent and equally large.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> block = rf.Block(width="0.3 m", height="1.2 m", mass="200 kg")
+    >>> peaks = ([6.0, 4.56, 3.54, 2.78, 2.21], "deg")
+    >>> found = rf.fit_free_decay(rf.System(block), peaks=peaks)
+    >>> round(float(found.fitted_value.sel(parameter="restitution")), 2)
+    0.9
+    """
+    _check_system(system)
+    if (measured is None) == (peaks is None):
+        given = "neither" if peaks is None else "both"
+        msg = f"{_OWNER}: give measured (a history) or peaks, got {given}"
+        raise ComponentError(msg)
+    names = _names(parameters)
+    probability = to_ratio(
+        confidence, owner=_OWNER, name="confidence", condition=_CONFIDENCE, example="0.95"
+    )
+    settings = accuracy_of(accuracy)
+    trials = Trials(system, names, _OWNER)
+    data = read_history(measured, _OWNER) if peaks is None else read_peaks(peaks, _OWNER)
+    check_below_overturning(data, system.setting.overturning_angle, _OWNER)
+    sought = _sought(circumstances, data)
+    unknown = (*names, *sought)
+    if data.count <= len(unknown):
+        msg = (
+            f"{_OWNER}: {data.count} data do not tell {len(unknown)} unknowns "
+            f"({', '.join(unknown)}) and their uncertainty; expected at least {len(unknown) + 1}"
+        )
+        raise ComponentError(msg)
+    swings = swings_of(data, _OWNER) if isinstance(data, History) else None
+    starts = starts_of(system, trials, data, swings, sought, settings)
+    known = {str(name): starts[name].start for name in Circumstance if name not in sought}
+    prediction = Prediction(trials, unknown, known, settings)
+    chosen = [starts[name] for name in unknown]
+    if isinstance(data, Peaks):
+        fit = fit_peaks(prediction, data, chosen)
+    else:
+        fit = fit_history(prediction, data, swings_of(data, _OWNER), chosen)
+    return report(
+        prediction, data, fit, probability, accuracy if isinstance(accuracy, str) else "own"
+    )
+
+
+def _check_system(given: object) -> None:
+    if not isinstance(given, System):
+        msg = f"{_OWNER}: system needs a System, got {type(given).__name__}"
+        raise ComponentError(msg)
+
+
+def _names(parameters: Sequence[str] | str) -> tuple[str, ...]:
+    names = (parameters,) if isinstance(parameters, str) else tuple(parameters)
+    if names and len(set(names)) == len(names):
+        return names
+    msg = f"{_OWNER}: parameters must name one or more, each once, got {shown(parameters)}"
+    raise ComponentError(msg)
+
+
+def _sought(given: Sequence[str] | str | None, data: History | Peaks) -> tuple[Circumstance, ...]:
+    """Give the circumstances that are to be found; refuse what the data cannot tell."""
+    told = [Circumstance.INITIAL_ROTATION]
+    if isinstance(data, History) or data.time is not None:
+        told.append(Circumstance.RELEASE_TIME)
+    if isinstance(data, History):
+        told.append(Circumstance.GAUGE_OFFSET)
+    if given is None:
+        return tuple(told)
+    if isinstance(data, Peaks) and data.signed:
+        told.append(Circumstance.GAUGE_OFFSET)
+    listed = (given,) if isinstance(given, str) else given
+    names = [one_of_words(Circumstance, one, owner=_OWNER, name="circumstances") for one in listed]
+    for name in names:
+        if name not in told:
+            needed = "times" if name is Circumstance.RELEASE_TIME else "their signs"
+            msg = f"{_OWNER}: {str(name)!r} cannot be found from peaks without {needed}"
+            raise ComponentError(msg)
+    return tuple(name for name in Circumstance if name in names)

@@ -1,0 +1,265 @@
+"""What was measured: a history of the rotation, or its peaks, read and checked."""
+
+import math
+from dataclasses import dataclass
+from typing import Any, Final, cast
+
+import numpy as np
+import pint
+import xarray as xr
+
+from rockframe.errors import ComponentError, UnitsError, shown
+from rockframe.identification.free_motion import Array
+from rockframe.units import ANGLE, TIME, Measure, to_si
+
+_UNITS: Final = {"rotation": "deg", "time": "s"}
+_HISTORY: Final = (
+    "write measured=((times, 's'), (rotations, 'deg')), or give a DataArray over time with units"
+)
+_PEAKS: Final = (
+    "write peaks=([6.0, 5.2, 4.6], 'deg'), or with their times peaks=((times, 's'), "
+    "(rotations, 'deg'))"
+)
+
+
+@dataclass(frozen=True)
+class History:
+    """A measured history.
+
+    Parameters
+    ----------
+    time, rotation : ndarray, shape (n,)
+        [s], [rad].
+    """
+
+    time: Array
+    rotation: Array
+
+    @property
+    def count(self) -> int:
+        """Number of data."""
+        return self.rotation.size
+
+    @property
+    def span(self) -> float:
+        """From the first to the last sample [s]."""
+        return float(self.time[-1] - self.time[0])
+
+
+@dataclass(frozen=True)
+class Peaks:
+    """Successive peaks of a rotation, the first one at the release or after it.
+
+    Parameters
+    ----------
+    rotation : ndarray, shape (n,)
+        As given, with their signs or without [rad].
+    sides : ndarray, shape (n,)
+        1 or -1, the signs by which the rotations are given.
+    time : ndarray, shape (n,), or None
+        NaN where it is not known [s].
+    """
+
+    rotation: Array
+    sides: Array
+    time: Array | None = None
+
+    @property
+    def count(self) -> int:
+        """Number of data."""
+        return self.rotation.size + (0 if self.time is None else int(np.isfinite(self.time).sum()))
+
+    @property
+    def signed(self) -> bool:
+        """Whether the peaks are on either side in turn, and not sizes only."""
+        return bool(self.sides[0] != self.sides[-1] or np.any(np.diff(self.sides)))
+
+
+def read_history(given: object, owner: str) -> History:
+    """Read a measured history.
+
+    Parameters
+    ----------
+    given : xarray.DataArray or ((times, unit), (rotations, unit))
+        What the user gave.
+    owner : str
+        Function, for messages.
+
+    Returns
+    -------
+    History
+
+    Raises
+    ------
+    UnitsError
+        No unit, or a wrong one.
+    ComponentError
+        Not numbers, not finite, not of equal length, or times that do not increase.
+    """
+    if isinstance(given, xr.DataArray):
+        name = given.dims[0] if given.ndim == 1 else None
+        if name is None or name not in given.coords:
+            msg = (
+                f"{owner}: measured needs one dimension with times as its coordinate, got "
+                f"{shown(given)}; {_HISTORY}"
+            )
+            raise ComponentError(msg)
+        time = _values(given[name], TIME, owner, "time")
+        return _history(time, _values(given, ANGLE, owner, "rotation"), owner)
+    pair = _two(given)
+    if pair is None:
+        msg = f"{owner}: measured needs times and rotations, got {shown(given)}; {_HISTORY}"
+        raise UnitsError(msg)
+    time = _values(pair[0], TIME, owner, "time")
+    return _history(time, _values(pair[1], ANGLE, owner, "rotation"), owner)
+
+
+def read_peaks(given: object, owner: str) -> Peaks:
+    """Read successive peaks.
+
+    Parameters
+    ----------
+    given : (rotations, unit), Quantity, or ((times, unit), (rotations, unit))
+        What the user gave.
+    owner : str
+        Function, for messages.
+
+    Returns
+    -------
+    Peaks
+
+    Raises
+    ------
+    UnitsError
+        No unit, or a wrong one.
+    ComponentError
+        Not numbers, not finite, zero, neither of one sign nor of alternating signs, or times
+        that do not increase.
+    """
+    pair = _two(given)
+    if pair is not None:
+        times = _values(pair[0], TIME, owner, "time")
+        rotation = _values(pair[1], ANGLE, owner, "rotation")
+        _check_times(times, rotation, owner)
+        peaks = Peaks(rotation, np.sign(rotation), times)
+    elif isinstance(given, tuple | pint.Quantity):
+        rotation = _values(cast("object", given), ANGLE, owner, "peaks")
+        peaks = Peaks(rotation, np.sign(rotation))
+    else:
+        msg = f"{owner}: peaks needs rotations with a unit, got {shown(given)}; {_PEAKS}"
+        raise UnitsError(msg)
+    turns = np.diff(peaks.sides)
+    if not np.all(peaks.sides) or (peaks.signed and not np.all(turns)):
+        msg = (
+            f"{owner}: peaks must alternate in sign, from one swing to the next, or all be given "
+            f"without a sign, and none be zero; got {shown(peaks.rotation.tolist())} rad"
+        )
+        raise ComponentError(msg)
+    return peaks
+
+
+def check_below_overturning(measured: History | Peaks, theta: float, owner: str) -> None:
+    """Refuse a rotation from which no block comes back.
+
+    Parameters
+    ----------
+    measured : History or Peaks
+        What was measured.
+    theta : float
+        Overturning angle of the system [rad].
+    owner : str
+        Function, for the message.
+
+    Raises
+    ------
+    ComponentError
+        A rotation is not below the overturning angle.
+    """
+    beyond = np.flatnonzero(np.abs(measured.rotation) >= theta)
+    if beyond.size:
+        msg = (
+            f"{owner}: {_place(measured, int(beyond[0]))} is "
+            f"{_angle(float(measured.rotation[beyond[0]]))}, not below the overturning angle "
+            f"{_angle(theta)}; check the unit, and the size of the block"
+        )
+        raise ComponentError(msg)
+
+
+def _two(given: object) -> tuple[object, object] | None:
+    """Give both of a pair of arrays, each with a unit of its own."""
+    if not isinstance(given, tuple | list):
+        return None
+    items = cast("tuple[object, ...]", given)
+    if len(items) != 2 or any(isinstance(item, str | float | int) for item in items):
+        return None
+    return items[0], items[1]
+
+
+def _history(time: Array, rotation: Array, owner: str) -> History:
+    _check_times(time, rotation, owner)
+    return History(time, rotation)
+
+
+def _values(given: object, measure: Measure, owner: str, name: str) -> Array:
+    """Convert an array with a unit to numbers in SI units."""
+    unit: object = None
+    values: object = given
+    if isinstance(given, xr.DataArray):
+        values, unit = given.to_numpy(), given.attrs.get("units")
+        if unit is None and isinstance(given.data, pint.Quantity):
+            values, unit = given.data.magnitude, str(given.data.units)
+    elif isinstance(given, pint.Quantity):
+        quantity = cast("Any", given)
+        values, unit = quantity.magnitude, str(quantity.units)
+    elif isinstance(given, tuple):
+        pair = cast("tuple[object, ...]", given)
+        if len(pair) == 2:
+            values, unit = pair
+    if not isinstance(unit, str):
+        example = _UNITS["time" if measure is TIME else "rotation"]
+        msg = (
+            f"{owner}: {name} needs an array with a unit such as {example}, got {shown(given)}; "
+            f"write for example (values, {example!r})"
+        )
+        raise UnitsError(msg)
+    factor = to_si(f"1 {unit}", measure, owner=owner, name=name)
+    try:
+        array: Any = np.ma.filled(np.ma.asarray(values, dtype=np.float64), math.nan)
+    except (TypeError, ValueError) as problem:
+        msg = f"{owner}: {name} needs numbers, got {shown(values)}"
+        raise ComponentError(msg) from problem
+    if array.ndim != 1 or array.size == 0:
+        msg = f"{owner}: {name} needs a one-dimensional array of numbers, got {shown(values)}"
+        raise ComponentError(msg)
+    wrong = np.flatnonzero(~np.isfinite(array))
+    if wrong.size:
+        msg = (
+            f"{owner}: {name} must be finite, got {float(array[wrong[0]])} at index "
+            f"{int(wrong[0])}, one of {wrong.size} such; leave out samples that are missing"
+        )
+        raise ComponentError(msg)
+    return factor * array
+
+
+def _check_times(time: Array, rotation: Array, owner: str) -> None:
+    if time.size != rotation.size:
+        msg = f"{owner}: there are {time.size} times and {rotation.size} rotations"
+        raise ComponentError(msg)
+    back = np.flatnonzero(np.diff(time) <= 0.0)
+    if back.size:
+        first = int(back[0])
+        msg = (
+            f"{owner}: times must increase, got {time[first]:.6g} s and then "
+            f"{time[first + 1]:.6g} s at index {first + 1}"
+        )
+        raise ComponentError(msg)
+
+
+def _place(measured: History | Peaks, index: int) -> str:
+    if isinstance(measured, History):
+        return f"the rotation measured at {measured.time[index]:.6g} s"
+    return f"peak {index + 1}"
+
+
+def _angle(value: float) -> str:
+    return f"{value:.6g} rad ({math.degrees(value):.4g} deg)"

@@ -1,0 +1,180 @@
+"""What a test is to tell: parameters of the system's parts, and circumstances of the test."""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from typing import Any, Final, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockframe.components import Component, RigidGround
+from rockframe.components.parameters import Ratio
+from rockframe.errors import ComponentError, shown
+from rockframe.simulation.system import System
+from rockframe.system.assembly import Assembly, assemble
+
+_ALMOST: Final = 1e-6
+"""Share of a range within which its open end is not tried."""
+_SMALLEST_SCALE: Final = 0.01
+"""What stands for the size of a ratio that starts at zero."""
+
+
+class Circumstance(StrEnum):
+    """What of the test itself may be unknown."""
+
+    INITIAL_ROTATION = "initial_rotation"
+    RELEASE_TIME = "release_time"
+    GAUGE_OFFSET = "gauge_offset"
+
+
+@dataclass(frozen=True)
+class Unknown:
+    """A number that is to be found.
+
+    Parameters
+    ----------
+    name : str
+        Of the parameter or the circumstance.
+    start : float
+        Where the search starts.
+    scale : float
+        Its typical size.
+    lower, upper : float
+        Bounds.
+    """
+
+    name: str
+    start: float
+    scale: float
+    lower: float = -math.inf
+    upper: float = math.inf
+
+    def started_at(self, value: float) -> "Unknown":
+        """Give the same with another start value, within the bounds."""
+        return replace(self, start=min(max(value, self.lower), self.upper))
+
+
+def started_at(unknowns: Sequence[Unknown], values: NDArray[np.float64]) -> list[Unknown]:
+    """Give unknowns with other start values, within their bounds."""
+    return [one.started_at(float(value)) for one, value in zip(unknowns, values, strict=True)]
+
+
+@dataclass(frozen=True)
+class Place:
+    """A parameter of a part.
+
+    Parameters
+    ----------
+    part : int
+        Index of the part.
+    argument : str
+        Name of the part's argument.
+    start : float
+        Its value in the system that was given.
+    bounds : tuple of float
+        Numbers between which the part accepts it.
+    """
+
+    part: int
+    argument: str
+    start: float
+    bounds: tuple[float, float]
+
+    def unknown(self, name: str) -> Unknown:
+        """Give it as an unknown."""
+        scale = abs(self.start) or _SMALLEST_SCALE
+        lower, upper = self.bounds[0] + _ALMOST * scale, self.bounds[1]
+        return Unknown(name, self.start, scale, lower, upper).started_at(self.start)
+
+
+class Trials:
+    """Systems that differ in some parameters from the one that was given.
+
+    Parameters
+    ----------
+    system : System
+        Where the parameters start.
+    names : sequence of str
+        Parameters, such as ``"restitution"``, or with the class of their part where several
+        parts have one of the name.
+    owner : str
+        Function, for messages.
+
+    Raises
+    ------
+    ComponentError
+        A parameter that no part has, or several have, or that was given otherwise.
+    """
+
+    def __init__(self, system: System, names: Sequence[str], owner: str) -> None:
+        self._parts = system.parts.structural()
+        if system.parts.signature == frozenset({"block"}) and system.parts.ground is None:
+            self._parts.append(RigidGround())
+        options = system.options
+        self._options: dict[str, Any] = {
+            "restraint": options.restraint,
+            "rotation": options.rotation,
+            "coupling": options.coupling,
+            "gravity": system.gravity,
+        }
+        self.radius = system.parts.the_block.radius
+        self.gravity = options.gravity
+        known = dict(self._ratios(system))
+        self.places = {name: _place_of(name, known, owner) for name in names}
+
+    def _ratios(self, system: System) -> Iterator[tuple[str, Place | None]]:
+        """Find the pure ratios of all parts; None where one was not given as such."""
+        usual = {"restitution": system.parts.the_block.maximum_restitution}
+        for index, part in enumerate(self._parts):
+            for argument, declared in _declared_ratios(part):
+                value = part.to_dict().get(argument, usual.get(argument))
+                condition = declared.condition
+                bounds = (-math.inf, math.inf) if condition is None else condition.bounds
+                name = f"{type(part).__name__}.{argument}"
+                yield name, None if value is None else Place(index, argument, float(value), bounds)
+
+    def _with(self, values: Mapping[str, float]) -> list[Component]:
+        """Give the parts with other values of the parameters."""
+        changes: dict[int, dict[str, float]] = {}
+        for name, value in values.items():
+            place = self.places[name]
+            changes.setdefault(place.part, {})[place.argument] = value
+        return [
+            type(part).from_dict({**part.to_dict(), **changes[index]}) if index in changes else part
+            for index, part in enumerate(self._parts)
+        ]
+
+    def assembly(self, values: Mapping[str, float]) -> Assembly:
+        """Give a system for a run, without the warnings that a user is to read."""
+        return assemble(self._with(values), **self._options)
+
+    def system(self, values: Mapping[str, float]) -> System:
+        """Give a system as users have it."""
+        return System(*self._with(values), **self._options)
+
+
+def _declared_ratios(part: Component) -> Iterator[tuple[str, Ratio[Any]]]:
+    kind: Any = type(part)
+    for name in dir(kind):
+        declared = getattr(kind, name)
+        if isinstance(declared, Ratio):
+            yield name, cast("Ratio[Any]", declared)
+
+
+def _place_of(name: object, known: Mapping[str, Place | None], owner: str) -> Place:
+    matches = [full for full in known if name in (full, full.partition(".")[2])]
+    if len(matches) == 1:
+        place = known[matches[0]]
+        if place is not None:
+            return place
+        msg = (
+            f"{owner}: {shown(name)} cannot be fitted, since the part was given without it; give "
+            f"{matches[0]} as a start value, instead of what stands for it"
+        )
+        raise ComponentError(msg)
+    choice = ", ".join(repr(full) for full in (matches or known))
+    found = "several parts have" if matches else "no part of the system has"
+    msg = f"{owner}: {found} the parameter {shown(name)}; expected one of {choice}"
+    raise ComponentError(msg)

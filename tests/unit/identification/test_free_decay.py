@@ -1,0 +1,200 @@
+"""A free-decay test: what goes in, what comes out, and what is refused."""
+
+import math
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import rockframe as rf
+from rockframe.errors import ComponentError, UnitsError
+from rockframe.identification.free_motion import let_go
+from rockframe.identification.measured import History
+from rockframe.identification.swings import swings_of
+from rockframe.results.schema import SCHEMA
+from rockframe.solve.accuracy import accuracy_of
+
+pytestmark = pytest.mark.unit
+
+BLOCK = rf.Block(width="0.3 m", height="1.2 m", mass="200 kg")
+TRUTH = rf.System(BLOCK, rf.RigidGround(restitution=0.9), rotation="small", gravity="9.8 m/s^2")
+START = rf.System(BLOCK, rotation="small", gravity="9.8 m/s^2")
+PADS = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
+PEAKS = ([6.0, 4.57, 3.56, 2.79, 2.22, 1.77], "deg")
+
+
+@pytest.fixture(scope="module")
+def run():
+    return TRUTH.simulate(
+        duration="3 s", initial=rf.InitialState(rotation="-0.1 rad"), output_step="0.02 s"
+    )
+
+
+@pytest.fixture(scope="module")
+def found(run):
+    return rf.fit_free_decay(START, run.rotation)
+
+
+def test_a_result_of_rockframe_is_read_with_its_units(found, run):
+    assert float(found.fitted_value.sel(parameter="restitution")) == pytest.approx(0.9, rel=1e-6)
+    assert float(found.initial_rotation) == pytest.approx(-0.1, rel=1e-6)
+    assert float(found.release_time) == pytest.approx(0.0, abs=1e-6)
+    np.testing.assert_allclose(found.rotation_residual, 0.0, atol=1e-7)
+    np.testing.assert_array_equal(found.time, run.time)
+
+
+def test_units_and_arrays_of_all_kinds_mean_the_same(found, run):
+    time, rotation = run.time.to_numpy(), run.rotation.to_numpy()
+    labelled = xr.DataArray(
+        np.degrees(rotation),
+        coords={"t": ("t", 1e3 * time, {"units": "ms"})},
+        dims="t",
+        attrs={"units": "degree"},
+    )
+    pair = ((time.tolist(), "s"), (1e3 * rotation, "mrad"))
+    for given in (labelled, pair):
+        again = rf.fit_free_decay(START, given)
+        np.testing.assert_allclose(again.fitted_value, found.fitted_value, rtol=1e-8)
+        np.testing.assert_allclose(again.measured_rotation, rotation, rtol=1e-12)
+
+
+def test_the_dataset_follows_the_schema_and_comes_back_from_a_file(found, tmp_path):
+    for name, variable in found.variables.items():
+        if name not in ("parameter", "unknown", "other_unknown"):
+            assert variable.dims == SCHEMA[name].dims, name
+            assert variable.attrs.get("units") == SCHEMA[name].attributes().get("units"), name
+    assert found.attrs["title"] == "Free-decay test"
+    assert found.attrs["verdict"].startswith("Restitution 0.")
+    assert list(found.unknown.values) == [
+        "restitution", "initial_rotation", "release_time", "gauge_offset",
+    ]  # fmt: skip
+    np.testing.assert_allclose(np.diag(found.correlation), 1.0)
+    found.to_netcdf(tmp_path / "found.nc")
+    with xr.open_dataset(tmp_path / "found.nc") as again:
+        xr.testing.assert_identical(again.load(), found)
+
+
+def test_the_fitted_system_is_the_given_one_but_for_the_parameters(found):
+    system = rf.System.from_dataset(found)
+    restitution = system.parts.ground.restitution
+    assert restitution == float(found.fitted_value[0])
+    assert system == rf.System(
+        BLOCK, rf.RigidGround(restitution=restitution), rotation="small", gravity="9.8 m/s^2"
+    )
+
+
+def test_parameters_of_two_parts_are_told_apart():
+    soil = rf.WinklerSoil(stiffness="2 MPa", damping_ratio=0.2)
+    system = rf.System(BLOCK, PADS, rf.CushionCap(height="0.1 m", mass="100 kg"), soil)
+    with pytest.raises(ComponentError, match=r"'TwoSpringSupport\.damping_ratio', 'Winkler"):
+        rf.fit_free_decay(system, peaks=PEAKS, parameters="damping_ratio")
+
+
+def test_what_is_known_of_the_test_is_not_fitted(run):
+    found = rf.fit_free_decay(START, run.rotation, circumstances=())
+    assert list(found.unknown.values) == ["restitution"]
+    assert float(found.initial_rotation) == float(run.rotation[0])
+    assert math.isnan(float(found.gauge_offset_error))
+    assert float(found.gauge_offset) == 0.0
+
+
+def test_what_leaves_no_trace_is_told():
+    system = rf.System(BLOCK, PADS)
+    held = rf.InitialState(rotation=f"{0.5 * system.setting.uplift_angle!r} rad")
+    run = system.simulate(duration="3 s", initial=held, output_step="0.02 s")
+    with pytest.warns(rf.ModelWarning, match="does not tell restitution"):
+        found = rf.fit_free_decay(system, run.rotation, ("damping_ratio", "restitution"))
+    assert float(found.fitted_value[0]) == pytest.approx(0.1, rel=1e-5)
+    assert math.isnan(float(found.standard_error[1]))
+
+
+def test_the_motion_between_samples_is_that_of_a_run():
+    system = rf.System(BLOCK, PADS)
+    run = system.simulate(
+        duration="3 s", initial=rf.InitialState(rotation="0.1 rad"), output_step="1.7 ms"
+    )
+    motion = let_go(system.assembly, 0.1, 3.0, accuracy_of("standard"))
+    np.testing.assert_allclose(motion.at(run.time.to_numpy()), run.rotation, atol=2e-8)
+    times, sizes = motion.peaks()
+    assert times[0] == 0.0
+    assert sizes[0] == 0.1
+    np.testing.assert_allclose(np.abs(motion.at(times)), sizes, atol=1e-9)
+    assert np.all(np.diff(sizes) < 0.0)
+
+
+def test_swings_of_a_noisy_record():
+    time = np.arange(0.0, 6.0, 0.01)
+    clean = 0.1 * np.exp(-0.2 * time) * np.cos(2.0 * math.pi * time)
+    noise = 1e-3 * np.random.default_rng(0).normal(size=time.size)
+    swings = swings_of(History(time, clean + noise), "test")
+    assert swings.crossing == pytest.approx(0.25, abs=0.01)
+    np.testing.assert_allclose(swings.peaks.time[1:], 0.5 * np.arange(1, 12), atol=0.02)
+    np.testing.assert_array_equal(swings.peaks.sides, (-1.0) ** np.arange(12))
+
+
+TIME = np.arange(0.0, 3.0, 0.02)
+SWING = 0.1 * np.cos(2.0 * math.pi * TIME)
+
+
+def history(rotation=SWING, time=TIME):
+    return ((time, "s"), (rotation, "rad"))
+
+
+def changed(values, index, value):
+    copy = values.copy()
+    copy[index] = value
+    return copy
+
+
+REFUSED = [
+    (
+        {"measured": history(changed(SWING, 7, math.nan))},
+        "rotation must be finite, got nan at index 7",
+    ),
+    ({"measured": history(time=changed(TIME, 5, 0.01))}, "times must increase"),
+    ({"measured": history(SWING[:-1])}, "150 times and 149 rotations"),
+    ({"measured": history(0.3 * SWING / 0.1)}, "not below the overturning angle"),
+    ({"measured": history(0.0 * SWING)}, "nothing rocks"),
+    ({"measured": history(0.0 * SWING + 0.05)}, "nothing rocks"),
+    ({"measured": history(), "parameters": "damping_ratio"}, "no part of the system has"),
+    ({"measured": history(), "parameters": ()}, "must name one or more"),
+    ({"measured": history(), "peaks": PEAKS}, "got both"),
+    ({}, "got neither"),
+    ({"measured": history(), "confidence": 1.0}, "above 0 and below 1"),
+    ({"measured": history(), "circumstances": "weather"}, "circumstances must be"),
+    ({"peaks": ([6.0, 5.0], "deg")}, "2 data do not tell 2 unknowns"),
+    ({"peaks": ([6.0, -5.0, -4.0, 3.0], "deg")}, "must alternate in sign"),
+    ({"peaks": ([6.0, 5.0, 0.0], "deg")}, "none be zero"),
+    ({"peaks": ([6.0, 20.0, 3.0], "deg")}, "peak 2 is 0.349066 rad"),
+    ({"peaks": PEAKS, "circumstances": "release_time"}, "without times"),
+    ({"peaks": PEAKS, "circumstances": "gauge_offset"}, "without their signs"),
+]
+
+
+def test_what_is_no_test_is_refused():
+    for given, words in REFUSED:
+        with pytest.raises(ComponentError, match=words):
+            rf.fit_free_decay(START, **given)
+    with pytest.raises(ComponentError, match="needs a System, got Block"):
+        rf.fit_free_decay(BLOCK, history())
+    stiff = rf.TwoSpringSupport(stiffness="500 kN/m", damping_ratio=0.1)
+    with pytest.raises(ComponentError, match=r"give TwoSpringSupport.frequency_ratio as a start"):
+        rf.fit_free_decay(rf.System(BLOCK, stiff), history(), "frequency_ratio")
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        {"measured": (TIME, SWING)},
+        {"measured": SWING},
+        {"measured": ((TIME, "s"), (SWING, "m"))},
+        {"measured": ((TIME, "deg"), (SWING, "s"))},
+        {"measured": (SWING, "rad")},
+        {"peaks": [6.0, 5.0, 4.0]},
+        {"peaks": ([6.0, 5.0, 4.0], "s")},
+        {"measured": xr.DataArray(SWING, coords={"time": TIME}, dims="time")},
+    ],
+)
+def test_arrays_need_units(given):
+    with pytest.raises(UnitsError):
+        rf.fit_free_decay(START, **given)
