@@ -9,6 +9,7 @@ from sphinx.util.docutils import SphinxDirective
 import rockframe as rf
 from rockframe.dynamics.events import ContactState, EventKind
 from rockframe.results.variables.comparison import COMPARISON
+from rockframe.results.variables.identification import FREE_DECAY, FitStatus
 from rockframe.results.variables.requests import (
     ACCELERATIONS,
     FORCE_SCALARS,
@@ -17,7 +18,6 @@ from rockframe.results.variables.requests import (
     POINTS,
     REACTIONS,
 )
-from rockframe.results.variables.identification import FREE_DECAY, FitStatus
 from rockframe.results.variables.runs import (
     CERTIFICATE,
     ENERGY_HISTORIES,
