@@ -35,7 +35,7 @@ def describe(setting: Setting, parts: Parts) -> str:
         [
             ("gravity", f"{setting.gravity:.6g} m s^-2"),
             ("overturning angle theta, Eq. (1)", angle_words(setting.overturning_angle)),
-            ("friction that rocking needs, at least b/h", f"{setting.body.least_friction:.6g}"),
+            ("friction to rock, at least b/h", f"{setting.body.least_friction:.6g}"),
             *words.uplift,
             *words.numbers,
         ],

@@ -244,7 +244,7 @@ def test_a_verdict_tells_the_friction_that_it_needed():
     needed = response.peak_friction_demand.item()
     assert response.attrs["verdict"].endswith(f"Friction needed: {needed:.3g}.")
     assert "Friction" not in SCENES["rigid ground"].simulate(PULSE, outputs=None).attrs["verdict"]
-    assert "friction that rocking needs, at least b/h  0.25\n" in rf.System(BLOCK).describe()
+    assert "friction to rock, at least b/h    0.25\n" in rf.System(BLOCK).describe()
 
 
 def test_too_little_friction_warns_with_time_and_duration():
