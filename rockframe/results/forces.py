@@ -129,8 +129,8 @@ class EventStates:
     after: Values
 
     def until(self, time: float) -> "EventStates":
-        """Give the events up to a time; all, where it is NaN [s]."""
-        kept = ~(self.time > time)
+        """Give the events up to a time [s]."""
+        kept = self.time <= time
         before, after = (
             {name: values[kept] for name, values in side.items()}
             for side in (self.before, self.after)

@@ -17,7 +17,7 @@ from rockframe.dynamics.protocol import (
 )
 from rockframe.results.variables.runs import Direction
 from rockframe.solve.layout import Status
-from rockframe.solve.observe import energies_of, memory_at_outputs, observe_trajectory
+from rockframe.solve.observe import energies_of, memory_at_outputs
 from rockframe.solve.trajectory import Summary, Trajectory
 
 Array = NDArray[np.float64]
@@ -41,25 +41,9 @@ class Scales:
     pads_on_cap: bool = False
 
 
-def histories(model: ContactModel, run: Trajectory, ground: Array) -> dict[str, Generic]:
-    """Give what a model can be observed by, and its contact states.
-
-    Parameters
-    ----------
-    model : ContactModel
-        The equations.
-    run : Trajectory
-        The run.
-    ground : ndarray, shape (samples, 2)
-        Ground acceleration at the output times.
-
-    Returns
-    -------
-    dict of str to ndarray
-        By their names in the schema.
-    """
-    values: dict[str, Generic] = dict(observe_trajectory(model, run, ground))
-    values["contact_state"] = model.contact[run.mode].astype(np.int8)
+def contact_histories(model: ContactModel, run: Trajectory) -> dict[str, Generic]:
+    """Give the contact states at the output times, by their names in the schema."""
+    values: dict[str, Generic] = {"contact_state": model.contact[run.mode].astype(np.int8)}
     if model.soil_contact is not None:
         values["soil_contact_state"] = model.soil_contact[run.mode].astype(np.int8)
     return values

@@ -12,8 +12,8 @@ from rockframe.results.outcome import (
     Generic,
     Scales,
     cap_histories,
+    contact_histories,
     ground_histories,
-    histories,
     relative_histories,
 )
 from rockframe.results.points import point_histories
@@ -21,7 +21,7 @@ from rockframe.results.schema import ON_REQUEST
 from rockframe.signals.arrays import Array
 from rockframe.simulation.friction import slips
 from rockframe.simulation.plan import Plan
-from rockframe.solve.observe import observe_states
+from rockframe.solve.observe import memory_at_outputs, observe_states
 from rockframe.solve.trajectory import Trajectory
 from rockframe.system.assembly import Assembly
 
@@ -75,19 +75,22 @@ def answers_of(
     -------
     Answers
     """
-    ground, body = ground_at(plan.motion, run.time), _body_of(system)
-    values = histories(model, run, ground)
+    body, count = _body_of(system), len(run.time)
+    shown_at, ground = _everything_of(plan, model, run, body)
+    values = {name: each[:count] for name, each in shown_at.items()}
+    values |= contact_histories(model, run)
     if model.soil_contact is None:
         values |= cap_histories(values, scales)
     values |= relative_histories(values, scales)
     vertical = plan.motion is not None and plan.motion.si.vertical is not None
-    values |= ground_histories(ground, has_vertical_motion=vertical)
+    values |= ground_histories(ground[:count], has_vertical_motion=vertical)
     values["time"] = run.time
-    values |= force_histories(values, ground, body)
-    events = _events(plan, model, run, body)
-    stands = ~(run.time > run.overturning_time)  # how a block falls is another matter
-    upright = {name: each[stands] for name, each in values.items()}
-    events_upright = events.until(run.overturning_time)
+    events = _events_in(shown_at, run)
+    upright, events_upright = values, events
+    if run.overturning_time <= run.end_time:  # how a block falls is another matter
+        stands = run.time <= run.overturning_time
+        upright = {name: each[stands] for name, each in values.items()}
+        events_upright = events.until(run.overturning_time)
     told = force_scalars(upright, events_upright, body)
     if plan.points:
         values |= point_histories(plan.points, values, body)
@@ -107,17 +110,31 @@ def _body_of(system: Assembly) -> BodyNumbers:
     return BodyNumbers(body.mass, body.inertia, body.centre_height, system.options.small)
 
 
-def _events(plan: Plan, model: ContactModel, run: Trajectory, body: BodyNumbers) -> EventStates:
-    """Give what a model shows on both sides of a run's events."""
+def _everything_of(
+    plan: Plan, model: ContactModel, run: Trajectory, body: BodyNumbers
+) -> tuple[dict[str, Generic], Array]:
+    """Give what the model shows at the samples, then before and then after all events."""
     events = run.events
-    ground = ground_at(plan.motion, events.time)
-    memory = np.vstack([run.start_memory, events.memory])
-    row = np.arange(len(events.time))
-    sides: list[dict[str, Generic]] = []
-    for mode, state, at in (
-        (events.mode_before, events.state_before, row),
-        (events.mode_after, events.state_after, row + 1),
-    ):
-        side: dict[str, Generic] = dict(observe_states(model, mode, state, memory, at, ground))
-        sides.append(side | force_histories(side, ground, body))
-    return EventStates(events.time, np.isin(events.kind, (IMPACT, REST)), *sides)
+    memory, row = memory_at_outputs(run)
+    before = np.arange(len(events.time))
+    ground = ground_at(plan.motion, np.concatenate([run.time, events.time, events.time]))
+    shown: dict[str, Generic] = dict(
+        observe_states(
+            model,
+            np.concatenate([run.mode.astype(np.int64), events.mode_before, events.mode_after]),
+            np.concatenate([run.state, events.state_before, events.state_after]),
+            memory,
+            np.concatenate([row, before, before + 1]),
+            ground,
+        )
+    )
+    return shown | force_histories(shown, ground, body), ground
+
+
+def _events_in(shown_at: dict[str, Generic], run: Trajectory) -> EventStates:
+    """Take what the model shows on both sides of events."""
+    first, count = len(run.time), len(run.events.time)
+    before = {name: each[first : first + count] for name, each in shown_at.items()}
+    after = {name: each[first + count :] for name, each in shown_at.items()}
+    is_impact = np.isin(run.events.kind, (IMPACT, REST))
+    return EventStates(run.events.time, is_impact, before, after)

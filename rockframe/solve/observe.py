@@ -97,29 +97,6 @@ def memory_at_outputs(trajectory: Trajectory) -> tuple[Matrix, Integers]:
     return memory, row.astype(np.int64)
 
 
-def observe_trajectory(
-    model: ContactModel, trajectory: Trajectory, ground: Matrix
-) -> dict[str, Vector]:
-    """Give the model's columns at the output times.
-
-    Parameters
-    ----------
-    model : ContactModel
-        The equations.
-    trajectory : Trajectory
-        A run of the model.
-    ground : ndarray, shape (samples, 2)
-        Horizontal and vertical ground acceleration at the output times [m s^-2].
-
-    Returns
-    -------
-    dict of str to ndarray
-        By the names in ``model.columns``.
-    """
-    memory, row = memory_at_outputs(trajectory)
-    return observe_states(model, trajectory.mode, trajectory.state, memory, row, ground)
-
-
 def observe_states(
     model: ContactModel,
     mode: Codes | Integers,

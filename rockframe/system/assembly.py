@@ -40,9 +40,13 @@ class Assembly:
         """The scene's numbers in SI units."""
         return self.scene.make_setting(self.parts, self.options)
 
+    @cached_property
+    def _description(self) -> str:
+        return describe(self.setting, self.parts)
+
     def describe(self) -> str:
         """Tell which model was picked, by which equations, and what it leaves out."""
-        return describe(self.setting, self.parts)
+        return self._description
 
     def to_dict(self) -> dict[str, object]:
         """Give parts and options as plain values, fit for JSON; without the motion."""

@@ -22,7 +22,7 @@ from rockframe.dynamics.restraint import LEADING_CORNER
 from rockframe.signals import Motion
 from rockframe.solve.accuracy import accuracy_of
 from rockframe.solve.integrate import integrate
-from rockframe.solve.observe import observe_trajectory
+from rockframe.solve.observe import memory_at_outputs, observe_states
 
 RATES = (3.0, 5.0)
 """Of the upper base's variable and of the lower one's [s^-1]."""
@@ -105,6 +105,11 @@ def shaken(model):
     )
 
 
+def observed(model, run):
+    ground = np.zeros((len(run.time), 2))
+    return observe_states(model, run.mode, run.state, *memory_at_outputs(run), ground)
+
+
 @pytest.mark.reference_models
 def test_each_base_has_its_own_variables_and_states():
     plain = stack(lambda pads: pads, lambda pads: pads)
@@ -115,9 +120,7 @@ def test_each_base_has_its_own_variables_and_states():
     expected, run = shaken(plain), shaken(model)
     assert len(expected.events.time) > 4
     np.testing.assert_allclose(run.events.time, expected.events.time, atol=1e-9)
-    ground = np.zeros((len(run.time), 2))
-    before = observe_trajectory(plain, expected, ground)
-    found = observe_trajectory(model, run, ground)
+    before, found = observed(plain, expected), observed(model, run)
     for name, history in before.items():
         np.testing.assert_allclose(
             found[name], history, atol=1e-7 * (1e-9 + np.abs(history).max()), err_msg=name
