@@ -82,11 +82,12 @@ class BedSupport(Support):
         settlement = 0.5 * press / (width * self.stiffness)
         rise = self.settlement - settlement
         tilt = width * abs(sine)
-        length = 2.0 * width
+        length, sunk = 2.0 * width, settlement + tilt
         if tilt <= settlement:
             moment = self.stiffness * width**3 / 1.5 * sine * cosine
         else:
             length = 2.0 * math.sqrt(width * settlement / abs(sine))
+            sunk = length * abs(sine)
             rise += settlement + tilt - 2.0 * math.sqrt(tilt * settlement)
             moment = math.copysign(press * (width - length / 3.0), sine) * cosine
         whole = length >= 2.0 * width
@@ -95,7 +96,11 @@ class BedSupport(Support):
             moment=moment,
             left=whole or sine < 0.0,
             right=whole or sine > 0.0,
-            reactions={"soil_reaction": press, "contact_length": length},
+            reactions={
+                "soil_reaction": press,
+                "contact_length": length,
+                "toe_pressure": self.stiffness * sunk,
+            },
         )
 
     def at_rest(self) -> dict[str, float]:

@@ -17,7 +17,7 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
 import rockframe as rf
-from rockframe.dynamics.alone import ROTATION, VERTICAL
+from rockframe.dynamics.bodies import ROTATION, VERTICAL
 from rockframe.dynamics.on_base import Mode
 from rockframe.dynamics.pads import CLEAR, CORNER, TOUCHING
 from rockframe.dynamics.protocol import Ground

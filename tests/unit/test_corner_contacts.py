@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from rockframe.dynamics.alone import COORDINATES, ROTATION, VERTICAL
 from rockframe.dynamics.alone_model import alone, body_of
 from rockframe.dynamics.base_numbers import pads_under
+from rockframe.dynamics.bodies import DEGREES, ROTATION, VERTICAL
 from rockframe.dynamics.on_base import Mode
 from rockframe.dynamics.pads import (
     CORNER,
@@ -37,13 +37,13 @@ LEFT_GUARDS, RIGHT_GUARDS = 0, CORNER_GUARDS
 
 def state_with(*, right_force):
     """Give a state with the left corner up, and the right one at a force of its pad's law."""
-    state = np.zeros(2 * COORDINATES)
+    state = np.zeros(2 * DEGREES)
     state[ROTATION] = 0.001
     level = BODY.base_line_at(SYSTEM.state_of(0, state)).right
     state[VERTICAL] = 0.5 * PADS.rest - level
     # the force by the speed alone, without rotation
     speed = (PADS.stiffness * 0.5 * PADS.rest - right_force) / PADS.damping
-    state[COORDINATES + VERTICAL] = speed
+    state[DEGREES + VERTICAL] = speed
     return state
 
 
