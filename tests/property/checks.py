@@ -5,10 +5,13 @@ import pytest
 from property.scenarios import GRAVITY
 
 from rockframe.dynamics.protocol import IMPACT_LOSS, REPINNING_LOSS, Start
+from rockframe.results.variables.requests import FORCE_SCALARS
 from rockframe.solve.accuracy import accuracy_of
 from rockframe.solve.integrate import integrate
 
 FULL, LEFT, RIGHT, FLIGHT = range(4)
+
+AT_SAMPLES = [row.name for row in FORCE_SCALARS]
 
 
 def check_flight(response, *, within):
@@ -61,7 +64,8 @@ def scalars(response):
 
 
 def assert_same_scalars(one, other):
-    one, other = scalars(one), scalars(other)
+    # forces are known at the samples only, so that their peaks hang on the output step
+    one, other = (scalars(each).drop_vars(AT_SAMPLES, errors="ignore") for each in (one, other))
     assert set(one.data_vars) == set(other.data_vars)
     for name in one.data_vars:
         np.testing.assert_array_equal(one[name].values, other[name].values, err_msg=name)

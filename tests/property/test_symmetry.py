@@ -17,6 +17,7 @@ TURNS_ROUND = {
     "ground_acceleration",
     "base_shear",
     "event_rotation",
+    "residual_rotation",
     "angular_velocity_before",
     "angular_velocity_after",
     "overturning_direction",
