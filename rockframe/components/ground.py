@@ -3,8 +3,9 @@
 from typing import ClassVar
 
 from rockframe.components.base import Component
+from rockframe.components.friction import Friction
 from rockframe.components.parameters import Ratio
-from rockframe.units import NOT_NEGATIVE, UNIT_INTERVAL, RatioLike
+from rockframe.units import UNIT_INTERVAL, RatioLike
 
 
 class RigidGround(Component):
@@ -31,13 +32,7 @@ class RigidGround(Component):
         example="0.9",
     )
 
-    friction = Ratio(
-        NOT_NEGATIVE,
-        doc="Coefficient of friction under the block: a run that needs more of it warns; the "
-        "model holds the base all the same.",
-        default=None,
-        example="0.5",
-    )
+    friction = Friction(of="the block")
 
     def __init__(
         self, *, restitution: RatioLike | None = None, friction: RatioLike | None = None

@@ -5,6 +5,7 @@ from typing import ClassVar
 from rockframe.components.alternatives import OneOf
 from rockframe.components.base import Component
 from rockframe.components.damping import DampingRatio
+from rockframe.components.friction import Friction
 from rockframe.components.parameters import Parameter, Ratio
 from rockframe.units import (
     DAMPING,
@@ -72,13 +73,7 @@ class TwoSpringSupport(Component):
         example="0.9",
     )
 
-    friction = Ratio(
-        NOT_NEGATIVE,
-        doc="Coefficient of friction under the block: a run that needs more of it warns; the "
-        "model holds the base all the same.",
-        default=None,
-        example="0.5",
-    )
+    friction = Friction(of="the block")
 
     def __init__(
         self,

@@ -6,7 +6,8 @@ from typing import ClassVar, Literal, Self, TypeAlias
 from rockframe.components.alternatives import OneOf
 from rockframe.components.base import Component
 from rockframe.components.damping import DampingRatio
-from rockframe.components.parameters import Choice, Parameter, Ratio
+from rockframe.components.friction import Friction
+from rockframe.components.parameters import Choice, Parameter
 from rockframe.units import (
     BED_DAMPING,
     BED_STIFFNESS,
@@ -78,13 +79,7 @@ class WinklerSoil(Component):
         "paper; or also where the dashpots would have to pull.",
     )
 
-    friction = Ratio(
-        NOT_NEGATIVE,
-        doc="Coefficient of friction of the base on the soil: a run that needs more of it warns; "
-        "the model holds the base all the same.",
-        default=None,
-        example="0.5",
-    )
+    friction = Friction(of="what stands on it")
 
     def __init__(
         self,

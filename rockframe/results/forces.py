@@ -7,6 +7,7 @@ the manual.
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,8 +45,12 @@ class BodyNumbers:
         return np.sin(rotation), np.cos(rotation)
 
 
-STACKED = "rotation_on_cap"
+STACKED: Final = "rotation_on_cap"
 """A column of scenes in which a block stands on a cap."""
+OF_SOIL_FRICTION: Final = (STACKED, "base_shear", "soil_reaction")
+"""Columns that the friction between cap and soil follows from, where a scene has them all."""
+NO_FORCE: Final = 1e-9
+"""Force per mass, or change of velocity, that is rounding [m s^-2], [m s^-1]."""
 
 
 def force_histories(values: Values, ground: Array, body: BodyNumbers) -> dict[str, Generic]:
@@ -76,15 +81,11 @@ def force_histories(values: Values, ground: Array, body: BodyNumbers) -> dict[st
         - body.inertia * values["angular_acceleration"],
         "friction_demand": friction_demand(thrust, press, body.mass),
     }
-    if STACKED in values:
+    if all(name in values for name in OF_SOIL_FRICTION):
         found["soil_friction_demand"] = friction_demand(
             values["base_shear"], values["soil_reaction"], body.mass
         )
     return found
-
-
-NO_FORCE = 1e-9
-"""Acceleration below which a force per mass is rounding [m s^-2]."""
 
 
 def friction_demand(thrust: Array, press: Array, mass: float) -> Array:
@@ -93,7 +94,7 @@ def friction_demand(thrust: Array, press: Array, mass: float) -> Array:
     Parameters
     ----------
     thrust, press : ndarray
-        Force of the base along its plane, and normal to it [N].
+        Force of the base along its plane, and normal to it [N]; or impulses [N s].
     mass : float
         Of the body [kg].
 
@@ -118,7 +119,8 @@ class EventStates:
     time : ndarray, shape (events,)
         Of the events [s].
     is_impact : ndarray of bool, shape (events,)
-        Whether an event is an impact.
+        Whether an event is an impact from which the body goes on. One that it comes to rest by
+        ends an endless series: its ratio of impulses is that of no impact.
     before, after : mapping of str to ndarray
         Columns and what follows from them, by their names in the schema.
     """
@@ -136,6 +138,14 @@ class EventStates:
             for side in (self.before, self.after)
         )
         return EventStates(self.time[kept], self.is_impact[kept], before, after)
+
+    def with_samples(self, values: Values, name: str) -> Array:
+        """Give a history's samples, then its values before and after the events."""
+        return np.concatenate([values[name], self.before[name], self.after[name]])
+
+    def times_with_samples(self, values: Values) -> Array:
+        """Give the times of these [s]."""
+        return np.concatenate([values["time"], self.time, self.time])
 
     def impulses(self, mass: float) -> dict[str, Generic]:
         """Give the impulses of the base on the body at the events [N s].
@@ -160,7 +170,7 @@ def friction_words(scalars: Mapping[str, float]) -> str:
 
 
 def force_scalars(values: Values, events: EventStates, body: BodyNumbers) -> dict[str, float]:
-    """Give peaks of forces over samples and events, and what is left at the end.
+    """Give peaks of forces over samples and events.
 
     Parameters
     ----------
@@ -176,26 +186,26 @@ def force_scalars(values: Values, events: EventStates, body: BodyNumbers) -> dic
     dict of str to float
         By their names in the schema.
     """
-    sides = (events.before, events.after)
-    time = np.concatenate([values["time"], events.time, events.time])
-
-    def all_of(name: str) -> Array:
-        return np.concatenate([values[name], *(side[name] for side in sides)])
-
-    demand = all_of("friction_demand")
+    demand = events.with_samples(values, "friction_demand")
     most = int(np.argmax(demand))
     impulses = events.impulses(body.mass)
     struck = friction_demand(
         impulses["event_horizontal_impulse"], impulses["event_vertical_impulse"], body.mass
     )[events.is_impact]
-    rotation = float(values["rotation"][-1])
-    sine, _ = body.sine_cosine(np.array([0.5 * rotation]))
-    sunk = -float(values["vertical_displacement"][-1])
     return {
         "peak_friction_demand": float(demand[most]),
-        "peak_friction_demand_time": float(time[most]),
+        "peak_friction_demand_time": float(events.times_with_samples(values)[most]),
         "peak_impulsive_friction_demand": float(struck.max(initial=0.0)),
-        "peak_base_shear": float(np.abs(all_of("base_shear")).max()),
+        "peak_base_shear": float(np.abs(events.with_samples(values, "base_shear")).max()),
+    }
+
+
+def residuals(values: Values, body: BodyNumbers) -> dict[str, float]:
+    """Give what is left at the end of a run, by its names in the schema."""
+    rotation = float(values["rotation"][-1])
+    half, _ = body.sine_cosine(np.array([0.5 * rotation]))
+    sunk = -float(values["vertical_displacement"][-1])
+    return {
         "residual_rotation": rotation,
-        "residual_settlement": sunk - 2.0 * body.centre_height * float(sine[0]) ** 2,
+        "residual_settlement": sunk - 2.0 * body.centre_height * float(half[0]) ** 2,
     }

@@ -4,10 +4,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rockframe.dynamics.events import IMPACT, REST, SILENT
+from rockframe.dynamics.events import IMPACT, SILENT
 from rockframe.dynamics.protocol import ContactModel
 from rockframe.motion import GroundMotion
-from rockframe.results.forces import BodyNumbers, EventStates, force_histories, force_scalars
+from rockframe.results.forces import (
+    BodyNumbers,
+    EventStates,
+    force_histories,
+    force_scalars,
+    residuals,
+)
 from rockframe.results.outcome import (
     Generic,
     Scales,
@@ -91,7 +97,7 @@ def answers_of(
         stands = run.time <= run.overturning_time
         upright = {name: each[stands] for name, each in values.items()}
         events_upright = events.until(run.overturning_time)
-    told = force_scalars(upright, events_upright, body)
+    told = force_scalars(upright, events_upright, body) | residuals(values, body)
     if plan.points:
         values |= point_histories(plan.points, values, body)
     shown = run.events.kind != SILENT
@@ -136,5 +142,4 @@ def _events_in(shown_at: dict[str, Generic], run: Trajectory) -> EventStates:
     first, count = len(run.time), len(run.events.time)
     before = {name: each[first : first + count] for name, each in shown_at.items()}
     after = {name: each[first + count :] for name, each in shown_at.items()}
-    is_impact = np.isin(run.events.kind, (IMPACT, REST))
-    return EventStates(run.events.time, is_impact, before, after)
+    return EventStates(run.events.time, run.events.kind == IMPACT, before, after)

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any, Final, cast
 
 from rockframe.errors import RockframeError, shown
-from rockframe.results.forces import STACKED
+from rockframe.results.forces import OF_SOIL_FRICTION
 from rockframe.results.points import Point
 from rockframe.results.schema import GROUPS, ON_REQUEST, SCHEMA
 from rockframe.system.assembly import Assembly
@@ -50,8 +50,8 @@ def names_of(outputs: object, faults: list[str]) -> tuple[str, ...]:
 
 
 NEEDED: Final = {
-    "toe_pressure": ("toe_pressure", "a WinklerSoil"),
-    "soil_friction_demand": (STACKED, "a CushionCap between block and soil"),
+    "toe_pressure": (("toe_pressure",), "a WinklerSoil"),
+    "soil_friction_demand": (OF_SOIL_FRICTION, "a CushionCap between block and WinklerSoil"),
 }
 """Columns of a model without which it has no such output, and what gives them."""
 
@@ -65,7 +65,7 @@ def lacking(system: Assembly, names: Iterable[str]) -> list[str]:
     return [
         f"there is no {name!r} in this scene; it needs {NEEDED[name][1]}"
         for name in depend
-        if NEEDED[name][0] not in columns
+        if not columns.issuperset(NEEDED[name][0])
     ]
 
 

@@ -13,9 +13,7 @@ _BLOCK: Final = "friction_demand"
 _CAP: Final = "soil_friction_demand"
 
 
-def slips(
-    system: Assembly, values: Mapping[str, Generic], events: EventStates
-) -> Iterator[str]:  # fmt: skip
+def slips(system: Assembly, values: Mapping[str, Generic], events: EventStates) -> Iterator[str]:
     """Tell where a run needs more friction than a base has.
 
     Parameters
@@ -34,24 +32,20 @@ def slips(
     """
     time = values["time"]
     for name, friction, words in _frictions(system):
-        above = values[name] > friction
-        at_events = np.concatenate([side[name] > friction for side in _sides(events)])
-        if not (above.any() or at_events.any()):
+        if name not in values:  # a soil of one's own that does not show its reaction
             continue
-        demand = np.concatenate([values[name], *(side[name] for side in _sides(events))])
-        when = np.concatenate([time, events.time, events.time])
-        first = when[demand > friction].min()
-        # the time between two samples counts by halves
-        lasted = float(np.diff(time) @ (0.5 * (above[1:].astype(float) + above[:-1])))
+        demand = events.with_samples(values, name)
+        exceeds = demand > friction
+        if not exceeds.any():
+            continue
+        first = events.times_with_samples(values)[exceeds].min()
+        above = (values[name] > friction).astype(float)
+        lasted = float(np.diff(time) @ (above[1:] + above[:-1])) / 2.0
         most = f"up to {demand.max():.3g}" if np.isfinite(demand.max()) else "without bound"
         yield (
             f"{words} would slide: the friction demand exceeds the coefficient {friction:.6g} "
             f"from {first:.4g} s on, for {lasted:.3g} s in all, {most}; the model holds it"
         )
-
-
-def _sides(events: EventStates) -> tuple[Mapping[str, Generic], Mapping[str, Generic]]:
-    return events.before, events.after
 
 
 def _frictions(system: Assembly) -> Iterator[tuple[str, float, str]]:

@@ -185,6 +185,28 @@ def test_the_friction_of_an_impact():
         assert response.peak_impulsive_friction_demand == pytest.approx(expected, rel=1e-9)
 
 
+def test_coming_to_rest_is_no_impact():
+    """The last event of an endless series ends all motion at once, in a ratio of its own."""
+    response = rf.System(BLOCK, rf.RigidGround(restitution=0.8)).simulate(
+        duration="60 s", initial=rf.InitialState(rotation="0.05 rad")
+    )
+    assert "rest" in response.event_kind.attrs["flag_meanings"]
+    assert response.residual_rotation == 0.0
+    expected = H * 0.2 / (B * 1.8)
+    assert response.peak_impulsive_friction_demand == pytest.approx(expected, rel=1e-8)
+
+
+def test_what_remains_is_told_of_the_whole_run():
+    motion = rf.GroundMotion.sine_pulse("-20 m/s^2", "1 Hz")
+    response = SCENES["rigid ground"].simulate(motion, overturning="continue", duration="20 s")
+    assert response.attrs["overturned"]
+    assert response.residual_rotation == response.rotation[-1]
+    assert abs(response.residual_rotation) == pytest.approx(math.pi / 2.0, rel=1e-9)
+    # a body on its side: its centre lies b above the ground
+    fallen = float(response.vertical_displacement[-1])
+    assert fallen == pytest.approx(B - H, rel=1e-9)
+
+
 def test_peaks_stand_over_all_that_is_shown(response):
     assert response.peak_base_shear >= np.abs(response.base_shear).max()
     assert response.peak_friction_demand >= response.friction_demand.max()

@@ -514,6 +514,34 @@ class TestRegistration:
         with pytest.raises(rf.AssemblyError, match="both show left_reaction and right_reaction"):
             rf.System(*parts)
 
+    def test_soil_that_does_not_show_its_reaction(self, pads):
+        names = "near_reaction", "far_reaction"
+
+        class UnseenSupport(StiltSupport):
+            """Pads under names that only their user knows."""
+
+            def law(self, body, mass, load_mass):
+                columns = tuple(ext.Column(name, per_mass=True) for name in names)
+                return replace(super().law(body, mass, load_mass), columns=columns)
+
+        class Unseen(Stilts):
+            """Pads in the place of soil, whose sum nobody shows."""
+
+            friction = ext.Ratio(ext.POSITIVE, doc="Of the cap.", default=None)
+
+            def support(self, load):
+                support = super().support(load)
+                return UnseenSupport(load, support.stiffness, support.damping, support.restitution)
+
+        rf.register(Unseen, columns=[column(name=name, unit=ext.Unit.NEWTON) for name in names])
+        soil = Unseen(frequency_ratio=10, friction=0.01)
+        system = rf.System(BLOCK, *pads.simpler(), CAP, soil, coupling="cascade")
+        response = system.simulate(PULSE, duration="0.2 s", outputs="friction_demand")
+        assert set(names) < set(response.variables)
+        assert response.attrs["cautions"] == "none"
+        with pytest.raises(rf.AssemblyError, match="no 'soil_friction_demand' in this scene"):
+            system.simulate(PULSE, duration="0.2 s", outputs="soil_friction_demand")
+
     def test_who_is_not_registered_is_told(self):
         with pytest.raises(rf.AssemblyError, match=r"call rockframe.register\(Copied\) first"):
             rf.System(BLOCK, Copied(frequency_ratio=20))
