@@ -1,0 +1,75 @@
+"""The shake-table tests of two granite blocks: table motions, and which specimen fell."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+import rockframe as rf
+from rockframe.signals.path import ground_path
+from rockframe.signals.polynomials import greatest
+
+VARIABLE = "ROCKFRAME_GRANITE"
+_BESIDE_THE_PROJECT = (
+    Path(__file__).resolve().parents[3] / "shared" / "granite" / "shake_table_a.nc"
+)
+SPECIMENS = (1, 2)
+TIME_STEP = 0.005
+"""Of the recordings [s]."""
+BAND = {"low": "0.1 Hz", "high": "25 Hz"}
+"""Below it the recordings hold the drift of the sensor, above it noise."""
+
+
+@dataclass(frozen=True)
+class Programme:
+    """All tests: the table's motion, that motion's name, and who fell.
+
+    Parameters
+    ----------
+    motions : list of GroundMotion
+        As recorded on the table, within `BAND`.
+    names : ndarray of str, shape (tests,)
+        Of the earthquake record that the table was to follow, at whatever amplitude.
+    numbers : ndarray of int, shape (tests,)
+        By which the tests were counted.
+    fell : dict of int to ndarray of bool, shape (tests,)
+        By specimen.
+    """
+
+    motions: list[rf.GroundMotion]
+    names: np.ndarray
+    numbers: np.ndarray
+    fell: dict[int, np.ndarray]
+
+    def peaks(self) -> tuple[np.ndarray, np.ndarray]:
+        """Give peak accelerations [m s^-2] and peak velocities [m s^-1] of the table."""
+        signals = [motion.si.horizontal for motion in self.motions]
+        accelerations = [greatest(signal.pieces) for signal in signals]
+        velocities = [greatest(ground_path(signal)[0]) for signal in signals]
+        return np.array(accelerations), np.array(velocities)
+
+
+def programme_path() -> Path:
+    """Give the path where the file of tests is looked for."""
+    return Path(os.environ.get(VARIABLE, _BESIDE_THE_PROJECT))
+
+
+def read_programme(path: Path, band: dict[str, str] | None = BAND) -> Programme:
+    """Read all tests; without `band` as they were recorded."""
+    with xr.open_dataset(path) as file:
+        data = file.load()
+    if data.acceleration.attrs["units"] != "g":
+        found = data.acceleration.attrs["units"]
+        msg = f"{path}: acceleration in {found}, expected g"
+        raise ValueError(msg)
+    motions = []
+    for row, count in zip(data.acceleration.to_numpy(), data.samples.to_numpy(), strict=True):
+        motion = rf.GroundMotion.from_arrays((row[:count], "g_0"), f"{TIME_STEP} s")
+        motions.append(motion if band is None else motion.filtered(**band))
+    fell = {one: data[f"overturned_specimen_{one}"].to_numpy().astype(bool) for one in SPECIMENS}
+    names = data.motion.to_numpy().astype(str)
+    return Programme(motions, names, data.test.to_numpy(), fell)
