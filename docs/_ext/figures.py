@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
+from granite_figures import granite_calibration, granite_fit
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Arc, Polygon, Rectangle
@@ -161,6 +162,8 @@ FIGURES = (
     work_precision,
     cost_model,
     critical_scale,
+    granite_fit,
+    granite_calibration,
 )
 
 

@@ -1,0 +1,108 @@
+"""Granite blocks on a shake table: the fit, and what the page says of the fitted blocks."""
+
+import json
+
+import numpy as np
+import pytest
+from benchmarks import granite_fit as fit
+from benchmarks.granite_blocks import ANGLES, Shaking, Shape, overturns, verdicts
+from benchmarks.granite_programme import SPECIMENS, VARIABLE, programme_path, read_programme
+from pages import DOCS, said, table
+from scipy.special import expit
+
+import rockframe as rf
+
+PAGE = "validation_granite.md"
+TABLES = "validation_granite.txt"
+CONFUSION = (
+    "| specimen | by | fell, as said | fell, unsaid | stood, unsaid | stood, as said "
+    "| accuracy | balanced accuracy |"
+)
+
+
+def test_probability_of_blocks_that_all_fall_below_one_angle():
+    falls = np.arange(len(ANGLES)) <= 7
+    bound = 0.5 * np.log(ANGLES[7] * ANGLES[8])
+    for median, spread in ((0.08, 0.1), (0.2, 0.3)):
+        expected = expit((bound - np.log(median)) / spread)
+        assert fit.shares(median, spread) @ falls == pytest.approx(expected, rel=1e-12)
+
+
+def test_a_known_block_is_found_by_which_motions_overturn_it():
+    generator = np.random.default_rng(4)
+    motions = [
+        rf.GroundMotion.sine_pulse(f"{peak} m/s^2", f"{hertz} Hz", cycles)
+        for peak, hertz, cycles in zip(
+            9.80665 * np.geomspace(0.06, 0.8, 60)[generator.permutation(60)],
+            generator.uniform(0.7, 4.0, 60),
+            generator.integers(1, 4, 60).astype(float),
+            strict=True,
+        )
+    ]
+    shakings = [Shaking.by(motion) for motion in motions]
+    pairs = np.array([(radius, eps) for radius in (0.15, 0.3) for eps in (0.75, 0.93)])
+    truth = Shape(0.3, 0.11, 0.93)
+    fell = overturns(truth, shakings)
+    assert 15 < fell.sum() < 45
+    tried = np.array([verdicts(tuple(pair), shakings) for pair in pairs.tolist()])
+    groups = np.arange(60) // 3
+    found = fit.Search.of(pairs, tried, groups, fell).best()
+    assert found.shape.radius == truth.radius
+    assert found.shape.restitution == truth.restitution
+    assert found.shape.angle == pytest.approx(truth.angle, rel=0.06)
+    assert found.spread < 0.06
+
+
+def confusion():
+    return {(row[0], row[1]): row[2:] for row in table(TABLES, CONFUSION)}
+
+
+def test_the_sentences_follow_the_tables():
+    told = confusion()
+    for cells in told.values():
+        hits, missed, false, stood = map(int, cells[:4])
+        right = (hits + stood) / (hits + missed + false + stood)
+        assert cells[4].split()[0] == f"{right:.3f}"
+        balanced = 0.5 * (hits / (hits + missed) + stood / (false + stood))
+        assert cells[5].split()[0] == f"{balanced:.3f}"
+    reached = said(
+        PAGE, "The blocks reach # on the tests that they were fitted to, and # on tests held out"
+    )
+    names = ("block, all tests", "block, held out")
+    assert reached == [float(told["both", name][4].split()[0]) for name in names]
+    falls = said(PAGE, "the first did # times, the second # times")
+    assert falls == [sum(map(int, told[one, names[0]][:2])) for one in ("1", "2")]
+    kept = json.loads((DOCS / "data" / "granite.json").read_text(encoding="utf-8"))
+    middle = {
+        name: sum(one["tests"] for one in kept[name] if 0.1 <= one["predicted"] < 0.9)
+        for name in ("ensemble", "regressed")
+    }
+    tests = sum(one["tests"] for one in kept["ensemble"])
+    sentence = "They leave # of # outcomes between 0.1 and 0.9, the regression #."
+    assert said(PAGE, sentence) == [middle["ensemble"], tests, middle["regressed"]]
+    for name in middle:
+        assert all(one["low"] < one["predicted"] < one["high"] for one in kept[name])
+
+
+def test_the_fitted_blocks_do_what_the_page_says():
+    path = programme_path()
+    if not path.is_file():
+        pytest.skip(f"the shake-table tests are not at {path} (set {VARIABLE})")
+    programme = read_programme(path)
+    shakings = [Shaking.by(motion) for motion in programme.motions]
+    peak, velocity = programme.peaks()
+    features = np.column_stack([np.log(peak), np.log(velocity / peak)])
+    kept = json.loads((DOCS / "data" / "granite.json").read_text(encoding="utf-8"))["specimens"]
+    told = confusion()
+    for specimen in SPECIMENS:
+        fell = programme.fell[specimen]
+        coefficients = fit.regression(features, fell)
+        by = {
+            "block, all tests": overturns(Shape(**kept[str(specimen)]["shape"]), shakings),
+            "regression, all tests": fit.regressed(coefficients, features) > 0.5,
+        }
+        for name, verdict in by.items():
+            cells = told[str(specimen), name]
+            assert list(map(str, fit.Confusion.of(verdict, fell))) == cells[:4]
+            assert f"{fit.accuracy(verdict, fell):.3f}" == cells[4].split()[0]
+            assert f"{fit.balanced_accuracy(verdict, fell):.3f}" == cells[5].split()[0]
