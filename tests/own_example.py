@@ -12,7 +12,7 @@ from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.variable import Variable
 
 FILE = Path(__file__).parents[1] / "examples" / "own_base.py"
-NAME = "own_base_example"
+NAME = FILE.stem  # as who runs `import own_base` finds it, with the same machine code
 
 
 @cache

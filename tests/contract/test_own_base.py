@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from own_example import FILE, NAME, example
+from plainly import plainly
 
 import rockframe as rf
 from rockframe import extension as ext
@@ -242,7 +243,7 @@ class TestMechanics:
 
     def test_energy_balances_with_landings_on_a_ground_of_ones_own(self, pads):
         """Stage 1 lands on pads under the cap; its energies are those of a larger mass."""
-        with as_before():
+        with as_before(), plainly():
             rf.register(Stilts)
             system = rf.System(
                 BLOCK, *pads.simpler(), CAP, Stilts(frequency_ratio=10), coupling="cascade"
@@ -536,7 +537,8 @@ class TestRegistration:
         rf.register(Unseen, columns=[column(name=name, unit=ext.Unit.NEWTON) for name in names])
         soil = Unseen(frequency_ratio=10, friction=0.01)
         system = rf.System(BLOCK, *pads.simpler(), CAP, soil, coupling="cascade")
-        response = system.simulate(PULSE, duration="0.2 s", outputs="friction_demand")
+        with plainly():
+            response = system.simulate(PULSE, duration="0.2 s", outputs="friction_demand")
         assert set(names) < set(response.variables)
         assert response.attrs["cautions"] == "none"
         with pytest.raises(rf.AssemblyError, match="no 'soil_friction_demand' in this scene"):

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
+from plainly import plainly
 
 from rockframe.compiled import inlined, kernel
 from rockframe.dynamics.alone_model import body_of
@@ -117,10 +118,13 @@ def test_each_base_has_its_own_variables_and_states():
         lambda pads: aged(pads, "age_above", RATES[0]),
         lambda pads: aged(pads, "age_below", RATES[1]),
     )
-    expected, run = shaken(plain), shaken(model)
+    with plainly():
+        expected = shaken(plain)
+        before = observed(plain, expected)
+    run = shaken(model)
+    found = observed(model, run)
     assert len(expected.events.time) > 4
     np.testing.assert_allclose(run.events.time, expected.events.time, atol=1e-9)
-    before, found = observed(plain, expected), observed(model, run)
     for name, history in before.items():
         np.testing.assert_allclose(
             found[name], history, atol=1e-7 * (1e-9 + np.abs(history).max()), err_msg=name
