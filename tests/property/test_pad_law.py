@@ -60,13 +60,15 @@ def free_forces(kind, model, run):
     system = model.system
     body, pads = block_on_pads(kind, system)
     gravity = 9.80665
+    free = {}  # modes of the run, and the free corners in each
+    for mode in np.unique(run.mode):
+        contact = system.part_mode(int(mode), 0).contact
+        free[mode] = [left for left in (True, False) if corner_contact(contact, left) == RELAXING]
     found = []
     for mode, state in zip(run.mode, run.state, strict=True):
-        contact = system.part_mode(int(mode), 0).contact
-        line = body.base_line_at(system.state_of(0, state))
-        for left in (True, False):
-            below = corner_level(line, left) < pads.settlement_of(left)
-            if corner_contact(contact, left) == RELAXING and below:
+        for left in free[mode]:
+            line = body.base_line_at(system.state_of(0, state))
+            if corner_level(line, left) < pads.settlement_of(left):
                 found.append(pads.reaction(left, line) / gravity)
     return found
 
