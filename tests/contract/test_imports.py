@@ -13,61 +13,61 @@ NEEDED_BY_FEW = {"numba", "llvmlite", "matplotlib", "scipy.signal", "scipy.speci
 HEAVY = (*NEEDED_BY_FEW, "xarray", "pandas", "pint")
 
 
-def loaded(code):
-    """Run code in a fresh interpreter and give the heavy modules it has loaded."""
-    report = f"import sys; print(*[m for m in {(*HEAVY, 'matplotlib.pyplot')} if m in sys.modules])"
+def loaded(*codes):
+    """Run codes in one fresh interpreter; give the heavy modules it has loaded after each."""
+    names = (*HEAVY, "matplotlib.pyplot")
+    report = f"import sys; print(*[name for name in {names} if name in sys.modules])"
     done = subprocess.run(
-        [sys.executable, "-c", f"{code}\n{report}"], capture_output=True, text=True, timeout=240
-    )
+        [sys.executable, "-c", "\n".join(f"{code}\n{report}" for code in codes)],
+        capture_output=True, text=True, timeout=240,
+    )  # fmt: skip
     assert done.returncode == 0, done.stderr
-    return set(done.stdout.split())
+    lines = done.stdout.splitlines()
+    assert len(lines) == len(codes)
+    return [set(line.split()) for line in lines]
 
 
 @pytest.fixture(scope="module")
 def needed():
     """What pint and xarray load, without which there are no units and no results."""
-    return loaded("import pint, xarray")
+    return loaded("import pint, xarray")[0]
 
 
-def test_importing_loads_what_every_scene_needs_and_no_more(needed):
-    assert not NEEDED_BY_FEW & needed
-    assert loaded("import rockframe") == needed
-
-
-def test_looking_around_loads_no_more(needed):
-    code = "import rockframe\nassert 'System' in dir(rockframe)\nrockframe.__version__"
-    assert loaded(code) == needed
-
-
-def test_naming_everything_loads_neither_numba_nor_a_plot():
-    code = """
-import rockframe
+LOOKING_AROUND = "assert 'System' in dir(rockframe)\nrockframe.__version__"
+NAMING_ALL = """
 for name in rockframe.__all__:
     if name != "plot":
         getattr(rockframe, name)
 """
-    assert not NEEDED_BY_FEW & loaded(code)
-
-
-def test_reading_a_record_loads_no_compiler_nor_a_plot(tmp_path):
-    file = tmp_path / "record.txt"
-    file.write_text("\n".join(f"{0.01 * i:.2f} {0.1 * (i % 3)}" for i in range(50)))
-    code = f"""
+READING = """
 import rockframe as rf
-motion = rf.GroundMotion.read({str(file)!r}, unit="m/s^2")
+motion = rf.GroundMotion.read({file!r}, unit="m/s^2")
 assert len(motion) == 50
 """
-    assert not NEEDED_BY_FEW & loaded(code)
-
-
-def test_describing_a_system_loads_neither_numba_nor_a_plot():
-    code = """
-import rockframe as rf
+DESCRIBING = """
 block = rf.Block(width="2 m", height="8 m", mass="50 t")
 text = rf.System(block, rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)).describe()
 assert "two-spring" in text
 """
-    assert not NEEDED_BY_FEW & loaded(code)
+
+
+def test_nothing_loads_more_than_it_needs(needed, tmp_path):
+    """One after the other: what is not loaded after the last was loaded by none before it."""
+    file = tmp_path / "record.txt"
+    file.write_text("\n".join(f"{0.01 * i:.2f} {0.1 * (i % 3)}" for i in range(50)))
+    imported, looked, *others = loaded(
+        "import rockframe",
+        LOOKING_AROUND,
+        NAMING_ALL,
+        READING.format(file=str(file)),
+        DESCRIBING,
+        "rf.plot",
+    )
+    assert not NEEDED_BY_FEW & needed
+    assert imported == needed
+    assert looked == needed
+    for after in others:
+        assert not NEEDED_BY_FEW & after
 
 
 def test_simulating_loads_a_compiler_only_to_compile_and_no_plot():
@@ -77,13 +77,9 @@ block = rf.Block(width="2 m", height="8 m", mass="50 t")
 response = rf.System(block).simulate(rf.GroundMotion.sine_pulse())
 response.to_netcdf
 """
-    assert not (NEEDED_BY_FEW - {"numba", "llvmlite"}) & loaded(code)
+    assert not (NEEDED_BY_FEW - {"numba", "llvmlite"}) & loaded(code)[0]
     plain = "import os\nos.environ['ROCKFRAME_COMPILE'] = '0'"
-    assert not NEEDED_BY_FEW & loaded(plain + code)
-
-
-def test_plotting_does_not_need_a_screen_nor_pyplot_at_import():
-    assert "matplotlib" not in loaded("import rockframe as rf\nrf.plot")
+    assert not NEEDED_BY_FEW & loaded(plain + code)[0]
 
 
 def test_all_names_are_there():
