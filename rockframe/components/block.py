@@ -1,15 +1,21 @@
 """The rigid block."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar, Self
+from typing import Any, ClassVar, Protocol, Self, cast
 
 from rockframe.components.alternatives import OneOf
 from rockframe.components.base import Component
 from rockframe.components.parameters import DERIVED, Parameter, Ratio
-from rockframe.components.values import SIProperty, SIValues
+from rockframe.components.shapes.cylinder import cylinder_body
+from rockframe.components.shapes.outline import outline_body
+from rockframe.components.shapes.part import Part
+from rockframe.components.shapes.parts import body_of_parts
+from rockframe.components.shapes.reading import Place, Points
+from rockframe.components.values import Quantity, SIProperty, SIValues
 from rockframe.constants import STANDARD_GRAVITY
-from rockframe.errors import ComponentError
+from rockframe.errors import ComponentError, shown
 from rockframe.units import (
     ANGLE,
     ANGULAR_VELOCITY,
@@ -30,12 +36,18 @@ SOLID_RECTANGLE_SHAPE_FACTOR = 3.0
 
 @dataclass(frozen=True)
 class BlockSI:
-    """Geometry and mass of a block in SI units."""
+    """Geometry and mass of a block in SI units, :eq:`eq-eccentric-body`.
+
+    The centre of mass stands `centre_height` above the base and `eccentricity` to the right of
+    its middle; then angles, radii and restitutions differ to the left and to the right.
+    """
 
     width: float
     height: float
     mass: float
     shape_factor: float
+    centre_height: float
+    eccentricity: float = 0.0
 
     @property
     def half_width(self) -> float:
@@ -44,18 +56,28 @@ class BlockSI:
 
     @property
     def half_height(self) -> float:
-        """Half the height, h [m]."""
+        """Half the height [m]."""
         return 0.5 * self.height
 
     @property
+    def left(self) -> float:
+        """From the foot of the centre of mass to the left end of the base, b + e_c [m]."""
+        return self.half_width + self.eccentricity
+
+    @property
+    def right(self) -> float:
+        """From there to the right end, b - e_c [m]."""
+        return self.half_width - self.eccentricity
+
+    @property
     def radius(self) -> float:
-        """R0, from a corner to the centre of mass [m]."""
-        return math.hypot(self.half_width, self.half_height)
+        """R0, from a corner to the centre of mass, were that above the middle [m]."""
+        return math.hypot(self.half_width, self.centre_height)
 
     @property
     def overturning_angle(self) -> float:
-        """Overturning angle theta = arctan(b/h) [rad], Eq. (1)."""
-        return math.atan2(self.width, self.height)
+        """Overturning angle theta = arctan(b/h) [rad], Eq. (1); the lesser of both sides."""
+        return math.atan2(min(self.left, self.right), self.centre_height)
 
     @property
     def inertia(self) -> float:
@@ -74,9 +96,47 @@ class BlockSI:
 
     @property
     def maximum_restitution(self) -> float:
-        """eps_max = (1 + mu cos 2 theta)/(1 + mu), Eq. (4)."""
-        mu = self.shape_factor
-        return (1.0 + mu * math.cos(2.0 * self.overturning_angle)) / (1.0 + mu)
+        """eps_max = (1 + mu cos 2 theta)/(1 + mu), Eq. (4); the lesser of both directions."""
+        return min(greatest_restitutions(self))
+
+
+class Shape(Protocol):
+    """What the restitution of a body follows from."""
+
+    @property
+    def shape_factor(self) -> float:
+        """Mu."""
+        ...
+
+    @property
+    def half_width(self) -> float:
+        """Of the base, b [m]."""
+        ...
+
+    @property
+    def centre_height(self) -> float:
+        """H [m]."""
+        ...
+
+    @property
+    def eccentricity(self) -> float:
+        """e_c [m]."""
+        ...
+
+
+def greatest_restitutions(body: Shape) -> tuple[float, float]:
+    """Give the ratio of angular velocities at an impact on the left and on the right corner.
+
+    Of a rigid body that rolls over without bouncing, :eq:`eq-eccentric-impact`; Eq. (4) where
+    the centre of mass is above the middle.
+    """
+    mu, e = body.shape_factor, body.eccentricity
+    b, h = body.half_width, body.centre_height
+    square = b * b + h * h
+    kept = 1.0 + mu * (math.cos(2.0 * math.atan2(b, h)) + e * e / square)
+    onto_left = 1.0 + mu * (1.0 + e * (e + 2.0 * b) / square)
+    onto_right = 1.0 + mu * (1.0 + e * (e - 2.0 * b) / square)
+    return kept / onto_left, kept / onto_right
 
 
 class Block(Component):
@@ -95,6 +155,11 @@ class Block(Component):
     A block rocks only while the greatest restitution, Eq. (4), is positive; for
     a solid rectangle that is H/B > sqrt(2)/2, Eq. (5).
 
+    ``centre_of_mass=("0.7 m", "0.05 m")`` stands for `centre_height` and `eccentricity`
+    together. A centre of mass that is not in the middle leaves the moment of inertia about it
+    that of the solid rectangle, unless `inertia` or `shape_factor` tells another;
+    :meth:`from_outline`, :meth:`from_parts` and :meth:`cylinder` work both out.
+
     Examples
     --------
     >>> block = Block(width="2.4254 m", height="9.7014 m", mass="50 t")
@@ -109,7 +174,7 @@ class Block(Component):
     alternatives: ClassVar[tuple[OneOf, ...]] = (OneOf("shape_factor", "inertia", required=False),)
 
     width = Parameter(LENGTH, POSITIVE, doc="Base width B.")
-    height = Parameter(LENGTH, POSITIVE, doc="Height H; the centre of mass stands at H/2.")
+    height = Parameter(LENGTH, POSITIVE, doc="Height H.")
     mass = Parameter(MASS, POSITIVE, doc="Mass m.")
     shape_factor = Ratio(
         POSITIVE,
@@ -121,6 +186,17 @@ class Block(Component):
         INERTIA,
         POSITIVE,
         doc="Moment of inertia about the centre of mass I_O, instead of `shape_factor`.",
+        default=DERIVED,
+    )
+    centre_height = Parameter(
+        LENGTH,
+        POSITIVE,
+        doc="Height of the centre of mass above the base; H/2 unless given.",
+        default=DERIVED,
+    )
+    eccentricity = Parameter(
+        LENGTH,
+        doc="How far the centre of mass is to the right of the middle of the base.",
         default=DERIVED,
     )
     radius = SIProperty(LENGTH, "R0, distance from a corner to the centre of mass.")
@@ -137,17 +213,66 @@ class Block(Component):
         mass: QuantityLike,
         shape_factor: RatioLike | None = None,
         inertia: QuantityLike | None = None,
+        centre_of_mass: tuple[QuantityLike, QuantityLike] | None = None,
+        centre_height: QuantityLike | None = None,
+        eccentricity: QuantityLike | None = None,
     ) -> None:
+        if centre_of_mass is not None:
+            centre_height, eccentricity = _pair(
+                type(self).__name__, centre_of_mass, centre_height, eccentricity
+            )
         super().__init__(
-            width=width, height=height, mass=mass, shape_factor=shape_factor, inertia=inertia
+            width=width,
+            height=height,
+            mass=mass,
+            shape_factor=shape_factor,
+            inertia=inertia,
+            centre_height=centre_height,
+            eccentricity=eccentricity,
         )
 
+    @property
+    def centre_of_mass(self) -> tuple[Quantity, Quantity]:
+        """Height above the base, and how far to the right of its middle [m]."""
+        return self.centre_height, self.eccentricity
+
+    def replace(self, **changes: Any) -> Self:
+        """Build a block of which some parameters are others.
+
+        Parameters
+        ----------
+        **changes
+            Arguments of the constructor.
+
+        Returns
+        -------
+        Block
+
+        Raises
+        ------
+        TypeError, UnitsError, ComponentError
+            As the constructor.
+        """
+        if "centre_of_mass" in changes:
+            height, beside = changes.get("centre_height"), changes.get("eccentricity")
+            place = _pair(type(self).__name__, changes.pop("centre_of_mass"), height, beside)
+            changes |= {"centre_height": place[0], "eccentricity": place[1]}
+        return super().replace(**changes)
+
     def _numbers(self, given: SIValues) -> BlockSI:
+        owner = type(self).__name__
+        height = 0.5 * given.height if given.centre_height is None else given.centre_height
+        beside = 0.0 if given.eccentricity is None else given.eccentricity
+        _check_centre(given.width, given.height, height, beside, owner)
+        diagonal = math.hypot(given.width, 2.0 * height)
         mu: float = given.shape_factor or SOLID_RECTANGLE_SHAPE_FACTOR
         if given.inertia is not None:
-            diagonal = math.hypot(given.width, given.height)
             mu = given.mass * diagonal * (diagonal / (4.0 * given.inertia))
-        si = BlockSI(given.width, given.height, given.mass, mu)
+        elif given.shape_factor is None and height != 0.5 * given.height:
+            # the inertia of the rectangle, for want of another
+            whole = math.hypot(given.width, given.height)
+            mu *= (diagonal / whole) ** 2
+        si = BlockSI(given.width, given.height, given.mass, mu, height, beside)
         _check_representable(si, type(self).__name__)
         _check_rocks(si, type(self).__name__)
         return si
@@ -234,6 +359,194 @@ class Block(Component):
             shape_factor=shape_factor,
         )
 
+    @classmethod
+    def from_outline(
+        cls,
+        points: Points,
+        *,
+        unit: str | None = None,
+        density: QuantityLike | None = None,
+        depth: QuantityLike | None = None,
+        mass: QuantityLike | None = None,
+    ) -> Self:
+        """Build a body from its outline in the plane of rocking.
+
+        Parameters
+        ----------
+        points : sequence of (x, y), or array with a unit
+            Corners of the outline in their order around it, either way round: pairs of
+            lengths, a Quantity of shape (n, 2), or such an array and a unit; x to the right,
+            y upwards, from any origin. The first need not be repeated [m].
+        unit : str, optional
+            Of points that are bare numbers.
+        density, depth : str or Quantity, optional
+            Mass per volume [kg m^-3], and size perpendicular to the plane [m].
+        mass : str or Quantity, optional
+            Mass, instead of both, spread evenly over the outline [kg].
+
+        Returns
+        -------
+        Block
+
+        Raises
+        ------
+        UnitsError
+            A coordinate or another value has no unit, or one of the wrong kind.
+        ComponentError
+            The outline has fewer than three points or no area, crosses or touches itself, or
+            stands on a single point; the centre of mass is not above the base; not exactly
+            one of mass and density is given; or as for :class:`Block`.
+
+        Warns
+        -----
+        ModelWarning
+            A corner beyond the base would touch the ground before the body overturns; the
+            model lets it through.
+
+        Notes
+        -----
+        The base goes from the leftmost to the rightmost of the lowest corners, so that a body
+        on feet stands on these. Heights that differ by 1e-9 of the size or less are one. Mass,
+        centre of mass and moment of inertia are exact, :eq:`eq-polygon-inertia`. A base that
+        is inclined is refused.
+
+        Examples
+        --------
+        >>> wall = Block.from_outline(
+        ...     [("0 m", "0 m"), ("0.6 m", "0 m"), ("0.2 m", "2 m"), ("0 m", "2 m")],
+        ...     density="2400 kg/m^3",
+        ...     depth="1 m",
+        ... )
+        >>> round(wall.mass.m_as("kg"), 6), round(wall.eccentricity.m_as("m"), 4)
+        (1920.0, -0.0833)
+        """
+        given = {"mass": mass, "density": density, "depth": depth}
+        places = points if unit is None else (points, unit)
+        return outline_body(places, given, f"{cls.__name__}.from_outline").build(cls)
+
+    @classmethod
+    def cylinder(
+        cls,
+        *,
+        diameter: QuantityLike,
+        height: QuantityLike,
+        mass: QuantityLike | None = None,
+        density: QuantityLike | None = None,
+        wall_thickness: QuantityLike | None = None,
+    ) -> Self:
+        """Build a circular cylinder that rocks in a plane, such as a drum or a column.
+
+        Parameters
+        ----------
+        diameter, height : str or Quantity
+            Outer size [m].
+        mass : str or Quantity, optional
+            Mass [kg].
+        density : str or Quantity, optional
+            Mass per volume, instead of `mass` [kg m^-3].
+        wall_thickness : str or Quantity, optional
+            Of a tube, open at both ends; solid unless given [m].
+
+        Returns
+        -------
+        Block
+
+        Raises
+        ------
+        UnitsError
+            A value has no unit, or one of the wrong kind.
+        ComponentError
+            A value is out of range, not exactly one of mass and density is given, or as for
+            :class:`Block`.
+
+        Notes
+        -----
+        Moment of inertia :eq:`eq-cylinder-inertia`. A real cylinder that comes down on its base
+        rolls on along its rim, to a side (Srinivasan and Ruina 2008); the model keeps it in a
+        plane, where it rocks from one end of a diameter to the other.
+
+        Examples
+        --------
+        >>> drum = Block.cylinder(diameter="1 m", height="3 m", density="2700 kg/m^3")
+        >>> round(drum.mass.m_as("t"), 3), round(drum.shape_factor, 3)
+        (6.362, 3.077)
+        """
+        given = {
+            "diameter": diameter,
+            "height": height,
+            "mass": mass,
+            "density": density,
+            "wall_thickness": wall_thickness,
+        }
+        return cylinder_body(given, f"{cls.__name__}.cylinder").build(cls)
+
+    @classmethod
+    def from_parts(cls, parts: Mapping[str, Part], *, base: Place | None = None) -> Self:
+        """Build a body from parts that are fixed to one another, such as a cabinet and its load.
+
+        Parameters
+        ----------
+        parts : mapping of str to mapping
+            Every part by its name, told by one of
+
+            - ``width`` and ``height``, for a rectangle, with its mass;
+            - ``outline``, as the points of :meth:`from_outline`, with its mass;
+            - ``body``, another Block, with its own mass, centre of mass and inertia;
+            - ``mass`` alone for a point, or with ``inertia`` about its centre of mass.
+
+            Mass is ``mass``, or ``density`` with ``depth``. ``at=(x, y)`` says where it is: the
+            middle of the lower edge of a rectangle or of the base of a body, the origin of an
+            outline, the centre of a point. x counts to the right, y from the ground up; both are
+            zero unless given.
+        base : pair of str or Quantity, optional
+            x of its left and of its right end, where a body stands on more or less than the
+            parts show, such as legs; unless given it goes from the leftmost to the rightmost
+            corner on the ground [m].
+
+        Returns
+        -------
+        Block
+
+        Raises
+        ------
+        UnitsError
+            A value has no unit, or one of the wrong kind.
+        ComponentError
+            A part is not told as above, reaches below the ground or stands beyond the base;
+            none stands on the ground and no base is given; the centre of mass is not above
+            the base; or as for :class:`Block`.
+
+        Warns
+        -----
+        ModelWarning
+            A corner of a part beyond the base would touch the ground before the body
+            overturns; the model lets it through.
+
+        Notes
+        -----
+        Masses add up by :eq:`eq-parts-centre` and :eq:`eq-parts-inertia`. Whether parts overlap
+        is not checked: books stand within a bookcase. Of a ``body`` its base and its height are
+        known, not its outline.
+
+        Examples
+        --------
+        >>> bookcase = Block.from_parts(
+        ...     {
+        ...         "case": {"width": "0.8 m", "height": "1.9 m", "mass": "40 kg"},
+        ...         "books": {
+        ...             "width": "0.4 m",
+        ...             "height": "0.3 m",
+        ...             "mass": "25 kg",
+        ...             "at": ("0.15 m", "1.5 m"),
+        ...         },
+        ...         "clock": {"mass": "5 kg", "at": ("-0.3 m", "1.9 m")},
+        ...     }
+        ... )
+        >>> print(f"{bookcase.centre_height:.4f}, {bookcase.eccentricity:.4f}")
+        1.2679 meter, 0.0321 meter
+        """
+        return body_of_parts(parts, base, f"{cls.__name__}.from_parts").build(cls)
+
     @property
     def slenderness(self) -> float:
         """Height over width, H/B [1]."""
@@ -243,6 +556,33 @@ class Block(Component):
     def maximum_restitution(self) -> float:
         """eps_max of Eq. (4) [1]."""
         return self.si.maximum_restitution
+
+
+def _pair(
+    owner: str, given: object, height: object, eccentricity: object
+) -> tuple[QuantityLike, QuantityLike]:
+    """Read a place of the centre of mass: height above the base, and eccentricity."""
+    if height is not None or eccentricity is not None:
+        msg = f"{owner}: centre_of_mass stands for centre_height and eccentricity; give it alone"
+        raise ComponentError(msg)
+    if isinstance(given, tuple | list) and len(cast("tuple[object, ...]", given)) == 2:
+        return cast("tuple[QuantityLike, QuantityLike]", given)
+    msg = (
+        f"{owner}: centre_of_mass needs two lengths, the height above the base and how far it is "
+        f"to the right of the middle, such as ('0.7 m', '0.05 m'); got {shown(given)}"
+    )
+    raise ComponentError(msg)
+
+
+def _check_centre(width: float, height: float, above: float, beside: float, owner: str) -> None:
+    if above < height and abs(beside) < 0.5 * width:
+        return
+    msg = (
+        f"{owner}: the centre of mass, {above:.6g} m above the base and {beside:.6g} m to the "
+        f"right of its middle, is not within {height:.6g} m of height and {0.5 * width:.6g} m to "
+        "both sides"
+    )
+    raise ComponentError(msg)
 
 
 def _check_representable(si: BlockSI, owner: str) -> None:

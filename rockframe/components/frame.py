@@ -8,22 +8,14 @@ import xarray as xr
 
 from rockframe.components.base import replaced
 from rockframe.components.block import Block
-from rockframe.components.frame_building import Building, listed_building, regular_building
+from rockframe.components.frame_building import Building, building_of
 from rockframe.components.frame_members import Member
-from rockframe.components.frame_outline import outline_cautions
 from rockframe.components.frame_regular import INFILL_THICKNESS, SLAB_THICKNESS, RegularFrame
 from rockframe.components.frame_table import members_table
 from rockframe.components.parameters import DERIVED, Ratio
 from rockframe.components.values import Quantity
 from rockframe.errors import ComponentError, SchemaError, shown
-from rockframe.units import (
-    LENGTH,
-    MASS,
-    POSITIVE,
-    QuantityLike,
-    RatioLike,
-    quantity,
-)
+from rockframe.units import LENGTH, POSITIVE, QuantityLike, RatioLike, quantity
 
 _LEAST_SHAPE_FACTOR = 1.0 - 1e-9  # a shape factor derived from an inertia is rounded
 
@@ -83,6 +75,7 @@ class FrameEquivalent(Block):
         slab_thickness: QuantityLike = SLAB_THICKNESS,
         infill_thickness: QuantityLike | None = INFILL_THICKNESS,
         density: QuantityLike | None = None,
+        centre_of_mass: str | None = None,
     ) -> Self:
         """Build the equivalent of a building from what it consists of.
 
@@ -117,6 +110,11 @@ class FrameEquivalent(Block):
             Infill walls; None for no walls [m].
         density : str or Quantity, optional
             Mass per volume of all members of a regular frame [kg m^-3].
+        centre_of_mass : {"members", "middle"}, optional
+            ``"members"`` takes the centre of mass, its height and how far it is beside the
+            middle, where the members have it: the default for a list of members.
+            ``"middle"`` takes it half way up the middle of the building, as the paper does: the
+            default for a regular frame.
 
         Returns
         -------
@@ -134,19 +132,18 @@ class FrameEquivalent(Block):
         Warns
         -----
         ModelWarning
-            The centre of mass lies more than H/10 above or below H/2, or more
-            than B/10 beside the middle.
+            With ``"middle"``: the centre of mass lies more than H/10 above or below
+            H/2, or more than B/10 beside the middle.
 
         Notes
         -----
-        Shape factor :eq:`eq-frame-shape-factor`, space proportion
-        :eq:`eq-frame-space-proportion`. The inertia is about O, half way up the
-        middle of the building, where the block's centre of mass is taken to
-        be. That of a building with heavy floors lies higher
-        (:attr:`centre_of_mass_height`): by 2.5 to 5.7 % of H in the paper's
-        frames, by up to 12 % without their walls. At 10 % of H the real
-        building overturns at a slope a sixth below tan(theta); from there on a
-        warning says so.
+        With ``"middle"``, shape factor :eq:`eq-frame-shape-factor`: the inertia is about O,
+        half way up the middle of the building. The centre of mass of a building with heavy
+        floors lies higher (:attr:`centre_of_mass_height`): by 2.5 to 5.7 % of H in the paper's
+        frames, by up to 12 % without their walls. At 10 % of H the real building overturns at
+        a slope a sixth below tan(theta); from there on a warning says so. With ``"members"``,
+        shape factor :eq:`eq-frame-about-centre`. Space proportion
+        :eq:`eq-frame-space-proportion`.
 
         Examples
         --------
@@ -176,6 +173,7 @@ class FrameEquivalent(Block):
             beam_height=beam_height,
             beam_width=beam_width,
             density=density,
+            centre_of_mass=centre_of_mass,
         )
         frame._warn()
         return frame
@@ -269,7 +267,7 @@ class FrameEquivalent(Block):
 
     @property
     def centre_of_mass_height(self) -> Quantity | None:
-        """Height of the members' centre of mass; the model takes H/2 instead [m]."""
+        """Height of the members' centre of mass; `centre_height` is the model's [m]."""
         if self._building is None:
             return None
         return quantity(self._building.centre_of_mass[1], LENGTH)
@@ -281,8 +279,8 @@ class FrameEquivalent(Block):
         -------
         xarray.Dataset
             Dimension ``member``, labelled by name and ``kind``. ``inertia`` is about the
-            member's own centre, ``inertia_about_middle`` about O, where the
-            latter's sum is m R0^2/mu. What is unknown is NaN. The attributes
+            member's own centre, ``inertia_about_middle`` about O, half way up
+            the middle of the building. What is unknown is NaN. The attributes
             hold the sums.
 
         Raises
@@ -308,27 +306,18 @@ class FrameEquivalent(Block):
                 "shape_factor": self.si.shape_factor,
                 "space_proportion": self.space_proportion,
                 "centre_of_mass_height": building.centre_of_mass[1],
+                "centre_of_mass_beside_middle": building.centre_of_mass[0],
             },
         )
 
     @classmethod
-    def _of_members(cls, members: object = None, **measures: Any) -> Self:
+    def _of_members(
+        cls, members: object = None, *, centre_of_mass: object = None, **measures: Any
+    ) -> Self:
         owner = f"{cls.__name__}.from_members"
-        if members is None:
-            building = regular_building(measures, owner)
-        else:
-            building = listed_building(members, measures, owner)
-        outline = building.outline
-        outline.check(building.members, owner)
+        building = building_of(members, centre_of_mass, measures, owner)
         frame = object.__new__(cls)
-        frame._fill(
-            {
-                "width": f"{outline.width!r} {LENGTH.unit}",
-                "height": f"{outline.height!r} {LENGTH.unit}",
-                "mass": f"{sum(member.si.mass for member in building.members)!r} {MASS.unit}",
-                "shape_factor": outline.shape_factor(building.members),
-            }
-        )
+        frame._fill(building.block_arguments(owner))
         object.__setattr__(frame, "_building", building)
         return frame
 
@@ -343,8 +332,10 @@ class FrameEquivalent(Block):
 
     def _cautions(self) -> list[str]:
         if self._building is not None:
-            return outline_cautions(self._building.outline, self._building.members)
-        if self.si.shape_factor >= _LEAST_SHAPE_FACTOR:
+            return self._building.cautions()
+        si = self.si
+        in_the_middle = si.centre_height == 0.5 * si.height and si.eccentricity == 0.0
+        if self.si.shape_factor >= _LEAST_SHAPE_FACTOR or not in_the_middle:
             return super()._cautions()
         return [
             *super()._cautions(),

@@ -6,12 +6,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from rockframe.components.frame_members import Member
+from rockframe.components.frame_members import Member, MemberSI
+from rockframe.components.shapes.masses import centre_of_mass, mean_by_mass
 from rockframe.errors import ComponentError
 from rockframe.units import INERTIA
 
 _ROUNDING: Final = 1e-9  # relative to the outline
 _FAR: Final = 0.1  # offset of the centre of mass, relative to the outline, that is warned about
+_REMEDY: Final = "centre_of_mass='members' takes it where it is"
 
 
 @dataclass(frozen=True)
@@ -27,6 +29,11 @@ class Outline:
         """R0, from the middle to a corner [m]."""
         return 0.5 * math.hypot(self.width, self.height)
 
+    @property
+    def middle(self) -> tuple[float, float]:
+        """O, half way up the middle: coordinates x, y [m]."""
+        return 0.0, 0.5 * self.height
+
     def shape_factor(self, members: Sequence[Member]) -> float:
         """Mu of :eq:`eq-frame-shape-factor`, summed up as :eq:`eq-frame-mean` [1].
 
@@ -40,11 +47,27 @@ class Outline:
         float
             1 or more.
         """
-        # every share is at most mass/total: sizes of any magnitude stay representable
-        total = sum(member.si.mass for member in members)
-        inverse = math.fsum(self._spread(member) * (member.si.mass / total) for member in members)
+        inverse = self._mean_spread(members, self.middle, self.radius)
         # members may reach over the outline by rounding
         return max(1.0, 1.0 / inverse) if inverse > 0.0 else math.inf
+
+    def shape_factor_about_centre(self, members: Sequence[Member]) -> float:
+        """Mu of :eq:`eq-frame-about-centre`, about the members' own centre of mass [1].
+
+        Parameters
+        ----------
+        members : sequence of Member
+            Members that lie within the outline.
+
+        Returns
+        -------
+        float
+            Infinite if all mass is in one point.
+        """
+        centre = self.centre_of_mass(members)
+        radius = math.hypot(0.5 * self.width, centre[1])
+        inverse = self._mean_spread(members, centre, radius)
+        return 1.0 / inverse if inverse > 0.0 else math.inf
 
     def space_proportion(self, members: Sequence[Member]) -> float | None:
         """Chi of :eq:`eq-frame-space-proportion`; None where a volume is unknown [1]."""
@@ -54,10 +77,7 @@ class Outline:
 
     def centre_of_mass(self, members: Sequence[Member]) -> tuple[float, float]:
         """Coordinates x, y of the members' centre of mass [m]."""
-        total = sum(member.si.mass for member in members)
-        x = math.fsum(member.si.x * (member.si.mass / total) for member in members)
-        y = math.fsum(member.si.y * (member.si.mass / total) for member in members)
-        return x, y
+        return centre_of_mass([member.si for member in members])
 
     def check(self, members: Sequence[Member], owner: str) -> None:
         """Refuse members that do not make a building of this outline.
@@ -94,7 +114,7 @@ class Outline:
                 f"{self.width:.6g} m by {self.depth:.6g} m by {self.height:.6g} m; do they overlap?"
             )
             raise ComponentError(msg)
-        if not any(self._spread(member) for member in members):
+        if not any(_spread(member.si, self.middle, self.radius) for member in members):
             msg = f"{owner}: all mass is in the middle of the building, so that it has no inertia"
             raise ComponentError(msg)
 
@@ -105,14 +125,13 @@ class Outline:
             return None
         return (si.width / self.width) * (si.height / self.height) * (si.depth / self.depth)
 
-    def _spread(self, member: Member) -> float:
-        """Mean square distance of a member's mass from O over R0^2."""
-        si = member.si
-        if si.width is None or si.height is None:
-            turning = si.inertia / si.mass / self.radius / self.radius
-        else:
-            turning = (math.hypot(si.width, si.height) / self.radius) ** 2 / 12.0
-        return turning + (si.distance(self.height) / self.radius) ** 2
+    def _mean_spread(
+        self, members: Sequence[Member], about: tuple[float, float], radius: float
+    ) -> float:
+        """Mean square distance of all mass from a point, over the square of a radius."""
+        return mean_by_mass(
+            [member.si for member in members], lambda si: _spread(si, about, radius)
+        )
 
     def _check_within(self, member: Member, owner: str) -> None:
         si = member.si
@@ -136,7 +155,7 @@ class Outline:
                 f"building's {self.depth:.6g} m"
             )
             raise ComponentError(msg)
-        if self._spread(member) > 1.0 + _ROUNDING:
+        if _spread(si, self.middle, self.radius) > 1.0 + _ROUNDING:
             distance = si.distance(self.height)
             largest = si.mass * (self.radius - distance) * (self.radius + distance)
             msg = (
@@ -145,6 +164,15 @@ class Outline:
                 f"{INERTIA.unit} fits into the building"
             )
             raise ComponentError(msg)
+
+
+def _spread(si: MemberSI, about: tuple[float, float], radius: float) -> float:
+    """Mean square distance of a member's mass from a point, over the square of a radius."""
+    if si.width is None or si.height is None:
+        turning = si.inertia / si.mass / radius / radius
+    else:
+        turning = (math.hypot(si.width, si.height) / radius) ** 2 / 12.0
+    return turning + (math.hypot(si.x - about[0], si.y - about[1]) / radius) ** 2
 
 
 def outline_cautions(outline: Outline, members: Sequence[Member]) -> list[str]:
@@ -169,11 +197,12 @@ def outline_cautions(outline: Outline, members: Sequence[Member]) -> list[str]:
             f"the centre of mass lies {y:.4g} m above the base, at {0.5 + above:.3g} of the "
             "height; the model takes it at half the height, and an overturning angle of "
             f"{math.atan2(outline.width, outline.height):.4g} rad instead of "
-            f"{math.atan2(0.5 * outline.width, y):.4g} rad"
+            f"{math.atan2(0.5 * outline.width, y):.4g} rad; {_REMEDY}"
         )
     if abs(beside) > _FAR:
         cautions.append(
             f"the centre of mass lies {abs(x):.4g} m {'right' if x > 0.0 else 'left'} of the "
-            f"middle of a base of {outline.width:.4g} m; the model takes it in the middle"
+            f"middle of a base of {outline.width:.4g} m; the model takes it in the middle; "
+            f"{_REMEDY}"
         )
     return cautions

@@ -38,6 +38,7 @@ REGULAR = {
 }
 UNEQUAL = {key: value for key, value in REGULAR.items() if key not in ("storeys", "height")}
 OUTLINE = {"width": "4 m", "height": "10 m"}
+MIDDLE = {**OUTLINE, "centre_of_mass": "middle"}
 
 
 def core(**changes):
@@ -71,6 +72,7 @@ def examples():
             infill_thickness="0.2 m",
         ),
         "members": FrameEquivalent.from_members([core(), tank()], **OUTLINE),
+        "members, in the middle": FrameEquivalent.from_members([core(), tank()], **MIDDLE),
         "members with depth": FrameEquivalent.from_members([core()], **OUTLINE, depth="4 m"),
         "member": core(),
         "member by inertia": tank(),
@@ -168,7 +170,11 @@ def test_the_members_survive_the_way_through_text(name):
 def test_a_frame_is_a_block(name):
     frame = EXAMPLES[name]
     block = Block(
-        width=frame.width, height=frame.height, mass=frame.mass, shape_factor=frame.shape_factor
+        width=frame.width,
+        height=frame.height,
+        mass=frame.mass,
+        shape_factor=frame.shape_factor,
+        centre_of_mass=frame.centre_of_mass,
     )
     assert isinstance(frame, Block)
     assert frame.si == block.si or frame.si.shape_factor == pytest.approx(3.0)
@@ -188,7 +194,11 @@ def test_a_frame_is_not_equal_to_the_block_with_its_numbers():
 def test_a_system_takes_a_frame_and_gives_the_same_numbers(name):
     frame = EXAMPLES[name]
     block = Block(
-        width=frame.width, height=frame.height, mass=frame.mass, shape_factor=frame.shape_factor
+        width=frame.width,
+        height=frame.height,
+        mass=frame.mass,
+        shape_factor=frame.shape_factor,
+        centre_of_mass=frame.centre_of_mass,
     )
     pads = rf.TwoSpringSupport(frequency_ratio=40, damping_ratio=0.10)
     runs = [
@@ -317,7 +327,10 @@ def test_the_shape_factor_is_one_or_more_and_that_of_a_sum_over_points(building)
     assume(points < 1e4)  # else all mass is in the middle, where the points are too coarse
     try:
         frame = FrameEquivalent.from_members(
-            as_members(rectangles), width=f"{width!r} m", height=f"{height!r} m"
+            as_members(rectangles),
+            width=f"{width!r} m",
+            height=f"{height!r} m",
+            centre_of_mass="middle",
         )
     except rf.ComponentError as error:
         assert "cannot rock" in str(error)  # noqa: PT017
@@ -379,7 +392,7 @@ def test_cutting_a_member_in_two_changes_nothing():
 
 
 def test_the_numbers_of_a_small_building_by_hand():
-    frame = FrameEquivalent.from_members([core(), tank()], **OUTLINE, depth="5 m")
+    frame = FrameEquivalent.from_members([core(), tank()], **MIDDLE, depth="5 m")
     about_middle = 10e3 * 104.0 / 12.0 + 800.0 + 1e3 * (0.25 + 4.0)
     assert frame.mass.m_as("kg") == 11e3
     assert frame.shape_factor == pytest.approx(11e3 * 29.0 / about_middle, rel=1e-14)
@@ -407,23 +420,78 @@ def test_a_high_centre_of_mass_is_warned_about():
     for y, warned in (("5.99 m", False), ("6.01 m", True), ("3.99 m", True), ("4.01 m", False)):
         point = tank(y=y, x="0 m")
         if not warned:
-            FrameEquivalent.from_members([point], **OUTLINE)
+            FrameEquivalent.from_members([point], **MIDDLE)
             continue
         with pytest.warns(rf.ModelWarning, match="above the base") as caught:
-            frame = FrameEquivalent.from_members([point], **OUTLINE)
+            frame = FrameEquivalent.from_members([point], **MIDDLE)
         assert len(caught) == 1
         assert caught[0].filename == __file__
         assert component_from_dict(frame.to_dict()) == frame  # silent
     with pytest.warns(rf.ModelWarning, match=r"0\.3805 rad instead of 0\.2783 rad"):
-        FrameEquivalent.from_members([tank(y="7 m", x="0 m")], **OUTLINE)
+        FrameEquivalent.from_members([tank(y="7 m", x="0 m")], **MIDDLE)
 
 
 def test_a_centre_of_mass_beside_the_middle_is_warned_about():
-    FrameEquivalent.from_members([tank(y="5 m", x="-0.39 m")], **OUTLINE)
+    FrameEquivalent.from_members([tank(y="5 m", x="-0.39 m")], **MIDDLE)
     with pytest.warns(rf.ModelWarning, match=r"0\.41 m left of the middle"):
-        FrameEquivalent.from_members([tank(y="5 m", x="-0.41 m")], **OUTLINE)
+        FrameEquivalent.from_members([tank(y="5 m", x="-0.41 m")], **MIDDLE)
     with pytest.warns(rf.ModelWarning, match=r"right of the middle"):
-        FrameEquivalent.from_members([tank(y="5 m", x="0.41 m")], **OUTLINE)
+        FrameEquivalent.from_members([tank(y="5 m", x="0.41 m")], **MIDDLE)
+
+
+def test_the_centre_of_mass_is_where_the_members_have_it():
+    frame = EXAMPLES["members"]
+    x, y = 0.5 / 11.0, 57.0 / 11.0
+    # tank and core about the common centre, by the parallel-axis theorem
+    inertia = 800.0 + 1e3 * ((0.5 - x) ** 2 + (7.0 - y) ** 2)
+    inertia += 10e3 * (104.0 / 12.0 + x**2 + (5.0 - y) ** 2)
+    assert frame.eccentricity.m_as("m") == pytest.approx(x, rel=1e-14)
+    assert frame.centre_height.m_as("m") == pytest.approx(y, rel=1e-14)
+    assert frame.inertia.m_as("kg*m^2") == pytest.approx(inertia, rel=1e-14)
+    assert frame.centre_of_mass_height == frame.centre_height
+    middle = frame.replace(centre_of_mass="middle")
+    assert middle == EXAMPLES["members, in the middle"]
+    assert middle.eccentricity.m_as("m") == 0.0
+    assert middle.centre_height.m_as("m") == 5.0
+    # from O to the centre of mass
+    shift = 11e3 * (x**2 + (y - 5.0) ** 2)
+    assert middle.inertia.m_as("kg*m^2") == pytest.approx(inertia + shift, rel=1e-14)
+
+
+def test_a_regular_frame_is_as_in_the_paper_unless_told_otherwise():
+    regular = EXAMPLES["regular"]
+    told = FrameEquivalent.from_members(**REGULAR, centre_of_mass="middle")
+    assert told == regular
+    assert told.si == regular.si
+    assert (regular.si.centre_height, regular.si.eccentricity) == (4.5, 0.0)
+    own = FrameEquivalent.from_members(**REGULAR, centre_of_mass="members")
+    listed = FrameEquivalent.from_members(regular.members, width="4 m", height="9 m")
+    assert own.si == listed.si
+    assert own != regular
+    assert own.si.eccentricity == 0.0
+    assert own.centre_height == regular.centre_of_mass_height
+    assert component_from_dict(json.loads(json.dumps(own.to_dict()))) == own
+    for bad in ("paper", ("5 m", "0 m"), 3):
+        with pytest.raises(rf.ComponentError, match="must be 'members' or 'middle'"):
+            FrameEquivalent.from_members(**REGULAR, centre_of_mass=bad)
+
+
+def test_a_taller_left_column_moves_the_centre_of_mass_to_the_left():
+    left = core(name="left", x="-1.5 m", y="5 m", width="0.4 m", height="10 m")
+    right = core(name="right", mass="6 t", x="1.5 m", y="3 m", width="0.4 m", height="6 m")
+    frame = FrameEquivalent.from_members([left, right], **OUTLINE)
+    assert frame.eccentricity.m_as("m") == pytest.approx(-1.5 * 4.0 / 16.0, rel=1e-14)
+    assert frame.centre_height.m_as("m") == pytest.approx(68.0 / 16.0, rel=1e-14)
+    mirrored = [
+        member.replace(x=-1 * member.x, name=f"mirrored {member.name}") for member in (left, right)
+    ]
+    other = FrameEquivalent.from_members(mirrored, **OUTLINE)
+    assert other.si == dataclasses.replace(frame.si, eccentricity=-frame.si.eccentricity)
+
+
+def test_all_mass_in_one_point_is_refused():
+    with pytest.raises(rf.ComponentError, match="all mass is in one point"):
+        FrameEquivalent.from_members([tank(inertia="0 kg*m^2")], **OUTLINE)
 
 
 # the regular frame --------------------------------------------------------------------------

@@ -1,0 +1,1 @@
+"""Bodies as they are: mass, centre of mass, inertia and base from their shape."""

@@ -1,0 +1,155 @@
+"""Points, places and masses of shapes, as users give them."""
+
+import math
+from collections.abc import Iterable, Mapping
+from typing import Any, Final, TypeAlias
+
+import numpy as np
+import pint
+
+from rockframe.components.alternatives import OneOf
+from rockframe.components.shapes.polygon import Array
+from rockframe.errors import ComponentError, UnitsError, shown
+from rockframe.units import (
+    DENSITY,
+    LENGTH,
+    MASS,
+    POSITIVE,
+    QuantityLike,
+    to_si,
+)
+
+Place: TypeAlias = tuple[QuantityLike, QuantityLike]
+Points: TypeAlias = Iterable[Place] | pint.Quantity[Any] | tuple[Any, str]
+
+MASS_WAYS: Final = OneOf("mass", ("density", "depth"))
+
+
+def read_points(given: object, *, owner: str, name: str) -> Array:
+    """Read points: pairs of lengths, or an array with a unit.
+
+    Parameters
+    ----------
+    given : sequence of pairs of str or Quantity, Quantity of shape (n, 2), or (array, unit)
+        What the user gave.
+    owner, name : str
+        For the message.
+
+    Returns
+    -------
+    ndarray, shape (n, 2)
+        [m]
+
+    Raises
+    ------
+    UnitsError
+        A coordinate has no unit, or that of something else.
+    ComponentError
+        No pairs, or a coordinate is not finite.
+    """
+    wanted = (
+        f"{owner}: {name} needs pairs of lengths, such as [('0 m', '0 m'), ('1 m', '0 m'), ...], "
+        "or an array of shape (n, 2) with a unit"
+    )
+    if isinstance(given, pint.Quantity):
+        whole: Any = given
+        factor = to_si(type(whole)(1.0, whole.units), LENGTH, owner=owner, name=name)
+        return _array(whole.magnitude, factor, wanted)
+    if isinstance(given, str | Mapping) or not isinstance(given, Iterable):
+        msg = f"{wanted}; got {shown(given)}"
+        raise ComponentError(msg)
+    each: list[Any] = list(given)
+    if len(each) == 2 and isinstance(each[1], str) and not isinstance(each[0], str):
+        return _array(each[0], to_si(f"1 {each[1]}", LENGTH, owner=owner, name=name), wanted)
+    if isinstance(given, np.ndarray):
+        msg = f"{wanted}; got {shown(given)}, bare numbers"
+        raise UnitsError(msg)
+    pairs = [read_place(one, owner=owner, name=f"{name}[{k}]") for k, one in enumerate(each)]
+    return np.array(pairs, dtype=np.float64).reshape(-1, 2)
+
+
+def read_place(given: object, *, owner: str, name: str) -> tuple[float, float]:
+    """Read a pair of lengths.
+
+    Parameters
+    ----------
+    given : pair of str or Quantity, or Quantity of shape (2,)
+        What the user gave.
+    owner, name : str
+        For the message.
+
+    Returns
+    -------
+    tuple of float
+        [m]
+
+    Raises
+    ------
+    UnitsError
+        A length has no unit, or that of something else.
+    ComponentError
+        No pair, or a length is not finite.
+    """
+    iterable = isinstance(given, Iterable) and not isinstance(given, str | Mapping)
+    if isinstance(given, pint.Quantity):
+        iterable = getattr(given.magnitude, "ndim", 0) == 1
+    pair: list[Any] = list(given) if iterable else []  # type: ignore[call-overload]
+    if len(pair) != 2:
+        msg = f"{owner}: {name} needs two lengths, such as ('0.2 m', '1.5 m'), got {shown(given)}"
+        raise ComponentError(msg)
+    x, y = (to_si(one, LENGTH, owner=owner, name=f"{name}[{k}]") for k, one in enumerate(pair))
+    return x, y
+
+
+def read_mass(given: Mapping[str, object], area: float, *, owner: str) -> float:
+    """Read a mass, or what it follows from: density, depth and the area that is seen.
+
+    Parameters
+    ----------
+    given : mapping
+        Arguments ``mass``, ``density`` and ``depth``; None or nothing for those not given.
+    area : float
+        In the plane of rocking [m^2].
+    owner : str
+        For the message.
+
+    Returns
+    -------
+    float
+        [kg]
+
+    Raises
+    ------
+    UnitsError
+        A value has no unit, or that of something else.
+    ComponentError
+        Not exactly one of mass and density, density without depth, or out of range.
+    """
+    MASS_WAYS.check(given, owner)
+
+    def positive(name: str, measure: Any) -> float:
+        return to_si(given[name], measure, owner=owner, name=name, condition=POSITIVE)
+
+    if given.get("mass") is not None:
+        return positive("mass", MASS)
+    mass = positive("density", DENSITY) * (positive("depth", LENGTH) * area)
+    if 0.0 < mass < math.inf:
+        return mass
+    msg = f"{owner}: density, depth and area give a mass of {mass:.4g} kg"
+    raise ComponentError(msg)
+
+
+def _array(values: object, factor: float, wanted: str) -> Array:
+    try:
+        array = np.asarray(values)
+    except ValueError:  # rows of different lengths
+        array = np.array([None])
+    if array.dtype.kind not in "fiu" or array.ndim != 2 or array.shape[1] != 2:
+        found = f"shape {array.shape}" if array.dtype.kind in "fiu" else shown(values)
+        msg = f"{wanted}; got {found}"
+        raise ComponentError(msg)
+    points = np.asarray(array, dtype=np.float64) * factor
+    if not np.isfinite(points).all():
+        msg = f"{wanted}; got a number that is not finite"
+        raise ComponentError(msg)
+    return points
