@@ -1,18 +1,31 @@
 """What a frame is built from: the measures of a regular one, or a list of members."""
 
 import json
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import Any, Final
+from enum import StrEnum
+from typing import Any, Final, TypeAlias
 
+from rockframe.arguments import one_of_words
 from rockframe.components.frame_members import Member
-from rockframe.components.frame_outline import Outline
+from rockframe.components.frame_outline import Outline, outline_cautions
 from rockframe.components.frame_regular import INFILL_THICKNESS, SLAB_THICKNESS, RegularFrame
+from rockframe.components.shapes.standing import CENTRED
 from rockframe.errors import ComponentError, shown
-from rockframe.units import LENGTH, POSITIVE, to_si
+from rockframe.units import LENGTH, MASS, POSITIVE, to_si
 
 _DEFAULTS: Final = {"slab_thickness": SLAB_THICKNESS, "infill_thickness": INFILL_THICKNESS}
 _OUTLINE: Final = ("width", "height", "depth")
+
+
+class CentreOfMass(StrEnum):
+    """Where the centre of mass of a frame is taken to be."""
+
+    MEMBERS = "members"
+    """Where the members have it."""
+    MIDDLE = "middle"
+    """In the middle of the outline, as in Eqs. (21) and (22)."""
 
 
 @dataclass(frozen=True)
@@ -22,15 +35,102 @@ class Building:
     members: tuple[Member, ...]
     outline: Outline
     arguments: Mapping[str, float | str]
+    taken: CentreOfMass
 
     @property
     def centre_of_mass(self) -> tuple[float, float]:
-        """Coordinates x, y [m]."""
+        """Coordinates x, y of that of the members, wherever it is taken to be [m]."""
         return self.outline.centre_of_mass(self.members)
 
+    def block_arguments(self, owner: str) -> dict[str, float | str]:
+        """Give the arguments of the equivalent block.
 
-def regular_building(measures: Mapping[str, Any], owner: str) -> Building:
-    """Build a regular frame.
+        Parameters
+        ----------
+        owner : str
+            For the message.
+
+        Returns
+        -------
+        dict
+
+        Raises
+        ------
+        ComponentError
+            All mass is in one point.
+        """
+        outline, members = self.outline, self.members
+        mass = sum(member.si.mass for member in members)
+        arguments: dict[str, float | str] = {
+            "width": f"{outline.width!r} {LENGTH.unit}",
+            "height": f"{outline.height!r} {LENGTH.unit}",
+            "mass": f"{mass!r} {MASS.unit}",
+        }
+        if self.taken is CentreOfMass.MIDDLE:
+            return {**arguments, "shape_factor": outline.shape_factor(members)}
+        x, y = self.centre_of_mass
+        if abs(x) > CENTRED * outline.width:
+            arguments["eccentricity"] = f"{x!r} {LENGTH.unit}"
+        about_centre = outline.shape_factor_about_centre(members)
+        if math.isinf(about_centre) and math.isfinite(mass):
+            msg = f"{owner}: all mass is in one point, so that the building has no inertia"
+            raise ComponentError(msg)
+        centre_height = f"{y!r} {LENGTH.unit}"
+        return {**arguments, "centre_height": centre_height, "shape_factor": about_centre}
+
+    def cautions(self) -> list[str]:
+        """Say where the centre of mass is far from where it is taken to be."""
+        if self.taken is CentreOfMass.MEMBERS:
+            return []
+        return outline_cautions(self.outline, self.members)
+
+
+def building_of(
+    members: object, centre_of_mass: object, measures: Mapping[str, Any], owner: str
+) -> Building:
+    """Build a frame from a list of its members, or a regular one.
+
+    Parameters
+    ----------
+    members : iterable of Member or of mappings, or None
+        All members; None for a regular frame.
+    centre_of_mass : str or None
+        Where it is taken to be; None for where the members have it, and in the middle of a
+        regular frame.
+    measures : mapping
+        All other arguments of :meth:`rockframe.FrameEquivalent.from_members`.
+    owner : str
+        For the message.
+
+    Returns
+    -------
+    Building
+
+    Raises
+    ------
+    UnitsError, ComponentError
+        As for :class:`RegularFrame`, :class:`Member` and :class:`FrameEquivalent`.
+    """
+    usual = CentreOfMass.MIDDLE if members is None else CentreOfMass.MEMBERS
+    taken = usual
+    if centre_of_mass is not None:
+        taken = one_of_words(CentreOfMass, centre_of_mass, owner=owner, name="centre_of_mass")
+    if members is None:
+        found, outline, arguments = regular_members(measures, owner)
+    else:
+        found, outline, arguments = listed_members(members, measures, owner)
+    if taken is not usual:
+        arguments["centre_of_mass"] = str(taken)
+    outline.check(found, owner)
+    return Building(found, outline, arguments, taken)
+
+
+_Found: TypeAlias = tuple[tuple[Member, ...], Outline, dict[str, float | str]]
+"""Members, their outline, and the arguments that give them again."""
+
+
+def regular_members(measures: Mapping[str, Any], owner: str) -> _Found:
+    """Take a regular frame apart.
 
     Parameters
     ----------
@@ -41,7 +141,8 @@ def regular_building(measures: Mapping[str, Any], owner: str) -> Building:
 
     Returns
     -------
-    Building
+    tuple of Member, Outline, dict
+        With the arguments that give the same again.
 
     Raises
     ------
@@ -61,11 +162,11 @@ def regular_building(measures: Mapping[str, Any], owner: str) -> Building:
     frame = RegularFrame(**measures)
     si = frame.si
     arguments = {name: value for name, value in frame.to_dict().items() if name != "type"}
-    return Building(frame.members, Outline(si.width, si.height, si.depth), arguments)
+    return frame.members, Outline(si.width, si.height, si.depth), arguments
 
 
-def listed_building(members: object, measures: Mapping[str, Any], owner: str) -> Building:
-    """Build a frame from a list of its members.
+def listed_members(members: object, measures: Mapping[str, Any], owner: str) -> _Found:
+    """Read a list of members, and the sizes of their building.
 
     Parameters
     ----------
@@ -78,7 +179,8 @@ def listed_building(members: object, measures: Mapping[str, Any], owner: str) ->
 
     Returns
     -------
-    Building
+    tuple of Member, Outline, dict
+        With the arguments that give the same again.
 
     Raises
     ------
@@ -113,7 +215,7 @@ def listed_building(members: object, measures: Mapping[str, Any], owner: str) ->
         for member in built
     ]
     arguments = {name: f"{value!r} {LENGTH.unit}" for name, value in vars(outline).items() if value}
-    return Building(built, outline, {**arguments, "members": json.dumps(written)})
+    return built, outline, {**arguments, "members": json.dumps(written)}
 
 
 def _member(entry: object, number: int, owner: str) -> Member:

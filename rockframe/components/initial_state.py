@@ -33,16 +33,16 @@ _TILTED: Final = Condition(
 
 @dataclass(frozen=True)
 class InitialStateSI:
-    """Initial state in SI units; ``None`` asks for vertical equilibrium."""
+    """Initial state in SI units; ``None`` asks for that at rest, or for vertical equilibrium."""
 
-    rotation: float
+    rotation: float | None
     angular_velocity: float
     vertical_displacement: float | None
     vertical_velocity: float
 
 
 class InitialState(Component):
-    """Rotation and velocities at the start of a run; all zero unless given.
+    """Rotation and velocities at the start of a run; those at rest unless given.
 
     Raises
     ------
@@ -55,7 +55,9 @@ class InitialState(Component):
     si: InitialStateSI
     noun: ClassVar[str] = "initial state"
 
-    rotation = Parameter(ANGLE, _TILTED, doc="alpha, clockwise positive.", default=None)
+    rotation = Parameter(
+        ANGLE, _TILTED, doc="alpha, clockwise positive; that at rest unless given.", default=None
+    )
     angular_velocity = Parameter(
         ANGULAR_VELOCITY, doc="Angular velocity, the rate of `rotation`.", default=None
     )
@@ -86,7 +88,7 @@ class InitialState(Component):
 
     def _numbers(self, given: SIValues) -> InitialStateSI:
         return InitialStateSI(
-            given.rotation or 0.0,
+            given.rotation,
             given.angular_velocity or 0.0,
             given.vertical_displacement,
             given.vertical_velocity or 0.0,

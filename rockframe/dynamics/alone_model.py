@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
@@ -18,19 +19,22 @@ from rockframe.dynamics.restraint import CENTRE
 
 def body_of(
     *,
-    half_width: float,
+    left: float,
+    right: float,
     height: float,
     inertia: float,
     restraint: int,
     small_rotation: bool,
     gravity: float,
 ) -> Body:
-    """Give a symmetric body as the equations take it.
+    """Give a body as the equations take it.
 
     Parameters
     ----------
-    half_width, height : float
-        b, and h of the centre of mass above the base [m].
+    left, right : float
+        From the foot of the centre of mass to the ends of the base [m].
+    height : float
+        h, of the centre of mass above the base [m].
     inertia : float
         I_O over the mass that all is measured by [m^2].
     restraint : int
@@ -46,17 +50,19 @@ def body_of(
     """
     return Body(
         height=height,
-        left=half_width,
-        right=half_width,
+        left=left,
+        right=right,
         inertia=inertia,
         gravity=gravity,
-        angle=math.atan2(half_width, height),
+        angle=math.atan2(0.5 * (left + right), height),
         restraint=CENTRE if small_rotation else restraint,
         small=small_rotation,
     )
 
 
-def alone(name: str, body: Body, base: BaseNumbers, mass: float) -> ContactModel:
+def alone(
+    name: str, body: Body, base: BaseNumbers, mass: float, rest_rotation: float = 0.0
+) -> ContactModel:
     """Assemble the model of a body on a base.
 
     Parameters
@@ -69,6 +75,8 @@ def alone(name: str, body: Body, base: BaseNumbers, mass: float) -> ContactModel
         Under the body.
     mass : float
         Of the body [kg].
+    rest_rotation : float
+        Of the body at rest, :func:`rockframe.dynamics.rest.rest_rotation` [rad].
 
     Returns
     -------
@@ -95,7 +103,7 @@ def alone(name: str, body: Body, base: BaseNumbers, mass: float) -> ContactModel
         fastest_frequency=fastest,
         damping_rate=base.damping_time * fastest**2,
         energy_scale=body.gravity * radius_of(body) * body.angle,
-        initial=_starting(part),
+        initial=_starting(part, rest_rotation),
         rounding=rounding_at(
             radius_of(body), base.settlement, _answers(body), fastest, len(base.variable_scales)
         ),
@@ -148,24 +156,28 @@ def rounding_at(
 
 
 def starting_state(part: OnBase, start: Start, own: tuple[float, ...]) -> tuple[BodyState, Mode]:
-    """Give placement, rates and mode of a body at the start of a run.
+    """Give placement, rates and mode of a body at the start of a run, whose rotation is known.
 
     Unless the start says otherwise it is in vertical equilibrium.
     """
-    body, base = part.body, part.base
-    attitude = body.attitude(start.rotation)
+    body, base, rotation = part.body, part.base, start.rotation or 0.0
+    attitude = body.attitude(rotation)
     height = start.vertical_displacement
     if height is None:
         lift = body.left * attitude.sine, -body.right * attitude.sine
         height = base.resting_height(*lift, own) - attitude.rise
-    state = BodyState(
-        start.rotation, height, 0.0, start.angular_velocity, start.vertical_velocity, 0.0
-    )
+    state = BodyState(rotation, height, 0.0, start.angular_velocity, start.vertical_velocity, 0.0)
     return state, part.standing(base.starting(body.base_line_at(state), own), state)
 
 
-def _starting(part: OnBase) -> Callable[[Start], tuple[int, Vector, Vector]]:
-    def initial(start: Start) -> tuple[int, Vector, Vector]:
+def settled(start: Start, rest_rotation: float) -> Start:
+    """Give a start whose rotation is known: that at rest, unless it says otherwise."""
+    return start if start.rotation is not None else replace(start, rotation=rest_rotation)
+
+
+def _starting(part: OnBase, rest_rotation: float) -> Callable[[Start], tuple[int, Vector, Vector]]:
+    def initial(given: Start) -> tuple[int, Vector, Vector]:
+        start = settled(given, rest_rotation)
         state = np.zeros(2 * DEGREES + part.base.variables())
         memory = np.zeros(len(MEMORY))
         body, mode = starting_state(part, start, part.base.read(state, 2 * DEGREES))
@@ -176,7 +188,7 @@ def _starting(part: OnBase) -> Callable[[Start], tuple[int, Vector, Vector]]:
         pin = part.body.pin(mode.pivot)
         memory[HELD_PLACE] = pin
         if part.is_free(mode):
-            state[HORIZONTAL] = pin + part.body.about_pin(pin, start.rotation)
+            state[HORIZONTAL] = pin + part.body.about_pin(pin, body.rotation)
         return part.number_of(mode), state, memory
 
     return initial

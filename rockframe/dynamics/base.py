@@ -148,7 +148,7 @@ class Base(Protocol):
         """Give the contact after something else than an event of its own changed the speeds."""
         ...
 
-    def rebound(self) -> float:
+    def rebound(self, left: bool) -> float:
         """Give the restitution of an end that lands with an impact."""
         ...
 

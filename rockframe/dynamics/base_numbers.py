@@ -47,7 +47,9 @@ class BaseNumbers:
     variable_scales: Vector = field(default_factory=lambda: np.zeros(0))
 
 
-def pads_under(body: Body, *, stiffness: float, damping: float, restitution: float) -> BaseNumbers:
+def pads_under(
+    body: Body, *, stiffness: float, damping: float, restitution: tuple[float, float]
+) -> BaseNumbers:
     """Give the pads under a body.
 
     Parameters
@@ -56,8 +58,8 @@ def pads_under(body: Body, *, stiffness: float, damping: float, restitution: flo
         The body on them.
     stiffness, damping : float
         k and c of one pad over the body's mass [s^-2], [s^-1].
-    restitution : float
-        eps of a landing corner [1].
+    restitution : tuple of float
+        eps of a corner that lands on the left and on the right pad [1].
 
     Returns
     -------
@@ -66,7 +68,7 @@ def pads_under(body: Body, *, stiffness: float, damping: float, restitution: flo
     rest = 0.5 * body.gravity / stiffness
     size = math.hypot(0.5 * (body.left + body.right), body.height)
     law = Pads(
-        stiffness, damping, rest, rest, rest, restitution, gravity=body.gravity, body_size=size
+        stiffness, damping, rest, rest, rest, *restitution, gravity=body.gravity, body_size=size
     )
     tolerance = np.full(law.end_guards(), ROUNDING)
     tolerance[[LEAVE, REENGAGE]] = law.noise()

@@ -300,7 +300,7 @@ class Bed(NamedTuple):
         return contact
 
     @kernel
-    def rebound(self) -> float:
+    def rebound(self, left: bool) -> float:
         """Give 1: a bed has no impacts."""
         return 1.0
 

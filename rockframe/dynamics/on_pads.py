@@ -186,8 +186,8 @@ class _OnPads:
         return self.pads.disturbed(contact % CONTACTS) + contact - contact % CONTACTS
 
     @kernel
-    def rebound(self) -> float:
-        return self.pads.rebound()
+    def rebound(self, left: bool) -> float:
+        return self.pads.rebound(left)
 
     @kernel
     def starting(self, line: BaseLine, own: Any) -> int:

@@ -72,7 +72,8 @@ class Pads(NamedTuple):
     left_settlement: float  # of the unloaded level above the corner's place at rest
     right_settlement: float
     rest: float  # settlement under half the weight
-    restitution: float  # eps
+    left_restitution: float  # eps, of an impact on the left pad
+    right_restitution: float
     gravity: float  # g
     body_size: float  # of the body: heights are differences of terms as large
 
@@ -327,9 +328,9 @@ class Pads(NamedTuple):
         return contact
 
     @kernel
-    def rebound(self) -> float:
+    def rebound(self, left: bool) -> float:
         """Give the restitution of a corner that lands."""
-        return self.restitution
+        return self.left_restitution if left else self.right_restitution
 
     @kernel
     def starting_corner(self, left: bool, line: BaseLine) -> int:
@@ -368,5 +369,5 @@ def sunk_pads(pads: Pads, left: float, right: float) -> Pads:
     """Give pads whose unloaded levels have sunk for good."""
     return Pads(
         pads.stiffness, pads.damping, pads.left_settlement - left, pads.right_settlement - right,
-        pads.rest, pads.restitution, pads.gravity, pads.body_size,
+        pads.rest, pads.left_restitution, pads.right_restitution, pads.gravity, pads.body_size,
     )  # fmt: skip

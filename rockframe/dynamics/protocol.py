@@ -159,15 +159,17 @@ class Start:
 
     Parameters
     ----------
-    rotation, angular_velocity : float
-        Rotation of the block and its rate [rad], [rad s^-1].
+    rotation : float or None
+        Of the block; None asks for that at rest [rad].
+    angular_velocity : float
+        Its rate [rad s^-1].
     vertical_displacement : float or None
         Of the centre of mass; None asks for vertical equilibrium [m].
     vertical_velocity : float
         [m s^-1].
     """
 
-    rotation: float = 0.0
+    rotation: float | None = None
     angular_velocity: float = 0.0
     vertical_displacement: float | None = None
     vertical_velocity: float = 0.0

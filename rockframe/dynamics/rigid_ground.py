@@ -56,6 +56,7 @@ class Corner(NamedTuple):
     radius: float  # R0
     inertia: float  # I_O/m + R0^2
     tangent: float  # tan theta; theta for small rotation
+    restitution: float  # eps, of the angular velocity in an impact on it
 
 
 class RigidGround(NamedTuple):
@@ -64,7 +65,6 @@ class RigidGround(NamedTuple):
     left: Corner
     right: Corner
     gravity: float  # g
-    restitution: float  # eps, of the angular velocity
     small: bool  # whether sines and cosines are expanded
 
     @kernel
@@ -139,8 +139,8 @@ class RigidGround(NamedTuple):
                 return ON_LEFT if ground.x > 0.0 else ON_RIGHT
             return ON_RIGHT if guard == UPLIFT_ON_RIGHT else ON_LEFT
         before = state[1]
-        after = self.restitution * before
         new = ON_LEFT if mode == ON_RIGHT else ON_RIGHT
+        after = self.corner(new).restitution * before
         state[0] = 0.0
         restoring = -self.side(new) * self.angular_acceleration(new, 0.0, ground)
         rebound = after * after / (2.0 * restoring) if restoring > 0.0 else math.inf
@@ -178,8 +178,9 @@ class RigidGround(NamedTuple):
         weight = self.gravity + ground.y
         height = self.centre_rise(mode, rotation)
         if mode == RESTING:
-            # moments about the middle of the base: (N_R - N_L) b = -m h x_g''
-            tilt = 2.0 * ground.x / (self.left.tangent + self.right.tangent)
+            # moments about the foot of the centre of mass: N_R s_R - N_L s_L = -m h x_g''
+            both = self.left.tangent + self.right.tangent
+            tilt = (2.0 * ground.x + weight * (self.right.tangent - self.left.tangent)) / both
             left, right = 0.5 * (weight + tilt), 0.5 * (weight - tilt)
             rest = (rotation, rate, height, 0.0, 0.0, ground.x)
             return rest + (0.0, 0.0, 0.0, 0.0, ground.x, weight, left, right)
@@ -198,30 +199,47 @@ class RigidGround(NamedTuple):
         return moved + (across, slope[0], sway, rise, shear, bearing, left, right)
 
 
-def rigid_ground(
+def corner_of(
     *,
-    overturning_angle: float,
-    radius: float,
-    shape_factor: float,
-    mass: float,
+    distance: float,
+    height: float,
+    inertia: float,
     restitution: float,
     small_rotation: bool,
-    gravity: float,
+) -> Corner:
+    """Give a corner that a block rotates about.
+
+    Parameters
+    ----------
+    distance, height : float
+        Of the centre of mass, beside the corner and above it [m].
+    inertia : float
+        Of the block about the corner, over its mass [m^2].
+    restitution : float
+        Ratio of the angular velocities after and before an impact on this corner [1].
+    small_rotation : bool
+        Whether sines and cosines are expanded.
+
+    Returns
+    -------
+    Corner
+    """
+    angle = math.atan2(distance, height)
+    tangent = angle if small_rotation else math.tan(angle)
+    return Corner(angle, math.hypot(distance, height), inertia, tangent, restitution)
+
+
+def rigid_ground(
+    left: Corner, right: Corner, *, mass: float, small_rotation: bool, gravity: float
 ) -> ContactModel:
     """Assemble the model of a block on rigid ground.
 
     Parameters
     ----------
-    overturning_angle : float
-        theta [rad].
-    radius : float
-        R0 [m].
-    shape_factor : float
-        mu [1].
+    left, right : Corner
+        Of the block.
     mass : float
         Mass of the block [kg].
-    restitution : float
-        Ratio of the angular velocities after and before an impact [1].
     small_rotation : bool
         Whether sines and cosines are expanded.
     gravity : float
@@ -231,30 +249,29 @@ def rigid_ground(
     -------
     ContactModel
     """
-    tangent = overturning_angle if small_rotation else math.tan(overturning_angle)
-    corner = Corner(overturning_angle, radius, radius**2 * (1.0 + 1.0 / shape_factor), tangent)
-    frequency = math.sqrt(gravity * radius / corner.inertia)
+    frequency = max(math.sqrt(gravity * one.radius / one.inertia) for one in (left, right))
+    least = left if left.angle < right.angle else right
 
     def initial(start: Start) -> tuple[int, Vector, Vector]:
-        rotation, rate = start.rotation, start.angular_velocity
+        rotation, rate = start.rotation or 0.0, start.angular_velocity
         direction = rotation or rate
         mode = RESTING if direction == 0.0 else (ON_RIGHT if direction > 0.0 else ON_LEFT)
         return mode, np.array([rotation, rate]), np.zeros(len(MEMORY))
 
     return ContactModel(
         name="rigid ground",
-        system=RigidGround(corner, corner, gravity, restitution, small_rotation),
+        system=RigidGround(left, right, gravity, small_rotation),
         active=np.array([0, 1, 1]),
         contact=np.array([ContactState.FULL, ContactState.RIGHT, ContactState.LEFT]),
         relaxation=np.zeros(3),
-        rotation_limits=(overturning_angle, overturning_angle),
+        rotation_limits=(left.angle, right.angle),
         rotation_weights=np.ones(1),
-        scales=overturning_angle * np.array([1.0, frequency]),
+        scales=least.angle * np.array([1.0, frequency]),
         guard_tolerance=np.array([1e-15, 1e-14, 1e-14]),
         columns=COLUMNS,
         mass=mass,
         fastest_frequency=frequency,
         damping_rate=0.0,
-        energy_scale=gravity * radius * overturning_angle,
+        energy_scale=gravity * least.radius * least.angle,
         initial=initial,
     )

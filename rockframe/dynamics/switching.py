@@ -113,9 +113,8 @@ def strike(
 ) -> None:  # fmt: skip
     """Reduce the speeds of the landing ends to eps times what they were, :eq:`eq-impact`."""
     line = part.body.base_line_at(system.state_of(k, state))
-    share = 1.0 - part.base.rebound()
-    gain_left = -share * min(line.left_speed, 0.0)
-    gain_right = -share * min(line.right_speed, 0.0)
+    gain_left = -(1.0 - part.base.rebound(True)) * min(line.left_speed, 0.0)
+    gain_right = -(1.0 - part.base.rebound(False)) * min(line.right_speed, 0.0)
     # what unit impulses at either end do to the speeds of the ends
     at_left = system.response(k, mode, 1.0, line.left_lever, 0.0, state)
     at_right = system.response(k, mode, 1.0, line.right_lever, 0.0, state)
@@ -258,7 +257,11 @@ def change_pivot(
         memory[LAST_EVENT] = SILENT
         body = system.state_of(k, state)
         tendency = body.angular_velocity
-        if tendency == 0.0:
+        if tendency == 0.0 and part.body.left != part.body.right:
+            # its own weight rotates a body whose centre of mass is to the side
+            tendency = system.end_acceleration(k, True, mode, state, ground)
+            tendency -= system.end_acceleration(k, False, mode, state, ground)
+        elif tendency == 0.0:
             tendency = system.tendency(k, mode, state, ground)
         pivot = leading_pivot(body.rotation, tendency)
     else:

@@ -168,3 +168,10 @@ def _words(function: str, given: object) -> tuple[str, str]:
 
 def _holds(given: xr.Dataset, names: tuple[str, ...]) -> bool:
     return all(name in given.variables for name in names)
+
+
+def overturning_angles(dataset: xr.Dataset) -> tuple[float, float]:
+    """Give the overturning angles to the left and to the right [rad]."""
+    least = dataset["overturning_angle"]
+    left, right = (dataset.get(f"{side}_overturning_angle", least) for side in ("left", "right"))
+    return float(left), float(right)

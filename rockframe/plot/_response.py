@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe.plot._contact import draw_contact, draw_contact_legend
-from rockframe.plot._given import check_run
+from rockframe.plot._given import check_run, overturning_angles
 from rockframe.plot._title import set_title
 
 if TYPE_CHECKING:
@@ -75,17 +75,18 @@ def _ground(axes: "Axes", dataset: xr.Dataset, time: Any) -> None:
 
 
 def _rotation(axes: "Axes", dataset: xr.Dataset, time: Any) -> None:
-    theta = float(dataset["overturning_angle"])
+    left, right = overturning_angles(dataset)
     axes.plot(time, dataset["relative_rotation"], color="#222255", linewidth=1.0, label="block")
-    uplift = float(dataset["uplift_angle"]) / theta
+    uplift = float(dataset["uplift_angle"])
     if "rotation_on_cap" in dataset:  # the uplift angle is that of the block on the cap
-        cap = dataset["cap_rotation"] / theta
+        cap = dataset["cap_rotation"]
+        cap = cap / np.where(cap < 0.0, left, right)
         axes.plot(time, cap, color=_CAP_COLOUR, linewidth=0.8, label="cap")
         axes.legend(loc="upper right", fontsize="small")
     elif np.isfinite(uplift) and uplift > 0.0:
-        for side in (-1.0, 1.0):
+        for side, theta in ((-1.0, left), (1.0, right)):
             axes.axhline(
-                side * uplift,
+                side * uplift / theta,
                 color=_UPLIFT_COLOUR,
                 linewidth=0.7,
                 label="uplift" if side > 0.0 else None,

@@ -27,8 +27,8 @@ class BodyNumbers:
         m [kg].
     inertia : float
         I_O about the centre of mass [kg m^2].
-    centre_height : float
-        h, of the centre of mass above the base [m].
+    centre_height, eccentricity : float
+        h and e_c, of the centre of mass above the base and to the right of its middle [m].
     small_rotation : bool
         Whether the kinematics are expanded in the rotation.
     """
@@ -36,6 +36,7 @@ class BodyNumbers:
     mass: float
     inertia: float
     centre_height: float
+    eccentricity: float
     small_rotation: bool
 
     def sine_cosine(self, rotation: Array) -> tuple[Array, Array]:
@@ -71,8 +72,13 @@ def force_histories(values: Values, ground: Array, body: BodyNumbers) -> dict[st
         By their names in the schema, :eq:`eq-base-moment`, :eq:`eq-friction-demand`.
     """
     thrust, press = values["horizontal_reaction"], values["vertical_reaction"]
-    sine, cosine = body.sine_cosine(values.get(STACKED, values["rotation"]))
-    weight_arm, thrust_arm = body.centre_height * sine, body.centre_height * cosine
+    rotation = values.get(STACKED, values["rotation"])
+    sine, cosine = body.sine_cosine(rotation)
+    beside, lift = body.eccentricity * cosine, body.eccentricity * sine
+    if body.small_rotation:  # widths to first order
+        lift = np.zeros_like(rotation)
+    weight_arm = body.centre_height * sine + beside
+    thrust_arm = body.centre_height * cosine - lift
     found: dict[str, Generic] = {
         "absolute_horizontal_acceleration": values["horizontal_acceleration"] + ground[:, 0],
         "absolute_vertical_acceleration": values["vertical_acceleration"] + ground[:, 1],
@@ -203,9 +209,10 @@ def force_scalars(values: Values, events: EventStates, body: BodyNumbers) -> dic
 def residuals(values: Values, body: BodyNumbers) -> dict[str, float]:
     """Give what is left at the end of a run, by its names in the schema."""
     rotation = float(values["rotation"][-1])
-    half, _ = body.sine_cosine(np.array([0.5 * rotation]))
-    sunk = -float(values["vertical_displacement"][-1])
+    sines, _ = body.sine_cosine(np.array([0.5 * rotation, rotation]))
+    half, whole = float(sines[0]), float(sines[1])
+    sunk = -float(values["vertical_displacement"][-1]) - body.eccentricity * whole
     return {
         "residual_rotation": rotation,
-        "residual_settlement": sunk - 2.0 * body.centre_height * float(half[0]) ** 2,
+        "residual_settlement": sunk - 2.0 * body.centre_height * half**2,
     }

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,7 @@ from rockframe.results.variables.runs import Direction
 from rockframe.solve.layout import Status
 from rockframe.solve.observe import energies_of, memory_at_outputs
 from rockframe.solve.trajectory import Summary, Trajectory
+from rockframe.system.bodies import OverturningAngles
 
 Array = NDArray[np.float64]
 Generic = NDArray[Any]
@@ -30,15 +31,34 @@ class Scales:
     """What a response is made relative to, in SI units.
 
     `cap_offset` is the height of a cap's centre above that of the body of which the
-    cap is a part; None where there is no such cap.
+    cap is a part; None where there is no such cap. `eccentricity` is how far that body's centre
+    of mass is to the right of the middle of its base.
     """
 
-    overturning_angle: float
+    overturning_angles: OverturningAngles
     uplift_angle: float
     settlement: float | None
     cap_offset: float | None = None
+    eccentricity: float = 0.0
     small_rotation: bool = False
     pads_on_cap: bool = False
+
+    def peak(self, run: Summary) -> "Peak":
+        """Give the rotation of a run that came closest to overturning."""
+        left, right = self.overturning_angles
+        return max(
+            Peak(run.peak_right / right, run.peak_right, Direction.RIGHT),
+            Peak(run.peak_left / left, run.peak_left, Direction.LEFT),
+            key=lambda peak: peak.share,
+        )
+
+
+class Peak(NamedTuple):
+    """A peak rotation, its share of the overturning angle of its side, and that side."""
+
+    share: float
+    rotation: float
+    side: Direction
 
 
 def contact_histories(model: ContactModel, run: Trajectory) -> dict[str, Generic]:
@@ -51,9 +71,10 @@ def contact_histories(model: ContactModel, run: Trajectory) -> dict[str, Generic
 
 def relative_histories(values: Mapping[str, Generic], scales: Scales) -> dict[str, Generic]:
     """Give rotation and vertical displacement over their scales."""
-    relative: dict[str, Generic] = {
-        "relative_rotation": values["rotation"] / scales.overturning_angle
-    }
+    left, right = scales.overturning_angles
+    rotation = values["rotation"]
+    limit = np.where(rotation < 0.0, left, right) if left != right else left
+    relative: dict[str, Generic] = {"relative_rotation": rotation / limit}
     if scales.settlement is not None:
         relative["relative_vertical_displacement"] = (
             values["vertical_displacement"] / scales.settlement
@@ -78,12 +99,17 @@ def cap_histories(values: Mapping[str, Generic], scales: Scales) -> dict[str, Ge
         sine, versine = rotation, 0.5 * rotation**2
     else:
         sine, versine = np.sin(rotation), 2.0 * np.sin(0.5 * rotation) ** 2
-    rate = values["angular_velocity"]
+    rate, beside = values["angular_velocity"], scales.eccentricity
+    cosine = 1.0 if scales.small_rotation else np.cos(rotation)
     return {
         "cap_rotation": rotation.copy(),
         "cap_angular_velocity": rate.copy(),
-        "cap_vertical_displacement": values["vertical_displacement"] - offset * versine,
-        "cap_vertical_velocity": values["vertical_velocity"] - offset * sine * rate,
+        "cap_vertical_displacement": values["vertical_displacement"]
+        - offset * versine
+        + beside * sine,
+        "cap_vertical_velocity": values["vertical_velocity"]
+        - offset * sine * rate
+        + beside * cosine * rate,
         "soil_contact_state": values["contact_state"].copy(),
     }
 
@@ -129,19 +155,28 @@ def event_columns(model: ContactModel, run: Trajectory) -> dict[str, Generic]:
 
 def scalars(run: Summary, scales: Scales) -> dict[str, float | int | bool]:
     """Give the scalars of a run by their names in the schema."""
-    return {
+    angles = scales.overturning_angles
+    sides: dict[str, float] = {}
+    if scales.eccentricity != 0.0:
+        sides = {
+            "left_overturning_angle": angles.left,
+            "right_overturning_angle": angles.right,
+            "left_peak_rotation": run.peak_left,
+            "right_peak_rotation": run.peak_right,
+        }
+    return sides | {
         "overturned": bool(run.overturned),
         "overturning_time": run.overturning_time,
         "overturning_direction": run.overturning_direction,
         "peak_rotation": run.peak_rotation,
-        "peak_relative_rotation": run.peak_rotation / scales.overturning_angle,
+        "peak_relative_rotation": scales.peak(run).share,
         "first_uplift_time": run.first_uplift_time,
         "impact_count": run.impact_count,
         "flight_time": run.flight_time,
         "flight_count": run.flight_count,
         "energy_residual": run.energy_residual,
         "status": int(run.status),
-        "overturning_angle": scales.overturning_angle,
+        "overturning_angle": angles.least,
         "uplift_angle": scales.uplift_angle,
     }
 
@@ -156,10 +191,13 @@ _ENDINGS = {
 def verdict(run: Summary, scales: Scales) -> str:
     """Say in one sentence what became of the block."""
     impacts = f"{run.impact_count} impact{'' if run.impact_count == 1 else 's'}"
+    nearest = scales.peak(run)
     peak = (
-        f"peak rotation {run.peak_rotation:.4g} rad, "
-        f"{100.0 * run.peak_rotation / scales.overturning_angle:.3g} % of the overturning angle"
+        f"peak rotation {nearest.rotation:.4g} rad, "
+        f"{100.0 * nearest.share:.3g} % of the overturning angle"
     )
+    if scales.eccentricity != 0.0:
+        peak += f" to the {nearest.side.name.lower()}"
     if run.overturned:
         side = Direction(run.overturning_direction).name.lower()
         text = f"Overturned to the {side} at {run.overturning_time:.3f} s, after {impacts}"

@@ -47,7 +47,7 @@ def point_histories(
     """
     rotation, rate = values["rotation"], values["angular_velocity"]
     angular = values["angular_acceleration"]
-    right = np.array([point.x for point in points])[:, None]
+    right = np.array([point.x for point in points])[:, None] - body.eccentricity
     up = np.array([point.y for point in points])[:, None] - body.centre_height
     sine, cosine = body.sine_cosine(rotation)
     half, _ = body.sine_cosine(0.5 * rotation)
@@ -67,8 +67,8 @@ def point_histories(
     a_y = values["absolute_vertical_acceleration"]
     return {
         "point": np.array([point.name for point in points]),
-        "point_x": right[:, 0],
-        "point_y": up[:, 0] + body.centre_height,
+        "point_x": np.array([point.x for point in points]),
+        "point_y": np.array([point.y for point in points]),
         "point_horizontal_displacement": x + across,
         "point_vertical_displacement": y + above,
         "point_horizontal_acceleration": a_x + across_rate * angular + across_bend * square,

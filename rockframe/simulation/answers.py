@@ -113,7 +113,9 @@ def answers_of(
 
 def _body_of(system: Assembly) -> BodyNumbers:
     body = system.setting.body
-    return BodyNumbers(body.mass, body.inertia, body.centre_height, system.options.small)
+    return BodyNumbers(
+        body.mass, body.inertia, body.centre_height, body.eccentricity, system.options.small
+    )
 
 
 def _everything_of(

@@ -51,6 +51,8 @@ class Beside:
         tells of it long before a clearance does [rad s^-1].
     status : Status
         How it ended.
+    peak_share : float
+        Largest share of a rotation in the overturning angle of its side.
     """
 
     overturned: bool | None
@@ -61,6 +63,7 @@ class Beside:
     step: float = math.nan
     course: tuple[float, ...] = ()
     status: Status = Status.COMPLETED
+    peak_share: float = math.nan
 
     def alike(self, other: "Beside") -> bool:
         """Whether both take the same course: both stand, or both overturn in the same swing."""
@@ -80,7 +83,7 @@ Run: TypeAlias = Callable[[Assembly, Plan], Beside]
 
 
 def what_showed(
-    summary: Summary, events: Mapping[str, Generic], theta: float, duration: float
+    summary: Summary, events: Mapping[str, Generic], peak_share: float, duration: float
 ) -> Beside:
     """Tell what a run showed.
 
@@ -90,8 +93,8 @@ def what_showed(
         What became of it.
     events : mapping of str to ndarray
         Its events, by their names in the schema.
-    theta : float
-        Overturning angle [rad].
+    peak_share : float
+        Of the peak rotation in the overturning angle of its side [1].
     duration : float
         Length of the run [s].
 
@@ -104,7 +107,7 @@ def what_showed(
         rate = float(rates[events["event_kind"] == EventKind.OVERTURNING][0])
         clearances = (rate * rate, duration - summary.overturning_time)
     else:
-        clearances = (1.0 - summary.peak_rotation / theta,)
+        clearances = (1.0 - peak_share,)
     return Beside(
         summary.overturned,
         summary.peak_rotation,
@@ -114,6 +117,7 @@ def what_showed(
         summary.end_time / max(summary.step_count, 1),
         _course(events["event_time"] / duration, rates),
         summary.status,
+        peak_share,
     )
 
 

@@ -9,6 +9,7 @@ from rockframe.errors import RockframeError
 from rockframe.simulation.beginning import Continuation
 from rockframe.simulation.plan import Plan
 from rockframe.system.assembly import Assembly, assemble
+from rockframe.system.bodies import OverturningAngles
 
 QUARTERS: Final = (0.25, 0.5)
 """Shares of the nudge at which scales are tried inside it."""
@@ -76,14 +77,14 @@ def scales(nudge: float, reach: float) -> list[float]:
     return [*row, reach]
 
 
-def scaled(plan: Plan, scale: float, theta: float) -> Plan | None:
+def scaled(plan: Plan, scale: float, angles: OverturningAngles) -> Plan | None:
     """Scale what drives a run: its motion, or without one its start; None if it cannot be."""
     if plan.motion is not None:
         return replace(plan, motion=plan.motion.scaled(scale))
     start = plan.initial
     if isinstance(start, Continuation):
         return None
-    if start.si.rotation == 0.0 and start.si.angular_velocity == 0.0:
+    if not start.si.rotation and start.si.angular_velocity == 0.0:
         return None
     try:
         for name in ("rotation", "angular_velocity"):
@@ -91,7 +92,8 @@ def scaled(plan: Plan, scale: float, theta: float) -> Plan | None:
                 start = start.with_scaled(name, scale)
     except RockframeError:
         return None
-    if abs(start.si.rotation) >= theta:
+    rotation = start.si.rotation or 0.0
+    if abs(rotation) >= angles.on_side_of(rotation):
         return None
     return replace(plan, initial=start)
 

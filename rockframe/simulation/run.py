@@ -145,17 +145,18 @@ def beside(system: Assembly, plan: Plan) -> Beside:
 
 
 def _showed(response: Response, plan: Plan, scales: Scales) -> Beside:
-    theta = scales.overturning_angle
-    return what_showed(response.summary, response.values, theta, plan.duration)
+    share = scales.peak(response.summary).share
+    return what_showed(response.summary, response.values, share, plan.duration)
 
 
 def _scales(system: Assembly) -> Scales:
     setting = system.setting
     return Scales(
-        setting.overturning_angle,
+        setting.body.overturning_angles,
         setting.uplift_angle,
         setting.settlement,
         setting.cap_offset,
+        setting.body.eccentricity,
         small_rotation=system.options.small,
         pads_on_cap=system.scene.coupling is not None,
     )

@@ -13,6 +13,7 @@ from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import Generic
 from rockframe.results.schema import SCHEMA
 from rockframe.system.assembly import Assembly
+from rockframe.system.setting import Setting
 from rockframe.system.small_motion import modes_of
 from rockframe.units import ANGLE, to_si_values
 
@@ -22,10 +23,23 @@ def equilibrium(system: Assembly) -> xr.Dataset:
     setting = system.setting
     values: dict[str, float] = {
         **{name: value for name, value in setting.equilibrium().items() if name in SCHEMA},
+        **_sides(setting),
         "overturning_angle": setting.overturning_angle,
         "uplift_angle": setting.uplift_angle,
     }
     return build_dataset(values, _about(system), title="Rest", source="vertical equilibrium")
+
+
+def _sides(setting: Setting) -> dict[str, float]:
+    """Give what a body that is not symmetric has beyond others."""
+    if setting.body.eccentricity == 0.0:
+        return {}
+    left, right = setting.body.overturning_angles
+    return {
+        "left_overturning_angle": left,
+        "right_overturning_angle": right,
+        "rest_rotation": setting.rest_rotation,
+    }
 
 
 def moment_rotation(system: Assembly, angles: object) -> xr.Dataset:

@@ -143,7 +143,7 @@ def store_outputs(
 
 @inlined
 def follow_peak(equations: Equations, count: int, h: float, clock: Vector, w: Workspace) -> None:
-    """Raise the peak of the rotation by what the step holds, between its ends too."""
+    """Raise the peaks of the rotation to both sides by what the step holds, to its inside."""
     size = equations.coordinate_count
     r0 = v0 = r1 = v1 = 0.0
     for i in range(size):
@@ -151,15 +151,21 @@ def follow_peak(equations: Equations, count: int, h: float, clock: Vector, w: Wo
         v0 += w.limits[WEIGHTS + i] * w.state[size + i]
         r1 += w.limits[WEIGHTS + i] * w.new[i]
         v1 += w.limits[WEIGHTS + i] * w.new[size + i]
-    top = max(abs(r0), abs(r1))
-    clock[at.PEAK] = max(clock[at.PEAK], top)
-    if v0 * v1 < 0.0 and top + 0.5 * h * max(abs(v0), abs(v1)) > clock[at.PEAK]:
+    clock[at.PEAK_LEFT] = max(clock[at.PEAK_LEFT], -r0, -r1)
+    clock[at.PEAK_RIGHT] = max(clock[at.PEAK_RIGHT], r0, r1)
+    ahead = 0.5 * h * max(abs(v0), abs(v1))
+    if v0 > 0.0:
+        rises = max(r0, r1) + ahead > clock[at.PEAK_RIGHT]
+    else:
+        rises = max(-r0, -r1) + ahead > clock[at.PEAK_LEFT]
+    if v0 * v1 < 0.0 and rises:
         a0 = a1 = 0.0
         for i in range(count):
             a0 += w.limits[WEIGHTS + i] * w.first[i]
             a1 += w.limits[WEIGHTS + i] * w.last[i]
-        top = abs(extremum(r0, h * v0, h * h * a0, r1, h * v1, h * h * a1))
-        clock[at.PEAK] = max(clock[at.PEAK], top)
+        top = extremum(r0, h * v0, h * h * a0, r1, h * v1, h * h * a1)
+        clock[at.PEAK_LEFT] = max(clock[at.PEAK_LEFT], -top)
+        clock[at.PEAK_RIGHT] = max(clock[at.PEAK_RIGHT], top)
 
 
 @kernel

@@ -99,7 +99,8 @@ def integrate(
     controls[at.CHATTER_TIME] = CHATTER_SHARE * shortest_period
     clock = np.zeros(at.CLOCK)
     clock[at.NEXT_STEP] = controls[at.MAX_STEP] if substeps else FIRST_STEP * shortest_period
-    clock[at.PEAK] = abs(float(model.rotation_weights @ state[: len(model.rotation_weights)]))
+    rotation = float(model.rotation_weights @ state[: len(model.rotation_weights)])
+    clock[at.PEAK_LEFT], clock[at.PEAK_RIGHT] = max(-rotation, 0.0), max(rotation, 0.0)
     clock[at.FIRST_UPLIFT] = -1.0 if model.contact[mode] == ContactState.FULL else 0.0
     clock[at.OVERTURNING_TIME] = clock[at.EVENT_TIME] = -1.0
     clock[at.START_ENERGY] = clock[at.GROUND_X] = clock[at.GROUND_Y] = math.nan
@@ -124,7 +125,7 @@ def integrate(
     reference = np.maximum(np.abs(state), FIRST_SCALE * model.scales)
     if model.rounding is not None and accuracy.rtol is not None and accuracy.floor > 0.0:
         # no step is short enough for an error below the rounding of the forces
-        noise = model.rounding(clock[at.PEAK])
+        noise = model.rounding(abs(rotation))
         reference = np.maximum(reference, noise / (accuracy.rtol * accuracy.floor))
     progress = Progress(controls, clock, counters)
     output = Output(out_state, out_mode, out_work)
@@ -185,7 +186,8 @@ def integrate(
         events=_events(events, int(counters[at.EVENTS]), width),
         status=Status(result),
         end_time=end,
-        peak_rotation=float(clock[at.PEAK]),
+        peak_left=float(clock[at.PEAK_LEFT]),
+        peak_right=float(clock[at.PEAK_RIGHT]),
         overturning_time=_time_or_nan(clock[at.OVERTURNING_TIME]),
         overturning_direction=int(clock[at.OVERTURNING_SIDE]),
         first_uplift_time=_time_or_nan(clock[at.FIRST_UPLIFT]),

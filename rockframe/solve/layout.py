@@ -53,7 +53,7 @@ INTO_INTERVAL: Final = 0
 NEXT_STEP: Final = 1
 FLIGHT_TIME: Final = 2
 FIRST_UPLIFT: Final = 3
-PEAK: Final = 4
+PEAK_LEFT: Final = 4
 OVERTURNING_TIME: Final = 5
 OVERTURNING_SIDE: Final = 6
 DISSIPATED: Final = 7
@@ -70,7 +70,8 @@ STEP: Final = 17
 ASKED: Final = 18
 EXCESS: Final = 19
 NEXT_OUTPUT: Final = 20
-CLOCK: Final = 21
+PEAK_RIGHT: Final = 21
+CLOCK: Final = 22
 
 # counters: integer progress and switches
 MODE: Final = 0

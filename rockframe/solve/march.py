@@ -150,15 +150,20 @@ def march(
             v0 += limits[WEIGHTS + i] * state[size + i]
             r1 += limits[WEIGHTS + i] * new[i]
             v1 += limits[WEIGHTS + i] * new[size + i]
-        top = max(abs(r0), abs(r1))
-        peaks = v0 * v1 < 0.0 and top + 0.5 * h * max(abs(v0), abs(v1)) > clock[at.PEAK]
+        left, right = max(-r0, -r1), max(r0, r1)
+        ahead = 0.5 * h * max(abs(v0), abs(v1))
+        rises = right + ahead > clock[at.PEAK_RIGHT] if v0 > 0.0 else (
+            left + ahead > clock[at.PEAK_LEFT]
+        )  # fmt: skip
+        peaks = v0 * v1 < 0.0 and rises
         if found != 0 or peaks or begin + tau + h >= clock[at.NEXT_OUTPUT]:
             clock[at.STEP], clock[at.ASKED], clock[at.EXCESS] = h, asked, excess
             result = GUARDED if found != 0 else TO_BE_SEEN
             break
         h_next = scheme.step_after(h, asked, h_next, excess, shortest, controls)
         tau += h
-        clock[at.PEAK] = max(clock[at.PEAK], top)
+        clock[at.PEAK_LEFT] = max(clock[at.PEAK_LEFT], left)
+        clock[at.PEAK_RIGHT] = max(clock[at.PEAK_RIGHT], right)
         if flies == 1:
             clock[at.FLIGHT_TIME] += h
         scheme.keep_sizes(system, new, reference)

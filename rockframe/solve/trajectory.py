@@ -44,7 +44,7 @@ class Summary:
     ----------
     status : Status
         How the run ended.
-    end_time, peak_rotation, overturning_time, first_uplift_time, flight_time : float
+    end_time, peak_left, peak_right, overturning_time, first_uplift_time, flight_time : float
         Of the dense solution; times are NaN where nothing of the kind happened.
     overturning_direction : int
         Sign of the rotation at overturning, 0 if none.
@@ -58,7 +58,8 @@ class Summary:
 
     status: Status
     end_time: float
-    peak_rotation: float
+    peak_left: float
+    peak_right: float
     overturning_time: float
     overturning_direction: int
     first_uplift_time: float
@@ -69,6 +70,11 @@ class Summary:
     rejected_count: int
     substeps: int
     energy_residual: float
+
+    @property
+    def peak_rotation(self) -> float:
+        """Largest rotation to either side [rad]."""
+        return max(self.peak_left, self.peak_right)
 
     @property
     def overturned(self) -> bool | None:

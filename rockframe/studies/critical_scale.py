@@ -15,7 +15,7 @@ from rockframe.components import InitialState
 from rockframe.errors import ComponentError, SolverWarning, warn
 from rockframe.results.dataset import build_dataset
 from rockframe.results.variables.studies import Outcome
-from rockframe.signals.polynomials import greatest
+from rockframe.signals.polynomials import turning_points
 from rockframe.simulation.beside import Beside
 from rockframe.simulation.plan import Plan, plan_run
 from rockframe.simulation.provenance import motion_attributes
@@ -207,16 +207,16 @@ def _look(
 
     def look(scale: float) -> Beside:
         shown = beside(system.assembly, plan_at(scale))
-        return shown if stop else _lying(shown, system)
+        return shown if stop else _lying(shown)
 
     return look
 
 
-def _lying(shown: Beside, system: "System") -> Beside:
+def _lying(shown: Beside) -> Beside:
     """Let a block that was beyond the overturning angle stand, unless it lies flat in the end."""
     if not shown.overturned or shown.status is Status.TOPPLED:
         return shown
-    beyond = shown.peak / system.setting.overturning_angle - 1.0
+    beyond = shown.peak_share - 1.0
     return replace(
         shown,
         overturned=False if shown.status.finished else None,
@@ -233,8 +233,13 @@ def _uplift_scale(system: "System", plan: Plan) -> float:
         return math.nan
     if motion is None or motion.si.vertical is not None:
         return math.nan
-    peak = greatest(motion.si.horizontal.pieces)
-    return setting.uplift_acceleration / peak if peak > 0.0 else math.inf
+    pieces = motion.si.horizontal.pieces
+    _, between = turning_points(pieces)
+    values = np.concatenate([pieces[:, 0], pieces.sum(axis=1), between])
+    # ground that is accelerated to the right tips the block to the left
+    peaks = float(values.max()), -float(values.min())
+    scales = zip(setting.uplift_accelerations, peaks, strict=True)
+    return min((uplift / peak for uplift, peak in scales if peak > 0.0), default=math.inf)
 
 
 def _cautions(

@@ -2,11 +2,13 @@
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rockframe.system.bodies import Body
+from rockframe.errors import AssemblyError
+from rockframe.system.bodies import Body, leaning_cautions
 from rockframe.system.restraints import restraint_words
 from rockframe.system.small_motion import SmallMotion
 from rockframe.system.statics import Statics, contact_of, sine_cosine_rise
@@ -49,8 +51,8 @@ class AloneSetting:
 
     @property
     def overturning_angle(self) -> float:
-        """Theta, of the body about the end of its base [rad]."""
-        return self.support.load.body.overturning_angle
+        """Theta, of the body about the end of its base, on the side that falls first [rad]."""
+        return self.support.load.body.overturning_angles.least
 
     @property
     def uplift_angle(self) -> float:
@@ -64,7 +66,7 @@ class AloneSetting:
 
     def cautions(self) -> list[str]:
         """Give the warnings of the base."""
-        return self.support.cautions()
+        return [*self.support.cautions(), *leaning_cautions(self.body, self.rest_rotation)]
 
     def start_faults(self, rotation: float, has_vertical_start: bool) -> list[str]:
         """Give the faults that the base finds in an initial state."""
@@ -87,11 +89,42 @@ class AloneSetting:
 
         load = self.support.load
         mass = load.body.mass
-        return alone(self.model, load.law(mass), self.support.own_law, mass)
+        return alone(self.model, load.law(mass), self.support.own_law, mass, self.rest_rotation)
+
+    @property
+    def rest_rotation(self) -> float:
+        """Rotation at rest: a body leans to the side of its centre of mass [rad].
+
+        Raises
+        ------
+        AssemblyError
+            The base is too soft to carry a body that is not symmetric.
+        """
+        return self._leaning
+
+    @cached_property
+    def _leaning(self) -> float:
+        load = self.support.load
+        if load.body.eccentricity == 0.0:
+            return 0.0
+        from rockframe.dynamics.on_base import OnBase
+        from rockframe.dynamics.rest import rest_rotation
+
+        found = rest_rotation(OnBase(load.law(load.body.mass), self.support.own_law.law))
+        if math.isnan(found):
+            side = "right" if load.body.eccentricity > 0.0 else "left"
+            raise AssemblyError([
+                f"the base is too soft for a body whose centre of mass is "
+                f"{abs(load.body.eccentricity):.4g} m beside the middle of its base: it falls to "
+                f"the {side} by its own weight"
+            ])  # fmt: skip
+        return found
 
     def small_motion(self) -> SmallMotion:
         """Give the equations of small motion in full contact, to first order."""
         body, law = self.support.load.body, self.support.own_law
+        if body.eccentricity != 0.0:
+            return self._leaning_motion()
         springs = body.mass * np.diag([law.vertical_stiffness, law.rotational_stiffness])
         raising = self.support.load.weight * body.centre_height
         return SmallMotion(
@@ -101,22 +134,47 @@ class AloneSetting:
             springs - np.diag([0.0, raising]),
         )
 
+    def _leaning_motion(self) -> SmallMotion:
+        """Give the equations of small motion about a rest that is not upright."""
+        from rockframe.dynamics.linear import linear_alone
+        from rockframe.dynamics.on_base import OnBase
+
+        load = self.support.load
+        body = load.body
+        mass = np.diag([body.mass, body.base_inertia])
+        linear = linear_alone(
+            OnBase(load.law(body.mass), self.support.own_law.law), self.rest_rotation
+        )
+        names = ("vertical_displacement", "rotation")
+        return SmallMotion(names, mass, mass @ linear.damping, mass @ linear.stiffness)
+
     def statics(self, rotation: float) -> Statics:
         """Give the vertical equilibrium at a rotation."""
         load = self.support.load
-        height = load.body.centre_height
+        height, beside = load.body.centre_height, load.body.eccentricity
         sine, cosine, rise = sine_cosine_rise(height, load.options.rotation, rotation)
         held = self.support.held(sine, cosine, load.weight)
         return Statics(
-            vertical_displacement=held.rise - rise,
+            vertical_displacement=held.rise - rise - beside * sine,
             base_moment=held.moment,
-            restoring_moment=held.moment - load.weight * height * sine,
+            restoring_moment=held.moment - load.weight * (height * sine + beside * cosine),
             contact_state=contact_of(held.left, held.right),
             reactions=held.reactions,
         )
 
-    def equilibrium(self) -> dict[str, float]:
-        """Give settlement, reactions and moment at uplift, by their names in the schema."""
+    def upright(self) -> dict[str, float]:
+        """Give settlement, reactions and moment at uplift, as of a body that stands upright."""
         uplift = self.uplift_angle
         moment = math.nan if math.isnan(uplift) else self.statics(uplift).base_moment
         return {"uplift_moment": moment, **self.support.at_rest()}
+
+    def rest_reactions(self) -> dict[str, float]:
+        """Give the reactions at rest."""
+        return self.statics(self.rest_rotation).reactions
+
+    def equilibrium(self) -> dict[str, float]:
+        """Give settlement, reactions and moment at uplift, by their names in the schema."""
+        found = self.upright()
+        if self.rest_rotation != 0.0:
+            found |= {f"static_{name}": value for name, value in self.rest_reactions().items()}
+        return found

@@ -2,9 +2,11 @@
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
-from rockframe.components.block import BlockSI
+from rockframe.components.block import BlockSI, greatest_restitutions
 from rockframe.components.cap import CushionCapSI
+from rockframe.system.impact import Restitutions
 
 
 @dataclass(frozen=True)
@@ -16,20 +18,33 @@ class Body:
     mass: float
     inertia: float  # about the centre of mass
     shape_factor: float  # mu
+    eccentricity: float = 0.0  # of the centre of mass to the right of the middle, e_c
 
     @property
-    def overturning_angle(self) -> float:
-        """Rotation at which the centre of mass stands above the end of the base [rad]."""
-        return math.atan2(self.half_width, self.centre_height)
+    def left(self) -> float:
+        """From the foot of the centre of mass to the left end of the base, b + e_c [m]."""
+        return self.half_width + self.eccentricity
+
+    @property
+    def right(self) -> float:
+        """From there to the right end, b - e_c [m]."""
+        return self.half_width - self.eccentricity
+
+    @property
+    def overturning_angles(self) -> "OverturningAngles":
+        """Rotations at which the centre of mass stands above an end of the base."""
+        return OverturningAngles(
+            math.atan2(self.left, self.centre_height), math.atan2(self.right, self.centre_height)
+        )
 
     @property
     def least_friction(self) -> float:
-        """b/h: with less, the base slides before an end of it lifts [1]."""
-        return self.half_width / self.centre_height
+        """b/h: with less, the base slides before an end of it lifts, on the lesser side [1]."""
+        return min(self.left, self.right) / self.centre_height
 
     @property
     def radius(self) -> float:
-        """R0, from an end of the base to the centre of mass [m]."""
+        """R0, from an end of the base to the centre of mass, were that above the middle [m]."""
         return math.hypot(self.half_width, self.centre_height)
 
     def frequency_at(self, gravity: float) -> float:
@@ -38,15 +53,38 @@ class Body:
         return math.sqrt(mu / (1.0 + mu) * gravity / self.radius)
 
     @property
-    def maximum_restitution(self) -> float:
-        """eps_max = (1 + mu cos 2 theta)/(1 + mu), Eq. (4)."""
-        mu = self.shape_factor
-        return (1.0 + mu * math.cos(2.0 * self.overturning_angle)) / (1.0 + mu)
+    def maximum_restitution(self) -> Restitutions:
+        """eps_max of impacts on either end, Eq. (4) or :eq:`eq-eccentric-impact`."""
+        return Restitutions(*greatest_restitutions(self))
 
     @property
     def base_inertia(self) -> float:
-        """About the middle of the base [kg m^2]."""
+        """About the foot of the centre of mass on the base [kg m^2]."""
         return self.inertia + self.mass * self.centre_height**2
+
+    def gyration_square_about(self, distance: float) -> float:
+        """Give inertia over mass about a point of the base, by its distance from that foot [m^2].
+
+        R0^2 (1 + 1/mu) about a corner of a symmetric body.
+        """
+        square = self.radius**2 * (1.0 + 1.0 / self.shape_factor)
+        return square + (distance - self.half_width) * (distance + self.half_width)
+
+
+class OverturningAngles(NamedTuple):
+    """Rotations at which a body stands on edge, to either side, both positive [rad]."""
+
+    left: float
+    right: float
+
+    @property
+    def least(self) -> float:
+        """Theta, the lesser of both."""
+        return min(self)
+
+    def on_side_of(self, rotation: float) -> float:
+        """Give that of the side to which a body is rotated."""
+        return self.left if rotation < 0.0 else self.right
 
 
 @dataclass(frozen=True)
@@ -59,9 +97,27 @@ class Cap:
     inertia: float
 
 
+LARGE_LEAN = 0.1
+"""Share of the overturning angle above which a lean at rest is worth a warning."""
+
+
+def leaning_cautions(body: Body, rest_rotation: float) -> list[str]:
+    """Warn of a body that leans far at rest."""
+    share = abs(rest_rotation) / body.overturning_angles.on_side_of(rest_rotation)
+    if share <= LARGE_LEAN:
+        return []
+    return [
+        f"at rest the body leans by {abs(rest_rotation):.4g} rad, {100.0 * share:.3g} % of its "
+        "overturning angle to that side, since its centre of mass is beside the middle of its base"
+    ]
+
+
 def body_of(block: BlockSI) -> Body:
     """Give a block as a body."""
-    return Body(block.half_width, block.half_height, block.mass, block.inertia, block.shape_factor)
+    return Body(
+        block.half_width, block.centre_height, block.mass, block.inertia, block.shape_factor,
+        block.eccentricity,
+    )  # fmt: skip
 
 
 def cap_under(block: BlockSI, cap: CushionCapSI) -> Cap:
@@ -73,13 +129,14 @@ def cap_under(block: BlockSI, cap: CushionCapSI) -> Cap:
 def one_body(block: BlockSI, cap: Cap) -> Body:
     """Give block and cap as one body, :eq:`eq-one-body`."""
     mass = block.mass + cap.mass
-    block_height = 2.0 * cap.half_height + block.half_height
+    block_height = 2.0 * cap.half_height + block.centre_height
     height = (block.mass * block_height + cap.mass * cap.half_height) / mass
+    beside = block.mass * block.eccentricity / mass
     inertia = (
         block.inertia
-        + block.mass * (block_height - height) ** 2
+        + block.mass * ((block_height - height) ** 2 + (block.eccentricity - beside) ** 2)
         + cap.inertia
-        + cap.mass * (height - cap.half_height) ** 2
+        + cap.mass * ((height - cap.half_height) ** 2 + beside**2)
     )
     shape_factor = mass * (cap.half_width**2 + height**2) / inertia
-    return Body(cap.half_width, height, mass, inertia, shape_factor)
+    return Body(cap.half_width, height, mass, inertia, shape_factor, beside)

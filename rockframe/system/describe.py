@@ -34,7 +34,7 @@ def describe(setting: Setting, parts: Parts) -> str:
         "Numbers",
         [
             ("gravity", f"{setting.gravity:.6g} m s^-2"),
-            ("overturning angle theta, Eq. (1)", angle_words(setting.overturning_angle)),
+            *_overturning(setting),
             ("friction to rock, at least b/h", f"{setting.body.least_friction:.6g}"),
             *words.uplift,
             *words.numbers,
@@ -42,6 +42,23 @@ def describe(setting: Setting, parts: Parts) -> str:
     )
     lines += _section("Left out", [("", ", ".join(words.left_out))])
     return "\n".join(lines)
+
+
+def _overturning(setting: Setting) -> list[tuple[str, str]]:
+    body, title = setting.body, "overturning angle theta, Eq. (1)"
+    if body.eccentricity == 0.0:
+        return [(title, angle_words(setting.overturning_angle))]
+    left, right = body.overturning_angles
+    side = "right" if body.eccentricity > 0.0 else "left"
+    return [
+        (title, f"to the left {angle_words(left)}, to the right {angle_words(right)}"),
+        (
+            "centre of mass",
+            f"{body.centre_height:.6g} m above the base, {abs(body.eccentricity):.6g} m to the "
+            f"{side} of its middle",
+        ),
+        ("rotation at rest", angle_words(setting.rest_rotation)),
+    ]
 
 
 def _section(title: str, rows: list[tuple[str, str]]) -> list[str]:

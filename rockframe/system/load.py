@@ -41,7 +41,8 @@ class Load:
         from rockframe.dynamics.alone_model import body_of
 
         return body_of(
-            half_width=self.body.half_width,
+            left=self.body.left,
+            right=self.body.right,
             height=self.body.centre_height,
             inertia=self.body.inertia / mass,
             restraint=restraint_code(self.options.restraint),

@@ -52,7 +52,7 @@ class NumericSupport(Support):
         body, numbers = self.load.law(mass), self.own_law
         law = numbers.law
         own = law.read(np.zeros(law.variables()), 0)
-        swing = body.height * sine
+        swing, beside = body.height * sine, self.load.body.eccentricity
         levers = swing + body.left * cosine, swing - body.right * cosine
 
         def line_at(middle: float) -> BaseLine:
@@ -73,8 +73,8 @@ class NumericSupport(Support):
         contact = law.starting(line, own)
         shown = law.observed(contact, line, own)
         return Held(
-            rise=middle,
-            moment=press * swing - mass * law.force(contact, line, own).moment,
+            rise=middle + beside * sine,
+            moment=press * (swing + beside * cosine) - mass * law.force(contact, line, own).moment,
             left=law.is_held(contact, True),
             right=law.is_held(contact, False),
             reactions={

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rockframe.components import TwoSpringSupport
-from rockframe.system.impact import resolve_restitution, restitution_cautions
+from rockframe.system.impact import Restitutions, resolve_restitution, restitution_cautions
 from rockframe.system.load import Load
 from rockframe.system.pads_words import pads_words
 from rockframe.system.support import BaseWords, Held, Support
@@ -25,13 +25,13 @@ class PadSupport(Support):
         The block on them.
     stiffness, damping : float
         Of one pad [N m^-1], [N s m^-1].
-    restitution : float
+    restitution : Restitutions
         eps of a landing corner [1].
     """
 
     stiffness: float
     damping: float
-    restitution: float
+    restitution: Restitutions
 
     @property
     def model(self) -> str:

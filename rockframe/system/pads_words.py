@@ -32,7 +32,7 @@ def pads_words(pads: "PadSupport") -> BaseWords:
              "(15a); the sign of the bearing corner and omega^4 in (15b)"),
             ("right", "Eq. (15), lower signs, with the same corrections"),
             ("flight", "free fall and constant rotation rate (left out by the paper)"),
-            ("impact", f"a landing corner keeps {pads.restitution:.6g} of its speed, "
+            ("impact", f"a landing corner keeps {pads.restitution.words()} of its speed, "
              "Eqs. (2)-(4) with the corner inertia for the printed I_O"),
         ],
         uplift=("uplift angle, Eq. (16)", uplift_words(pads.uplift_angle)),
@@ -59,5 +59,5 @@ def _numbers(pads: "PadSupport") -> list[tuple[str, str]]:
         rate = math.sqrt(pads.rocking_stiffness / body.base_inertia)
         ratio = pads.damping * body.half_width**2 / (body.base_inertia * rate)
         rows.append(("rocking vibration in full contact", vibration_words("omega_r", rate, ratio)))
-    rows.append(("restitution eps", f"{pads.restitution:.6g}"))
+    rows.append(("restitution eps", pads.restitution.words()))
     return rows

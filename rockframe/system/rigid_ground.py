@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from rockframe.components.block import BlockSI
 from rockframe.system.bodies import Body, body_of
-from rockframe.system.impact import resolve_restitution, restitution_cautions
+from rockframe.system.impact import Restitutions, resolve_restitution, restitution_cautions
 from rockframe.system.options import Options, Rotation
 from rockframe.system.parts import Parts
 from rockframe.system.rigid_ground_words import rigid_ground_words
@@ -26,7 +26,7 @@ class RigidGroundSetting:
     """Numbers of a block on rigid ground, in SI units."""
 
     block: BlockSI
-    restitution: float
+    restitution: Restitutions
     rotation: Rotation
     gravity: float
 
@@ -42,8 +42,13 @@ class RigidGroundSetting:
 
     @property
     def overturning_angle(self) -> float:
-        """Theta [rad]."""
-        return self.block.overturning_angle
+        """Theta, of the side that falls first [rad]."""
+        return self.body.overturning_angles.least
+
+    @property
+    def rest_rotation(self) -> float:
+        """Zero: the whole base bears [rad]."""
+        return 0.0
 
     @property
     def uplift_angle(self) -> float:
@@ -62,13 +67,28 @@ class RigidGroundSetting:
 
     @property
     def uplift_acceleration(self) -> float:
-        """Horizontal ground acceleration at which rocking starts, g tan(theta) [m s^-2]."""
-        angle = self.overturning_angle
-        return self.gravity * (angle if self.rotation is Rotation.SMALL else math.tan(angle))
+        """Horizontal ground acceleration at which rocking starts, g tan(theta) [m s^-2].
+
+        Of the side that lifts first.
+        """
+        return min(self.uplift_accelerations)
+
+    @property
+    def uplift_accelerations(self) -> tuple[float, float]:
+        """The same for rocking about the left and about the right corner [m s^-2].
+
+        Ground that is accelerated to the right tips the block to the left.
+        """
+        small = self.rotation is Rotation.SMALL
+        left, right = (
+            self.gravity * (angle if small else math.tan(angle))
+            for angle in self.body.overturning_angles
+        )
+        return left, right
 
     def cautions(self) -> list[str]:
         """Give warnings about the restitution."""
-        return restitution_cautions(self.restitution, self.block.maximum_restitution)
+        return restitution_cautions(self.restitution, self.body.maximum_restitution)
 
     def start_faults(self, rotation: float, has_vertical_start: bool) -> list[str]:
         """Refuse a vertical start: the ground leaves no vertical freedom."""
@@ -85,17 +105,20 @@ class RigidGroundSetting:
 
     def compile(self) -> "ContactModel":
         """Give the equations, ready for the integrator."""
-        from rockframe.dynamics.rigid_ground import rigid_ground
+        from rockframe.dynamics.rigid_ground import corner_of, rigid_ground
 
-        return rigid_ground(
-            overturning_angle=self.overturning_angle,
-            radius=self.block.radius,
-            shape_factor=self.block.shape_factor,
-            mass=self.block.mass,
-            restitution=self.restitution,
-            small_rotation=self.rotation is Rotation.SMALL,
-            gravity=self.gravity,
+        body, small = self.body, self.rotation is Rotation.SMALL
+        left, right = (
+            corner_of(
+                distance=distance,
+                height=body.centre_height,
+                inertia=body.gyration_square_about(distance),
+                restitution=restitution,
+                small_rotation=small,
+            )
+            for distance, restitution in zip((body.left, body.right), self.restitution, strict=True)
         )
+        return rigid_ground(left, right, mass=body.mass, small_rotation=small, gravity=self.gravity)
 
     def small_motion(self) -> SmallMotion | None:
         """Give None: a rigid base leaves no small motion; the period depends on the amplitude."""
@@ -103,18 +126,24 @@ class RigidGroundSetting:
 
     def statics(self, rotation: float) -> Statics:
         """Give the equilibrium at a rotation: the bearing corner carries the weight."""
+        body = self.body
         if rotation == 0.0:
-            return Statics(0.0, 0.0, 0.0, "full", dict.fromkeys(_REACTIONS, 0.5 * self.weight))
+            # the moments of weight and reactions about the middle of the base
+            moment = self.weight * body.eccentricity
+            return Statics(
+                0.0, moment, 0.0, "full", dict(zip(_REACTIONS, self.shares, strict=True))
+            )
         side = math.copysign(1.0, rotation)
-        theta, lean = self.overturning_angle, abs(rotation)
-        radius = self.block.radius
+        theta, lean = body.overturning_angles.on_side_of(rotation), abs(rotation)
+        beside = side * body.eccentricity
+        radius = math.hypot(body.half_width - beside, body.centre_height)
         if self.rotation is Rotation.SMALL:
             rise, restoring = radius * lean * (theta - 0.5 * lean), theta - lean
-            weight_arm = radius * lean
+            weight_arm = radius * lean + beside
         else:
             rise = 2.0 * radius * math.sin(theta - 0.5 * lean) * math.sin(0.5 * lean)
             restoring = math.sin(theta - lean)
-            weight_arm = self.block.half_height * math.sin(lean)
+            weight_arm = body.centre_height * math.sin(lean) + beside * math.cos(lean)
         moment = side * self.weight * radius * restoring
         reactions = (0.0, self.weight) if side > 0.0 else (self.weight, 0.0)
         return Statics(
@@ -132,15 +161,22 @@ class RigidGroundSetting:
 
     def equilibrium(self) -> dict[str, float]:
         """Give the reactions at rest and the moment at uplift, by their names in the schema."""
-        uplift = self.weight * self.block.half_width
-        return {"uplift_moment": uplift} | {
-            f"static_{name}": 0.5 * self.weight for name in _REACTIONS
-        }
+        uplift = self.weight * self.body.half_width
+        shares = zip(_REACTIONS, self.shares, strict=True)
+        return {"uplift_moment": uplift} | {f"static_{name}": force for name, force in shares}
+
+    @property
+    def shares(self) -> tuple[float, float]:
+        """Reactions of the left and of the right corner at rest [N]."""
+        # in proportion to what it takes to lift the other one
+        left, right = self.uplift_accelerations
+        half, tilt = 0.5 * self.weight, 0.5 * (left - right) / (left + right)
+        return half - self.weight * tilt, half + self.weight * tilt
 
 
 def rigid_ground_setting(parts: Parts, options: Options) -> RigidGroundSetting:
     """Resolve the parts of a scene on rigid ground."""
     block = parts.the_block
     given = parts.ground.si.restitution if parts.ground is not None else None
-    restitution = resolve_restitution(given, block.maximum_restitution)
+    restitution = resolve_restitution(given, body_of(block).maximum_restitution)
     return RigidGroundSetting(block, restitution, options.rotation, options.gravity)

@@ -1,5 +1,6 @@
 """Rigid ground in words."""
 
+import math
 from typing import TYPE_CHECKING
 
 from rockframe.system.options import Rotation
@@ -24,20 +25,19 @@ def rigid_ground_words(scene: "RigidGroundSetting") -> Words:
     rocking = "a'' = -omega^2 [(1 + yg''/g) sin(theta s - a) + (xg''/g) cos(theta s - a)]"
     if scene.rotation is Rotation.SMALL:
         rocking = "small rotation: a'' = -omega^2 [(1 + yg''/g) (theta s - a) + xg''/g]"
-    omega = scene.block.frequency_at(scene.gravity)
     return Words(
         equations=[
             ("full", f"at rest until |xg''| exceeds (g + yg'') tan(theta), "
              f"{scene.uplift_acceleration:.4g} m s^-2 without vertical motion"),
             ("left, right", f"{rocking}, s = sgn(a) (Housner; Eq. (6) for omega)"),
-            ("impact", f"a' after = {scene.restitution:.6g} a' before, at a = 0 (Eq. (4) is the "
-             "greatest value)"),
+            ("impact", f"a' after = {scene.restitution.words()} a' before, at a = 0 "
+             "(Eq. (4) is the greatest value)"),
         ],
         restraint="the bearing corner does not slide (the restraint options make no difference)",
         uplift=[("uplift angle", "0 rad: any rotation lifts a corner")],
         numbers=[
-            ("rocking frequency omega, Eq. (6)", f"{omega:.6g} rad/s"),
-            ("restitution eps", f"{scene.restitution:.6g}"),
+            ("rocking frequency omega, Eq. (6)", _frequency_words(scene)),
+            ("restitution eps", scene.restitution.words()),
         ],
         left_out=[
             "sliding",
@@ -45,3 +45,19 @@ def rigid_ground_words(scene: "RigidGroundSetting") -> Words:
             "flight (a vertical ground acceleration beyond gravity would need it)",
         ],
     )  # fmt: skip
+
+
+def _frequency_words(scene: "RigidGroundSetting") -> str:
+    """Write the frequency of rocking about each corner; one number where they are equal."""
+    body = scene.body
+    left, right = (
+        math.sqrt(
+            scene.gravity
+            * math.hypot(distance, body.centre_height)
+            / body.gyration_square_about(distance)
+        )
+        for distance in (body.left, body.right)
+    )
+    if left == right:
+        return f"{left:.6g} rad/s"
+    return f"about the left corner {left:.6g} rad/s, about the right one {right:.6g} rad/s"

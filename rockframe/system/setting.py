@@ -25,6 +25,11 @@ class Numbers(Protocol):
         ...
 
     @property
+    def rest_rotation(self) -> float:
+        """Rotation at rest, of a body that is not symmetric [rad]."""
+        ...
+
+    @property
     def uplift_angle(self) -> float:
         """Rotation at which contact is first lost; NaN if never [rad]."""
         ...

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 STEPS: Final = 200
 """Steps in which the cap's tilt under a held block is searched."""
+LEAN: Final = 4.0
+"""How far it is searched under a block that is not symmetric, by the tilt at rest."""
 
 
 @dataclass(frozen=True)
@@ -67,10 +69,16 @@ def _tilt_under(stack: "StackedSetting", rotation: float) -> float:
     def lack(tilt: float) -> float:
         return math.copysign(1.0, rotation) * _balance(stack, tilt, rotation).lack
 
-    if rotation == 0.0:
+    beside = stack.body.eccentricity
+    if rotation == 0.0 and beside == 0.0:
         return 0.0
     # a far held block leaves the cap a second, larger tilt, which is not stable
     steps = np.linspace(0.0, rotation, STEPS + 1).tolist()
+    if beside != 0.0:  # the cap leans even under an upright block
+        reach = max(abs(rotation), LEAN * abs(stack.cap_lean))
+        side = math.copysign(1.0, rotation)
+        around = np.linspace(-side * reach, side * reach, 2 * STEPS + 1).tolist()
+        steps = sorted(around, key=lambda tilt: side * tilt)
     for low, high in pairwise(steps):
         if lack(low) <= 0.0 < lack(high):
             return root_scalar(lack, bracket=(low, high), xtol=1e-15, rtol=1e-14).root
@@ -84,17 +92,19 @@ def _tilt_under(stack: "StackedSetting", rotation: float) -> float:
 def _balance(stack: "StackedSetting", tilt: float, rotation: float) -> _Balance:
     upper, cap, options = stack.upper.support, stack.cap, stack.options
     block, weight = upper.load.body, upper.load.weight
-    h = block.centre_height
+    h, beside = block.centre_height, block.eccentricity
     frame_sine, frame_cosine = math.sin(tilt), math.cos(tilt)
     # the block on the cap, under the weight along the cap's normal
     sine, cosine, rise = sine_cosine_rise(h, options.rotation, rotation - tilt)
     press = weight * frame_cosine
     held = upper.held(sine, cosine, press)
-    normal = held.rise - rise
-    pad_moment = press * h * sine - held.moment
+    normal = held.rise - rise - beside * sine
+    pad_moment = press * (h * sine + beside * cosine) - held.moment
+    # the held point, from the middle of the base and from beneath the centre of mass
     pin = _pin(stack, held, rotation - tilt)
-    across = pin + h * sine - pin * cosine
-    slide = h if options.small else h * cosine + pin * sine
+    foot = pin - beside
+    across = pin + h * sine - foot * cosine
+    slide = h if options.small else h * cosine + foot * sine
     # the cap: thrust along it, its own weight on the soil
     thrust = -weight * frame_sine
     sine, cosine, cap_rise = sine_cosine_rise(cap.half_height, options.rotation, tilt)

@@ -3,12 +3,14 @@
 import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rockframe.errors import AssemblyError
 from rockframe.system.alone import AloneSetting
-from rockframe.system.bodies import Body, Cap
+from rockframe.system.bodies import Body, Cap, leaning_cautions
 from rockframe.system.options import Options
 from rockframe.system.restraints import restraint_words
 from rockframe.system.small_motion import SmallMotion
@@ -18,6 +20,7 @@ from rockframe.system.support import BaseWords
 from rockframe.system.words import Words
 
 if TYPE_CHECKING:
+    from rockframe.dynamics.coupled.model import StackRest
     from rockframe.dynamics.coupled.stack import Stack
     from rockframe.dynamics.protocol import ContactModel
 
@@ -73,6 +76,16 @@ class StackedSetting(ABC):
         return self.upper.overturning_angle
 
     @property
+    @abstractmethod
+    def rest_rotation(self) -> float:
+        """Rotation of the block at rest [rad]."""
+
+    @property
+    @abstractmethod
+    def cap_lean(self) -> float:
+        """Rotation of the cap at rest [rad]."""
+
+    @property
     def settlement(self) -> float | None:
         """Delta = mg/2k, of the block on the pads [m]."""
         return self.upper.settlement
@@ -89,7 +102,9 @@ class StackedSetting(ABC):
 
     def cautions(self) -> list[str]:
         """Give the warnings of block and soil."""
-        return [*self.upper.cautions(), *self.lower.cautions()]
+        supports = self.upper.support, self.lower.support
+        found = [text for support in supports for text in support.cautions()]
+        return found + leaning_cautions(self.body, self.rest_rotation)
 
     def start_faults(self, rotation: float, has_vertical_start: bool) -> list[str]:
         """Give the faults that the block's base finds in an initial state."""
@@ -127,7 +142,14 @@ class StackedSetting(ABC):
         """Give the equations of small motion of block and cap, :eq:`eq-coupled-small`."""
         from rockframe.dynamics.coupled.stack import small_motion_matrices
 
-        mass, damping, stiffness = small_motion_matrices(self.bodies())
+        stack = self.bodies()
+        mass, damping, stiffness = small_motion_matrices(stack)
+        if self.body.eccentricity != 0.0:
+            from rockframe.dynamics.coupled.model import system_of
+            from rockframe.dynamics.linear import linear_stack
+
+            linear = linear_stack(system_of(stack), self.rest)
+            damping, stiffness = mass @ linear.damping, mass @ linear.stiffness
         # from coordinates on the cap to displacements of the block
         names = ("cap_vertical_displacement", "cap_rotation", "vertical_displacement", "rotation")
         to_own = np.eye(4)
@@ -135,15 +157,39 @@ class StackedSetting(ABC):
         turned = [to_own.T @ matrix @ to_own for matrix in (mass, damping, stiffness)]
         return SmallMotion(names, *(self.upper.support.load.body.mass * each for each in turned))
 
+    @cached_property
+    def rest(self) -> "StackRest":
+        """Where block and cap are at rest, as the coupled equations have it.
+
+        Raises
+        ------
+        AssemblyError
+            The bases are too soft to carry a block that is not symmetric.
+        """
+        from rockframe.dynamics.coupled.model import system_of
+        from rockframe.dynamics.rest import stack_rest
+
+        found = stack_rest(system_of(self.bodies()))
+        if found is None:
+            raise AssemblyError(["the block and the cap under it find no rest under their weight"])
+        return found
+
     def statics(self, rotation: float) -> Statics:
         """Give the equilibrium with the block held at a rotation."""
         return stack_statics(self, rotation)
 
     def equilibrium(self) -> dict[str, float]:
         """Give settlements and reactions at rest, by their names in the schema."""
-        soil = self.lower.equilibrium()
+        soil = self.lower.upright()
         soil["soil_uplift_moment"] = soil.pop("uplift_moment")
-        return {**self.upper.equilibrium(), **soil}
+        found = {**self.upper.upright(), **soil}
+        if self.body.eccentricity != 0.0:
+            found |= {f"static_{name}": value for name, value in self.rest_reactions().items()}
+        return found
+
+    @abstractmethod
+    def rest_reactions(self) -> dict[str, float]:
+        """Give the reactions of both bases at rest."""
 
     def bodies(self) -> "Stack":
         """Give block, pads, cap and soil as the coupled equations take them."""
@@ -205,7 +251,21 @@ class CoupledSetting(StackedSetting):
         """Give the equations, ready for the integrator."""
         from rockframe.dynamics.coupled.model import coupled
 
-        return coupled(self.bodies(), mass=self.upper.support.load.body.mass)
+        return coupled(self.bodies(), self.body.mass, self.rest)
+
+    @property
+    def cap_lean(self) -> float:
+        """Rotation of the cap at rest [rad]."""
+        return self.rest.cap_rotation
+
+    def rest_reactions(self) -> dict[str, float]:
+        """Give the reactions of both bases at rest."""
+        return self.statics(self.rest_rotation).reactions
+
+    @property
+    def rest_rotation(self) -> float:
+        """Rotation of the block at rest, with the cap [rad]."""
+        return self.rest.rotation + self.rest.cap_rotation
 
 
 class CascadeSetting(StackedSetting):
@@ -236,13 +296,30 @@ class CascadeSetting(StackedSetting):
         """Give the equations of both stages, ready for the integrator."""
         from rockframe.dynamics.cascade.model import cascade
 
-        centre = self.cap.half_height - self.lower.support.load.body.centre_height
+        body = self.lower.body
+        centre = self.cap.half_height - body.centre_height
         return cascade(
             self.lower.compile(),
             self.upper.compile(),
             top=centre + self.cap.half_height,
             cap_centre=centre,
+            beside=body.eccentricity,
+            rest_rotation=self.lower.rest_rotation,
         )
+
+    @property
+    def rest_rotation(self) -> float:
+        """Rotation of the block at rest, of both stages together [rad]."""
+        return self.cap_lean + self.upper.rest_rotation
+
+    @property
+    def cap_lean(self) -> float:
+        """Rotation of the cap at rest [rad]."""
+        return self.lower.rest_rotation
+
+    def rest_reactions(self) -> dict[str, float]:
+        """Give the reactions of both bases at rest, each of its own stage."""
+        return self.lower.rest_reactions() | self.upper.rest_reactions()
 
 
 def _uplift_row(setting: AloneSetting, on: str, base: BaseWords, whose: str) -> tuple[str, str]:
@@ -250,5 +327,5 @@ def _uplift_row(setting: AloneSetting, on: str, base: BaseWords, whose: str) -> 
     title = name.replace("uplift angle", f"uplift angle {on}", 1)
     if math.isnan(setting.uplift_angle):
         return title, words
-    moment = setting.equilibrium()["uplift_moment"]
+    moment = setting.upright()["uplift_moment"]
     return title, f"{words} of {whose}, at a moment of {moment:.6g} N m"

@@ -14,7 +14,13 @@ from rockframe.dynamics.stacked import COORDINATES
 
 
 def cascade(
-    first: ContactModel, second: ContactModel, *, top: float, cap_centre: float
+    first: ContactModel,
+    second: ContactModel,
+    *,
+    top: float,
+    cap_centre: float,
+    beside: float,
+    rest_rotation: float,
 ) -> ContactModel:
     """Assemble the model of a block on the cap of a body on a base.
 
@@ -26,13 +32,17 @@ def cascade(
         The block on its base, likewise.
     top, cap_centre : float
         Heights of the cap's top and of its centre above the first body's centre of mass [m].
+    beside : float
+        How far that is to the right of the middle of the cap [m].
+    rest_rotation : float
+        Of the first body at rest [rad].
 
     Returns
     -------
     ContactModel
     """
     ratio = first.mass / second.mass
-    system = Cascade(_part_of(second), _part_of(first), ratio, top, cap_centre)
+    system = Cascade(_part_of(second), _part_of(first), ratio, top, cap_centre, beside)
     count = len(first.contact)
     sways = np.maximum(np.repeat(first.active, len(second.active)), np.tile(second.active, count))
     shown = len(BODY_COLUMNS)
@@ -40,7 +50,9 @@ def cascade(
 
     def initial(start: Start) -> tuple[int, Vector, Vector]:
         lower, below, memory = first.initial(Start())
-        upper, above, kept = second.initial(start)
+        given = start.rotation
+        on_cap = start if given is None else replace(start, rotation=given - rest_rotation)
+        upper, above, kept = second.initial(on_cap)
         mode = upper + system.upper.modes() * lower
         return mode, _in_turn(above, below), np.append(kept, memory[HELD_PLACE])
 

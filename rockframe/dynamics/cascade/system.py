@@ -59,6 +59,7 @@ class Stages(NamedTuple):
     mass_ratio: float  # mass of the lower body over that of the block
     top: float  # height of the cap's top above the lower centre of mass
     cap_centre: float  # the same of the cap's centre
+    beside: float  # of the lower centre of mass to the right of the middle of the cap
 
 
 class Cascade(Stacked, Stages):
@@ -78,11 +79,16 @@ class Cascade(Stacked, Stages):
         sway = self.lower.sway(mode, state, attitude)
         arch = 0.0 if self.lower.body.small else attitude.sine
         sine, cosine = attitude.sine, attitude.cosine
+        bend = 0.0 if self.lower.body.small else cosine
         return PointMotion(
-            sway + self.top * cosine * rate,
-            state.vertical_velocity - self.top * sine * rate,
-            horizontal + self.top * (cosine * angular - arch * rate * rate),
-            vertical - self.top * (sine * angular + cosine * rate * rate),
+            sway + self.top * cosine * rate + self.beside * arch * rate,
+            state.vertical_velocity - self.top * sine * rate + self.beside * cosine * rate,
+            horizontal
+            + self.top * (cosine * angular - arch * rate * rate)
+            + self.beside * (arch * angular + bend * rate * rate),
+            vertical
+            - self.top * (sine * angular + cosine * rate * rate)
+            + self.beside * (cosine * angular - arch * rate * rate),
         )
 
     @inlined
@@ -236,8 +242,10 @@ class Cascade(Stacked, Stages):
             above.vertical + self.upper.body.gravity + on_top.y,
             lower.rotation,
             lower.angular_velocity,
-            lower.vertical - self.cap_centre * versine,
-            lower.vertical_velocity - self.cap_centre * attitude.sine * lower.angular_velocity,
+            lower.vertical - self.cap_centre * versine + self.beside * attitude.sine,
+            lower.vertical_velocity
+            + (self.beside * attitude.cosine - self.cap_centre * attitude.sine)
+            * lower.angular_velocity,
             upper.rotation,
             upper.vertical,
             on_top.x,

@@ -2,6 +2,8 @@
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -25,11 +27,34 @@ from rockframe.dynamics.stacked import (
     COORDINATES,
     HORIZONTAL,
     LOWER,
+    LOWER_HORIZONTAL,
+    LOWER_ROTATION,
+    LOWER_VERTICAL,
     UPPER,
 )
 
 
-def coupled(stack: Stack, mass: float) -> ContactModel:
+class StackRest(NamedTuple):
+    """Placement of a block, relative to the cap, and of the cap, both at rest."""
+
+    rotation: float
+    vertical: float
+    cap_rotation: float
+    cap_vertical: float
+
+
+def system_of(stack: Stack) -> Coupled:
+    """Give the equations of a stack."""
+    return Coupled(
+        OnBase(stack.block, stack.pads.law),
+        OnBase(stack.cap, stack.soil.law),
+        stack.cap_mass,
+        stack.cap.height,
+        0.5 * (stack.block.left - stack.block.right),
+    )
+
+
+def coupled(stack: Stack, mass: float, rest: StackRest) -> ContactModel:
     """Assemble the model of a block on a base on a cap on a base.
 
     Parameters
@@ -38,13 +63,15 @@ def coupled(stack: Stack, mass: float) -> ContactModel:
         Its parts.
     mass : float
         Of the block [kg].
+    rest : StackRest
+        Where block and cap are at rest, :func:`rockframe.dynamics.rest.stack_rest`.
 
     Returns
     -------
     ContactModel
     """
-    block, pads, cap, soil, cap_mass = stack
-    system = Coupled(OnBase(block, pads.law), OnBase(cap, soil.law), cap_mass, cap.height)
+    block, pads, soil = stack.block, stack.pads, stack.soil
+    system = system_of(stack)
     upper, lower = mode_table(pads.law), mode_table(soil.law)
     count = len(lower.contact)
     fastest, damping_rate = fastest_vibration(stack)
@@ -71,7 +98,7 @@ def coupled(stack: Stack, mass: float) -> ContactModel:
         fastest_frequency=fastest,
         damping_rate=damping_rate,
         energy_scale=block.gravity * radius_of(block) * block.angle,
-        initial=_starting(system),
+        initial=_starting(system, rest),
         rounding=_rounding(stack, fastest),
     )
 
@@ -96,30 +123,55 @@ def _rounding(stack: Stack, fastest: float) -> Callable[[float], Vector]:
     return rounding_at(sum(sizes), pads.settlement + soil.settlement, answers, fastest, variables)
 
 
-def _starting(system: Coupled) -> Callable[[Start], tuple[int, Vector, Vector]]:
-    """Make the function that starts a run: the cap upright and at rest, the block as told on it."""
+def state_at(
+    system: Coupled, place: StackRest, rate: float = 0.0, vertical_velocity: float = 0.0
+) -> tuple[int, Vector, Vector]:
+    """Give mode, state and memory of a block on a cap at rest, where they are placed.
+
+    `rate` and `vertical_velocity` are those of the block.
+    """
+    state = np.zeros(2 * COORDINATES + system.variables())
+    memory = np.zeros(len(MEMORY) + 1)
+    upper, lower = system.upper, system.lower
+    block = BodyState(place.rotation, place.vertical, 0.0, rate, vertical_velocity, 0.0)
+    cap = BodyState(place.cap_rotation, place.cap_vertical, 0.0, 0.0, 0.0, 0.0)
+    contact = upper.base.starting(upper.body.base_line_at(block), system.upper_own(state))
+    under = lower.base.starting(lower.body.base_line_at(cap), system.lower_own(state))
+    standing = upper.standing(contact, block)
+    # upright and at rest the cap leans nowhere yet; it follows the block
+    leaning = cap if cap.rotation != 0.0 else block
+    of_cap = lower.standing(under, leaning)
+    pin, beside = upper.body.pin(standing.pivot), system.beside
+    state[ROTATION], state[VERTICAL] = block.rotation, block.vertical
+    state[LOWER_ROTATION], state[LOWER_VERTICAL] = cap.rotation, cap.vertical
+    state[COORDINATES + ROTATION] = block.angular_velocity
+    state[COORDINATES + VERTICAL] = block.vertical_velocity
+    state[HORIZONTAL] = pin + beside + upper.body.about_pin(pin, block.rotation)
+    if not upper.is_free(standing):
+        reach = upper.body.reach(pin, upper.body.attitude(block.rotation))
+        state[COORDINATES + HORIZONTAL] = reach.rate * block.angular_velocity
+    memory[HELD_PLACE + UPPER] = pin + beside
+    cap_pin = lower.body.pin(of_cap.pivot)
+    memory[HELD_PLACE + LOWER] = cap_pin
+    if lower.is_free(of_cap):
+        state[LOWER_HORIZONTAL] = cap_pin + lower.body.about_pin(cap_pin, cap.rotation)
+    return system.with_part(upper.number_of(standing), LOWER, of_cap), state, memory
+
+
+def _starting(system: Coupled, rest: StackRest) -> Callable[[Start], tuple[int, Vector, Vector]]:
+    """Make the function that starts a run: the cap at rest, the block as told on it."""
 
     def initial(start: Start) -> tuple[int, Vector, Vector]:
-        state = np.zeros(2 * COORDINATES + system.variables())
-        memory = np.zeros(len(MEMORY) + 1)
-        upper, lower = system.upper, system.lower
-        block, standing = starting_state(upper, start, system.upper_own(state))
-        cap = BodyState(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-        contact = lower.base.starting(lower.body.base_line_at(cap), system.lower_own(state))
-        # upright and at rest the cap leans nowhere yet; it follows the block
-        leaning = BodyState(start.rotation, 0.0, 0.0, start.angular_velocity, 0.0, 0.0)
-        of_cap = lower.standing(contact, leaning)
-        pin = upper.body.pin(standing.pivot)
-        state[ROTATION], state[VERTICAL] = block.rotation, block.vertical
-        state[COORDINATES + ROTATION] = block.angular_velocity
-        state[COORDINATES + VERTICAL] = block.vertical_velocity
-        state[HORIZONTAL] = pin + upper.body.about_pin(pin, block.rotation)
-        if not upper.is_free(standing):
-            reach = upper.body.reach(pin, upper.body.attitude(block.rotation))
-            state[COORDINATES + HORIZONTAL] = reach.rate * block.angular_velocity
-        memory[HELD_PLACE + UPPER] = pin
-        memory[HELD_PLACE + LOWER] = lower.body.pin(of_cap.pivot)
-        mode = system.with_part(upper.number_of(standing), LOWER, of_cap)
-        return mode, state, memory
+        place = rest
+        told = start.rotation is not None or start.vertical_displacement is not None
+        if told or system.beside == 0.0:
+            turned = rest.rotation
+            if start.rotation is not None:
+                turned = start.rotation - rest.cap_rotation
+            own = system.upper.base.read(np.zeros(system.variables()), 0)
+            there = replace(start, rotation=turned)
+            block, _ = starting_state(system.upper, there, own)
+            place = rest._replace(rotation=block.rotation, vertical=block.vertical)
+        return state_at(system, place, start.angular_velocity, start.vertical_velocity)
 
     return initial

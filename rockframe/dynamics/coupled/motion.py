@@ -20,6 +20,7 @@ class Pair(NamedTuple):
     lower: OnBase  # the cap on the ground
     cap_mass: float  # m_c/m; the cap's inertia is I_c/m
     top: float  # of the cap above its centre of mass
+    beside: float  # of the block's centre of mass to the right of the middle of its base
 
 
 class Configuration(NamedTuple):

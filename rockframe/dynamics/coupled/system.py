@@ -218,7 +218,7 @@ class Coupled(Stacked, Pair):
         states = self.states_in(state)
         place = self.place_in(mode, states)
         across, up = block_velocity(place, states)
-        along = place.arm * place.sine + states.upper.horizontal * place.cosine
+        along = place.arm * place.sine + states.upper.horizontal * place.cosine - self.beside
         thrust, press, push = self.holds(mode, states, slope, ground)
         return (
             states.upper.rotation + states.lower.rotation,

@@ -145,7 +145,10 @@ EVENTS_AND_SCALARS: Final = (
     flag("overturning_direction", (), "side towards which the block overturned", Direction),
     Variable("peak_rotation", (), Unit.RADIAN, "largest absolute rotation"),
     Variable(
-        "peak_relative_rotation", (), Unit.ONE, "largest absolute rotation over overturning angle"
+        "peak_relative_rotation",
+        (),
+        Unit.ONE,
+        "largest rotation over the overturning angle of its side",
     ),
     Variable("first_uplift_time", (), Unit.SECOND, "time contact is first lost, NaN if never"),
     count("impact_count", "number of impacts, those that end in rest among them"),
@@ -155,7 +158,17 @@ EVENTS_AND_SCALARS: Final = (
         "energy_residual", (), Unit.ONE, "largest energy imbalance over the largest energy term"
     ),
     flag("status", (), "how the run ended", Status),
-    Variable("overturning_angle", (), Unit.RADIAN, "rotation of unstable equilibrium, theta"),
+    Variable(
+        "overturning_angle",
+        (),
+        Unit.RADIAN,
+        "rotation of unstable equilibrium, theta, on the side where it is less",
+    ),
+    Variable("left_overturning_angle", (), Unit.RADIAN, "rotation to the left that overturns"),
+    Variable("right_overturning_angle", (), Unit.RADIAN, "rotation to the right that overturns"),
+    Variable("left_peak_rotation", (), Unit.RADIAN, "largest rotation to the left"),
+    Variable("right_peak_rotation", (), Unit.RADIAN, "largest rotation to the right"),
+    Variable("rest_rotation", (), Unit.RADIAN, "rotation at rest, under the weight alone"),
     Variable(
         "uplift_angle",
         (),
