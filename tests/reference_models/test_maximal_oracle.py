@@ -13,9 +13,12 @@ from reference_models.maximal import runge_kutta
 from reference_models.maximal.comparing import compare, run_reference
 from reference_models.maximal.drawing import draw
 from reference_models.maximal.excitation import HARMONIC
+from reference_models.maximal.forces import accelerate
+from reference_models.maximal.guards import total_rotation
 from reference_models.maximal.running import kinetic, rooms, run, stored
-from reference_models.maximal.scene import GRAVITY, KINDS, Scene, paces, parameters, start
+from reference_models.maximal.scene import GRAVITY, KINDS, Scene, mirrored, paces, parameters
 from reference_models.maximal.simulate import Excitation, simulate
+from reference_models.maximal.starting import start
 
 pytestmark = pytest.mark.reference_models
 
@@ -65,8 +68,12 @@ def test_flight_is_a_parabola():
 
 @pytest.mark.parametrize("kind", ["pads", "bed", "coupled"])
 @pytest.mark.parametrize("separation", ["displacement", "pressure"])
-def test_energies_balance(kind, separation):
-    scene = Scene(kind, separation=separation, start=0.2, free=2.0, cap=True, **SOIL)
+@pytest.mark.parametrize("eccentricity", [0.0, -0.2])
+def test_energies_balance(kind, separation, eccentricity):
+    scene = Scene(
+        kind, separation=separation, start=0.2, free=2.0, cap=True, eccentricity=eccentricity,
+        **SOIL,
+    )  # fmt: skip
     p = parameters(scene, 1e-13)
     z, contact, held = start(scene, p)
     room = rooms(p)
@@ -100,6 +107,36 @@ def test_mirrored_motion():
 
 
 @pytest.mark.parametrize("kind", KINDS)
+def test_the_mirror_image_of_an_eccentric_block(kind):
+    scene = Scene(
+        kind, rule="leading-corner", eccentricity=0.3, xi=0.3, beta=12.0, free=2.0, cap=True, **SOIL
+    )
+    pulses = (Excitation.pulse(HARMONIC, 1.0 / 64.0, 64, 1.0, 0.0, way * 4.0, 2.0)
+              for way in (1.0, -1.0))  # fmt: skip
+    one, other = map(simulate, (scene, mirrored(scene)), pulses)
+    assert np.max(np.abs(one.rotation)) > 0.02
+    assert other.rotation == pytest.approx(-one.rotation, abs=1e-9)
+    assert other.rise == pytest.approx(one.rise, abs=1e-9)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_an_eccentric_block_rests_where_it_starts(kind):
+    """Closed statics against the accelerations of the equations of motion."""
+    leans = []
+    for number in range(60):
+        scene = replace(draw(kind, 3, number, True), start=0.0, start_rate=0.0, told=False)
+        p = parameters(scene, 1e-13)
+        z, contact, held = start(scene, p)
+        out = np.zeros(10)
+        accelerate(z, 0.0, 0.0, contact, held, p, rooms(p), out)
+        assert np.max(np.abs(out[:6])) < 1e-10 * GRAVITY
+        leans.append(total_rotation(z, p) * math.copysign(1.0, scene.eccentricity) / p[at.LIMIT])
+    assert min(leans) >= 0.0
+    assert kind == "rigid" or min(leans) > 0.0
+    assert max(leans) > (0.1 if kind != "rigid" else -1.0)
+
+
+@pytest.mark.parametrize("kind", KINDS)
 def test_tolerance_does_not_matter(kind):
     scene = draw(kind, 1, 1)
     one, other = run_reference(scene), run_reference(scene, tolerance=1e-12)
@@ -112,5 +149,6 @@ def test_tolerance_does_not_matter(kind):
 @pytest.mark.parametrize("kind", KINDS)
 def test_random_scenes(kind):
     for number in range(SCENES):
-        outcome = compare(kind, 1, number)
-        assert outcome.label != "disagrees", outcome.plain()
+        for eccentric in (False, True):
+            outcome = compare(kind, 1, number, eccentric)
+            assert outcome.label != "disagrees", outcome.plain()

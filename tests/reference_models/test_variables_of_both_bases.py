@@ -14,7 +14,7 @@ from plainly import plainly
 from rockframe.compiled import inlined, kernel
 from rockframe.dynamics.alone_model import body_of
 from rockframe.dynamics.base_numbers import BaseNumbers, pads_under
-from rockframe.dynamics.coupled.model import coupled
+from rockframe.dynamics.coupled.model import StackRest, coupled
 from rockframe.dynamics.coupled.stack import Stack
 from rockframe.dynamics.on_pads import on_pads
 from rockframe.dynamics.pads import CONTACTS, Pads
@@ -84,7 +84,8 @@ def stack(above, below):
     """Give the model of a block on a cap; `above` and `below` make bases of pads."""
     block, cap = (
         body_of(
-            half_width=half_width,
+            left=half_width,
+            right=half_width,
             height=height,
             inertia=mass * (half_width**2 + height**2) / 3.0,
             restraint=LEADING_CORNER,
@@ -93,9 +94,11 @@ def stack(above, below):
         )
         for half_width, height, mass in ((0.5, 2.0, 1.0), (0.5, 0.25, CAP_MASS))
     )
-    pads = pads_under(block, stiffness=4e3, damping=20.0, restitution=0.9)
-    soil = pads_under(cap, stiffness=2e3, damping=30.0, restitution=1.0)
-    return coupled(Stack(block, above(pads), cap, below(soil), CAP_MASS), mass=1e4)
+    pads = pads_under(block, stiffness=4e3, damping=20.0, restitution=(0.9, 0.9))
+    soil = pads_under(cap, stiffness=2e3, damping=30.0, restitution=(1.0, 1.0))
+    return coupled(
+        Stack(block, above(pads), cap, below(soil), CAP_MASS), 1e4, StackRest(0.0, 0.0, 0.0, 0.0)
+    )
 
 
 def shaken(model):

@@ -12,6 +12,7 @@ from .layout import (
     BED_STIFFNESS,
     CUT_END,
     CUT_START,
+    LOWER_ECCENTRICITY,
     LOWER_HALF_WIDTH,
     LOWER_HEIGHT,
     NO_SUCTION,
@@ -23,20 +24,24 @@ _GAUSS = math.sqrt(0.6)
 
 @compiled
 def down(contact, z, p):
-    """Give the coordinates s of the ends of the part of the base that is down."""
+    """Give the coordinates s of the ends of the part of the base that is down.
+
+    They are measured from the foot of the centre of mass.
+    """
     b, delta, small = p[LOWER_HALF_WIDTH], p[BED_SETTLEMENT], is_small(p)
+    to_left, to_right = b + p[LOWER_ECCENTRICITY], b - p[LOWER_ECCENTRICITY]
     left, right = contact[BED_LEFT] == TOUCHING, contact[BED_RIGHT] == TOUCHING
     if left and right:
-        return -b, b
+        return -to_left, to_right
     if not (left or right):
         return 0.0, 0.0
-    u_left = delta - height(small, z[1], z[2], b, p[LOWER_HEIGHT], 1.0)[0]
-    u_right = delta - height(small, z[1], z[2], b, p[LOWER_HEIGHT], -1.0)[0]
+    u_left = delta - height(small, z[1], z[2], to_left, p[LOWER_HEIGHT], 1.0)[0]
+    u_right = delta - height(small, z[1], z[2], to_right, p[LOWER_HEIGHT], -1.0)[0]
     if left:
         apart = u_left - u_right
-        return -b, -b + (2.0 * b * u_left / apart if apart > 0.0 else 0.0)
+        return -to_left, -to_left + (2.0 * b * u_left / apart if apart > 0.0 else 0.0)
     apart = u_right - u_left
-    return b - (2.0 * b * u_right / apart if apart > 0.0 else 0.0), b
+    return to_right - (2.0 * b * u_right / apart if apart > 0.0 else 0.0), to_right
 
 
 @compiled

@@ -20,7 +20,7 @@ from reference_models.maximal.comparing import AGREES, Outcome, compare  # noqa:
 from reference_models.maximal.motions import have_records  # noqa: E402
 from reference_models.maximal.scene import KINDS  # noqa: E402
 
-DATA = ROOT / "docs" / "data" / "maximal_oracle.json"
+DATA = ROOT / "docs" / "data"
 LABELS = ("agrees", "chaos", "sensitive", "disagrees")
 
 
@@ -32,7 +32,9 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", nargs="+", choices=KINDS, default=list(KINDS))
     parser.add_argument("--replay", type=int, nargs="+", help="numbers of scenes to repeat")
-    parser.add_argument("--json", type=Path, default=DATA)
+    parser.add_argument("--limit", type=float, default=AGREES, help="of agreement")
+    parser.add_argument("--eccentric", action="store_true", help="centres of mass to the side")
+    parser.add_argument("--json", type=Path)
     given = parser.parse_args()
     if not have_records():
         print("no recorded motions (set ROCKFRAME_RECORDS): sums of sines in their place")
@@ -40,38 +42,41 @@ def main() -> None:
     for kind in given.only:
         numbers = given.replay or range(given.first, given.first + given.scenes)
         begun = time.perf_counter()
-        outcomes = [_one(kind, given.seed, number) for number in numbers]
-        tables.append(_summary(kind, given.seed, outcomes))
+        outcomes = [_one(kind, number, given) for number in numbers]
+        tables.append(_summary(kind, given, outcomes))
         print(_line(tables[-1]), f"{time.perf_counter() - begun:.0f} s", flush=True)
         print("    scenes with:", ", ".join(f"{k} {v}" for k, v in tables[-1]["seen"].items()))
         for outcome in outcomes:
             if outcome.label != "agrees" or given.replay:
                 print("   ", _words(outcome), flush=True)
     if not given.replay:
-        given.json.parent.mkdir(parents=True, exist_ok=True)
-        given.json.write_text(json.dumps(tables, indent=1) + "\n")
+        name = "maximal_oracle_eccentric.json" if given.eccentric else "maximal_oracle.json"
+        path = given.json or DATA / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(json.dumps(tables, indent=1) + "\n")
 
 
-def _one(kind: str, seed: int, number: int) -> Outcome:
+def _one(kind: str, number: int, given: argparse.Namespace) -> Outcome:
     try:
-        return compare(kind, seed, number)
+        return compare(kind, given.seed, number, given.eccentric, given.limit)
     except Exception as problem:  # a scene that breaks a program is a finding too
         words = f"{type(problem).__name__}: {problem}"
         return Outcome(
-            kind, seed, number, "disagrees", 1.0, 1.0, 0.0, (False, False), (-1, -1), note=words
-        )
+            kind, given.seed, number, "disagrees", 1.0, 1.0, 0.0, (False, False), (-1, -1),
+            note=words,
+        )  # fmt: skip
 
 
-def _summary(kind: str, seed: int, outcomes: list[Outcome]) -> dict:
+def _summary(kind: str, given: argparse.Namespace, outcomes: list[Outcome]) -> dict:
     agreeing = [o for o in outcomes if o.label == "agrees"]
-    table = {"kind": kind, "seed": seed, "records": have_records(), "scenes": len(outcomes)}
+    table = {"kind": kind, "seed": given.seed, "records": have_records(), "scenes": len(outcomes)}
     table |= {label: sum(o.label == label for o in outcomes) for label in LABELS}
     table["worst_agreeing"] = max(
         (max(o.difference, o.rise_difference) for o in agreeing), default=0
     )
     table["overturned"] = sum(o.overturned[1] for o in outcomes)
     table["verdicts_differ"] = [o.number for o in outcomes if o.overturned[0] != o.overturned[1]]
-    table["limit"] = AGREES
+    table["limit"] = given.limit
     seen = [name for o in outcomes for name in o.seen]
     table["seen"] = {name: seen.count(name) for name in sorted(set(seen))}
     table["beyond"] = [o.plain() for o in outcomes if o.label != "agrees"]

@@ -96,9 +96,11 @@ def _digits(code: float) -> tuple[int, tuple[int, ...], int, tuple[int, ...]]:
     return digits[0], tuple(digits[1:3]), digits[3], tuple(digits[4:6])
 
 
-def compare(kind: str, seed: int, number: int) -> Outcome:
-    """Run a random scene with both programs and judge the difference."""
-    scene = draw(kind, seed, number)
+def compare(
+    kind: str, seed: int, number: int, eccentric: bool = False, limit: float = AGREES
+) -> Outcome:
+    """Run a random scene with both programs and judge a difference that exceeds a limit."""
+    scene = draw(kind, seed, number, eccentric)
     history, run = run_reference(scene), run_program(scene)
     t, off, rise = apart(history, run, scene)
     worst, worst_rise = float(np.max(off)), float(np.max(rise))
@@ -117,16 +119,16 @@ def compare(kind: str, seed: int, number: int) -> Outcome:
     if history.status in (CHATTER, TOO_SMALL):
         outcome.note = "the reference model did not finish"
     same = outcome.overturned[0] == outcome.overturned[1]
-    if same and max(worst, worst_rise) <= AGREES and not outcome.note:
+    if same and max(worst, worst_rise) <= limit and not outcome.note:
         return outcome
     total = np.maximum(off, rise)
-    beyond = np.flatnonzero(total > AGREES)
+    beyond = np.flatnonzero(total > limit)
     outcome.first = float(t[beyond[0]]) if beyond.size else float(t[-1])
-    _judge(scene, outcome, t, total, history, run)
+    _judge(scene, outcome, t, total, history, run, limit)
     return outcome
 
 
-def _judge(scene: Scene, outcome: Outcome, t, total, history: History, run) -> None:
+def _judge(scene: Scene, outcome: Outcome, t, total, history, run, limit: float) -> None:
     """Tell chaos from disagreement: does a tiny change of the motion do as much?"""
     growth, spread = [], []
     for size in STEPS:
@@ -139,10 +141,10 @@ def _judge(scene: Scene, outcome: Outcome, t, total, history: History, run) -> N
         growth.append(float(np.max(ours)))
         growth.append(float(np.max(theirs)))
     outcome.growth = tuple(growth)
-    beyond = total > AGREES
+    beyond = total > limit
     if not np.any(beyond):
         last = [float(s[-1]) for s in spread]
-        outcome.label = "chaos" if max(last) > AGREES else "disagrees"
+        outcome.label = "chaos" if max(last) > limit else "disagrees"
     elif np.all(total[beyond] <= 3.0 * spread[0][beyond]):
         outcome.label = "chaos"
     elif np.all(total[beyond] <= 3.0 * spread[1][beyond]):

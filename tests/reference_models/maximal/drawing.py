@@ -6,12 +6,15 @@ from typing import Any
 
 import numpy as np
 
-from .layout import RULES
+from .layout import LIMIT, RULES
 from .motions import RECORDS, have_records
-from .scene import GRAVITY, KINDS, Scene
+from .rest import NoRestError, rest_of
+from .scene import GRAVITY, KINDS, Scene, parameters
+
+LARGEST_LEAN = 0.6
 
 
-def draw(kind: str, seed: int, number: int) -> Scene:
+def draw(kind: str, seed: int, number: int, eccentric: bool = False) -> Scene:
     """Draw a scene; the same seed and number give the same scene.
 
     Parameters
@@ -19,6 +22,8 @@ def draw(kind: str, seed: int, number: int) -> Scene:
     kind : str
         One of `KINDS`.
     seed, number : int
+    eccentric : bool
+        Whether the block's centre of mass is moved to the side.
 
     Returns
     -------
@@ -39,7 +44,31 @@ def draw(kind: str, seed: int, number: int) -> Scene:
     )
     if scene.motion["form"] == "still":
         scene = replace(scene, free=float(round(rng.uniform(3.0, 6.0), 3)))
-    return scene
+    if not eccentric:
+        return scene
+    return _beside(scene, np.random.default_rng([seed, number, KINDS.index(kind), 1]))
+
+
+def _beside(scene: Scene, rng: np.random.Generator) -> Scene:
+    """Move the centre of mass as far as the supports carry it."""
+    side = 1.0 if rng.random() < 0.5 else -1.0
+    share = float(rng.uniform(0.02, 0.8 if scene.kind == "rigid" else 0.6))
+    # a scene that starts at rest may start upright just as well
+    told = bool(rng.random() < 0.15)
+    while True:
+        given = replace(scene, eccentricity=side * share * scene.half_width, told=told)
+        if scene.kind == "rigid" or _leans_little(given):
+            return given
+        share *= 0.7
+
+
+def _leans_little(scene: Scene) -> bool:
+    p = parameters(scene, 1e-13)
+    try:
+        rest = rest_of(scene, p)
+    except NoRestError:
+        return False
+    return abs(rest.lower_angle + rest.angle) < LARGEST_LEAN * p[LIMIT]
 
 
 def _log(rng: np.random.Generator, low: float, high: float) -> float:

@@ -4,11 +4,12 @@ import math
 
 from .bed import resultants
 from .compiling import compiled
-from .kinematics import height, is_small, relative, sway
+from .kinematics import height, is_small, limit_of, relative, sway
 from .layout import (
     BED_LEFT,
     CASCADE,
     DAMPING,
+    ECCENTRICITY,
     FREE,
     GRAVITY,
     HALF_HEIGHT,
@@ -18,7 +19,7 @@ from .layout import (
     INERTIA,
     KIND,
     LEFT,
-    LIMIT,
+    LOWER_ECCENTRICITY,
     LOWER_HALF_WIDTH,
     LOWER_HEIGHT,
     LOWER_HOLD,
@@ -47,9 +48,9 @@ def has_lower(p):
 @compiled
 def corner(p, rel, i):
     """Give level, lever, its derivative, speed and the pad's force law at corner i (0 left)."""
-    y, lever, bend = height(
-        is_small(p), rel[1], rel[2], p[HALF_WIDTH], p[HALF_HEIGHT], 1.0 - 2.0 * i
-    )
+    side = 1.0 - 2.0 * i
+    distance = p[HALF_WIDTH] + side * p[ECCENTRICITY]
+    y, lever, bend = height(is_small(p), rel[1], rel[2], distance, p[HALF_HEIGHT], side)
     speed = rel[4] + lever * rel[5]
     return y, lever, bend, speed, p[STIFFNESS] * (p[SETTLEMENT] - y) - p[DAMPING] * speed
 
@@ -57,9 +58,9 @@ def corner(p, rel, i):
 @compiled
 def end(p, z, i):
     """Give level, lever, its derivative and speed of end i (0 left) of the base on soil."""
-    w, lever, bend = height(
-        is_small(p), z[1], z[2], p[LOWER_HALF_WIDTH], p[LOWER_HEIGHT], 1.0 - 2.0 * i
-    )
+    side = 1.0 - 2.0 * i
+    distance = p[LOWER_HALF_WIDTH] + side * p[LOWER_ECCENTRICITY]
+    w, lever, bend = height(is_small(p), z[1], z[2], distance, p[LOWER_HEIGHT], side)
     return w, lever, bend, z[7] + lever * z[8]
 
 
@@ -76,24 +77,32 @@ def inverse_masses(p, inverse):
 @compiled
 def top_acceleration(p, z, out):
     """Give the acceleration, relative to the ground, of the middle of the lower body's top."""
-    far, a, rate = p[TOP], z[2], z[8]
+    far, aside, a, rate = p[TOP], p[LOWER_ECCENTRICITY], z[2], z[8]
     if is_small(p):
-        return out[0] + far * out[2], out[1] - far * (a * out[2] + rate * rate)
+        return (
+            out[0] + far * out[2],
+            out[1] - far * (a * out[2] + rate * rate) + aside * out[2],
+        )
     sine, cosine = math.sin(a), math.cos(a)
+    # the middle stands far up and aside to the left of the centre of mass
     return (
-        out[0] + far * (cosine * out[2] - sine * rate * rate),
-        out[1] - far * (sine * out[2] + cosine * rate * rate),
-    )
+        out[0] + far * (cosine * out[2] - sine * rate * rate)
+        + aside * (sine * out[2] + cosine * rate * rate),
+        out[1] - far * (sine * out[2] + cosine * rate * rate)
+        + aside * (cosine * out[2] - sine * rate * rate),
+    )  # fmt: skip
 
 
 @compiled
 def top_velocity(p, z):
     """Give the velocity, relative to the ground, of the middle of the lower body's top."""
+    aside = p[LOWER_ECCENTRICITY]
     if is_small(p):
-        return z[6] + p[TOP] * z[8], z[7] - p[TOP] * z[2] * z[8]
+        return z[6] + p[TOP] * z[8], z[7] - p[TOP] * z[2] * z[8] + aside * z[8]
+    sine, cosine = math.sin(z[2]), math.cos(z[2])
     return (
-        z[6] + p[TOP] * math.cos(z[2]) * z[8],
-        z[7] - p[TOP] * math.sin(z[2]) * z[8],
+        z[6] + p[TOP] * cosine * z[8] + aside * sine * z[8],
+        z[7] - p[TOP] * sine * z[8] + aside * cosine * z[8],
     )
 
 
@@ -222,10 +231,11 @@ def _solve(active0, active1, wanted0, wanted1, upper_only, room, out):
 def _hinged(z, gx, gy, contact, held, p, out):
     if contact[HOLD] == RESTING:
         return
-    m, inertia, b, h = p[MASS], p[INERTIA], p[HALF_WIDTH], p[HALF_HEIGHT]
+    m, inertia, h = p[MASS], p[INERTIA], p[HALF_HEIGHT]
     side = 1.0 if held[POINT] > 0.0 else -1.0
+    b = side * held[POINT]
     if is_small(p):
-        theta = p[LIMIT]
+        theta = limit_of(p, side)
         frequency2 = m * p[GRAVITY] * math.hypot(b, h) / (inertia + m * (b * b + h * h))
         lean = theta * side - z[5]
         out[5] = -frequency2 * ((1.0 + gy / p[GRAVITY]) * lean + gx / p[GRAVITY])

@@ -6,7 +6,7 @@ from .bed import end_pressures, no_suction
 from .compiling import compiled
 from .forces import accelerate, corner, end, has_lower
 from .impulses import lower_slip, slip
-from .kinematics import is_small, relative, sway
+from .kinematics import is_small, limit_of, relative, sway
 from .layout import (
     BED_DAMPING,
     BED_LEFT,
@@ -20,6 +20,7 @@ from .layout import (
     CUT_END,
     CUT_GUARDS,
     CUT_START,
+    ECCENTRICITY,
     ENGAGING,
     FREE,
     GRAVITY,
@@ -69,10 +70,13 @@ def total_rotation(z, p):
 def evaluate(z, gx, gy, contact, held, p, room, out, guards):
     """Fill in the guards; `out` is room for accelerations."""
     guards[:] = 1.0
-    guards[LIMIT_GUARD] = 1.0 - abs(total_rotation(z, p)) / p[LIMIT]
+    rotation = total_rotation(z, p)
+    guards[LIMIT_GUARD] = 1.0 - abs(rotation) / limit_of(p, rotation)
     if int(p[KIND]) == RIGID:
         if contact[HOLD] == RESTING:
-            slope = p[LIMIT] if is_small(p) else p[HALF_WIDTH] / p[HALF_HEIGHT]
+            # ground that moves to the right tips the block to the left
+            b = p[HALF_WIDTH] + (p[ECCENTRICITY] if gx > 0.0 else -p[ECCENTRICITY])
+            slope = limit_of(p, -gx) if is_small(p) else b / p[HALF_HEIGHT]
             guards[0] = ((p[GRAVITY] + gy) * slope - abs(gx)) / (p[GRAVITY] * slope)
         else:
             side = 1.0 if held[POINT] > 0.0 else -1.0

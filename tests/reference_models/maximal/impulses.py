@@ -12,6 +12,7 @@ from .layout import (
     HELD,
     HOLD,
     KIND,
+    LEFT_RESTITUTION,
     LOWER_HEIGHT,
     LOWER_HOLD,
     LOWER_PLACE,
@@ -19,7 +20,6 @@ from .layout import (
     MASS,
     PLACE,
     POINT,
-    RESTITUTION,
 )
 
 
@@ -73,7 +73,7 @@ def jump(z, contact, held, p, room, left_lands, right_lands):
                 _, lever, _, speed, _ = corner(p, rel, i)
                 for j in range(6):
                     apply[n, j] = rows[1, j] + lever * rows[2, j]
-                wanted[n] = p[RESTITUTION] * speed
+                wanted[n] = p[LEFT_RESTITUTION + i] * speed
                 n += 1
     matrix = np.zeros((4, 4))
     for i in range(n):

@@ -3,11 +3,20 @@
 import math
 
 from .compiling import compiled
-from .layout import COUPLED, HALF_HEIGHT, KIND, SMALL, TOP
+from .layout import (
+    COUPLED,
+    ECCENTRICITY,
+    HALF_HEIGHT,
+    KIND,
+    LEFT_LIMIT,
+    RIGHT_LIMIT,
+    SMALL,
+    TOP,
+)
 
 
 @compiled
-def height(small, r, angle, half_width, level, side):
+def height(small, r, angle, distance, level, side):
     """Give height, its derivative by the angle, and the second one, of a point of the base.
 
     Parameters
@@ -16,28 +25,31 @@ def height(small, r, angle, half_width, level, side):
         Small rotation.
     r, angle : float
         Displacement of the centre of mass along the normal of the ground under it, and rotation.
-    half_width, level, side : float
-        Distance of the point from the middle, height of the centre of mass above the base; 1 for
-        a point on the left, -1 on the right.
+    distance, level, side : float
+        Distance of the point from the foot of the centre of mass, and the height of that above the
+        base; 1 for a point on the left, -1 on the right.
     """
     if small:
         return (
-            r + 0.5 * level * angle * angle + side * half_width * angle,
-            level * angle + side * half_width,
+            r + 0.5 * level * angle * angle + side * distance * angle,
+            level * angle + side * distance,
             level,
         )
     sine, cosine = math.sin(angle), math.cos(angle)
     half = math.sin(0.5 * angle)
     return (
-        r + 2.0 * level * half * half + side * half_width * sine,
-        level * sine + side * half_width * cosine,
-        level * cosine - side * half_width * sine,
+        r + 2.0 * level * half * half + side * distance * sine,
+        level * sine + side * distance * cosine,
+        level * cosine - side * distance * sine,
     )
 
 
 @compiled
 def sway(small, angle, level, point):
-    """Give x of the centre of mass over the held point and its two derivatives by the angle."""
+    """Give x of the centre of mass over the held point and its two derivatives by the angle.
+
+    `point` is the place of the held point along the base, from the foot of the centre of mass.
+    """
     if small:
         return level * angle, level, 0.0
     sine, cosine = math.sin(angle), math.cos(angle)
@@ -60,13 +72,14 @@ def relative(z, p, rel, rows):
         Parameters.
     rel : ndarray, shape (8,)
         Filled with the coordinates along the base, along its normal and the rotation, their
-        rates, and the parts of the first two accelerations that hold no acceleration.
+        rates, and the parts of the first two accelerations that hold no acceleration. The first
+        is measured from the middle of the cap.
     rows : ndarray, shape (3, 6)
         Filled with the derivatives of these coordinates by those of both bodies.
     """
     rows[:] = 0.0
     rows[0, 3] = rows[1, 4] = rows[2, 5] = 1.0
-    rel[0], rel[1], rel[2] = z[3], z[4], z[5]
+    rel[0], rel[1], rel[2] = p[ECCENTRICITY] + z[3], z[4], z[5]
     rel[3], rel[4], rel[5] = z[9], z[10], z[11]
     rel[6] = rel[7] = 0.0
     if int(p[KIND]) != COUPLED:
@@ -74,7 +87,7 @@ def relative(z, p, rel, rows):
     sine, cosine = math.sin(z[2]), math.cos(z[2])
     half = math.sin(0.5 * z[2])
     apart = p[TOP] + p[HALF_HEIGHT]
-    dx, dy = z[3] - z[0], z[4] - z[1]
+    dx, dy = p[ECCENTRICITY] + (z[3] - z[0]), z[4] - z[1]
     vx, vy, turn = z[9] - z[6], z[10] - z[7], z[8]
     along = cosine * dx - sine * (dy + apart)
     rise = sine * dx + cosine * dy - 2.0 * apart * half * half
@@ -96,3 +109,9 @@ def relative(z, p, rel, rows):
 def is_small(p):
     """Tell whether the kinematics are those of small rotation."""
     return p[SMALL] > 0.5
+
+
+@compiled
+def limit_of(p, rotation):
+    """Give the overturning angle to the side of a rotation."""
+    return p[LEFT_LIMIT] if rotation < 0.0 else p[RIGHT_LIMIT]

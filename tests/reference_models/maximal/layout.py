@@ -22,7 +22,6 @@ RULES = ("contact-state", "leading-corner", "centre")
     STIFFNESS,  # of one pad
     DAMPING,  # of one pad
     SETTLEMENT,  # of the pads
-    RESTITUTION,
     LOWER_MASS,
     LOWER_INERTIA,
     LOWER_HALF_WIDTH,
@@ -35,11 +34,17 @@ RULES = ("contact-state", "leading-corner", "centre")
     SMALL,  # 1 for small rotation
     KIND,
     NO_SUCTION,  # 1 for separation by pressure
-    LIMIT,  # overturning angle
+    LIMIT,  # overturning angle, the lesser one
     TOP,  # height of the middle of the lower body's top above its centre of mass
     TOLERANCE,
-) = range(23)
-PARAMETERS = 23
+    ECCENTRICITY,  # of the block: its centre of mass to the right of the middle of its base
+    LOWER_ECCENTRICITY,
+    LEFT_RESTITUTION,  # of a corner that lands there
+    RIGHT_RESTITUTION,
+    LEFT_LIMIT,  # overturning angles to either side
+    RIGHT_LIMIT,
+) = range(28)
+PARAMETERS = 28
 
 # contact: places in the array of integers
 LOWER_HOLD, BED_LEFT, BED_RIGHT, HOLD, LEFT, RIGHT, CUT_START, CUT_END = range(8)

@@ -13,6 +13,7 @@ from .layout import (
     HELD,
     LEADING_CORNER,
     LEAST_LEVER,
+    LOWER_ECCENTRICITY,
     LOWER_HALF_WIDTH,
     LOWER_HEIGHT,
     LOWER_HOLD,
@@ -29,21 +30,21 @@ SAME = 1e-9
 
 
 def lower_point(z, contact, held, p):
-    """Give the coordinate of the point that the rule holds."""
+    """Give the coordinate of the point that the rule holds, from the foot of the centre of mass."""
     rule = int(p[RULE])
-    b = p[LOWER_HALF_WIDTH]
+    b, middle = p[LOWER_HALF_WIDTH], -p[LOWER_ECCENTRICITY]
     if rule == CENTRE:
-        return 0.0
+        return middle
     if rule == LEADING_CORNER:
         if z[2] != 0.0:
             held[LOWER_LEAD] = 1.0 if z[2] > 0.0 else -1.0
         elif z[8] != 0.0:
             held[LOWER_LEAD] = 1.0 if z[8] > 0.0 else -1.0
-        return b * held[LOWER_LEAD]
+        return middle + b * held[LOWER_LEAD]
     left, right = contact[BED_LEFT] != CLEAR, contact[BED_RIGHT] != CLEAR
     if left == right:
-        return 0.0
-    return b if right else -b
+        return middle
+    return middle + b if right else middle - b
 
 
 def _hold(z, contact, held, p, room):
@@ -109,7 +110,7 @@ def slide_ends(i, flies, z, contact, held, p, room):
 def lower_pivot(z, contact, held, p, room):
     """The leading corner changes at rotation zero."""
     held[LOWER_LEAD] = -held[LOWER_LEAD]
-    held[LOWER_POINT] = p[LOWER_HALF_WIDTH] * held[LOWER_LEAD]
+    held[LOWER_POINT] = p[LOWER_HALF_WIDTH] * held[LOWER_LEAD] - p[LOWER_ECCENTRICITY]
     note_places(z, held, p, room)
 
 

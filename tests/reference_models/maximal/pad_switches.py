@@ -7,6 +7,7 @@ from .layout import (
     CENTRE,
     CLEAR,
     DAMPING,
+    ECCENTRICITY,
     ENGAGING,
     FREE,
     GRAVITY,
@@ -41,11 +42,11 @@ def bears(state):
 
 
 def pad_point(z, contact, held, p, room):
-    """Give the coordinate of the point that the rule holds."""
+    """Give the coordinate of the point that the rule holds, from the foot of the centre of mass."""
     rule = int(p[RULE])
-    b = p[HALF_WIDTH]
+    b, middle = p[HALF_WIDTH], -p[ECCENTRICITY]
     if rule == CENTRE:
-        return 0.0
+        return middle
     if rule == LEADING_CORNER:
         rel = room[0]
         relative(z, p, rel, room[1])
@@ -53,11 +54,11 @@ def pad_point(z, contact, held, p, room):
             held[LEAD] = 1.0 if rel[2] > 0.0 else -1.0
         elif rel[5] != 0.0:
             held[LEAD] = 1.0 if rel[5] > 0.0 else -1.0
-        return b * held[LEAD]
+        return middle + b * held[LEAD]
     left, right = bears(contact[LEFT]), bears(contact[RIGHT])
     if left == right:
-        return 0.0
-    return b if right else -b
+        return middle
+    return middle + b if right else middle - b
 
 
 def look(i, z, p, room):
@@ -229,5 +230,5 @@ def slide_stops(i, flies, z, contact, held, p, room, noise):
 def pad_pivot(z, contact, held, p, room):
     """The leading corner changes at rotation zero."""
     held[LEAD] = -held[LEAD]
-    held[POINT] = p[HALF_WIDTH] * held[LEAD]
+    held[POINT] = p[HALF_WIDTH] * held[LEAD] - p[ECCENTRICITY]
     note_places(z, held, p, room)

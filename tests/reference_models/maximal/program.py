@@ -15,12 +15,7 @@ RTOL = 1e-12
 
 def system_of(scene: Scene) -> rf.System:
     """Assemble the scene."""
-    block = rf.Block(
-        width=_in(2.0 * scene.half_width, "m"),
-        height=_in(2.0 * scene.half_height, "m"),
-        mass=_in(scene.mass, "kg"),
-        shape_factor=scene.shape_factor,
-    )
+    block = _block_of(scene)
     parts = [block]
     given = {} if scene.restitution is None else {"restitution": scene.restitution}
     if scene.kind == "rigid":
@@ -51,6 +46,23 @@ def system_of(scene: Scene) -> rf.System:
     )
 
 
+def _block_of(scene: Scene) -> rf.Block:
+    width, height, mass = (
+        _in(2.0 * scene.half_width, "m"),
+        _in(2.0 * scene.half_height, "m"),
+        _in(scene.mass, "kg"),
+    )
+    if scene.eccentricity == 0.0:
+        return rf.Block(width=width, height=height, mass=mass, shape_factor=scene.shape_factor)
+    return rf.Block(
+        width=width,
+        height=_in(3.0 * scene.half_height, "m"),
+        mass=mass,
+        inertia=_in(scene.inertia, "kg m^2"),
+        centre_of_mass=(_in(scene.half_height, "m"), _in(scene.eccentricity, "m")),
+    )
+
+
 def run_program(scene: Scene, factor: float = 1.0, rtol: float = RTOL):
     """Run the scene with rockframe; `factor` multiplies motion and start."""
     motion, _ = both(scene.motion, factor)
@@ -58,8 +70,9 @@ def run_program(scene: Scene, factor: float = 1.0, rtol: float = RTOL):
         warnings.simplefilter("ignore")
         system = system_of(scene)
         limit = float(system.equilibrium().overturning_angle)
+        told = scene.told or scene.start != 0.0 or scene.eccentricity == 0.0
         initial = rf.InitialState(
-            rotation=_in(factor * scene.start * limit, "rad"),
+            rotation=_in(factor * scene.start * limit, "rad") if told else None,
             angular_velocity=_in(factor * scene.start_rate * scene.frequency * limit, "rad/s"),
         )
         options = {"initial": initial, "accuracy": rf.Accuracy(rtol=rtol)}

@@ -3,20 +3,22 @@
 import math
 
 from .compiling import compiled
-from .kinematics import is_small
+from .kinematics import is_small, limit_of
 from .layout import (
+    ECCENTRICITY,
     GRAVITY,
     HALF_HEIGHT,
     HALF_WIDTH,
     HELD,
     HOLD,
     INERTIA,
+    LEFT_RESTITUTION,
     LIMIT,
     MASS,
     PLACE,
     POINT,
     RESTING,
-    RESTITUTION,
+    RIGHT_RESTITUTION,
 )
 
 LEAST_REBOUND = 1e-10
@@ -25,8 +27,9 @@ LEAST_REBOUND = 1e-10
 @compiled
 def place_hinged(z, held, p):
     """Put the centre of mass where the hinge says; take the drift away."""
-    b, h = p[HALF_WIDTH], p[HALF_HEIGHT]
+    h = p[HALF_HEIGHT]
     side = 1.0 if held[POINT] > 0.0 else -1.0
+    b = side * held[POINT]
     a, rate = z[5], z[11]
     if is_small(p):
         z[3], z[4] = held[PLACE] + h * a, side * b * a
@@ -41,25 +44,32 @@ def place_hinged(z, held, p):
     z[10] = (side * b * cosine - h * sine) * rate
 
 
+@compiled
+def corner_place(p, side):
+    """Give the place of a corner, 1 right and -1 left, from the foot of the centre of mass."""
+    return side * p[HALF_WIDTH] - p[ECCENTRICITY]
+
+
 def start_rocking(z, gx, contact, held, p):
     """The ground tips the block over the corner that it leaves behind."""
     contact[HOLD] = HELD
-    held[POINT] = p[HALF_WIDTH] if gx < 0.0 else -p[HALF_WIDTH]
+    held[POINT] = corner_place(p, 1.0 if gx < 0.0 else -1.0)
     z[5] = z[11] = 0.0
     place_hinged(z, held, p)
 
 
 def impact(z, gx, gy, contact, held, p):
     """The block changes its corner, or comes to rest."""
-    b, h = p[HALF_WIDTH], p[HALF_HEIGHT]
-    held[POINT] = -held[POINT]
-    side = 1.0 if held[POINT] > 0.0 else -1.0
+    h = p[HALF_HEIGHT]
+    side = -1.0 if held[POINT] > 0.0 else 1.0
+    held[POINT] = corner_place(p, side)
+    b = side * held[POINT]
     z[5] = 0.0
-    z[11] *= p[RESTITUTION]
+    z[11] *= p[RIGHT_RESTITUTION] if side > 0.0 else p[LEFT_RESTITUTION]
     inertia = p[INERTIA] + p[MASS] * (b * b + h * h)
     if is_small(p):
         frequency2 = p[MASS] * p[GRAVITY] * math.hypot(b, h) / inertia
-        back = (1.0 + gy / p[GRAVITY]) * p[LIMIT] + side * gx / p[GRAVITY]
+        back = (1.0 + gy / p[GRAVITY]) * limit_of(p, side) + side * gx / p[GRAVITY]
         back *= frequency2
     else:
         back = p[MASS] * ((p[GRAVITY] + gy) * b + side * gx * h) / inertia

@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 
 from . import layout as at
-from .rigid_switches import place_hinged
 
 GRAVITY = 9.80665
 KINDS = ("pads", "bed", "cascade", "coupled", "rigid")
@@ -15,7 +14,12 @@ KINDS = ("pads", "bed", "cascade", "coupled", "rigid")
 
 @dataclass(frozen=True)
 class Scene:
-    """A body, what it stands on, and how it is shaken; all in SI units or ratios."""
+    """A body, what it stands on, and how it is shaken; all in SI units or ratios.
+
+    `radius` and `slenderness` are those of a block whose centre of mass stands above the middle of
+    its base; `eccentricity` then moves it to the right. `told` says that a start at rotation zero
+    is meant, where the block would lean at rest.
+    """
 
     kind: str
     rule: str = "contact-state"
@@ -23,6 +27,7 @@ class Scene:
     slenderness: float = 4.0
     mass: float = 5e4
     shape_factor: float = 3.0
+    eccentricity: float = 0.0
     beta: float = 20.0
     xi: float = 0.1
     restitution: float | None = None
@@ -36,12 +41,13 @@ class Scene:
     cap_mass: float = 0.0
     start: float = 0.0
     start_rate: float = 0.0
+    told: bool = False
     free: float = 2.0
     motion: dict[str, Any] = field(default_factory=dict)
 
     @property
     def theta(self) -> float:
-        """Overturning angle of the block."""
+        """Overturning angle of the block, were its centre of mass above the middle."""
         return math.atan(1.0 / self.slenderness)
 
     @property
@@ -80,7 +86,16 @@ class Scene:
         level = (m * (thick + h) + 0.5 * cap * thick) / total
         inertia = self.inertia + m * (thick + h - level) ** 2 + self.cap_inertia
         inertia += cap * (level - 0.5 * thick) ** 2
+        # both are beside their common centre of mass, too
+        inertia += m * cap / total * self.eccentricity**2
         return total, inertia, 0.5 * width, level
+
+    @property
+    def one_body_eccentricity(self) -> float:
+        """How far the centre of mass of block and cap is to the right of the cap's middle."""
+        if not self.has_cap:
+            return self.eccentricity
+        return self.mass * self.eccentricity / (self.mass + self.cap_mass)
 
     @property
     def cap_inertia(self) -> float:
@@ -89,11 +104,32 @@ class Scene:
 
     @property
     def eps(self) -> float:
-        """Restitution; the default is that of angular momentum kept about the new corner."""
+        """Restitution of a symmetric block, unless it is given."""
         if self.restitution is not None:
             return self.restitution
         mu = self.shape_factor
         return (1.0 + mu * math.cos(2.0 * self.theta)) / (1.0 + mu)
+
+    def limits(self) -> tuple[float, float]:
+        """Give the overturning angles of the block to the left and to the right."""
+        if self.eccentricity == 0.0:
+            return self.theta, self.theta
+        b, h, e = self.half_width, self.half_height, self.eccentricity
+        return math.atan((b + e) / h), math.atan((b - e) / h)
+
+    def rebounds(self) -> tuple[float, float]:
+        """Give the restitutions of impacts on the left and on the right corner.
+
+        The default is that of angular momentum kept about the new corner: m v moves about the old
+        corner, at a distance d from the foot of the centre of mass, when the new one at d' comes
+        down.
+        """
+        if self.restitution is not None or self.eccentricity == 0.0:
+            return self.eps, self.eps
+        left, right = self.half_width + self.eccentricity, self.half_width - self.eccentricity
+        base = self.inertia + self.mass * self.half_height**2
+        kept = base - self.mass * left * right
+        return kept / (base + self.mass * left**2), kept / (base + self.mass * right**2)
 
 
 def parameters(scene: Scene, tolerance: float) -> np.ndarray:
@@ -104,12 +140,13 @@ def parameters(scene: Scene, tolerance: float) -> np.ndarray:
     p[at.SMALL] = scene.small
     p[at.KIND] = KINDS_NUMBER[scene.kind]
     p[at.TOLERANCE] = tolerance
-    p[at.LIMIT] = scene.theta
+    p[at.LEFT_LIMIT], p[at.RIGHT_LIMIT] = scene.limits()
     p[at.NO_SUCTION] = scene.separation == "pressure"
     if scene.kind != "bed":
         p[at.MASS], p[at.INERTIA] = scene.mass, scene.inertia
         p[at.HALF_WIDTH], p[at.HALF_HEIGHT] = scene.half_width, scene.half_height
-        p[at.RESTITUTION] = scene.eps
+        p[at.ECCENTRICITY] = scene.eccentricity
+        p[at.LEFT_RESTITUTION], p[at.RIGHT_RESTITUTION] = scene.rebounds()
     if scene.kind not in ("bed", "rigid"):
         fast = scene.beta * scene.frequency
         p[at.STIFFNESS] = 0.5 * scene.mass * fast**2
@@ -117,18 +154,23 @@ def parameters(scene: Scene, tolerance: float) -> np.ndarray:
         p[at.SETTLEMENT] = scene.mass * GRAVITY / (2.0 * p[at.STIFFNESS])
     if scene.kind in ("bed", "cascade", "coupled"):
         _soil(scene, p)
+    p[at.LIMIT] = min(p[at.LEFT_LIMIT], p[at.RIGHT_LIMIT])
     return p
 
 
 def _soil(scene: Scene, p: np.ndarray) -> None:
     m, inertia, b, level = scene.one_body()
     total = m
+    beside = scene.one_body_eccentricity
     p[at.TOP] = scene.cap_height - level
     if scene.kind == "coupled":
         m, inertia, level = scene.cap_mass, scene.cap_inertia, 0.5 * scene.cap_height
         p[at.TOP] = level
+        beside = 0.0
     if scene.kind == "bed":
-        p[at.LIMIT] = math.atan(b / level)
+        p[at.LEFT_LIMIT] = math.atan((b + beside) / level)
+        p[at.RIGHT_LIMIT] = math.atan((b - beside) / level)
+    p[at.LOWER_ECCENTRICITY] = beside
     p[at.LOWER_MASS], p[at.LOWER_INERTIA] = m, inertia
     p[at.LOWER_HALF_WIDTH], p[at.LOWER_HEIGHT] = b, level
     p[at.BED_STIFFNESS] = scene.soil_stiffness
@@ -144,93 +186,6 @@ KINDS_NUMBER = {
     "coupled": at.COUPLED,
     "rigid": at.RIGID,
 }
-
-
-def start(scene: Scene, p: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Give state, contact and held points at the start, in vertical equilibrium."""
-    z = np.zeros(at.STATES)
-    contact = np.zeros(at.CONTACTS, dtype=np.int64)
-    held = np.zeros(8)
-    held[at.LOWER_LEAD] = held[at.LEAD] = 1.0
-    angle = scene.start * p[at.LIMIT]
-    sway = scene.start_rate * scene.frequency * p[at.LIMIT]
-    bent = angle if scene.small else math.sin(angle)
-    lean = math.copysign(1.0, angle if angle != 0.0 else 1.0)
-    if scene.kind == "bed":
-        _start_on_bed(p, z, contact, held, angle, sway, bent, lean)
-        return z, contact, held
-    b, h = p[at.HALF_WIDTH], p[at.HALF_HEIGHT]
-    z[5], z[11] = angle, sway
-    if scene.kind == "rigid":
-        contact[at.HOLD] = at.RESTING
-        if angle != 0.0 or sway != 0.0:
-            contact[at.HOLD] = at.HELD
-            held[at.POINT] = b * (lean if angle != 0.0 else math.copysign(1.0, sway))
-            place_hinged(z, held, p)
-        return z, contact, held
-    delta = p[at.SETTLEMENT]
-    middle = 0.0 if b * abs(bent) <= delta else b * abs(bent) - delta
-    z[4] = middle - (0.5 * h * angle**2 if scene.small else h * (1.0 - math.cos(angle)))
-    for i, side in enumerate((1.0, -1.0)):
-        y = middle + side * b * bent
-        lever = h * bent + side * b * (1.0 if scene.small else math.cos(angle))
-        force = p[at.STIFFNESS] * (delta - y) - p[at.DAMPING] * lever * sway
-        state = at.TOUCHING if force > 0.0 else at.RELAXING
-        contact[at.LEFT + i] = at.CLEAR if y >= delta else state
-    if contact[at.LEFT] == at.TOUCHING or contact[at.RIGHT] == at.TOUCHING:
-        contact[at.HOLD] = at.HELD
-    left, right = (contact[at.LEFT + i] == at.TOUCHING for i in range(2))
-    held[at.POINT] = _point(scene.rule, b, left, right, angle, sway)
-    held[at.LEAD] = 1.0 if (angle or sway) >= 0.0 else -1.0
-    first = h if scene.small else h * math.cos(angle) + held[at.POINT] * math.sin(angle)
-    # a block that starts in flight has the sway that is given, which is none
-    z[9] = first * sway if contact[at.HOLD] == at.HELD else 0.0
-    if scene.kind in ("cascade", "coupled"):
-        contact[at.LOWER_HOLD] = at.HELD
-        contact[at.BED_LEFT] = contact[at.BED_RIGHT] = at.TOUCHING
-        if scene.rule == "leading-corner":
-            held[at.LOWER_POINT] = p[at.LOWER_HALF_WIDTH]
-        if scene.kind == "coupled":
-            z[3] = _sway_to(scene, held[at.POINT], angle)
-    return z, contact, held
-
-
-def _sway_to(scene: Scene, point: float, angle: float) -> float:
-    # the block's base stands with its middle over that of the cap
-    h = scene.half_height
-    if scene.small:
-        return h * angle
-    return h * math.sin(angle) + point * (1.0 - math.cos(angle))
-
-
-def _start_on_bed(p, z, contact, held, angle, sway, bent, lean) -> None:
-    b, h, delta = p[at.LOWER_HALF_WIDTH], p[at.LOWER_HEIGHT], p[at.BED_SETTLEMENT]
-    small = p[at.SMALL] > 0.5
-    middle = 0.0
-    if b * abs(bent) > delta:
-        middle = (math.sqrt(b * abs(bent)) - math.sqrt(delta)) ** 2
-    z[1] = middle - (0.5 * h * angle**2 if small else h * (1.0 - math.cos(angle)))
-    z[2], z[8] = angle, sway
-    for i, side in enumerate((1.0, -1.0)):
-        down = middle + side * b * bent < delta
-        contact[at.BED_LEFT + i] = at.TOUCHING if down else at.CLEAR
-    contact[at.LOWER_HOLD] = at.HELD
-    rule = at.RULES[int(p[at.RULE])]
-    left, right = (contact[at.BED_LEFT + i] == at.TOUCHING for i in range(2))
-    held[at.LOWER_POINT] = _point(rule, b, left, right, angle, sway)
-    held[at.LOWER_LEAD] = 1.0 if (angle or sway) >= 0.0 else -1.0
-    first = h if small else h * math.cos(angle) + held[at.LOWER_POINT] * math.sin(angle)
-    z[6] = first * sway
-
-
-def _point(rule: str, b: float, left: bool, right: bool, angle: float, sway: float) -> float:
-    if rule == "centre":
-        return 0.0
-    if rule == "leading-corner":
-        return b if (angle or sway) >= 0.0 else -b
-    if left == right:
-        return 0.0
-    return b if right else -b
 
 
 def paces(scene: Scene, p: np.ndarray) -> float:
@@ -249,4 +204,9 @@ def paces(scene: Scene, p: np.ndarray) -> float:
 
 def mirrored(scene: Scene) -> Scene:
     """Give the scene with left and right exchanged, for still ground."""
-    return replace(scene, start=-scene.start, start_rate=-scene.start_rate)
+    return replace(
+        scene,
+        start=-scene.start,
+        start_rate=-scene.start_rate,
+        eccentricity=-scene.eccentricity,
+    )

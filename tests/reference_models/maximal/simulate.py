@@ -7,7 +7,8 @@ import numpy as np
 from . import excitation
 from . import layout as at
 from .running import run
-from .scene import Scene, paces, parameters, start
+from .scene import Scene, paces, parameters
+from .starting import start
 
 TOLERANCE = 1e-13
 
