@@ -168,7 +168,8 @@ def test_work_of_the_bed_is_what_its_springs_and_dashpots_take(damping, by_press
 
 def shape(*, small):
     return body_of(
-        half_width=0.5 * WIDTH,
+        left=0.5 * WIDTH,
+        right=0.5 * WIDTH,
         height=HEIGHT,
         inertia=7.0,
         restraint=CENTRE,

@@ -39,7 +39,8 @@ def level(alpha, y, side):
 
 def block(half_width, height, restraint):
     return body_of(
-        half_width=half_width,
+        left=half_width,
+        right=half_width,
         height=height,
         inertia=(half_width**2 + height**2) / 3.0,
         restraint=restraint,
@@ -49,7 +50,7 @@ def block(half_width, height, restraint):
 
 
 def on_pads(body, stiffness, damping):
-    base = pads_under(body, stiffness=stiffness, damping=damping, restitution=0.9)
+    base = pads_under(body, stiffness=stiffness, damping=damping, restitution=(0.9, 0.9))
     return alone("two-spring", body, base, mass=1.0)
 
 

@@ -28,6 +28,7 @@ from rockframe.results.schema import ENERGIES, SCHEMA
 from rockframe.solve.accuracy import accuracy_of
 from rockframe.solve.layout import Status
 from rockframe.solve.trajectory import Summary
+from rockframe.system.bodies import OverturningAngles
 
 pytestmark = pytest.mark.contract
 
@@ -550,7 +551,8 @@ def test_a_verdict_in_words(found, pads_on_cap, words):
     summary = Summary(
         status=Status.COMPLETED,
         end_time=2.0,
-        peak_rotation=0.01,
+        peak_left=0.01,
+        peak_right=0.005,
         overturning_time=math.nan,
         overturning_direction=0,
         first_uplift_time=0.5,
@@ -562,8 +564,15 @@ def test_a_verdict_in_words(found, pads_on_cap, words):
         substeps=0,
         energy_residual=0.0,
     )
-    scales = Scales(0.2, 0.01, None, pads_on_cap=pads_on_cap)
+    scales = Scales(OverturningAngles(0.2, 0.2), 0.01, None, pads_on_cap=pads_on_cap)
     assert verdict(replace(summary, **found), scales) == words
+    if not summary.overturned and summary.status.finished and not found:
+        to_sides = replace(
+            scales, overturning_angles=OverturningAngles(0.2, 0.025), eccentricity=0.1
+        )
+        assert "peak rotation 0.005 rad, 20 % of the overturning angle to the right;" in verdict(
+            summary, to_sides
+        )
 
 
 def test_an_unfinished_run_says_so():

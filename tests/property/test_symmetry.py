@@ -25,12 +25,33 @@ TURNS_ROUND = {
     "cap_angular_velocity",
     "rotation_on_cap",
     "cap_acceleration",
+    "angular_acceleration",
+    "horizontal_velocity",
+    "horizontal_acceleration",
+    "absolute_horizontal_acceleration",
+    "horizontal_reaction",
+    "base_overturning_moment",
+    "event_horizontal_impulse",
+    "point_x",
+    "point_horizontal_displacement",
+    "point_horizontal_acceleration",
+    "rest_rotation",
 }
 SWAPS_CORNERS = {
     f"{of}contact_state{side}" for of in ("", "soil_") for side in ("", "_before", "_after")
 }
 SWAPPED = np.array([0, 2, 1, 3])
-TRADES_PLACES = {"left_reaction": "right_reaction", "right_reaction": "left_reaction"}
+_OF_A_SIDE = (
+    "{}_reaction",
+    "static_{}_reaction",
+    "{}_overturning_angle",
+    "{}_peak_rotation",
+)
+TRADES_PLACES = {
+    name.format(side): name.format(other)
+    for name in _OF_A_SIDE
+    for side, other in (("left", "right"), ("right", "left"))
+}
 
 
 def assert_mirrored(one, other):

@@ -5,6 +5,7 @@ import itertools
 import json
 import math
 import pickle
+from typing import ClassVar
 
 import pint
 import pytest
@@ -391,6 +392,64 @@ def test_an_initial_rotation_of_a_right_angle_is_refused(bad):
 
 def test_an_initial_state_is_at_rest_unless_told_otherwise():
     state = rf.InitialState()
-    assert state.si.rotation == state.si.angular_velocity == state.si.vertical_velocity == 0.0
+    assert state.si.angular_velocity == state.si.vertical_velocity == 0.0
+    assert state.si.rotation is None
     assert state.si.vertical_displacement is None
     assert rf.InitialState(vertical_displacement="0 m").si.vertical_displacement == 0.0
+
+
+class TestCentreOfMass:
+    SIZE: ClassVar = {"width": "0.6 m", "height": "2 m", "mass": "400 kg"}
+
+    def test_it_is_in_the_middle_unless_told(self):
+        block = rf.Block(**self.SIZE)
+        told = rf.Block(**self.SIZE, centre_of_mass=("1 m", "0 m"))
+        assert vars(told.si) == vars(block.si)
+        assert [each.m_as("m") for each in block.centre_of_mass] == [1.0, 0.0]
+
+    def test_angles_and_restitutions_differ_to_both_sides(self):
+        """Angular momentum about the corner that lands, :eq:`eq-eccentric-impact`."""
+        block = rf.Block(**self.SIZE, inertia="150 kg*m^2", centre_of_mass=("0.7 m", "0.05 m"))
+        body = rf.System(block).setting.body
+        left, right = -0.35, 0.25
+        assert body.overturning_angles == pytest.approx(
+            (math.atan(0.35 / 0.7), math.atan(0.25 / 0.7))
+        )
+        inertia = 150.0 / 400.0
+        kept = inertia + 0.7**2 + left * right
+        expected = kept / (inertia + 0.7**2 + left**2), kept / (inertia + 0.7**2 + right**2)
+        assert body.maximum_restitution == pytest.approx(expected, rel=1e-14)
+        assert block.maximum_restitution == pytest.approx(min(expected), rel=1e-14)
+        assert block.inertia.m_as("kg*m^2") == pytest.approx(150.0, rel=1e-14)
+
+    def test_without_an_inertia_that_of_the_rectangle_is_taken(self):
+        block = rf.Block(**self.SIZE, centre_of_mass=("0.7 m", "0.05 m"))
+        assert block.inertia.m_as("kg*m^2") == pytest.approx(400.0 * (0.6**2 + 4.0) / 12.0)
+
+    def test_it_can_be_replaced(self):
+        block = rf.Block(**self.SIZE, centre_of_mass=("0.7 m", "0.05 m"))
+        other = block.replace(centre_of_mass=("80 cm", "-5 cm"))
+        assert [each.m_as("m") for each in other.centre_of_mass] == pytest.approx([0.8, -0.05])
+        assert block.replace(eccentricity="0 m").centre_height == block.centre_height
+
+    @pytest.mark.parametrize(
+        ("given", "words"),
+        [
+            ({"centre_of_mass": ("2.1 m", "0 m")}, r"is not within 2 m of height and 0\.3 m"),
+            ({"centre_of_mass": ("1 m", "-0.3 m")}, r"is not within 2 m of height and 0\.3 m"),
+            ({"centre_of_mass": "1 m"}, "needs two lengths"),
+            ({"centre_of_mass": ("1 m", "0 m", "0 m")}, "needs two lengths"),
+            ({"centre_of_mass": ("1 m", "0 m"), "eccentricity": "0 m"}, "give it alone"),
+            ({"centre_of_mass": ("0.2 m", "0 m"), "shape_factor": 3}, "cannot rock"),
+        ],
+    )
+    def test_what_is_no_place_of_it_is_refused(self, given, words):
+        with pytest.raises(rf.ComponentError, match=words):
+            rf.Block(**self.SIZE, **given)
+
+    def test_a_lean_beyond_a_tenth_of_the_overturning_angle_is_warned_of(self):
+        block = rf.Block(**self.SIZE, centre_of_mass=("1 m", "0.1 m"))
+        with pytest.warns(rf.ModelWarning, match="at rest the body leans by"):
+            rf.System(block, rf.WinklerSoil(stiffness="1 MPa", damping_ratio=0.1))
+        with pytest.raises(rf.AssemblyError, match="falls to the right by its own weight"):
+            rf.System(block, rf.WinklerSoil(stiffness="0.2 MPa", damping_ratio=0.1))

@@ -25,11 +25,14 @@ from rockframe.dynamics.switching import disturbed
 
 G = 9.81
 BODY = body_of(
-    half_width=0.5, height=2.0, inertia=4.25 / 3.0, restraint=BY_CONTACT, small_rotation=False,
+    left=0.5, right=0.5, height=2.0, inertia=4.25 / 3.0, restraint=BY_CONTACT, small_rotation=False,
     gravity=G,
 )  # fmt: skip
 SYSTEM = alone(
-    "two-spring", BODY, pads_under(BODY, stiffness=4e3, damping=60.0, restitution=0.9), mass=1.0
+    "two-spring",
+    BODY,
+    pads_under(BODY, stiffness=4e3, damping=60.0, restitution=(0.9, 0.9)),
+    mass=1.0,
 ).system
 PADS = SYSTEM.part.base
 LEFT_GUARDS, RIGHT_GUARDS = 0, CORNER_GUARDS

@@ -169,7 +169,9 @@ def test_a_frame_of_members_is_changed_by_its_measures():
 @pytest.mark.parametrize("kind", KINDS)
 class TestConstructor:
     def test_it_has_every_parameter_by_name(self, kind):
-        arguments = inspect.signature(kind).parameters
+        arguments = dict(inspect.signature(kind).parameters)
+        if kind is rf.Block:  # stands for two of them
+            assert arguments.pop("centre_of_mass").default is None
         assert set(arguments) == set(kind._declared)
         for name, argument in arguments.items():
             assert argument.kind is inspect.Parameter.KEYWORD_ONLY
