@@ -33,7 +33,7 @@ def main() -> None:
             points={"upper shelf": ("0 m", "1.5 m")},
         )  # fmt: skip
     print(response.attrs["verdict"])
-    print(f"Rocking needs a friction of {case.si.half_width / case.si.half_height:.2f} at least.")
+    print(f"Rocking needs a friction of {1.0 / case.slenderness:.2f} at least.")
     for warning in told:
         print(f"Warning: {warning.message}.")
     shelf = response.sel(point="upper shelf")
