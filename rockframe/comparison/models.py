@@ -70,7 +70,9 @@ def model_ladder(system: System) -> dict[str, System]:
     given = vars(system.parts)
     present = system.parts.signature
     rows = _STACK if {"pads", "cap"} <= present or "soil" not in present else _BED
-    options: dict[str, Any] = {"restraint": system.restraint, "gravity": system.gravity}
+    options: dict[str, Any] = {
+        "restraint": system.restraint, "gravity": system.gravity, "inclination": system.inclination
+    }  # fmt: skip
     models: dict[str, System] = {}
     with warnings.catch_warnings():
         # what is left out may be said of a rung, but the scene itself has said its own

@@ -16,7 +16,7 @@ from rockframe.dynamics.coupled.model import StackRest, state_at
 from rockframe.dynamics.coupled.system import Coupled
 from rockframe.dynamics.on_base import OnBase
 from rockframe.dynamics.protocol import Start
-from rockframe.dynamics.rest import STILL
+from rockframe.dynamics.rest import still
 from rockframe.dynamics.stacked import COORDINATES
 
 STEP: Final = 1e-6
@@ -30,7 +30,7 @@ class Linear(NamedTuple):
     stiffness: Matrix
 
 
-def linear_alone(part: OnBase, rotation: float) -> Linear:
+def linear_alone(part: OnBase, rotation: float, along_gravity: float = 0.0) -> Linear:
     """Give small motion of a body about a rest, by height and rotation.
 
     Parameters
@@ -39,6 +39,8 @@ def linear_alone(part: OnBase, rotation: float) -> Linear:
         The body and its base.
     rotation : float
         At rest [rad].
+    along_gravity : float
+        Acceleration that stands for gravity along the base, g sin i [m s^-2].
 
     Returns
     -------
@@ -52,13 +54,13 @@ def linear_alone(part: OnBase, rotation: float) -> Linear:
         state = BodyState(
             rest.rotation + moved[1], rest.vertical + moved[0], 0.0, rates[1], rates[0], 0.0
         )
-        found = part.rates_in(mode, state, own, STILL)
+        found = part.rates_in(mode, state, own, still(along_gravity))
         return np.array([found.vertical, found.rotation])
 
     return _derivatives(accelerations, np.array([part.body.size(), 1.0]))
 
 
-def linear_stack(system: Coupled, rest: StackRest) -> Linear:
+def linear_stack(system: Coupled, rest: StackRest, along_gravity: float = 0.0) -> Linear:
     """Give small motion of a cap and of the block on it about a rest.
 
     Parameters
@@ -67,6 +69,8 @@ def linear_stack(system: Coupled, rest: StackRest) -> Linear:
         The equations of both.
     rest : StackRest
         Where they are at rest.
+    along_gravity : float
+        As for :func:`linear_alone`.
 
     Returns
     -------
@@ -81,7 +85,7 @@ def linear_stack(system: Coupled, rest: StackRest) -> Linear:
         _, state, _ = state_at(system, there)
         for place, rate in zip(places, rates, strict=True):
             state[COORDINATES + place] = rate
-        slope = np.array(system.accelerate(mode, state, STILL))
+        slope = np.array(system.accelerate(mode, state, still(along_gravity)))
         return slope[places]
 
     size = system.upper.body.size()

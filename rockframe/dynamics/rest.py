@@ -1,6 +1,8 @@
-"""Where a body whose centre of mass is not above the middle of its base comes to rest.
+"""Where a body comes to rest whose weight does not pass through the middle of its base.
 
-It leans on its springs, :eq:`eq-tilted-rest`, and what carries it leans with it.
+Its centre of mass stands beside that, or the base is inclined. It leans on its springs,
+:eq:`eq-tilted-rest`, and what carries it leans with it. On an inclined base gravity along it stands
+for a lasting acceleration of the ground, :eq:`eq-incline-ground`.
 """
 
 import math
@@ -19,16 +21,16 @@ from rockframe.dynamics.stacked import COORDINATES
 
 STEPS: Final = 200
 """Steps in which the rotation at rest is searched, up to that at which the body falls."""
+SMALL: Final = 1e-6
+"""Share of the angular acceleration of an upright body below which it is at rest."""
 ROUNDING: Final = 1e-10
 """Share of gravity below which accelerations of a stack at rest are rounding noise."""
 NEAR: Final = 0.02
 """Change of a placement, in radians and sizes of the block, from which rest is not followed."""
 LEAST_STEP: Final = 1e-3
-"""Least share of the eccentricity by which rest is followed."""
+"""Least share of the eccentricity and of the slope by which rest is followed."""
 DIFFERENCE: Final = 1e-7
 """Of scaled placements, to find how accelerations change."""
-STILL: Final = Ground(0.0, 0.0)
-"""The ground while nothing shakes it."""
 
 
 def eccentricity_of(body: Body) -> float:
@@ -36,72 +38,94 @@ def eccentricity_of(body: Body) -> float:
     return 0.5 * (body.left - body.right)
 
 
-def rest_rotation(part: OnBase) -> float:
+def still(along_gravity: float) -> Ground:
+    """Give the ground while nothing shakes it, with gravity along the base [m s^-2]."""
+    return Ground(along_gravity, 0.0)
+
+
+def rest_rotation(part: OnBase, along_gravity: float = 0.0) -> float:
     """Give the rotation of a body at rest on its base.
 
     Parameters
     ----------
     part : OnBase
         The body and its base.
+    along_gravity : float
+        Acceleration that stands for gravity along the base, g sin i [m s^-2].
 
     Returns
     -------
     float
-        The stable one that is nearest to upright, 0 if the body is symmetric; NaN if there is
-        none, so that the body falls by its own weight [rad].
+        The stable one that is nearest to upright, 0 if nothing turns the body there; NaN if there
+        is none, so that the body falls by its own weight [rad].
     """
     from scipy.optimize import root_scalar
 
-    beside = eccentricity_of(part.body)
-    if beside == 0.0:
+    shape = part.body
+    moment = shape.gravity * eccentricity_of(shape) - shape.height * along_gravity
+    if moment == 0.0:
         return 0.0
-    distance = part.body.right if beside > 0.0 else part.body.left
-    edge = math.copysign(math.atan2(distance, part.body.height), beside)
+    tilt = along_gravity / shape.gravity
+    distance = shape.right if moment > 0.0 else shape.left
+    edge = math.copysign(math.atan2(distance, shape.height), moment)
+    edge += tilt if shape.small else math.atan(tilt)
+    if edge * moment <= 0.0:
+        return math.nan
+    ground = still(along_gravity)
 
     def falling(rotation: float) -> float:
-        """Give the angular acceleration to the side of the centre of mass."""
+        """Give the angular acceleration to the side to which the weight turns the body."""
         own = part.base.read(np.zeros(part.base.variables()), 0)
         body, mode = starting_state(part, Start(rotation), own)
-        return math.copysign(1.0, beside) * part.rates_in(mode, body, own, STILL).rotation
+        return math.copysign(1.0, moment) * part.rates_in(mode, body, own, ground).rotation
 
     held = (share for share in np.linspace(0.0, edge, STEPS + 1)[1:-1] if falling(share) < 0.0)
     first = next(held, None)
     if first is None:
         return math.nan
-    found = root_scalar(falling, bracket=(0.0, float(first)), xtol=1e-300, rtol=1e-15)
-    return found.root
+    root = root_scalar(falling, bracket=(0.0, float(first)), xtol=1e-300, rtol=1e-15).root
+    # where an end leaves an inclined base another point is held, and the moment of the thrust jumps
+    jumps = along_gravity != 0.0 and abs(falling(root)) > SMALL * abs(falling(0.0))
+    return math.nan if jumps else root
 
 
-def stack_rest(system: Coupled) -> StackRest | None:
+def stack_rest(system: Coupled, along_gravity: float = 0.0) -> StackRest | None:
     """Give where a block and the cap under it come to rest.
 
-    The eccentricity grows from zero, and rest is followed from upright: a leaning stack has a
-    second equilibrium, farther out, from which it falls.
+    Eccentricity and slope grow from zero, and rest is followed from upright: a leaning stack has
+    a second equilibrium, farther out, from which it falls.
 
     Parameters
     ----------
     system : Coupled
         The equations of both.
+    along_gravity : float
+        Acceleration that stands for gravity along the base, g sin i [m s^-2].
 
     Returns
     -------
     StackRest or None
         None if there is no rest, so that the block falls by its own weight.
     """
-    if eccentricity_of(system.upper.body) == 0.0:
+    block = system.upper.body
+    beside = eccentricity_of(block)
+    if beside == 0.0 and along_gravity == 0.0:
         return StackRest(0.0, 0.0, 0.0, 0.0)
+    # mirror images are solved alike
+    side = math.copysign(1.0, block.gravity * beside - block.height * along_gravity)
+    lengths = np.array([side, block.size(), side, block.size()])
     share, step, place = 0.0, 1.0, np.zeros(4)
     while share < 1.0:
         ahead = min(1.0, share + step)
         guess = place * (ahead / share) if share > 0.0 else place
-        found = _rest_near(_with_share(system, ahead), guess)
+        found = _rest_near(_with_share(system, ahead), ahead * along_gravity, guess, lengths)
         if found is not None and np.abs(found - guess).max() <= NEAR:
             share, place = ahead, found
         elif step < LEAST_STEP:
             return None
         else:
             step *= 0.5
-    return StackRest(*(float(each) for each in place * _lengths(system)))
+    return StackRest(*(float(each) for each in place * lengths))
 
 
 def _with_share(system: Coupled, share: float) -> Coupled:
@@ -114,22 +138,15 @@ def _with_share(system: Coupled, share: float) -> Coupled:
     return system._replace(upper=system.upper._replace(body=shifted), beside=beside)
 
 
-def _lengths(system: Coupled) -> Vector:
-    """Give what the placement is measured by; mirror images are solved alike."""
-    body = system.upper.body
-    side = math.copysign(1.0, eccentricity_of(body))
-    return np.array([side, body.size(), side, body.size()])
-
-
-def _rest_near(system: Coupled, guess: Vector) -> Vector | None:
-    """Give a stable equilibrium, scaled; None if that near the guess is none."""
+def _rest_near(
+    system: Coupled, along_gravity: float, guess: Vector, lengths: Vector
+) -> Vector | None:
+    """Give a stable equilibrium, scaled by lengths; None if that near the guess is none."""
     from scipy.optimize import root
-
-    lengths = _lengths(system)
 
     def accelerations(scaled: Vector) -> Vector:
         mode, state, _ = state_at(system, StackRest(*(scaled * lengths)))
-        slope = system.accelerate(mode, state, STILL)
+        slope = system.accelerate(mode, state, still(along_gravity))
         return np.array(slope[: COORDINATES - 2]) / lengths
 
     found = root(accelerations, guess, tol=1e-15).x

@@ -22,6 +22,7 @@ from rockframe.identification.swings import swings_of
 from rockframe.identification.unknowns import Circumstance, Trials
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import AccuracyLevel, accuracy_of
+from rockframe.system.angles import angle_words
 from rockframe.units import Condition, to_ratio
 
 if TYPE_CHECKING:
@@ -88,8 +89,8 @@ def fit_free_decay(
         Arrays without a unit, or with a wrong one.
     ComponentError
         Data that are no test of this system: not finite, times that do not increase, rotations
-        beyond overturning, nothing that rocks, no more data than unknowns; or unknown
-        parameters.
+        beyond overturning, nothing that rocks, no more data than unknowns; unknown parameters; or
+        an inclined base.
 
     Warns
     -----
@@ -117,6 +118,7 @@ def fit_free_decay(
     0.9
     """
     _check_system(system)
+    _check_level(system)
     if (measured is None) == (peaks is None):
         given = "neither" if peaks is None else "both"
         msg = f"{_OWNER}: give measured (a history) or peaks, got {given}"
@@ -155,6 +157,16 @@ def _check_system(given: object) -> None:
     if not isinstance(given, System):
         msg = f"{_OWNER}: system needs a System, got {type(given).__name__}"
         raise ComponentError(msg)
+
+
+def _check_level(system: System) -> None:
+    if system.options.slope.level:
+        return
+    msg = (
+        f"{_OWNER}: the base is inclined by {angle_words(system.options.inclination)}; free decay "
+        "is fitted on a level base only, about which the swings to both sides are told apart"
+    )
+    raise ComponentError(msg)
 
 
 def _names(parameters: Sequence[str] | str) -> tuple[str, ...]:

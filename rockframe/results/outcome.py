@@ -3,11 +3,12 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from rockframe.constants import STANDARD_GRAVITY
 from rockframe.dynamics.events import SILENT
 from rockframe.dynamics.protocol import (
     IMPACT_LOSS,
@@ -16,6 +17,7 @@ from rockframe.dynamics.protocol import (
     ContactModel,
 )
 from rockframe.results.variables.runs import Direction
+from rockframe.signals.slope import Slope
 from rockframe.solve.layout import Status
 from rockframe.solve.observe import energies_of, memory_at_outputs
 from rockframe.solve.trajectory import Summary, Trajectory
@@ -24,6 +26,7 @@ from rockframe.system.bodies import OverturningAngles
 Array = NDArray[np.float64]
 Generic = NDArray[Any]
 Values = Mapping[str, "Generic | float | int | bool"]
+LEVEL: Final = Slope(0.0, STANDARD_GRAVITY)
 
 
 @dataclass(frozen=True)
@@ -32,7 +35,7 @@ class Scales:
 
     `cap_offset` is the height of a cap's centre above that of the body of which the
     cap is a part; None where there is no such cap. `eccentricity` is how far that body's centre
-    of mass is to the right of the middle of its base.
+    of mass is to the right of the middle of its base, and `slope` how that rises.
     """
 
     overturning_angles: OverturningAngles
@@ -42,6 +45,12 @@ class Scales:
     eccentricity: float = 0.0
     small_rotation: bool = False
     pads_on_cap: bool = False
+    slope: Slope = LEVEL
+
+    @property
+    def symmetric(self) -> bool:
+        """Whether both sides are alike."""
+        return self.eccentricity == 0.0 and self.slope.level
 
     def peak(self, run: Summary) -> "Peak":
         """Give the rotation of a run that came closest to overturning."""
@@ -157,7 +166,7 @@ def scalars(run: Summary, scales: Scales) -> dict[str, float | int | bool]:
     """Give the scalars of a run by their names in the schema."""
     angles = scales.overturning_angles
     sides: dict[str, float] = {}
-    if scales.eccentricity != 0.0:
+    if not scales.symmetric:
         sides = {
             "left_overturning_angle": angles.left,
             "right_overturning_angle": angles.right,
@@ -196,7 +205,7 @@ def verdict(run: Summary, scales: Scales) -> str:
         f"peak rotation {nearest.rotation:.4g} rad, "
         f"{100.0 * nearest.share:.3g} % of the overturning angle"
     )
-    if scales.eccentricity != 0.0:
+    if not scales.symmetric:
         peak += f" to the {nearest.side.name.lower()}"
     if run.overturned:
         side = Direction(run.overturning_direction).name.lower()

@@ -24,6 +24,7 @@ from rockframe.results.outcome import (
 )
 from rockframe.results.points import point_histories
 from rockframe.results.schema import ON_REQUEST
+from rockframe.results.slope import felt_ground, without_gravity
 from rockframe.signals.arrays import Array
 from rockframe.simulation.friction import slips
 from rockframe.simulation.plan import Plan
@@ -82,7 +83,7 @@ def answers_of(
     Answers
     """
     body, count = _body_of(system), len(run.time)
-    shown_at, ground = _everything_of(plan, model, run, body)
+    shown_at, ground = _everything_of(system, plan, model, run, body)
     values = {name: each[:count] for name, each in shown_at.items()}
     values |= contact_histories(model, run)
     if model.soil_contact is None:
@@ -119,13 +120,18 @@ def _body_of(system: Assembly) -> BodyNumbers:
 
 
 def _everything_of(
-    plan: Plan, model: ContactModel, run: Trajectory, body: BodyNumbers
+    system: Assembly, plan: Plan, model: ContactModel, run: Trajectory, body: BodyNumbers
 ) -> tuple[dict[str, Generic], Array]:
-    """Give what the model shows at the samples, then before and then after all events."""
+    """Give what the model shows at the samples, then before and then after all events.
+
+    With it, the ground's acceleration there as it was given.
+    """
+    slope = system.options.slope
     events = run.events
     memory, row = memory_at_outputs(run)
     before = np.arange(len(events.time))
     ground = ground_at(plan.motion, np.concatenate([run.time, events.time, events.time]))
+    moved, felt = felt_ground(ground, slope)
     shown: dict[str, Generic] = dict(
         observe_states(
             model,
@@ -133,10 +139,11 @@ def _everything_of(
             np.concatenate([run.state, events.state_before, events.state_after]),
             memory,
             np.concatenate([row, before, before + 1]),
-            ground,
+            felt,
         )
     )
-    return shown | force_histories(shown, ground, body), ground
+    shown = without_gravity(shown, slope)
+    return shown | force_histories(shown, moved, body), ground
 
 
 def _events_in(shown_at: dict[str, Generic], run: Trajectory) -> EventStates:

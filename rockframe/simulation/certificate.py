@@ -169,10 +169,10 @@ def _scaled(
 ) -> Scan:
     """Scale the motion, or the start."""
     stopping = replace(plan, stop_at_overturning=True)
-    angles = system.setting.body.overturning_angles
+    limits = system.setting.overturning_angles
 
     def look(change: float) -> Beside | None:
-        other = scaled(stopping, 1.0 + change, angles)
+        other = scaled(stopping, 1.0 + change, limits)
         return None if other is None else run(system, other)
 
     row = scales(wanted.nudge, wanted.reach)

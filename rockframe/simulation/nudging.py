@@ -77,7 +77,7 @@ def scales(nudge: float, reach: float) -> list[float]:
     return [*row, reach]
 
 
-def scaled(plan: Plan, scale: float, angles: OverturningAngles) -> Plan | None:
+def scaled(plan: Plan, scale: float, limits: OverturningAngles) -> Plan | None:
     """Scale what drives a run: its motion, or without one its start; None if it cannot be."""
     if plan.motion is not None:
         return replace(plan, motion=plan.motion.scaled(scale))
@@ -93,7 +93,7 @@ def scaled(plan: Plan, scale: float, angles: OverturningAngles) -> Plan | None:
     except RockframeError:
         return None
     rotation = start.si.rotation or 0.0
-    if abs(rotation) >= angles.on_side_of(rotation):
+    if abs(rotation) >= limits.on_side_of(rotation):
         return None
     return replace(plan, initial=start)
 

@@ -136,7 +136,7 @@ def _beginning(system: Assembly, given: object, faults: list[str]) -> Beginning:
     vertical_start = start.vertical_displacement is not None or start.vertical_velocity != 0.0
     rotation = system.setting.rest_rotation if start.rotation is None else start.rotation
     faults += system.setting.start_faults(rotation, vertical_start)
-    theta = system.setting.body.overturning_angles.on_side_of(rotation)
+    theta = system.setting.overturning_angles.on_side_of(rotation)
     if abs(rotation) >= theta:
         faults.append(
             f"initial rotation {rotation:.6g} rad is not below the overturning angle "

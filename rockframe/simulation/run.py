@@ -22,9 +22,10 @@ from rockframe.results.outcome import (
     scalars,
     verdict,
 )
+from rockframe.results.slope import energies_on_slope, felt_ground, slope_attributes
 from rockframe.results.variables.runs import Direction
-from rockframe.signals import Motion, Signal
-from rockframe.simulation.answers import answers_of
+from rockframe.signals import Motion
+from rockframe.simulation.answers import answers_of, ground_at
 from rockframe.simulation.audit import unbalanced
 from rockframe.simulation.beginning import end_attributes, start_of
 from rockframe.simulation.beside import Beside, what_showed
@@ -32,7 +33,7 @@ from rockframe.simulation.certificate import certify
 from rockframe.simulation.certification import Certification
 from rockframe.simulation.plan import Plan
 from rockframe.simulation.provenance import motion_attributes
-from rockframe.solve.integrate import integrate
+from rockframe.solve.integrate import STILL_INTERVAL, integrate
 from rockframe.solve.trajectory import Summary
 from rockframe.system.assembly import Assembly
 
@@ -49,9 +50,12 @@ Caution: TypeAlias = tuple[type[RockframeWarning], str]
 """A warning's kind and text."""
 
 
-def si_motion(motion: GroundMotion | None) -> Motion | None:
-    """Give a motion as the integrator takes it."""
-    return None if motion is None else motion.si
+def felt_motion(system: Assembly, plan: Plan) -> Motion | None:
+    """Give the motion as the integrator takes it: on a slope along and normal to the base."""
+    motion, slope = None if plan.motion is None else plan.motion.si, system.options.slope
+    if slope.level:
+        return motion
+    return slope.felt(motion, duration=plan.duration, interval=STILL_INTERVAL)
 
 
 @dataclass(frozen=True)
@@ -152,13 +156,14 @@ def _showed(response: Response, plan: Plan, scales: Scales) -> Beside:
 def _scales(system: Assembly) -> Scales:
     setting = system.setting
     return Scales(
-        setting.body.overturning_angles,
+        setting.overturning_angles,
         setting.uplift_angle,
         setting.settlement,
         setting.cap_offset,
         setting.body.eccentricity,
         small_rotation=system.options.small,
         pads_on_cap=system.scene.coupling is not None,
+        slope=setting.slope,
     )
 
 
@@ -166,7 +171,7 @@ def _respond(system: Assembly, plan: Plan, scales: Scales) -> Response:
     """Integrate; give histories and events by their names in the schema."""
     equations = system.setting.compile()
     trajectory = integrate(
-        equations, start_of(plan.initial), si_motion(plan.motion), plan.accuracy,
+        equations, start_of(plan.initial), felt_motion(system, plan), plan.accuracy,
         duration=plan.duration, output_step=plan.output_step,
         stop_at_overturning=plan.stop_at_overturning, with_work=bool(plan.energies),
     )  # fmt: skip
@@ -178,6 +183,9 @@ def _respond(system: Assembly, plan: Plan, scales: Scales) -> Response:
         answers = answers_of(system, plan, equations, trajectory, scales)
         values |= answers.values
         told, slips = answers.scalars, answers.slips
+    if energies and not scales.slope.level:
+        swayed = values["horizontal_displacement"]
+        energies = energies_on_slope(energies, equations, trajectory, swayed, scales.slope)
     values |= {name: energies[name] for name in plan.energies}
     return Response(values, told, slips, trajectory, trajectory.ending)
 
@@ -194,6 +202,7 @@ def _attributes(
         "model": system.setting.model,
         "restraint": str(system.options.restraint),
         "kinematics": str(system.options.rotation),
+        **slope_attributes(system.options.slope),
         **coupling,
         "model_description": system.describe(),
         "accuracy": plan.accuracy_name,
@@ -214,17 +223,17 @@ def _unfinished(summary: Summary, scales: Scales) -> Iterator[Caution]:
         yield SolverWarning, verdict(summary, scales)
 
 
-def _vertical(motion: GroundMotion | None) -> Signal | None:
-    return None if motion is None else motion.si.vertical
-
-
 def _lost_weight(system: Assembly, motion: GroundMotion | None) -> Iterator[Caution]:
-    vertical = _vertical(motion)
-    if system.setting.settlement is not None or vertical is None:
+    slope = system.options.slope
+    if system.setting.settlement is not None or motion is None:
         return
-    lowest = float(np.min(vertical.samples))
-    if lowest < -system.options.gravity:
-        found = f"the vertical ground acceleration falls to {lowest:.4g} m s^-2, beyond gravity"
+    if slope.level and motion.si.vertical is None:
+        return
+    moved, _ = felt_ground(ground_at(motion, motion.si.horizontal.times), slope)
+    lowest = float(np.min(moved[:, 1]))
+    if lowest < -slope.normal_gravity:
+        which = "vertical" if slope.level else "normal"
+        found = f"the {which} ground acceleration falls to {lowest:.4g} m s^-2, beyond gravity"
         yield ModelWarning, f"{found}: {_LEAVES}"
 
 

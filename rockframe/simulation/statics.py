@@ -12,6 +12,7 @@ from rockframe.errors import AssemblyError
 from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import Generic
 from rockframe.results.schema import SCHEMA
+from rockframe.results.slope import slope_attributes
 from rockframe.system.assembly import Assembly
 from rockframe.system.setting import Setting
 from rockframe.system.small_motion import modes_of
@@ -31,10 +32,10 @@ def equilibrium(system: Assembly) -> xr.Dataset:
 
 
 def _sides(setting: Setting) -> dict[str, float]:
-    """Give what a body that is not symmetric has beyond others."""
-    if setting.body.eccentricity == 0.0:
+    """Give what a body that is not symmetric, or stands on a slope, has beyond others."""
+    if setting.body.eccentricity == 0.0 and setting.slope.level:
         return {}
-    left, right = setting.body.overturning_angles
+    left, right = setting.overturning_angles
     return {
         "left_overturning_angle": left,
         "right_overturning_angle": right,
@@ -96,5 +97,6 @@ def _about(system: Assembly) -> dict[str, str]:
     return {
         "model": system.setting.model,
         "model_description": system.describe(),
+        **slope_attributes(system.options.slope),
         "system_json": json.dumps(system.to_dict()),
     }

@@ -29,7 +29,7 @@ from rockframe.system.options import (
 from rockframe.system.parts import Parts
 from rockframe.system.scenes import Scene
 from rockframe.system.setting import Setting
-from rockframe.units import ACCELERATION, QuantityLike, quantity
+from rockframe.units import ACCELERATION, ANGLE, QuantityLike, quantity
 
 if TYPE_CHECKING:
     from rockframe.simulation.certification import Certification
@@ -55,12 +55,16 @@ class System:
         How block, pads, cap and soil are joined, in a scene that has them.
     gravity : str or Quantity, optional
         Acceleration of gravity; standard gravity unless given [m s^-2].
+    inclination : str or Quantity, optional
+        Angle by which the base line, of ground, pads, cap and soil alike, rises to the right;
+        level unless given. Rotations are then relative to the base line, and displacements,
+        velocities, accelerations and forces along and normal to it [rad].
 
     Raises
     ------
     AssemblyError
         With every fault found at once; and the supported scenes, if parts are missing or do
-        not combine.
+        not combine. The block falls by its own weight.
 
     Examples
     --------
@@ -83,10 +87,12 @@ class System:
         rotation: RotationLike = Rotation.FINITE,
         coupling: CouplingLike = Coupling.COUPLED,
         gravity: QuantityLike | None = None,
+        inclination: QuantityLike | None = None,
     ) -> None:
         self._assembly = assemble(
-            parts, restraint=restraint, rotation=rotation, coupling=coupling, gravity=gravity
-        )
+            parts, restraint=restraint, rotation=rotation, coupling=coupling, gravity=gravity,
+            inclination=inclination,
+        )  # fmt: skip
         for caution in self.setting.cautions():
             warn(caution, ModelWarning)
 
@@ -136,6 +142,11 @@ class System:
         return self.options.gravity
 
     @property
+    def inclination(self) -> pint.Quantity[Any]:
+        """Angle by which the base line rises to the right [rad]."""
+        return quantity(self.options.inclination, ANGLE)
+
+    @property
     def scene(self) -> Scene:
         """The row of the table of scenes that the parts make."""
         return self._assembly.scene
@@ -154,9 +165,11 @@ class System:
     def __repr__(self) -> str:
         parts = ", ".join(repr(part) for part in self.parts.given())
         coupling = f", coupling={str(self.coupling)!r}" if self.scene.coupling else ""
+        inclined = self.options.to_dict().get("inclination")
+        slope = "" if inclined is None else f", inclination={inclined!r}"
         return (
             f"{type(self).__name__}({parts}, restraint={str(self.restraint)!r}, "
-            f"rotation={str(self.rotation)!r}{coupling})"
+            f"rotation={str(self.rotation)!r}{coupling}{slope})"
         )
 
     def describe(self) -> str:

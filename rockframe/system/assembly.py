@@ -1,5 +1,6 @@
 """Assembly: parts and options checked together, and the scene they make."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -12,7 +13,10 @@ from rockframe.system.options import Coupling, Options, Restraint, Rotation, rea
 from rockframe.system.parts import Parts, sort_parts
 from rockframe.system.scenes import SCENES, Scene
 from rockframe.system.setting import Setting
-from rockframe.units import ACCELERATION, POSITIVE, to_si
+from rockframe.units import ACCELERATION, ANGLE, POSITIVE, Condition, to_si
+
+_OWNER = "System"
+_SLOPING = Condition("between -90 deg and 90 deg", lambda angle: abs(angle) < 0.5 * math.pi)
 
 
 @dataclass(frozen=True)
@@ -61,6 +65,7 @@ def assemble(
     rotation: object = Rotation.FINITE,
     coupling: object = Coupling.COUPLED,
     gravity: object = None,
+    inclination: object = None,
 ) -> Assembly:
     """Check parts and options together, and find the scene they make.
 
@@ -68,7 +73,7 @@ def assemble(
     ----------
     parts : sequence
         Components, in any order; a ground motion may be one of them.
-    restraint, rotation, coupling, gravity : optional
+    restraint, rotation, coupling, gravity, inclination : optional
         As for :class:`rockframe.System`.
 
     Returns
@@ -92,6 +97,7 @@ def assemble(
         read_option(Rotation, rotation, "rotation", faults),
         read_option(Coupling, coupling, "coupling", faults),
         _gravity(gravity, faults),
+        _inclination(inclination, faults),
     )
     scene = next((scene for scene in SCENES if scene.fits(given, options.coupling)), None)
     if faults or scene is None:
@@ -103,7 +109,18 @@ def _gravity(given: object, faults: list[str]) -> float:
     if given is None:
         return STANDARD_GRAVITY
     try:
-        return to_si(given, ACCELERATION, owner="System", name="gravity", condition=POSITIVE)
+        return to_si(given, ACCELERATION, owner=_OWNER, name="gravity", condition=POSITIVE)
     except RockframeError as problem:
         faults.append(str(problem))
         return STANDARD_GRAVITY
+
+
+def _inclination(given: object, faults: list[str]) -> float:
+    if given is None:
+        return 0.0
+    try:
+        angle = to_si(given, ANGLE, owner=_OWNER, name="inclination", condition=_SLOPING)
+    except RockframeError as problem:
+        faults.append(str(problem))
+        return 0.0
+    return angle + 0.0  # no negative zero

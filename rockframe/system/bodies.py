@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from rockframe.components.block import BlockSI, greatest_restitutions
 from rockframe.components.cap import CushionCapSI
+from rockframe.signals.slope import Slope
 from rockframe.system.impact import Restitutions
 
 
@@ -86,6 +87,11 @@ class OverturningAngles(NamedTuple):
         """Give that of the side to which a body is rotated."""
         return self.left if rotation < 0.0 else self.right
 
+    def on_slope(self, slope: Slope, *, small: bool) -> "OverturningAngles":
+        """Give those relative to a base line that rises, :eq:`eq-incline-overturning`."""
+        i = math.tan(slope.inclination) if small else slope.inclination
+        return OverturningAngles(self.left - i, self.right + i)
+
 
 @dataclass(frozen=True)
 class Cap:
@@ -101,14 +107,20 @@ LARGE_LEAN = 0.1
 """Share of the overturning angle above which a lean at rest is worth a warning."""
 
 
-def leaning_cautions(body: Body, rest_rotation: float) -> list[str]:
+def leaning_cautions(
+    body: Body, rest_rotation: float, angles: OverturningAngles, slope: Slope
+) -> list[str]:
     """Warn of a body that leans far at rest."""
-    share = abs(rest_rotation) / body.overturning_angles.on_side_of(rest_rotation)
+    share = abs(rest_rotation) / angles.on_side_of(rest_rotation)
     if share <= LARGE_LEAN:
         return []
+    reasons = [
+        *(["its centre of mass is beside the middle of its base"] if body.eccentricity else []),
+        *([] if slope.level else ["its base is inclined"]),
+    ]
     return [
         f"at rest the body leans by {abs(rest_rotation):.4g} rad, {100.0 * share:.3g} % of its "
-        "overturning angle to that side, since its centre of mass is beside the middle of its base"
+        f"overturning angle to that side, since {' and '.join(reasons)}"
     ]
 
 

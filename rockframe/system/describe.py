@@ -1,5 +1,6 @@
 """The assembled system in words."""
 
+import math
 import re
 from textwrap import wrap
 
@@ -45,20 +46,26 @@ def describe(setting: Setting, parts: Parts) -> str:
 
 
 def _overturning(setting: Setting) -> list[tuple[str, str]]:
-    body, title = setting.body, "overturning angle theta, Eq. (1)"
-    if body.eccentricity == 0.0:
+    body, slope, title = setting.body, setting.slope, "overturning angle theta, Eq. (1)"
+    if body.eccentricity == 0.0 and slope.level:
         return [(title, angle_words(setting.overturning_angle))]
-    left, right = body.overturning_angles
-    side = "right" if body.eccentricity > 0.0 else "left"
-    return [
-        (title, f"to the left {angle_words(left)}, to the right {angle_words(right)}"),
-        (
-            "centre of mass",
-            f"{body.centre_height:.6g} m above the base, {abs(body.eccentricity):.6g} m to the "
-            f"{side} of its middle",
-        ),
-        ("rotation at rest", angle_words(setting.rest_rotation)),
-    ]
+    left, right = setting.overturning_angles
+    rows = [(title, f"to the left {angle_words(left)}, to the right {angle_words(right)}")]
+    if not slope.level:
+        higher = "right" if slope.inclination > 0.0 else "left"
+        rows += [
+            (
+                "inclination of the base",
+                f"{angle_words(abs(slope.inclination))}, higher on the {higher}; all else is along "
+                "and normal to it",
+            ),
+            ("friction to stand, at least tan(i)", f"{abs(math.tan(slope.inclination)):.6g}"),
+        ]
+    if body.eccentricity != 0.0:
+        side = "right" if body.eccentricity > 0.0 else "left"
+        beside = f"{abs(body.eccentricity):.6g} m to the {side} of its middle"
+        rows.append(("centre of mass", f"{body.centre_height:.6g} m above the base, {beside}"))
+    return [*rows, ("rotation at rest", angle_words(setting.rest_rotation))]
 
 
 def _section(title: str, rows: list[tuple[str, str]]) -> list[str]:

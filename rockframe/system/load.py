@@ -3,7 +3,8 @@
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rockframe.system.bodies import Body
+from rockframe.signals.slope import Slope
+from rockframe.system.bodies import Body, OverturningAngles
 from rockframe.system.options import Options
 from rockframe.system.restraints import restraint_code
 
@@ -32,9 +33,19 @@ class Load:
         return self.options.gravity
 
     @property
+    def slope(self) -> Slope:
+        """The base line in its gravity."""
+        return self.options.slope
+
+    @property
     def weight(self) -> float:
-        """Weight of the body [N]."""
-        return self.body.mass * self.gravity
+        """Weight of the body, as far as it presses on the base [N]."""
+        return self.body.mass * self.slope.normal_gravity
+
+    @property
+    def overturning_angles(self) -> OverturningAngles:
+        """Rotations at which the centre of mass stands above an end of the base."""
+        return self.body.overturning_angles.on_slope(self.slope, small=self.options.small)
 
     def law(self, mass: float) -> "BodyLaw":
         """Give the body as the equations take it, per unit of some mass [kg]."""
@@ -47,5 +58,5 @@ class Load:
             inertia=self.body.inertia / mass,
             restraint=restraint_code(self.options.restraint),
             small_rotation=self.options.small,
-            gravity=self.gravity,
+            gravity=self.slope.normal_gravity,
         )

@@ -5,8 +5,9 @@ from enum import StrEnum
 from typing import Literal, TypeAlias, TypeVar
 
 from rockframe.errors import shown
+from rockframe.signals.slope import Slope
 from rockframe.solve.accuracy import Accuracy, AccuracyLevel
-from rockframe.units import ACCELERATION
+from rockframe.units import ACCELERATION, ANGLE
 
 
 class Restraint(StrEnum):
@@ -49,12 +50,18 @@ AccuracyLike: TypeAlias = (
 
 @dataclass(frozen=True)
 class Options:
-    """Options of a system, and the gravity it stands in [m s^-2]."""
+    """Options of a system, the gravity it stands in [m s^-2], and how its base rises [rad]."""
 
     restraint: Restraint
     rotation: Rotation
     coupling: Coupling
     gravity: float
+    inclination: float = 0.0
+
+    @property
+    def slope(self) -> Slope:
+        """The base line in its gravity."""
+        return Slope(self.inclination, self.gravity)
 
     @property
     def small(self) -> bool:
@@ -62,12 +69,14 @@ class Options:
         return self.rotation is Rotation.SMALL
 
     def to_dict(self) -> dict[str, str]:
-        """Give the options as texts from which a system reads the same."""
+        """Give the options as texts from which a system reads the same; a level base is none."""
+        inclined = {"inclination": f"{self.inclination!r} {ANGLE.unit}"}
         return {
             "restraint": str(self.restraint),
             "rotation": str(self.rotation),
             "coupling": str(self.coupling),
             "gravity": f"{self.gravity!r} {ACCELERATION.unit}",
+            **(inclined if self.inclination != 0.0 else {}),
         }
 
 

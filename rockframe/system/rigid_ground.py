@@ -1,11 +1,14 @@
 """The scene of a block on rigid ground: its numbers and its model."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from rockframe.components.block import BlockSI
-from rockframe.system.bodies import Body, body_of
+from rockframe.errors import AssemblyError
+from rockframe.signals.slope import Slope
+from rockframe.system.angles import angle_words
+from rockframe.system.bodies import Body, OverturningAngles, body_of
 from rockframe.system.impact import Restitutions, resolve_restitution, restitution_cautions
 from rockframe.system.options import Options, Rotation
 from rockframe.system.parts import Parts
@@ -28,7 +31,12 @@ class RigidGroundSetting:
     block: BlockSI
     restitution: Restitutions
     rotation: Rotation
-    gravity: float
+    slope: Slope
+
+    @property
+    def gravity(self) -> float:
+        """Acceleration of gravity [m s^-2]."""
+        return self.slope.gravity
 
     @property
     def model(self) -> str:
@@ -41,9 +49,15 @@ class RigidGroundSetting:
         return body_of(self.block)
 
     @property
+    def overturning_angles(self) -> OverturningAngles:
+        """Rotations at which the centre of mass stands above a corner [rad]."""
+        small = self.rotation is Rotation.SMALL
+        return self.body.overturning_angles.on_slope(self.slope, small=small)
+
+    @property
     def overturning_angle(self) -> float:
         """Theta, of the side that falls first [rad]."""
-        return self.body.overturning_angles.least
+        return self.overturning_angles.least
 
     @property
     def rest_rotation(self) -> float:
@@ -69,7 +83,7 @@ class RigidGroundSetting:
     def uplift_acceleration(self) -> float:
         """Horizontal ground acceleration at which rocking starts, g tan(theta) [m s^-2].
 
-        Of the side that lifts first.
+        Of the side that lifts first, :eq:`eq-incline-uplift`; infinite if neither does.
         """
         return min(self.uplift_accelerations)
 
@@ -79,12 +93,24 @@ class RigidGroundSetting:
 
         Ground that is accelerated to the right tips the block to the left.
         """
-        small = self.rotation is Rotation.SMALL
+        if self.slope.level:
+            left, right = self.tangents
+            return self.gravity * left, self.gravity * right
+        i = self.slope.inclination
+        slants = (math.atan(self.tangents[0]) - i, math.atan(self.tangents[1]) + i)
         left, right = (
-            self.gravity * (angle if small else math.tan(angle))
-            for angle in self.body.overturning_angles
+            self.gravity * math.tan(slant) if slant < 0.5 * math.pi else math.inf
+            for slant in slants
         )
         return left, right
+
+    @property
+    def tangents(self) -> tuple[float, float]:
+        """Tan theta of the left and of the right corner; theta for small rotation."""
+        left, right = self.body.overturning_angles
+        if self.rotation is Rotation.SMALL:
+            return left, right
+        return math.tan(left), math.tan(right)
 
     def cautions(self) -> list[str]:
         """Give warnings about the restitution."""
@@ -118,7 +144,10 @@ class RigidGroundSetting:
             )
             for distance, restitution in zip((body.left, body.right), self.restitution, strict=True)
         )
-        return rigid_ground(left, right, mass=body.mass, small_rotation=small, gravity=self.gravity)
+        model = rigid_ground(
+            left, right, mass=body.mass, small_rotation=small, gravity=self.slope.normal_gravity
+        )
+        return replace(model, rotation_limits=self.overturning_angles)
 
     def small_motion(self) -> SmallMotion | None:
         """Give None: a rigid base leaves no small motion; the period depends on the amplitude."""
@@ -129,7 +158,7 @@ class RigidGroundSetting:
         body = self.body
         if rotation == 0.0:
             # the moments of weight and reactions about the middle of the base
-            moment = self.weight * body.eccentricity
+            moment = self.weight * body.eccentricity - self.thrust * body.centre_height
             return Statics(
                 0.0, moment, 0.0, "full", dict(zip(_REACTIONS, self.shares, strict=True))
             )
@@ -139,25 +168,31 @@ class RigidGroundSetting:
         radius = math.hypot(body.half_width - beside, body.centre_height)
         if self.rotation is Rotation.SMALL:
             rise, restoring = radius * lean * (theta - 0.5 * lean), theta - lean
-            weight_arm = radius * lean + beside
+            weight_arm, thrust_arm = radius * lean + beside, radius
         else:
             rise = 2.0 * radius * math.sin(theta - 0.5 * lean) * math.sin(0.5 * lean)
             restoring = math.sin(theta - lean)
             weight_arm = body.centre_height * math.sin(lean) + beside * math.cos(lean)
+            thrust_arm = radius * math.cos(theta - lean)
         moment = side * self.weight * radius * restoring
         reactions = (0.0, self.weight) if side > 0.0 else (self.weight, 0.0)
         return Statics(
             vertical_displacement=rise,
             base_moment=moment + side * self.weight * weight_arm,
-            restoring_moment=moment,
+            restoring_moment=moment + self.thrust * thrust_arm,
             contact_state="right" if side > 0.0 else "left",
             reactions=dict(zip(_REACTIONS, reactions, strict=True)),
         )
 
     @property
     def weight(self) -> float:
-        """Weight of the block [N]."""
-        return self.block.mass * self.gravity
+        """Weight of the block, as far as it presses on the ground [N]."""
+        return self.block.mass * self.slope.normal_gravity
+
+    @property
+    def thrust(self) -> float:
+        """Force of the ground along the base that keeps the block from sliding [N]."""
+        return self.block.mass * self.slope.along_gravity
 
     def equilibrium(self) -> dict[str, float]:
         """Give the reactions at rest and the moment at uplift, by their names in the schema."""
@@ -168,15 +203,37 @@ class RigidGroundSetting:
     @property
     def shares(self) -> tuple[float, float]:
         """Reactions of the left and of the right corner at rest [N]."""
-        # in proportion to what it takes to lift the other one
-        left, right = self.uplift_accelerations
-        half, tilt = 0.5 * self.weight, 0.5 * (left - right) / (left + right)
-        return half - self.weight * tilt, half + self.weight * tilt
+        left, right = self.tangents
+        tilt = 0.5 * self.weight * (left - right) / (left + right)
+        shift = tilt - self.thrust / (left + right)
+        return 0.5 * self.weight - shift, 0.5 * self.weight + shift
 
 
 def rigid_ground_setting(parts: Parts, options: Options) -> RigidGroundSetting:
-    """Resolve the parts of a scene on rigid ground."""
+    """Resolve the parts of a scene on rigid ground.
+
+    Raises
+    ------
+    AssemblyError
+        The ground is so inclined that the block falls by its own weight.
+    """
     block = parts.the_block
     given = parts.ground.si.restitution if parts.ground is not None else None
     restitution = resolve_restitution(given, body_of(block).maximum_restitution)
-    return RigidGroundSetting(block, restitution, options.rotation, options.gravity)
+    setting = RigidGroundSetting(block, restitution, options.rotation, options.slope)
+    _refuse_fall(setting)
+    return setting
+
+
+def _refuse_fall(setting: RigidGroundSetting) -> None:
+    """Refuse a block whose weight passes beside its base, :eq:`eq-incline-standing`."""
+    slope, tangents = setting.slope, setting.tangents
+    if slope.level:
+        return
+    side, downhill = ("left", tangents[0]) if slope.inclination > 0.0 else ("right", tangents[1])
+    if abs(slope.along_gravity) >= slope.normal_gravity * downhill:
+        raise AssemblyError([
+            f"the block falls to the {side} by its own weight: the ground is inclined by "
+            f"{angle_words(abs(slope.inclination))}, and the block stands up to "
+            f"{angle_words(math.atan(downhill))}"
+        ])  # fmt: skip

@@ -22,13 +22,15 @@ def rigid_ground_words(scene: "RigidGroundSetting") -> Words:
     -------
     Words
     """
-    rocking = "a'' = -omega^2 [(1 + yg''/g) sin(theta s - a) + (xg''/g) cos(theta s - a)]"
+    lean = "theta s - a" if scene.slope.level else "theta s + i - a"
+    rocking = f"a'' = -omega^2 [(1 + yg''/g) sin({lean}) + (xg''/g) cos({lean})]"
     if scene.rotation is Rotation.SMALL:
         rocking = "small rotation: a'' = -omega^2 [(1 + yg''/g) (theta s - a) + xg''/g]"
+        if not scene.slope.level:
+            rocking += ", with gravity g cos(i) in the place of g, and xg'' with g sin(i)"
     return Words(
         equations=[
-            ("full", f"at rest until |xg''| exceeds (g + yg'') tan(theta), "
-             f"{scene.uplift_acceleration:.4g} m s^-2 without vertical motion"),
+            ("full", _start_words(scene)),
             ("left, right", f"{rocking}, s = sgn(a) (Housner; Eq. (6) for omega)"),
             ("impact", f"a' after = {scene.restitution.words()} a' before, at a = 0 "
              "(Eq. (4) is the greatest value)"),
@@ -45,6 +47,21 @@ def rigid_ground_words(scene: "RigidGroundSetting") -> Words:
             "flight (a vertical ground acceleration beyond gravity would need it)",
         ],
     )  # fmt: skip
+
+
+def _start_words(scene: "RigidGroundSetting") -> str:
+    """Say when rocking starts."""
+    if scene.slope.level:
+        return (
+            "at rest until |xg''| exceeds (g + yg'') tan(theta), "
+            f"{scene.uplift_acceleration:.4g} m s^-2 without vertical motion"
+        )
+    to_right, to_left = scene.uplift_accelerations
+    return (
+        "at rest until the resultant of gravity and ground acceleration passes beside a corner: "
+        f"without vertical motion at xg'' above {to_right:.4g} m s^-2 to the right, or above "
+        f"{to_left:.4g} m s^-2 to the left"
+    )
 
 
 def _frequency_words(scene: "RigidGroundSetting") -> str:

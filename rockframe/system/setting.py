@@ -2,7 +2,8 @@
 
 from typing import TYPE_CHECKING, Protocol
 
-from rockframe.system.bodies import Body
+from rockframe.signals.slope import Slope
+from rockframe.system.bodies import Body, OverturningAngles
 from rockframe.system.small_motion import SmallMotion
 from rockframe.system.statics import Statics
 from rockframe.system.words import Words
@@ -20,8 +21,18 @@ class Numbers(Protocol):
         ...
 
     @property
+    def slope(self) -> Slope:
+        """The base line in its gravity."""
+        ...
+
+    @property
+    def overturning_angles(self) -> OverturningAngles:
+        """Rotations of unstable equilibrium to either side, relative to the base line [rad]."""
+        ...
+
+    @property
     def overturning_angle(self) -> float:
-        """Theta [rad]."""
+        """Theta, the lesser of both [rad]."""
         ...
 
     @property

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from rockframe.errors import SolverError
+from rockframe.system.bodies import Body, Cap
 from rockframe.system.options import Restraint
 from rockframe.system.statics import Statics, contact_of, sine_cosine_rise
 from rockframe.system.support import Held
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
 STEPS: Final = 200
 """Steps in which the cap's tilt under a held block is searched."""
 LEAN: Final = 4.0
-"""How far it is searched under a block that is not symmetric, by the tilt at rest."""
+"""How far it is searched where the cap leans at rest, by that tilt."""
 
 
 @dataclass(frozen=True)
@@ -69,12 +70,12 @@ def _tilt_under(stack: "StackedSetting", rotation: float) -> float:
     def lack(tilt: float) -> float:
         return math.copysign(1.0, rotation) * _balance(stack, tilt, rotation).lack
 
-    beside = stack.body.eccentricity
-    if rotation == 0.0 and beside == 0.0:
+    leans = stack.body.eccentricity != 0.0 or not stack.slope.level
+    if rotation == 0.0 and not leans:
         return 0.0
     # a far held block leaves the cap a second, larger tilt, which is not stable
     steps = np.linspace(0.0, rotation, STEPS + 1).tolist()
-    if beside != 0.0:  # the cap leans even under an upright block
+    if leans:  # even under an upright block
         reach = max(abs(rotation), LEAN * abs(stack.cap_lean))
         side = math.copysign(1.0, rotation)
         around = np.linspace(-side * reach, side * reach, 2 * STEPS + 1).tolist()
@@ -92,25 +93,30 @@ def _tilt_under(stack: "StackedSetting", rotation: float) -> float:
 def _balance(stack: "StackedSetting", tilt: float, rotation: float) -> _Balance:
     upper, cap, options = stack.upper.support, stack.cap, stack.options
     block, weight = upper.load.body, upper.load.weight
+    along = block.mass * stack.slope.along_gravity
     h, beside = block.centre_height, block.eccentricity
     frame_sine, frame_cosine = math.sin(tilt), math.cos(tilt)
     # the block on the cap, under the weight along the cap's normal
     sine, cosine, rise = sine_cosine_rise(h, options.rotation, rotation - tilt)
-    press = weight * frame_cosine
+    press = weight * frame_cosine + along * frame_sine
     held = upper.held(sine, cosine, press)
     normal = held.rise - rise - beside * sine
     pad_moment = press * (h * sine + beside * cosine) - held.moment
     # the held point, from the middle of the base and from beneath the centre of mass
-    pin = _pin(stack, held, rotation - tilt)
+    pin = _pin(stack, block, held, rotation - tilt)
     foot = pin - beside
     across = pin + h * sine - foot * cosine
     slide = h if options.small else h * cosine + foot * sine
     # the cap: thrust along it, its own weight on the soil
-    thrust = -weight * frame_sine
+    thrust = along * frame_cosine - weight * frame_sine
     sine, cosine, cap_rise = sine_cosine_rise(cap.half_height, options.rotation, tilt)
     all_weight = stack.lower.support.load.weight
     under = stack.lower.support.held(sine, cosine, all_weight)
     soil = all_weight * cap.half_height * sine - under.moment
+    all_along = stack.lower.body.mass * stack.slope.along_gravity
+    if all_along != 0.0:
+        foot = _pin(stack, cap, under, tilt)
+        soil -= all_along * (cap.half_height * cosine + (0.0 if options.small else foot * sine))
     arm = cap.half_height + h + normal
     drop = (cap.half_height + h) * 2.0 * math.sin(0.5 * tilt) ** 2
     return _Balance(
@@ -122,12 +128,12 @@ def _balance(stack: "StackedSetting", tilt: float, rotation: float) -> _Balance:
     )
 
 
-def _pin(stack: "StackedSetting", held: Held, rotation: float) -> float:
-    """Give the held point of the block's base in a static state."""
+def _pin(stack: "StackedSetting", body: Body | Cap, held: Held, rotation: float) -> float:
+    """Give the held point of the base of block or cap in a static state, from its middle."""
     options = stack.options
     if options.small or options.restraint is Restraint.CENTRE:
         return 0.0
-    half = stack.upper.support.load.body.half_width
+    half = body.half_width
     if options.restraint is Restraint.CONTACT_STATE:
         return 0.0 if held.left and held.right else (half if held.right else -half)
     return math.copysign(half, rotation) if rotation != 0.0 else 0.0

@@ -2,15 +2,16 @@
 
 import math
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rockframe.errors import AssemblyError
+from rockframe.signals.slope import Slope
 from rockframe.system.alone import AloneSetting
-from rockframe.system.bodies import Body, Cap, leaning_cautions
+from rockframe.system.bodies import Body, Cap, OverturningAngles, leaning_cautions
 from rockframe.system.options import Options
 from rockframe.system.restraints import restraint_words
 from rockframe.system.small_motion import SmallMotion
@@ -71,6 +72,16 @@ class StackedSetting(ABC):
         return self.upper.body
 
     @property
+    def slope(self) -> Slope:
+        """The base line of the cap in its gravity."""
+        return self.options.slope
+
+    @property
+    def overturning_angles(self) -> OverturningAngles:
+        """Rotations at which the block's centre of mass stands above an end of its base [rad]."""
+        return self.upper.overturning_angles
+
+    @property
     def overturning_angle(self) -> float:
         """Theta of the block [rad]."""
         return self.upper.overturning_angle
@@ -104,7 +115,9 @@ class StackedSetting(ABC):
         """Give the warnings of block and soil."""
         supports = self.upper.support, self.lower.support
         found = [text for support in supports for text in support.cautions()]
-        return found + leaning_cautions(self.body, self.rest_rotation)
+        return found + leaning_cautions(
+            self.body, self.rest_rotation, self.overturning_angles, self.slope
+        )
 
     def start_faults(self, rotation: float, has_vertical_start: bool) -> list[str]:
         """Give the faults that the block's base finds in an initial state."""
@@ -144,11 +157,11 @@ class StackedSetting(ABC):
 
         stack = self.bodies()
         mass, damping, stiffness = small_motion_matrices(stack)
-        if self.body.eccentricity != 0.0:
+        if self.body.eccentricity != 0.0 or not self.slope.level:
             from rockframe.dynamics.coupled.model import system_of
             from rockframe.dynamics.linear import linear_stack
 
-            linear = linear_stack(system_of(stack), self.rest)
+            linear = linear_stack(system_of(stack), self.rest, self.slope.along_gravity)
             damping, stiffness = mass @ linear.damping, mass @ linear.stiffness
         # from coordinates on the cap to displacements of the block
         names = ("cap_vertical_displacement", "cap_rotation", "vertical_displacement", "rotation")
@@ -164,12 +177,12 @@ class StackedSetting(ABC):
         Raises
         ------
         AssemblyError
-            The bases are too soft to carry a block that is not symmetric.
+            The bases are too soft, or too much inclined, to carry the block.
         """
         from rockframe.dynamics.coupled.model import system_of
         from rockframe.dynamics.rest import stack_rest
 
-        found = stack_rest(system_of(self.bodies()))
+        found = stack_rest(system_of(self.bodies()), self.slope.along_gravity)
         if found is None:
             raise AssemblyError(["the block and the cap under it find no rest under their weight"])
         return found
@@ -183,13 +196,21 @@ class StackedSetting(ABC):
         soil = self.lower.upright()
         soil["soil_uplift_moment"] = soil.pop("uplift_moment")
         found = {**self.upper.upright(), **soil}
-        if self.body.eccentricity != 0.0:
-            found |= {f"static_{name}": value for name, value in self.rest_reactions().items()}
+        if self.body.eccentricity != 0.0 or not self.slope.level:
+            found |= self._reactions_at_rest()
         return found
 
-    @abstractmethod
-    def rest_reactions(self) -> dict[str, float]:
-        """Give the reactions of both bases at rest."""
+    def _reactions_at_rest(self) -> dict[str, float]:
+        """Give what both bases show at rest, by their names in the schema."""
+        from rockframe.dynamics.protocol import Start
+        from rockframe.solve.observe import observe_states
+
+        model = self.compile()
+        mode, state, memory = model.initial(Start())
+        felt = np.array([[self.slope.along_gravity, 0.0]])
+        only = np.zeros(1, dtype=np.int64)
+        shown = observe_states(model, np.array([mode]), state[None, :], memory[None, :], only, felt)
+        return {f"static_{name}": float(values[0]) for name, values in shown.items()}
 
     def bodies(self) -> "Stack":
         """Give block, pads, cap and soil as the coupled equations take them."""
@@ -251,16 +272,13 @@ class CoupledSetting(StackedSetting):
         """Give the equations, ready for the integrator."""
         from rockframe.dynamics.coupled.model import coupled
 
-        return coupled(self.bodies(), self.body.mass, self.rest)
+        model = coupled(self.bodies(), self.body.mass, self.rest)
+        return replace(model, rotation_limits=self.overturning_angles)
 
     @property
     def cap_lean(self) -> float:
         """Rotation of the cap at rest [rad]."""
         return self.rest.cap_rotation
-
-    def rest_reactions(self) -> dict[str, float]:
-        """Give the reactions of both bases at rest."""
-        return self.statics(self.rest_rotation).reactions
 
     @property
     def rest_rotation(self) -> float:
@@ -316,10 +334,6 @@ class CascadeSetting(StackedSetting):
     def cap_lean(self) -> float:
         """Rotation of the cap at rest [rad]."""
         return self.lower.rest_rotation
-
-    def rest_reactions(self) -> dict[str, float]:
-        """Give the reactions of both bases at rest, each of its own stage."""
-        return self.lower.rest_reactions() | self.upper.rest_reactions()
 
 
 def _uplift_row(setting: AloneSetting, on: str, base: BaseWords, whose: str) -> tuple[str, str]:

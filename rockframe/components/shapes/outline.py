@@ -124,10 +124,11 @@ def _refuse_single(corners: Sequence[Corner], owner: str) -> None:
         f"is {rise:.4g} m higher. A base needs two lowest points at one height"
     )
     if (second - first) % len(corners) in (1, len(corners) - 1):
-        slope = math.degrees(math.atan2(rise, abs(run)))
+        slope = math.copysign(math.degrees(math.atan2(rise, abs(run))), run)
         msg += (
             f": the edge between these is inclined by {slope:.4g} deg; turn the outline until it "
-            "is level (standing on a slope is not modelled)"
+            f"is level, and where the ground slopes so give System(..., inclination='{slope:.4g} "
+            "deg')"
         )
     raise ComponentError(msg)
 

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -41,6 +41,10 @@ class StackRest(NamedTuple):
     vertical: float
     cap_rotation: float
     cap_vertical: float
+
+
+UPRIGHT: Final = StackRest(0.0, 0.0, 0.0, 0.0)
+"""Where symmetric bodies rest on a level base."""
 
 
 def system_of(stack: Stack) -> Coupled:
@@ -164,7 +168,7 @@ def _starting(system: Coupled, rest: StackRest) -> Callable[[Start], tuple[int, 
     def initial(start: Start) -> tuple[int, Vector, Vector]:
         place = rest
         told = start.rotation is not None or start.vertical_displacement is not None
-        if told or system.beside == 0.0:
+        if told or rest == UPRIGHT:
             turned = rest.rotation
             if start.rotation is not None:
                 turned = start.rotation - rest.cap_rotation
