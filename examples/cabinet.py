@@ -7,6 +7,7 @@ Prints at what floor acceleration it falls, loaded low and loaded high; writes c
 """
 
 import argparse
+import math
 from pathlib import Path
 
 import rockframe as rf
@@ -45,7 +46,7 @@ def main() -> None:
         rest = system.equilibrium()
         print(
             f"Loaded {name}: falls once tilted by "
-            f"{rest.overturning_angle.item() * 57.29578:.1f} degrees, or at a floor acceleration "
+            f"{math.degrees(rest.overturning_angle):.1f} degrees, or at a floor acceleration "
             f"of {peaks[name]:.2f} g."
         )
     rf.table(runs).to_csv(folder / "cabinet.csv")

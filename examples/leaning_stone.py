@@ -7,11 +7,13 @@ how much a pulse of the ground to either side it bears; writes leaning_stone.csv
 """
 
 import argparse
+import math
 from pathlib import Path
 
 import rockframe as rf
 
 LEAN = 0.35  # of the top [m]
+PEAK = 3.0  # of the pulse [m/s^2]
 
 
 def main() -> None:
@@ -24,10 +26,8 @@ def main() -> None:
     soil = rf.WinklerSoil(stiffness="60 MPa", damping_ratio=0.1)
     system = rf.System(stone, soil)
     rest = system.equilibrium()
-    print(
-        f"On its soil the stone leans {rest.rest_rotation.item() * 57.29578:.2f} degrees further."
-    )
-    pulse = rf.GroundMotion.sine_pulse("3 m/s^2", "0.8 Hz")
+    print(f"On its soil the stone leans {math.degrees(rest.rest_rotation):.2f} degrees further.")
+    pulse = rf.GroundMotion.sine_pulse(f"{PEAK} m/s^2", "0.8 Hz")
     runs, scales = [], {}
     for side, shaking in (("left", pulse.scaled(-1.0)), ("right", pulse)):
         found = rf.critical_scale(system, shaking, largest=4.0, scales=40, free_vibration="6 s")
@@ -37,7 +37,7 @@ def main() -> None:
         runs.append(run)
         scales[side] = found.critical_scale.item()
         print(
-            f"A pulse that starts to the {side} needs {3.0 * scales[side]:.2f} m/s^2; the stone "
+            f"A pulse that starts to the {side} needs {PEAK * scales[side]:.2f} m/s^2; the stone "
             f"falls to the {run.attrs['overturning_direction']}."
         )
     rf.table(runs).to_csv(folder / "leaning_stone.csv")

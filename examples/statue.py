@@ -8,6 +8,7 @@ an earthquake and its mirror image throw it; writes statue.csv.
 """
 
 import argparse
+import math
 from pathlib import Path
 
 import rockframe as rf
@@ -34,7 +35,7 @@ def main() -> None:
     rest = system.equilibrium()
     for side in ("left", "right"):
         angle = rest[f"{side}_overturning_angle"].item()
-        print(f"It falls to the {side} once tilted by {angle * 57.29578:.1f} degrees.")
+        print(f"It falls to the {side} once tilted by {math.degrees(angle):.1f} degrees.")
     motion = rf.GroundMotion.stochastic(magnitude=7.0, distance="5 km", seed=11)
     found = {
         name: rf.critical_scale(

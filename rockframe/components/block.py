@@ -2,11 +2,16 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any, ClassVar, Protocol, Self, cast
+from typing import Any, ClassVar, Self, cast
 
 from rockframe.components.alternatives import OneOf
 from rockframe.components.base import Component
+from rockframe.components.block_numbers import (
+    BlockSI,
+    check_centre,
+    check_representable,
+    check_rocks,
+)
 from rockframe.components.parameters import DERIVED, Parameter, Ratio
 from rockframe.components.shapes.cylinder import cylinder_body
 from rockframe.components.shapes.outline import outline_body
@@ -14,7 +19,6 @@ from rockframe.components.shapes.part import Part
 from rockframe.components.shapes.parts import body_of_parts
 from rockframe.components.shapes.reading import Place, Points
 from rockframe.components.values import Quantity, SIProperty, SIValues
-from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError, shown
 from rockframe.units import (
     ANGLE,
@@ -32,111 +36,6 @@ from rockframe.units import (
 
 SOLID_RECTANGLE_SHAPE_FACTOR = 3.0
 """mu of a solid rectangle: I_O = m (B^2 + H^2)/12 = m R0^2/3."""
-
-
-@dataclass(frozen=True)
-class BlockSI:
-    """Geometry and mass of a block in SI units, :eq:`eq-eccentric-body`.
-
-    The centre of mass stands `centre_height` above the base and `eccentricity` to the right of
-    its middle; then angles, radii and restitutions differ to the left and to the right.
-    """
-
-    width: float
-    height: float
-    mass: float
-    shape_factor: float
-    centre_height: float
-    eccentricity: float = 0.0
-
-    @property
-    def half_width(self) -> float:
-        """Half the width, b [m]."""
-        return 0.5 * self.width
-
-    @property
-    def half_height(self) -> float:
-        """Half the height [m]."""
-        return 0.5 * self.height
-
-    @property
-    def left(self) -> float:
-        """From the foot of the centre of mass to the left end of the base, b + e_c [m]."""
-        return self.half_width + self.eccentricity
-
-    @property
-    def right(self) -> float:
-        """From there to the right end, b - e_c [m]."""
-        return self.half_width - self.eccentricity
-
-    @property
-    def radius(self) -> float:
-        """R0, from a corner to the centre of mass, were that above the middle [m]."""
-        return math.hypot(self.half_width, self.centre_height)
-
-    @property
-    def overturning_angle(self) -> float:
-        """Overturning angle theta = arctan(b/h) [rad], Eq. (1); the lesser of both sides."""
-        return math.atan2(min(self.left, self.right), self.centre_height)
-
-    @property
-    def inertia(self) -> float:
-        """I_O about the centre of mass [kg m^2]."""
-        return self.mass * self.radius * self.radius / self.shape_factor
-
-    def frequency_at(self, gravity: float) -> float:
-        """Angular frequency omega of Eq. (6) under a given gravity [rad s^-1]."""
-        mu = self.shape_factor
-        return math.sqrt(mu / (1.0 + mu) * gravity / self.radius)
-
-    @property
-    def frequency(self) -> float:
-        """Omega of Eq. (6) under standard gravity [rad s^-1]."""
-        return self.frequency_at(STANDARD_GRAVITY)
-
-    @property
-    def maximum_restitution(self) -> float:
-        """eps_max = (1 + mu cos 2 theta)/(1 + mu), Eq. (4); the lesser of both directions."""
-        return min(greatest_restitutions(self))
-
-
-class Shape(Protocol):
-    """What the restitution of a body follows from."""
-
-    @property
-    def shape_factor(self) -> float:
-        """Mu."""
-        ...
-
-    @property
-    def half_width(self) -> float:
-        """Of the base, b [m]."""
-        ...
-
-    @property
-    def centre_height(self) -> float:
-        """H [m]."""
-        ...
-
-    @property
-    def eccentricity(self) -> float:
-        """e_c [m]."""
-        ...
-
-
-def greatest_restitutions(body: Shape) -> tuple[float, float]:
-    """Give the ratio of angular velocities at an impact on the left and on the right corner.
-
-    Of a rigid body that rolls over without bouncing, :eq:`eq-eccentric-impact`; Eq. (4) where
-    the centre of mass is above the middle.
-    """
-    mu, e = body.shape_factor, body.eccentricity
-    b, h = body.half_width, body.centre_height
-    square = b * b + h * h
-    kept = 1.0 + mu * (math.cos(2.0 * math.atan2(b, h)) + e * e / square)
-    onto_left = 1.0 + mu * (1.0 + e * (e + 2.0 * b) / square)
-    onto_right = 1.0 + mu * (1.0 + e * (e - 2.0 * b) / square)
-    return kept / onto_left, kept / onto_right
 
 
 class Block(Component):
@@ -263,7 +162,7 @@ class Block(Component):
         owner = type(self).__name__
         height = 0.5 * given.height if given.centre_height is None else given.centre_height
         beside = 0.0 if given.eccentricity is None else given.eccentricity
-        _check_centre(given.width, given.height, height, beside, owner)
+        check_centre(given.width, given.height, height, beside, owner)
         diagonal = math.hypot(given.width, 2.0 * height)
         mu: float = given.shape_factor or SOLID_RECTANGLE_SHAPE_FACTOR
         if given.inertia is not None:
@@ -273,8 +172,8 @@ class Block(Component):
             whole = math.hypot(given.width, given.height)
             mu *= (diagonal / whole) ** 2
         si = BlockSI(given.width, given.height, given.mass, mu, height, beside)
-        _check_representable(si, type(self).__name__)
-        _check_rocks(si, type(self).__name__)
+        check_representable(si, type(self).__name__)
+        check_rocks(si, type(self).__name__)
         return si
 
     @classmethod
@@ -570,37 +469,5 @@ def _pair(
     msg = (
         f"{owner}: centre_of_mass needs two lengths, the height above the base and how far it is "
         f"to the right of the middle, such as ('0.7 m', '0.05 m'); got {shown(given)}"
-    )
-    raise ComponentError(msg)
-
-
-def _check_centre(width: float, height: float, above: float, beside: float, owner: str) -> None:
-    if above < height and abs(beside) < 0.5 * width:
-        return
-    msg = (
-        f"{owner}: the centre of mass, {above:.6g} m above the base and {beside:.6g} m to the "
-        f"right of its middle, is not within {height:.6g} m of height and {0.5 * width:.6g} m to "
-        "both sides"
-    )
-    raise ComponentError(msg)
-
-
-def _check_representable(si: BlockSI, owner: str) -> None:
-    if 0.0 < si.inertia < math.inf and 0.0 < si.shape_factor < math.inf:
-        return
-    msg = (
-        f"{owner}: a block of {si.width:.4g} m by {si.height:.4g} m and {si.mass:.4g} kg has a "
-        "moment of inertia that a computer's numbers cannot hold"
-    )
-    raise ComponentError(msg)
-
-
-def _check_rocks(si: BlockSI, owner: str) -> None:
-    if si.maximum_restitution > 0.0:
-        return
-    msg = (
-        f"{owner}: a block of H/B = {si.height / si.width:.4g} with shape factor "
-        f"{si.shape_factor:.4g} cannot rock: its greatest restitution, Eq. (4), is "
-        f"{si.maximum_restitution:.4g}; a solid rectangle needs H/B above sqrt(2)/2 = 0.7071"
     )
     raise ComponentError(msg)

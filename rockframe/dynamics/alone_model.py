@@ -115,6 +115,11 @@ def radius_of(body: Body) -> float:
     return math.hypot(0.5 * (body.left + body.right), body.height)
 
 
+def eccentricity_of(body: Body) -> float:
+    """Give how far the centre of mass is to the right of the middle of the base [m]."""
+    return 0.5 * (body.left - body.right)
+
+
 def rocking_rate(body: Body) -> float:
     """Give the rate of rocking about a corner [s^-1]."""
     radius = radius_of(body)

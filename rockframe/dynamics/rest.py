@@ -11,8 +11,7 @@ from typing import Final
 import numpy as np
 
 from rockframe.compiled import Vector
-from rockframe.dynamics.alone_model import starting_state
-from rockframe.dynamics.body import Body
+from rockframe.dynamics.alone_model import eccentricity_of, starting_state
 from rockframe.dynamics.coupled.model import StackRest, state_at
 from rockframe.dynamics.coupled.system import Coupled
 from rockframe.dynamics.on_base import OnBase
@@ -31,11 +30,6 @@ LEAST_STEP: Final = 1e-3
 """Least share of the eccentricity and of the slope by which rest is followed."""
 DIFFERENCE: Final = 1e-7
 """Of scaled placements, to find how accelerations change."""
-
-
-def eccentricity_of(body: Body) -> float:
-    """Give how far the centre of mass is to the right of the middle of the base [m]."""
-    return 0.5 * (body.left - body.right)
 
 
 def still(along_gravity: float) -> Ground:

@@ -27,6 +27,7 @@ Array = NDArray[np.float64]
 Generic = NDArray[Any]
 Values = Mapping[str, "Generic | float | int | bool"]
 LEVEL: Final = Slope(0.0, STANDARD_GRAVITY)
+"""A base line that does not rise."""
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from rockframe.components.block import BlockSI, greatest_restitutions
+from rockframe.components.block_numbers import BlockSI, greatest_restitutions
 from rockframe.components.cap import CushionCapSI
 from rockframe.signals.slope import Slope
 from rockframe.system.impact import Restitutions

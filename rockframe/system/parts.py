@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from rockframe.components import Block, Component, CushionCap, RigidGround
-from rockframe.components.block import BlockSI
+from rockframe.components.block_numbers import BlockSI
 from rockframe.components.cap import CushionCapSI
 from rockframe.errors import shown
 from rockframe.motion import GroundMotion

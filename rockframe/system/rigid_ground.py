@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from rockframe.components.block import BlockSI
+from rockframe.components.block_numbers import BlockSI
 from rockframe.errors import AssemblyError
 from rockframe.signals.slope import Slope
 from rockframe.system.angles import angle_words

@@ -9,6 +9,7 @@ import numpy as np
 
 from rockframe.compiled import Vector
 from rockframe.dynamics.alone_model import (
+    eccentricity_of,
     part_tolerance,
     radius_of,
     rocking_rate,
@@ -54,7 +55,7 @@ def system_of(stack: Stack) -> Coupled:
         OnBase(stack.cap, stack.soil.law),
         stack.cap_mass,
         stack.cap.height,
-        0.5 * (stack.block.left - stack.block.right),
+        eccentricity_of(stack.block),
     )
 
 

@@ -1,0 +1,148 @@
+"""The numbers of a block in SI units, and whether they make one that rocks."""
+
+import math
+from dataclasses import dataclass
+from typing import Protocol
+
+from rockframe.constants import STANDARD_GRAVITY
+from rockframe.errors import ComponentError
+
+
+@dataclass(frozen=True)
+class BlockSI:
+    """Geometry and mass of a block in SI units, :eq:`eq-eccentric-body`.
+
+    The centre of mass stands `centre_height` above the base and `eccentricity` to the right of
+    its middle; then angles, radii and restitutions differ to the left and to the right.
+    """
+
+    width: float
+    height: float
+    mass: float
+    shape_factor: float
+    centre_height: float
+    eccentricity: float = 0.0
+
+    @property
+    def half_width(self) -> float:
+        """Half the width, b [m]."""
+        return 0.5 * self.width
+
+    @property
+    def half_height(self) -> float:
+        """Half the height [m]."""
+        return 0.5 * self.height
+
+    @property
+    def left(self) -> float:
+        """From the foot of the centre of mass to the left end of the base, b + e_c [m]."""
+        return self.half_width + self.eccentricity
+
+    @property
+    def right(self) -> float:
+        """From there to the right end, b - e_c [m]."""
+        return self.half_width - self.eccentricity
+
+    @property
+    def radius(self) -> float:
+        """R0, from a corner to the centre of mass, were that above the middle [m]."""
+        return math.hypot(self.half_width, self.centre_height)
+
+    @property
+    def overturning_angle(self) -> float:
+        """Overturning angle theta = arctan(b/h) [rad], Eq. (1); the lesser of both sides."""
+        return math.atan2(min(self.left, self.right), self.centre_height)
+
+    @property
+    def inertia(self) -> float:
+        """I_O about the centre of mass [kg m^2]."""
+        return self.mass * self.radius * self.radius / self.shape_factor
+
+    def frequency_at(self, gravity: float) -> float:
+        """Angular frequency omega of Eq. (6) under a given gravity [rad s^-1]."""
+        mu = self.shape_factor
+        return math.sqrt(mu / (1.0 + mu) * gravity / self.radius)
+
+    @property
+    def frequency(self) -> float:
+        """Omega of Eq. (6) under standard gravity [rad s^-1]."""
+        return self.frequency_at(STANDARD_GRAVITY)
+
+    @property
+    def maximum_restitution(self) -> float:
+        """eps_max = (1 + mu cos 2 theta)/(1 + mu), Eq. (4); the lesser of both directions."""
+        return min(greatest_restitutions(self))
+
+
+class Shape(Protocol):
+    """What the restitution of a body follows from."""
+
+    @property
+    def shape_factor(self) -> float:
+        """Mu."""
+        ...
+
+    @property
+    def half_width(self) -> float:
+        """Of the base, b [m]."""
+        ...
+
+    @property
+    def centre_height(self) -> float:
+        """H [m]."""
+        ...
+
+    @property
+    def eccentricity(self) -> float:
+        """e_c [m]."""
+        ...
+
+
+def greatest_restitutions(body: Shape) -> tuple[float, float]:
+    """Give the ratio of angular velocities at an impact on the left and on the right corner.
+
+    Of a rigid body that rolls over without bouncing, :eq:`eq-eccentric-impact`; Eq. (4) where
+    the centre of mass is above the middle.
+    """
+    mu, e = body.shape_factor, body.eccentricity
+    b, h = body.half_width, body.centre_height
+    square = b * b + h * h
+    kept = 1.0 + mu * (math.cos(2.0 * math.atan2(b, h)) + e * e / square)
+    onto_left = 1.0 + mu * (1.0 + e * (e + 2.0 * b) / square)
+    onto_right = 1.0 + mu * (1.0 + e * (e - 2.0 * b) / square)
+    return kept / onto_left, kept / onto_right
+
+
+def check_centre(width: float, height: float, above: float, beside: float, owner: str) -> None:
+    """Refuse a centre of mass that is not above the base, within the height."""
+    if above < height and abs(beside) < 0.5 * width:
+        return
+    msg = (
+        f"{owner}: the centre of mass, {above:.6g} m above the base and {beside:.6g} m to the "
+        f"right of its middle, is not within {height:.6g} m of height and {0.5 * width:.6g} m to "
+        "both sides"
+    )
+    raise ComponentError(msg)
+
+
+def check_representable(si: BlockSI, owner: str) -> None:
+    """Refuse sizes whose moment of inertia overflows, or vanishes."""
+    if 0.0 < si.inertia < math.inf and 0.0 < si.shape_factor < math.inf:
+        return
+    msg = (
+        f"{owner}: a block of {si.width:.4g} m by {si.height:.4g} m and {si.mass:.4g} kg has a "
+        "moment of inertia that a computer's numbers cannot hold"
+    )
+    raise ComponentError(msg)
+
+
+def check_rocks(si: BlockSI, owner: str) -> None:
+    """Refuse a body so squat that it does not rock on after an impact, Eq. (5)."""
+    if si.maximum_restitution > 0.0:
+        return
+    msg = (
+        f"{owner}: a block of H/B = {si.height / si.width:.4g} with shape factor "
+        f"{si.shape_factor:.4g} cannot rock: its greatest restitution, Eq. (4), is "
+        f"{si.maximum_restitution:.4g}; a solid rectangle needs H/B above sqrt(2)/2 = 0.7071"
+    )
+    raise ComponentError(msg)
