@@ -1,22 +1,27 @@
 """Assembly: parts and options checked together, and the scene they make."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import TYPE_CHECKING
 
-from rockframe.constants import STANDARD_GRAVITY
-from rockframe.errors import AssemblyError, RockframeError
+from rockframe.errors import AssemblyError
 from rockframe.system.describe import describe
 from rockframe.system.fitting import misfits, missizes
-from rockframe.system.options import Coupling, Options, Restraint, Rotation, read_option
+from rockframe.system.options import (
+    Coupling,
+    Options,
+    Restraint,
+    Rotation,
+    read_measured,
+    read_option,
+)
 from rockframe.system.parts import Parts, sort_parts
 from rockframe.system.scenes import SCENES, Scene
 from rockframe.system.setting import Setting
-from rockframe.units import ACCELERATION, ANGLE, POSITIVE, Condition, to_si
 
-_OWNER = "System"
-_SLOPING = Condition("between -90 deg and 90 deg", lambda angle: abs(angle) < 0.5 * math.pi)
+if TYPE_CHECKING:
+    from rockframe.dynamics.protocol import ContactModel
 
 
 @dataclass(frozen=True)
@@ -45,12 +50,21 @@ class Assembly:
         return self.scene.make_setting(self.parts, self.options)
 
     @cached_property
+    def model(self) -> "ContactModel":
+        """The scene's equations, ready for the integrator, which leaves them as they are."""
+        return self.setting.compile()
+
+    @cached_property
     def _description(self) -> str:
         return describe(self.setting, self.parts)
 
     def describe(self) -> str:
         """Tell which model was picked, by which equations, and what it leaves out."""
         return self._description
+
+    def __reduce__(self) -> tuple[object, ...]:
+        # without what has been computed: equations hold functions that cannot be sent
+        return (Assembly, (self.parts, self.options, self.scene))
 
     def to_dict(self) -> dict[str, object]:
         """Give parts and options as plain values, fit for JSON; without the motion."""
@@ -88,39 +102,45 @@ def assemble(
     """
     faults: list[str] = []
     given = sort_parts(parts, faults)
-    faults += misfits(given)
+    options = Options(
+        read_option(Restraint, restraint, "restraint", wrong := []),
+        read_option(Rotation, rotation, "rotation", wrong),
+        read_option(Coupling, coupling, "coupling", wrong),
+        read_measured(gravity, "gravity", wrong),
+        read_measured(inclination, "inclination", wrong),
+    )
+    return joined(given, options, faults, wrong)
+
+
+def joined(
+    given: Parts, options: Options, faults: Sequence[str] = (), wrong: Sequence[str] = ()
+) -> Assembly:
+    """Check sorted parts against one another, and find the scene they make.
+
+    Parameters
+    ----------
+    given : Parts
+        By what they are.
+    options : Options
+        All options, and gravity.
+    faults, wrong : sequence of str, optional
+        What has been found of parts, and of options.
+
+    Returns
+    -------
+    Assembly
+
+    Raises
+    ------
+    AssemblyError
+        With every fault found; and the supported scenes, if parts are missing or do not
+        combine.
+    """
+    faults = [*faults, *misfits(given)]
     # the scenes are of use to one whose parts make none, not to one with a wrong option
     supported = [scene.title for scene in SCENES] if faults else []
-    faults += missizes(given)
-    options = Options(
-        read_option(Restraint, restraint, "restraint", faults),
-        read_option(Rotation, rotation, "rotation", faults),
-        read_option(Coupling, coupling, "coupling", faults),
-        _gravity(gravity, faults),
-        _inclination(inclination, faults),
-    )
+    faults += [*missizes(given), *wrong]
     scene = next((scene for scene in SCENES if scene.fits(given, options.coupling)), None)
     if faults or scene is None:
         raise AssemblyError(faults, supported)
     return Assembly(given, options, scene)
-
-
-def _gravity(given: object, faults: list[str]) -> float:
-    if given is None:
-        return STANDARD_GRAVITY
-    try:
-        return to_si(given, ACCELERATION, owner=_OWNER, name="gravity", condition=POSITIVE)
-    except RockframeError as problem:
-        faults.append(str(problem))
-        return STANDARD_GRAVITY
-
-
-def _inclination(given: object, faults: list[str]) -> float:
-    if given is None:
-        return 0.0
-    try:
-        angle = to_si(given, ANGLE, owner=_OWNER, name="inclination", condition=_SLOPING)
-    except RockframeError as problem:
-        faults.append(str(problem))
-        return 0.0
-    return angle + 0.0  # no negative zero

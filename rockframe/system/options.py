@@ -1,13 +1,15 @@
 """Options of systems and runs, and the words for them."""
 
+import math
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Literal, TypeAlias, TypeVar
+from typing import Final, Literal, TypeAlias, TypeVar
 
-from rockframe.errors import shown
+from rockframe.constants import STANDARD_GRAVITY
+from rockframe.errors import RockframeError, shown
 from rockframe.signals.slope import Slope
 from rockframe.solve.accuracy import Accuracy, AccuracyLevel
-from rockframe.units import ACCELERATION, ANGLE
+from rockframe.units import ACCELERATION, ANGLE, POSITIVE, Condition, Measure, to_si
 
 
 class Restraint(StrEnum):
@@ -46,6 +48,40 @@ OverturningLike: TypeAlias = Overturning | Literal["stop", "continue"]
 AccuracyLike: TypeAlias = (
     Accuracy | AccuracyLevel | Literal["fast", "standard", "reference"] | float
 )
+
+
+@dataclass(frozen=True)
+class Measured:
+    """An option that is a number.
+
+    Parameters
+    ----------
+    measure : Measure
+        Its kind.
+    condition : Condition
+        Its range.
+    words : str
+        What it is.
+    otherwise : float
+        Its value unless given, in SI units.
+    """
+
+    measure: Measure
+    condition: Condition
+    words: str
+    otherwise: float
+
+
+MEASURED: Final = {
+    "gravity": Measured(ACCELERATION, POSITIVE, "acceleration of gravity", STANDARD_GRAVITY),
+    "inclination": Measured(
+        ANGLE,
+        Condition("between -90 deg and 90 deg", lambda angle: abs(angle) < 0.5 * math.pi),
+        "angle by which the base rises to the right",
+        0.0,
+    ),
+}
+"""The options that are numbers, by their names."""
 
 
 @dataclass(frozen=True)
@@ -107,3 +143,31 @@ def read_option(kind: type[Option], value: object, name: str, faults: list[str])
         known = ", ".join(repr(str(option)) for option in kind)
         faults.append(f"{name} must be one of {known}, got {shown(value)}")
         return next(iter(kind))
+
+
+def read_measured(given: object, name: str, faults: list[str]) -> float:
+    """Give an option that is a number, or note the fault.
+
+    Parameters
+    ----------
+    given : str, Quantity or None
+        What the user gave.
+    name : str
+        Of the option, in `MEASURED`.
+    faults : list of str
+        Appended to if `given` is no such number.
+
+    Returns
+    -------
+    float
+        In SI units.
+    """
+    one = MEASURED[name]
+    if given is None:
+        return one.otherwise
+    try:
+        value = to_si(given, one.measure, owner="System", name=name, condition=one.condition)
+    except RockframeError as problem:
+        faults.append(str(problem))
+        return one.otherwise
+    return value + 0.0  # no negative zero
