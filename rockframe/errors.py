@@ -5,8 +5,11 @@ Every error derives from :class:`RockframeError`, so that a script can tell
 """
 
 import warnings
-from collections.abc import Sequence
+from collections.abc import Generator, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
 from inspect import currentframe
+from typing import Final
 
 LONGEST_SHOWN = 100
 """Characters of a value beyond which a message does not show all of it."""
@@ -78,6 +81,24 @@ class SolverError(RockframeError, RuntimeError):
     """The integration cannot start or go on; the message gives the state."""
 
 
+class StudyError(RockframeError, ValueError):
+    """A study cannot be planned, carried out, kept or read.
+
+    Parameters
+    ----------
+    *faults : str
+        Every fault found; all of them are listed in the message.
+    """
+
+    def __init__(self, *faults: str) -> None:
+        self.faults = faults
+        lines = ["the study cannot be planned:", *(f"- {fault}" for fault in faults)]
+        super().__init__("\n".join(lines) if len(faults) > 1 else "".join(faults))
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return (type(self), self.faults)
+
+
 class SchemaError(RockframeError, ValueError):
     """A dataset does not follow rockframe's schema, or a name is not in it."""
 
@@ -123,6 +144,26 @@ def shown(value: object) -> str:
     return line if len(line) <= LONGEST_SHOWN else f"{line[: LONGEST_SHOWN - 3]}..."
 
 
+_heard: Final[ContextVar[list[str] | None]] = ContextVar("heard", default=None)
+
+
+@contextmanager
+def heard() -> Generator[list[str]]:
+    """Collect what is warned of, in this thread alone, instead of warning.
+
+    Yields
+    ------
+    list of str
+        The messages so far.
+    """
+    texts: list[str] = []
+    before = _heard.set(texts)
+    try:
+        yield texts
+    finally:
+        _heard.reset(before)
+
+
 def warn(message: str, category: type[RockframeWarning]) -> None:
     """Warn at the line that called into rockframe, however deep the fault is found.
 
@@ -133,6 +174,10 @@ def warn(message: str, category: type[RockframeWarning]) -> None:
     category : type
         Kind of warning.
     """
+    texts = _heard.get()
+    if texts is not None:
+        texts.append(message)
+        return
     package = __name__.partition(".")[0]
     level, frame = 1, currentframe()
     while frame and str(frame.f_globals.get("__name__")).partition(".")[0] == package:

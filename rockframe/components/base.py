@@ -193,6 +193,48 @@ class Component:
         """
         return type(self)(**replaced(self._arguments(), changes, self.alternatives))
 
+    @classmethod
+    def declared(cls) -> Mapping[str, Declared[Any, Any]]:
+        """Give the declarations of all parameters by their names.
+
+        Returns
+        -------
+        mapping
+        """
+        return cls._declared
+
+    def with_si(self, values: Mapping[str, Any]) -> Self:
+        """Build a component of which some parameters are others, without warnings.
+
+        Parameters
+        ----------
+        values : mapping of str to float or str
+            Numbers in SI units, and words, by the names of parameters. One that stands for
+            another takes its place, as with :meth:`replace`.
+
+        Returns
+        -------
+        Component
+
+        Raises
+        ------
+        ComponentError
+            A value is out of range, or does not fit the others.
+        """
+        gone = dict.fromkeys(name for each in self.alternatives for name in each.displaced(values))
+        changed = {**vars(self.given), **gone, **values}
+        owner = self._owner(changed)
+        for name, value in values.items():
+            one = self._declared[name]
+            if one.condition is None or not one.condition.holds(value):
+                # which also says what is wrong
+                written = value if isinstance(value, str) else one.write(value)
+                changed[name] = one.read(written, owner)
+        part = object.__new__(type(self))
+        part._check(changed, owner)
+        part._hold(changed)
+        return part
+
     def parameters(self) -> tuple[str, ...]:
         """Name the arguments that are numbers other than zero, with a unit or without.
 

@@ -61,7 +61,7 @@ def lacking(system: Assembly, names: Iterable[str]) -> list[str]:
     depend = [name for name in names if name in NEEDED]
     if not depend:
         return []
-    columns = {column.name for column in system.setting.compile().columns}
+    columns = {column.name for column in system.model.columns}
     return [
         f"there is no {name!r} in this scene; it needs {NEEDED[name][1]}"
         for name in depend

@@ -20,7 +20,7 @@ PEAK: Final = 0.01
 
 
 def unbalanced(
-    plan: Plan, summary: Summary, base: Beside, run: Callable[[Plan], Beside]
+    plan: Plan, summary: Summary, base: Callable[[], Beside], run: Callable[[Plan], Beside]
 ) -> str | None:
     """Say that a run is no solution, where its energies show it.
 
@@ -30,8 +30,8 @@ def unbalanced(
         The run's arguments.
     summary : Summary
         What became of it.
-    base : Beside
-        What it showed.
+    base : callable
+        Tells what it showed; called only where the energies are out of balance.
     run : callable
         Makes a run of the same scene; called only where the energies leave it open.
 
@@ -41,24 +41,23 @@ def unbalanced(
         What was found and what to do; None of a run that may be used.
     """
     residual, by_tolerance = summary.energy_residual, plan.accuracy.substeps is None
-    if base.overturned is None:
+    if residual <= (BY_TOLERANCE if by_tolerance else DOUBTFUL):
+        return None
+    shown = base()
+    if shown.overturned is None:
         return None
     found = f"the energies are out of balance by {residual:.2g} of the largest"
     if by_tolerance:
-        if residual <= BY_TOLERANCE:
-            return None
         return f"{found}: this is no solution; repeat the run with a tighter tolerance"
     remedy = f"repeat the run with accuracy='{AccuracyLevel.STANDARD}'"
     if residual > FIXED:
         return f"{found}: this is no solution; {remedy}"
-    if residual <= DOUBTFUL:
-        return None
     standard = LEVELS[AccuracyLevel.STANDARD]
     other = run(replace(plan, accuracy=standard, output_step=None, requested=(), points=()))
     if other.overturned is None:
         return None
-    difference = abs(other.peak - base.peak)
-    if base.alike(other) and difference <= PEAK * other.peak:
+    difference = abs(other.peak - shown.peak)
+    if shown.alike(other) and difference <= PEAK * other.peak:
         return None
     ends = "overturns" if other.overturned else f"has a peak rotation of {other.peak:.4g} rad"
     return (

@@ -102,7 +102,7 @@ def shortened(accuracy: Accuracy, system: Assembly, step: float, interval: float
         given = accuracy.substeps if isinstance(accuracy.substeps, int) else 1
         substeps = math.ceil(max(interval / wanted, SHORTER * given))
         return replace(accuracy, substeps=min(substeps, MOST_SUBSTEPS))
-    period = 2.0 * math.pi / system.setting.compile().fastest_frequency
+    period = 2.0 * math.pi / system.model.fastest_frequency
     per_period = max(period / wanted, SHORTER * accuracy.steps_per_period)
     return replace(accuracy, steps_per_period=min(per_period, MOST_PER_PERIOD))
 

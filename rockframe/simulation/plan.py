@@ -3,6 +3,7 @@
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any, Final
 
 import xarray as xr
 
@@ -22,6 +23,38 @@ MOST_SAMPLES = 1e8
 """Samples of the histories beyond which a run is refused: some ten gigabytes."""
 STILL_GROUND_OUTPUT_STEP = 0.005
 """Spacing of the histories of a run without a ground motion [s]."""
+_REST: Final = InitialState()
+_OWNER: Final = "simulate"
+
+
+@dataclass(frozen=True)
+class Arguments:
+    """What a run is asked for, whatever its system and motion; numbers in SI units."""
+
+    duration: float | None
+    free_vibration: float | None
+    initial: "InitialState | xr.Dataset"
+    accuracy: Accuracy
+    accuracy_name: str
+    output_step: float | None
+    histories: bool
+    requested: tuple[str, ...]
+    points: tuple[Point, ...]
+    stop_at_overturning: bool
+
+    def to_dict(self) -> dict[str, Any]:
+        """Give them as :meth:`rockframe.System.simulate` takes them, fit for JSON."""
+        initial = None if isinstance(self.initial, xr.Dataset) else self.initial.to_dict()
+        return {
+            "duration": _time(self.duration),
+            "free_vibration": _time(self.free_vibration),
+            "initial": initial,
+            "accuracy": vars(self.accuracy),
+            "output_step": _time(self.output_step),
+            "outputs": list(self.requested) if self.histories else None,
+            "points": _places(self.points),
+            "overturning": _course(self.stop_at_overturning),
+        }
 
 
 @dataclass(frozen=True)
@@ -47,18 +80,29 @@ class Plan:
         """Give the plan as JSON, without the motion."""
         return json.dumps(
             {
-                "duration": f"{self.duration!r} {TIME.unit}",
+                "duration": _time(self.duration),
                 "initial": self.initial.to_dict(),
                 "accuracy": vars(self.accuracy),
-                "output_step": self.output_step and f"{self.output_step!r} {TIME.unit}",
+                "output_step": _time(self.output_step),
                 "outputs": list(self.requested),
-                "points": {
-                    point.name: [f"{each!r} {LENGTH.unit}" for each in (point.x, point.y)]
-                    for point in self.points
-                },
-                "overturning": "stop" if self.stop_at_overturning else "continue",
+                "points": _places(self.points),
+                "overturning": _course(self.stop_at_overturning),
             }
         )
+
+
+def _time(value: float | None) -> str | None:
+    return None if value is None else f"{value!r} {TIME.unit}"
+
+
+def _places(points: Sequence[Point]) -> dict[str, list[str]]:
+    return {
+        point.name: [f"{each!r} {LENGTH.unit}" for each in (point.x, point.y)] for point in points
+    }
+
+
+def _course(stops: bool) -> str:
+    return str(Overturning.STOP if stops else Overturning.CONTINUE)
 
 
 def plan_run(
@@ -90,48 +134,139 @@ def plan_run(
     _check_kind(motion, GroundMotion, "motion", faults)
     if faults:
         raise AssemblyError(faults)
-    beginning = _beginning(system, initial, faults)
-    length = _length(motion, duration, free_vibration, faults)
-    step = motion.si.time_step if motion is not None else STILL_GROUND_OUTPUT_STEP
-    if output_step is not None:
-        step = to_si(
-            output_step, TIME_STEP, owner="simulate", name="output_step", condition=POSITIVE
-        )
-    if outputs is None:
-        step = None
-    if step is not None and length / step > MOST_SAMPLES:
-        faults.append(
-            f"the histories would have {length / step:.3g} samples ({length:.6g} s in steps of "
-            f"{step:.6g} s); give a longer output_step, or outputs=None"
-        )
-    course = read_option(Overturning, overturning, "overturning", faults)
-    requested, named = names_of(outputs, faults), points_of(points, faults)
-    faults += lacking(system, requested)
+    arguments = read_arguments(
+        faults,
+        duration=duration,
+        free_vibration=free_vibration,
+        initial=initial,
+        accuracy=accuracy,
+        output_step=output_step,
+        outputs=outputs,
+        points=points,
+        overturning=overturning,
+    )
+    plan = fitted(arguments, system, motion, faults)
     if faults:
         raise AssemblyError(faults)
-    settings = accuracy_of(accuracy)
-    return Plan(
-        motion=motion,
-        duration=length,
-        initial=beginning,
-        accuracy=settings,
+    return plan
+
+
+def read_arguments(
+    faults: list[str],
+    *,
+    duration: QuantityLike | None = None,
+    free_vibration: QuantityLike | None = None,
+    initial: "InitialState | xr.Dataset | None" = None,
+    accuracy: AccuracyLike,
+    output_step: QuantityLike | None = None,
+    outputs: Sequence[str] | None,
+    points: Mapping[str, tuple[QuantityLike, QuantityLike]] | None = None,
+    overturning: OverturningLike,
+) -> Arguments:
+    """Read the arguments of a run, as far as that needs neither system nor motion.
+
+    Parameters
+    ----------
+    faults : list of str
+        To which what is wrong is added.
+    duration, free_vibration, initial, accuracy, output_step, outputs, points, overturning
+        As for :meth:`rockframe.System.simulate`.
+
+    Returns
+    -------
+    Arguments
+
+    Raises
+    ------
+    UnitsError, ComponentError, SolverError
+        An argument cannot be read.
+    """
+    if duration is not None and free_vibration is not None:
+        faults.append("give duration or free_vibration, not both: each fixes the run's length")
+    times = {"duration": duration, "free_vibration": free_vibration}
+    read = {
+        name: to_si(given, TIME, owner=_OWNER, name=name, condition=POSITIVE)
+        for name, given in times.items()
+        if given is not None
+    }
+    step = None
+    if output_step is not None:
+        step = to_si(output_step, TIME_STEP, owner=_OWNER, name="output_step", condition=POSITIVE)
+    course = read_option(Overturning, overturning, "overturning", faults)
+    return Arguments(
+        duration=read.get("duration"),
+        free_vibration=read.get("free_vibration"),
+        initial=_initial(initial, faults),
+        accuracy=accuracy_of(accuracy),
         accuracy_name=str(accuracy) if isinstance(accuracy, str) else "own",
         output_step=step,
-        requested=requested,
-        points=named,
+        histories=outputs is not None,
+        requested=names_of(outputs, faults),
+        points=points_of(points, faults),
         stop_at_overturning=course is Overturning.STOP,
     )
 
 
-def _beginning(system: Assembly, given: object, faults: list[str]) -> Beginning:
-    """Read the argument ``initial``; note what does not fit the system."""
+def fitted(
+    arguments: Arguments, system: Assembly, motion: GroundMotion | None, faults: list[str]
+) -> Plan:
+    """Fit the arguments of a run to its system and its motion.
+
+    Parameters
+    ----------
+    arguments : Arguments
+        As read.
+    system : Assembly
+        The checked scene.
+    motion : GroundMotion or None
+        Of the ground, which stands still without.
+    faults : list of str
+        To which what does not fit is added.
+
+    Returns
+    -------
+    Plan
+        Of no use where there are faults.
+    """
+    beginning = _beginning(system, arguments.initial, faults)
+    length = _length(arguments, motion, faults)
+    step = None
+    if arguments.histories:
+        step = arguments.output_step
+        if step is None:
+            step = STILL_GROUND_OUTPUT_STEP if motion is None else motion.si.time_step
+        if length / step > MOST_SAMPLES:
+            faults.append(
+                f"the histories would have {length / step:.3g} samples ({length:.6g} s in steps of "
+                f"{step:.6g} s); give a longer output_step, or outputs=None"
+            )
+    faults += lacking(system, arguments.requested)
+    return Plan(
+        motion=motion,
+        duration=length,
+        initial=beginning,
+        accuracy=arguments.accuracy,
+        accuracy_name=arguments.accuracy_name,
+        output_step=step,
+        requested=arguments.requested,
+        points=arguments.points,
+        stop_at_overturning=arguments.stop_at_overturning,
+    )
+
+
+def _initial(given: object, faults: list[str]) -> "InitialState | xr.Dataset":
+    if given is None or isinstance(given, InitialState | xr.Dataset):
+        return _REST if given is None else given
+    faults.append(f"initial must be an InitialState or the result of a run, got {shown(given)}")
+    return _REST
+
+
+def _beginning(
+    system: Assembly, given: "InitialState | xr.Dataset", faults: list[str]
+) -> Beginning:
+    """Give where the run begins; note what does not fit the system."""
     if isinstance(given, xr.Dataset):
         return continuation_of(given, system, faults)
-    if given is None:
-        return InitialState()
-    if not isinstance(given, InitialState):
-        faults.append(f"initial must be an InitialState or the result of a run, got {shown(given)}")
-        return InitialState()
     start = given.si
     vertical_start = start.vertical_displacement is not None or start.vertical_velocity != 0.0
     rotation = system.setting.rest_rotation if start.rotation is None else start.rotation
@@ -150,21 +285,12 @@ def _check_kind(value: object, kind: type, name: str, faults: list[str]) -> None
         faults.append(f"{name} must be a {kind.__name__}, got {shown(value)}")
 
 
-def _length(
-    motion: GroundMotion | None,
-    duration: QuantityLike | None,
-    free_vibration: QuantityLike | None,
-    faults: list[str],
-) -> float:
-    if duration is not None and free_vibration is not None:
-        faults.append("give duration or free_vibration, not both: each fixes the run's length")
+def _length(arguments: Arguments, motion: GroundMotion | None, faults: list[str]) -> float:
     length = 0.0 if motion is None else motion.si.duration
-    if duration is not None:
-        return to_si(duration, TIME, owner="simulate", name="duration", condition=POSITIVE)
-    if free_vibration is not None:
-        return length + to_si(
-            free_vibration, TIME, owner="simulate", name="free_vibration", condition=POSITIVE
-        )
+    if arguments.duration is not None:
+        return arguments.duration
+    if arguments.free_vibration is not None:
+        return length + arguments.free_vibration
     if motion is None:
         faults.append("nothing to simulate: give a motion, or a duration for a still ground")
     return length

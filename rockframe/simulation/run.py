@@ -4,12 +4,12 @@ import json
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Final, TypeAlias
 
 import numpy as np
 import xarray as xr
 
-from rockframe.dynamics.protocol import Ending
 from rockframe.errors import ModelWarning, RockframeWarning, SolverWarning, warn
 from rockframe.motion import GroundMotion
 from rockframe.results.dataset import build_dataset
@@ -34,7 +34,7 @@ from rockframe.simulation.certification import Certification
 from rockframe.simulation.plan import Plan
 from rockframe.simulation.provenance import motion_attributes
 from rockframe.solve.integrate import STILL_INTERVAL, integrate
-from rockframe.solve.trajectory import Summary
+from rockframe.solve.trajectory import Summary, Trajectory
 from rockframe.system.assembly import Assembly
 
 ADAPTIVE = "Dormand-Prince 5(4) from sample to sample, with event location"
@@ -43,6 +43,8 @@ _LEAVES: Final = (
     "the block would leave the rigid ground, which this model cannot show; put it on a "
     "TwoSpringSupport to follow its flight"
 )
+NONE: Final = "none"
+"""What is said where there is nothing to be cautious of."""
 TENSION: Final = 1e-9
 """Share of the largest reaction below which a pull is rounding."""
 
@@ -60,13 +62,42 @@ def felt_motion(system: Assembly, plan: Plan) -> Motion | None:
 
 @dataclass(frozen=True)
 class Response:
-    """A run before it is labelled: histories and events, what became of it, where it ended."""
+    """A run before it is labelled: what became of it, and its histories, if it keeps any."""
 
-    values: dict[str, Generic]
+    system: Assembly
+    plan: Plan
+    scales: Scales
+    trajectory: Trajectory
+    histories: dict[str, Generic]
     forces: dict[str, float]  # scalars, of runs with histories
     slips: list[str]
-    summary: Summary
-    ending: Ending
+
+    @cached_property
+    def events(self) -> dict[str, Generic]:
+        """The table of events, by its names in the schema."""
+        return event_columns(self.system.model, self.trajectory)
+
+    @cached_property
+    def scalars(self) -> dict[str, float | int | bool]:
+        """All scalars, by their names in the schema."""
+        return scalars(self.trajectory, self.scales) | self.forces
+
+    def beside(self) -> Beside:
+        """Tell what a certificate asks of the run."""
+        share = self.scales.peak(self.trajectory).share
+        return what_showed(self.trajectory, self.events, share, self.plan.duration)
+
+    def cautions(self) -> list[Caution]:
+        """Give what is to be warned of."""
+        summary, plan = self.trajectory, self.plan
+        audit = unbalanced(plan, summary, self.beside, lambda other: beside(self.system, other))
+        return [
+            *_unfinished(summary, self.scales),
+            *([] if audit is None else [(SolverWarning, audit)]),
+            *_lost_weight(self.system, plan.motion),
+            *_pulling(self.system, self.histories, summary.overturning_time),
+            *((ModelWarning, text) for text in self.slips),
+        ]
 
 
 def run(system: Assembly, plan: Plan, certification: Certification | None = None) -> xr.Dataset:
@@ -85,32 +116,24 @@ def run(system: Assembly, plan: Plan, certification: Certification | None = None
     -------
     xarray.Dataset
     """
-    scales = _scales(system)
-    response = _respond(system, plan, scales)
-    summary = response.summary
-    attributes = _attributes(system, plan, summary, scales) | end_attributes(response.ending)
+    response = respond(system, plan)
+    summary = response.trajectory
+    attributes = _attributes(system, plan, summary, response.scales)
+    attributes |= end_attributes(summary.ending)
     if summary.status.finished:
         attributes["verdict"] = f"{attributes['verdict']}{friction_words(response.forces)}"
-    base = _showed(response, plan, scales)
-    audit = unbalanced(plan, summary, base, lambda other: beside(system, other))
-    cautions = [
-        *_unfinished(summary, scales),
-        *([] if audit is None else [(SolverWarning, audit)]),
-        *_lost_weight(system, plan.motion),
-        *_pulling(system, response.values, summary.overturning_time),
-        *((ModelWarning, text) for text in response.slips),
-    ]
+    cautions = response.cautions()
     for kind, text in cautions:
         warn(text, kind)
     # said of every run: what only some datasets say, xarray.concat would take for all
-    attributes["cautions"] = "; ".join(text for _, text in cautions) or "none"
+    attributes["cautions"] = "; ".join(text for _, text in cautions) or NONE
     certificate: dict[str, float | bool] = {}
     if certification is not None:
-        found = certify(system, plan, base, certification, beside)
+        found = certify(system, plan, response.beside(), certification, beside)
         certificate = found.values()
         attributes |= found.attributes(certification)
-    told = scalars(summary, scales) | response.forces
-    return build_dataset({**response.values, **told, **certificate}, attributes)
+    values = {**response.events, **response.histories, **response.scalars, **certificate}
+    return build_dataset(values, attributes)
 
 
 def outcome(system: Assembly, plan: Plan) -> Summary:
@@ -127,7 +150,7 @@ def outcome(system: Assembly, plan: Plan) -> Summary:
     -------
     Summary
     """
-    return _respond(system, plan, _scales(system)).summary
+    return respond(system, plan).trajectory
 
 
 def beside(system: Assembly, plan: Plan) -> Beside:
@@ -144,13 +167,7 @@ def beside(system: Assembly, plan: Plan) -> Beside:
     -------
     Beside
     """
-    scales = _scales(system)
-    return _showed(_respond(system, plan, scales), plan, scales)
-
-
-def _showed(response: Response, plan: Plan, scales: Scales) -> Beside:
-    share = scales.peak(response.summary).share
-    return what_showed(response.summary, response.values, share, plan.duration)
+    return respond(system, plan).beside()
 
 
 def _scales(system: Assembly) -> Scales:
@@ -167,27 +184,39 @@ def _scales(system: Assembly) -> Scales:
     )
 
 
-def _respond(system: Assembly, plan: Plan, scales: Scales) -> Response:
-    """Integrate; give histories and events by their names in the schema."""
-    equations = system.setting.compile()
+def respond(system: Assembly, plan: Plan) -> Response:
+    """Integrate as planned.
+
+    Parameters
+    ----------
+    system : Assembly
+        The checked scene.
+    plan : Plan
+        The checked arguments.
+
+    Returns
+    -------
+    Response
+    """
+    model, scales = system.model, _scales(system)
     trajectory = integrate(
-        equations, start_of(plan.initial), felt_motion(system, plan), plan.accuracy,
+        model, start_of(plan.initial), felt_motion(system, plan), plan.accuracy,
         duration=plan.duration, output_step=plan.output_step,
         stop_at_overturning=plan.stop_at_overturning, with_work=bool(plan.energies),
     )  # fmt: skip
-    energies = energy_histories(equations, trajectory) if plan.energies else {}
-    values = event_columns(equations, trajectory)
+    histories: dict[str, Generic] = {}
     told: dict[str, float] = {}
     slips: list[str] = []
     if plan.output_step is not None:
-        answers = answers_of(system, plan, equations, trajectory, scales)
-        values |= answers.values
-        told, slips = answers.scalars, answers.slips
-    if energies and not scales.slope.level:
-        swayed = values["horizontal_displacement"]
-        energies = energies_on_slope(energies, equations, trajectory, swayed, scales.slope)
-    values |= {name: energies[name] for name in plan.energies}
-    return Response(values, told, slips, trajectory, trajectory.ending)
+        answers = answers_of(system, plan, model, trajectory, scales)
+        histories, told, slips = answers.values, answers.scalars, answers.slips
+    if plan.energies:
+        energies = energy_histories(model, trajectory)
+        if not scales.slope.level:
+            swayed = histories["horizontal_displacement"]
+            energies = energies_on_slope(energies, model, trajectory, swayed, scales.slope)
+        histories = histories | {name: energies[name] for name in plan.energies}
+    return Response(system, plan, scales, trajectory, histories, told, slips)
 
 
 def _attributes(

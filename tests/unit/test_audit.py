@@ -35,7 +35,7 @@ def said(accuracy, residual, other=STOOD, base=STOOD):
         tried.append(beside.accuracy)
         return other
 
-    return unbalanced(plan, summary, base, run), tried
+    return unbalanced(plan, summary, lambda: base, run), tried
 
 
 @pytest.mark.parametrize("accuracy", ["standard", "reference", 1e-6])
