@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from rockframe.errors import SchemaError as SchemaError
     from rockframe.errors import SolverError as SolverError
     from rockframe.errors import SolverWarning as SolverWarning
+    from rockframe.errors import StudyError as StudyError
     from rockframe.errors import UnitsError as UnitsError
     from rockframe.identification import fit_free_decay as fit_free_decay
     from rockframe.measures import fourier_spectrum as fourier_spectrum
@@ -48,7 +49,11 @@ if TYPE_CHECKING:
     from rockframe.simulation.registration import register as register
     from rockframe.simulation.system import System as System
     from rockframe.solve.accuracy import Accuracy as Accuracy
+    from rockframe.studies import Case as Case
+    from rockframe.studies import case as case
     from rockframe.studies import critical_scale as critical_scale
+    from rockframe.studies import open_study as open_study
+    from rockframe.studies import sweep as sweep
     from rockframe.version import __version__ as __version__
 
 # Every scene needs these two. They are most of what has to be loaded: here, so that the
@@ -79,6 +84,7 @@ _HOMES = {
         "SchemaError",
         "SolverError",
         "SolverWarning",
+        "StudyError",
         "UnitsError",
     ),
     "rockframe.comparison": ("Recommendation", "model_ladder", "recommend", "tradeoff"),
@@ -96,7 +102,7 @@ _HOMES = {
     "rockframe.simulation.registration": ("register",),
     "rockframe.simulation.system": ("System",),
     "rockframe.solve.accuracy": ("Accuracy",),
-    "rockframe.studies": ("critical_scale",),
+    "rockframe.studies": ("Case", "case", "critical_scale", "open_study", "sweep"),
     "rockframe.version": ("__version__",),
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
@@ -105,6 +111,7 @@ __all__ = [
     "Accuracy",
     "AssemblyError",
     "Block",
+    "Case",
     "Certification",
     "ComponentError",
     "CushionCap",
@@ -123,11 +130,13 @@ __all__ = [
     "SchemaError",
     "SolverError",
     "SolverWarning",
+    "StudyError",
     "System",
     "TwoSpringSupport",
     "UnitsError",
     "WinklerSoil",
     "__version__",
+    "case",
     "concat",
     "critical_scale",
     "errors",
@@ -136,10 +145,12 @@ __all__ = [
     "fourier_spectrum",
     "intensity_measures",
     "model_ladder",
+    "open_study",
     "plot",
     "recommend",
     "register",
     "response_spectrum",
+    "sweep",
     "table",
     "tradeoff",
     "velocity_and_displacement",

@@ -27,7 +27,8 @@ def build_dataset(
     Parameters
     ----------
     values : mapping
-        Arrays and scalars by their names in the schema.
+        Arrays and scalars by their names in the schema. Floats with gaps, as NaN, stay floats
+        whatever the type in the schema.
     attributes : mapping
         Strings and numbers that describe the run.
     over : tuple of str, optional
@@ -50,12 +51,15 @@ def build_dataset(
         if row is None:
             msg = f"{name!r} is not in the schema of results"
             raise SchemaError(msg)
-        data = np.asarray(value, dtype=row.dtype)
+        data = np.asarray(value)
+        gaps = data.dtype.kind == "f" and row.dtype != "float64" and bool(np.isnan(data).any())
+        data = data if gaps else np.asarray(data, dtype=row.dtype)
         dims = (*over, *row.dims)
         if data.ndim != len(dims):
             msg = f"{name!r} needs the dimensions {dims}, got an array of shape {data.shape}"
             raise SchemaError(msg)
-        variables[name] = xr.Variable(dims, data, row.attributes())
+        attributes_of = row.attributes("float64" if gaps else None)
+        variables[name] = xr.Variable(dims, data, attributes_of)
     coordinates = {name: variables.pop(name) for name in COORDINATES if name in variables}
     dataset = xr.Dataset(
         variables, coords=coordinates, attrs=_attributes(attributes, title, source)

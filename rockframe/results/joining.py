@@ -9,6 +9,8 @@ import xarray as xr
 from rockframe.arguments import checked_dataset
 from rockframe.errors import SchemaError, shown
 from rockframe.results.dataset import dated
+from rockframe.results.schema import SCHEMA
+from rockframe.results.variables.studies import MOTION
 from rockframe.results.variables.variable import EVENT, TIME
 
 OF_ONE_RUN: Final = frozenset(
@@ -28,9 +30,6 @@ OF_ONE_RUN: Final = frozenset(
     }
 )
 """Attributes that tell what became of one run; of several none of them is said."""
-
-MOTION: Final = "motion"
-"""The attribute, and the coordinate, that names the ground motion."""
 
 _OWNER: Final = "concat"
 
@@ -168,7 +167,7 @@ def _with_motions(rows: Sequence[xr.Dataset], dim: str) -> list[xr.Dataset]:
         return list(rows)
     return [
         row.assign_coords(
-            {MOTION: (dim, [row.attrs[MOTION]] * row.sizes[dim], {"long_name": "ground motion"})}
+            {MOTION: (dim, [row.attrs[MOTION]] * row.sizes[dim], SCHEMA[MOTION].attributes())}
         )
         if MOTION not in row.variables
         else row

@@ -20,7 +20,7 @@ from rockframe.results.variables.runs import (
     HISTORIES,
 )
 from rockframe.results.variables.statics import HELD, MODES, REST
-from rockframe.results.variables.studies import CRITICAL_SCALE
+from rockframe.results.variables.studies import CASE, CRITICAL_SCALE, MESSAGE, MOTION, SWEEP
 
 _TABLES: Final = (
     HISTORIES,
@@ -39,13 +39,25 @@ _TABLES: Final = (
     MEASURES,
     COMPARISON,
     CRITICAL_SCALE,
+    SWEEP,
     FREE_DECAY,
 )
 
 SCHEMA: Final = {row.name: row for table in _TABLES for row in table}
 """All variables by name, with those that users have registered."""
 
-COORDINATES: Final = ("time", "angle", "mode", "point", "point_x", "point_y", "scale")
+COORDINATES: Final = (
+    "time",
+    "angle",
+    "mode",
+    "point",
+    "point_x",
+    "point_y",
+    "scale",
+    CASE,
+    MOTION,
+    MESSAGE,
+)
 """Variables that label a dimension."""
 
 ENERGIES: Final = tuple(row.name for row in ENERGY_HISTORIES)

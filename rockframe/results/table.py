@@ -8,8 +8,8 @@ import xarray as xr
 
 from rockframe.arguments import checked_dataset, one_of_words
 from rockframe.errors import SchemaError
-from rockframe.results.joining import MOTION
 from rockframe.results.schema import SCHEMA
+from rockframe.results.variables.studies import MOTION
 from rockframe.results.variables.variable import EVENT, TIME, TRUTH
 from rockframe.units import Unit
 

@@ -174,6 +174,8 @@ DIMENSIONS = {
     "time_rms_residual": (0, 0, 1, 0),
     "residual_autocorrelation": (0, 0, 0, 0),
     "trial_count": (0, 0, 0, 0),
+    "case": (0, 0, 0, 0),
+    "message_number": (0, 0, 0, 0),
 }
 DIMENSION_NAMES = {
     "time",
@@ -190,6 +192,9 @@ DIMENSION_NAMES = {
     "unknown",
     "other_unknown",
     "peak",
+    "case",
+    "motion",
+    "message",
 }
 PLAIN = pint.UnitRegistry(cache_folder=None)
 FLAGS = {

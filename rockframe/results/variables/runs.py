@@ -17,6 +17,19 @@ class Direction(IntEnum):
     RIGHT = 1
 
 
+class RunStatus(IntEnum):
+    """How a run ended, :class:`rockframe.solve.layout.Status`; or why a case has none."""
+
+    COMPLETED = Status.COMPLETED
+    OVERTURNED = Status.OVERTURNED
+    TOPPLED = Status.TOPPLED
+    STEP_LIMIT = Status.STEP_LIMIT
+    STEP_TOO_SMALL = Status.STEP_TOO_SMALL
+    CHATTER = Status.CHATTER
+    REFUSED = 6
+    NOT_RUN = 7
+
+
 HISTORIES: Final = (
     Variable("time", TIME, Unit.SECOND, "time from the start of the run"),
     # response
@@ -157,7 +170,7 @@ EVENTS_AND_SCALARS: Final = (
     Variable(
         "energy_residual", (), Unit.ONE, "largest energy imbalance over the largest energy term"
     ),
-    flag("status", (), "how the run ended", Status),
+    flag("status", (), "how the run ended", RunStatus),
     Variable(
         "overturning_angle",
         (),

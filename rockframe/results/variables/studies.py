@@ -3,8 +3,13 @@
 from enum import IntEnum
 from typing import Final
 
-from rockframe.results.variables.variable import FLIP, SCALE, Variable, flag
+from rockframe.results.variables.variable import FLIP, SCALE, Variable, count, flag, number
 from rockframe.units import Unit
+
+CASE: Final = "case"
+MOTION: Final = "motion"
+MESSAGE: Final = "message"
+"""Dimensions of sweeps, beside their axes."""
 
 
 class Outcome(IntEnum):
@@ -47,3 +52,11 @@ CRITICAL_SCALE: Final = (
     flag("outcome", SCALE, "verdict of the run", Outcome),
 )
 """Of a motion that is scaled until a block overturns."""
+
+SWEEP: Final = (
+    number(CASE, "number of the row in the table of cases"),
+    Variable(MOTION, (MOTION,), None, "ground motion", dtype="str"),
+    Variable(MESSAGE, (MESSAGE,), None, "what is said of cases, each text once", dtype="str"),
+    count("message_number", "place along message of what is said of the case"),
+)
+"""Of a sweep, beside the scalars of its runs."""

@@ -48,18 +48,30 @@ class Variable:
     flags: type[IntEnum] | None = None
     dtype: str = "float64"
 
-    def attributes(self) -> dict[str, Any]:
-        """Give the CF attributes."""
+    def attributes(self, dtype: str | None = None) -> dict[str, Any]:
+        """Give the CF attributes.
+
+        Parameters
+        ----------
+        dtype : str, optional
+            Of the values, where gaps among them leave no other than floats.
+
+        Returns
+        -------
+        dict
+        """
         attributes: dict[str, Any] = {"long_name": self.long_name}
         if self.unit is not None:
             attributes["units"] = str(self.unit)
         if self.flags is not None:
             members = sorted(self.flags, key=int)
-            attributes["flag_values"] = np.array([int(m) for m in members], dtype=self.dtype)
+            attributes["flag_values"] = np.array(
+                [int(m) for m in members], dtype=dtype or self.dtype
+            )
             attributes["flag_meanings"] = " ".join(m.name.lower() for m in members)
         if self.dtype == "bool":
             # in a file they are bytes (CF 3.5)
-            attributes["flag_values"] = np.array([0, 1], dtype="int8")
+            attributes["flag_values"] = np.array([0, 1], dtype=dtype or "int8")
             attributes["flag_meanings"] = " ".join(TRUTH)
         return attributes
 

@@ -1,0 +1,240 @@
+"""Axes of a sweep: what varies, and through which values."""
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from numbers import Real
+from typing import Any, Final, cast
+
+import numpy as np
+import pint
+
+from rockframe.errors import ComponentError, UnitsError, shown
+from rockframe.results.outcome import Generic
+from rockframe.units import Measure, Unit, to_ratio, to_si, to_si_values
+
+OWNER: Final = "sweep"
+
+
+class Changes(StrEnum):
+    """What the values of an axis change."""
+
+    PART = "part"
+    OPTION = "option"
+    MOTION = "motion"
+    ARGUMENT = "argument"
+
+
+@dataclass(frozen=True, eq=False)
+class Axis:
+    """Something that varies from case to case.
+
+    Parameters
+    ----------
+    name : str
+        As the user wrote it; the dimension, or the column, of the result.
+    values : ndarray, shape (values,)
+        Numbers in SI units, or words.
+    unit : str or None
+        Of the numbers; None for words and truth values.
+    long_name : str
+        What it is.
+    changes : Changes
+        What the values change.
+    parameter : str
+        Which parameter, option or argument.
+    slot : str
+        Of the part whose parameter it is; empty otherwise.
+    """
+
+    name: str
+    values: Generic
+    unit: str | None
+    long_name: str
+    changes: Changes
+    parameter: str
+    slot: str = ""
+
+    def attributes(self) -> dict[str, str]:
+        """Give the CF attributes of the coordinate."""
+        unit = {} if self.unit is None else {"units": self.unit}
+        return {"long_name": self.long_name, **unit}
+
+    def to_dict(self) -> dict[str, str | None]:
+        """Give all but the values, fit for JSON."""
+        described = vars(self) | {"changes": str(self.changes)}
+        return {name: value for name, value in described.items() if name != "values"}
+
+    @classmethod
+    def from_dict(cls, described: Mapping[str, Any], values: Generic) -> "Axis":
+        """Give the axis that :meth:`to_dict` described."""
+        return cls(values=values, **{**described, "changes": Changes(described["changes"])})
+
+
+def numbers_of(given: object, measure: Measure, name: str) -> Generic:
+    """Read the values of an axis that has a unit, or is a pure number.
+
+    Parameters
+    ----------
+    given : object
+        What the user gave: one value or several.
+    measure : Measure
+        Kind of quantity.
+    name : str
+        Of the axis, for messages.
+
+    Returns
+    -------
+    ndarray of float64
+
+    Raises
+    ------
+    UnitsError, ComponentError
+        A value has the wrong unit, or none, or is not finite.
+    """
+    if measure.unit == Unit.ONE:
+        example = measure.example
+        found = [
+            to_ratio(one, owner=OWNER, name=name, example=example)
+            for one in _plain(_items(_ratios(given)))
+        ]
+    else:
+        _refuse_bare(given, measure, name)
+        found = to_si_values(_plain(given), measure, owner=OWNER, name=name)
+    return np.array(found, dtype=np.float64)
+
+
+def _refuse_bare(given: object, measure: Measure, name: str) -> None:
+    """Refuse numbers without a unit, and say how several are given one."""
+    first = next(iter(_items(given)), None)
+    if isinstance(given, tuple) or not isinstance(first, Real | np.number):
+        return
+    msg = (
+        f"{OWNER}: {name} needs {measure.needed}, got bare numbers; write for example "
+        f"{name}=(values, {str(measure.unit)!r}) or {name}=[{measure.example!r}, ...]"
+    )
+    raise UnitsError(msg)
+
+
+def words_of(given: object, read: Callable[[object], object]) -> Generic:
+    """Read the values of an axis that are words.
+
+    Parameters
+    ----------
+    given : object
+        What the user gave: one word or several.
+    read : callable
+        Reads a word, or refuses it.
+
+    Returns
+    -------
+    ndarray of str
+    """
+    return np.array([str(read(word)) for word in _items(given)])
+
+
+def free_values(given: object, name: str) -> tuple[Generic, str | None]:
+    """Read values for an argument of which only the user knows what it is.
+
+    Parameters
+    ----------
+    given : object
+        What the user gave: bare numbers, truth values, words, or quantities.
+    name : str
+        Of the axis, for messages.
+
+    Returns
+    -------
+    ndarray, str or None
+        Whole numbers, floats, truth values or words; the unit of numbers.
+
+    Raises
+    ------
+    UnitsError, ComponentError
+        A unit that rockframe has no quantity of, values that are not finite, or a mixture.
+    """
+    unit = _unit_in(given)
+    if unit is not None:
+        measure = _measure_of(unit, name)
+        return numbers_of(given, measure, name), str(measure.unit)
+    items = _plain(_items(given))
+    array = np.array(items)
+    if array.ndim != 1 or array.dtype.kind not in "iufbU":
+        msg = f"{OWNER}: {name} needs numbers, words or quantities in a row, got {shown(given)}"
+        raise ComponentError(msg)
+    if array.dtype.kind == "U" and not all(isinstance(item, str) for item in items):
+        msg = f"{OWNER}: {name} needs values of one sort, got {shown(given)}"
+        raise ComponentError(msg)
+    if array.dtype.kind in "iu":
+        return array.astype(np.int64), str(Unit.ONE)
+    if array.dtype.kind == "f":
+        return numbers_of(items, Measure("a number", Unit.ONE, "2"), name), str(Unit.ONE)
+    return array, None
+
+
+def _unit_in(given: object) -> str | None:
+    """Give the unit that values were given with; None of bare numbers and of words."""
+    if isinstance(given, tuple):
+        pair = cast("tuple[Any, ...]", given)
+        if len(pair) == 2 and isinstance(pair[1], str) and not isinstance(pair[0], str):
+            return pair[1]
+    first = next(iter(_items(given)), None)
+    if isinstance(given, pint.Quantity):
+        first = given
+    if isinstance(first, pint.Quantity):
+        return f"{first.units:~}" or None
+    if isinstance(first, str):
+        number, _, unit = first.strip().partition(" ")
+        try:
+            float(number)
+        except ValueError:
+            return None
+        return unit or None
+    return None
+
+
+def _measure_of(unit: str, name: str) -> Measure:
+    """Find the kind of quantity that has a unit."""
+    for known in Unit:
+        measure = Measure("a quantity", known, f"1 {known}")
+        try:
+            if known != Unit.ONE:
+                to_si(f"1 {unit}", measure, owner=OWNER, name=name)
+                return measure
+            to_ratio(f"1 {unit}", owner=OWNER, name=name)
+        except (UnitsError, ComponentError):
+            continue
+        return measure
+    known = ", ".join(str(one) for one in Unit)
+    msg = f"{OWNER}: {name} has the unit {shown(unit)}; expected that of a quantity in {known}"
+    raise UnitsError(msg)
+
+
+def _ratios(given: object) -> object:
+    """Give pure numbers that came with the unit 1, or per cent, one by one."""
+    if isinstance(given, tuple):
+        pair = cast("tuple[Any, ...]", given)
+        if len(pair) == 2 and isinstance(pair[1], str) and not isinstance(pair[0], str):
+            factor = to_ratio(f"1 {pair[1]}", owner=OWNER, name="unit")
+            return [factor * float(one) for one in _items(pair[0])]
+    return given
+
+
+def _items(given: object) -> list[Any]:
+    if isinstance(given, str) or not isinstance(given, Iterable):
+        return [given]
+    if isinstance(given, pint.Quantity) and getattr(cast("Any", given).magnitude, "ndim", 0) == 0:
+        return [given]
+    return list(cast("Iterable[Any]", given))
+
+
+def _plain(given: Any) -> Any:
+    """Give numbers of numpy and pandas as Python's."""
+    if hasattr(given, "to_numpy"):
+        given = given.to_numpy()
+    if isinstance(given, np.ndarray):
+        return given.tolist()
+    if isinstance(given, list):
+        items = cast("list[Any]", given)
+        return [one.item() if isinstance(one, np.generic) else one for one in items]
+    return given

@@ -1,0 +1,266 @@
+"""A case of a sweep, to be looked at alone."""
+
+import json
+from collections import OrderedDict
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from os import PathLike
+from pathlib import Path
+from typing import Any, Final, cast
+
+import numpy as np
+import xarray as xr
+
+from rockframe.arguments import checked_dataset
+from rockframe.components import InitialState
+from rockframe.errors import SchemaError, StudyError, shown
+from rockframe.motion import GroundMotion
+from rockframe.results.variables.studies import MOTION
+from rockframe.simulation.system import System
+from rockframe.solve.accuracy import Accuracy
+from rockframe.studies.sweeps.axes import Axis, Changes
+from rockframe.studies.sweeps.motions import motions_of, scaled
+from rockframe.studies.sweeps.scenes import FunctionScene, Scene, SystemScene, scene_of
+from rockframe.studies.sweeps.store import Store
+from rockframe.studies.sweeps.study import Study
+from rockframe.system.assembly import Assembly
+from rockframe.units import Measure, Unit, to_ratio, to_si
+
+_OWNER: Final = "case"
+_REMEMBERED: Final = 16
+"""Sweeps of this process whose functions and motions are kept at hand."""
+_studies: Final[OrderedDict[str, Study]] = OrderedDict()
+
+
+@dataclass(frozen=True)
+class Case:
+    """A case: its system, its motion, and what its run was asked for.
+
+    Parameters
+    ----------
+    system : System
+        The scene with the values of the case.
+    motion : GroundMotion or None
+        Scaled as in the case; None where the ground stands still.
+    options : dict
+        Further arguments of :meth:`rockframe.System.simulate`.
+    """
+
+    system: System
+    motion: GroundMotion | None
+    options: dict[str, Any] = field(default_factory=dict[str, Any])
+
+    def simulate(self, **changes: Any) -> xr.Dataset:
+        """Run the case alone, with its histories.
+
+        Parameters
+        ----------
+        **changes
+            Arguments of :meth:`rockframe.System.simulate`, instead of those of the sweep;
+            without them the scalars are those of the sweep, to the last bit.
+
+        Returns
+        -------
+        xarray.Dataset
+        """
+        return self.system.simulate(self.motion, **{**self.options, **changes})
+
+
+def case(
+    runs: "xr.Dataset | str | PathLike[str]",
+    *,
+    scene: object = None,
+    motions: object = None,
+    **labels: Any,
+) -> Case:
+    """Give a case of a sweep back, to be run alone.
+
+    Parameters
+    ----------
+    runs : xarray.Dataset, or path
+        Result of :func:`rockframe.sweep`, also one read from a file, or the folder in which
+        a sweep is kept.
+    scene : callable, optional
+        The function of the sweep, where its scene was one and this process does not have it
+        from the sweep itself.
+    motions : GroundMotion, or iterable or mapping of them, optional
+        The records of the sweep, where neither the dataset nor this process has them.
+    **labels
+        A value along each axis, as in the result or with a unit; ``motion`` by its name or
+        its number. An axis of one value, or of which one was picked, needs none.
+
+    Returns
+    -------
+    Case
+
+    Raises
+    ------
+    SchemaError
+        Not the result of a sweep.
+    StudyError
+        No such case; or the function or the motion must be given.
+    AssemblyError
+        The case cannot be assembled, which is why it has no result.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
+    >>> pulse = rf.GroundMotion.sine_pulse("2 m/s^2", "1 Hz")
+    >>> runs = rf.sweep(system, pulse, scale=[1.0, 1.4])
+    >>> alone = rf.case(runs, scale=1.4).simulate()
+    >>> float(alone.peak_rotation) == float(runs.peak_rotation.sel(scale=1.4).squeeze())
+    True
+    """
+    if isinstance(runs, xr.Dataset):
+        dataset, kept = checked_dataset(runs, owner=_OWNER), None
+    else:
+        from rockframe.studies.sweeps.sweep import open_study
+
+        dataset, kept = open_study(runs), Store.at(Path(runs))
+    attributes: Mapping[str, Any] = cast("Mapping[str, Any]", dataset.attrs)
+    if not {"axes_json", "motions_json", "run_json", "study_sha256"} <= set(attributes):
+        msg = f"{_OWNER}: found a dataset that is no sweep; expected the result of rf.sweep"
+        raise SchemaError(msg)
+    known = _studies.get(str(attributes["study_sha256"]))
+    place = _place(dataset, labels)
+    values = _values(dataset, attributes, place)
+    made = _scene(scene, attributes, known)
+    names: list[str] = json.loads(attributes["motion_names"])
+    number = names.index(_value(dataset, MOTION, place))
+    motion = _motion(motions, number, attributes, known, kept)
+    of_scene = {axis: one for axis, one in values.items() if axis.changes is not Changes.MOTION}
+    system = _system(made, of_scene)
+    if motion is None:
+        motion = system.motion
+    for axis, value in values.items():
+        if axis.changes is Changes.MOTION and motion is not None:
+            motion = scaled(motion, axis.name, value, attributes.get("spectral_period"))
+    return Case(system, motion, _options(json.loads(attributes["run_json"])))
+
+
+def remember(study: Study) -> None:
+    """Keep the function and the motions of a sweep at hand."""
+    _studies[study.digest] = study
+    _studies.move_to_end(study.digest)
+    while len(_studies) > _REMEMBERED:
+        _studies.popitem(last=False)
+
+
+def _place(dataset: xr.Dataset, labels: dict[str, Any]) -> dict[str, int]:
+    """Find where the case stands along each dimension."""
+    dims = [str(dim) for dim in dataset["status"].dims]
+    fixed = [str(name) for name in dataset.coords if not dataset[name].dims]
+    unknown = [name for name in labels if name not in (*dims, *fixed)]
+    lacking = [name for name in dims if name not in labels and dataset.sizes[name] > 1]
+    faults = [f"there is no axis {name!r}; there are {', '.join(dims)}" for name in unknown]
+    faults += [f"give a value of {name!r}" for name in lacking]
+    if faults:
+        msg = f"{_OWNER}: {'; '.join(faults)}"
+        raise StudyError(msg)
+    found = {name: _found(dataset[name], name, value) for name, value in labels.items()}
+    return {name: found.get(name, 0) for name in dims}
+
+
+def _found(labels: xr.DataArray, name: str, wanted: Any) -> int:
+    values = np.atleast_1d(labels.to_numpy())
+    if name == MOTION and isinstance(wanted, int | np.integer):
+        if 0 <= wanted < len(values):
+            return int(wanted)
+    elif values.dtype.kind == "f":
+        measure = Measure("a value", Unit(labels.attrs["units"]), f"{values[0]:g}")
+        number = (
+            float(wanted)
+            if isinstance(wanted, int | float | np.number)
+            else (
+                to_ratio(wanted, owner=_OWNER, name=name)
+                if measure.unit == Unit.ONE
+                else to_si(wanted, measure, owner=_OWNER, name=name)
+            )
+        )
+        nearest = int(np.argmin(np.abs(values - number)))
+        if np.isclose(values[nearest], number, rtol=1e-9, atol=0.0):
+            return nearest
+    else:
+        places = np.flatnonzero(values == wanted)
+        if len(places):
+            return int(places[0])
+    few = ", ".join(str(one) for one in values[:6].tolist())
+    msg = f"{_OWNER}: {name} has no {shown(wanted)}; it has {few}{', ...' * (len(values) > 6)}"
+    raise StudyError(msg)
+
+
+def _value(dataset: xr.Dataset, name: str, place: Mapping[str, int]) -> Any:
+    """Give the value of a coordinate in the case, also of one that has been picked out."""
+    if name not in dataset.coords:
+        msg = f"{_OWNER}: found a sweep without its coordinate {name!r}; expected it, or its case"
+        raise SchemaError(msg)
+    along = dataset[name]
+    return along.isel({dim: place[str(dim)] for dim in along.dims}).item()
+
+
+def _values(
+    dataset: xr.Dataset, attributes: Mapping[str, Any], place: Mapping[str, int]
+) -> dict[Axis, Any]:
+    found: dict[Axis, Any] = {}
+    for described in json.loads(attributes["axes_json"]):
+        value = _value(dataset, described["name"], place)
+        found[Axis.from_dict(described, np.array([value]))] = value
+    return found
+
+
+def _scene(given: object, attributes: Mapping[str, Any], known: Study | None) -> Scene:
+    if "system_json" in attributes:
+        system = System.from_dict(json.loads(attributes["system_json"]))
+        return SystemScene(system.assembly)
+    if given is not None:
+        return scene_of(given)
+    if known is not None:
+        return known.scene
+    msg = f"{_OWNER}: the scene was the function {attributes['function']}; give it as scene="
+    raise StudyError(msg)
+
+
+def _system(scene: Scene, values: dict[Axis, Any]) -> System:
+    if isinstance(scene, FunctionScene):
+        return scene.system(values)
+    return _of_assembly(scene.assembled(values))
+
+
+def _of_assembly(assembly: Assembly) -> System:
+    options: dict[str, Any] = assembly.options.to_dict()
+    return System(*assembly.parts.structural(), **options)
+
+
+def _motion(
+    given: object,
+    number: int,
+    attributes: Mapping[str, Any],
+    known: Study | None,
+    kept: Store | None,
+) -> GroundMotion | None:
+    described = json.loads(attributes["motions_json"])[number]
+    if described is None:
+        return None
+    if kept is not None:
+        return list(kept.motions().values())[number]
+    if known is not None:
+        return list(known.motions.values())[number]
+    if described.get("constructor"):
+        return GroundMotion.from_dict(described)
+    found = () if given is None else motions_of(given).values()
+    for motion in found:
+        if motion.sha256 == described["sha256"]:
+            return motion
+    has = "is not among those given" if given is not None else "must be given, as motions="
+    msg = f"{_OWNER}: the record {described['name']!r} (sha256 {described['sha256'][:12]}...) {has}"
+    raise StudyError(msg)
+
+
+def _options(described: dict[str, Any]) -> dict[str, Any]:
+    """Give the arguments of a run as simulate takes them."""
+    options = {name: value for name, value in described.items() if value is not None}
+    options["initial"] = InitialState.from_dict(options["initial"])
+    options["accuracy"] = Accuracy(**options["accuracy"])
+    options.pop("points", None)
+    return options

@@ -1,0 +1,139 @@
+"""Running the chunks of a sweep, several at a time."""
+
+import os
+from collections.abc import Callable, Generator, Iterable
+from concurrent.futures import (
+    FIRST_COMPLETED,
+    CancelledError,
+    Executor,
+    Future,
+    ThreadPoolExecutor,
+    wait,
+)
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import partial
+from itertools import islice
+from threading import Event
+from typing import Final
+
+from rockframe.errors import ComponentError, RockframeError, StudyError, shown
+from rockframe.studies.sweeps.axes import OWNER
+from rockframe.studies.sweeps.chunk import Rows, run_chunk
+from rockframe.studies.sweeps.study import Job
+
+IN_FLIGHT: Final = 256
+"""Most chunks that are handed out at once; their jobs have to be held meanwhile."""
+_GLANCE: Final = 0.2
+"""Longest wait in which an interrupt might go unheard [s]."""
+
+
+@dataclass(frozen=True)
+class Chunk:
+    """Some cases, by their numbers in the order of running."""
+
+    number: int
+    cases: range
+
+
+def worker_count() -> int:
+    """Give the number of processors that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+def carry_out(
+    chunks: Iterable[Chunk],
+    job_of: Callable[[Chunk], Job],
+    take: Callable[[Chunk, Rows], None],
+    executor: Executor | None,
+) -> bool:
+    """Run chunks, and hand on what they showed as they are done.
+
+    Parameters
+    ----------
+    chunks : iterable of Chunk
+        In the order in which they are begun.
+    job_of : callable
+        Gives the job of a chunk.
+    take : callable
+        Is given each chunk with its rows, one at a time, in this thread.
+    executor : Executor or None
+        Runs them; threads of its own if None.
+
+    Returns
+    -------
+    bool
+        False where an interrupt (Ctrl-C) came in between. What was done by then has been
+        handed on.
+
+    Raises
+    ------
+    ComponentError
+        `executor` is none.
+    StudyError
+        The executor cannot run a chunk.
+    """
+    if executor is not None and not hasattr(executor, "submit"):
+        msg = f"{OWNER}: executor must be a concurrent.futures.Executor, got {shown(executor)}"
+        raise ComponentError(msg)
+    stop = Event()
+    waiting = iter(chunks)
+    going: dict[Future[Rows | None], Chunk] = {}
+    with _own_threads() if executor is None else _of_the_user(executor) as pool:
+        run = partial(run_chunk, stopped=stop.is_set) if executor is None else run_chunk
+        try:
+            while True:
+                for chunk in islice(waiting, IN_FLIGHT - len(going)):
+                    going[pool.submit(run, job_of(chunk))] = chunk
+                if not going:
+                    return True
+                done, _ = wait(going, timeout=_GLANCE, return_when=FIRST_COMPLETED)
+                _take_all(done, going, take)
+        except KeyboardInterrupt:
+            stop.set()
+            for one in going:
+                one.cancel()
+            done = {one for one in going if one.done() and not one.cancelled()}
+            _take_all({one for one in done if one.exception() is None}, going, take)
+            return False
+        finally:
+            stop.set()
+            for one in going:
+                one.cancel()
+
+
+def _take_all(
+    done: Iterable[Future[Rows | None]],
+    going: dict[Future[Rows | None], Chunk],
+    take: Callable[[Chunk, Rows], None],
+) -> None:
+    for one in done:
+        try:
+            rows = one.result()
+        except (KeyboardInterrupt, CancelledError):
+            raise KeyboardInterrupt from None
+        except RockframeError:
+            raise
+        except Exception as problem:
+            msg = (
+                f"the executor could not run a chunk: {type(problem).__name__}: {problem}; with a "
+                "process pool everything in the scene must be importable, and a worker must not "
+                "have died"
+            )
+            raise StudyError(msg) from problem
+        chunk = going.pop(one)
+        if rows is not None:
+            take(chunk, rows)
+
+
+@contextmanager
+def _own_threads() -> Generator[Executor]:
+    with ThreadPoolExecutor(worker_count(), thread_name_prefix="rockframe") as pool:
+        yield pool
+
+
+@contextmanager
+def _of_the_user(executor: Executor) -> Generator[Executor]:
+    yield executor

@@ -1,0 +1,209 @@
+"""The dataset of a sweep: its cases, as far as they have been run, with labels."""
+
+import json
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+import xarray as xr
+
+from rockframe.errors import ModelWarning, SolverWarning, warn
+from rockframe.results.dataset import build_dataset
+from rockframe.results.outcome import Generic
+from rockframe.results.schema import SCHEMA
+from rockframe.results.variables.runs import EVENTS_AND_SCALARS, RunStatus
+from rockframe.results.variables.studies import CASE, MESSAGE, MOTION
+from rockframe.results.variables.variable import TIME
+from rockframe.simulation.run import NONE
+from rockframe.studies.sweeps.axes import OWNER, Axis
+from rockframe.studies.sweeps.chunk import Rows
+from rockframe.studies.sweeps.grid import Grid
+from rockframe.studies.sweeps.scenes import SystemScene
+from rockframe.studies.sweeps.study import Histories, Study
+
+ALWAYS: Final = tuple(
+    row.name for row in EVENTS_AND_SCALARS if not row.dims and row.name != "status"
+)
+"""Scalars that every run has."""
+_TITLE: Final = "Sweep of a rocking system"
+
+
+@dataclass(frozen=True, eq=False)
+class Labels:
+    """All that is said of a sweep beside its results.
+
+    Parameters
+    ----------
+    grid : Grid
+        The cases.
+    motions : tuple of str
+        Names.
+    histories : Histories or None
+        What is kept beside scalars.
+    attributes : mapping
+        Of the dataset.
+    """
+
+    grid: Grid
+    motions: tuple[str, ...]
+    histories: Histories | None
+    attributes: Mapping[str, str | float | int]
+
+
+def labels_of(study: Study) -> Labels:
+    """Give the labels of a sweep."""
+    arguments = study.arguments
+    scene = study.scene
+    attributes: dict[str, str | float | int] = {
+        "accuracy": arguments.accuracy_name,
+        "run_json": json.dumps(arguments.to_dict()),
+        "axes_json": json.dumps([axis.to_dict() for axis in every_axis(study.grid)]),
+        "motions_json": json.dumps(
+            [None if motion is None else motion.to_dict() for motion in study.motions.values()]
+        ),
+        "motion_names": json.dumps(list(study.motions)),
+        "study_sha256": study.digest,
+    }
+    if study.period is not None:
+        attributes["spectral_period"] = study.period
+    if isinstance(scene, SystemScene):
+        attributes["model"] = scene.assembly.setting.model
+        attributes["system_json"] = json.dumps(scene.assembly.to_dict())
+    else:
+        attributes["function"] = str(scene.to_dict()["function"])
+    return Labels(study.grid, tuple(study.motions), study.histories, attributes)
+
+
+def every_axis(grid: Grid) -> tuple[Axis, ...]:
+    """Give all axes: those with a dimension, then the columns of the table."""
+    return (*grid.axes, *grid.columns)
+
+
+def labelled(labels: Labels, found: Iterable[tuple[range, Rows]]) -> xr.Dataset:
+    """Label what has been found.
+
+    Parameters
+    ----------
+    labels : Labels
+        Of the sweep.
+    found : iterable of (range, Rows)
+        Cases in the order of running, and what they showed; those that are not there have
+        not been run.
+
+    Returns
+    -------
+    xarray.Dataset
+    """
+    grid = labels.grid
+    rows = _joined(grid.count, found)
+    scalars = dict.fromkeys(ALWAYS, np.full(grid.count, np.nan)) | rows.scalars
+    # what cannot be counted before it has run stays a flag, also where nothing has
+    values = {name: grid.arranged(scalars[name]) for name in SCHEMA if name in scalars}
+    values |= {
+        "status": grid.arranged(rows.status),
+        "message_number": grid.arranged(rows.message),
+    }
+    runs = build_dataset(values, {}, over=tuple(grid.sizes))
+    around: dict[str, Any] = {MESSAGE: np.array(rows.texts, dtype=object)}
+    if MOTION in grid.sizes:
+        around[MOTION] = np.array(labels.motions, dtype=object)
+    if CASE in grid.sizes:
+        around[CASE] = np.arange(grid.sizes[CASE])
+    if labels.histories is not None:
+        around[TIME[0]] = labels.histories.times
+    attributes = {"verdict": _verdict(rows), **labels.attributes}
+    dataset = build_dataset(around, attributes, title=_TITLE).assign(runs.data_vars)
+    if rows.histories:
+        histories = {
+            name: grid.arranged(rows.histories[name]) for name in SCHEMA if name in rows.histories
+        }
+        dataset = dataset.assign(build_dataset(histories, {}, over=tuple(grid.sizes)).data_vars)
+    dataset = dataset.assign_coords(_coordinates(labels))
+    for name in dataset.coords:
+        # a coordinate has no missing values, so it needs no fill value (CF 2.5.1)
+        dataset[name].encoding["_FillValue"] = None
+    return dataset
+
+
+def say_what_is_missing(dataset: xr.Dataset) -> None:
+    """Warn of cases without a result, and of cautions.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        A sweep.
+    """
+    status = dataset["status"].to_numpy().ravel()
+    number = dataset["message_number"].to_numpy().ravel()
+    texts = dataset[MESSAGE].to_numpy()
+    lacking = np.isnan(dataset["peak_rotation"].to_numpy().ravel())
+    not_run = status == RunStatus.NOT_RUN
+    failed = lacking & ~not_run
+    for which, kind, words in (
+        (failed, SolverWarning, "have no result"),
+        (not_run, SolverWarning, "have not been run"),
+        (~lacking & (texts[number] != NONE), ModelWarning, "have a result to be careful with"),
+    ):
+        if which.any():
+            text = str(texts[number[which][0]])
+            first = "" if text == NONE else f"; of the first it is said: {text}"
+            count = f"{int(which.sum())} of {len(status)} cases"
+            warn(f"{OWNER}: {count} {words} (status, message){first}", kind)
+
+
+def _joined(count: int, found: Iterable[tuple[range, Rows]]) -> Rows:
+    """Put chunks together, in the order of running, with gaps where there are none."""
+    scalars: dict[str, Generic] = {}
+    histories: dict[str, Generic] = {}
+    status = np.full(count, RunStatus.NOT_RUN, dtype=np.int8)
+    message = np.zeros(count, dtype=np.int64)
+    texts: dict[str, int] = {NONE: 0}
+    for cases, rows in sorted(found, key=lambda one: one[0].start):
+        here = slice(cases.start, cases.stop)
+        status[here] = rows.status
+        # texts in the order of their cases, however these were cut into chunks
+        _, firsts = np.unique(rows.message, return_index=True)
+        for k in sorted(firsts):
+            texts.setdefault(rows.texts[rows.message[k]], len(texts))
+        message[here] = np.array([texts.get(text, 0) for text in rows.texts])[rows.message]
+        for kept, given in ((scalars, rows.scalars), (histories, rows.histories)):
+            for name, values in given.items():
+                if name not in kept:
+                    kept[name] = np.full((count, *values.shape[1:]), np.nan)
+                kept[name][here] = values
+    return Rows(status, scalars, histories, message, tuple(texts))
+
+
+def _coordinates(labels: Labels) -> dict[str, xr.Variable]:
+    grid = labels.grid
+    found = {
+        axis.name: xr.Variable(axis.name, _labels(axis.values), axis.attributes())
+        for axis in grid.axes
+    }
+    found |= {
+        axis.name: xr.Variable(CASE, _labels(axis.values), axis.attributes())
+        for axis in grid.columns
+    }
+    if grid.motion_column is not None:
+        names = np.array(labels.motions, dtype=object)[grid.motion_column]
+        found[MOTION] = xr.Variable(CASE, names, SCHEMA[MOTION].attributes())
+    return found
+
+
+def _labels(values: Generic) -> Generic:
+    return values.astype(object) if values.dtype.kind == "U" else values
+
+
+def _verdict(rows: Rows) -> str:
+    """Say in one sentence what became of the cases."""
+    count = len(rows.status)
+    overturned = rows.scalars.get("overturned", np.full(count, np.nan))
+    falls, stands = int((overturned == 1.0).sum()), int((overturned == 0.0).sum())
+    not_run = int((rows.status == RunStatus.NOT_RUN).sum())
+    text = f"Of {count} cases {falls} overturned and {stands} did not"
+    if count - not_run - falls - stands:
+        text += f"; {count - not_run - falls - stands} have no result"
+    if not_run:
+        text += f"; {not_run} have not been run"
+    return f"{text}."

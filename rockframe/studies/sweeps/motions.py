@@ -1,0 +1,122 @@
+"""The ground motions of a sweep: their names, and how axes change them."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any, Final, cast
+
+from rockframe.errors import ComponentError, shown
+from rockframe.motion import GroundMotion
+from rockframe.results.schema import SCHEMA
+from rockframe.studies.sweeps.axes import OWNER
+from rockframe.units import ACCELERATION, TIME, VELOCITY, Measure, Unit
+
+NO_MOTION: Final = "none"
+"""Name of a ground that stands still, as in the attributes of a run."""
+OF_THE_SCENE: Final = "of the scene"
+"""Name of motions that a function puts into its systems."""
+
+
+@dataclass(frozen=True)
+class Target:
+    """An axis that scales the motion.
+
+    Parameters
+    ----------
+    argument : str
+        Of :meth:`rockframe.GroundMotion.scaled`.
+    measure : Measure
+        Kind of quantity.
+    """
+
+    argument: str
+    measure: Measure
+
+
+SPECTRAL: Final = "pseudo_spectral_acceleration"
+TARGETS: Final = {
+    "scale": Target("factor", Measure("a pure ratio", Unit.ONE, "2")),
+    "peak_ground_acceleration": Target("peak", ACCELERATION),
+    "peak_ground_velocity": Target("peak_velocity", VELOCITY),
+    SPECTRAL: Target("spectral_acceleration", ACCELERATION),
+}
+"""Axes that change the motion, by their names."""
+
+
+def target_words(name: str) -> str:
+    """Tell what an axis that scales the motion is."""
+    return SCHEMA[name].long_name
+
+
+def scaled(motion: GroundMotion, name: str, value: float, period: float | None) -> GroundMotion:
+    """Give the motion of a case.
+
+    Parameters
+    ----------
+    motion : GroundMotion
+        As it was given.
+    name : str
+        One of `TARGETS`.
+    value : float
+        In SI units.
+    period : float or None
+        Of the oscillator of a spectral value [s].
+
+    Returns
+    -------
+    GroundMotion
+    """
+    target = TARGETS[name]
+    if target.measure.unit == Unit.ONE:
+        return motion.scaled(value)
+    wanted: dict[str, Any] = {target.argument: f"{value!r} {target.measure.unit}"}
+    if name == SPECTRAL:
+        wanted["period"] = f"{period!r} {TIME.unit}"
+    return motion.scaled(**wanted)
+
+
+def motions_of(given: object) -> dict[str, GroundMotion]:
+    """Read the motions of a sweep.
+
+    Parameters
+    ----------
+    given : GroundMotion, iterable or mapping of them
+        As the user gave them.
+
+    Returns
+    -------
+    dict of str to GroundMotion
+        By names that tell them apart.
+
+    Raises
+    ------
+    ComponentError
+        None at all, or something else.
+    """
+    named: dict[str, Any]
+    if isinstance(given, GroundMotion):
+        return {given.name: given}
+    if isinstance(given, Mapping):
+        named = {str(name): one for name, one in cast("Mapping[Any, Any]", given).items()}
+    elif isinstance(given, Iterable) and not isinstance(given, str):
+        named = _told_apart(list(cast("Iterable[Any]", given)))
+    else:
+        named = {"": given}
+    wrong = [one for one in named.values() if not isinstance(one, GroundMotion)]
+    if wrong or not named:
+        found = shown(wrong[0]) if wrong else "none"
+        msg = f"{OWNER}: motions must be a GroundMotion, or several, got {found}"
+        raise ComponentError(msg)
+    return named
+
+
+def _told_apart(motions: list[Any]) -> dict[str, Any]:
+    """Name motions, with a number behind a name that was there before."""
+    named: dict[str, Any] = {}
+    for motion in motions:
+        plain = name = str(getattr(motion, "name", len(named)))
+        count = 1
+        while name in named:
+            count += 1
+            name = f"{plain} ({count})"
+        named[name] = motion
+    return named

@@ -1,0 +1,303 @@
+"""From the arguments of a sweep to the study that they describe; all faults are told at once."""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any, Final, TypeVar, cast
+
+import numpy as np
+import xarray as xr
+
+from rockframe.errors import RockframeError, StudyError, shown
+from rockframe.motion import GroundMotion
+from rockframe.results.outcome import Generic
+from rockframe.results.schema import GROUPS, SCHEMA
+from rockframe.results.variables.requests import (
+    ACCELERATIONS,
+    FORCE_SCALARS,
+    OTHERS,
+    POINT,
+    REACTIONS,
+)
+from rockframe.results.variables.runs import ENERGY_HISTORIES, EVENTS_AND_SCALARS, HISTORIES
+from rockframe.results.variables.studies import CASE, MESSAGE, MOTION
+from rockframe.results.variables.variable import EVENT, TIME
+from rockframe.simulation.plan import STILL_GROUND_OUTPUT_STEP, Arguments, read_arguments
+from rockframe.studies.sweeps.axes import OWNER, Axis, Changes
+from rockframe.studies.sweeps.grid import MOST_CASES, Grid
+from rockframe.studies.sweeps.motions import (
+    NO_MOTION,
+    OF_THE_SCENE,
+    SPECTRAL,
+    motions_of,
+)
+from rockframe.studies.sweeps.scenes import FunctionScene, Scene, own_motion, scene_of
+from rockframe.studies.sweeps.study import Histories as Kept
+from rockframe.studies.sweeps.study import Study, length_of
+from rockframe.system.options import AccuracyLike, OverturningLike
+from rockframe.units import PERIOD, POSITIVE, QuantityLike, to_si
+
+Read = TypeVar("Read")
+
+_RESULTS: Final = frozenset(
+    row.name
+    for table in (
+        HISTORIES, ENERGY_HISTORIES, ACCELERATIONS, REACTIONS, OTHERS, EVENTS_AND_SCALARS,
+        FORCE_SCALARS,
+    )
+    for row in table
+)  # fmt: skip
+_TAKEN: Final = _RESULTS | {*TIME, *EVENT, *POINT, CASE, MOTION, MESSAGE, "message_number"}
+"""Names that are not left for axes."""
+MOST_VALUES: Final = 1e9
+"""Values of histories beyond which a sweep is refused: eight gigabytes."""
+
+
+def plan_study(
+    scene: object,
+    motions: object,
+    axes: Mapping[str, object],
+    cases: object,
+    *,
+    period: QuantityLike | None,
+    duration: QuantityLike | None,
+    free_vibration: QuantityLike | None,
+    initial: object,
+    accuracy: AccuracyLike,
+    output_step: QuantityLike | None,
+    outputs: Sequence[str] | None,
+    overturning: OverturningLike,
+) -> Study:
+    """Check the arguments of a sweep.
+
+    Parameters
+    ----------
+    scene, motions, axes, cases, period, duration, free_vibration, initial, accuracy,
+    output_step, outputs, overturning
+        As for :func:`rockframe.sweep`.
+
+    Returns
+    -------
+    Study
+
+    Raises
+    ------
+    StudyError
+        With every fault found.
+    """
+    faults: list[str] = []
+
+    def tried(read: Callable[[], Read], otherwise: Read) -> Read:
+        try:
+            return read()
+        except StudyError as problem:
+            faults.extend(problem.faults)
+        except RockframeError as problem:
+            faults.append(str(problem).removeprefix(f"{OWNER}: "))
+        return otherwise
+
+    made = scene_of(scene)  # without it nothing else can be checked
+    if isinstance(initial, xr.Dataset):
+        faults.append(
+            "initial cannot be the end of another run, whose system is one only; "
+            "give an InitialState"
+        )
+        initial = None
+    arguments = tried(
+        lambda: read_arguments(
+            faults,
+            duration=duration,
+            free_vibration=free_vibration,
+            initial=cast("Any", initial),
+            accuracy=accuracy,
+            output_step=output_step,
+            outputs=outputs,
+            overturning=overturning,
+        ),
+        None,
+    )
+    none: dict[str, GroundMotion | None] = {NO_MOTION: None}
+    given = tried(lambda: _motions(motions, made), none)
+    of_case: Generic | None = None
+    table = tried(lambda: _table(cases), {})
+    if MOTION in table:
+        column = table.pop(MOTION)
+        of_case = tried(lambda: _motion_column(column, list(given)), None)
+    rows = _read(made, table, faults, tried, repeats=True)
+    grid_axes = _read(made, axes, faults, tried, repeats=False)
+    faults += _twice(rows, grid_axes)
+    faults += made.faults([*rows, *grid_axes])
+    lengths = {axis.name: len(axis.values) for axis in rows}
+    lengths |= {} if of_case is None else {MOTION: len(of_case)}
+    if len(set(lengths.values())) > 1:
+        told = ", ".join(f"{name} {length}" for name, length in lengths.items())
+        faults.append(f"the columns of cases differ in length: {told}")
+    seconds = tried(lambda: _period(period, [*rows, *grid_axes]), None)
+    if arguments is None or faults:
+        raise StudyError(*faults)
+    grid = Grid(tuple(grid_axes), tuple(rows), len(given), of_case)
+    if not 0 < grid.count <= MOST_CASES:
+        faults.append(f"there are {grid.count} cases; expected 1 to {MOST_CASES}")
+    faults += _without_length(made, given, arguments)
+    kept = tried(lambda: _histories(made, given, arguments, outputs, grid.count), None)
+    if faults:
+        raise StudyError(*faults)
+    return Study(made, grid, given, arguments, seconds, kept)
+
+
+def _motions(given: object, scene: Scene) -> dict[str, GroundMotion | None]:
+    if given is not None:
+        return dict(motions_of(given))
+    own = own_motion(scene)
+    if own is not None:
+        return {own.name: own}
+    return {OF_THE_SCENE if isinstance(scene, FunctionScene) else NO_MOTION: None}
+
+
+def _table(cases: object) -> dict[str, object]:
+    """Read the table of cases: its columns by their names, with the units in their heads."""
+    if cases is None:
+        return {}
+    columns = cast("Any", cases)
+    if hasattr(cases, "to_dict") and hasattr(cases, "columns"):  # a DataFrame
+        columns = {name: columns[name] for name in columns.columns}
+    if not isinstance(columns, Mapping) or not columns:
+        msg = f"cases must be a DataFrame, or columns by their names, got {shown(cases)}"
+        raise StudyError(msg)
+    table: dict[str, object] = {}
+    for head, values in cast("Mapping[Any, Any]", columns).items():
+        name, bracket, unit = str(head).partition(" [")
+        name = name.strip()
+        if name in table:
+            msg = f"column {name!r} is given twice in cases"
+            raise StudyError(msg)
+        table[name] = (np.asarray(values), unit.removesuffix("]")) if bracket else values
+    return table
+
+
+def _motion_column(column: Any, names: list[str]) -> Generic:
+    """Read which motion each case has, by name or by number."""
+    found: list[int] = []
+    for one in np.asarray(column).tolist():
+        number = names.index(one) if one in names else one
+        if isinstance(number, bool) or not isinstance(number, int) or not 0 <= number < len(names):
+            msg = (
+                f"cases: there is no motion {one!r}; expected a name, or a number from 0 to "
+                f"{len(names) - 1}"
+            )
+            raise StudyError(msg)
+        found.append(number)
+    return np.array(found, dtype=np.intp)
+
+
+def _read(
+    scene: Scene,
+    given: Mapping[str, object],
+    faults: list[str],
+    tried: Callable[..., Any],
+    *,
+    repeats: bool,
+) -> list[Axis]:
+    """Read axes, or columns; note what is wrong."""
+    found: list[Axis] = []
+    for name, values in given.items():
+        fault = _name_fault(name)
+        if fault:
+            faults.append(fault)
+            continue
+        axis: Axis | None = tried(lambda name=name, values=values: scene.axis(name, values), None)
+        if axis is None:
+            continue
+        found.append(axis)
+        if axis.values.size == 0:
+            faults.append(f"axis {name!r} has no values")
+        kept, counts = np.unique(axis.values, return_counts=True)
+        if not repeats and (counts > 1).any():
+            faults.append(f"axis {name!r} has the value {kept[counts > 1][0]!s} twice")
+    return found
+
+
+def _name_fault(name: object) -> str | None:
+    if not isinstance(name, str) or not all(part.isidentifier() for part in name.split(".")):
+        return f"{shown(name)} cannot be the name of an axis"
+    if name in _TAKEN:
+        way = "; write 'System.rotation' for the option" if name == "rotation" else ""
+        return f"axis {name!r} has the name of a result, or of one of its dimensions{way}"
+    return None
+
+
+def _twice(rows: Iterable[Axis], axes: Iterable[Axis]) -> list[str]:
+    """Tell what is both a column and an axis, and motions that are scaled in two ways."""
+    columns = {axis.name for axis in rows}
+    both = [axis.name for axis in axes if axis.name in columns]
+    faults = [f"{name!r} is both an axis and a column of cases" for name in both]
+    scales = [axis.name for axis in (*rows, *axes) if axis.changes is Changes.MOTION]
+    if len(set(scales)) > 1:
+        faults.append(f"{' and '.join(map(repr, scales))} all scale the motion; give one of them")
+    return faults
+
+
+def _period(given: QuantityLike | None, axes: Iterable[Axis]) -> float | None:
+    needed = any(axis.changes is Changes.MOTION and axis.name == SPECTRAL for axis in axes)
+    if needed != (given is not None):
+        msg = (
+            f"{SPECTRAL} needs the period of its oscillator, for example period='0.5 s'"
+            if needed
+            else f"period is that of {SPECTRAL}, which is no axis"
+        )
+        raise StudyError(msg)
+    if given is None:
+        return None
+    return to_si(given, PERIOD, owner=OWNER, name="period", condition=POSITIVE)
+
+
+def _without_length(
+    scene: Scene, motions: Mapping[str, GroundMotion | None], arguments: Arguments
+) -> list[str]:
+    none = [motion for motion in motions.values() if motion is None]
+    if none and arguments.duration is None and not isinstance(scene, FunctionScene):
+        return ["nothing to simulate: give motions, or a duration for a still ground"]
+    return []
+
+
+def _histories(
+    scene: Scene,
+    motions: Mapping[str, GroundMotion | None],
+    arguments: Arguments,
+    outputs: Sequence[str] | None,
+    count: int,
+) -> Kept | None:
+    """Find the times that the histories of all cases have."""
+    if not arguments.histories:
+        return None
+    named = [outputs] if isinstance(outputs, str) else list(outputs or ())
+    names = tuple(dict.fromkeys(one for name in named for one in GROUPS.get(name, (name,))))
+    wrong = [name for name in names if SCHEMA[name].dims != TIME]
+    if wrong:
+        msg = f"outputs: {', '.join(wrong)} are no histories, which a sweep could keep"
+        raise StudyError(msg)
+    own = isinstance(scene, FunctionScene) and None in motions.values()
+    if own and (arguments.duration is None or arguments.output_step is None):
+        msg = "histories of motions that the function makes need a duration and an output_step"
+        raise StudyError(msg)
+    step = arguments.output_step
+    if step is None:
+        steps = {
+            STILL_GROUND_OUTPUT_STEP if motion is None else motion.si.time_step
+            for motion in motions.values()
+        }
+        if len(steps) > 1:
+            msg = (
+                "the motions have different time steps, so that their histories have no common "
+                "times; give an output_step"
+            )
+            raise StudyError(msg)
+        (step,) = steps
+    longest = max(length_of(arguments, motion) for motion in motions.values())
+    kept = Kept(names or None, step, 1 + int(longest / step * (1.0 + 1e-12)))
+    several = len(names) or len(HISTORIES)
+    if several * float(kept.count) * count > MOST_VALUES:
+        msg = (
+            f"{several} histories of {kept.count} times in {count} cases are more than "
+            f"{MOST_VALUES:.0e} values; name fewer outputs, or give a longer output_step"
+        )
+        raise StudyError(msg)
+    return kept

@@ -1,0 +1,321 @@
+"""From the values of a case to the scene: a system with other parameters, or a user's function."""
+
+import hashlib
+import inspect
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, replace
+from difflib import get_close_matches
+from enum import StrEnum
+from typing import Any, Final, Protocol, TypeAlias
+
+from rockframe.arguments import one_of_words
+from rockframe.components import Component
+from rockframe.components.parameters import Choice, Declared, Text
+from rockframe.errors import ModelWarning, StudyError, shown, warn
+from rockframe.motion import GroundMotion
+from rockframe.results.outcome import Generic
+from rockframe.simulation.system import System
+from rockframe.studies.sweeps.axes import (
+    OWNER,
+    Axis,
+    Changes,
+    free_values,
+    numbers_of,
+    words_of,
+)
+from rockframe.studies.sweeps.motions import TARGETS, target_words
+from rockframe.system.assembly import Assembly, joined
+from rockframe.system.options import MEASURED, Coupling, Restraint, Rotation
+from rockframe.units import Measure, Unit, quantity
+
+Values: TypeAlias = Mapping[Axis, Any]
+"""Of one case, by the axes that change the scene."""
+
+_CHOICES: Final[dict[str, tuple[type[StrEnum], str]]] = {
+    "restraint": (Restraint, "point of the base that the ground holds horizontally"),
+    "rotation": (Rotation, "kinematics"),
+    "coupling": (Coupling, "how block, pads, cap and soil are joined"),
+}
+_OPTIONS: Final = (*_CHOICES, *MEASURED)
+_SYSTEM: Final = System.__name__
+
+
+class Scene(Protocol):
+    """What is simulated at the values of a case."""
+
+    def axis(self, name: str, given: object) -> Axis:
+        """Read an axis: what it changes, and its values."""
+        ...
+
+    def faults(self, axes: Iterable[Axis]) -> list[str]:
+        """Tell which axes do not go together."""
+        ...
+
+    def assembled(self, values: Values) -> Assembly:
+        """Give the scene of a case; warn as :class:`rockframe.System` does."""
+        ...
+
+    def to_dict(self) -> dict[str, Any]:
+        """Describe the scene, fit for JSON: two that differ have other descriptions."""
+        ...
+
+
+@dataclass(frozen=True)
+class SystemScene:
+    """A system whose parameters axes name.
+
+    Parameters
+    ----------
+    assembly : Assembly
+        Its parts and options, as they are where no axis changes them.
+    """
+
+    assembly: Assembly
+
+    def axis(self, name: str, given: object) -> Axis:
+        """Read an axis that names the motion's scale, an option, or a parameter of a part.
+
+        Raises
+        ------
+        StudyError
+            It names none of them, or parameters of several parts.
+        UnitsError, ComponentError
+            Of the values.
+        """
+        if name in TARGETS:
+            return _of_motion(name, given)
+        kind, _, parameter = name.rpartition(".")
+        if parameter in _OPTIONS and kind in ("", _SYSTEM):
+            return _of_option(name, parameter, given)
+        found = [
+            (slot, part, part.declared()[parameter])
+            for slot, part in self._parts().items()
+            if parameter in part.declared() and kind in ("", *_names(part))
+        ]
+        if len(found) != 1:
+            raise StudyError(self._not_one(name, parameter, [part for _, part, _ in found]))
+        ((slot, part, declared),) = found
+        if getattr(part, "members", ()):
+            msg = (
+                f"axis {name!r}: this {type(part).__name__} was built from its members; give a "
+                "function of the axes that returns a System"
+            )
+            raise StudyError(msg)
+        values, unit = _declared_values(given, declared, name)
+        _caution(declared, values, type(part).__name__)
+        words = declared.__doc__ or parameter
+        long_name = words.split(" [")[0].rstrip(".")
+        return Axis(name, values, unit, long_name, Changes.PART, parameter, slot)
+
+    def faults(self, axes: Iterable[Axis]) -> list[str]:
+        """Tell which axes change the same, or stand for one another."""
+        found: list[str] = []
+        seen: dict[tuple[str, str, str], str] = {}
+        for axis in axes:
+            what = (axis.changes, axis.slot, axis.parameter)
+            if what in seen:
+                found.append(f"{seen[what]!r} and {axis.name!r} are the same parameter")
+            seen[what] = axis.name
+        for slot, part in self._parts().items():
+            given = {
+                parameter: name for (_, place, parameter), name in seen.items() if place == slot
+            }
+            for alternative in part.alternatives:
+                ways = [name for way in alternative.ways for name in way if name in given]
+                heads = {way for way in alternative.ways if set(way) & set(given)}
+                if len(heads) > 1:
+                    names = " and ".join(repr(given[name]) for name in ways)
+                    found.append(f"axes {names} stand for one another; give one of them")
+        return found
+
+    def assembled(self, values: Values) -> Assembly:
+        """Give the system with the values of a case in the place of its own."""
+        parts, options = self.assembly.parts, self.assembly.options
+        by_slot: dict[str, dict[str, Any]] = {}
+        for axis, value in values.items():
+            if axis.changes is Changes.PART:
+                by_slot.setdefault(axis.slot, {})[axis.parameter] = value
+        changed = {slot: getattr(parts, slot).with_si(each) for slot, each in by_slot.items()}
+        other = {
+            axis.parameter: _option(axis.parameter, value)
+            for axis, value in values.items()
+            if axis.changes is Changes.OPTION
+        }
+        found = joined(replace(parts, **changed, motion=None), replace(options, **other))
+        for caution in found.setting.cautions():
+            warn(caution, ModelWarning)
+        return found
+
+    def to_dict(self) -> dict[str, Any]:
+        """Describe parts and options."""
+        return {"system": self.assembly.to_dict()}
+
+    def _parts(self) -> dict[str, Component]:
+        parts = vars(self.assembly.parts)
+        return {slot: part for slot, part in parts.items() if isinstance(part, Component)}
+
+    def _not_one(self, name: str, parameter: str, having: list[Component]) -> str:
+        if having:
+            kinds = [type(part).__name__ for part in having]
+            ways = " or ".join(f"'{kind}.{parameter}'" for kind in kinds)
+            return (
+                f"axis {name!r} is a parameter of {' and '.join(kinds)}; name one, in "
+                f"axes={{...}}: {ways}"
+            )
+        known = [*TARGETS, *_OPTIONS]
+        known += [one for part in self._parts().values() for one in part.declared()]
+        near = get_close_matches(parameter, known, n=3)
+        meant = f"; was {' or '.join(map(repr, near))} meant?" if near else "."
+        listed = ", ".join(dict.fromkeys(known))
+        return f"axis {name!r} names no parameter{meant} There are {listed}"
+
+
+@dataclass(frozen=True)
+class FunctionScene:
+    """A function of the axes that returns a system.
+
+    Parameters
+    ----------
+    function : callable
+        Takes values by the names of axes: floats, whole numbers, truth values, words, and
+        quantities with units.
+    """
+
+    function: Callable[..., object]
+
+    def axis(self, name: str, given: object) -> Axis:
+        """Read an axis that names an argument, or else the motion's scale."""
+        arguments = self._arguments()
+        if name in TARGETS and name not in arguments:
+            return _of_motion(name, given)
+        values, unit = free_values(given, name)
+        return Axis(name, values, unit, name.replace("_", " "), Changes.ARGUMENT, name)
+
+    def faults(self, axes: Iterable[Axis]) -> list[str]:
+        """Tell whether the function takes the axes, and all that it needs is among them."""
+        given = {axis.name: None for axis in axes if axis.changes is Changes.ARGUMENT}
+        try:
+            self._signature().bind(**given)
+        except TypeError as problem:
+            return [f"the axes do not fit the arguments of {self.name}: {problem}"]
+        return []
+
+    def assembled(self, values: Values) -> Assembly:
+        """Call the function.
+
+        Raises
+        ------
+        StudyError
+            It returned something else than a System.
+        """
+        found = self.system(values)
+        return found.assembly
+
+    def system(self, values: Values) -> System:
+        """Call the function; give its system."""
+        found = self.function(
+            **{axis.name: _with_unit(value, axis.unit) for axis, value in values.items()}
+        )
+        if not isinstance(found, System):
+            msg = f"{self.name} must return a System, got {shown(found)}"
+            raise StudyError(msg)
+        return found
+
+    @property
+    def name(self) -> str:
+        """Name of the function."""
+        return getattr(self.function, "__qualname__", type(self.function).__name__)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Name the function, with a digest of its source, or else of its compiled code."""
+        try:
+            text = inspect.getsource(self.function)
+        except (OSError, TypeError):
+            code = getattr(self.function, "__code__", None)
+            text = repr(None if code is None else (code.co_code, code.co_consts, code.co_names))
+        return {"function": self.name, "source": hashlib.sha256(text.encode()).hexdigest()}
+
+    def _signature(self) -> inspect.Signature:
+        return inspect.signature(self.function)
+
+    def _arguments(self) -> set[str]:
+        kinds = (inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY)
+        return {n for n, one in self._signature().parameters.items() if one.kind in kinds}
+
+
+def scene_of(given: object) -> Scene:
+    """Read the argument ``scene``.
+
+    Raises
+    ------
+    StudyError
+        Neither a System nor a function.
+    """
+    if isinstance(given, System):
+        return SystemScene(given.assembly)
+    if callable(given) and not isinstance(given, type):
+        return FunctionScene(given)
+    msg = f"scene must be a System, or a function of the axes that returns one, got {shown(given)}"
+    raise StudyError(msg)
+
+
+def own_motion(scene: Scene) -> GroundMotion | None:
+    """Give the motion among a system's parts."""
+    return scene.assembly.parts.motion if isinstance(scene, SystemScene) else None
+
+
+def _of_motion(name: str, given: object) -> Axis:
+    measure = TARGETS[name].measure
+    values = numbers_of(given, measure, name)
+    return Axis(name, values, str(measure.unit), target_words(name), Changes.MOTION, name)
+
+
+def _of_option(name: str, option: str, given: object) -> Axis:
+    if option in MEASURED:
+        one = MEASURED[option]
+        values = numbers_of(given, one.measure, name)
+        return Axis(name, values, str(one.measure.unit), one.words, Changes.OPTION, option)
+    kind, words = _CHOICES[option]
+    values = words_of(given, lambda word: one_of_words(kind, word, owner=OWNER, name=name))
+    return Axis(name, values, None, words, Changes.OPTION, option)
+
+
+def _option(name: str, value: Any) -> Any:
+    if name in _CHOICES:
+        return _CHOICES[name][0](value)
+    one = MEASURED[name]
+    if not one.condition.holds(value):
+        msg = f"{name} must be {one.condition.words}, got {value!r} {one.measure.unit}"
+        raise StudyError(msg)
+    return value + 0.0  # no negative zero
+
+
+def _declared_values(
+    given: object, one: Declared[Any, Any], name: str
+) -> tuple[Generic, str | None]:
+    if one.measure is None:
+        return words_of(given, lambda word: one.read(word, OWNER)), None
+    return numbers_of(given, one.measure, name), str(one.measure.unit)
+
+
+def _caution(one: Declared[Any, Any], values: Generic, owner: str) -> None:
+    """Warn of unusual values, as the part itself would."""
+    if isinstance(one, Choice | Text):
+        return
+    for value in values.tolist():
+        words = one.caution(value)
+        if words is not None:
+            warn(f"{OWNER}: {owner}: {words}", ModelWarning)
+            return
+
+
+def _names(part: Component) -> list[str]:
+    """Give the names of a part's class, and of the classes that it is derived from."""
+    kinds = type(part).__mro__
+    return [kind.__name__ for kind in kinds if issubclass(kind, Component) and kind != Component]
+
+
+def _with_unit(value: Any, unit: str | None) -> Any:
+    if unit is None or unit == Unit.ONE:
+        return value
+    return quantity(value, Measure("a quantity", Unit(unit), ""))

@@ -1,0 +1,339 @@
+"""The folder of a study: what has been planned, and what has been run so far.
+
+``study.json`` says what the study is; ``labels.arrays`` holds axes and motions; each chunk has a
+file. Files appear whole or not at all. Several processes may work on one study: they write the
+same bytes, and none runs what it finds done.
+"""
+
+import json
+import os
+import time
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from rockframe.errors import StudyError
+from rockframe.motion import GroundMotion
+from rockframe.results.dataset import dated
+from rockframe.results.outcome import Generic
+from rockframe.studies.sweeps.arrays_file import read_arrays, write_arrays, write_whole
+from rockframe.studies.sweeps.axes import Axis
+from rockframe.studies.sweeps.chunk import Rows
+from rockframe.studies.sweeps.execution import Chunk
+from rockframe.studies.sweeps.grid import Grid, chunks_of
+from rockframe.studies.sweeps.labelling import Labels, labels_of
+from rockframe.studies.sweeps.study import Histories, Study
+from rockframe.version import __version__
+
+FORMAT: Final = 1
+_STUDY: Final = "study.json"
+_LABELS: Final = "labels.arrays"
+_LEFT_OVER: Final = 3600.0
+"""Age from which on a half-written file belongs to a process that was killed [s]."""
+_COLUMN: Final = "motion of case"
+_SCALAR, _HISTORY, _MOTION = "scalar ", "history ", "motion "
+_SAMPLED: Final = ("horizontal", "vertical")
+
+
+@dataclass(frozen=True)
+class Store:
+    """A folder that holds a study.
+
+    Parameters
+    ----------
+    folder : Path
+        The folder.
+    digest : str
+        Of the study.
+    cases : int
+        Number of cases.
+    chunk : int
+        Cases of a chunk.
+    history : str
+        When the study was begun, for the history of its dataset.
+    """
+
+    folder: Path
+    digest: str
+    cases: int
+    chunk: int
+    history: str
+
+    @classmethod
+    def of_study(cls, path: Path, study: Study, chunk: int) -> "Store":
+        """Open the folder of a study, or make it.
+
+        Parameters
+        ----------
+        path : Path
+            Of the folder.
+        study : Study
+            Which it must be.
+        chunk : int
+            Cases of a chunk, in a new one.
+
+        Returns
+        -------
+        Store
+
+        Raises
+        ------
+        StudyError
+            It holds another study, or that of another version, is damaged, or cannot be
+            written.
+        """
+        try:
+            if not (path / _STUDY).exists():
+                _make(path, study, chunk)
+            _remove_left_over(path)
+        except OSError as problem:
+            msg = f"the study cannot be kept in {path}: {problem}"
+            raise StudyError(msg) from problem
+        kept = _read_head(path)
+        if kept["study_sha256"] != study.digest:
+            raise StudyError(_difference(path, kept["study"], study.to_dict()))
+        return cls._of_head(path, kept)
+
+    @classmethod
+    def at(cls, path: Path) -> "Store":
+        """Open a folder that holds a study.
+
+        Raises
+        ------
+        StudyError
+            It holds none, or is damaged.
+        """
+        return cls._of_head(path, _read_head(path))
+
+    @classmethod
+    def _of_head(cls, path: Path, kept: Mapping[str, Any]) -> "Store":
+        return cls(
+            path, kept["study_sha256"], kept["cases"], kept["cases_of_a_chunk"], kept["history"]
+        )
+
+    def chunks(self) -> list[Chunk]:
+        """Give all chunks."""
+        return [Chunk(k, cases) for k, cases in enumerate(chunks_of(self.cases, self.chunk))]
+
+    def has(self, chunk: Chunk) -> bool:
+        """Whether a chunk has been run."""
+        return self._file(chunk).exists()
+
+    def put(self, chunk: Chunk, rows: Rows) -> None:
+        """Keep what a chunk showed.
+
+        Raises
+        ------
+        StudyError
+            It cannot be written.
+        """
+        arrays = {
+            "status": rows.status,
+            "message": rows.message,
+            **{f"{_SCALAR}{name}": each for name, each in sorted(rows.scalars.items())},
+            **{f"{_HISTORY}{name}": each for name, each in sorted(rows.histories.items())},
+        }
+        try:
+            write_arrays(self._file(chunk), self._described(chunk) | {"texts": rows.texts}, arrays)
+        except OSError as problem:
+            msg = (
+                f"{self._file(chunk)} cannot be written: {problem}; what was kept before is "
+                "whole, and the same call goes on from there"
+            )
+            raise StudyError(msg) from problem
+
+    def get(self, chunk: Chunk) -> Rows:
+        """Read what a chunk showed.
+
+        Raises
+        ------
+        StudyError
+            The file is damaged, or of another study.
+        """
+        file = self._file(chunk)
+        described, arrays = _read(file)
+        texts = described.pop("texts")
+        if described != self._described(chunk):
+            msg = (
+                f"{file}: found a chunk of another study; expected one of the study beside it, "
+                f"{self.digest[:12]}..., with the cases {chunk.cases.start} to "
+                f"{chunk.cases.stop - 1}"
+            )
+            raise StudyError(msg)
+        status, message = arrays.pop("status"), arrays.pop("message")
+        scalars, histories = (
+            {
+                name.removeprefix(kind): each
+                for name, each in arrays.items()
+                if name.startswith(kind)
+            }
+            for kind in (_SCALAR, _HISTORY)
+        )
+        return Rows(status, scalars, histories, message, tuple(texts))
+
+    def found(self) -> Iterator[tuple[range, Rows]]:
+        """Give all that is there."""
+        for chunk in self.chunks():
+            if self.has(chunk):
+                yield chunk.cases, self.get(chunk)
+
+    def labels(self) -> Labels:
+        """Read the labels of the study."""
+        described, arrays = _read(self.folder / _LABELS)
+        axes, columns = (
+            tuple(
+                Axis.from_dict(axis, _values(each, arrays, axis["name"]))
+                for axis, each in described[kind]
+            )
+            for kind in ("axes", "columns")
+        )
+        grid = Grid(axes, columns, len(described["motions"]), arrays.get(_COLUMN))
+        kept = described["histories"]
+        histories = None
+        if kept is not None:
+            names = None if kept["names"] is None else tuple(kept["names"])
+            histories = Histories(names, kept["step"], kept["count"])
+        return Labels(grid, tuple(described["motions"]), histories, described["attributes"])
+
+    def motions(self) -> dict[str, GroundMotion | None]:
+        """Read the motions of the study."""
+        described, arrays = _read(self.folder / _LABELS)
+        return {
+            name: None if one is None else _motion(k, one, arrays)
+            for k, (name, one) in enumerate(described["motions"].items())
+        }
+
+    def _file(self, chunk: Chunk) -> Path:
+        return self.folder / f"chunk-{chunk.number:06d}.arrays"
+
+    def _described(self, chunk: Chunk) -> dict[str, Any]:
+        return {
+            "study_sha256": self.digest,
+            "first_case": chunk.cases.start,
+            "last_case": chunk.cases.stop - 1,
+        }
+
+
+def _make(path: Path, study: Study, chunk: int) -> None:
+    """Write what a study is; ``study.json`` comes last, and stays what it is."""
+    path.mkdir(parents=True, exist_ok=True)
+    labels = labels_of(study)
+    arrays: dict[str, Generic] = {}
+    described: dict[str, Any] = {
+        "attributes": dict(labels.attributes),
+        "histories": None if labels.histories is None else vars(labels.histories),
+        "motions": {},
+    }
+    for kind, axes in (("axes", labels.grid.axes), ("columns", labels.grid.columns)):
+        described[kind] = [(axis.to_dict(), _words(axis)) for axis in axes]
+        arrays |= {axis.name: axis.values for axis in axes if _words(axis) is None}
+    if labels.grid.motion_column is not None:
+        arrays[_COLUMN] = labels.grid.motion_column
+    for k, (name, motion) in enumerate(study.motions.items()):
+        one = None if motion is None else motion.to_dict(samples=True)
+        sampled = {} if one is None else {each: one.get(each) or {} for each in _SAMPLED}
+        for component, held in sampled.items():
+            for what, values in held.items():
+                arrays[f"{_MOTION}{k} {component} {what}"] = np.array(values)
+                held[what] = None
+        described["motions"][name] = one
+    write_arrays(path / _LABELS, described, arrays)
+    head = {
+        "format": FORMAT,
+        "rockframe_version": __version__,
+        "history": dated("begun"),
+        "study_sha256": study.digest,
+        "cases": study.grid.count,
+        "cases_of_a_chunk": chunk,
+        "study": study.to_dict(),
+    }
+    text = json.dumps(head, indent=1)
+    write_whole(path / _STUDY, f"{text}\n".encode(), replace=False)
+
+
+def _words(axis: Axis) -> list[str] | None:
+    """Give the values of an axis that are words."""
+    return axis.values.tolist() if axis.values.dtype.kind == "U" else None
+
+
+def _values(words: list[str] | None, arrays: Mapping[str, Generic], name: str) -> Generic:
+    return arrays[name] if words is None else np.array(words)
+
+
+def _motion(number: int, one: dict[str, Any], arrays: Mapping[str, Generic]) -> GroundMotion:
+    for component in _SAMPLED:
+        if one.get(component):
+            one[component] = {
+                what: arrays[f"{_MOTION}{number} {component} {what}"] for what in one[component]
+            }
+    return GroundMotion.from_dict(one)
+
+
+def _read(path: Path) -> tuple[dict[str, Any], dict[str, Generic]]:
+    try:
+        return read_arrays(path)
+    except OSError as problem:
+        msg = f"{path} cannot be read: {problem}"
+        raise StudyError(msg) from problem
+
+
+def _read_head(path: Path) -> dict[str, Any]:
+    file = path / _STUDY
+    try:
+        kept: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
+        version, form = kept["rockframe_version"], kept["format"]
+        whole = {"study_sha256", "cases", "cases_of_a_chunk", "history", "study"} <= set(kept)
+    except FileNotFoundError as problem:
+        msg = f"{path}: found no study; expected a folder with {_STUDY}"
+        raise StudyError(msg) from problem
+    except OSError as problem:
+        msg = f"{file} cannot be read: {problem}"
+        raise StudyError(msg) from problem
+    except (ValueError, KeyError, TypeError) as problem:
+        msg = f"{file}: damaged: {problem}"
+        raise StudyError(msg) from problem
+    if form != FORMAT or version != __version__:
+        msg = (
+            f"{path}: found a study of rockframe {version} (format {form}), whose numbers may be "
+            f"others; this is rockframe {__version__} (format {FORMAT})"
+        )
+        raise StudyError(msg)
+    if not whole:
+        msg = f"{file}: damaged: entries are missing"
+        raise StudyError(msg)
+    return kept
+
+
+def _difference(path: Path, kept: Any, asked: Any) -> str:
+    """Tell in which entries two studies differ."""
+    asked = json.loads(json.dumps(asked))
+    names = sorted(name for name in {*kept, *asked} if kept.get(name) != asked.get(name))
+    told: list[str] = []
+    for name in names:
+        old, new = kept.get(name), asked.get(name)
+        if isinstance(old, dict) and isinstance(new, dict):
+            inside = sorted(one for one in {*old, *new} if old.get(one) != new.get(one))
+            told.append(f"{name} ({', '.join(inside)})")
+        else:
+            told.append(name)
+    return (
+        f"{path}: found another study, which differs in {', '.join(told)}; expected the one that "
+        "is asked for: give another folder"
+    )
+
+
+def _remove_left_over(path: Path) -> None:
+    for part in path.glob(".*.part"):
+        with suppress(OSError):
+            if time.time() - part.stat().st_mtime > _LEFT_OVER:
+                part.unlink()
+
+
+def begin_with(chunks: list[Chunk]) -> list[Chunk]:
+    """Let each process begin elsewhere, so that several on one study do not run the same."""
+    first = (os.getpid() * 2_654_435_761) % len(chunks) if chunks else 0
+    return [*chunks[first:], *chunks[:first]]
