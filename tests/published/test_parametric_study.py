@@ -106,6 +106,26 @@ def test_mirrored_pulse_gives_the_mirrored_result(standard, restraint):
     np.testing.assert_array_equal(mirrored.overturning_direction, -standard.overturning_direction)
 
 
+@pytest.mark.parametrize("accuracy", ["fast", "standard"])
+def test_one_sweep_gives_the_bits_of_single_runs(accuracy):
+    def scene(radius, slenderness, frequency_ratio, damping_ratio):
+        block = rf.Block.from_size(radius=radius, slenderness=slenderness, mass="1 t")
+        pads = rf.TwoSpringSupport(frequency_ratio=frequency_ratio, damping_ratio=damping_ratio)
+        return rf.System(block, pads)
+
+    swept = rf.sweep(
+        scene, rf.GroundMotion.sine_pulse(amplitude="-9.81 m/s^2"), radius=(RADII, "m"),
+        slenderness=SLENDERNESS, frequency_ratio=FREQUENCY_RATIOS, damping_ratio=DAMPING_RATIOS,
+        duration="10 s", accuracy=accuracy,
+    ).isel(motion=0)  # fmt: skip
+    single = study(accuracy=accuracy)
+    assert swept.status.size == 108
+    for name, values in single.data_vars.items():
+        found = swept[name].transpose(*values.dims)
+        assert found.dtype == values.dtype, name
+        assert found.values.tobytes() == np.ascontiguousarray(values).tobytes(), name
+
+
 @pytest.fixture(scope="module")
 def runs():
     """The paper's own restraint rule, for its qualitative claims."""

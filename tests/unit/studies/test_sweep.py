@@ -1,0 +1,385 @@
+"""Running a sweep: cases that fail, histories, who runs it, interrupts, and cases alone."""
+
+import logging
+import os
+import signal
+import sys
+import threading
+import time
+from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
+from contextlib import nullcontext
+from multiprocessing import get_context
+
+import numpy as np
+import pytest
+import xarray as xr
+from records import record_path
+
+import rockframe as rf
+from rockframe.compiled import COMPILED
+from rockframe.errors import ModelWarning, SchemaError, SolverWarning, StudyError
+from rockframe.results.variables.runs import RunStatus
+from rockframe.simulation import run as of_a_run
+from rockframe.solve.layout import Status
+from rockframe.studies.sweeps import case as of_cases
+from rockframe.studies.sweeps import labelling
+
+BLOCK = rf.Block(width="0.8 m", height="3.6 m", mass="4 t")
+PADS = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
+SYSTEM = rf.System(BLOCK, PADS)
+PULSE = rf.GroundMotion.sine_pulse("2 m/s^2", "1 Hz")
+SHAKING = rf.GroundMotion.stochastic(6.0, "10 km", seed=4).window("0 s", "8 s")
+FAST = {"accuracy": "fast", "free_vibration": "1 s"}
+
+
+def same(one, other):
+    """Whether two sweeps are the same to the last bit, but for the time of day."""
+    one, other = one.copy(), other.copy()
+    del one.attrs["history"], other.attrs["history"]
+    assert one.identical(other)
+    for name, variable in one.variables.items():
+        assert (
+            variable.dtype.kind in "OU" or variable.values.tobytes() == other[name].values.tobytes()
+        )
+    return True
+
+
+def on_pads(frequency_ratio, height):
+    return rf.System(BLOCK.replace(height=height), PADS.replace(frequency_ratio=frequency_ratio))
+
+
+def the_same_sweep(**means):
+    """Sweep with failures, two motions, and histories."""
+    return rf.sweep(
+        on_pads, {"pulse": PULSE, "shaking": SHAKING}, scale=[0.5, 1.0, 2.0],
+        frequency_ratio=[10, 15], height=["0.3 m", "3 m", "4 m"], **FAST,
+        outputs=["rotation", "contact_state"], output_step="0.05 s", **means,
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def plain():
+    with (
+        pytest.warns(SolverWarning, match="12 of 36 cases have no result"),
+        ThreadPoolExecutor(1) as one,
+    ):
+        return the_same_sweep(executor=one, chunk=36)
+
+
+POOLS = {
+    "own threads": nullcontext,
+    "one thread": lambda: ThreadPoolExecutor(1),
+    "eight threads": lambda: ThreadPoolExecutor(8),
+    "two processes": lambda: ProcessPoolExecutor(2, mp_context=get_context("spawn")),
+}
+
+
+@pytest.mark.parametrize("who", POOLS)
+@pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning")
+def test_what_a_case_gives_depends_on_nothing_else(plain, who):
+    with POOLS[who]() as pool:
+        for chunk in (1, 7, 1000):
+            assert same(the_same_sweep(chunk=chunk, executor=pool), plain)
+
+
+def test_cases_without_a_result_are_gaps_with_a_reason(plain):
+    squat = plain.sel(height=0.3)
+    assert (squat.status == RunStatus.REFUSED).all()
+    told = plain.message[plain.message_number]
+    assert told.dims == plain.status.dims
+    assert all("cannot rock" in text for text in told.sel(height=0.3).values.ravel())
+    assert set(told.sel(height=[3.0, 4.0]).values.ravel()) == {"none"}
+    for name in labelling.ALWAYS:
+        assert plain[name].dtype == np.float64
+        assert squat[name].isnull().all()
+    rest = plain.sel(height=[3.0, 4.0])
+    assert rest.overturned.notnull().all()
+    assert plain.attrs["verdict"].endswith("; 12 have no result.")
+    assert "12 have" in plain.attrs["verdict"]
+    with pytest.raises(rf.ComponentError, match="cannot rock"):
+        rf.case(plain, scale=1.0, frequency_ratio=10, height=0.3, motion="pulse")
+
+
+def test_histories_stand_on_common_times(plain):
+    assert plain.rotation.dims == (*plain.status.dims, "time")
+    assert "angular_velocity" not in plain
+    np.testing.assert_array_equal(plain.time, np.arange(plain.time.size) * 0.05)
+    assert plain.time[-1].item() == pytest.approx(9.0)
+    for motion, end in (("pulse", 2.0), ("shaking", 9.0)):
+        case = rf.case(plain, scale=1.0, frequency_ratio=15, height=4.0, motion=motion)
+        alone = case.simulate()
+        kept = plain.sel(scale=1.0, frequency_ratio=15, height=4.0, motion=motion)
+        assert alone.time[-1].item() == pytest.approx(end)
+        for name in ("rotation", "contact_state"):
+            np.testing.assert_array_equal(kept[name][: alone.time.size], alone[name])
+            assert kept[name][alone.time.size :].isnull().all()
+        for name in kept.data_vars:
+            if not kept[name].dims and name in alone:
+                assert (
+                    kept[name].item() == alone[name].item()
+                    or kept[name].isnull() == alone[name].isnull()
+                )
+
+
+def test_a_run_that_ends_between_two_times_has_no_time_of_its_own():
+    runs = rf.sweep(
+        SYSTEM, PULSE, scale=[3.0], outputs=(), output_step="0.1 s", free_vibration="3 s"
+    )
+    assert runs.overturned.all()
+    alone = rf.case(runs).simulate()
+    inside = alone.time < alone.time[-1]
+    assert alone.time[-1].item() % 0.1 != 0.0
+    kept = runs.rotation.squeeze().dropna("time")
+    np.testing.assert_array_equal(kept, alone.rotation[inside])
+    assert {"left_reaction", "base_shear", "peak_base_shear"} <= set(runs.data_vars)
+    assert runs.peak_base_shear.item() == alone.peak_base_shear.item()
+
+
+def test_runs_that_cannot_be_finished_have_their_status():
+    few = rf.Accuracy(rtol=1e-6, max_steps=450)
+    with pytest.warns(SolverWarning, match=r"1 of 2 cases have no result.*limit of steps") as said:
+        runs = rf.sweep(SYSTEM, PULSE, scale=[0.5, 1.2], accuracy=few, duration="3 s")
+    assert len(said) == 1
+    first, second = runs.isel(motion=0, scale=0), runs.isel(motion=0, scale=1)
+    broken = first if first.status == Status.STEP_LIMIT else second
+    assert broken.status.item() == Status.STEP_LIMIT
+    assert broken.peak_rotation.isnull()
+    assert "limit of steps" in runs.message[int(broken.message_number)].item()
+
+
+def test_statuses_are_those_of_runs_and_two_more():
+    own = {one.name: int(one) for one in RunStatus}
+    assert {one.name: int(one) for one in Status}.items() <= own.items()
+    assert set(own) - {one.name for one in Status} == {"REFUSED", "NOT_RUN"}
+
+
+def test_what_a_run_warns_of_is_kept_and_summed_up():
+    lifting = PULSE.with_vertical(PULSE.scaled(6.0))
+    system = rf.System(BLOCK)
+    with pytest.warns(ModelWarning, match="1 of 2 cases have a result to be careful with") as said:
+        runs = rf.sweep(system, [PULSE, lifting], scale=[1.0], **FAST)
+    assert len(said) == 1
+    text = runs.message[int(runs.message_number[0, 1])].item()
+    with pytest.warns(ModelWarning):
+        assert system.simulate(lifting, **FAST, outputs=None).attrs["cautions"] == text
+    assert runs.peak_rotation.notnull().all()
+
+
+@pytest.mark.parametrize(
+    "scene", [SYSTEM, lambda frequency_ratio: on_pads(frequency_ratio, "3.6 m")]
+)
+def test_what_a_scene_warns_of_is_kept_too(scene):
+    with pytest.warns(ModelWarning, match="1 of 2 cases have a result to be careful with") as said:
+        runs = rf.sweep(scene, PULSE, frequency_ratio=[5, 20], **FAST)
+    assert len(said) == 1
+    assert "too soft to hold" in runs.message[runs.message_number].values[0, 0]
+    assert runs.message_number.values[1, 0] == 0
+
+
+def test_whatever_a_function_raises_is_its_case_s_alone():
+    def scene(width):
+        if width.m_as("m") > 1.0:
+            1 / 0  # noqa: B018
+        return rf.System(BLOCK, PADS) if width.m_as("m") > 0.5 else None
+
+    with pytest.warns(SolverWarning, match="2 of 3"):
+        runs = rf.sweep(scene, PULSE, width=["0.4 m", "0.8 m", "1.2 m"], **FAST)
+    told = runs.message[runs.message_number].values[:, 0].tolist()
+    assert "must return a System, got None" in told[0]
+    assert told[1:] == ["none", "ZeroDivisionError: division by zero"]
+    assert runs.status.values[:, 0].tolist() == [RunStatus.REFUSED, 0, RunStatus.REFUSED]
+
+
+@pytest.mark.skipif(not COMPILED, reason="plain Python holds the interpreter")
+def test_machine_code_leaves_the_interpreter_to_other_threads():
+    record = rf.GroundMotion.from_arrays(
+        (np.random.default_rng(1).normal(size=400_000), "m/s^2"), "0.005 s"
+    )
+    plan = {"accuracy": "reference", "outputs": None}
+    SYSTEM.simulate(PULSE, **plan)
+    longest, running = [0.0], threading.Event()
+
+    def look():
+        running.wait()
+        last = time.perf_counter()
+        while running.is_set():
+            time.sleep(0.001)
+            now = time.perf_counter()
+            longest[0], last = max(longest[0], now - last), now
+
+    watcher = threading.Thread(target=look)
+    watcher.start()
+    running.set()
+    begun = time.perf_counter()
+    SYSTEM.simulate(record, **plan)
+    took = time.perf_counter() - begun
+    running.clear()
+    watcher.join()
+    assert took > 0.5
+    assert longest[0] < 0.5 * took
+
+
+class Interrupting(Executor):
+    """Runs at once, and is interrupted from the keyboard after some chunks."""
+
+    def __init__(self, after):
+        self.left = after
+
+    def submit(self, function, /, *arguments, **options):
+        found = Future()
+        if self.left:
+            self.left -= 1
+            found.set_result(function(*arguments, **options))
+        else:
+            found.set_exception(KeyboardInterrupt())
+        return found
+
+
+def test_an_interrupt_gives_back_what_is_done():
+    scales = np.linspace(0.1, 2.0, 20)
+    with pytest.warns(SolverWarning) as said:
+        runs = rf.sweep(SYSTEM, PULSE, scale=scales, **FAST, chunk=3, executor=Interrupting(4))
+    assert "interrupted" in str(said[0].message)
+    assert "8 of 20 cases have not been run" in str(said[1].message)
+    assert (runs.status[:12] == 0).all()
+    assert (runs.status[12:] == RunStatus.NOT_RUN).all()
+    assert runs.peak_rotation[12:].isnull().all()
+    whole = rf.sweep(SYSTEM, PULSE, scale=scales, **FAST)
+    np.testing.assert_array_equal(runs.peak_rotation[:12], whole.peak_rotation[:12])
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals")
+def test_the_keyboard_itself_interrupts_own_threads():
+    def scene(height):
+        time.sleep(0.01)
+        return on_pads(20, height)
+
+    threading.Timer(1.5, os.kill, (os.getpid(), signal.SIGINT)).start()
+    heights = np.linspace(3.0, 4.0, 2000)
+    begun = time.perf_counter()
+    with pytest.warns(SolverWarning, match="not been run"):
+        runs = rf.sweep(scene, PULSE, height=(heights, "m"), **FAST, chunk=5)
+    assert time.perf_counter() - begun < 10.0
+    done = runs.status == 0
+    assert 0 < int(done.sum()) < 2000
+    assert runs.peak_rotation.where(done, drop=True).notnull().all()
+
+
+class Broken(Executor):
+    def submit(self, function, /, *arguments, **options):
+        found = Future()
+        found.set_exception(OSError("the worker has died"))
+        return found
+
+
+def test_an_executor_that_fails_is_an_error():
+    with pytest.raises(StudyError, match="OSError: the worker has died"):
+        rf.sweep(SYSTEM, PULSE, scale=[1.0], executor=Broken(), **FAST)
+    with ProcessPoolExecutor(1) as pool, pytest.raises(StudyError, match="must be importable"):
+        rf.sweep(lambda width: SYSTEM, PULSE, width=["1 m"], executor=pool, **FAST)
+
+
+def test_dask_runs_it_too():
+    distributed = pytest.importorskip("distributed", reason="dask.distributed is not installed")
+    logging.getLogger("distributed").setLevel(logging.ERROR)
+    with (
+        distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as all_,
+        distributed.Client(all_) as client,
+    ):
+        scales = np.linspace(0.1, 2.0, 9)
+        runs = rf.sweep(
+            SYSTEM, PULSE, scale=scales, executor=client.get_executor(), chunk=2, **FAST
+        )
+    assert same(runs, rf.sweep(SYSTEM, PULSE, scale=scales, **FAST))
+
+
+def test_a_bar_counts_the_cases(capsys):
+    pytest.importorskip("tqdm", reason="tqdm is not installed")
+    rf.sweep(SYSTEM, PULSE, scale=[0.5, 1.0], progress=None, **FAST)
+    rf.sweep(SYSTEM, PULSE, scale=[0.5, 1.0], progress=False, **FAST)
+    assert capsys.readouterr().err == ""
+
+    def scene(height):
+        time.sleep(0.4)
+        return on_pads(20, height)
+
+    rf.sweep(
+        scene, PULSE, height=["3 m", "3.1 m", "3.2 m", "3.3 m"], chunk=1, progress=True, **FAST
+    )
+    shown = capsys.readouterr().err
+    assert "sweep: 100%" in shown
+    assert "4/4" in shown
+
+
+def test_without_tqdm_a_bar_is_refused_only_where_it_was_asked_for(monkeypatch):
+    monkeypatch.setitem(sys.modules, "tqdm", None)
+    assert rf.sweep(SYSTEM, PULSE, scale=[0.5], **FAST).status.item() == 0
+    with pytest.raises(rf.ComponentError, match=r"rockframe\[progress\]"):
+        rf.sweep(SYSTEM, PULSE, scale=[0.5], progress=True, **FAST)
+
+
+@pytest.mark.filterwarnings("ignore::rockframe.errors.RecordWarning")
+def test_a_case_is_found_by_what_is_known_of_it(tmp_path, monkeypatch):
+    record = rf.GroundMotion.read(record_path("ElCentro1940_Peknold.AT2")).window("0 s", "4 s")
+    runs = rf.sweep(SYSTEM, [PULSE, record], scale=[1.0, 2.0], **FAST)
+    runs.to_netcdf(tmp_path / "runs.nc")
+    monkeypatch.setattr(of_cases, "_studies", type(of_cases._studies)())  # as in another process
+    with xr.open_dataset(tmp_path / "runs.nc") as again:
+        assert (
+            rf.case(again, scale=2.0, motion=0).simulate().peak_rotation == runs.peak_rotation[1, 0]
+        )
+        with pytest.raises(StudyError, match="must be given, as motions="):
+            rf.case(again, scale=2.0, motion=1)
+        with pytest.raises(StudyError, match="is not among those given"):
+            rf.case(again, scale=2.0, motion=1, motions=PULSE)
+        found = rf.case(again, scale=2.0, motion=record.name, motions=[PULSE, record])
+        assert found.simulate().peak_rotation == runs.peak_rotation[1, 1]
+        assert rf.System.from_dataset(again) == SYSTEM
+    made = rf.sweep(on_pads, PULSE, frequency_ratio=[10, 20], height=["3.6 m"], **FAST)
+    of_cases._studies.clear()
+    with pytest.raises(StudyError, match="the function on_pads; give it as scene="):
+        rf.case(made, frequency_ratio=10)
+    alone = rf.case(made, frequency_ratio=10, scene=on_pads)
+    assert alone.simulate().peak_rotation == made.peak_rotation[0, 0, 0]
+
+
+def test_a_case_may_be_picked_from_a_part_of_a_sweep():
+    motions = {"one": PULSE, "two": PULSE.scaled(1.5), "three": PULSE.scaled(2.0)}
+    table = {"width": ["0.7 m", "0.8 m", "0.9 m"]}
+    runs = rf.sweep(SYSTEM, motions, cases=table, scale=[0.5, 1.0, 1.5], **FAST)
+    part = runs.isel(case=[2, 1], motion=[0, 2]).sel(scale=1.5)
+    case = rf.case(part, case=1, motion="three")
+    assert case.motion == motions["three"].scaled(1.5)
+    assert case.system.parts.block.si.width == 0.8
+    assert rf.case(part, case=1, motion=1, scale=1.5).motion == case.motion
+    assert rf.case(part.isel(case=0, motion=1)).system.parts.block.si.width == 0.9
+    told = part.sel(case=1, motion="three").peak_rotation.item()
+    assert case.simulate().peak_rotation.item() == told
+    with pytest.raises(StudyError, match=r"scale has no 0\.5; it has 1\.5"):
+        rf.case(part, case=1, motion=1, scale=0.5)
+    with pytest.raises(SchemaError, match="without its coordinate 'scale'"):
+        rf.case(part.drop_vars("scale"), case=1, motion=1)
+
+
+def test_cases_that_are_not_there_are_refused():
+    runs = rf.sweep(SYSTEM, PULSE, scale=[1.0, 2.0], width=["0.7 m", "0.8 m"], **FAST)
+    for labels, words in (
+        ({"scale": 1.0}, "give a value of 'width'"),
+        ({"scale": 1.0, "depth": 2.0}, "no axis 'depth'; there are scale, width, motion"),
+        ({"scale": 1.5, "width": "0.7 m"}, "scale has no 1.5; it has 1.0, 2.0"),
+        ({"scale": 1.0, "width": 0.7, "motion": 1}, "motion has no 1"),
+    ):
+        with pytest.raises(StudyError, match=words):
+            rf.case(runs, **labels)
+    with pytest.raises(rf.UnitsError, match="width"):
+        rf.case(runs, scale=1.0, width="0.7 kg")
+    with pytest.raises(SchemaError, match="no sweep"):
+        rf.case(SYSTEM.simulate(PULSE, **FAST), scale=1.0)
+
+
+def test_the_integrator_is_asked_once_for_each_case(monkeypatch):
+    asked = []
+    whole = of_a_run.integrate
+    monkeypatch.setattr(of_a_run, "integrate", lambda *a, **k: asked.append(1) or whole(*a, **k))
+    rf.sweep(SYSTEM, PULSE, scale=[0.5, 1.0], damping_ratio=[0.1, 0.2, 0.3], **FAST)
+    assert len(asked) == 6

@@ -1,0 +1,311 @@
+"""The folder in which a sweep is kept: killed, resumed, damaged, another's, full, shared."""
+
+import ctypes
+import os
+import random
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import rockframe as rf
+from rockframe.errors import SolverWarning, StudyError
+from rockframe.results.variables.runs import RunStatus
+from rockframe.studies.sweeps import case as of_cases
+from rockframe.studies.sweeps.arrays_file import read_arrays, write_arrays, write_whole
+
+pytestmark = pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning")
+
+BLOCK = rf.Block(width="0.8 m", height="3.6 m", mass="4 t")
+SYSTEM = rf.System(BLOCK, rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1))
+RECORD = rf.GroundMotion.from_arrays(
+    (2.0 * np.random.default_rng(3).normal(size=400), "m/s^2"), "0.01 s", name="noise"
+)
+PULSE = rf.GroundMotion.sine_pulse("2 m/s^2", "1 Hz")
+SCALES = np.linspace(0.1, 3.0, 60)
+CHILD = """
+import sys, numpy as np
+sys.path.insert(0, {tests!r})
+from unit.studies.test_sweep_store import the_sweep
+the_sweep(sys.argv[1])
+print("done")
+"""
+TESTS = str(Path(__file__).resolve().parents[2])
+
+
+def the_sweep(store=None, **changes):
+    options = {"chunk": 3, "accuracy": "reference", "outputs": ["rotation"], **changes}
+    return rf.sweep(
+        SYSTEM, {"noise": RECORD, "pulse": PULSE}, scale=options.pop("scale", SCALES),
+        height=["0.4 m", "3.6 m"], output_step="0.02 s", store=store, **options,
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("whole") / "study"
+    return folder, the_sweep(folder)
+
+
+def files(folder):
+    """Give the bytes of all files but that with the date."""
+    return {path.name: path.read_bytes() for path in folder.glob("*.arrays")}
+
+
+def child(folder):
+    return subprocess.Popen(
+        [sys.executable, "-W", "ignore", "-c", CHILD.format(tests=TESTS), str(folder)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+
+
+def as_bytes(dataset):
+    return {name: one.values.tolist() if one.dtype.kind in "OU" else one.values.tobytes()
+            for name, one in dataset.variables.items()}  # fmt: skip
+
+
+def test_what_is_kept_is_what_is_given(whole):
+    folder, runs = whole
+    plain = the_sweep()
+    assert as_bytes(runs) == as_bytes(plain)
+    assert {**runs.attrs, "history": ""} == {**plain.attrs, "history": ""}
+    assert rf.open_study(folder).identical(runs)
+    before = files(folder)
+    begun = time.perf_counter()
+    assert the_sweep(folder, chunk=1000).identical(runs)  # it keeps to its chunks
+    assert time.perf_counter() - begun < 5.0
+    assert files(folder) == before
+    assert not list(folder.glob(".*"))
+
+
+def test_killed_at_any_moment_it_goes_on_to_the_same_end(whole, tmp_path):
+    folder, lost = tmp_path / "study", 0
+    rng = random.Random(5)
+    for _ in range(4):
+        running = child(folder)
+        kept = len(list(folder.glob("chunk-*")))
+        while running.poll() is None and len(list(folder.glob("chunk-*"))) <= kept:
+            time.sleep(0.005)
+        time.sleep(rng.uniform(0.0, 0.15))
+        running.kill()
+        running.communicate()
+        part = rf.open_study(folder)
+        done = part.status != RunStatus.NOT_RUN
+        assert part.status.size == 240
+        lost += int(done.sum()) < 240
+        rotation = part.rotation.where(done) if "rotation" in part else None
+        whole_rotation = whole[1].rotation.where(done)
+        if rotation is not None:
+            np.testing.assert_array_equal(rotation, whole_rotation)
+    assert lost > 0
+    runs = the_sweep(folder)
+    assert as_bytes(runs) == as_bytes(whole[1])
+    assert files(folder) == files(whole[0])
+
+
+def test_two_processes_may_work_on_one_study(whole, tmp_path):
+    folder = tmp_path / "study"
+    both = [child(folder), child(folder)]
+    for one in both:
+        out, err = one.communicate(timeout=300)
+        assert out.strip() == "done", err
+    assert files(folder) == files(whole[0])
+    assert as_bytes(rf.open_study(folder)) == as_bytes(whole[1])
+    assert not list(folder.glob(".*"))
+
+
+def test_it_can_be_read_while_it_runs(tmp_path):
+    folder = tmp_path / "study"
+    seen = []
+
+    def scene(height):
+        if (folder / "study.json").exists():
+            seen.append(int((rf.open_study(folder).status != RunStatus.NOT_RUN).sum()))
+        return rf.System(BLOCK.replace(height=height))
+
+    rf.sweep(scene, PULSE, height=(np.linspace(3, 4, 12), "m"), chunk=1, store=folder)
+    assert len(seen) == 12
+    assert 0 < max(seen) < 12  # of two threads either may look first
+
+
+def test_a_case_comes_from_the_folder_alone(whole, monkeypatch):
+    folder, runs = whole
+    monkeypatch.setattr(of_cases, "_studies", type(of_cases._studies)())
+    found = rf.case(folder, scale=SCALES[17], height="3.6 m", motion="noise")
+    assert found.motion.sha256 == RECORD.scaled(SCALES[17]).sha256
+    assert found.simulate().peak_rotation.item() == runs.peak_rotation[17, 1, 0].item()
+
+
+@pytest.fixture
+def copied(whole, tmp_path):
+    folder = tmp_path / "study"
+    folder.mkdir()
+    for path in whole[0].iterdir():
+        (folder / path.name).write_bytes(path.read_bytes())
+    return folder
+
+
+def test_another_study_is_refused_with_the_difference(copied):
+    for changes, words in (
+        ({"scale": SCALES[:-1]}, r"differs in axes \(scale\), dimensions \(scale\)"),
+        ({"accuracy": "fast"}, r"arguments \(accuracy\)"),
+        ({"outputs": ["rotation", "base_shear"]}, r"histories \(names\)"),
+    ):
+        with pytest.raises(StudyError, match=f"another study.*{words}.*another folder"):
+            the_sweep(copied, **changes)
+
+
+def test_another_function_is_another_study(tmp_path):
+    scenes = [lambda height: rf.System(BLOCK.replace(height=height))]
+    scenes.append(lambda height: rf.System(BLOCK.replace(height=height), gravity="9 m/s^2"))
+    arguments = {"height": ["3 m"], "store": tmp_path / "study"}
+    rf.sweep(scenes[0], PULSE, **arguments)
+    with pytest.raises(StudyError, match=r"differs in scene \(source\)"):
+        rf.sweep(scenes[1], PULSE, **arguments)
+
+
+def test_other_versions_and_damaged_files_are_refused_with_a_reason(copied):
+    head, chunk = copied / "study.json", copied / "chunk-000004.arrays"
+    keep, plain = head.read_text(), chunk.read_bytes()
+    for kept, words in (
+        (
+            keep.replace('"rockframe_version": "', '"rockframe_version": "9.'),
+            "found a study of rockframe 9",
+        ),
+        (keep.replace('"format": 1', '"format": 2'), r"\(format 2\)"),
+        (keep[:300], "study.json: damaged"),
+        (keep.replace('"cases":', '"kases":'), "entries are missing"),
+        ("", "study.json: damaged"),
+    ):
+        head.write_text(kept)
+        for read in (rf.open_study, the_sweep):
+            with pytest.raises(StudyError, match=words):
+                read(copied)
+    head.write_text(keep)
+    flipped = bytearray(plain)
+    flipped[len(plain) // 2] ^= 1
+    other = (copied / "chunk-000005.arrays").read_bytes()
+    for content, words in (
+        (plain[: len(plain) // 2], r"chunk-000004.arrays: damaged.*remove the file"),
+        (plain[:-1], "damaged"),
+        (plain + b"\\0", "damaged"),
+        (bytes(flipped), "damaged"),
+        (b"", "found no file of a study"),
+        (other, "found a chunk of another study; expected.*cases 12 to 14"),
+    ):
+        chunk.write_bytes(content)
+        for read in (rf.open_study, the_sweep):
+            with pytest.raises(StudyError, match=words):
+                read(copied)
+    chunk.unlink()
+    assert (rf.open_study(copied).status == RunStatus.NOT_RUN).sum() == 3
+    the_sweep(copied)
+    assert chunk.read_bytes() == plain
+    (copied / "labels.arrays").unlink()
+    with pytest.raises(StudyError, match=r"labels.arrays cannot be read"):
+        rf.open_study(copied)
+
+
+def test_a_folder_without_a_study_is_refused(tmp_path):
+    with pytest.raises(StudyError, match=r"found no study; expected a folder with study.json"):
+        rf.open_study(tmp_path)
+    with pytest.raises(StudyError, match="store must be the path of a folder"):
+        the_sweep(store=3)
+    (tmp_path / "file").write_text("")
+    with pytest.raises(StudyError, match="cannot be kept in"):
+        the_sweep(tmp_path / "file")
+
+
+@pytest.mark.skipif(not hasattr(os, "geteuid"), reason="permissions as of Unix")
+def test_where_nothing_can_be_written_it_says_so_at_once(tmp_path):
+    folder = tmp_path / "closed"
+    folder.mkdir()
+    folder.chmod(0o555)
+    for above in (folder, *folder.parents[:3]):
+        if above != folder and str(above) != "/":
+            above.chmod(above.stat().st_mode | 0o055)
+    user = os.geteuid()
+    try:
+        if user == 0:
+            os.seteuid(65534)  # root may write anywhere
+        with pytest.raises(StudyError, match=r"cannot be kept in .*Permission denied"):
+            the_sweep(folder / "study")
+    finally:
+        if user == 0:
+            os.seteuid(user)
+
+
+@pytest.fixture
+def small_disk(tmp_path):
+    """A disk of 64 kB, where one may be mounted."""
+    place = tmp_path / "disk"
+    place.mkdir()
+    libc = ctypes.CDLL(None, use_errno=True)
+    if not hasattr(libc, "mount") or libc.mount(b"none", bytes(place), b"tmpfs", 0, b"size=64k"):
+        pytest.skip("no file system can be mounted here")
+    yield place
+    libc.umount2(bytes(place), 2)
+
+
+def test_a_full_disk_keeps_what_was_written(small_disk, whole):
+    with pytest.raises(StudyError, match=r"cannot be written.*No space left.*whole"):
+        the_sweep(small_disk / "study")
+    part = rf.open_study(small_disk / "study")
+    done = int((part.status != RunStatus.NOT_RUN).sum())
+    assert 0 < done < part.status.size
+    assert not list((small_disk / "study").glob(".*"))
+    np.testing.assert_array_equal(
+        part.peak_rotation, whole[1].peak_rotation.where(part.status != RunStatus.NOT_RUN)
+    )
+
+
+def test_a_write_that_fails_halfway_leaves_nothing(tmp_path, monkeypatch):
+    path = tmp_path / "one.arrays"
+    write_arrays(path, {"name": "old"}, {"a": np.arange(3.0)})
+    before = path.read_bytes()
+
+    def fails(descriptor):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(os, "fsync", fails)
+    with pytest.raises(OSError, match="No space left"):
+        write_arrays(path, {"name": "new"}, {"a": np.arange(9.0)})
+    assert path.read_bytes() == before
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_arrays_come_back_as_they_were(tmp_path):
+    path = tmp_path / "one.arrays"
+    arrays = {
+        "a": np.array([[1.0, np.nan], [-0.0, np.inf]]), "none": np.zeros((0, 3)),
+        "b": np.array([1, -2], dtype=np.int8), "c": np.array([True, False]),
+    }  # fmt: skip
+    write_arrays(path, {"text": "\u03b1\n", "n": None}, arrays)
+    described, again = read_arrays(path)
+    assert described == {"text": "\u03b1\n", "n": None}
+    for name, values in arrays.items():
+        assert again[name].dtype == values.dtype
+        assert again[name].shape == values.shape
+        assert again[name].tobytes() == values.tobytes()
+    assert not write_whole(path, b"x", replace=False)
+    assert read_arrays(path)[0] == described
+
+
+def test_half_written_files_of_the_dead_are_swept_away(copied):
+    dead, alive = copied / ".chunk-1.9.aa.part", copied / ".chunk-2.9.bb.part"
+    dead.write_text("x")
+    alive.write_text("x")
+    os.utime(dead, (0, 0))
+    the_sweep(copied)
+    assert not dead.exists()
+    assert alive.exists()
+
+
+def test_the_warning_is_repeated_when_it_is_resumed(copied):
+    with pytest.warns(SolverWarning, match="120 of 240 cases have no result"):
+        the_sweep(copied)
