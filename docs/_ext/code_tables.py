@@ -24,12 +24,12 @@ from rockframe.results.variables.runs import (
     EVENTS_AND_SCALARS,
     HISTORIES,
     Direction,
+    RunStatus,
 )
 from rockframe.results.variables.statics import HELD, MODES, REST
-from rockframe.results.variables.studies import CRITICAL_SCALE, Outcome
+from rockframe.results.variables.studies import CRITICAL_SCALE, SWEEP, Outcome
 from rockframe.results.variables.variable import EVENT, Variable
 from rockframe.solve.accuracy import LEVELS
-from rockframe.solve.layout import Status
 from rockframe.system.options import Restraint, Rotation
 from rockframe.system.scenes import SCENES
 from rockframe.units import Unit
@@ -99,6 +99,7 @@ TABLES: dict[str, Callable[[], Rows]] = {
     "certificate": lambda: _variables(CERTIFICATE),
     "comparison": lambda: _variables(COMPARISON),
     "critical-scale": lambda: _variables(CRITICAL_SCALE),
+    "sweep": lambda: _variables(SWEEP),
     "outcomes": lambda: _flags(Outcome),
     "rest": lambda: _variables(REST),
     "held": lambda: _variables(HELD),
@@ -106,7 +107,7 @@ TABLES: dict[str, Callable[[], Rows]] = {
     "contact-states": lambda: _flags(ContactState),
     "event-kinds": lambda: _flags(EventKind),
     "directions": lambda: _flags(Direction),
-    "statuses": lambda: _flags(Status),
+    "statuses": lambda: _flags(RunStatus),
     "scenes": _scenes,
     "restraints": lambda: _options(Restraint),
     "rotations": lambda: _options(Rotation),

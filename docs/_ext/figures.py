@@ -17,7 +17,7 @@ from pulse_figures import cycloidal_pulses, wavelets
 from speed_figures import cost_model, work_precision
 from sphinx.application import Sphinx
 from stochastic_figure import stochastic_motions
-from study_figures import critical_scale
+from study_figures import critical_scale, size_and_pulse
 
 import rockframe as rf
 
@@ -162,6 +162,7 @@ FIGURES = (
     work_precision,
     cost_model,
     critical_scale,
+    size_and_pulse,
     granite_fit,
     granite_calibration,
 )

@@ -1,10 +1,14 @@
 """Figures of studies, drawn when the manual is built."""
 
+import runpy
+from pathlib import Path
+
 import numpy as np
 from matplotlib.figure import Figure
 
 import rockframe as rf
 
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 STANDS, OVERTURNS = "#1f3a5f", "#cc6677"
 
 
@@ -39,3 +43,9 @@ def critical_scale() -> Figure:
     axes[0].set_ylabel(r"peak of $|\alpha|/\theta$")
     axes[0].legend(frameon=False, loc="lower right")
     return figure
+
+
+def size_and_pulse() -> Figure:
+    """Draw the map of the example."""
+    example = runpy.run_path(str(EXAMPLES / "size_and_pulse.py"))
+    return example["draw"](example["study"](50, 60, None))
