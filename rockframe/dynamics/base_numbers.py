@@ -10,9 +10,9 @@ from rockframe.dynamics.base import Base
 from rockframe.dynamics.bed import Bed
 from rockframe.dynamics.body import Body
 from rockframe.dynamics.events import ContactState
+from rockframe.dynamics.on_base import SLIDES, STANDINGS
 from rockframe.dynamics.pads import LEAVE, REENGAGE, ROUNDING, Pads
 from rockframe.dynamics.protocol import Column
-from rockframe.dynamics.restraint import PIVOTS
 
 
 @dataclass(frozen=True)
@@ -153,8 +153,8 @@ def mode_table(law: Base) -> ModeTable:
         contact[left] = ContactState.RIGHT
         contact[right] = ContactState.LEFT
         contact[left & right] = ContactState.FLIGHT
-        slides = np.repeat([False, True], PIVOTS * law.contacts())
-        _TABLES[kind] = ModeTable(np.tile(contact, 2 * PIVOTS), slides)
+        slides = np.arange(STANDINGS * law.contacts()) & SLIDES != 0
+        _TABLES[kind] = ModeTable(np.repeat(contact, STANDINGS), slides)
     return _TABLES[kind]
 
 

@@ -18,8 +18,10 @@ from rockframe.dynamics.events import REENGAGEMENT, SEPARATION
 DOWN: Final = 0  # below the level of the unloaded bed
 RAISED: Final = 1
 # Both ends in one integer: left end + 2 * right end.
-END: Final = 2
-CONTACTS: Final = END * END
+# contacts of both ends in one integer: that of the left one in its lowest bit
+LEFT_BIT: Final = 1
+RIGHT_BIT: Final = 1
+CONTACTS: Final = 4
 
 SIMULTANEOUS: Final = 1e-9
 """Share of the settlement within which both ends land, or both leave, together."""
@@ -32,6 +34,18 @@ class Ends(NamedTuple):
     u_right: float
     v_left: float
     v_right: float
+
+
+@inlined
+def end_contact(contact: int, left: bool) -> int:
+    """Give the contact of one end."""
+    return contact & LEFT_BIT if left else contact >> RIGHT_BIT
+
+
+@inlined
+def both_contacts(left: int, right: int) -> int:
+    """Give the contacts of both ends in one integer."""
+    return left + (right << RIGHT_BIT)
 
 
 @inlined
@@ -111,7 +125,7 @@ class Bed(NamedTuple):
     @inlined
     def is_held(self, contact: int, left: bool) -> bool:
         """Whether an end is down."""
-        return (contact % END if left else contact // END) == DOWN
+        return end_contact(contact, left) == DOWN
 
     @inlined
     def touches(self, contact: int, left: bool) -> bool:
@@ -121,7 +135,7 @@ class Bed(NamedTuple):
     @kernel
     def tilt(self, contact: int) -> float:
         """Give the side of the end that is raised, as the other one is pressed upwards."""
-        return float(contact // END - contact % END)
+        return float(end_contact(contact, False) - end_contact(contact, True))
 
     @inlined
     def ends(self, line: BaseLine) -> Ends:
@@ -138,7 +152,7 @@ class Bed(NamedTuple):
     @inlined
     def bearing_part(self, contact: int, ends: Ends) -> tuple[float, float]:
         """Give the places between which the base bears."""
-        start, end = compressed_part(contact % END, contact // END, ends)
+        start, end = compressed_part(end_contact(contact, True), end_contact(contact, False), ends)
         if not self.by_pressure:
             return start, end
         p0, p1 = self.pressure(start, ends), self.pressure(end, ends)
@@ -168,7 +182,9 @@ class Bed(NamedTuple):
         dissipated = self.damping * length * mean_product(v0, v1, v0, v1)
         # without dashpots all that is down bears
         if self.by_pressure and self.damping > 0.0:
-            down, up = compressed_part(contact % END, contact // END, ends)
+            down, up = compressed_part(
+                end_contact(contact, True), end_contact(contact, False), ends
+            )
             dissipated += self.spring_power(down, up, ends) - self.spring_power(start, end, ends)
         return BaseForce(
             0.5 * length * (p0 + p1), length * mean_product(p0, p1, l0, l1), dissipated
@@ -217,8 +233,7 @@ class Bed(NamedTuple):
         it along if that moves so, too.
         """
         ends = self.ends(line)
-        end = contact % END if left else contact // END
-        other = contact // END if left else contact % END
+        end, other = end_contact(contact, left), end_contact(contact, not left)
         level = abs(ends.u_right if left else ends.u_left)
         speed = ends.v_right if left else ends.v_left
         along = speed > 0.0 if end == DOWN else speed < 0.0
@@ -226,7 +241,7 @@ class Bed(NamedTuple):
         if other == end and level <= SIMULTANEOUS * self.settlement and (along or symmetric):
             other = RAISED - other
         end = RAISED - end
-        both = end + END * other if left else other + END * end
+        both = both_contacts(end, other) if left else both_contacts(other, end)
         return EndEvent(both, REENGAGEMENT if end == DOWN else SEPARATION, True)
 
     @kernel
@@ -247,7 +262,7 @@ class Bed(NamedTuple):
     @inlined
     def follows(self, contact: int, left: bool) -> int:
         """Give the contact in flight: an end that slides touches the unloaded bed only."""
-        return RAISED + END * RAISED
+        return both_contacts(RAISED, RAISED)
 
     @kernel
     def following_speed(self, left: bool, line: BaseLine, own: Variables) -> float:
@@ -267,7 +282,7 @@ class Bed(NamedTuple):
     @kernel
     def released(self, contact: int, left: bool, line: BaseLine, own: Variables) -> int:
         """Give the contact in flight."""
-        return RAISED + END * RAISED
+        return both_contacts(RAISED, RAISED)
 
     @kernel
     def presses(self, contact: int, left: bool, line: BaseLine, own: Variables) -> bool:
@@ -282,7 +297,9 @@ class Bed(NamedTuple):
     @kernel
     def held(self, contact: int, left: bool) -> int:
         """Give the contact with an end that is down."""
-        return contact - contact % END if left else contact % END
+        return (
+            both_contacts(DOWN, end_contact(contact, False)) if left else end_contact(contact, True)
+        )
 
     @kernel
     def waiting(self, contact: int, left: bool) -> int:
@@ -308,7 +325,7 @@ class Bed(NamedTuple):
     def starting(self, line: BaseLine, own: Variables) -> int:
         """Give the contact at the start of a run."""
         ends = self.ends(line)
-        return end_of(ends.u_left) + END * end_of(ends.u_right)
+        return both_contacts(end_of(ends.u_left), end_of(ends.u_right))
 
     @kernel
     def resting_height(self, left: float, right: float, own: Variables) -> float:

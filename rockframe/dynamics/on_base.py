@@ -12,7 +12,7 @@ from rockframe.compiled import constant, inlined, kernel
 from rockframe.dynamics.base import Guards
 from rockframe.dynamics.body import Attitude, BaseLine, Body, BodyState
 from rockframe.dynamics.protocol import Ground
-from rockframe.dynamics.restraint import PIVOTS, pivot_guard, pivot_of
+from rockframe.dynamics.restraint import pivot_guard, pivot_of
 from rockframe.dynamics.sliding import NO_LEVER
 
 # guards of a body, behind those of both ends of its base
@@ -20,6 +20,13 @@ HOLD: Final = 0  # of an end that slides: the force that keeps it at its level
 SLIP: Final = 1  # of its slip
 PIVOT: Final = 2  # of the restraint rule
 BODY_GUARDS: Final = 3
+
+# a mode as a whole number: the pivot in its lowest bits, whether an end slides, the contact
+PIVOT_BITS: Final = 3
+SLIDES: Final = 4
+CONTACT_BIT: Final = 3
+STANDINGS: Final = 1 << CONTACT_BIT
+"""Modes of each contact."""
 
 
 class Mode(NamedTuple):
@@ -70,8 +77,8 @@ class OnBase(NamedTuple):
 
     @kernel
     def modes(self) -> int:
-        """Give the number of modes."""
-        return 2 * PIVOTS * self.base.contacts()
+        """Give the number of modes, of which some have no meaning."""
+        return STANDINGS * self.base.contacts()
 
     @kernel
     def guards(self) -> int:
@@ -81,14 +88,12 @@ class OnBase(NamedTuple):
     @inlined
     def mode_of(self, mode: int) -> Mode:
         """Read a mode from its number."""
-        held = mode // self.base.contacts()
-        return Mode(mode % self.base.contacts(), held % PIVOTS, held >= PIVOTS)
+        return Mode(mode >> CONTACT_BIT, mode & PIVOT_BITS, (mode & SLIDES) != 0)
 
     @kernel
     def number_of(self, mode: Mode) -> int:
         """Give the number of a mode."""
-        held = mode.pivot + (PIVOTS if mode.slides else 0)
-        return mode.contact + self.base.contacts() * held
+        return mode.pivot + (SLIDES if mode.slides else 0) + (mode.contact << CONTACT_BIT)
 
     @inlined
     def flies(self, contact: int) -> bool:

@@ -20,8 +20,10 @@ RELAXING: Final = 2  # free, but still below the pad's unloaded level
 CLEAR: Final = 3  # free, above it
 LEAVING: Final = 4  # free, though the re-pinning of its separation left it pressing
 
-# Two corners' contacts in one integer: left corner + 8 * right corner.
-CORNER: Final = 8
+# two corners' contacts in one integer: that of the left one in its lowest bits
+CORNER_BITS: Final = 7
+RIGHT_BIT: Final = 3
+CORNER: Final = 1 << RIGHT_BIT
 CONTACTS: Final = CORNER * CORNER
 
 # guards of a corner
@@ -41,15 +43,15 @@ ROUNDING: Final = 4.0 * sys.float_info.epsilon
 @inlined
 def corner_contact(contact: int, left: bool) -> int:
     """Give the contact of one corner."""
-    return contact % CORNER if left else contact // CORNER
+    return contact & CORNER_BITS if left else contact >> RIGHT_BIT
 
 
 @inlined
 def with_corner(contact: int, left: bool, corner: int) -> int:
     """Give both corners' contacts with another one of one corner."""
     if left:
-        return corner + contact - contact % CORNER
-    return contact % CORNER + CORNER * corner
+        return corner + contact - (contact & CORNER_BITS)
+    return (contact & CORNER_BITS) + (corner << RIGHT_BIT)
 
 
 @inlined

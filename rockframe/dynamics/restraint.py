@@ -13,7 +13,6 @@ CENTRE: Final = 2
 PIVOT_CENTRE: Final = 0
 PIVOT_RIGHT: Final = 1
 PIVOT_LEFT: Final = 2
-PIVOTS: Final = 3
 
 
 @kernel

@@ -77,4 +77,4 @@ ON_REQUEST: Final = (
 )
 """All variables that are given only on request."""
 
-SCHEMA_VERSION: Final = 2
+SCHEMA_VERSION: Final = 3

@@ -8,7 +8,7 @@ import pytest
 
 from rockframe.dynamics.alone_model import alone, body_of
 from rockframe.dynamics.base_numbers import bed_under
-from rockframe.dynamics.bed import END, Bed, Ends, end_of
+from rockframe.dynamics.bed import Bed, Ends, both_contacts, end_of
 from rockframe.dynamics.body import BaseLine
 from rockframe.dynamics.protocol import Ground, Start
 from rockframe.dynamics.restraint import CENTRE
@@ -50,7 +50,7 @@ def modes(ends):
 
 def contact_of(ends):
     left, right = modes(ends)
-    return left + END * right
+    return both_contacts(left, right)
 
 
 def line_of(ends, bed, lever_left=0.0, lever_right=0.0):

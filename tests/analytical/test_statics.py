@@ -8,7 +8,7 @@ from analytical.pads import Pads
 from analytical.soil import accelerations, at_rest, energies
 
 import rockframe as rf
-from rockframe.dynamics.bed import END
+from rockframe.dynamics.bed import both_contacts
 from rockframe.dynamics.pads import CLEAR, CORNER
 from rockframe.dynamics.protocol import Start
 from rockframe.dynamics.stacked import (
@@ -241,7 +241,7 @@ class Held:
         ends = [int(not whole and self.phi > 0.0), int(not whole and self.phi < 0.0)]
         states = system.states_in(x)
         block = system.upper.standing(CLEAR * free[0] + CORNER * CLEAR * free[1], states.upper)
-        cap = system.lower.standing(ends[0] + END * ends[1], states.lower)
+        cap = system.lower.standing(both_contacts(*ends), states.lower)
         return model, system.with_part(system.upper.number_of(block), LOWER, cap), x
 
 

@@ -1,0 +1,50 @@
+"""The contacts of both ends of a bed, in one whole number."""
+
+import itertools
+
+import pytest
+
+from rockframe.dynamics.bed import DOWN, RAISED, Bed, both_contacts, end_contact
+
+pytestmark = pytest.mark.unit
+
+BED = Bed(stiffness=1e4, damping=10.0, settlement=0.01, width=2.0, by_pressure=False)
+ENDS = list(itertools.product((DOWN, RAISED), repeat=2))
+
+
+def test_each_pair_has_its_number():
+    numbers = [both_contacts(*ends) for ends in ENDS]
+    assert sorted(numbers) == list(range(BED.contacts()))
+    for number, (left, right) in zip(numbers, ENDS, strict=True):
+        assert (end_contact(number, True), end_contact(number, False)) == (left, right)
+
+
+@pytest.mark.parametrize(("left", "right"), ENDS)
+def test_what_the_bed_says_of_a_contact(left, right):
+    contact = both_contacts(left, right)
+    assert BED.is_held(contact, True) == (left == DOWN)
+    assert BED.is_held(contact, False) == (right == DOWN)
+    # a body rotates towards the side that is raised from the bed, and away from one that bears
+    assert BED.tilt(contact) == right - left
+    assert BED.held(contact, True) == both_contacts(DOWN, right)
+    assert BED.held(contact, False) == both_contacts(left, DOWN)
+    assert BED.waiting(contact, True) == BED.disturbed(contact) == contact
+    assert BED.follows(contact, True) == both_contacts(RAISED, RAISED)
+
+
+def test_modes_are_numbered_one_to_one():
+    from rockframe.dynamics.base_numbers import mode_table
+    from rockframe.dynamics.body import Body
+    from rockframe.dynamics.on_base import Mode, OnBase
+
+    body = Body(1.0, 0.5, 0.5, 0.4, 9.81, 0.46, 0, False)
+    part, table = OnBase(body, BED), mode_table(BED)
+    seen = set()
+    for contact, pivot, slides in itertools.product(range(4), range(3), (False, True)):
+        mode = Mode(contact, pivot, slides)
+        number = part.number_of(mode)
+        assert part.mode_of(number) == mode
+        assert table.slides[number] == slides
+        seen.add(number)
+    assert len(seen) == 24
+    assert max(seen) < part.modes() == len(table.contact)
