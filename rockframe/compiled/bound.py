@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from rockframe.compiled.arrays import Vector
+from rockframe.compiled.lanes import tuple_from
 
 
 def numbers_in(bundle: Any) -> Vector:
@@ -62,11 +63,17 @@ class Source:
         Its source; the first argument is the tuple.
     structure : tuple
         Of that, see :func:`structure_of`.
+    in_lanes : bool
+        Whether the function takes, in place of the tuple, the function that makes it of
+        numbers.
     """
 
-    def __init__(self, function: Callable[..., Any], structure: tuple[Any, ...]) -> None:
+    def __init__(
+        self, function: Callable[..., Any], structure: tuple[Any, ...], in_lanes: bool
+    ) -> None:
         self.function = function
         self.structure = structure
+        self.in_lanes = in_lanes
         self.code: Any = None  # once it has been compiled
         self.address = 0  # of that
         self.failed = False  # to be compiled
@@ -86,7 +93,7 @@ class Bound:
     ----------
     source : Source
         The function.
-    bundle : named tuple
+    bundle : named tuple or callable
         That it is bound to.
     """
 
@@ -119,12 +126,32 @@ def bound(functions: tuple[Callable[..., Any], ...], bundle: Any) -> tuple[Bound
         compiled with the entry that is first called with them.
     """
     structure = structure_of(bundle)
-    return tuple(Bound(_source(function, structure), bundle) for function in functions)
+    return tuple(Bound(_source(function, structure, False), bundle) for function in functions)
+
+
+def bound_in_lanes(function: Callable[..., Any], bundle: Any) -> Bound:
+    """Bind a function to the class of a tuple, of which each lane has its own.
+
+    Parameters
+    ----------
+    function : callable
+        As for :func:`bound`, but its first argument is a function that makes a tuple of the
+        numbers of a lane.
+    bundle : named tuple
+        One of the tuples.
+
+    Returns
+    -------
+    Bound
+        Its last argument is not looked at.
+    """
+    structure = structure_of(bundle)
+    return Bound(_source(function, structure, True), tuple_from(structure))
 
 
 @cache
-def _source(function: Callable[..., Any], structure: tuple[Any, ...]) -> Source:
-    return Source(function, structure)
+def _source(function: Callable[..., Any], structure: tuple[Any, ...], in_lanes: bool) -> Source:
+    return Source(function, structure, in_lanes)
 
 
 @cache

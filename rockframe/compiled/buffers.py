@@ -12,7 +12,7 @@ from collections.abc import Callable
 from importlib import import_module
 from typing import Any, Final
 
-from rockframe.compiled import tuples
+from rockframe.compiled import lanes, tuples
 
 # numba's own annotations are partial
 numba: Final[Any] = import_module("numba")
@@ -34,13 +34,16 @@ class BufferType(numba.types.Type):
         Number of its indices.
     writeable : bool
         Whether elements can be set.
+    stride : int
+        Elements from one of a vector to the next.
     """
 
-    def __init__(self, dtype: Any, dimensions: int, writeable: bool) -> None:
+    def __init__(self, dtype: Any, dimensions: int, writeable: bool, stride: int = 1) -> None:
         self.dtype = dtype
         self.dimensions = dimensions
         self.writeable = writeable
-        super().__init__(name=f"buffer({dtype}, {dimensions}, {writeable})")
+        self.stride = stride
+        super().__init__(name=f"buffer({dtype}, {dimensions}, {writeable}, {stride})")
 
 
 @extending.register_model(BufferType)
@@ -106,9 +109,90 @@ def _shifted(_: Any, kept: Any, first: Any) -> Any:
     return kept(kept, numba.intp), code
 
 
+@extending.intrinsic
+def _stretch(_: Any, kept: Any, first: Any, count: Any) -> Any:
+    """Give a buffer of some elements, or rows, of another, in compiled code."""
+
+    def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        given = cgutils.create_struct_proxy(kept)(context, builder, value=values[0])
+        made = cgutils.create_struct_proxy(kept)(context, builder)
+        offset = values[1]
+        for i in range(1, kept.dimensions):
+            offset = builder.mul(offset, builder.extract_value(given.shape, i))
+        made.address = builder.gep(given.address, [offset])
+        made.shape = builder.insert_value(given.shape, values[2], 0)
+        return made._getvalue()
+
+    return kept(kept, numba.intp, numba.intp), code
+
+
+@extending.intrinsic
+def _strided(_: Any, kept: Any, first: Any) -> Any:
+    """Give the buffer of every element that is some lanes further, in compiled code."""
+    strided = BufferType(kept.dtype, 1, kept.writeable, lanes.LANES)
+
+    def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        given = cgutils.create_struct_proxy(kept)(context, builder, value=values[0])
+        made = cgutils.create_struct_proxy(strided)(context, builder)
+        made.address, made.shape = builder.gep(given.address, [values[1]]), given.shape
+        return made._getvalue()
+
+    return strided(kept, numba.intp), code
+
+
+@extending.intrinsic
+def _as_integers(_: Any, kept: Any) -> Any:
+    """Give a buffer of numbers as one of whole numbers of the same memory, in compiled code."""
+    kind = BufferType(numba.int64, 1, kept.writeable, kept.stride)
+
+    def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        given = cgutils.create_struct_proxy(kept)(context, builder, value=values[0])
+        made = cgutils.create_struct_proxy(kind)(context, builder)
+        pointer = context.get_value_type(numba.types.CPointer(numba.int64))
+        made.address, made.shape = builder.bitcast(given.address, pointer), given.shape
+        return made._getvalue()
+
+    return kind(kept), code
+
+
+@extending.intrinsic
+def _widen(_: Any) -> Any:
+    """Let LLVM use the widest registers in the function that calls, in compiled code.
+
+    Where they are 512 bits wide it prefers half of them, for programs that use them now and
+    then. llvmlite names no such attribute of functions, but prints any.
+    """
+
+    def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        set.add(builder.function.attributes, '"prefer-vector-width"="512"')
+        return context.get_dummy_value()
+
+    return numba.void(), code
+
+
+@extending.overload(lanes.widest_registers, strict=False, inline="always")
+def _widest_registers() -> Callable[..., Any]:
+    return lambda: _widen()
+
+
 @extending.overload(tuples.part_of, strict=False, jit_options=_INTO_CALLERS)
 def _part_of(array: Any, first: Any) -> Callable[..., Any]:
     return lambda array, first: _shifted(array, first)
+
+
+@extending.overload(tuples.stretch, strict=False, jit_options=_INTO_CALLERS)
+def _stretch_of(array: Any, first: Any, count: Any) -> Callable[..., Any]:
+    return lambda array, first, count: _stretch(array, first, count)
+
+
+@extending.overload(lanes.lane_of, strict=False, jit_options=_INTO_CALLERS)
+def _lane_of(array: Any, field: Any, lane: Any) -> Callable[..., Any]:
+    return lambda array, field, lane: _strided(array, field * lanes.LANES + lane)
+
+
+@extending.overload(lanes.as_integers, strict=False, jit_options=_INTO_CALLERS)
+def _integers_of(array: Any) -> Callable[..., Any]:
+    return lambda array: _as_integers(array)
 
 
 @extending.overload(operator.getitem, strict=False, jit_options=_INTO_CALLERS)
@@ -116,7 +200,8 @@ def _get(kept: Any, place: Any) -> Callable[..., Any] | None:
     if not (isinstance(kept, BufferType) and _is_place(place)):
         return None
     if kept.dimensions == 1:
-        return lambda kept, place: _load(kept.address, place)
+        stride = kept.stride
+        return lambda kept, place: _load(kept.address, place * stride)
     return lambda kept, place: _load(kept.address, place[0] * kept.shape[1] + place[1])
 
 
@@ -125,7 +210,8 @@ def _set(kept: Any, place: Any, value: Any) -> Callable[..., Any] | None:
     if not (isinstance(kept, BufferType) and kept.writeable and _is_place(place)):
         return None
     if kept.dimensions == 1:
-        return lambda kept, place, value: _store(kept.address, place, value)
+        stride = kept.stride
+        return lambda kept, place, value: _store(kept.address, place * stride, value)
     return lambda kept, place, value: _store(
         kept.address, place[0] * kept.shape[1] + place[1], value
     )
@@ -147,18 +233,6 @@ def _constant(value: Any, like: Any) -> Callable[..., Any]:
 def _put(numbers: Any, first: Any, out: Any) -> Callable[..., Any]:
     lines = [f"out[first + {i}] = numbers[{i}]" for i in range(len(numbers))]
     return _written("numbers, first, out", "; ".join(lines) or "pass")
-
-
-@extending.overload(tuples.some_negative, strict=False, jit_options=_INTO_CALLERS)
-def _some_negative(numbers: Any) -> Callable[..., Any]:
-    tests = [f"(numbers[{i}] < 0.0)" for i in range(len(numbers))]
-    return _written("numbers", f"return {' | '.join(tests)}")
-
-
-@extending.overload(tuples.some_reversed, strict=False, jit_options=_INTO_CALLERS)
-def _some_reversed(before: Any, first: Any, now: Any) -> Callable[..., Any]:
-    tests = [f"((before[first + {i}] < 0.0) & (now[{i}] > 0.0))" for i in range(len(now))]
-    return _written("before, first, now", f"return {' | '.join(tests)}")
 
 
 def _is_place(place: Any) -> bool:

@@ -129,7 +129,7 @@ class Entry:
         if failed or any(source.failed for source in sources):
             return None
         missing = [*{id(source): source for source in sources if not source.address}.values()]
-        jobs = [Job(source.function, source.structure, True) for source in missing]
+        jobs = [Job(source.function, source.structure, True, source.in_lanes) for source in missing]
         jobs.append(Job(self.source, structure, False))
         try:
             *codes, routine = make_all(jobs)

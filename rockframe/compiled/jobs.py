@@ -17,7 +17,12 @@ from typing import Any, Final, get_type_hints
 
 from rockframe.compiled import store
 from rockframe.compiled.buffers import buffer_of
-from rockframe.compiled.registration import OPTIONS, numba, register_kernels
+from rockframe.compiled.registration import (
+    OPTIONS,
+    numba,
+    register_inlined,
+    register_kernels,
+)
 from rockframe.compiled.writer import KINDS, VECTOR, Writer
 
 _logger = logging.getLogger("rockframe")
@@ -49,11 +54,14 @@ class Job:
         all its arguments, as :class:`rockframe.compiled.entries.Entry` describes them.
     bound : bool
         Which of these.
+    in_lanes : bool
+        Whether it is bound to the class of the tuple alone.
     """
 
     function: Callable[..., Any]
     structure: tuple[Any, ...]
     bound: bool
+    in_lanes: bool = False
 
     @cached_property
     def _written(self) -> tuple[str, dict[str, Any], Any]:
@@ -61,9 +69,18 @@ class Job:
         writer = Writer()
         if self.bound:
             names = list(inspect.signature(self.function).parameters)[1:]
+            made = writer.tuple_of(self.structure)
+            if self.in_lanes:
+                text = (
+                    f"@inlined\ndef system_of(numbers):\n    return {made}\n\n\n"
+                    f"def run({', '.join(names)}, numbers):\n"
+                    f"    return function({', '.join(['system_of', *names])})\n"
+                )
+                scope = writer.scope | {"inlined": register_inlined}
+                return text, scope, signature_of(self.function)
             text = (
                 f"def run({', '.join(names)}, numbers):\n"
-                f"    return function({', '.join([writer.tuple_of(self.structure), *names])})\n"
+                f"    return function({', '.join([made, *names])})\n"
             )
             return text, writer.scope, signature_of(self.function)
         taken = ", ".join(writer.argument(part) for part in self.structure)

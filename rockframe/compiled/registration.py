@@ -38,6 +38,14 @@ def register_kernels() -> None:
             extending.register_jitable(**options)(function)
 
 
+def register_inlined(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Make one more function known, which is compiled into its callers."""
+    registered: Callable[..., Any] = extending.register_jitable(**HELPER, forceinline=True)(
+        function
+    )
+    return registered
+
+
 def method_names() -> set[str]:
     """Give the names of methods that numba is told of.
 

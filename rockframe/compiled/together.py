@@ -113,18 +113,19 @@ def help_with(order: bytes) -> None:
     order : bytes
         Jobs, as they are told to a helper.
     """
-    for module, name, structure, bound in pickle.loads(order):  # noqa: S301
+    for module, name, structure, *kind in pickle.loads(order):  # noqa: S301
         function: Any = import_module(module)
         for part in name.split("."):
             function = getattr(function, part)
-        job = Job(function.source if isinstance(function, Entry) else function, structure, bound)
+        job = Job(function.source if isinstance(function, Entry) else function, structure, *kind)
         if job.is_stored or job.file is None or store.is_compiled_elsewhere(job.file):
             return
         job.make()
 
 
-def _told(job: Job) -> tuple[str, str, tuple[Any, ...], bool]:
-    return job.function.__module__, job.function.__qualname__, job.structure, job.bound
+def _told(job: Job) -> tuple[Any, ...]:
+    function = job.function
+    return function.__module__, function.__qualname__, job.structure, job.bound, job.in_lanes
 
 
 def _processors() -> int:

@@ -1,6 +1,12 @@
 """Tuples of numbers, of any length, in compiled code as in Python."""
 
+from typing import Any, TypeVar
+
+from numpy.typing import NDArray
+
 from rockframe.compiled.arrays import Vector
+
+Array = TypeVar("Array", bound=NDArray[Any])
 
 
 def constant(value: float, like: tuple[float, ...]) -> tuple[float, ...]:
@@ -14,16 +20,12 @@ def put(numbers: tuple[float, ...], first: int, out: Vector) -> None:
         out[first + i] = number
 
 
-def some_negative(numbers: tuple[float, ...]) -> bool:
-    """Whether some number is below zero."""
-    return any(number < 0.0 for number in numbers)
-
-
-def some_reversed(before: Vector, first: int, now: tuple[float, ...]) -> bool:
-    """Whether some number was below zero, in an array from an index on, and now is above."""
-    return any(before[first + i] < 0.0 < number for i, number in enumerate(now))
-
-
 def part_of(array: Vector, first: int) -> Vector:
     """Give an array from an index on; no copy."""
     return array[first:]
+
+
+def stretch(array: Array, first: int, count: int) -> Array:
+    """Give some elements of an array, or rows of a matrix, from an index on; no copy."""
+    some: Any = array[first : first + count]
+    return some

@@ -58,6 +58,18 @@ class Alone(InState, OnePart):
         accelerations = (rates.rotation, rates.vertical, rates.horizontal)
         return accelerations + rates.own_rates + (rates.dissipated, rates.supplied)
 
+    @kernel
+    def some_end_slides(self, mode: int) -> bool:
+        """Whether an end slides."""
+        return self.part.mode_of(mode).slides
+
+    @inlined
+    def guards_held(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
+        """Give all guards of a mode in which nothing slides, and their rates."""
+        standing, body = self.part.mode_of(mode), self.state_of(0, state)
+        own = self.own_in(state)
+        return self.part.guards_with(standing, body, own, slope[VERTICAL], slope[ROTATION], IDLE)
+
     @inlined
     def guards_in(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
         """Give all guards, and their rates, :eq:`eq-guards`."""

@@ -95,6 +95,14 @@ class System(Protocol):
         """
         ...
 
+    def some_end_slides(self, mode: int) -> bool:
+        """Whether an end slides in a mode, so that its guards are those of :meth:`guards_in`."""
+        ...
+
+    def guards_held(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
+        """Give the same as :meth:`guards_in` in a mode in which nothing slides."""
+        ...
+
     def switch(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:
         """Carry out what the fall of a guard calls for; give the new mode.
 

@@ -119,6 +119,16 @@ class RigidGround(NamedTuple):
         supplied = -self.corner(mode).radius * (ground.x * cosine + ground.y * sine) * state[1]
         return self.angular_acceleration(mode, state[0], ground), 0.0, supplied
 
+    @kernel
+    def some_end_slides(self, mode: int) -> bool:
+        """Give False: the ground holds the corner that bears."""
+        return False
+
+    @inlined
+    def guards_held(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
+        """Give all guards."""
+        return self.guards_in(mode, state, slope, ground)
+
     @inlined
     def guards_in(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
         """Give the guards of impact while rocking, and of uplift while at rest."""

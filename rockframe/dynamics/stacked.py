@@ -18,8 +18,8 @@ from rockframe.dynamics.events import (
     SOIL_PIVOT_CHANGE,
     SOIL_SEPARATION,
 )
-from rockframe.dynamics.on_base import Mode, OnBase, SlidingGuards
-from rockframe.dynamics.protocol import BODY_COLUMNS, LAST_EVENT, Column, Slope
+from rockframe.dynamics.on_base import IDLE, Mode, OnBase, SlidingGuards
+from rockframe.dynamics.protocol import BODY_COLUMNS, LAST_EVENT, Column, Ground, Slope
 
 UPPER: Final = 0
 LOWER: Final = 1
@@ -124,6 +124,17 @@ class Stacked(InState):
         """Give all velocities."""
         n = COORDINATES
         return state[n], state[n + 1], state[n + 2], state[n + 3], state[n + 4], state[n + 5]
+
+    @kernel
+    def some_end_slides(self, mode: int) -> bool:
+        """Whether an end slides, of the block or of the cap."""
+        modes = self.modes_in(mode)
+        return modes.upper.slides or modes.lower.slides
+
+    @inlined
+    def guards_held(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
+        """Give the guards of both bodies in a mode in which nothing slides, and their rates."""
+        return self.guards_of_both(self.modes_in(mode), state, slope, IDLE, IDLE)
 
     @inlined
     def guards_of_both(

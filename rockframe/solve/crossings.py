@@ -5,11 +5,9 @@ from typing import Final
 
 from rockframe.compiled import kernel
 from rockframe.solve.equations import Equations, write_guards
+from rockframe.solve.guards import DIP_MARGIN
 from rockframe.solve.hermite import interpolate
 from rockframe.solve.workspace import Span, Tables, Workspace
-
-DIP_MARGIN: Final = 0.02
-"""Share of a guard's variation in a step below which a predicted dip is looked into."""
 
 HALVINGS: Final = 40
 """Halvings of a step in which a guard that rises from zero and falls again is looked for."""

@@ -24,7 +24,15 @@ from rockframe.solve.bookkeeping import (
 from rockframe.solve.crossings import earliest_crossing
 from rockframe.solve.equations import Equations, energies_at, slope_at, write_guards
 from rockframe.solve.ground import ground_in, load_interval
-from rockframe.solve.march import AT_END, EXHAUSTED, GUARDED, JUMPED, SHORTEST, TOO_SMALL
+from rockframe.solve.march import (
+    AT_END,
+    EXHAUSTED,
+    GUARDED,
+    JUMPED,
+    PAUSED,
+    SHORTEST,
+    TOO_SMALL,
+)
 from rockframe.solve.schemes import adapted, rest_of
 from rockframe.solve.workspace import (
     TERMS,
@@ -180,8 +188,8 @@ def next_output(controls: Vector, counters: Integers, output: Output) -> float:
     return (row - ON_SAMPLE) * controls[at.OUTPUT_STEP]
 
 
-@entry
-def advance(
+@kernel
+def run_on(
     equations: Equations,
     tables: Tables,
     memory: Vector,
@@ -191,7 +199,7 @@ def advance(
     events: EventTable,
     w: Workspace,
 ) -> int:
-    """Integrate until the run ends or the event table is full.
+    """Integrate until the run ends or pauses, or the event table is full.
 
     Parameters
     ----------
@@ -215,7 +223,7 @@ def advance(
     Returns
     -------
     int
-        A :class:`rockframe.solve.layout.Status`, or ``MORE_ROOM``.
+        A :class:`rockframe.solve.layout.Status`, ``MORE_ROOM`` or ``PAUSED``.
     """
     controls, clock, counters = progress.controls, progress.clock, progress.counters
     mode = counters[at.MODE]
@@ -223,14 +231,14 @@ def advance(
         start = energies_at(equations, mode, w.state, w.energy_room)
         clock[at.START_ENERGY] = start.kinetic + start.gravity + start.from_rest
         audit(equations, mode, memory, clock, w)
-    home, half = w.state, 0
+    home, half = w, 0
     counters[at.HALF] = 0
     index = counters[at.INTERVAL]
     counters[at.DEGREE_X] = load_interval(index, pieces.x, 0, w.ground)
     counters[at.DEGREE_Y] = load_interval(index, pieces.y, TERMS, w.ground)
     fixed, shortest = controls[at.RTOL] == FIXED_STEPS, SHORTEST * controls[at.DURATION]
     crossed = counters[at.PENDING]
-    stale = True  # accelerations and guards at the state, after a switch or a jump
+    stale = counters[at.STALE] == 1  # slope and guards at the state, after a switch or a jump
     status = at.COMPLETED
     while True:
         if stale:
@@ -260,6 +268,9 @@ def advance(
         if happened == JUMPED:
             stale = True
             continue
+        if happened == PAUSED:
+            status = at.PAUSED
+            break
         if happened == EXHAUSTED:
             status = at.STEP_LIMIT
         elif happened == TOO_SMALL:
@@ -286,10 +297,32 @@ def advance(
         half = 1 - half
         counters[at.HALF] = half
         w = swapped(w)
-    audit(equations, mode, memory, clock, w)
-    for i in range(len(home)):  # where the caller looks for it
-        home[i] = w.state[i]
+    if status not in (at.PAUSED, at.MORE_ROOM):
+        audit(equations, mode, memory, clock, w)
+    if half == 1:  # where the caller looks for it
+        for i in range(len(home.state)):
+            home.state[i] = w.state[i]
+        for i in range(len(home.first)):
+            home.first[i] = w.first[i]
+        for i in range(len(home.before)):
+            home.before[i] = w.before[i]
+    counters[at.STALE] = int(stale)
     clock[at.TIME] = counters[at.INTERVAL] * controls[at.TIME_STEP] + clock[at.INTO_INTERVAL]
     counters[at.MODE] = mode
     counters[at.PENDING] = crossed
     return status
+
+
+@entry
+def advance(
+    equations: Equations,
+    tables: Tables,
+    memory: Vector,
+    pieces: Pieces,
+    progress: Progress,
+    output: Output,
+    events: EventTable,
+    w: Workspace,
+) -> int:
+    """Integrate one run, see :func:`run_on`."""
+    return run_on(equations, tables, memory, pieces, progress, output, events, w)

@@ -25,10 +25,10 @@ def slope(
 @kernel
 def guards_of_state(
     system: System, mode: int, state: Vector, slope: Vector, ground_x: float, ground_y: float,
-    limits: Vector, before: Vector, after: Vector,
-) -> int:  # fmt: skip
-    """Write the guards of a state and their rates, as at a step's end."""
-    return guards_at(system, mode, state, slope, Ground(ground_x, ground_y), limits, before, after)
+    limits: Vector, out: Vector,
+) -> None:  # fmt: skip
+    """Write the guards of a state and their rates."""
+    guards_at(system, mode, state, slope, Ground(ground_x, ground_y), limits, out)
 
 
 @kernel
@@ -121,5 +121,5 @@ def write_guards(
     """Write the guards of a state at a fraction of a step, and their rates."""
     ground = ground_in(fraction, span, w.ground)
     equations.guarding.call(
-        mode, state, slope, ground.x, ground.y, w.limits, out, out, equations.numbers
+        mode, state, slope, ground.x, ground.y, w.limits, out, equations.numbers
     )

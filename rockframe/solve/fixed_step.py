@@ -6,23 +6,21 @@ Equations :eq:`eq-fixed-stages` and :eq:`eq-fixed-step`.
 import math
 
 from rockframe.compiled import Vector, inlined, put
-from rockframe.dynamics.protocol import System
-from rockframe.solve.ground import ground_in
-from rockframe.solve.workspace import Span
+from rockframe.dynamics.protocol import Ground, System
 
 
 @inlined
 def fixed_step(
-    system: System, mode: int, count: int, span: Span, ground: Vector, state: Vector,
-    first: Vector, new: Vector, last: Vector, stage: Vector, works: Vector,
+    system: System, mode: int, count: int, h: float, in_middle: Ground, at_end: Ground,
+    state: Vector, first: Vector, new: Vector, last: Vector, stage: Vector, works: Vector,
 ) -> bool:  # fmt: skip
     """Step the first `count` coordinates and all variables of first order.
 
-    Arguments as in :func:`rockframe.solve.march.march`. Gives the energies
-    dissipated and put in by the ground, integrated with the weights of the velocities, and
-    whether the step has ended in numbers.
+    Arguments as in :func:`rockframe.solve.march.march`, with the ground in the middle and at
+    the end of the step. Gives the energies dissipated and put in by the ground, integrated with
+    the weights of the velocities, and whether the step has ended in numbers.
     """
-    h, size = span.h, system.coordinates()
+    size = system.coordinates()
     half, sixth = 0.5 * h, h / 6.0
     powers = size + system.variables()
     for i in range(size):  # what does not move makes steps of no length
@@ -32,7 +30,7 @@ def fixed_step(
         stage[j] = state[j] + own_half * first[i]
     for i in range(size, powers):
         stage[size + i] = state[size + i] + half * first[i]
-    middle = system.accelerate(mode, stage, ground_in(0.5, span, ground))
+    middle = system.accelerate(mode, stage, in_middle)
     put(middle, 0, last)
     for i in range(size):
         own, own_sixth = (h, sixth) if i < count else (0.0, 0.0)
@@ -48,7 +46,7 @@ def fixed_step(
         z, r1, r2 = state[size + i], first[i], last[i]
         new[size + i] = z + sixth * (r1 + 4.0 * r2)
         stage[size + i] = z + half * (3.0 * r2 - r1)
-    end = system.accelerate(mode, stage, ground_in(1.0, span, ground))
+    end = system.accelerate(mode, stage, at_end)
     put(end, 0, last)
     total = 0.0
     for i in range(size):

@@ -2,8 +2,8 @@
 
 from typing import Final
 
-from rockframe.compiled import Vector, inlined, put, some_negative, some_reversed
-from rockframe.dynamics.protocol import Ground, System
+from rockframe.compiled import Vector, inlined, put
+from rockframe.dynamics.protocol import Ground, Guards, System
 
 LEFT_LIMIT: Final = 0
 RIGHT_LIMIT: Final = 1
@@ -11,27 +11,53 @@ RIGHT_LIMIT: Final = 1
 WEIGHTS: Final = 2
 
 
+DIP_MARGIN: Final = 0.02
+"""Share of a guard's variation in a step below which a predicted dip is looked into."""
+DOUBT: Final = 1.01 * DIP_MARGIN
+"""The same for a bound of the dip, with room for rounding."""
+THIRD: Final = 1.0 / 3.0
+
+
 @inlined
 def guards_at(
     system: System, mode: int, state: Vector, slope: Vector, ground: Ground, limits: Vector,
-    before: Vector, after: Vector,
-) -> int:  # fmt: skip
-    """Write the guards, then their rates; the last is the distance of the rotation from its limit.
+    out: Vector,
+) -> None:  # fmt: skip
+    """Write the guards of a state, see :func:`write_guards`."""
+    write_guards(system, system.guards_in(mode, state, slope, ground), state, limits, out)
 
-    Gives whether one is negative, or falls in `before` and rises now.
-    """
-    found = system.guards_in(mode, state, slope, ground)
+
+@inlined
+def write_guards(system: System, found: Guards, state: Vector, limits: Vector, out: Vector) -> None:
+    """Write guards, then their rates; the last is the distance of the rotation from its limit."""
     size, last = system.coordinates(), system.guards()
     rotation = rate = 0.0
     for i in range(size):
         rotation += limits[WEIGHTS + i] * state[i]
         rate += limits[WEIGHTS + i] * state[size + i]
     left = rotation <= 0.0
-    gap = limits[LEFT_LIMIT] + rotation if left else limits[RIGHT_LIMIT] - rotation
-    opening = rate if left else -rate
-    put(found.values, 0, after)
-    put(found.changes, last + 1, after)
-    after[last], after[2 * last + 1] = gap, opening
-    turns = some_reversed(before, last + 1, found.changes)
-    limit = gap < 0.0 or (before[2 * last + 1] < 0.0 and opening > 0.0)
-    return int(some_negative(found.values) or turns or limit)
+    put(found.values, 0, out)
+    put(found.changes, last + 1, out)
+    out[last] = limits[LEFT_LIMIT] + rotation if left else limits[RIGHT_LIMIT] - rotation
+    out[2 * last + 1] = rate if left else -rate
+
+
+@inlined
+def may_dip(start: float, fall: float, end: float, rise: float) -> bool:
+    """Whether a guard with these rates, by its step, is negative at its end or may be inside it.
+
+    One that falls at first and rises at last follows a cubic, which is nowhere below its
+    lowest Bernstein coefficient.
+    """
+    lowest = min(start + THIRD * fall, end - THIRD * rise)
+    dips = (fall < 0.0) & (rise > 0.0) & (lowest < DOUBT * (rise - fall))
+    return dips | (end < 0.0)
+
+
+@inlined
+def may_fall(system: System, h: float, before: Vector, after: Vector) -> bool:
+    """Whether some guard is negative after a step, or may have dipped below zero inside it."""
+    found, guards = False, system.guards() + 1
+    for i in range(guards):
+        found |= may_dip(before[i], h * before[guards + i], after[i], h * after[guards + i])
+    return found

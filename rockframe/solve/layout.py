@@ -28,8 +28,9 @@ class Status(IntEnum):
         return overturned if overturned or self.finished else None
 
 
-# Results of the integrator's entry point: a Status, or this.
+# Results of the integrator: a Status, or one of these.
 MORE_ROOM: Final = -1
+PAUSED: Final = -2
 
 COMPLETED: Final = int(Status.COMPLETED)
 OVERTURNED: Final = int(Status.OVERTURNED)
@@ -89,7 +90,9 @@ STOP_AT_OVERTURNING: Final = 11
 HALF: Final = 12
 DEGREE_X: Final = 13
 DEGREE_Y: Final = 14
-COUNTERS: Final = 15
+STALE: Final = 15  # whether slope and guards at the state are to be evaluated anew
+LAST_INTERVAL: Final = 16  # at whose end the run pauses
+COUNTERS: Final = 17
 
 CLOSE_EVENTS_LIMIT: Final = 1000
 """Events in a row, each within CHATTER_TIME of the one before, that end a run as chatter."""

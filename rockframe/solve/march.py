@@ -10,7 +10,7 @@ from rockframe.compiled import Integers, ReadOnlyMatrix, Vector, inlined, kernel
 from rockframe.dynamics.protocol import POWERS, System
 from rockframe.solve import layout as at
 from rockframe.solve.ground import ground_in, load_interval
-from rockframe.solve.guards import WEIGHTS, guards_at
+from rockframe.solve.guards import WEIGHTS, guards_at, may_fall
 from rockframe.solve.schemes import FixedSteps, StepsByTolerance
 from rockframe.solve.step_control import next_step
 from rockframe.solve.workspace import TERMS, Span
@@ -24,6 +24,8 @@ GUARDED: Final = 2  # a step was made, and some guard asks for a closer look
 TO_BE_SEEN: Final = 3  # a step was made that holds an output time, or a reversal of the rotation
 EXHAUSTED: Final = 4  # the limit of steps
 TOO_SMALL: Final = 5  # no step was small enough
+PAUSED: Final = 6  # the end of the interval at which it was asked to stop
+TRIED: Final = 7  # a step that was only tried
 
 SHORTEST: Final = 1e-14
 """Shortest step, as a share of the run's duration."""
@@ -89,7 +91,7 @@ def march(
     Returns
     -------
     int
-        Why it ended; of a trial, what :func:`rockframe.solve.guards.guards_at` gives.
+        Why it ended.
     """
     size = system.coordinates()
     width = 2 * size + system.variables()
@@ -107,6 +109,9 @@ def march(
         remaining = length - tau
         if remaining <= shortest and trial == 0.0:
             if index >= intervals or begin + length >= controls[at.DURATION]:
+                break
+            if index >= counters[at.LAST_INTERVAL]:
+                result = PAUSED
                 break
             index += 1
             tau = 0.0
@@ -132,9 +137,9 @@ def march(
             system, mode, count, span, ground, state, first, new, last, stages, works
         )
         now = ground_in(1.0, span, ground)
-        found = guards_at(system, mode, new, last, now, limits, before, after)
+        guards_at(system, mode, new, last, now, limits, after)
         if trial > 0.0:
-            return found
+            return TRIED
         scale = max(clock[at.LARGEST_TERM], clock[at.DISSIPATED], abs(clock[at.SUPPLIED]))
         excess = scheme.excess_of(system, count, done, scale, new, works, reference, controls)
         if not excess <= 1.0:
@@ -156,9 +161,10 @@ def march(
             left + ahead > clock[at.PEAK_LEFT]
         )  # fmt: skip
         peaks = v0 * v1 < 0.0 and rises
-        if found != 0 or peaks or begin + tau + h >= clock[at.NEXT_OUTPUT]:
+        found = may_fall(system, h, before, after)
+        if found or peaks or begin + tau + h >= clock[at.NEXT_OUTPUT]:
             clock[at.STEP], clock[at.ASKED], clock[at.EXCESS] = h, asked, excess
-            result = GUARDED if found != 0 else TO_BE_SEEN
+            result = GUARDED if found else TO_BE_SEEN
             break
         h_next = scheme.step_after(h, asked, h_next, excess, shortest, controls)
         tau += h

@@ -8,6 +8,7 @@ from rockframe.dynamics.protocol import System
 from rockframe.solve import layout as at
 from rockframe.solve.dormand_prince import runge_kutta_step
 from rockframe.solve.fixed_step import fixed_step
+from rockframe.solve.ground import ground_in
 from rockframe.solve.step_control import EASY, excess_error, next_step
 from rockframe.solve.workspace import Span
 
@@ -43,7 +44,10 @@ class FixedSteps(NamedTuple):
         first: Vector, new: Vector, last: Vector, stages: Vector, works: Vector,
     ) -> bool:  # fmt: skip
         """Make a step; give whether it has ended in numbers."""
-        return fixed_step(system, mode, count, span, ground, state, first, new, last, stages, works)
+        in_middle, at_end = ground_in(0.5, span, ground), ground_in(1.0, span, ground)
+        return fixed_step(
+            system, mode, count, span.h, in_middle, at_end, state, first, new, last, stages, works
+        )
 
     @inlined
     def excess_of(

@@ -2,9 +2,11 @@
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 from rockframe.compiled import Codes, Integers, Matrix, Vector
 from rockframe.dynamics.protocol import Ending
+from rockframe.solve import layout as at
 from rockframe.solve.layout import Status
 
 
@@ -117,3 +119,38 @@ class Trajectory(Summary):
     events: Events
     ending: Ending
     start_energy: float
+
+
+def told_by(clock: Vector, counters: Integers) -> dict[str, Any]:
+    """Give what an integrator's progress tells of a finished run, by the names of a summary.
+
+    Parameters
+    ----------
+    clock, counters : ndarray
+        Laid out in :mod:`rockframe.solve.layout`.
+
+    Returns
+    -------
+    dict of str to float or int
+        Without the status and the number of sub-steps.
+    """
+    reals, wholes = clock.tolist(), counters.tolist()
+    moved, residual = reals[at.LARGEST_MOVED], reals[at.RESIDUAL]
+    return {
+        "end_time": reals[at.TIME],
+        "peak_left": reals[at.PEAK_LEFT],
+        "peak_right": reals[at.PEAK_RIGHT],
+        "overturning_time": _time_or_nan(reals[at.OVERTURNING_TIME]),
+        "overturning_direction": int(reals[at.OVERTURNING_SIDE]),
+        "first_uplift_time": _time_or_nan(reals[at.FIRST_UPLIFT]),
+        "flight_time": reals[at.FLIGHT_TIME],
+        "impact_count": wholes[at.IMPACTS],
+        "flight_count": wholes[at.FLIGHTS],
+        "step_count": wholes[at.STEPS],
+        "rejected_count": wholes[at.REJECTED],
+        "energy_residual": residual / moved if moved > 0.0 else 0.0,
+    }
+
+
+def _time_or_nan(value: float) -> float:
+    return value if value >= 0.0 else math.nan

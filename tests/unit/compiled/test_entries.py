@@ -23,9 +23,9 @@ from rockframe.compiled import (
     inlined,
     kernel,
     numbers_in,
+    part_of,
     put,
-    some_negative,
-    some_reversed,
+    stretch,
 )
 from rockframe.compiled.marks import KERNELS, is_method
 from rockframe.compiled.sources import fields_of_package
@@ -109,8 +109,8 @@ def tabulate(pair: Pair, given: Matrix, row: int, arrays: Arrays, codes: Codes, 
         if arrays.values[i] < 0.0:
             found += 1
     put(pair.all_own(), 2, out)
-    out[0] = 1.0 if some_negative((out[2], out[3])) else 0.0
-    out[1] = 1.0 if some_reversed(out, 2, (1.0, -1.0)) else 0.0
+    out[0] = float(len(stretch(out, 2, 3))) + part_of(out, 3)[0]
+    out[1] = stretch(out, 2, 3)[1]
     arrays.counts[0] += len(out)
     return found
 

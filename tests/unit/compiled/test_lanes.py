@@ -1,0 +1,91 @@
+"""Fields of many runs in one array, and functions bound to the class of their systems."""
+
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+
+from rockframe.compiled import (
+    COMPILED,
+    LANES,
+    Bound,
+    Vector,
+    as_integers,
+    bound_in_lanes,
+    entry,
+    inlined,
+    kernel,
+    lane_of,
+    numbers_in,
+)
+from rockframe.compiled.bound import structure_of
+from rockframe.compiled.lanes import tuple_from
+
+pytestmark = pytest.mark.unit
+
+
+class Spring(NamedTuple):
+    stiffness: float
+    count: int
+
+
+class Oscillator(NamedTuple):
+    spring: Spring
+    mass: float
+    hangs: bool
+
+    @kernel
+    def lanes_pull(self, x: float) -> float:
+        pull = -self.spring.stiffness * self.spring.count * x / self.mass
+        return pull - 9.81 if self.hangs else pull
+
+
+@inlined
+def pull_all(system_of, lanes: int, room: Vector) -> int:
+    for lane in range(lanes):
+        fields = lane_of(room, 0, lane)
+        fields[1] = system_of(lane_of(room, 2, lane)).lanes_pull(fields[0])
+        counts = lane_of(as_integers(room), 6, lane)
+        counts[0] += 1 if fields[1] > 0.0 else 0
+    return lanes
+
+
+@entry
+def pull_once(pulls: Bound, room: Vector, numbers: Vector) -> int:
+    return pulls.call(LANES, room, numbers)
+
+
+def systems():
+    return [Oscillator(Spring(2.0 + k, k), 0.5 + 0.1 * k, k % 3 == 0) for k in range(LANES)]
+
+
+def filled():
+    room = np.zeros((7, LANES))
+    room[0] = np.linspace(-1.0, 1.0, LANES)
+    room[2:6] = np.transpose([numbers_in(one) for one in systems()])
+    return room
+
+
+def test_a_tuple_is_made_of_its_numbers():
+    one = systems()[3]
+    again = tuple_from(structure_of(one))(numbers_in(one))
+    assert again == one
+    assert [type(value) for value in again] == [Spring, float, bool]
+
+
+@pytest.mark.parametrize("way", ["compiled", "plain"])
+def test_each_lane_has_its_own_system(way, tmp_path, monkeypatch):
+    monkeypatch.setenv("ROCKFRAME_CACHE_DIR", str(tmp_path))
+    room = filled()
+    pulls = bound_in_lanes(pull_all, systems()[0])
+    if way == "plain":
+        assert pulls.call(LANES, room.reshape(-1), np.zeros(0)) == LANES
+    else:
+        if not COMPILED:
+            pytest.skip("this run does without compilation")
+        assert pull_once(pulls, room.reshape(-1), np.zeros(0)) == LANES
+        assert pulls.source.address
+    x = np.linspace(-1.0, 1.0, LANES)
+    expected = [one.lanes_pull(float(place)) for one, place in zip(systems(), x, strict=True)]
+    assert room[1].tolist() == expected
+    assert room[6].view(np.int64).tolist() == [int(each > 0.0) for each in expected]
