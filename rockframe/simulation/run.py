@@ -26,7 +26,7 @@ from rockframe.results.slope import energies_on_slope, felt_ground, slope_attrib
 from rockframe.results.variables.runs import Direction
 from rockframe.signals import Motion
 from rockframe.simulation.answers import answers_of, ground_at
-from rockframe.simulation.audit import unbalanced
+from rockframe.simulation.audit import DOUBTFUL, unbalanced
 from rockframe.simulation.beginning import end_attributes, start_of
 from rockframe.simulation.beside import Beside, what_showed
 from rockframe.simulation.certificate import certify
@@ -170,7 +170,8 @@ def beside(system: Assembly, plan: Plan) -> Beside:
     return respond(system, plan).beside()
 
 
-def _scales(system: Assembly) -> Scales:
+def scales_of(system: Assembly) -> Scales:
+    """Give what the responses of a system are made relative to."""
     setting = system.setting
     return Scales(
         setting.overturning_angles,
@@ -198,7 +199,7 @@ def respond(system: Assembly, plan: Plan) -> Response:
     -------
     Response
     """
-    model, scales = system.model, _scales(system)
+    model, scales = system.model, scales_of(system)
     trajectory = integrate(
         model, start_of(plan.initial), felt_motion(system, plan), plan.accuracy,
         duration=plan.duration, output_step=plan.output_step,
@@ -245,6 +246,11 @@ def _attributes(
         "system_json": json.dumps(system.to_dict()),
         "run_json": plan.to_json(),
     }
+
+
+def nothing_to_say(summary: Summary) -> bool:
+    """Whether a run with fixed steps has come to an end, with its energies in balance."""
+    return summary.status.finished and summary.energy_residual <= DOUBTFUL
 
 
 def _unfinished(summary: Summary, scales: Scales) -> Iterator[Caution]:

@@ -1,9 +1,10 @@
-"""What a case of a sweep costs beside a loop of single runs, on one processor.
+"""What a case of a sweep costs, alone and in lanes, beside a loop of single runs.
 
 Usage: python tests/benchmarks/sweeps.py [record]
 
-Prints milliseconds of processor time per case, the least of several rounds, and their ratios. The
-record is a file; without one the motion has the length of El Centro and is drawn from a model.
+Prints milliseconds of processor time per case on one processor, the least of several rounds, and
+the ratios; then cases per second of a sweep on all processors. The record is a file; without one
+the motion has the length of El Centro and is drawn from a model.
 """
 
 import sys
@@ -13,50 +14,71 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 
 import rockframe as rf
+from rockframe.studies.sweeps import study
 
-CASES, ROUNDS = 300, 5
+CASES, ROUNDS, MANY = 600, 5, 10_000
+BLOCK = rf.Block.from_size(radius="5 m", slenderness=4, mass="50 t")
+PADS = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.10)
+SYSTEM = rf.System(BLOCK, PADS)
 
 
 def main() -> None:
-    """Time both, for a parameter and for the scale of the motion."""
-    block = rf.Block.from_size(radius="5 m", slenderness=4, mass="50 t")
-    pads = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.10)
-    system = rf.System(block, pads)
+    """Time all ways, for a parameter, for the scale of the motion, and for a grid of both."""
     if len(sys.argv) > 1:
         motion = rf.GroundMotion.read(sys.argv[1])
     else:
         motion = rf.GroundMotion.stochastic(6.5, "10 km", seed=4, time_step="0.02 s")
     print(motion)
     ratios, scales = np.linspace(0.05, 0.5, CASES), np.linspace(0.1, 2.0, CASES)
+    grids = {
+        "damping ratio": {"damping_ratio": ratios},
+        "scale": {"scale": scales},
+        "grid": {"damping_ratio": ratios[::60], "scale": scales[::10]},
+    }
     for accuracy in ("fast", "standard"):
-        options = {"outputs": None, "accuracy": accuracy}
+        for name, axes in grids.items():
+            times = costs(motion, axes, accuracy)
+            told = ", ".join(f"{way} {each:.3f} ms" for way, each in times.items())
+            ratio = times["loop"] / list(times.values())[-1]
+            print(f"{accuracy}, {name}: {told} a case; {ratio:.1f} times")
+    axes = {"damping_ratio": np.linspace(0.05, 0.5, 10), "scale": np.linspace(0.1, 2.0, MANY // 10)}
+    for accuracy in ("fast", "standard"):
+        rates = [rate(motion, axes, accuracy) for _ in range(3)]
+        print(f"{accuracy}: {max(rates):.0f} cases a second on all processors")
 
-        def parameter(options=options):
-            for ratio in ratios.tolist():
-                rf.System(block, pads.replace(damping_ratio=ratio)).simulate(motion, **options)
 
-        def scale(options=options):
-            for factor in scales.tolist():
-                system.simulate(motion.scaled(factor), **options)
+def costs(motion, axes, accuracy) -> dict[str, float]:
+    """Give the processor time of a case by several ways that take turns [ms]."""
+    options = {"outputs": None, "accuracy": accuracy}
 
+    def loop():
+        for ratio in axes.get("damping_ratio", [0.1]):
+            system = rf.System(BLOCK, PADS.replace(damping_ratio=float(ratio)))
+            for factor in axes.get("scale", [1.0]):
+                moved = motion if factor == 1.0 else motion.scaled(float(factor))
+                system.simulate(moved, **options)
+
+    def swept(fewest):
+        study.FEWEST_IN_LANES = fewest
         with ThreadPoolExecutor(1) as one:
-            for name, loop, axis in (("parameter", parameter, {"damping_ratio": ratios}),
-                                     ("scale", scale, {"scale": scales})):  # fmt: skip
+            rf.sweep(SYSTEM, motion, axes=axes, **options, executor=one, progress=False)
 
-                def swept(options=options, axis=axis, one=one):
-                    rf.sweep(system, motion, **axis, **options, executor=one)
-
-                single, many = spent(loop, swept)
-                print(f"{accuracy}, {name}: loop {single:.2f} ms, sweep {many:.2f} ms a case, "
-                      f"ratio {single / many:.1f}")  # fmt: skip
-
-
-def spent(*works) -> list[float]:
-    """Give the processor time of a case, of several ways that take turns [ms]."""
-    for work in works:
+    ways = {"loop": loop, "sweep": lambda: swept(10**9)}
+    if accuracy == "fast":
+        ways["in lanes"] = lambda: swept(1)
+    for work in ways.values():
         work()
-    times = [[_once(work) for work in works] for _ in range(ROUNDS)]
-    return [1e3 * min(column) / CASES for column in zip(*times, strict=True)]
+    rounds = [[_once(work) for work in ways.values()] for _ in range(ROUNDS)]
+    least = [1e3 * min(column) / CASES for column in zip(*rounds, strict=True)]
+    return dict(zip(ways, least, strict=True))
+
+
+def rate(motion, axes, accuracy) -> float:
+    """Give the cases a second of a whole sweep, from the call to the labelled dataset [s^-1]."""
+    study.FEWEST_IN_LANES = 1
+    begun = time.perf_counter()
+    rf.sweep(SYSTEM, motion, axes=axes, accuracy=accuracy, progress=False)
+    return MANY / (time.perf_counter() - begun)
 
 
 def _once(work) -> float:

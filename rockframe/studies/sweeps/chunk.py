@@ -1,23 +1,20 @@
 """The runs of a chunk: from a job to arrays of scalars."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
-from rockframe.errors import AssemblyError, RockframeError, heard
-from rockframe.motion import GroundMotion
-from rockframe.results.outcome import Generic
+from rockframe.errors import RockframeError
+from rockframe.results.outcome import Generic, scalars
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.runs import RunStatus
 from rockframe.results.variables.variable import TIME
-from rockframe.simulation.plan import fitted
 from rockframe.simulation.run import NONE, Response, respond
-from rockframe.studies.sweeps.axes import Changes
-from rockframe.studies.sweeps.motions import scaled
+from rockframe.studies.sweeps.cases_of_job import CasesOfJob
+from rockframe.studies.sweeps.side_by_side import Finished, run_side_by_side
 from rockframe.studies.sweeps.study import Histories, Job
-from rockframe.system.assembly import Assembly
 
 NO_TEXT: Final = 0
 """Place of the text that says nothing, in the texts of a chunk."""
@@ -50,7 +47,7 @@ class Rows:
 
 
 def run_chunk(job: Job, stopped: Callable[[], bool] = lambda: False) -> Rows | None:
-    """Run the cases of a job, one after the other.
+    """Run the cases of a job: side by side where they can, else one after the other.
 
     What a case shows depends on that case alone, and is what
     :meth:`rockframe.System.simulate` gives.
@@ -68,61 +65,20 @@ def run_chunk(job: Job, stopped: Callable[[], bool] = lambda: False) -> Rows | N
         None where it was left off.
     """
     told = _Telling(len(job.motion_of_case), job.histories)
-    prepared = _Prepared(job)
-    for case in range(len(job.motion_of_case)):
+    cases = CasesOfJob(job)
+    alone = set(range(len(job.motion_of_case)))
+    for finished in run_side_by_side(cases, stopped):
+        told.put_finished(finished)
+        alone.discard(finished.case)
+    for case in sorted(alone):
         if stopped():
             return None
         try:
-            (system, said), motion = prepared.scene(case), prepared.motion(case)
-            faults: list[str] = []
-            motion = system.parts.motion if motion is None else motion
-            plan = fitted(job.arguments, system, motion, faults)
-            if faults:
-                raise AssemblyError(faults)
+            system, said, plan = cases.planned(case)
             told.put(case, respond(system, plan), said)
         except Exception as problem:  # whatever it is, it is this case's alone
             told.refuse(case, problem)
     return told.rows()
-
-
-class _Prepared:
-    """Scenes and motions of a job, each made when a case first asks for it."""
-
-    def __init__(self, job: Job) -> None:
-        self._job = job
-        of_motion = [(axis, each) for axis, each in job.axes if axis.changes is Changes.MOTION]
-        self._of_scene = [
-            (axis, each.tolist()) for axis, each in job.axes if axis.changes is not Changes.MOTION
-        ]
-        self._scale = [(axis.name, each.tolist()) for axis, each in of_motion]
-        self._scenes: dict[tuple[Any, ...], tuple[Assembly, list[str]]] = {}
-        self._motion: tuple[object, GroundMotion | None] = (None, None)
-
-    def scene(self, case: int) -> tuple[Assembly, list[str]]:
-        """Give the scene of a case, and what is warned of when it is assembled."""
-        key = tuple(each[case] for _, each in self._of_scene)
-        found = self._scenes.get(key)
-        if found is None:
-            values = {axis: each[case] for axis, each in self._of_scene}
-            with heard() as said:
-                found = self._scenes[key] = (self._job.scene.assembled(values), said)
-        return found
-
-    def motion(self, case: int) -> GroundMotion | None:
-        """Give the motion of a case; None leaves it to the scene."""
-        motion = self._job.motions[self._job.motion_of_case[case]]
-        if not self._scale:
-            return motion
-        if motion is None:
-            motion = self.scene(case)[0].parts.motion
-        if motion is None:
-            msg = "there is no motion to scale; give one"
-            raise AssemblyError([msg])
-        ((name, values),) = self._scale
-        key = (id(motion), values[case])
-        if self._motion[0] != key:
-            self._motion = (key, scaled(motion, name, values[case], self._job.period))
-        return self._motion[1]
 
 
 class _Telling:
@@ -144,11 +100,20 @@ class _Telling:
         self._status[case] = summary.status
         if summary.overturned is None:
             return
-        for name, value in response.scalars.items():
-            if name != _STATUS:
-                self._of(self._scalars, name, ())[case] = value
+        self._put_scalars(case, response.scalars)
         if self._kept is not None:
             self._put_histories(case, response.histories, self._kept)
+
+    def put_finished(self, run: Finished) -> None:
+        """Note a run that was made side by side with others."""
+        self._say(run.case, "; ".join(run.said) or NONE)
+        self._status[run.case] = run.summary.status
+        self._put_scalars(run.case, scalars(run.summary, run.scales))
+
+    def _put_scalars(self, case: int, values: Mapping[str, float]) -> None:
+        for name, value in values.items():
+            if name != _STATUS:
+                self._of(self._scalars, name, ())[case] = value
 
     def _put_histories(self, case: int, values: dict[str, Generic], kept: Histories) -> None:
         time = values[TIME[0]]

@@ -27,6 +27,12 @@ ALWAYS: Final = tuple(
 )
 """Scalars that every run has."""
 _TITLE: Final = "Sweep of a rocking system"
+ALONE: Final = "each case alone"
+SIDE_BY_SIDE: Final = (
+    "cases side by side in lanes; alone those that are not finished, or whose energies or ground "
+    "need a closer look"
+)
+"""How cases were run."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,6 +70,7 @@ def labels_of(study: Study) -> Labels:
         ),
         "motion_names": json.dumps(list(study.motions)),
         "study_sha256": study.digest,
+        "driver": SIDE_BY_SIDE if study.side_by_side else ALONE,
     }
     if study.period is not None:
         attributes["spectral_period"] = study.period

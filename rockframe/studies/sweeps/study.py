@@ -12,6 +12,7 @@ from rockframe.compiled import COMPILED
 from rockframe.motion import GroundMotion
 from rockframe.results.outcome import Generic
 from rockframe.simulation.plan import STILL_GROUND_OUTPUT_STEP, Arguments
+from rockframe.solve.lanes.integrate import go_in_lanes
 from rockframe.studies.sweeps.axes import Axis
 from rockframe.studies.sweeps.grid import Grid
 from rockframe.studies.sweeps.scenes import Scene
@@ -20,6 +21,10 @@ from rockframe.version import __version__
 LONG_ENOUGH: Final = 1.0
 """What a chunk should take, so that handing it out costs little [s]."""
 LARGEST_CHUNK: Final = 10_000
+FEWEST_IN_LANES: Final = 500
+"""Cases below which lanes, which must be compiled too, save less than a fraction of a second."""
+IN_LANES: Final = 0.25
+"""Of the time of a run alone."""
 _OVERHEAD: Final = 5e-4
 """Of a run, beside its integration [s]."""
 _FIXED: Final = 4e-7
@@ -74,6 +79,8 @@ class Job:
         Of the oscillator, where spectral values are a target [s].
     histories : Histories or None
         What is kept beside scalars.
+    side_by_side : bool
+        Whether cases run in lanes, as far as they can.
     """
 
     scene: Scene
@@ -83,6 +90,7 @@ class Job:
     arguments: Arguments
     period: float | None
     histories: Histories | None
+    side_by_side: bool
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,7 +133,17 @@ class Study:
             self.arguments,
             self.period,
             self.histories,
+            self.side_by_side,
         )
+
+    @property
+    def side_by_side(self) -> bool:
+        """Whether cases run in lanes: with steps of fixed length, without histories, and many.
+
+        Their numbers are the same either way.
+        """
+        fits = self.histories is None and go_in_lanes(self.arguments.accuracy)
+        return fits and self.grid.count >= FEWEST_IN_LANES
 
     def to_dict(self) -> dict[str, Any]:
         """Tell all that the results depend on, long rows of numbers by their digests."""
@@ -159,6 +177,7 @@ class Study:
         one = _OVERHEAD + max(lengths) * (_FIXED if fixed else _BY_TOLERANCE)
         if not fixed:
             one *= (2e-8 / float(self.arguments.accuracy.rtol or 1.0)) ** 0.2
+        one *= IN_LANES if self.side_by_side else 1.0
         size = LONG_ENOUGH / (one if COMPILED else _SLOWER * one)
         fair = -(-self.grid.count // (4 * workers))
         return int(max(1, min(size, fair, LARGEST_CHUNK)))

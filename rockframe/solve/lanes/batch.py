@@ -1,0 +1,290 @@
+"""Many runs, one after the other in lanes: quiet steps together, all else one run at a time.
+
+What a run gives depends on that run alone: not on its lane, on its neighbours or on when a
+lane takes it up.
+"""
+
+from typing import NamedTuple
+
+from rockframe.compiled import (
+    LANES,
+    Bound,
+    Integers,
+    ReadOnlyMatrix,
+    Vector,
+    as_integers,
+    entry,
+    inlined,
+    kernel,
+    lane_of,
+    stretch,
+)
+from rockframe.solve import layout as at
+from rockframe.solve.bookkeeping import FLIGHT
+from rockframe.solve.driver import run_on
+from rockframe.solve.equations import Equations
+from rockframe.solve.guards import WEIGHTS
+from rockframe.solve.lanes import fields
+from rockframe.solve.march import SHORTEST, jumps, length_of
+from rockframe.solve.workspace import (
+    TERMS,
+    EventTable,
+    Output,
+    Pieces,
+    Progress,
+    Tables,
+    Workspace,
+)
+
+
+class Shape(NamedTuple):
+    """Sizes of the rows of a batch."""
+
+    rows: int
+    width: int  # of a row
+    state: int  # place of the state, behind which the rest of a step's start stands
+    half: int  # fields of a step's start
+    numbers: int  # place of a system's numbers
+    number_count: int  # of these
+    memory: int  # number of memory's elements
+    mode_count: int
+    degree_x: int
+    degree_y: int  # or NO_VERTICAL
+
+
+class Batch(NamedTuple):
+    """Runs that are to be made, and what they share."""
+
+    shape: Shape
+    rows: Vector
+    room: Vector  # of the lanes
+    taken: Integers  # the row of each lane, and the next one to take up
+    pieces: Pieces  # of all motions
+    active: Integers
+    contact: Integers
+    longest: Vector  # stable steps in each mode, of each kind of system
+    equations: Equations  # of one of the systems; all are of one class
+    output: Output  # without rows
+    events: EventTable  # room for events, which are not kept
+    w: Workspace  # room for a step of a single run
+
+
+@inlined
+def copy_to_lane(batch: Batch, row: Vector, lane: int, first: int, count: int) -> None:
+    """Copy fields of a row into a lane."""
+    inside = lane_of(batch.room, first, lane)
+    for i in range(count):
+        inside[i] = row[first + i]
+
+
+@inlined
+def copy_to_row(batch: Batch, row: Vector, lane: int, first: int, count: int) -> None:
+    """Copy fields of a lane into a row."""
+    inside = lane_of(batch.room, first, lane)
+    for i in range(count):
+        row[first + i] = inside[i]
+
+
+@inlined
+def note_mode(batch: Batch, row: Vector) -> None:
+    """Note what a run's mode means for its steps."""
+    counters = as_integers(stretch(row, fields.COUNTERS, at.COUNTERS))
+    whole = as_integers(stretch(row, fields.OWN_WHOLE, fields.WHOLES))
+    mode = counters[at.MODE]
+    whole[fields.ACTIVE] = batch.active[mode]
+    whole[fields.FLIES] = int(batch.contact[mode] == FLIGHT)
+    row[fields.OWN + fields.LONGEST] = batch.longest[
+        whole[fields.KIND] * batch.shape.mode_count + mode
+    ]
+
+
+@inlined
+def load(row_of_pieces: int, pieces: ReadOnlyMatrix, first: int, ground: Vector) -> None:
+    """Write the polynomial of one interval into a lane."""
+    for j in range(pieces.shape[1]):
+        ground[first + j] = pieces[row_of_pieces, j]
+
+
+@inlined
+def stand_still(terms: int, first: int, ground: Vector) -> None:
+    """Write the polynomial of ground that stands still; -0 + x is x, whatever the sign of x."""
+    ground[first] = 0.0
+    for j in range(1, terms):
+        ground[first + j] = -0.0
+
+
+@inlined
+def load_ground(batch: Batch, index: int, whole: Integers, ground: Vector) -> None:
+    """Write the ground motion of an interval into a lane."""
+    x, y = batch.pieces.x, batch.pieces.y
+    if index < whole[fields.COUNT_X]:
+        load(whole[fields.FIRST_X] + index, x, 0, ground)
+    else:
+        stand_still(x.shape[1], 0, ground)
+    if index < whole[fields.COUNT_Y]:
+        load(whole[fields.FIRST_Y] + index, y, TERMS, ground)
+    else:
+        stand_still(y.shape[1], TERMS, ground)
+
+
+@inlined
+def enter_interval(batch: Batch, lane: int) -> bool:
+    """Take a lane on to its next interval; give whether only the driver of runs can go on."""
+    room = batch.room
+    clock, controls = lane_of(room, fields.CLOCK, lane), lane_of(room, fields.CONTROLS, lane)
+    own, ground = lane_of(room, fields.OWN, lane), lane_of(room, fields.GROUND, lane)
+    counters = lane_of(as_integers(room), fields.COUNTERS, lane)
+    whole = lane_of(as_integers(room), fields.OWN_WHOLE, lane)
+    length, index = own[fields.LENGTH], counters[at.INTERVAL]
+    intervals = max(whole[fields.COUNT_X], whole[fields.COUNT_Y])
+    begin = index * controls[at.TIME_STEP]
+    if index >= intervals or begin + length >= controls[at.DURATION]:
+        return True  # the run has come to its end
+    index += 1
+    counters[at.INTERVAL] = index
+    clock[at.INTO_INTERVAL] = 0.0
+    own[fields.LENGTH] = length_of(index, intervals, controls)
+    load_ground(batch, index, whole, ground)
+    if jumps(ground[0], clock[at.GROUND_X]) or jumps(ground[TERMS], clock[at.GROUND_Y]):
+        counters[at.STALE] = 1
+        return True
+    return False
+
+
+@kernel
+def run_alone(batch: Batch, row: Vector) -> int:
+    """Run on to the end of the interval, or of the run, by the driver of single runs."""
+    shape, equations, w = batch.shape, batch.equations, batch.w
+    counters = as_integers(stretch(row, fields.COUNTERS, at.COUNTERS))
+    whole = as_integers(stretch(row, fields.OWN_WHOLE, fields.WHOLES))
+    width, slope, guards = len(w.scratch), len(w.powers), len(w.inside)
+    size = equations.coordinate_count
+    state, new = shape.state, shape.state + shape.half
+    behind = shape.numbers + shape.number_count
+    own = Workspace(
+        stretch(row, state, 2 * shape.half),
+        stretch(row, state, width), stretch(row, state + width, slope),
+        stretch(row, state + width + slope, guards),
+        stretch(row, new, width), stretch(row, new + width, slope),
+        stretch(row, new + width + slope, guards),
+        w.stages, w.works, w.reference, stretch(row, fields.LIMITS, WEIGHTS + size), w.scratch,
+        w.scratch_rates, w.inside, w.powers, w.ground, w.energy_room,
+    )  # fmt: skip
+    bound = Equations(
+        equations.switching, equations.slope, equations.guarding, equations.observing,
+        equations.march, equations.stored, stretch(row, shape.numbers, shape.number_count),
+        equations.coordinate_count, equations.variable_count, equations.guard_count,
+    )  # fmt: skip
+    tables = Tables(
+        batch.active, batch.contact,
+        stretch(batch.longest, whole[fields.KIND] * shape.mode_count, shape.mode_count),
+        stretch(row, behind + shape.memory, equations.guard_count + 1),
+    )  # fmt: skip
+    pieces = Pieces(
+        stretch(batch.pieces.x, whole[fields.FIRST_X], whole[fields.COUNT_X]),
+        stretch(batch.pieces.y, whole[fields.FIRST_Y], whole[fields.COUNT_Y]),
+    )
+    progress = Progress(
+        stretch(row, fields.CONTROLS, at.CONTROLS), stretch(row, fields.CLOCK, at.CLOCK), counters
+    )
+    counters[at.LAST_INTERVAL] = counters[at.INTERVAL]
+    result = at.MORE_ROOM
+    while result == at.MORE_ROOM:  # events are counted, and not kept
+        counters[at.EVENTS] = 0
+        result = run_on(
+            bound, tables, stretch(row, behind, shape.memory), pieces, progress, batch.output,
+            batch.events, own,
+        )  # fmt: skip
+    return result
+
+
+@inlined
+def return_to_lane(batch: Batch, row: Vector, lane: int, everything: bool) -> None:
+    """Copy a run that has paused into a lane; of one that has been there what changes."""
+    shape = batch.shape
+    counters = as_integers(stretch(row, fields.COUNTERS, at.COUNTERS))
+    whole = as_integers(stretch(row, fields.OWN_WHOLE, fields.WHOLES))
+    controls = stretch(row, fields.CONTROLS, at.CONTROLS)
+    note_mode(batch, row)
+    intervals = max(whole[fields.COUNT_X], whole[fields.COUNT_Y])
+    row[fields.OWN + fields.LENGTH] = length_of(counters[at.INTERVAL], intervals, controls)
+    if everything:
+        copy_to_lane(batch, row, lane, 0, shape.numbers + shape.number_count)
+    else:
+        copy_to_lane(batch, row, lane, 0, fields.CONTROLS)
+        copy_to_lane(batch, row, lane, fields.OWN, fields.GROUND - fields.OWN)
+        copy_to_lane(batch, row, lane, fields.LIMITS, shape.state - fields.LIMITS + shape.half)
+
+
+@kernel
+def start_next_run(batch: Batch, lane: int) -> None:
+    """Give a lane the next run, after its first interval; or none, if none is left."""
+    shape = batch.shape
+    lane_of(as_integers(batch.room), fields.OWN_WHOLE, lane)[fields.BUSY] = 0
+    while batch.taken[LANES] < shape.rows:
+        k = batch.taken[LANES]
+        batch.taken[LANES] += 1
+        batch.taken[lane] = k
+        row = stretch(batch.rows, k * shape.width, shape.width)
+        result = run_alone(batch, row)
+        if result == at.PAUSED:
+            return_to_lane(batch, row, lane, True)
+            return
+        as_integers(stretch(row, fields.OWN_WHOLE, fields.WHOLES))[fields.STATUS] = result
+
+
+@kernel
+def continue_alone(batch: Batch, lane: int) -> None:
+    """See to a lane that asks: run on alone to the end of the interval, or take up another run."""
+    shape = batch.shape
+    row = stretch(batch.rows, batch.taken[lane] * shape.width, shape.width)
+    copy_to_row(batch, row, lane, 0, shape.state + shape.half)
+    result = run_alone(batch, row)
+    if result == at.PAUSED:
+        return_to_lane(batch, row, lane, False)
+        return
+    as_integers(stretch(row, fields.OWN_WHOLE, fields.WHOLES))[fields.STATUS] = result
+    start_next_run(batch, lane)
+
+
+@inlined
+def is_at_end_of_interval(batch: Batch, lane: int) -> bool:
+    """Whether a lane has a run, and has come to the end of an interval."""
+    room = batch.room
+    own, clock = lane_of(room, fields.OWN, lane), lane_of(room, fields.CLOCK, lane)
+    shortest = SHORTEST * lane_of(room, fields.CONTROLS, lane)[at.DURATION]
+    busy = lane_of(as_integers(room), fields.OWN_WHOLE, lane)[fields.BUSY] == 1
+    return busy and own[fields.LENGTH] - clock[at.INTO_INTERVAL] <= shortest
+
+
+@kernel
+def enter_intervals(batch: Batch) -> int:
+    """Take all lanes into an interval; give how many have a run."""
+    busy = 0
+    for lane in range(LANES):
+        while is_at_end_of_interval(batch, lane) and enter_interval(batch, lane):
+            continue_alone(batch, lane)
+        busy += lane_of(as_integers(batch.room), fields.OWN_WHOLE, lane)[fields.BUSY]
+    return busy
+
+
+@entry
+def advance_batch(batch: Batch, steps: Bound) -> None:
+    """Make all runs of a batch.
+
+    Parameters
+    ----------
+    batch : Batch
+        The runs; their rows are changed in place.
+    steps : Bound
+        :func:`rockframe.solve.lanes.stepping.step_lanes` for the class of their systems.
+    """
+    room, shape = batch.room, batch.shape
+    for lane in range(LANES):
+        start_next_run(batch, lane)
+    while enter_intervals(batch) > 0:
+        if steps.call(LANES, room, shape.degree_x, shape.degree_y, batch.equations.numbers) == 0:
+            continue
+        for lane in range(LANES):
+            if lane_of(as_integers(room), fields.OWN_WHOLE, lane)[fields.ASKS] == 1:
+                continue_alone(batch, lane)

@@ -1,0 +1,76 @@
+"""What is kept of each of many runs: the fields of a row, and of a lane.
+
+A row holds a whole run, one number after the other, so that the driver of single runs works
+on it as it stands. A lane holds the same fields between those of its neighbours.
+"""
+
+from typing import Final, NamedTuple
+
+from rockframe.compiled import inlined
+from rockframe.dynamics.protocol import POWERS, System
+from rockframe.solve import layout as at
+from rockframe.solve.guards import WEIGHTS
+from rockframe.solve.workspace import TERMS
+
+# what lanes need beside the clock, controls and counters of a run
+LENGTH: Final = 0  # of the interval
+LONGEST: Final = 1  # stable step in the mode
+STEP: Final = 2  # length of the step
+PLACE_MIDDLE: Final = 3  # of the step's middle in the interval, from 0 to 1
+PLACE_END: Final = 4
+MIDDLE_X: Final = 5  # ground acceleration there
+MIDDLE_Y: Final = 6
+END_X: Final = 7
+END_Y: Final = 8
+REALS: Final = 9
+
+# the same in whole numbers
+BUSY: Final = 0  # whether the lane has a run
+ACTIVE: Final = 1  # leading coordinates that move
+FLIES: Final = 2
+ASKS: Final = 3  # whether the last step is for the driver of single runs
+FIRST_X: Final = 4  # row of the first interval in the polynomials of all motions
+COUNT_X: Final = 5  # intervals of the motion
+FIRST_Y: Final = 6
+COUNT_Y: Final = 7
+KIND: Final = 8  # which of the tables of longest steps
+STATUS: Final = 9
+WHOLES: Final = 10
+
+CLOCK: Final = 0
+COUNTERS: Final = CLOCK + at.CLOCK
+CONTROLS: Final = COUNTERS + at.COUNTERS
+OWN: Final = CONTROLS + at.CONTROLS
+OWN_WHOLE: Final = OWN + REALS
+GROUND: Final = OWN_WHOLE + WHOLES
+LIMITS: Final = GROUND + 2 * TERMS
+"""Places of what every system has; the rest depends on its size."""
+
+
+class Places(NamedTuple):
+    """Places of fields that depend on the size of a system."""
+
+    state: int  # at the start of a step; both ends of a step stand together
+    first: int
+    before: int
+    new: int
+    last: int
+    after: int
+    end: int  # of both
+    stage: int
+    works: int
+    numbers: int  # of the system; behind them memory and tolerances, which only rows have
+
+
+@inlined
+def places_of(system: System) -> Places:
+    """Give where the fields of a system are."""
+    size, variables, guards = system.coordinates(), system.variables(), system.guards() + 1
+    width, slope = 2 * size + variables, size + variables + POWERS
+    state = LIMITS + WEIGHTS + size
+    half = width + slope + 2 * guards
+    new, end = state + half, state + 2 * half
+    return Places(
+        state, state + width, state + width + slope, new, new + width, new + width + slope, end,
+        end, end + width, end + width + 2,
+    )  # fmt: skip

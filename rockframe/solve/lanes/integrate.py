@@ -1,0 +1,209 @@
+"""From many runs of one kind of system to what became of them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockframe.compiled import COMPILED, LANES, Matrix, bound_in_lanes, numbers_in
+from rockframe.compiled.bound import structure_of
+from rockframe.dynamics.protocol import ContactModel
+from rockframe.signals import Motion
+from rockframe.solve import layout as at
+from rockframe.solve.accuracy import Accuracy
+from rockframe.solve.beginning import Begun
+from rockframe.solve.equations import Equations, equations_of
+from rockframe.solve.integrate import EVENT_ROOM, pieces_of
+from rockframe.solve.lanes import fields
+from rockframe.solve.lanes.batch import Batch, Shape, advance_batch
+from rockframe.solve.lanes.fields import Places, places_of
+from rockframe.solve.lanes.stepping import NO_VERTICAL, step_lanes
+from rockframe.solve.workspace import EventTable, Output, Pieces, Workspace, make_workspace
+
+ROOM: Final = 4_000_000
+"""Numbers of polynomials that a batch may hold: what stays in the caches near a processor."""
+
+Whole = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class LaneRun:
+    """A run that is to be made under some motions.
+
+    Parameters
+    ----------
+    model : ContactModel
+        The equations.
+    begun : Begun
+        Where it starts, with steps of fixed length and no outputs.
+    """
+
+    model: ContactModel
+    begun: Begun
+
+
+@dataclass(frozen=True)
+class Outcomes:
+    """What became of runs, by their number.
+
+    Parameters
+    ----------
+    clock : ndarray, shape (runs, n)
+    counters : ndarray of int64, shape (runs, m)
+        Laid out in :mod:`rockframe.solve.layout`.
+    status : ndarray of int64, shape (runs,)
+        How they ended, :class:`rockframe.solve.layout.Status`.
+    """
+
+    clock: Matrix
+    counters: Whole
+    status: Whole
+
+
+def go_in_lanes(accuracy: Accuracy) -> bool:
+    """Whether runs can be made side by side: compiled, with steps of fixed length."""
+    return COMPILED and accuracy.substeps is not None
+
+
+def kind_of(model: ContactModel) -> Any:
+    """Give what models must have in common to run side by side."""
+    return structure_of(model.system), len(model.memory), len(model.active)
+
+
+def integrate_lanes(
+    runs: Sequence[LaneRun],
+    motions: Sequence[Motion | None],
+    run_of: Whole,
+    motion_of: Whole,
+) -> Outcomes:
+    """Make many runs, whose systems are of one kind.
+
+    Parameters
+    ----------
+    runs : sequence of LaneRun
+        Runs without their motions.
+    motions : sequence of Motion or None
+        Motions.
+    run_of, motion_of : ndarray of int64, shape (cases,)
+        The run and the motion of each case.
+
+    Returns
+    -------
+    Outcomes
+        Of each case what :func:`rockframe.solve.integrate.integrate` gives, to the last bit.
+    """
+    made = _Rows(runs)
+    clock = np.empty((len(run_of), at.CLOCK))
+    counters = np.empty((len(run_of), at.COUNTERS), dtype=np.int64)
+    status = np.empty(len(run_of), dtype=np.int64)
+    for some in _batches(motions, motion_of):
+        used, place = np.unique(motion_of[some], return_inverse=True)
+        rows = made.run([motions[k] for k in used.tolist()], run_of[some], place)
+        wholes = rows.view(np.int64)
+        clock[some] = rows[:, fields.CLOCK : fields.CLOCK + at.CLOCK]
+        counters[some] = wholes[:, fields.COUNTERS : fields.COUNTERS + at.COUNTERS]
+        status[some] = wholes[:, fields.OWN_WHOLE + fields.STATUS]
+    return Outcomes(clock, counters, status)
+
+
+def _batches(motions: Sequence[Motion | None], motion_of: Whole) -> list[slice]:
+    """Cut cases where their motions would not fit into the caches."""
+    sizes = np.array([0 if one is None else one.horizontal.samples.size * 2 for one in motions])
+    found: list[slice] = []
+    begin, seen, total = 0, set[int](), 0
+    for case, k in enumerate(motion_of.tolist()):
+        if k not in seen and total + sizes[k] > ROOM and case > begin:
+            found.append(slice(begin, case))
+            begin, seen, total = case, set(), 0
+        if k not in seen:
+            seen.add(k)
+            total += int(sizes[k])
+    return [*found, slice(begin, len(motion_of))]
+
+
+class _Rows:
+    """Rows of runs, from which those of cases are copied."""
+
+    def __init__(self, runs: Sequence[LaneRun]) -> None:
+        model, first = runs[0].model, runs[0].begun
+        self._model = model
+        self._places = there = places_of(model.system)
+        self._equations = equations_of(model.system, fixed_steps=True)
+        self._steps = bound_in_lanes(step_lanes, model.system)
+        self._count = len(self._equations.numbers)
+        self._memory = len(first.memory)
+        width = there.numbers + self._count + self._memory + len(first.tolerance)
+        self._rows = np.zeros((len(runs), width))
+        self._longest = np.concatenate([one.begun.longest for one in runs])
+        for k, one in enumerate(runs):
+            self._write(k, one)
+
+    def _write(self, k: int, run: LaneRun) -> None:
+        row, begun, there = self._rows[k], run.begun, self._places
+        whole = row.view(np.int64)
+        row[fields.CLOCK : fields.CLOCK + at.CLOCK] = begun.clock
+        whole[fields.COUNTERS : fields.COUNTERS + at.COUNTERS] = begun.counters
+        row[fields.CONTROLS : fields.CONTROLS + at.CONTROLS] = begun.controls
+        row[fields.LIMITS : there.state] = begun.limits
+        row[there.state : there.first] = begun.state
+        behind = there.numbers + self._count
+        row[there.numbers : behind] = numbers_in(run.model.system)
+        row[behind : behind + self._memory] = begun.memory
+        row[behind + self._memory :] = begun.tolerance
+        whole[fields.OWN_WHOLE + fields.BUSY] = 1
+        whole[fields.OWN_WHOLE + fields.KIND] = k
+
+    def run(self, motions: Sequence[Motion | None], run_of: Whole, motion_of: Whole) -> Matrix:
+        """Give the rows of cases after their runs."""
+        rows = self._rows[run_of]
+        own = rows.view(np.int64)[:, fields.OWN_WHOLE : fields.OWN_WHOLE + fields.WHOLES]
+        both = [pieces_of(motion) for motion in motions]
+        x, own[:, fields.FIRST_X], own[:, fields.COUNT_X] = _stacked(
+            [one.x for one in both], motion_of
+        )
+        y, own[:, fields.FIRST_Y], own[:, fields.COUNT_Y] = _stacked(
+            [one.y for one in both], motion_of
+        )
+        there, model = self._places, self._model
+        shape = Shape(
+            rows=len(rows), width=rows.shape[1], state=there.state, half=there.new - there.state,
+            numbers=there.numbers, number_count=self._count, memory=self._memory,
+            mode_count=len(model.active), degree_x=x.shape[1] - 1,
+            degree_y=y.shape[1] - 1 if len(y) else NO_VERTICAL,
+        )  # fmt: skip
+        batch = Batch(
+            shape, rows.reshape(-1), np.zeros((there.numbers + self._count) * LANES),
+            np.zeros(LANES + 1, dtype=np.int64), Pieces(x, y), model.active, model.contact,
+            self._longest, self._equations, *_scratch(self._equations, there, self._memory),
+        )  # fmt: skip
+        advance_batch(batch, self._steps)
+        return rows
+
+
+def _scratch(
+    equations: Equations, there: Places, memory: int
+) -> tuple[Output, EventTable, Workspace]:
+    """Give room for a single run: no outputs, events that are not kept, a step."""
+    width = there.first - there.state
+    output = Output(np.empty((0, width)), np.empty(0, dtype=np.int32), np.empty((0, 2)))
+    events = EventTable(
+        np.empty((EVENT_ROOM, 1 + 2 * width + memory)), np.empty((EVENT_ROOM, 3), dtype=np.int64)
+    )
+    none = np.zeros(width)
+    workspace = make_workspace(equations, none, none.copy(), np.zeros(there.state - fields.LIMITS))
+    return output, events, workspace
+
+
+def _stacked(pieces: Sequence[Matrix], motion_of: Whole) -> tuple[Matrix, Whole, Whole]:
+    """Put polynomials of motions one below the other; give first row and count of each case."""
+    terms = max(one.shape[1] for one in pieces)
+    counts = np.array([len(one) for one in pieces], dtype=np.int64)
+    # -0 + x is x, whatever the sign of x
+    stacked = np.full((int(counts.sum()), terms), -0.0)
+    first = np.concatenate([[0], np.cumsum(counts)])[:-1]
+    for begin, one in zip(first.tolist(), pieces, strict=True):
+        stacked[begin : begin + len(one), : one.shape[1]] = one
+    stacked.setflags(write=False)
+    return stacked, first[motion_of], counts[motion_of]

@@ -1,0 +1,89 @@
+"""The cases of a job: scene, motion and plan of each, made when first asked for."""
+
+from typing import Any
+
+from rockframe.errors import AssemblyError, heard
+from rockframe.motion import GroundMotion
+from rockframe.simulation.plan import Plan, fitted
+from rockframe.studies.sweeps.axes import Changes
+from rockframe.studies.sweeps.motions import scaled
+from rockframe.studies.sweeps.study import Job
+from rockframe.system.assembly import Assembly
+
+
+class CasesOfJob:
+    """Scenes and motions of a job's cases.
+
+    Parameters
+    ----------
+    job : Job
+        The cases.
+    """
+
+    def __init__(self, job: Job) -> None:
+        self.job = job
+        self._of_scene = [
+            (axis, each.tolist()) for axis, each in job.axes if axis.changes is not Changes.MOTION
+        ]
+        self._scale = [
+            (axis.name, each.tolist()) for axis, each in job.axes if axis.changes is Changes.MOTION
+        ]
+        self._scenes: dict[tuple[Any, ...], tuple[Assembly, list[str]]] = {}
+        self._motion: tuple[object, GroundMotion | None] = (None, None)
+
+    def __len__(self) -> int:
+        """Give the number of cases."""
+        return len(self.job.motion_of_case)
+
+    def scene_key(self, case: int) -> tuple[Any, ...]:
+        """Give what cases of one scene have in common."""
+        return tuple(each[case] for _, each in self._of_scene)
+
+    def motion_key(self, case: int) -> tuple[int, float | None]:
+        """Give what cases of one motion have in common, where it is not the scene's."""
+        number = int(self.job.motion_of_case[case])
+        return number, (self._scale[0][1][case] if self._scale else None)
+
+    def scene(self, case: int) -> tuple[Assembly, list[str]]:
+        """Give the scene of a case, and what is warned of when it is assembled."""
+        key = self.scene_key(case)
+        found = self._scenes.get(key)
+        if found is None:
+            values = {axis: each[case] for axis, each in self._of_scene}
+            with heard() as said:
+                found = self._scenes[key] = (self.job.scene.assembled(values), said)
+        return found
+
+    def unscaled(self, case: int) -> GroundMotion | None:
+        """Give the motion of a case before it is scaled; the scene's unless there are others."""
+        motion = self.job.motions[self.job.motion_of_case[case]]
+        return self.scene(case)[0].parts.motion if motion is None else motion
+
+    def motion(self, case: int) -> GroundMotion | None:
+        """Give the motion of a case; None where the ground stands still."""
+        motion = self.unscaled(case)
+        if not self._scale:
+            return motion
+        if motion is None:
+            msg = "there is no motion to scale; give one"
+            raise AssemblyError([msg])
+        ((name, values),) = self._scale
+        key = (id(motion), values[case])
+        if self._motion[0] != key:
+            self._motion = (key, scaled(motion, name, values[case], self.job.period))
+        return self._motion[1]
+
+    def planned(self, case: int) -> tuple[Assembly, list[str], Plan]:
+        """Give the scene of a case, what is warned of when it is assembled, and the plan.
+
+        Raises
+        ------
+        RockframeError
+            The case cannot be assembled, or what it is asked for does not fit.
+        """
+        system, said = self.scene(case)
+        faults: list[str] = []
+        plan = fitted(self.job.arguments, system, self.motion(case), faults)
+        if faults:
+            raise AssemblyError(faults)
+        return system, said, plan

@@ -1,0 +1,164 @@
+"""Cases of a chunk that run side by side; the others are left to run alone."""
+
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+import numpy as np
+
+from rockframe.compiled import COMPILED
+from rockframe.results.outcome import Scales
+from rockframe.signals import Motion
+from rockframe.simulation.beginning import start_of
+from rockframe.simulation.run import nothing_to_say, scales_of
+from rockframe.solve.beginning import begun
+from rockframe.solve.integrate import STILL_INTERVAL
+from rockframe.solve.lanes.integrate import LaneRun, integrate_lanes, kind_of
+from rockframe.solve.layout import Status
+from rockframe.solve.trajectory import Summary, told_by
+from rockframe.studies.sweeps.cases_of_job import CasesOfJob
+from rockframe.system.assembly import Assembly
+
+TOGETHER: Final = 512
+"""Cases that are prepared together, so that their motions do not fill the memory."""
+
+
+@dataclass(frozen=True)
+class Finished:
+    """A case that has run, and of which there is nothing to be warned.
+
+    Parameters
+    ----------
+    case : int
+        Its number in the job.
+    summary : Summary
+        What became of it.
+    scales : Scales
+        What that is made relative to.
+    said : list of str
+        What was warned of when its scene was assembled.
+    """
+
+    case: int
+    summary: Summary
+    scales: Scales
+    said: list[str]
+
+
+@dataclass(frozen=True)
+class _Scene:
+    """A scene under motions of one length and time step."""
+
+    system: Assembly
+    said: list[str]
+    scales: Scales
+    run: LaneRun
+    kind: Any
+
+
+@dataclass(eq=False)
+class _Group:
+    """Cases whose systems are of one kind."""
+
+    scenes: list[_Scene] = field(default_factory=list)
+    motions: list[Motion | None] = field(default_factory=list)
+    cases: list[int] = field(default_factory=list)
+    scene_of: list[int] = field(default_factory=list)
+    motion_of: list[int] = field(default_factory=list)
+    _scene_places: dict[int, int] = field(default_factory=dict)
+    _motion_places: dict[Any, int] = field(default_factory=dict)
+
+    def add(self, case: int, scene: _Scene, key: Any, motion: Callable[[], Motion | None]) -> None:
+        """Take a case up."""
+        place = self._scene_places.setdefault(id(scene), len(self.scenes))
+        if place == len(self.scenes):
+            self.scenes.append(scene)
+        if key not in self._motion_places:
+            found = motion()  # which may fail
+            self._motion_places[key] = len(self.motions)
+            self.motions.append(found)
+        self.cases.append(case)
+        self.scene_of.append(place)
+        self.motion_of.append(self._motion_places[key])
+
+
+def run_side_by_side(cases: CasesOfJob, stopped: Callable[[], bool]) -> Iterator[Finished]:
+    """Run what can run side by side.
+
+    Parameters
+    ----------
+    cases : CasesOfJob
+        All cases of a job.
+    stopped : callable
+        Whether to leave off; asked now and then.
+
+    Yields
+    ------
+    Finished
+        Cases in any order; those that are missing are to run alone.
+    """
+    if not (cases.job.side_by_side and COMPILED):
+        return
+    scenes: dict[Any, _Scene | None] = {}
+    for begin in range(0, len(cases), TOGETHER):
+        groups: dict[Any, _Group] = {}
+        for case in range(begin, min(begin + TOGETHER, len(cases))):
+            with suppress(Exception):  # which is told of where the case runs alone
+                _take_up(cases, case, scenes, groups)
+        for group in groups.values():
+            if stopped():
+                return
+            yield from _run(group)
+
+
+def _take_up(
+    cases: CasesOfJob, case: int, scenes: dict[Any, _Scene | None], groups: dict[Any, _Group]
+) -> None:
+    unscaled = cases.unscaled(case)
+    length = None if unscaled is None else (unscaled.si.time_step, unscaled.si.duration)
+    vertical = unscaled is not None and unscaled.si.vertical is not None
+    key = (cases.scene_key(case), length, vertical)
+    if key not in scenes:
+        scenes[key] = None  # unless it can be prepared
+        scenes[key] = _prepared(cases, case, vertical)
+    scene = scenes[key]
+    if scene is None:
+        return
+
+    def motion() -> Motion | None:
+        found = cases.motion(case)
+        return None if found is None else found.si
+
+    moved = (id(unscaled), cases.motion_key(case)[1])
+    groups.setdefault(scene.kind, _Group()).add(case, scene, moved, motion)
+
+
+def _prepared(cases: CasesOfJob, case: int, vertical: bool) -> _Scene | None:
+    """Prepare a scene for lanes; None if its runs need a closer look."""
+    system, said, plan = cases.planned(case)
+    if not system.options.slope.level or (vertical and system.setting.settlement is None):
+        return None  # the ground is another one for each scene; or a block may leave it
+    interval = STILL_INTERVAL if plan.motion is None else plan.motion.si.time_step
+    begin = begun(
+        system.model, start_of(plan.initial), plan.accuracy, interval=interval,
+        duration=plan.duration, output_step=None, stop_at_overturning=plan.stop_at_overturning,
+    )  # fmt: skip
+    run = LaneRun(system.model, begin)
+    return _Scene(system, said, scales_of(system), run, kind_of(system.model))
+
+
+def _run(group: _Group) -> Iterator[Finished]:
+    found = integrate_lanes(
+        [scene.run for scene in group.scenes], group.motions,
+        np.array(group.scene_of), np.array(group.motion_of),
+    )  # fmt: skip
+    for k, case in enumerate(group.cases):
+        scene = group.scenes[group.scene_of[k]]
+        summary = Summary(
+            status=Status(int(found.status[k])),
+            substeps=scene.run.begun.substeps,
+            **told_by(found.clock[k], found.counters[k]),
+        )
+        if nothing_to_say(summary):
+            yield Finished(case, summary, scene.scales, scene.said)

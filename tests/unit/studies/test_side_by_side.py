@@ -1,0 +1,150 @@
+"""Cases that run side by side in lanes give the numbers of cases that run alone, bit for bit."""
+
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import rockframe as rf
+from rockframe.compiled import COMPILED
+from rockframe.studies.sweeps import study
+
+pytestmark = [
+    pytest.mark.skipif(not COMPILED, reason="lanes are compiled"),
+    pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning"),
+]
+
+BLOCK = rf.Block(width="0.8 m", height="3.6 m", mass="4 t")
+PADS = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
+CAP = rf.CushionCap(height="0.5 m", mass="2 t", width="1.2 m")
+SOIL = rf.WinklerSoil(stiffness="6 MPa", damping_ratio=0.2)
+SLENDER = {"slenderness": [1.5, 3.0, 6.0], "radius": (["0.7 m", "4 m"])}
+
+
+def record(seed, count=260, step="0.02 s", *, vertical=False):
+    rng = np.random.default_rng(seed)
+    x, y = (np.convolve(rng.normal(size=count), np.ones(4) / 4, "same") for _ in range(2))
+    upwards = (4 * y, "m/s^2") if vertical else None
+    return rf.GroundMotion.from_arrays((9 * x, "m/s^2"), step, vertical=upwards, name=f"{seed}")
+
+
+MOTIONS = [
+    record(1),
+    record(2, vertical=True),
+    record(3, count=150, step="0.01 s"),
+    rf.GroundMotion.sine_pulse("-6 m/s^2", "1.5 Hz"),
+    rf.GroundMotion.double_impulse("0.8 m/s", "0.6 s"),
+]
+
+
+def on(*parts, **options):
+    def scene(slenderness, radius):
+        block = rf.Block.from_size(radius=radius, slenderness=slenderness, mass="4 t")
+        return rf.System(block, *parts, **options)
+
+    return scene
+
+
+def both(monkeypatch, *arguments, **options):
+    """Run a sweep in lanes, and again alone."""
+    found = []
+    for fewest in (1, 10**9):
+        monkeypatch.setattr(study, "FEWEST_IN_LANES", fewest)
+        found.append(rf.sweep(*arguments, accuracy="fast", **options))
+    lanes, alone = found
+    assert lanes.attrs["driver"].startswith("cases side by side")
+    assert alone.attrs["driver"] == "each case alone"
+    return lanes, alone
+
+
+def assert_same_bits(lanes, alone):
+    for name, variable in alone.variables.items():
+        xr.testing.assert_identical(lanes.variables[name], variable)
+        if variable.dtype.kind == "f":
+            assert lanes[name].values.tobytes() == variable.values.tobytes(), name
+
+
+@pytest.mark.parametrize(
+    ("parts", "options"),
+    [
+        ((), {}),
+        ((PADS,), {}),
+        ((PADS,), {"restraint": "leading-corner"}),
+        ((PADS,), {"rotation": "small"}),
+        ((SOIL,), {}),
+        ((PADS, CAP, SOIL), {}),
+    ],
+    ids=lambda given: "-".join(str(one).split("(")[0] for one in given) or "none",
+)
+def test_lanes_give_what_single_runs_give(monkeypatch, parts, options):
+    lanes, alone = both(
+        monkeypatch, on(*parts, **options), MOTIONS, axes=SLENDER, scale=[0.3, 0.8, 1.5],
+        free_vibration="0.7 s",
+    )  # fmt: skip
+    assert_same_bits(lanes, alone)
+    ran = alone.peak_rotation.notnull()
+    assert ran.mean() > 0.3  # wide blocks on narrow caps are refused
+    assert 0 < (alone.overturned == 1).sum() < ran.sum()
+    assert (alone.impact_count > 0).any() or SOIL in parts
+
+
+@pytest.mark.parametrize("course", ["stop", "continue"])
+def test_lanes_go_on_after_overturning(monkeypatch, course):
+    system = rf.System(BLOCK, PADS, gravity="9.81 m/s^2")
+    lanes, alone = both(
+        monkeypatch, system, MOTIONS[:2], scale=np.linspace(0.2, 3.0, 7), damping_ratio=[0.0, 0.3],
+        overturning=course, initial=rf.InitialState(rotation="0.03 rad"),
+    )  # fmt: skip
+    assert_same_bits(lanes, alone)
+    assert (alone.status == (1 if course == "stop" else 2)).any()
+
+
+def test_cases_that_fail_are_refused_with_their_reason(monkeypatch):
+    system = rf.System(rf.Block(width="1.2 m", height="6 m", mass="20 t"), PADS)
+    lanes, alone = both(
+        monkeypatch, system, MOTIONS[:1], height=["0.5 m", "1.5 m", "6 m"], damping_ratio=[0.1, 50]
+    )
+    assert_same_bits(lanes, alone)
+    assert (alone.status == 6).any()
+    assert (alone.status == 0).any()
+
+
+def test_still_ground_and_inclined_bases(monkeypatch):
+    lean = rf.InitialState(rotation="0.05 rad")
+    lanes, alone = both(
+        monkeypatch, rf.System(BLOCK, PADS), initial=lean, duration="2 s", width=["0.7 m", "0.8 m"]
+    )
+    assert_same_bits(lanes, alone)
+    system = rf.System(BLOCK, PADS)
+    lanes, alone = both(
+        monkeypatch, system, MOTIONS[0], inclination=["0 deg", "2 deg"], scale=[0.3, 0.6]
+    )
+    assert_same_bits(lanes, alone)
+
+
+@pytest.mark.parametrize("chunk", [1, 7, 1000])
+def test_neighbours_chunks_and_executors_change_nothing(monkeypatch, chunk):
+    monkeypatch.setattr(study, "FEWEST_IN_LANES", 1)
+    system = rf.System(BLOCK, PADS)
+    axes = {"scale": np.linspace(0.2, 2.0, 12), "damping_ratio": [0.05, 0.2]}
+
+    def swept(**options):
+        return rf.sweep(system, MOTIONS[:3], axes=axes, accuracy="fast", **options)
+
+    whole = swept(chunk=1000)
+    with ThreadPoolExecutor(8) as pool:
+        assert_same_bits(swept(chunk=chunk, executor=pool), whole)
+    if chunk == 7:
+        with ProcessPoolExecutor(2) as pool:
+            assert_same_bits(swept(chunk=chunk, executor=pool), whole)
+    backwards = {"scale": axes["scale"][::-1], "damping_ratio": [0.2, 0.05]}
+    other = rf.sweep(system, MOTIONS[:3], axes=backwards, accuracy="fast", chunk=chunk)
+    assert_same_bits(other.isel(scale=slice(None, None, -1), damping_ratio=[1, 0]), whole)
+
+
+def test_small_sweeps_and_other_levels_run_alone():
+    system = rf.System(BLOCK, PADS)
+    few = rf.sweep(system, MOTIONS[0], scale=[0.5, 1.0], accuracy="fast")
+    finer = rf.sweep(system, MOTIONS[3], scale=np.linspace(0.1, 0.2, study.FEWEST_IN_LANES))
+    assert few.attrs["driver"] == finer.attrs["driver"] == "each case alone"
