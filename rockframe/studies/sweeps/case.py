@@ -122,13 +122,13 @@ def case(
     if not {"axes_json", "motions_json", "run_json", "study_sha256"} <= set(attributes):
         msg = f"{_OWNER}: found a dataset that is no sweep; expected the result of rf.sweep"
         raise SchemaError(msg)
-    known = _studies.get(str(attributes["study_sha256"]))
+    known = remembered(attributes)
     place = _place(dataset, labels)
     values = _values(dataset, attributes, place)
     made = _scene(scene, attributes, known)
     names: list[str] = json.loads(attributes["motion_names"])
     number = names.index(_value(dataset, MOTION, place))
-    motion = _motion(motions, number, attributes, known, kept)
+    motion = motion_of(motions, number, attributes, known, kept)
     of_scene = {axis: one for axis, one in values.items() if axis.changes is not Changes.MOTION}
     system = _system(made, of_scene)
     if motion is None:
@@ -137,6 +137,11 @@ def case(
         if axis.changes is Changes.MOTION and motion is not None:
             motion = scaled(motion, axis.name, value, attributes.get("spectral_period"))
     return Case(system, motion, _options(json.loads(attributes["run_json"])))
+
+
+def remembered(attributes: Mapping[str, Any]) -> Study | None:
+    """Give the study that a dataset is of, if this process has made it."""
+    return _studies.get(str(attributes["study_sha256"]))
 
 
 def remember(study: Study) -> None:
@@ -232,13 +237,38 @@ def _of_assembly(assembly: Assembly) -> System:
     return System(*assembly.parts.structural(), **options)
 
 
-def _motion(
+def motion_of(
     given: object,
     number: int,
     attributes: Mapping[str, Any],
     known: Study | None,
-    kept: Store | None,
+    kept: Store | None = None,
 ) -> GroundMotion | None:
+    """Give a motion of a sweep as it was before it was scaled.
+
+    Parameters
+    ----------
+    given : GroundMotion, iterable or mapping of them, optional
+        Records among which it may be.
+    number : int
+        Of the motion.
+    attributes : mapping
+        Of the sweep.
+    known : Study or None
+        The study, if this process has made it.
+    kept : Store or None
+        Where it is kept.
+
+    Returns
+    -------
+    GroundMotion or None
+        None where the ground stands still, or the scene has motions of its own.
+
+    Raises
+    ------
+    StudyError
+        It is a record, and nothing here has it.
+    """
     described = json.loads(attributes["motions_json"])[number]
     if described is None:
         return None
