@@ -52,8 +52,18 @@ if TYPE_CHECKING:
     from rockframe.studies import Case as Case
     from rockframe.studies import case as case
     from rockframe.studies import critical_scale as critical_scale
+    from rockframe.studies import ensemble_statistics as ensemble_statistics
+    from rockframe.studies import fragility as fragility
+    from rockframe.studies import fragility_of_counts as fragility_of_counts
+    from rockframe.studies import incremental_dynamic_analysis as incremental_dynamic_analysis
     from rockframe.studies import open_study as open_study
+    from rockframe.studies import overturning_map as overturning_map
+    from rockframe.studies import overturning_spectrum as overturning_spectrum
+    from rockframe.studies import probability_of_overturning as probability_of_overturning
+    from rockframe.studies import rocking_spectrum as rocking_spectrum
     from rockframe.studies import sweep as sweep
+    from rockframe.studies import to_openquake as to_openquake
+    from rockframe.studies import to_pelicun as to_pelicun
     from rockframe.version import __version__ as __version__
 
 # Every scene needs these two. They are most of what has to be loaded: here, so that the
@@ -102,7 +112,23 @@ _HOMES = {
     "rockframe.simulation.registration": ("register",),
     "rockframe.simulation.system": ("System",),
     "rockframe.solve.accuracy": ("Accuracy",),
-    "rockframe.studies": ("Case", "case", "critical_scale", "open_study", "sweep"),
+    "rockframe.studies": (
+        "Case",
+        "case",
+        "critical_scale",
+        "ensemble_statistics",
+        "fragility",
+        "fragility_of_counts",
+        "incremental_dynamic_analysis",
+        "open_study",
+        "overturning_map",
+        "overturning_spectrum",
+        "probability_of_overturning",
+        "rocking_spectrum",
+        "sweep",
+        "to_openquake",
+        "to_pelicun",
+    ),
     "rockframe.version": ("__version__",),
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
@@ -139,19 +165,29 @@ __all__ = [
     "case",
     "concat",
     "critical_scale",
+    "ensemble_statistics",
     "errors",
     "extension",
     "fit_free_decay",
     "fourier_spectrum",
+    "fragility",
+    "fragility_of_counts",
+    "incremental_dynamic_analysis",
     "intensity_measures",
     "model_ladder",
     "open_study",
+    "overturning_map",
+    "overturning_spectrum",
     "plot",
+    "probability_of_overturning",
     "recommend",
     "register",
     "response_spectrum",
+    "rocking_spectrum",
     "sweep",
     "table",
+    "to_openquake",
+    "to_pelicun",
     "tradeoff",
     "velocity_and_displacement",
 ]

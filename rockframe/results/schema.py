@@ -2,6 +2,14 @@
 
 from typing import Final
 
+from rockframe.results.variables.analyses import (
+    DYNAMIC_ANALYSIS,
+    ENSEMBLE,
+    FRAGILITY,
+    OVERTURNING_MAP,
+    PROBABILITY,
+    SPECTRA,
+)
 from rockframe.results.variables.comparison import COMPARISON
 from rockframe.results.variables.identification import FREE_DECAY
 from rockframe.results.variables.motions import MEASURES
@@ -40,6 +48,12 @@ _TABLES: Final = (
     COMPARISON,
     CRITICAL_SCALE,
     SWEEP,
+    DYNAMIC_ANALYSIS,
+    FRAGILITY,
+    OVERTURNING_MAP,
+    SPECTRA,
+    PROBABILITY,
+    ENSEMBLE,
     FREE_DECAY,
 )
 
@@ -57,6 +71,14 @@ COORDINATES: Final = (
     CASE,
     MOTION,
     MESSAGE,
+    "limit_state",
+    "rotation_limit",
+    "coefficient",
+    "amplitude",
+    "rocking_period",
+    "slenderness",
+    "parameter",
+    "quantile",
 )
 """Variables that label a dimension."""
 

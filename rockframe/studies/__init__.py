@@ -1,10 +1,33 @@
 """Studies: many runs that answer one question about a system."""
 
 from rockframe.studies.critical_scale import critical_scale
+from rockframe.studies.dynamic_analysis import incremental_dynamic_analysis
+from rockframe.studies.ensemble import ensemble_statistics
+from rockframe.studies.fragility.exports import to_openquake, to_pelicun
+from rockframe.studies.fragility.fragility import fragility, fragility_of_counts
+from rockframe.studies.overturning_map import overturning_map
+from rockframe.studies.probability import probability_of_overturning
+from rockframe.studies.spectra import overturning_spectrum, rocking_spectrum
 from rockframe.studies.sweeps.case import Case, case
 from rockframe.studies.sweeps.sweep import open_study, sweep
 
-__all__ = ["Case", "case", "critical_scale", "open_study", "sweep"]
+__all__ = [
+    "Case",
+    "case",
+    "critical_scale",
+    "ensemble_statistics",
+    "fragility",
+    "fragility_of_counts",
+    "incremental_dynamic_analysis",
+    "open_study",
+    "overturning_map",
+    "overturning_spectrum",
+    "probability_of_overturning",
+    "rocking_spectrum",
+    "sweep",
+    "to_openquake",
+    "to_pelicun",
+]
 
 
 def __dir__() -> list[str]:

@@ -176,6 +176,19 @@ DIMENSIONS = {
     "trial_count": (0, 0, 0, 0),
     "case": (0, 0, 0, 0),
     "message_number": (0, 0, 0, 0),
+    "rotation_limit": (0, 0, 0, 0),
+    "capacity_scale": (0, 0, 0, 0),
+    "dispersion": (0, 0, 0, 0),
+    "exceedance_probability": (0, 0, 0, 0),
+    "velocity_to_acceleration_ratio": (0, 0, 1, 0),
+    "amplitude": (0, 1, -2, 0),
+    "amplitude_below": (0, 1, -2, 0),
+    "amplitude_above": (0, 1, -2, 0),
+    "impacts_before_overturning": (0, 0, 0, 0),
+    "rocking_period": (0, 0, 1, 0),
+    "slenderness": (0, 0, 0, 0),
+    "overturning_probability": (0, 0, 0, 0),
+    "cumulative_probability": (0, 0, 0, 0),
 }
 DIMENSION_NAMES = {
     "time",
@@ -195,6 +208,15 @@ DIMENSION_NAMES = {
     "case",
     "motion",
     "message",
+    "limit_state",
+    "stripe",
+    "coefficient",
+    "boundary",
+    "amplitude",
+    "rocking_period",
+    "slenderness",
+    "rank",
+    "quantile",
 }
 PLAIN = pint.UnitRegistry(cache_folder=None)
 FLAGS = {
@@ -206,6 +228,7 @@ FLAGS = {
     "status",
     "outcome",
     "fit_status",
+    "fragility_status",
 }
 
 WITH_UNIT = [row for row in SCHEMA.values() if row.unit is not None]

@@ -1,0 +1,251 @@
+"""Variables of analyses: dynamic analysis, fragility, maps, spectra and probabilities."""
+
+from enum import IntEnum
+from typing import Final
+
+from rockframe.results.variables.identification import PARAMETER
+from rockframe.results.variables.variable import FLIP, Variable, count, flag
+from rockframe.units import Unit
+
+LIMIT_STATE: Final = ("limit_state",)
+STRIPE: Final = ("stripe",)
+BOUNDARY: Final = ("boundary",)
+COEFFICIENT: Final = ("coefficient",)
+RANK: Final = ("rank",)
+QUANTILE: Final = ("quantile",)
+
+
+class FragilityStatus(IntEnum):
+    """Whether a lognormal capacity fits the trials best, or why none does."""
+
+    FITTED = 0
+    NONE_EXCEEDED = 1
+    ALL_EXCEEDED = 2
+    SEPARATED = 3
+    NOT_RISING = 4
+    ONE_INTENSITY = 5
+    NO_TRIALS = 6
+
+
+DYNAMIC_ANALYSIS: Final = (
+    Variable("limit_state", LIMIT_STATE, None, "limit state", dtype="str"),
+    Variable(
+        "rotation_limit",
+        LIMIT_STATE,
+        Unit.ONE,
+        "peak rotation over the overturning angle that exceeds the limit state, 0 for uplift",
+    ),
+    Variable(
+        "exceeds_above",
+        FLIP,
+        None,
+        "whether the limit state is exceeded after the flip, and not before it",
+        dtype="bool",
+    ),
+    count("flip_count", "number of changes of the verdict that were found"),
+    Variable(
+        "capacity_scale",
+        (),
+        Unit.ONE,
+        "least scale of the motion that was found to exceed the limit state, NaN if none",
+    ),
+)
+"""Of motions that are scaled until limit states are exceeded."""
+
+FRAGILITY: Final = (
+    flag("fragility_status", (), "whether a lognormal capacity fits the trials", FragilityStatus),
+    Variable(
+        "median_intensity",
+        (),
+        Unit.ONE,
+        "median of the capacity, in the unit of the intensity",
+    ),
+    Variable("median_intensity_lower_bound", (), Unit.ONE, "lower confidence bound of the median"),
+    Variable("median_intensity_upper_bound", (), Unit.ONE, "upper confidence bound of the median"),
+    Variable("log_median_error", (), Unit.ONE, "standard error of the logarithm of the median"),
+    Variable("dispersion", (), Unit.ONE, "standard deviation of the logarithm of the capacity"),
+    Variable("dispersion_lower_bound", (), Unit.ONE, "lower confidence bound of the dispersion"),
+    Variable("dispersion_upper_bound", (), Unit.ONE, "upper confidence bound of the dispersion"),
+    Variable("dispersion_error", (), Unit.ONE, "standard error of the dispersion"),
+    Variable(
+        "exceedance_probability", (), Unit.ONE, "probability that the limit state is exceeded"
+    ),
+    Variable(
+        "exceedance_probability_lower_bound",
+        (),
+        Unit.ONE,
+        "lower confidence bound of the probability",
+    ),
+    Variable(
+        "exceedance_probability_upper_bound",
+        (),
+        Unit.ONE,
+        "upper confidence bound of the probability",
+    ),
+    Variable(
+        "coefficient", COEFFICIENT, None, "what a coefficient of the fit stands before", dtype="str"
+    ),
+    Variable(
+        "fitted_coefficient",
+        COEFFICIENT,
+        Unit.ONE,
+        "coefficient before the logarithm of an intensity in SI units, or the intercept",
+    ),
+    Variable(
+        "fitted_coefficient_error", COEFFICIENT, Unit.ONE, "standard error of the coefficient"
+    ),
+    # what was counted
+    Variable(
+        "stripe_intensity", STRIPE, Unit.ONE, "intensity of a group of trials, in its own unit"
+    ),
+    Variable("stripe_trials", STRIPE, Unit.ONE, "number of trials in the group", dtype="int64"),
+    Variable(
+        "stripe_exceedances",
+        STRIPE,
+        Unit.ONE,
+        "number of trials in the group that exceeded the limit state",
+        dtype="int64",
+    ),
+    Variable("stripe_fraction", STRIPE, Unit.ONE, "share of the group that exceeded"),
+    Variable(
+        "stripe_fraction_lower_bound", STRIPE, Unit.ONE, "lower confidence bound of the share"
+    ),
+    Variable(
+        "stripe_fraction_upper_bound", STRIPE, Unit.ONE, "upper confidence bound of the share"
+    ),
+    Variable(
+        "velocity_to_acceleration_ratio",
+        (),
+        Unit.SECOND,
+        "peak ground velocity over peak ground acceleration",
+    ),
+)
+"""Of lognormal capacities."""
+
+OVERTURNING_MAP: Final = (
+    Variable(
+        "amplitude",
+        ("amplitude",),
+        Unit.METRE_PER_SECOND_SQUARED,
+        "amplitude of the ground acceleration",
+    ),
+    Variable(
+        "impacts_before_overturning",
+        (),
+        Unit.ONE,
+        "number of impacts before the block overturns, NaN if it does not",
+    ),
+    Variable(
+        "amplitude_below",
+        BOUNDARY,
+        Unit.METRE_PER_SECOND_SQUARED,
+        "greatest amplitude tried below the boundary",
+    ),
+    Variable(
+        "amplitude_above",
+        BOUNDARY,
+        Unit.METRE_PER_SECOND_SQUARED,
+        "least amplitude tried above the boundary",
+    ),
+    Variable(
+        "impacts_below",
+        BOUNDARY,
+        Unit.ONE,
+        "number of impacts before overturning below the boundary, NaN if the block stands",
+    ),
+    Variable(
+        "impacts_above",
+        BOUNDARY,
+        Unit.ONE,
+        "number of impacts before overturning above the boundary, NaN if the block stands",
+    ),
+    Variable("boundary_count", (), Unit.ONE, "number of boundaries", dtype="int64"),
+)
+"""Of pulses of any amplitude and frequency."""
+
+SPECTRA: Final = (
+    Variable(
+        "rocking_period",
+        ("rocking_period",),
+        Unit.SECOND,
+        "2 pi over the frequency parameter of the block",
+    ),
+    Variable("slenderness", ("slenderness",), Unit.ONE, "height over width of the block"),
+    Variable(
+        "capacity_intensity",
+        (),
+        Unit.ONE,
+        "least intensity of the motion that was found to overturn the block, in its own unit",
+    ),
+)
+"""Of blocks of all sizes."""
+
+PROBABILITY: Final = (
+    Variable("overturning_probability", (), Unit.ONE, "share of the cases that overturned"),
+    Variable(
+        "overturning_probability_lower_bound", (), Unit.ONE, "lower confidence bound of that share"
+    ),
+    Variable(
+        "overturning_probability_upper_bound", (), Unit.ONE, "upper confidence bound of that share"
+    ),
+    count("verdict_count", "number of cases with a verdict"),
+    Variable("parameter", PARAMETER, None, "what is spread", dtype="str"),
+    Variable(
+        "first_order_index",
+        PARAMETER,
+        Unit.ONE,
+        "share of the verdict's variance that knowing the parameter takes away",
+    ),
+    Variable(
+        "verdict_distance",
+        PARAMETER,
+        Unit.ONE,
+        "greatest difference of the parameter's distributions in cases that overturn and stand",
+    ),
+    Variable(
+        "chance_probability",
+        PARAMETER,
+        Unit.ONE,
+        "probability of shares as uneven if the parameter did not matter",
+    ),
+)
+"""Of overturning, where parameters are spread."""
+
+ENSEMBLE: Final = (
+    Variable("ordered_value", RANK, Unit.ONE, "value of the ensemble, in order and its own unit"),
+    Variable("cumulative_probability", RANK, Unit.ONE, "share of the ensemble up to the value"),
+    Variable(
+        "cumulative_probability_lower_bound",
+        RANK,
+        Unit.ONE,
+        "lower confidence bound of the distribution at the value",
+    ),
+    Variable(
+        "cumulative_probability_upper_bound",
+        RANK,
+        Unit.ONE,
+        "upper confidence bound of the distribution at the value",
+    ),
+    Variable(
+        "simultaneous_lower_bound",
+        RANK,
+        Unit.ONE,
+        "lower bound of a band that holds the whole distribution",
+    ),
+    Variable(
+        "simultaneous_upper_bound",
+        RANK,
+        Unit.ONE,
+        "upper bound of a band that holds the whole distribution",
+    ),
+    Variable("quantile", QUANTILE, Unit.ONE, "share of the distribution below"),
+    Variable("quantile_value", QUANTILE, Unit.ONE, "value below which that share lies"),
+    Variable(
+        "quantile_value_lower_bound", QUANTILE, Unit.ONE, "lower confidence bound of the quantile"
+    ),
+    Variable(
+        "quantile_value_upper_bound", QUANTILE, Unit.ONE, "upper confidence bound of the quantile"
+    ),
+    count("member_count", "number of members of the ensemble"),
+)
+"""Of ensembles."""

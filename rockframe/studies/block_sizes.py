@@ -1,0 +1,107 @@
+"""Blocks of one shape and all sizes, by their rocking period and slenderness."""
+
+import math
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+import xarray as xr
+
+from rockframe.components import Block
+from rockframe.errors import ComponentError, shown
+from rockframe.results.dataset import build_dataset
+from rockframe.results.outcome import Array
+from rockframe.results.variables.studies import CASE
+from rockframe.studies.sweeps.axes import numbers_of
+from rockframe.units import LENGTH, PERIOD, Measure, Unit
+
+if TYPE_CHECKING:
+    from rockframe.simulation.system import System
+
+SIZE: Final = ("slenderness", "rocking_period")
+_SLENDER: Final = Measure("a pure ratio", Unit.ONE, "4")
+
+
+class BlockSizes:
+    """A system whose block has other sizes.
+
+    Parameters
+    ----------
+    system : System
+        A symmetric block alone on its base. Its shape factor stays, and so does its mass.
+    periods : values with a unit
+        2 pi over the frequency parameter of the block [s].
+    slenderness : values, optional
+        Height over width; that of the block unless given [1].
+    owner : str
+        Function, for messages.
+
+    Raises
+    ------
+    UnitsError
+        Values have a wrong unit, or none.
+    ComponentError
+        Values are not above zero; or the system has more than a block and its base, or a block
+        that width and height do not describe.
+    """
+
+    def __init__(self, system: "System", periods: Any, slenderness: Any, *, owner: str) -> None:
+        si = _block(system, owner).si
+        self.periods = _above_zero(periods, PERIOD, "periods", owner)
+        ratio = si.height / si.width
+        given = [ratio] if slenderness is None else slenderness
+        self.slenderness = _above_zero(given, _SLENDER, "slenderness", owner)
+        # omega^2 = mu g / ((1 + mu) R0), Eq. (6)
+        scale = si.frequency_at(system.gravity_si) ** 2 * si.radius
+        radius = scale * (0.5 * self.periods / math.pi) ** 2
+        angle = np.arctan(1.0 / self.slenderness)
+        self.width = 2.0 * np.sin(angle)[:, None] * radius
+        self.height = 2.0 * np.cos(angle)[:, None] * radius
+
+    @property
+    def columns(self) -> dict[str, tuple[Array, str]]:
+        """Sizes, in rows of a table: slenderness by slenderness."""
+        unit = str(LENGTH.unit)
+        return {"width": (self.width.ravel(), unit), "height": (self.height.ravel(), unit)}
+
+    def arranged(self, runs: xr.Dataset) -> xr.Dataset:
+        """Give what runs over the rows of the table the dimensions of the sizes."""
+        shape = {
+            "slenderness": len(self.slenderness),
+            "rocking_period": len(self.periods),
+        }
+        found: dict[str, xr.Variable] = {}
+        for name, one in runs.variables.items():
+            if name != CASE:
+                found[str(name)] = one.unstack({CASE: shape}) if CASE in one.dims else one
+                dims = [dim for dim in SIZE if dim in found[str(name)].dims]
+                others = [dim for dim in found[str(name)].dims if dim not in dims]
+                found[str(name)] = found[str(name)].transpose(*dims, *others)
+        labels = build_dataset(
+            {"slenderness": self.slenderness, "rocking_period": self.periods}, {}
+        )
+        coordinates = [name for name in runs.coords if name != CASE]
+        made = xr.Dataset(found, attrs=runs.attrs).set_coords(coordinates)
+        return made.assign_coords(labels.coords)
+
+
+def _block(system: "System", owner: str) -> Block:
+    block = system.parts.block
+    fault = ""
+    if block is None or type(block) is not Block:
+        fault = f"a {type(block).__name__}"
+    elif block.si.eccentricity != 0.0 or block.si.centre_height != 0.5 * block.si.height:
+        fault = "a block whose centre of mass is not in its middle"
+    elif system.parts.cap is not None:
+        fault = "a scene with a cap"
+    if fault or block is None:
+        msg = f"{owner}: system needs a block of width and height on its base, got {fault}"
+        raise ComponentError(msg)
+    return block
+
+
+def _above_zero(given: Any, measure: Measure, name: str, owner: str) -> Array:
+    values = np.unique(numbers_of(given, measure, name))
+    if not len(values) or values[0] <= 0.0:
+        msg = f"{owner}: {name} must be above zero, got {shown(given)}"
+        raise ComponentError(msg)
+    return values

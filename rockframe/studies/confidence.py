@@ -1,0 +1,45 @@
+"""Confidence of statements about chances: the level that is asked for, and exact bounds."""
+
+from typing import Final
+
+import numpy as np
+
+from rockframe.results.outcome import Array, Generic
+from rockframe.units import Condition, to_ratio
+
+_LEVEL: Final = Condition("from 0.5 to 0.9999", lambda value: 0.5 <= value <= 0.9999)
+
+
+def read_level(given: object, *, owner: str) -> float:
+    """Read the argument ``confidence``.
+
+    Raises
+    ------
+    UnitsError, ComponentError
+        No ratio from 0.5 to 0.9999.
+    """
+    return to_ratio(given, owner=owner, name="confidence", condition=_LEVEL, example="0.95")
+
+
+def clopper_pearson(exceeded: Generic, trials: Generic, confidence: float) -> tuple[Array, Array]:
+    """Give the exact bounds of shares (Clopper and Pearson, 1934).
+
+    Parameters
+    ----------
+    exceeded, trials : ndarray
+        How many, of how many.
+    confidence : float
+        Of the bounds [1].
+
+    Returns
+    -------
+    ndarray, ndarray
+        Lower and upper bounds; 0 and 1 of no trials.
+    """
+    from scipy.special import betaincinv
+
+    tail = 0.5 * (1.0 - confidence)
+    over, under = np.asarray(exceeded, float), np.asarray(trials, float) - exceeded
+    lower = betaincinv(np.maximum(over, 0.5), under + 1.0, tail)
+    upper = betaincinv(over + 1.0, np.maximum(under, 0.5), 1.0 - tail)
+    return np.where(over > 0.0, lower, 0.0), np.where(under > 0.0, upper, 1.0)

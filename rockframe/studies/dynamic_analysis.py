@@ -1,0 +1,200 @@
+"""Incremental dynamic analysis: motions that are scaled until limit states are exceeded."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from concurrent.futures import Executor
+from os import PathLike
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+import xarray as xr
+
+from rockframe.errors import StudyError
+from rockframe.results.dataset import build_dataset
+from rockframe.results.variables.studies import MOTION
+from rockframe.solve.accuracy import AccuracyLevel
+from rockframe.studies.brackets import least_exceeding, padded
+from rockframe.studies.intensities import Intensity, intensity_in
+from rockframe.studies.limit_states import LimitState, exceeds, interrupted, limit_states
+from rockframe.studies.lines import SCALE, VERDICT, Lines, read_scales, read_store, read_width
+from rockframe.studies.sweeps.motions import motions_of
+from rockframe.system.options import Overturning
+
+if TYPE_CHECKING:
+    from rockframe.components import InitialState
+    from rockframe.motion import GroundMotion
+    from rockframe.simulation.system import System
+    from rockframe.system.options import AccuracyLike, OverturningLike
+    from rockframe.units import QuantityLike, RatioLike
+
+_OWNER: Final = "incremental_dynamic_analysis"
+_MOST_SCALES: Final = 100_000
+_SCALES: Final = tuple(0.1 * k for k in range(1, 41))
+
+
+def incremental_dynamic_analysis(
+    system: "System",
+    motions: "GroundMotion | Mapping[str, GroundMotion] | Sequence[GroundMotion] | None" = None,
+    *,
+    scale: "Sequence[float] | np.ndarray" = _SCALES,
+    limits: Iterable[object] = (),
+    intensity: str | None = None,
+    period: "QuantityLike | None" = None,
+    width: "RatioLike" = 1e-3,
+    duration: "QuantityLike | None" = None,
+    free_vibration: "QuantityLike | None" = None,
+    initial: "InitialState | None" = None,
+    accuracy: "AccuracyLike" = AccuracyLevel.STANDARD,
+    overturning: "OverturningLike" = Overturning.STOP,
+    store: "str | PathLike[str] | None" = None,
+    executor: Executor | None = None,
+    chunk: int | None = None,
+    progress: bool | None = None,
+) -> xr.Dataset:
+    """Scale motions, and find all scales between which limit states begin or cease to be exceeded.
+
+    Parameters
+    ----------
+    system : System
+        The scene.
+    motions : GroundMotion, or sequence or mapping of them, optional
+        Motions; the one among the parts of the system unless given.
+    scale : sequence of float, optional
+        Factors of the motions at which all of them are run first, above zero; 0.1 to 4 in steps
+        of 0.1 unless given [1].
+    limits : iterable, optional
+        Limit states beside overturning: ``"uplift"``, and peak rotations over the
+        overturning angle, such as 0.5 [1].
+    intensity : str, optional
+        An intensity measure that the result has beside the scale, such as ``"PGA"``; see
+        :func:`rockframe.fragility`.
+    period : str or Quantity, optional
+        Of the oscillator of a spectral intensity [s].
+    width : float, optional
+        Width of a bracket, over its upper scale [1].
+    duration, free_vibration, initial, accuracy : optional
+        As for :meth:`rockframe.System.simulate`.
+    overturning : {"stop", "continue"}
+        As for :func:`rockframe.critical_scale`.
+    store : str or path, optional
+        A folder in which what has been run is kept; the same call goes on with what it finds
+        there.
+    executor, chunk, progress : optional
+        As for :func:`rockframe.sweep`.
+
+    Returns
+    -------
+    xarray.Dataset
+        The sweep over ``scale`` and ``motion``, with the intensity measure; and over
+        ``limit_state`` and ``motion``: ``capacity_scale``, the least scale found to exceed the
+        limit state, NaN if none; ``flip_count``; over ``flip`` too ``scale_below``,
+        ``scale_above`` [1] and ``exceeds_above``, NaN beyond the last one. The attribute
+        ``verdict`` says it in words.
+
+    Raises
+    ------
+    UnitsError, ComponentError
+        An argument is out of range, has a wrong unit or none, or names no intensity measure.
+    StudyError
+        As for :func:`rockframe.sweep`.
+
+    Warns
+    -----
+    SolverWarning, ModelWarning
+        As :func:`rockframe.sweep` does.
+
+    Notes
+    -----
+    Vamvatsikos and Cornell (2002). Rocking is not monotone in the scale; so all flips that
+    the first runs show are narrowed, not only the first one. Two flips between neighbouring
+    scales are not seen: :func:`rockframe.critical_scale` looks into where they are to be
+    feared, for one motion.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> system = rf.System(rf.Block(width="1 m", height="5 m", mass="10 t"))
+    >>> pulse = rf.GroundMotion.half_sine_pulse("3 m/s^2", "1 s")
+    >>> found = rf.incremental_dynamic_analysis(
+    ...     system, pulse, scale=[0.5, 1.0, 1.5], free_vibration="10 s"
+    ... )
+    >>> round(found.capacity_scale.item(), 2)
+    1.13
+    """
+    states = limit_states(limits, owner=_OWNER)
+    scales = read_scales(scale, owner=_OWNER, most=_MOST_SCALES)
+    share = read_width(width, owner=_OWNER)
+    measure = None if intensity is None else Intensity.read(intensity, period, owner=_OWNER)
+    given = system.motion if motions is None else motions
+    if given is None:
+        msg = f"{_OWNER}: there is no motion to scale; give one"
+        raise StudyError(msg)
+    means: dict[str, Any] = {
+        "duration": duration,
+        "free_vibration": free_vibration,
+        "initial": initial,
+        "accuracy": accuracy,
+        "overturning": overturning,
+        "executor": executor,
+        "chunk": chunk,
+        "progress": progress,
+    }
+    lines = Lines(system, motions_of(given), {}, means, read_store(store, owner=_OWNER))
+    scan = lines.scan(scales)
+
+    def verdicts(runs: xr.Dataset) -> xr.DataArray:
+        return xr.concat([exceeds(runs, state) for state in states], VERDICT)
+
+    brackets = lines.follow(scan, verdicts, width=share)
+    below, above, _, after = padded(brackets, (len(states), scan.sizes[MOTION]))
+    shown = verdicts(scan).transpose(VERDICT, MOTION, SCALE).to_numpy()
+    capacity = least_exceeding(scales, shown, above, after)
+    narrow = build_dataset(
+        {
+            "capacity_scale": capacity,
+            "flip_count": np.isfinite(below).sum(axis=2),
+            "scale_below": below,
+            "scale_above": above,
+            "exceeds_above": after,
+        },
+        {},
+        over=("limit_state", MOTION),
+        source="scan and bisection of event-driven runs",
+    )
+    labels = labels_of_states(states)
+    found = scan.assign(narrow.data_vars).assign_coords(labels)
+    if measure is not None:
+        found = found.assign({measure.name: intensity_in(scan, measure, given, owner=_OWNER)})
+        found.attrs["intensity"] = measure.name
+    found.attrs |= {
+        "title": "Incremental dynamic analysis of a rocking system",
+        "source": narrow.attrs["source"],
+        "bracket_width": share,
+        "verdict": _sentence(found, whole=not interrupted(scan)),
+    }
+    return found
+
+
+def labels_of_states(states: Sequence[LimitState]) -> dict[str, xr.Variable]:
+    """Give the coordinates along limit states."""
+    labels = build_dataset(
+        {
+            "limit_state": np.array([state.name for state in states], dtype=object),
+            "rotation_limit": np.array([state.rotation for state in states]),
+        },
+        {},
+    )
+    return {str(name): labels[name].variable for name in labels.variables}
+
+
+def _sentence(found: xr.Dataset, *, whole: bool) -> str:
+    """Tell for how many motions overturning was found, and from which scale on."""
+    of_overturning = found.isel(limit_state=-1)
+    capacity = of_overturning["capacity_scale"].to_numpy()
+    count, some = capacity.size, np.isfinite(capacity)
+    text = f"Of {count} motions {int(some.sum())} overturned"
+    if some.any():
+        text += f", from {np.nanmin(capacity):.4g} to {np.nanmax(capacity):.4g} times the motion on"
+    again = int((of_overturning["flip_count"].to_numpy() > 1).sum())
+    if again:
+        text += f"; under {again} the verdict changed more than once"
+    return f"{text}{'' if whole else '; interrupted'}."

@@ -1,0 +1,1 @@
+"""Fragility: the probability that a limit state is exceeded, over the intensity of the motion."""

@@ -1,0 +1,256 @@
+"""Fragilities for programs that assess damage: pelicun's library and OpenQuake's files."""
+
+import math
+import re
+import xml.etree.ElementTree as Tree
+from collections.abc import Mapping
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import xarray as xr
+
+from rockframe.arguments import checked_dataset
+from rockframe.constants import STANDARD_GRAVITY
+from rockframe.errors import ComponentError, SchemaError, shown
+from rockframe.results.variables.analyses import LIMIT_STATE, FragilityStatus
+from rockframe.studies.intensities import SHORT
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+_PELICUN: Final = "to_pelicun"
+_OPENQUAKE: Final = "to_openquake"
+_NAMESPACE: Final = "http://openquake.org/xmlns/nrml/0.5"
+_LOSSES: Final = ("structural", "nonstructural", "contents", "business_interruption")
+_WORD: Final = re.compile(r"[A-Za-z0-9_-]{1,100}")
+
+_PELICUN_MEASURES: Final = {
+    # (demand type, unit, SI units in it)
+    SHORT["PGA"]: ("Peak Ground Acceleration", "g", STANDARD_GRAVITY),
+    SHORT["PGV"]: ("Peak Ground Velocity", "mps", 1.0),
+    SHORT["SA"]: ("Peak Spectral Acceleration", "g", STANDARD_GRAVITY),
+}
+_OPENQUAKE_MEASURES: Final = {
+    # (intensity measure type, SI units in its unit)
+    SHORT["PGA"]: ("PGA", STANDARD_GRAVITY),
+    SHORT["PGV"]: ("PGV", 0.01),
+    SHORT["SA"]: ("SA", STANDARD_GRAVITY),
+}
+
+
+def to_pelicun(
+    fragility: xr.Dataset,
+    component: str,
+    *,
+    demand: str | None = None,
+    offset: int = 0,
+    directional: bool = False,
+) -> "pd.DataFrame":
+    """Give the row of a component in pelicun's library of damage models.
+
+    Parameters
+    ----------
+    fragility : xarray.Dataset
+        Of :func:`rockframe.fragility`, over the peak ground acceleration or velocity, or a
+        spectral acceleration.
+    component : str
+        Identifier of the component, such as ``"E.20.22.106a"``.
+    demand : str, optional
+        Type of the demand, such as ``"Peak Floor Velocity"`` where the motions were those of a
+        floor; of the ground unless given.
+    offset : int, optional
+        Storeys between the component's location and its demand.
+    directional : bool, optional
+        Whether the demand has a direction.
+
+    Returns
+    -------
+    pandas.DataFrame
+        A row, named after the component; ``to_csv`` writes what pelicun reads. Medians in
+        g or m/s.
+
+    Raises
+    ------
+    SchemaError
+        Not a fragility over one such measure.
+    ComponentError
+        A limit state has no fit, or dispersion zero.
+
+    Notes
+    -----
+    As of pelicun 3: limit states in columns ``LS1-Family``, ``LS1-Theta_0`` (median) and
+    ``LS1-Theta_1`` (dispersion), and so on.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> found = rf.fragility_of_counts(([0.2, 0.4, 0.8], "m/s"), [1, 6, 19], 20, measure="PGV")
+    >>> row = rf.to_pelicun(found, "bookcase", demand="Peak Floor Velocity")
+    >>> row["Demand-Unit"].item(), round(row["LS1-Theta_0"].item(), 2)
+    ('mps', 0.46)
+    """
+    import pandas as pd
+
+    measure, states = _fits(fragility, _PELICUN_MEASURES, owner=_PELICUN)
+    kind, unit, size = _PELICUN_MEASURES[measure]
+    if measure == SHORT["SA"]:
+        kind = f"{kind}|{_period(fragility, _PELICUN):g}"
+    row: dict[str, Any] = {
+        "Incomplete": 0,
+        "Demand-Type": kind if demand is None else demand,
+        "Demand-Unit": unit,
+        "Demand-Offset": offset,
+        "Demand-Directional": int(directional),
+    }
+    for number, (_, median, dispersion) in enumerate(states, start=1):
+        row |= {
+            f"LS{number}-Family": "lognormal",
+            f"LS{number}-Theta_0": median / size,
+            f"LS{number}-Theta_1": dispersion,
+            f"LS{number}-DamageStateWeights": None,
+        }
+    return pd.DataFrame([row], index=pd.Index([component], name="ID"))
+
+
+def to_openquake(
+    fragilities: Mapping[str, xr.Dataset],
+    path: "str | PathLike[str]",
+    *,
+    name: str = "rockframe",
+    description: str = "Rocking blocks, computed by rockframe",
+    loss: str = "contents",
+    category: str = "contents",
+    no_damage_limit: float | None = None,
+) -> Path:
+    """Write OpenQuake's fragility model, NRML 0.5.
+
+    Parameters
+    ----------
+    fragilities : mapping of str to xarray.Dataset
+        Of :func:`rockframe.fragility`, by the taxonomy of what they are of; all with the
+        same limit states, over the peak ground acceleration or velocity, or a spectral
+        acceleration.
+    path : str or path
+        Of the file.
+    name, description : str, optional
+        Of the model.
+    loss : {"contents", "structural", "nonstructural", "business_interruption"}
+        Category of the losses.
+    category : str, optional
+        Of the assets.
+    no_damage_limit : float, optional
+        Intensity below which nothing is exceeded, in g or cm/s.
+
+    Returns
+    -------
+    Path
+        Of the file.
+
+    Raises
+    ------
+    SchemaError
+        Not fragilities over one such measure.
+    ComponentError
+        A limit state has no fit, or dispersion zero; limit states differ; or a name has
+        other letters than OpenQuake allows.
+
+    Notes
+    -----
+    OpenQuake takes the mean and the standard deviation of the capacity itself, not of its
+    logarithm: with median theta and dispersion beta theta exp(beta^2/2), and that times
+    sqrt(exp(beta^2) - 1).
+    """
+    if loss not in _LOSSES:
+        msg = f"{_OPENQUAKE}: loss must be one of {', '.join(_LOSSES)}, got {shown(loss)}"
+        raise ComponentError(msg)
+    if not fragilities:
+        msg = f"{_OPENQUAKE}: found no fragilities; expected one at least"
+        raise ComponentError(msg)
+    for word in (name, *fragilities):
+        _check_word(word)
+    fits = {
+        taxonomy: _fits(one, _OPENQUAKE_MEASURES, owner=_OPENQUAKE)
+        for taxonomy, one in fragilities.items()
+    }
+    names = {tuple(state for state, _, _ in states) for _, states in fits.values()}
+    if len(names) > 1:
+        msg = f"{_OPENQUAKE}: the fragilities must have the same limit states, got {sorted(names)}"
+        raise ComponentError(msg)
+    root = Tree.Element("nrml", xmlns=_NAMESPACE)
+    model = Tree.SubElement(
+        root, "fragilityModel", id=name, assetCategory=category, lossCategory=loss
+    )
+    Tree.SubElement(model, "description").text = description
+    Tree.SubElement(model, "limitStates").text = " ".join(map(_state_name, next(iter(names))))
+    for taxonomy, (measure, states) in fits.items():
+        kind, size = _OPENQUAKE_MEASURES[measure]
+        if measure == SHORT["SA"]:
+            kind = f"SA({_period(fragilities[taxonomy], _OPENQUAKE):g})"
+        function = Tree.SubElement(
+            model, "fragilityFunction", id=taxonomy, format="continuous", shape="logncdf"
+        )
+        levels = fragilities[taxonomy][measure].to_numpy() / size
+        range_of = {"imt": kind, "minIML": f"{levels[0]:.10g}", "maxIML": f"{levels[-1]:.10g}"}
+        if no_damage_limit is not None:
+            range_of["noDamageLimit"] = f"{no_damage_limit:.10g}"
+        Tree.SubElement(function, "imls", range_of)
+        for state, median, dispersion in states:
+            mean = median / size * math.exp(0.5 * dispersion**2)
+            deviation = mean * math.sqrt(math.expm1(dispersion**2))
+            Tree.SubElement(
+                function,
+                "params",
+                ls=_state_name(state),
+                mean=f"{mean:.10g}",
+                stddev=f"{deviation:.10g}",
+            )
+    Tree.indent(root)
+    file = Path(path)
+    Tree.ElementTree(root).write(file, encoding="UTF-8", xml_declaration=True)
+    return file
+
+
+def _fits(
+    given: object, measures: Mapping[str, Any], *, owner: str
+) -> tuple[str, list[tuple[str, float, float]]]:
+    """Give the measure of a fragility, and name, median and dispersion of its limit states."""
+    dataset = checked_dataset(given, owner=owner)
+    known = [name for name in measures if name in dataset.dims]
+    if "median_intensity" not in dataset or len(known) != 1:
+        msg = (
+            f"{owner}: found no fragility over one of {', '.join(measures)}; expected that of "
+            "rf.fragility"
+        )
+        raise SchemaError(msg)
+    several = dataset if LIMIT_STATE[0] in dataset.dims else dataset.expand_dims(*LIMIT_STATE)
+    found: list[tuple[str, float, float]] = []
+    for number in range(several.sizes["limit_state"]):
+        one = several.isel(limit_state=number)
+        name = str(one["limit_state"].item()) if "limit_state" in one.coords else "counted"
+        if int(one["fragility_status"]) != FragilityStatus.FITTED:
+            msg = (
+                f"{owner}: limit state {name!r} has no lognormal fit (fragility_status); pick "
+                "others, for example fragility.sel(limit_state=['overturning'])"
+            )
+            raise ComponentError(msg)
+        found.append((name, float(one["median_intensity"]), float(one["dispersion"])))
+    return known[0], found
+
+
+def _period(dataset: xr.Dataset, owner: str) -> float:
+    if "intensity_period" not in dataset.attrs:
+        msg = f"{owner}: found a spectral measure without the attribute 'intensity_period'"
+        raise SchemaError(msg)
+    return float(dataset.attrs["intensity_period"])
+
+
+def _check_word(given: object) -> None:
+    if not isinstance(given, str) or not _WORD.fullmatch(given):
+        msg = f"{_OPENQUAKE}: names have up to 100 letters, digits, '-' and '_', got {shown(given)}"
+        raise ComponentError(msg)
+
+
+def _state_name(state: str) -> str:
+    """Give a limit state's name without the blanks and points that are not allowed."""
+    return re.sub(r"[^A-Za-z0-9_-]", "_", state)

@@ -1,0 +1,279 @@
+"""Fragility of runs, of dynamic analyses and of counts: what users call."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Final, cast
+
+import numpy as np
+import xarray as xr
+
+from rockframe.errors import ComponentError, UnitsError, shown
+from rockframe.results.outcome import Array
+from rockframe.results.variables.studies import MOTION
+from rockframe.studies.confidence import read_level
+from rockframe.studies.dynamic_analysis import labels_of_states
+from rockframe.studies.fragility.labelling import Means, labelled
+from rockframe.studies.fragility.likelihood import Bands, Trials
+from rockframe.studies.fragility.trials import flat, trials_of_capacities, trials_of_runs
+from rockframe.studies.intensities import Intensity, intensity_in
+from rockframe.studies.limit_states import LimitState, check_runs, exceeds, limit_states
+from rockframe.studies.sweeps.axes import free_values
+from rockframe.units import PERIOD, to_si
+
+if TYPE_CHECKING:
+    from rockframe.motion import GroundMotion
+    from rockframe.units import QuantityLike, RatioLike
+
+_OWNER: Final = "fragility"
+_COUNTS: Final = "fragility_of_counts"
+_MOST_MEASURES: Final = 2
+
+
+def fragility(
+    runs: xr.Dataset,
+    intensity: "str | xr.DataArray | Sequence[str | xr.DataArray]" = "PGA",
+    *,
+    limits: Iterable[object] | None = None,
+    period: "QuantityLike | None" = None,
+    motions: "GroundMotion | Mapping[str, GroundMotion] | Sequence[GroundMotion] | None" = None,
+    bands: str | None = None,
+    confidence: "RatioLike" = 0.95,
+) -> xr.Dataset:
+    """Fit lognormal capacities to runs, by maximum likelihood.
+
+    Parameters
+    ----------
+    runs : xarray.Dataset
+        Of :func:`rockframe.sweep`, or of :func:`rockframe.incremental_dynamic_analysis`,
+        whose least scales that exceed are the capacities then.
+    intensity : str, DataArray, or two of them
+        Intensity measure: ``"PGA"``, ``"PGV"``, ``"PGD"``, ``"CAV"``, ``"SA"``, ``"PGV/PGA"``, or
+        a name of :func:`rockframe.intensity_measures` or :func:`rockframe.response_spectrum`;
+        or numbers of one's own along dimensions of the runs, with a name and ``units``. Two
+        give a fragility over both.
+    limits : iterable, optional
+        Limit states beside overturning: ``"uplift"``, and peak rotations over the
+        overturning angle; uplift unless given, and of a dynamic analysis those that it has [1].
+    period : str or Quantity, optional
+        Of the oscillator of a spectral intensity [s].
+    motions : GroundMotion, or sequence or mapping of them, optional
+        The records of the sweep, where neither the dataset nor this process has them.
+    bands : {"profile", "sandwich"}, optional
+        Where confidence bounds come from: the profile of the likelihood, which takes all runs
+        for independent; or the sandwich covariance with clusters of runs under one motion.
+        The latter where motions were run more than once, unless given.
+    confidence : float, optional
+        Of all bounds [1].
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``limit_state``: ``median_intensity``, ``dispersion``, their bounds and standard
+        errors, ``fragility_status``; over the intensity too ``exceedance_probability`` and
+        its bounds; and over ``stripe`` what was counted, with bounds of Clopper and Pearson. Of
+        two measures the coefficients of the fit instead of median and dispersion. The
+        attribute ``verdict`` says it in words.
+
+    Raises
+    ------
+    ComponentError
+        An argument is out of range or names no such measure.
+    SchemaError
+        Not the result of a sweep.
+    StudyError
+        The motions must be given.
+
+    Notes
+    -----
+    A capacity C is lognormal with median theta and dispersion beta, and a run of intensity x
+    exceeds where C < x, with probability Phi(ln(x / theta) / beta), Baker (2015). The fit is
+    the greatest likelihood, :eq:`eq-fragility-likelihood`. A fit that does not exist is told of
+    by ``fragility_status``, with NaN in its place: no run exceeded, all did, those that did
+    are separated from those that did not, so that beta would be zero, or
+    exceedances grow rarer with the intensity. Runs without a verdict are left out.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> system = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
+    >>> motions = [rf.GroundMotion.stochastic(6.5, "10 km", seed=k) for k in range(8)]
+    >>> runs = rf.sweep(system, motions, scale=[0.5, 1, 2, 4], accuracy="fast")
+    >>> found = rf.fragility(runs, "PGA")
+    >>> list(found.limit_state.values)
+    ['uplift', 'overturning']
+    """
+    runs = check_runs(runs, owner=_OWNER)
+    of_capacities = "capacity_scale" in runs
+    states = _states(runs, limits, of_capacities=of_capacities)
+    measures = [_measure(runs, one, period, motions) for one in _several(intensity)]
+    repeated = not of_capacities and _repeated(runs)
+    given = Bands.SANDWICH if repeated else Bands.PROFILE
+    means = Means(_bands(bands, given, len(measures)), read_level(confidence, owner=_OWNER))
+    trials: list[Trials] = []
+    counted: list[tuple[Array, Array]] = []
+    for state in states:
+        if of_capacities:
+            of_state = runs.sel(limit_state=state.name)
+            trials.append(trials_of_capacities(of_state, measures))
+        else:
+            verdict = exceeds(runs, state)
+            by_motion = means.bands is Bands.SANDWICH and repeated
+            trials.append(trials_of_runs(verdict, measures, by_motion=by_motion))
+            counted.append(flat(verdict, measures))
+    found = labelled(trials, counted, [_labels(one) for one in measures], means, states[-1].name)
+    kept = {name: runs.attrs[name] for name in ("model", "system_json") if name in runs.attrs}
+    kept |= _period_of(period)
+    return found.assign_coords(labels_of_states(states)).assign_attrs(kept)
+
+
+def fragility_of_counts(
+    intensity: Any,
+    exceeded: "Sequence[int] | np.ndarray",
+    trials: "int | Sequence[int] | np.ndarray",
+    *,
+    measure: str = "PGA",
+    period: "QuantityLike | None" = None,
+    bands: str = "profile",
+    confidence: "RatioLike" = 0.95,
+) -> xr.Dataset:
+    """Fit a lognormal capacity to counts, such as those of tests or of other programs.
+
+    Parameters
+    ----------
+    intensity : values with a unit
+        Intensities: ``([0.2, 0.3], "g_0")``, a Quantity, or ``["2 m/s^2", ...]``.
+    exceeded : sequence of int
+        How many trials exceeded the limit state at each of them.
+    trials : int or sequence of int
+        Of how many.
+    measure : str, optional
+        Which intensity measure it is, see :func:`rockframe.fragility`.
+    period : str or Quantity, optional
+        Of the oscillator of a spectral intensity [s].
+    bands, confidence : optional
+        As for :func:`rockframe.fragility`.
+
+    Returns
+    -------
+    xarray.Dataset
+        As of :func:`rockframe.fragility`, of one limit state, whose dimension it lacks.
+
+    Raises
+    ------
+    UnitsError
+        The intensities have no unit, or another than the measure.
+    ComponentError
+        Counts that do not fit one another, or an argument out of range.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> found = rf.fragility_of_counts(
+    ...     ([0.2, 0.3, 0.4, 0.6, 0.7, 0.8, 0.9, 1.0], "g_0"),
+    ...     exceeded=[0, 0, 0, 4, 6, 13, 12, 16],
+    ...     trials=40,
+    ... )
+    >>> round(float(found.dispersion), 3)
+    0.429
+    """
+    which = Intensity.read(measure, period, owner=_COUNTS)
+    values, unit = free_values(intensity, "intensity")
+    if unit != which.attributes()["units"]:
+        msg = f"{_COUNTS}: {which.name} is in {which.attributes()['units']}, got {shown(intensity)}"
+        raise UnitsError(msg)
+    over = np.asarray(exceeded, dtype=np.float64)
+    count = np.broadcast_to(np.asarray(trials, dtype=np.float64), values.shape)
+    wrong = over.shape != values.shape or np.any(values <= 0.0)
+    whole = (
+        not wrong and np.array_equal(over, np.round(over)) and np.all((over >= 0) & (over <= count))
+    )
+    if wrong or not whole or not np.array_equal(count, np.round(count)):
+        msg = (
+            f"{_COUNTS}: expected intensities above zero and for each of them a number of "
+            f"exceedances from 0 to that of the trials, got {shown(exceeded)} of {shown(trials)}"
+        )
+        raise ComponentError(msg)
+    means = Means(_bands(bands, Bands.PROFILE, 1), read_level(confidence, owner=_COUNTS))
+    made = Trials.of_verdicts(np.log(values)[:, None], over, count)
+    each = (
+        np.repeat(values, count.astype(int)),
+        np.concatenate(
+            [np.repeat([1.0, 0.0], [int(k), int(n - k)]) for k, n in zip(over, count, strict=True)]
+        ),
+    )
+    labels = (which.name, which.attributes())
+    found = labelled([made], [(each[0][:, None], each[1])], [labels], means, "what was counted")
+    return found.isel(limit_state=0).assign_attrs(_period_of(period))
+
+
+def _states(
+    runs: xr.Dataset, limits: Iterable[object] | None, *, of_capacities: bool
+) -> tuple[LimitState, ...]:
+    if not of_capacities:
+        return limit_states(("uplift",) if limits is None else limits, owner=_OWNER)
+    known = [float(one) for one in runs["rotation_limit"].to_numpy()]
+    if limits is None:
+        return tuple(LimitState(one) for one in known)
+    states = limit_states(limits, owner=_OWNER)
+    lacking = [state.name for state in states if state.rotation not in known]
+    if lacking:
+        msg = f"{_OWNER}: the dynamic analysis was not asked for {', '.join(lacking)}"
+        raise ComponentError(msg)
+    return states
+
+
+def _period_of(given: "QuantityLike | None") -> dict[str, float]:
+    """Give the period of a spectral intensity as an attribute [s]."""
+    if given is None:
+        return {}
+    return {"intensity_period": to_si(given, PERIOD, owner=_OWNER, name="period")}
+
+
+def _several(given: object) -> list[object]:
+    if isinstance(given, str | xr.DataArray):
+        return [given]
+    several = list(cast("Iterable[object]", given)) if isinstance(given, Iterable) else []
+    if not 1 <= len(several) <= _MOST_MEASURES:
+        msg = f"{_OWNER}: intensity needs one measure, or two, got {shown(given)}"
+        raise ComponentError(msg)
+    return several
+
+
+def _measure(
+    runs: xr.Dataset, given: object, period: "QuantityLike | None", motions: object
+) -> xr.DataArray:
+    if not isinstance(given, xr.DataArray):
+        return intensity_in(
+            runs, Intensity.read(given, period, owner=_OWNER), motions, owner=_OWNER
+        )
+    dims = set(runs["status"].dims)
+    if given.name is None or not set(given.dims) <= dims or given.name in dims - {given.name}:
+        msg = (
+            f"{_OWNER}: an intensity of one's own needs a name and dimensions among "
+            f"{', '.join(map(str, runs['status'].dims))}, got {given.name!r} over {given.dims}"
+        )
+        raise ComponentError(msg)
+    return given
+
+
+def _labels(measure: xr.DataArray) -> tuple[str, dict[str, Any]]:
+    return str(measure.name), dict(measure.attrs)
+
+
+def _repeated(runs: xr.Dataset) -> bool:
+    """Tell whether some motion was run more than once."""
+    if MOTION not in runs.coords:
+        return False
+    names = runs[MOTION].broadcast_like(runs["status"]).to_numpy().ravel()
+    return len(np.unique(names.astype(str))) < len(names)
+
+
+def _bands(given: str | None, usual: Bands, measures: int) -> Bands:
+    if given is None:
+        return usual if measures == 1 else Bands.SANDWICH
+    if given not in ("profile", "sandwich"):
+        msg = f"{_OWNER}: bands must be 'profile' or 'sandwich', got {shown(given)}"
+        raise ComponentError(msg)
+    if given == "profile" and measures > 1:
+        msg = f"{_OWNER}: bands by profile are those of one intensity measure; use 'sandwich'"
+        raise ComponentError(msg)
+    return Bands[given.upper()]

@@ -1,0 +1,382 @@
+"""Lognormal capacities fitted to trials by maximum likelihood.
+
+A trial tells between which intensities the capacity lies: of a run that exceeds a limit state it
+lies below the intensity of the run, of one that does not above it, and a dynamic analysis
+encloses it in a bracket. With `eta` = intercept + slopes · ln(intensity) the likelihood of a trial
+is Phi(eta at the upper end) - Phi(eta at the lower end), :eq:`eq-fragility-likelihood`. It is
+log-concave in the coefficients, so that there is one maximum, or none.
+"""
+
+import math
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import Any, Final, cast
+
+import numpy as np
+
+from rockframe.results.outcome import Array, Generic
+from rockframe.results.variables.analyses import FragilityStatus
+
+DIRECTIONS: Final = 360
+"""Rays on which the boundary of a confidence region is found."""
+_BLOCK: Final = 2_000_000
+"""Most values that are held at once."""
+
+
+class Bands(IntEnum):
+    """Where confidence bands come from."""
+
+    PROFILE = 0
+    SANDWICH = 1
+
+
+@dataclass(frozen=True, eq=False)
+class Trials:
+    """What is known of capacities.
+
+    Parameters
+    ----------
+    lower, upper : ndarray, shape (trials, measures)
+        Logarithms of the intensities between which the capacity lies; any number where an
+        end is open.
+    has_lower, has_upper : ndarray of bool, shape (trials,)
+        Which ends there are.
+    weight : ndarray, shape (trials,)
+        How often the trial was made.
+    cluster : ndarray of int, shape (trials,), or None
+        Trials of one cluster, such as those under one motion, depend on one another; None
+        where no two of them do.
+    """
+
+    lower: Array
+    upper: Array
+    has_lower: Generic
+    has_upper: Generic
+    weight: Array
+    cluster: Generic | None
+
+    @classmethod
+    def of_verdicts(
+        cls, logs: Array, exceeded: Array, trials: Array, cluster: Generic | None = None
+    ) -> "Trials":
+        """Give the trials of counts.
+
+        Parameters
+        ----------
+        logs : ndarray, shape (points, measures)
+            Logarithms of intensities.
+        exceeded, trials : ndarray, shape (points,)
+            How many trials exceeded the limit state, of how many.
+        cluster : ndarray of int, optional
+            Of the points.
+
+        Returns
+        -------
+        Trials
+        """
+        both = np.concatenate([logs, logs])
+        over = np.repeat([True, False], len(logs))
+        weight = np.concatenate([exceeded, trials - exceeded]).astype(np.float64)
+        kept = weight > 0.0
+        numbers = None if cluster is None else np.tile(cluster, 2)[kept]
+        return cls(both[kept], both[kept], ~over[kept], over[kept], weight[kept], numbers)
+
+    @property
+    def measures(self) -> int:
+        """Number of intensity measures."""
+        return self.lower.shape[1]
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """The coefficients at which the likelihood is greatest.
+
+    Parameters
+    ----------
+    status : FragilityStatus
+        Whether there are any.
+    coefficients : ndarray, shape (1 + measures,)
+        Intercept and slopes.
+    information : ndarray, shape (1 + measures, 1 + measures)
+        The observed one: curvature of the log-likelihood at its maximum.
+    covariance : ndarray, same shape
+        Of the coefficients.
+    """
+
+    status: FragilityStatus
+    coefficients: Array
+    information: Array
+    covariance: Array
+
+    @classmethod
+    def none(cls, status: FragilityStatus, measures: int) -> "Fit":
+        """Give the fit of trials that no coefficients fit best."""
+        size = 1 + measures
+        return cls(
+            status,
+            np.full(size, np.nan),
+            np.full((size, size), np.nan),
+            np.full((size,) * 2, np.nan),
+        )
+
+
+def fit(trials: Trials, bands: Bands) -> Fit:
+    """Find the most likely coefficients.
+
+    Parameters
+    ----------
+    trials : Trials
+        The data.
+    bands : Bands
+        Whether the covariance is the inverse of the information, or the sandwich of both
+        around the scores summed over clusters.
+
+    Returns
+    -------
+    Fit
+    """
+    from scipy import linalg, optimize
+
+    without = _without_maximum(trials)
+    if without is FragilityStatus.SEPARATED and trials.measures == 1 and gap(trials) is None:
+        without = FragilityStatus.NOT_RISING
+    if without is not None:
+        return Fit.none(without, trials.measures)
+    upper, lower = _design(trials)
+    ends = np.concatenate([upper[trials.has_upper], lower[trials.has_lower]])
+    middle, spread = ends[:, 1:].mean(axis=0), ends[:, 1:].std(axis=0)
+    size = 1 + trials.measures
+    # coefficients of measures that are centred, and of spread one, are all of one size
+    back = np.eye(size)
+    back[0, 1:] = -middle / spread
+    back[np.arange(1, size), np.arange(1, size)] = 1.0 / spread
+
+    def value(scaled: Array) -> float:
+        return -float(log_likelihood(trials, (back @ scaled)[:, None])[0])
+
+    def slope(scaled: Array) -> Array:
+        return -back.T @ scores(trials, back @ scaled).sum(axis=0)
+
+    def curvature(scaled: Array) -> Array:
+        return back.T @ information(trials, back @ scaled) @ back
+
+    start = np.concatenate([[0.0], np.full(trials.measures, 1.0 / math.sqrt(trials.measures))])
+    found: Any = optimize.minimize(
+        value, start, method="trust-exact", jac=slope, hess=curvature,
+        options={"gtol": 1e-9 * float(trials.weight.sum()), "maxiter": 500},
+    )  # fmt: skip
+    scaled = cast("Array", found.x)
+    for _ in range(3):  # the last digits
+        scaled = scaled - linalg.solve(curvature(scaled), slope(scaled), assume_a="pos")
+    best = back @ scaled
+    if trials.measures == 1 and best[1] <= 0.0:
+        return Fit.none(FragilityStatus.NOT_RISING, trials.measures)
+    inside = information(trials, best)
+    covariance: Array = linalg.inv(inside)
+    if bands is Bands.SANDWICH:
+        covariance = covariance @ _filling(trials, best) @ covariance
+    return Fit(FragilityStatus.FITTED, best, inside, covariance)
+
+
+def log_likelihood(trials: Trials, coefficients: Array) -> Array:
+    """Give the logarithm of the likelihood, :eq:`eq-fragility-likelihood`.
+
+    Parameters
+    ----------
+    trials : Trials
+        The data.
+    coefficients : ndarray, shape (1 + measures, sets)
+        Of several fits.
+
+    Returns
+    -------
+    ndarray, shape (sets,)
+    """
+    return trials.weight @ _log_shares(*_etas(trials, coefficients))
+
+
+def scores(trials: Trials, coefficients: Array) -> Array:
+    """Give the slope of each trial's share in the log-likelihood.
+
+    Returns
+    -------
+    ndarray, shape (trials, 1 + measures)
+    """
+    upper, lower = _design(trials)
+    _, at_upper, _, at_lower = _ratios(trials, coefficients)
+    return trials.weight[:, None] * (at_upper[:, None] * upper - at_lower[:, None] * lower)
+
+
+def information(trials: Trials, coefficients: Array) -> Array:
+    """Give the observed information, the curvature of the log-likelihood with its sign changed.
+
+    Returns
+    -------
+    ndarray, shape (1 + measures, 1 + measures)
+    """
+    upper, lower = _design(trials)
+    eta_upper, at_upper, eta_lower, at_lower = _ratios(trials, coefficients)
+    weight = trials.weight
+    of_upper = weight * at_upper * (eta_upper + at_upper)
+    of_lower = weight * at_lower * (at_lower - eta_lower)
+    of_both = weight * at_upper * at_lower
+    crossed = upper.T @ (of_both[:, None] * lower)
+    return (
+        upper.T @ (of_upper[:, None] * upper)
+        + lower.T @ (of_lower[:, None] * lower)
+        - crossed
+        - crossed.T
+    )
+
+
+def boundary(trials: Trials, found: Fit, level: float) -> Array:
+    """Give the boundary of the region of a likelihood ratio, for a fit of one measure.
+
+    The range of any function of the coefficients in this region is its interval by profile
+    likelihood.
+
+    Parameters
+    ----------
+    trials : Trials
+        The data.
+    found : Fit
+        Their fit.
+    level : float
+        Confidence of an interval of one number [1].
+
+    Returns
+    -------
+    ndarray, shape (2, directions)
+    """
+    from scipy import linalg
+    from scipy.special import chdtri
+
+    drop = float(chdtri(1.0, 1.0 - level))
+    angle = np.linspace(0.0, 2.0 * np.pi, DIRECTIONS, endpoint=False)
+    root = linalg.cholesky(found.information, lower=True)
+    rays = linalg.solve_triangular(root.T, np.array([np.cos(angle), np.sin(angle)]))
+    best = found.coefficients[:, None]
+    greatest = float(log_likelihood(trials, best)[0])
+    length = np.full(DIRECTIONS, math.sqrt(drop))
+    block = max(1, _BLOCK // len(trials.weight))
+    for first in range(0, DIRECTIONS, block):
+        here = slice(first, first + block)
+        ray, reach = rays[:, here], length[here]
+        for _ in range(60):  # Newton's steps for a convex function end from above
+            at = best + reach * ray
+            excess = 2.0 * (greatest - log_likelihood(trials, at)) - drop
+            slope = -2.0 * _slopes_along(trials, at, ray)
+            step = excess / slope
+            reach = np.maximum(reach - step, 1e-3 * reach)
+            if np.all(np.abs(step) <= 1e-10 * reach):
+                break
+        length[here] = reach
+    return best + length * rays
+
+
+def gap(trials: Trials) -> tuple[float, float] | None:
+    """Give the logarithms of the intensities between which all capacities may lie.
+
+    Parameters
+    ----------
+    trials : Trials
+        Of one measure.
+
+    Returns
+    -------
+    tuple of float or None
+        None where there is no such gap.
+    """
+    least = float(trials.upper[trials.has_upper].min(initial=np.inf))
+    most = float(trials.lower[trials.has_lower].max(initial=-np.inf))
+    return (most, least) if most <= least else None
+
+
+def _slopes_along(trials: Trials, coefficients: Array, rays: Array) -> Array:
+    upper, lower = _design(trials)
+    eta_upper, eta_lower = _etas(trials, coefficients)
+    share = _log_shares(eta_upper, eta_lower)
+    along = np.exp(_log_density(eta_upper) - share) * (upper @ rays)
+    along -= np.exp(_log_density(eta_lower) - share) * (lower @ rays)
+    return trials.weight @ along
+
+
+def _without_maximum(trials: Trials) -> FragilityStatus | None:
+    """Tell why the likelihood has no maximum: some way of changing coefficients never lowers it."""
+    from scipy import optimize
+
+    if not len(trials.weight):
+        return FragilityStatus.NO_TRIALS
+    if not trials.has_upper.any():
+        return FragilityStatus.NONE_EXCEEDED
+    if not trials.has_lower.any():
+        return FragilityStatus.ALL_EXCEEDED
+    upper, lower = _design(trials)
+    ends = np.concatenate([upper[trials.has_upper], lower[trials.has_lower]])
+    if np.linalg.matrix_rank(ends - ends.mean(axis=0)) < trials.measures:
+        return FragilityStatus.ONE_INTENSITY
+    signed = np.concatenate([upper[trials.has_upper], -lower[trials.has_lower]])
+    signed = np.unique(signed, axis=0)
+    found: Any = optimize.linprog(
+        -signed.sum(axis=0), A_ub=-signed, b_ub=np.zeros(len(signed)), bounds=(-1.0, 1.0)
+    )
+    return FragilityStatus.SEPARATED if -found.fun > 1e-9 * np.abs(signed).sum() else None
+
+
+def _design(trials: Trials) -> tuple[Array, Array]:
+    """Give ones and logarithms of both ends; an open end has zeros."""
+    count = len(trials.weight)
+    upper = np.column_stack([np.ones(count), trials.upper]) * trials.has_upper[:, None]
+    lower = np.column_stack([np.ones(count), trials.lower]) * trials.has_lower[:, None]
+    return upper, lower
+
+
+def _etas(trials: Trials, coefficients: Array) -> tuple[Array, Array]:
+    """Give eta at both ends, infinite where one is open; shape (trials, sets)."""
+    upper, lower = _design(trials)
+    eta_upper = np.where(trials.has_upper[:, None], upper @ coefficients, np.inf)
+    eta_lower = np.where(trials.has_lower[:, None], lower @ coefficients, -np.inf)
+    return eta_upper, eta_lower
+
+
+def _ratios(trials: Trials, coefficients: Array) -> tuple[Array, Array, Array, Array]:
+    """Give eta at both ends, 0 where one is open, and the density there over the share between."""
+    eta_upper, eta_lower = (eta[:, 0] for eta in _etas(trials, coefficients[:, None]))
+    share = _log_shares(eta_upper, eta_lower)
+    at_upper = np.exp(_log_density(eta_upper) - share)
+    at_lower = np.exp(_log_density(eta_lower) - share)
+    finite_upper = np.where(trials.has_upper, eta_upper, 0.0)
+    finite_lower = np.where(trials.has_lower, eta_lower, 0.0)
+    return finite_upper, at_upper, finite_lower, at_lower
+
+
+def _log_shares(upper: Array, lower: Array) -> Array:
+    """Give ln(Phi(upper) - Phi(lower)), to the last digits in both tails."""
+    from scipy.special import log_ndtr
+
+    # in the upper tail the distribution seen from above has the digits
+    turned = lower + upper > 0.0
+    high = log_ndtr(np.where(turned, -lower, upper))
+    low = log_ndtr(np.where(turned, -upper, lower))
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return high + np.log(-np.expm1(np.where(np.isneginf(low), -np.inf, low - high)))
+
+
+def _log_density(eta: Array) -> Array:
+    return -0.5 * (eta * eta + math.log(2.0 * math.pi))
+
+
+def _filling(trials: Trials, best: Array) -> Array:
+    """Give the scores' products, summed over clusters, with the usual factor for few clusters."""
+    of_trial = scores(trials, best)
+    if trials.cluster is None:
+        weight = trials.weight
+        count = float(weight.sum())
+        each = of_trial / weight[:, None]
+        total = each.T @ (weight[:, None] * each)
+    else:
+        names, place = np.unique(trials.cluster, return_inverse=True)
+        summed = np.zeros((len(names), of_trial.shape[1]))
+        np.add.at(summed, place, of_trial)
+        count, total = float(len(names)), summed.T @ summed
+    return total * (count / (count - 1.0) if count > 1.0 else math.inf)

@@ -1,0 +1,194 @@
+"""Intensity measures of the motions of a sweep, as they were scaled in each case."""
+
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+import xarray as xr
+
+from rockframe.errors import ComponentError, StudyError
+from rockframe.measures import intensity_measures, response_spectrum
+from rockframe.motion import GroundMotion
+from rockframe.results.schema import SCHEMA
+from rockframe.results.variables.studies import MOTION
+from rockframe.results.variables.variable import OSCILLATOR
+from rockframe.studies.limit_states import check_names
+from rockframe.studies.sweeps.case import motion_of, remembered
+from rockframe.studies.sweeps.motions import SPECTRAL, scaled
+from rockframe.units import PERIOD, POSITIVE, TIME, to_si
+
+if TYPE_CHECKING:
+    from rockframe.units import QuantityLike
+
+RATIO: Final = "velocity_to_acceleration_ratio"
+SHORT: Final = {
+    "PGA": "peak_ground_acceleration",
+    "PGV": "peak_ground_velocity",
+    "PGD": "peak_ground_displacement",
+    "CAV": "cumulative_absolute_velocity",
+    "SA": SPECTRAL,
+    "PGV/PGA": RATIO,
+}
+"""Usual abbreviations."""
+POWERS: Final = {
+    "peak_ground_acceleration": 1,
+    "peak_ground_velocity": 1,
+    "peak_ground_displacement": 1,
+    "arias_intensity": 2,
+    "cumulative_absolute_velocity": 1,
+    "housner_spectrum_intensity": 1,
+    "mean_period": 0,
+    "predominant_pulse_period": 0,
+    "significant_duration_5_75": 0,
+    "significant_duration_5_95": 0,
+    RATIO: 0,
+    "spectral_displacement": 1,
+    "spectral_velocity": 1,
+    "absolute_spectral_acceleration": 1,
+    "pseudo_spectral_velocity": 1,
+    SPECTRAL: 1,
+}
+"""Powers of the scale of the motion with which measures grow."""
+_OSCILLATORS: Final = tuple(name for name in POWERS if SCHEMA[name].dims == OSCILLATOR)
+
+
+@dataclass(frozen=True)
+class Intensity:
+    """An intensity measure.
+
+    Parameters
+    ----------
+    name : str
+        In the schema.
+    period : float or None
+        Of the oscillator of a spectral value [s].
+    """
+
+    name: str
+    period: float | None
+
+    @classmethod
+    def read(cls, given: object, period: "QuantityLike | None", *, owner: str) -> "Intensity":
+        """Read the arguments ``intensity`` and ``period``.
+
+        Raises
+        ------
+        UnitsError
+            `period` is no time.
+        ComponentError
+            No such measure, or a spectral value without a period.
+        """
+        given = SHORT.get(given, given) if isinstance(given, str) else given
+        name = check_names(given, [*POWERS, *SHORT], owner=owner, name="intensity")
+        if name not in _OSCILLATORS:
+            return cls(name, None)
+        if period is None:
+            msg = f"{owner}: intensity {name!r} needs a period, for example period='0.5 s'"
+            raise ComponentError(msg)
+        seconds = to_si(period, PERIOD, owner=owner, name="period", condition=POSITIVE)
+        return cls(name, seconds)
+
+    def of(self, motion: GroundMotion) -> float:
+        """Give the measure of a motion, in SI units."""
+        if self.period is not None:
+            found = response_spectrum(motion, [f"{self.period!r} {TIME.unit}"])[self.name]
+            return float(found.squeeze())
+        if self.name == "peak_ground_acceleration":  # without the spectra that others need
+            return float(motion.peak_acceleration.m_as(SCHEMA[self.name].attributes()["units"]))
+        measures = intensity_measures(motion)
+        if self.name == RATIO:
+            return float(measures["peak_ground_velocity"] / measures["peak_ground_acceleration"])
+        return float(measures[self.name])
+
+    def attributes(self) -> dict[str, Any]:
+        """Give the CF attributes of its values."""
+        return SCHEMA[self.name].attributes()
+
+
+def intensity_in(
+    runs: xr.Dataset, intensity: Intensity, motions: object, *, owner: str
+) -> xr.DataArray:
+    """Give an intensity measure of the motion of each case of a sweep.
+
+    Parameters
+    ----------
+    runs : xarray.Dataset
+        The sweep.
+    intensity : Intensity
+        The measure.
+    motions : GroundMotion, iterable or mapping of them, optional
+        Records of the sweep, where neither the dataset nor this process has them.
+    owner : str
+        Function, for messages.
+
+    Returns
+    -------
+    xarray.DataArray
+        Over the dimensions on which it depends.
+
+    Raises
+    ------
+    StudyError
+        A record must be given, or the motions are those of the scene.
+    """
+    if intensity.name in runs.coords and intensity.period is None:
+        return runs[intensity.name]
+    before = motions_in(runs, motions, owner=owner)
+    factor = _factors(runs, before)
+    measured = of_motions(runs, before, intensity.of)
+    found = measured * np.abs(factor) ** POWERS[intensity.name]
+    return found.assign_attrs(intensity.attributes()).rename(intensity.name)
+
+
+def motions_in(runs: xr.Dataset, given: object, *, owner: str) -> dict[str, GroundMotion]:
+    """Give the motions of a sweep by their names, as they were before they were scaled.
+
+    Raises
+    ------
+    StudyError
+        A record must be given, or the motions are those of the scene.
+    """
+    attributes: Mapping[str, Any] = runs.attrs
+    known = remembered(attributes)
+    found: dict[str, GroundMotion] = {}
+    used = set(np.unique(runs[MOTION].to_numpy().astype(str)).tolist())
+    for number, name in enumerate(json.loads(attributes["motion_names"])):
+        if name not in used:
+            continue
+        motion = motion_of(given, number, attributes, known)
+        if motion is None:
+            msg = f"{owner}: the sweep has no motions of its own, of which there is an intensity"
+            raise StudyError(msg)
+        found[name] = motion
+    return found
+
+
+def of_motions(
+    runs: xr.Dataset, motions: Mapping[str, GroundMotion], value: Callable[[GroundMotion], float]
+) -> xr.DataArray:
+    """Give a number of the motion of each case."""
+    numbers = {name: value(motion) for name, motion in motions.items()}
+    names = runs[MOTION]
+    values = np.array([numbers[str(name)] for name in names.to_numpy().ravel()])
+    return xr.DataArray(values.reshape(names.shape), dims=names.dims, coords=names.coords)
+
+
+def _factors(runs: xr.Dataset, motions: Mapping[str, GroundMotion]) -> xr.DataArray:
+    """Give the factor by which the motion of each case was multiplied."""
+    axes = [one["name"] for one in json.loads(runs.attrs["axes_json"]) if one["changes"] == MOTION]
+    if not axes:
+        return xr.DataArray(1.0)
+    (name,) = axes
+    if name == "scale":
+        return runs[name]
+    period = runs.attrs.get("spectral_period")
+    # what reaches the unit of the target, times the target
+    return runs[name] * of_motions(runs, motions, lambda one: _unit_factor(one, name, period))
+
+
+def _unit_factor(motion: GroundMotion, name: str, period: float | None) -> float:
+    one = scaled(motion, name, 1.0, period)
+    at = int(np.argmax(np.abs(motion.si.horizontal.samples)))
+    return abs(float(one.si.horizontal.samples[at] / motion.si.horizontal.samples[at]))

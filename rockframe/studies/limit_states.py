@@ -1,0 +1,167 @@
+"""Limit states of a rocking body, and which runs exceed them."""
+
+import json
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any, Final, cast
+
+import numpy as np
+import xarray as xr
+
+from rockframe.arguments import checked_dataset
+from rockframe.errors import ComponentError, SchemaError, shown
+from rockframe.results.variables.runs import RunStatus
+from rockframe.system.options import Overturning
+from rockframe.units import Condition, to_ratio
+
+UPLIFT: Final = "uplift"
+OVERTURNING: Final = "overturning"
+_SHARE: Final = Condition("above 0 and below 1", lambda value: 0.0 < value < 1.0)
+_NEEDED: Final = ("status", "peak_relative_rotation", "first_uplift_time", "overturned")
+
+
+@dataclass(frozen=True)
+class LimitState:
+    """What is asked of a run.
+
+    Parameters
+    ----------
+    rotation : float
+        Peak rotation over the overturning angle: 0 is uplift, 1 overturning [1].
+    """
+
+    rotation: float
+
+    @property
+    def name(self) -> str:
+        """Its label."""
+        named = {0.0: UPLIFT, 1.0: OVERTURNING}
+        return named.get(self.rotation, f"rotation {self.rotation:g}")
+
+
+def limit_states(given: Iterable[object], *, owner: str) -> tuple[LimitState, ...]:
+    """Read the argument ``limits``.
+
+    Parameters
+    ----------
+    given : iterable
+        ``"uplift"``, and peak rotations over the overturning angle.
+    owner : str
+        Function, for messages.
+
+    Returns
+    -------
+    tuple of LimitState
+        From uplift to overturning, which is always among them.
+
+    Raises
+    ------
+    ComponentError
+        Something else.
+    """
+    if isinstance(given, str | int | float):
+        given = [given]
+    found = {1.0}
+    for one in given:
+        if one == UPLIFT:
+            found.add(0.0)
+        elif one != OVERTURNING:
+            found.add(
+                to_ratio(
+                    cast("Any", one), owner=owner, name="limits", condition=_SHARE, example="0.5"
+                )
+            )
+    return tuple(LimitState(one) for one in sorted(found))
+
+
+def check_runs(given: object, *, owner: str) -> xr.Dataset:
+    """Refuse what is not the result of a sweep.
+
+    Raises
+    ------
+    SchemaError
+        No dataset, or one without the scalars of runs.
+    """
+    runs = checked_dataset(given, owner=owner)
+    missing = [name for name in _NEEDED if name not in runs]
+    if missing or "run_json" not in runs.attrs:
+        lacks = f" without {', '.join(missing)}" if missing else ""
+        msg = f"{owner}: found a dataset{lacks} that is no sweep; expected the result of rf.sweep"
+        raise SchemaError(msg)
+    return runs
+
+
+def exceeds(runs: xr.Dataset, state: LimitState) -> xr.DataArray:
+    """Tell which runs exceed a limit state.
+
+    Parameters
+    ----------
+    runs : xarray.Dataset
+        A sweep.
+    state : LimitState
+        The limit state.
+
+    Returns
+    -------
+    xarray.DataArray
+        1, 0, or NaN where a run has no verdict.
+    """
+    overturned = overturns(runs)
+    if state.rotation == 1.0:
+        return overturned
+    beyond = (
+        runs["first_uplift_time"].notnull()
+        if state.rotation == 0.0
+        else runs["peak_relative_rotation"] >= state.rotation
+    )
+    known = runs["peak_relative_rotation"].notnull()
+    return (beyond | (runs["overturned"] == 1)).astype(float).where(known)
+
+
+def overturns(runs: xr.Dataset) -> xr.DataArray:
+    """Tell which runs overturn, in the sense in which they were asked.
+
+    Where they were to go on beyond the overturning angle, those that lie flat in the end do:
+    the ground may bring a block back.
+
+    Parameters
+    ----------
+    runs : xarray.Dataset
+        A sweep.
+
+    Returns
+    -------
+    xarray.DataArray
+        1, 0, or NaN where a run has no verdict.
+    """
+    if goes_on(runs):
+        finished = (RunStatus.COMPLETED, RunStatus.OVERTURNED, RunStatus.TOPPLED)
+        flat = (runs["status"] == RunStatus.TOPPLED).astype(float)
+        return flat.where(runs["status"].isin([int(one) for one in finished]))
+    known = runs["peak_relative_rotation"].notnull()
+    return (runs["overturned"] == 1).astype(float).where(known)
+
+
+def goes_on(runs: xr.Dataset) -> bool:
+    """Tell whether runs went on beyond the overturning angle."""
+    return json.loads(runs.attrs["run_json"])["overturning"] == Overturning.CONTINUE
+
+
+def interrupted(runs: xr.Dataset) -> bool:
+    """Tell whether some cases have not been run."""
+    return bool(np.any(runs["status"].to_numpy() == RunStatus.NOT_RUN))
+
+
+def check_names(given: object, known: Iterable[str], *, owner: str, name: str) -> str:
+    """Read an argument that is one of some names.
+
+    Raises
+    ------
+    ComponentError
+        None of them.
+    """
+    listed = list(known)
+    if isinstance(given, str) and given in listed:
+        return given
+    msg = f"{owner}: {name} must be one of {', '.join(listed)}, got {shown(given)}"
+    raise ComponentError(msg)

@@ -1,0 +1,174 @@
+"""Scenes and motions whose verdicts are followed along the scale of the motion."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+import xarray as xr
+
+from rockframe.errors import ComponentError, ModelWarning, StudyError, heard, shown, warn
+from rockframe.motion import GroundMotion
+from rockframe.results.outcome import Array, Generic
+from rockframe.results.variables.studies import CASE, MOTION
+from rockframe.studies.brackets import Bracket, brackets_of, narrowed
+from rockframe.studies.limit_states import interrupted
+from rockframe.studies.sweeps.axes import numbers_of
+from rockframe.studies.sweeps.motions import TARGETS
+from rockframe.studies.sweeps.sweep import sweep
+from rockframe.units import Condition, Unit, to_ratio
+
+if TYPE_CHECKING:
+    from rockframe.simulation.system import System
+
+SCALE: Final = "scale"
+_SCAN: Final = "scan"
+_WIDTH: Final = Condition("from 1e-12 to 0.1", lambda value: 1e-12 <= value <= 0.1)
+
+Verdicts = Callable[[xr.Dataset], xr.DataArray]
+"""Gives the verdicts of a sweep over ``verdict`` and its dimensions."""
+VERDICT: Final = "verdict"
+
+
+@dataclass(frozen=True, eq=False)
+class Lines:
+    """What is the same along each line, and how it is run.
+
+    Parameters
+    ----------
+    scene : System or callable
+        As for :func:`rockframe.sweep`.
+    motions : mapping of str to GroundMotion
+        All of them.
+    columns : mapping of str to (ndarray, str)
+        Further values, and their unit, for each row of a table; one row without values if
+        there are none.
+    means : mapping
+        Further arguments of :func:`rockframe.sweep`.
+    store : Path or None
+        The folder in which the scan and the rounds have a folder each.
+    """
+
+    scene: "System | Callable[..., System]"
+    motions: Mapping[str, GroundMotion]
+    columns: Mapping[str, tuple[Array, str]]
+    means: Mapping[str, Any]
+    store: Path | None = None
+
+    def scan(self, scales: Array) -> xr.Dataset:
+        """Run all rows and motions at all scales."""
+        heads = {head(name, unit): values for name, (values, unit) in self.columns.items()}
+        return sweep(
+            self.scene,
+            self.motions,
+            axes={SCALE: scales},
+            cases=heads or None,
+            store=self._folder(_SCAN),
+            **self.means,
+        )
+
+    def follow(self, scan: xr.Dataset, verdicts: Verdicts, *, width: float) -> list[Bracket]:
+        """Narrow every change of a verdict between two scales of the scan.
+
+        Parameters
+        ----------
+        scan : xarray.Dataset
+            Of :meth:`scan`.
+        verdicts : callable
+            Gives the verdicts of a sweep.
+        width : float
+            Of a bracket, over its upper end [1].
+
+        Returns
+        -------
+        list of Bracket
+            The number of a line is that of its row, times that of motions, plus that of its
+            motion.
+        """
+        names = list(self.motions)
+        order = (VERDICT, *([CASE] if self.columns else []), MOTION, SCALE)
+        shown = verdicts(scan).transpose(*order).to_numpy()
+        shown = shown.reshape(len(shown), -1, shown.shape[-1])
+        found = brackets_of(scan[SCALE].to_numpy(), shown)
+        if interrupted(scan):
+            return found
+
+        def middles(number: int, lines: Generic, scales: Array) -> xr.Dataset:
+            rows, motions = np.divmod(lines, len(names))
+            heads = {
+                head(name, unit): values[rows] for name, (values, unit) in self.columns.items()
+            }
+            return sweep(
+                self.scene,
+                self.motions,
+                cases={**heads, SCALE: scales, MOTION: [names[k] for k in motions]},
+                store=self._folder(f"round {number:02d}"),
+                **self.means,
+            )
+
+        def seen(runs: xr.Dataset) -> Array:
+            return verdicts(runs).transpose(VERDICT, CASE).to_numpy()
+
+        with heard() as said:
+            narrow = narrowed(found, middles, seen, width=width)
+        if said:
+            warn(f"while brackets were narrowed: {said[0]}", ModelWarning)
+        return narrow
+
+    def _folder(self, name: str) -> Path | None:
+        return None if self.store is None else self.store / name
+
+
+def read_scales(given: object, *, owner: str, most: int) -> Array:
+    """Read the scales of a scan.
+
+    Raises
+    ------
+    UnitsError, ComponentError
+        No numbers above zero, or too many.
+    """
+    values = np.unique(numbers_of(given, TARGETS[SCALE].measure, SCALE))
+    if not 2 <= len(values) <= most or values[0] <= 0.0:
+        msg = f"{owner}: scale needs 2 to {most} different numbers above zero, got {shown(given)}"
+        raise ComponentError(msg)
+    return values
+
+
+def read_width(given: object, *, owner: str) -> float:
+    """Read the relative width of brackets.
+
+    Raises
+    ------
+    UnitsError, ComponentError
+        No ratio from 1e-12 to 0.1.
+    """
+    return to_ratio(given, owner=owner, name="width", condition=_WIDTH, example="0.001")
+
+
+def read_store(given: object, *, owner: str) -> Path | None:
+    """Read the folder of an analysis, and make it.
+
+    Raises
+    ------
+    StudyError
+        No path, or a folder that cannot be made.
+    """
+    if given is None:
+        return None
+    if not isinstance(given, str | PathLike):
+        msg = f"{owner}: store must be the path of a folder, got {shown(given)}"
+        raise StudyError(msg)
+    folder = Path(given)  # pyright: ignore[reportUnknownArgumentType]
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as problem:
+        msg = f"{owner}: store {str(folder)!r} cannot be made: {problem}"
+        raise StudyError(msg) from problem
+    return folder
+
+
+def head(name: str, unit: str) -> str:
+    """Give the head of a column in a table of cases."""
+    return name if unit == Unit.ONE else f"{name} [{unit}]"

@@ -1,0 +1,242 @@
+"""Which pulses overturn a block: a map over their amplitude and frequency."""
+
+import math
+from collections.abc import Callable
+from concurrent.futures import Executor
+from os import PathLike
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+import xarray as xr
+
+from rockframe.arguments import whole_number
+from rockframe.comparison.models import check_system
+from rockframe.errors import ComponentError, shown
+from rockframe.motion import GroundMotion
+from rockframe.results.dataset import build_dataset
+from rockframe.results.outcome import Array
+from rockframe.results.schema import SCHEMA
+from rockframe.results.variables.studies import MOTION
+from rockframe.solve.accuracy import AccuracyLevel
+from rockframe.studies.brackets import padded
+from rockframe.studies.limit_states import overturns
+from rockframe.studies.lines import SCALE, VERDICT, Lines, read_store, read_width
+from rockframe.studies.sweeps.axes import numbers_of
+from rockframe.system.options import Overturning
+from rockframe.system.rigid_ground import RigidGroundSetting
+from rockframe.units import ACCELERATION, FREQUENCY, quantity
+
+if TYPE_CHECKING:
+    from rockframe.components import InitialState
+    from rockframe.simulation.system import System
+    from rockframe.system.options import AccuracyLike, OverturningLike
+    from rockframe.units import QuantityLike, RatioLike
+
+_OWNER: Final = "overturning_map"
+_STANDS: Final = -1.0
+_MOST_IMPACTS: Final = 1000
+
+
+def overturning_map(
+    system: "System",
+    pulse: "GroundMotion | Callable[..., GroundMotion]",
+    *,
+    amplitude: Any,
+    frequency: Any,
+    impacts: int = 3,
+    width: "RatioLike" = 1e-3,
+    duration: "QuantityLike | None" = None,
+    free_vibration: "QuantityLike | None" = None,
+    initial: "InitialState | None" = None,
+    accuracy: "AccuracyLike" = AccuracyLevel.STANDARD,
+    overturning: "OverturningLike" = Overturning.CONTINUE,
+    store: "str | PathLike[str] | None" = None,
+    executor: Executor | None = None,
+    chunk: int | None = None,
+    progress: bool | None = None,
+) -> xr.Dataset:
+    """Run pulses of all amplitudes and frequencies, and find the boundaries of overturning.
+
+    Parameters
+    ----------
+    system : System
+        The scene.
+    pulse : GroundMotion or callable
+        An analytic pulse with an amplitude and a frequency, both of which are replaced; or a
+        function of both, as Quantities, that returns a motion, such as
+        ``rf.GroundMotion.sine_pulse``. Its amplitude must only scale it.
+    amplitude : values with a unit
+        Amplitudes that are run first, above zero: ``([1, 2, 3], "m/s^2")`` [m s^-2].
+    frequency : values with a unit
+        Cyclic frequencies: ``([0.5, 1, 2], "Hz")`` [Hz].
+    impacts : int, optional
+        Number of impacts from which on the ways to overturn are no longer told apart.
+    width : float, optional
+        Width of the brackets about boundaries, over their upper end [1].
+    duration, free_vibration, initial, accuracy : optional
+        As for :meth:`rockframe.System.simulate`.
+    overturning : {"continue", "stop"}
+        As for :func:`rockframe.critical_scale`.
+    store : str or path, optional
+        A folder in which what has been run is kept; the same call goes on with what it finds
+        there.
+    executor, chunk, progress : optional
+        As for :func:`rockframe.sweep`.
+
+    Returns
+    -------
+    xarray.Dataset
+        The sweep over ``amplitude`` and ``frequency``, with ``impacts_before_overturning``, NaN
+        where the block stands. Over ``frequency``: ``boundary_count``, and over ``boundary``
+        too ``amplitude_below`` and ``amplitude_above`` [m s^-2], ``impacts_below`` and
+        ``impacts_above``, NaN beyond the last one. On rigid ground also the coordinates
+        ``relative_peak_ground_acceleration`` and ``relative_pulse_frequency`` [1].
+        :func:`rockframe.case` gives any case back.
+
+    Raises
+    ------
+    UnitsError, ComponentError
+        An argument is out of range, has a wrong unit or none; or the pulse has no amplitude
+        and frequency.
+    StudyError
+        As for :func:`rockframe.sweep`.
+
+    Notes
+    -----
+    Blocks overturn without an impact, or after one or more (Zhang and Makris, 2001); between the
+    two a range of amplitudes may stand. So a boundary is where the number of impacts before
+    overturning changes, and a bracket whose middle stands becomes two: between neighbouring
+    amplitudes of the first runs that overturn in different ways no such range is missed that
+    the halving meets.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> system = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
+    >>> found = rf.overturning_map(
+    ...     system,
+    ...     rf.GroundMotion.sine_pulse,
+    ...     amplitude=([2, 4, 6], "m/s^2"),
+    ...     frequency=([1, 2], "Hz"),
+    ...     free_vibration="5 s",
+    ... )
+    >>> dict(found.impacts_before_overturning.sizes)
+    {'amplitude': 3, 'frequency': 2}
+    """
+    check_system(system, _OWNER)
+    levels = _rising(amplitude, ACCELERATION, "amplitude")
+    frequencies = _rising(frequency, FREQUENCY, "frequency")
+    told = whole_number(impacts, owner=_OWNER, name="impacts", lowest=1, highest=_MOST_IMPACTS)
+    share = read_width(width, owner=_OWNER)
+    motions = {f"{one!r} {FREQUENCY.unit}": _made(pulse, one) for one in frequencies.tolist()}
+    means: dict[str, Any] = {
+        "duration": duration,
+        "free_vibration": free_vibration,
+        "initial": initial,
+        "accuracy": accuracy,
+        "overturning": overturning,
+        "executor": executor,
+        "chunk": chunk,
+        "progress": progress,
+    }
+    lines = Lines(system, motions, {}, means, read_store(store, owner=_OWNER))
+    scan = lines.scan(levels)
+
+    def ways(runs: xr.Dataset) -> xr.DataArray:
+        verdict = overturns(runs)
+        counted = runs["impact_count"].clip(max=told).astype(float)
+        return xr.where(verdict == 0.0, _STANDS, counted).where(verdict.notnull())
+
+    brackets = lines.follow(scan, lambda runs: ways(runs).expand_dims(VERDICT), width=share)
+    below, above, before, after = (one[0] for one in padded(brackets, (1, len(motions))))
+    counted = ways(scan)
+    of_cases = build_dataset(
+        {"impacts_before_overturning": _without_stands(counted.to_numpy())},
+        {},
+        over=tuple(map(str, counted.dims)),
+    )
+    of_frequencies = build_dataset(
+        {
+            "boundary_count": np.isfinite(below).sum(axis=1),
+            "amplitude_below": below,
+            "amplitude_above": above,
+            "impacts_below": _without_stands(before),
+            "impacts_above": _without_stands(after),
+        },
+        {},
+        over=(MOTION,),
+        source="scan and bisection of event-driven runs",
+    )
+    found = scan.assign(of_cases.data_vars).assign(of_frequencies.data_vars)
+    found = found.assign_coords(_labels(system, levels, frequencies))
+    found = found.swap_dims({SCALE: "amplitude", MOTION: "frequency"})
+    found.attrs |= {
+        "title": "Overturning by pulses",
+        "source": of_frequencies.attrs["source"],
+        "bracket_width": share,
+        "impacts_told_apart": told,
+    }
+    return found
+
+
+def _rising(given: object, measure: Any, name: str) -> Array:
+    values = np.unique(numbers_of(given, measure, name))
+    if not len(values) or values[0] <= 0.0:
+        msg = f"{_OWNER}: {name} must be above zero, got {shown(given)}"
+        raise ComponentError(msg)
+    return values
+
+
+def _made(pulse: object, frequency: float) -> GroundMotion:
+    """Give the pulse of a frequency, with an amplitude of one."""
+    if isinstance(pulse, GroundMotion):
+        described = pulse.to_dict()
+        if not {"amplitude", "frequency"} <= set(described) or "operations" in described:
+            msg = (
+                f"{_OWNER}: pulse needs an amplitude and a frequency, got {pulse.name!r}; give a "
+                "function of both that returns a GroundMotion"
+            )
+            raise ComponentError(msg)
+        sign = "-" if str(described["amplitude"]).startswith("-") else ""
+        changed = {
+            "amplitude": f"{sign}1 {ACCELERATION.unit}",
+            "frequency": f"{frequency!r} {FREQUENCY.unit}",
+        }
+        return GroundMotion.from_dict({**described, **changed})
+    if not callable(pulse):
+        msg = f"{_OWNER}: pulse must be a GroundMotion or a function, got {shown(pulse)}"
+        raise ComponentError(msg)
+    made = pulse(quantity(1.0, ACCELERATION), quantity(frequency, FREQUENCY))
+    if not isinstance(made, GroundMotion):
+        msg = f"{_OWNER}: pulse must return a GroundMotion, got {shown(made)}"
+        raise ComponentError(msg)
+    return made
+
+
+def _without_stands(counts: Array) -> Array:
+    return np.where(counts == _STANDS, np.nan, counts)
+
+
+def _labels(system: "System", levels: Array, frequencies: Array) -> dict[str, Any]:
+    """Give the coordinates; on rigid ground also those without a dimension."""
+
+    def labels(name: str, dim: str, values: Array) -> tuple[str, Array, dict[str, Any]]:
+        return dim, values, SCHEMA[name].attributes()
+
+    found = {
+        "amplitude": labels("amplitude", SCALE, levels),
+        "frequency": labels("frequency", MOTION, frequencies),
+    }
+    found["frequency"][2]["long_name"] = "cyclic frequency of the pulse"
+    setting = system.setting
+    block = system.parts.block
+    if isinstance(setting, RigidGroundSetting) and block is not None:
+        uplift = min(setting.uplift_accelerations)
+        angular = 2.0 * math.pi * frequencies
+        own = block.si.frequency_at(system.gravity_si)
+        for name, dim, values in (
+            ("relative_peak_ground_acceleration", SCALE, levels / uplift),
+            ("relative_pulse_frequency", MOTION, angular / own),
+        ):
+            found[name] = labels(name, dim, values)
+    return found

@@ -1,0 +1,252 @@
+"""Spectra of rocking and of overturning: motions and blocks of all sizes."""
+
+from collections.abc import Mapping, Sequence
+from concurrent.futures import Executor
+from os import PathLike
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+import xarray as xr
+
+from rockframe.comparison.models import check_system
+from rockframe.errors import StudyError
+from rockframe.motion import GroundMotion
+from rockframe.results.dataset import build_dataset
+from rockframe.results.variables.studies import CASE, MOTION
+from rockframe.solve.accuracy import AccuracyLevel
+from rockframe.studies.block_sizes import BlockSizes
+from rockframe.studies.brackets import least_exceeding, padded
+from rockframe.studies.intensities import POWERS, Intensity, motions_in, of_motions
+from rockframe.studies.limit_states import overturns
+from rockframe.studies.lines import SCALE, VERDICT, Lines, head, read_scales, read_store, read_width
+from rockframe.studies.sweeps.motions import motions_of
+from rockframe.studies.sweeps.sweep import sweep
+from rockframe.system.options import Overturning
+
+if TYPE_CHECKING:
+    from rockframe.components import InitialState
+    from rockframe.simulation.system import System
+    from rockframe.system.options import AccuracyLike, OverturningLike
+    from rockframe.units import QuantityLike, RatioLike
+
+    Motions = GroundMotion | Mapping[str, GroundMotion] | Sequence[GroundMotion]
+
+_ROCKING: Final = "rocking_spectrum"
+_OVERTURNING: Final = "overturning_spectrum"
+_MOST_SCALES: Final = 100_000
+
+
+def rocking_spectrum(
+    system: "System",
+    motions: "Motions | None" = None,
+    *,
+    periods: Any,
+    slenderness: Any = None,
+    duration: "QuantityLike | None" = None,
+    free_vibration: "QuantityLike | None" = None,
+    initial: "InitialState | None" = None,
+    accuracy: "AccuracyLike" = AccuracyLevel.STANDARD,
+    overturning: "OverturningLike" = Overturning.STOP,
+    store: "str | PathLike[str] | None" = None,
+    executor: Executor | None = None,
+    chunk: int | None = None,
+    progress: bool | None = None,
+) -> xr.Dataset:
+    """Run blocks of all sizes under motions: what a response spectrum is to oscillators.
+
+    Parameters
+    ----------
+    system : System
+        A block on its base. Its size is changed, and its slenderness if it is asked for;
+        its shape factor, its mass and the parameters of the base stay as they are.
+    motions : GroundMotion, or sequence or mapping of them, optional
+        Motions; the one among the parts of the system unless given.
+    periods : values with a unit
+        2 pi over the frequency parameter p of the block: ``([2, 4, 8], "s")`` [s].
+    slenderness : values, optional
+        Height over width; that of the block unless given [1].
+    duration, free_vibration, initial, accuracy, overturning : optional
+        As for :meth:`rockframe.System.simulate`.
+    store, executor, chunk, progress : optional
+        As for :func:`rockframe.sweep`.
+
+    Returns
+    -------
+    xarray.Dataset
+        The sweep over ``slenderness``, ``rocking_period`` [s] and ``motion``, whose
+        ``peak_relative_rotation`` is the rocking spectrum; with ``width`` and ``height`` [m] of
+        the blocks. :func:`rockframe.case` gives any case back.
+
+    Raises
+    ------
+    UnitsError, ComponentError
+        An argument is out of range, has a wrong unit or none; or the system is no block on a
+        base.
+    StudyError
+        As for :func:`rockframe.sweep`.
+
+    Notes
+    -----
+    Makris and Konstantinidis (2003). The period 2 pi / p grows with the square root of the size:
+    it is no period of free rocking, which depends on the amplitude.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> system = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
+    >>> pulse = rf.GroundMotion.sine_pulse("4 m/s^2", "1 Hz")
+    >>> found = rf.rocking_spectrum(system, pulse, periods=([2, 4, 8], "s"))
+    >>> dict(found.peak_relative_rotation.sizes)
+    {'slenderness': 1, 'rocking_period': 3, 'motion': 1}
+    """
+    check_system(system, _ROCKING)
+    sizes = BlockSizes(system, periods, slenderness, owner=_ROCKING)
+    heads = {head(name, unit): values for name, (values, unit) in sizes.columns.items()}
+    runs = sweep(
+        system,
+        _given(motions, system, _ROCKING),
+        cases=heads,
+        duration=duration,
+        free_vibration=free_vibration,
+        initial=initial,
+        accuracy=accuracy,
+        overturning=overturning,
+        store=store,
+        executor=executor,
+        chunk=chunk,
+        progress=progress,
+    )
+    return sizes.arranged(runs).assign_attrs(title="Rocking spectrum")
+
+
+def overturning_spectrum(
+    system: "System",
+    motions: "Motions | None" = None,
+    *,
+    periods: Any,
+    slenderness: Any = None,
+    scale: "Sequence[float] | np.ndarray",
+    intensity: str = "PGA",
+    period: "QuantityLike | None" = None,
+    width: "RatioLike" = 1e-3,
+    duration: "QuantityLike | None" = None,
+    free_vibration: "QuantityLike | None" = None,
+    initial: "InitialState | None" = None,
+    accuracy: "AccuracyLike" = AccuracyLevel.STANDARD,
+    overturning: "OverturningLike" = Overturning.STOP,
+    store: "str | PathLike[str] | None" = None,
+    executor: Executor | None = None,
+    chunk: int | None = None,
+    progress: bool | None = None,
+) -> xr.Dataset:
+    """Find the least intensity of motions that overturns blocks of all sizes.
+
+    Parameters
+    ----------
+    system, motions, periods, slenderness : optional
+        As for :func:`rockframe.rocking_spectrum`.
+    scale : sequence of float
+        Factors of the motions at which all blocks are run first, above zero [1].
+    intensity : str, optional
+        An intensity measure, see :func:`rockframe.fragility`.
+    period : str or Quantity, optional
+        Of the oscillator of a spectral intensity [s].
+    width : float, optional
+        Width of a bracket, over its upper scale [1].
+    duration, free_vibration, initial, accuracy : optional
+        As for :meth:`rockframe.System.simulate`.
+    overturning : {"stop", "continue"}
+        As for :func:`rockframe.critical_scale`.
+    store : str or path, optional
+        A folder in which what has been run is kept; the same call goes on with what it finds
+        there.
+    executor, chunk, progress : optional
+        As for :func:`rockframe.sweep`.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``slenderness``, ``rocking_period`` [s] and ``motion``: ``capacity_scale`` [1] and
+        ``capacity_intensity``, the least found to overturn, NaN if none did;
+        ``flip_count``, and over ``flip`` too ``scale_below``, ``scale_above`` and
+        ``exceeds_above``.
+
+    Raises
+    ------
+    UnitsError, ComponentError
+        An argument is out of range, has a wrong unit or none; or the system is no block on a
+        base.
+    StudyError
+        As for :func:`rockframe.sweep`.
+
+    Notes
+    -----
+    As :func:`rockframe.incremental_dynamic_analysis`, for blocks of all sizes.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> system = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
+    >>> pulse = rf.GroundMotion.half_sine_pulse("1 m/s^2", "0.5 s")
+    >>> found = rf.overturning_spectrum(
+    ...     system, pulse, periods=([2, 4], "s"), scale=[3, 6, 12], free_vibration="5 s"
+    ... )
+    >>> found.capacity_intensity.units
+    'm s^-2'
+    """
+    check_system(system, _OVERTURNING)
+    sizes = BlockSizes(system, periods, slenderness, owner=_OVERTURNING)
+    scales = read_scales(scale, owner=_OVERTURNING, most=_MOST_SCALES)
+    share = read_width(width, owner=_OVERTURNING)
+    measure = Intensity.read(intensity, period, owner=_OVERTURNING)
+    named = motions_of(_given(motions, system, _OVERTURNING))
+    means: dict[str, Any] = {
+        "duration": duration,
+        "free_vibration": free_vibration,
+        "initial": initial,
+        "accuracy": accuracy,
+        "overturning": overturning,
+        "executor": executor,
+        "chunk": chunk,
+        "progress": progress,
+    }
+    lines = Lines(system, named, sizes.columns, means, read_store(store, owner=_OVERTURNING))
+    scan = lines.scan(scales)
+    brackets = lines.follow(scan, lambda runs: overturns(runs).expand_dims(VERDICT), width=share)
+    shape = (scan.sizes[CASE], scan.sizes[MOTION])
+    below, above, _, after = (
+        one[0].reshape(*shape, -1) for one in padded(brackets, (1, shape[0] * shape[1]))
+    )
+    shown = overturns(scan).transpose(CASE, MOTION, SCALE).to_numpy()
+    capacity = least_exceeding(scales, shown, above, after)
+    unit = of_motions(scan, motions_in(scan, named, owner=_OVERTURNING), measure.of)
+    powers = capacity ** POWERS[measure.name]
+    narrow = build_dataset(
+        {
+            "capacity_scale": capacity,
+            "capacity_intensity": unit.to_numpy() * np.where(np.isnan(capacity), np.nan, powers),
+            "flip_count": np.isfinite(below).sum(axis=-1),
+            "scale_below": below,
+            "scale_above": above,
+            "exceeds_above": after,
+        },
+        {},
+        over=(CASE, MOTION),
+        source="scan and bisection of event-driven runs",
+    )
+    narrow["capacity_intensity"].attrs["units"] = measure.attributes()["units"]
+    found = scan.drop_dims(SCALE).drop_vars("message", errors="ignore").assign(narrow.data_vars)
+    return sizes.arranged(found).assign_attrs(
+        title="Overturning spectrum",
+        source=narrow.attrs["source"],
+        intensity=measure.name,
+        bracket_width=share,
+    )
+
+
+def _given(motions: object, system: "System", owner: str) -> Any:
+    given = system.motion if motions is None else motions
+    if given is None:
+        msg = f"{owner}: there is no motion; give one"
+        raise StudyError(msg)
+    return given
