@@ -1,11 +1,31 @@
 """Figures of results and motions; matplotlib is imported when the first is drawn."""
 
+from rockframe.plot._ensembles import ensemble, probability
+from rockframe.plot._fragility import fragility
 from rockframe.plot._motion import motion
+from rockframe.plot._overturning import (
+    dynamic_analysis,
+    overturning_map,
+    overturning_spectrum,
+    rocking_spectrum,
+)
 from rockframe.plot._response import response
 from rockframe.plot._spectra import spectra
 from rockframe.plot._tradeoff import tradeoff
 
-__all__ = ["motion", "response", "spectra", "tradeoff"]
+__all__ = [
+    "dynamic_analysis",
+    "ensemble",
+    "fragility",
+    "motion",
+    "overturning_map",
+    "overturning_spectrum",
+    "probability",
+    "response",
+    "rocking_spectrum",
+    "spectra",
+    "tradeoff",
+]
 
 
 def __dir__() -> list[str]:

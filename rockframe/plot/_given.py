@@ -12,7 +12,26 @@ _NEEDED: Final = {
     "tradeoff": "a comparison of models, as rf.tradeoff(system, motion) gives it",
     "motion": "a GroundMotion",
     "spectra": "a GroundMotion",
+    "fragility": "a fragility, as rf.fragility(runs) gives it",
+    "dynamic_analysis": (
+        "a dynamic analysis, as rf.incremental_dynamic_analysis(system, motions) gives it"
+    ),
+    "overturning_map": "a map, as rf.overturning_map(system, pulse, ...) gives it",
+    "rocking_spectrum": "a spectrum, as rf.rocking_spectrum(system, motions, ...) gives it",
+    "overturning_spectrum": "a spectrum, as rf.overturning_spectrum(system, ...) gives it",
+    "probability": "a sample, as rf.probability_of_overturning(system, motions, ...) gives it",
+    "ensemble": "an ensemble, as rf.ensemble_statistics(runs) gives it",
 }
+_STUDIES: Final = {
+    "fragility": ("exceedance_probability", "fragility_status"),
+    "dynamic_analysis": ("capacity_scale", "flip_count", "peak_relative_rotation", "scale"),
+    "overturning_map": ("impacts_before_overturning", "amplitude_above", "amplitude"),
+    "rocking_spectrum": ("peak_relative_rotation", "rocking_period"),
+    "overturning_spectrum": ("capacity_intensity", "rocking_period"),
+    "probability": ("overturning_probability", "first_order_index"),
+    "ensemble": ("ordered_value", "cumulative_probability"),
+}
+"""Variables by which the results of studies are known, by what draws them."""
 _RUN: Final = (
     "ground_acceleration",
     "relative_rotation",
@@ -31,6 +50,10 @@ _RUNGS: Final = (
 )
 _DRAWN_BY: Final = (
     # (variables, what they are, what draws them), the first that fits
+    *(
+        (names, _NEEDED[function].partition(",")[0], f"rf.plot.{function} draws it")
+        for function, names in _STUDIES.items()
+    ),
     (("run_time", "verdict_agrees"), "a comparison of models", "rf.plot.tradeoff draws it"),
     (("rotation", "time", "overturned"), "the result of a run", "rf.plot.response draws it"),
     (
@@ -103,6 +126,30 @@ def check_rungs(given: object) -> None:
     if not isinstance(given, xr.Dataset) or not _holds(given, ("run_time", "verdict_agrees")):
         raise SchemaError(_refusal("tradeoff", given))
     _check_complete("tradeoff", given, _RUNGS)
+
+
+def check_study(given: object, function: str) -> xr.Dataset:
+    """Refuse what is not the result of a study.
+
+    Parameters
+    ----------
+    given : object
+        What the user gave.
+    function : str
+        Which function of `rf.plot` it was given to.
+
+    Returns
+    -------
+    xarray.Dataset
+
+    Raises
+    ------
+    SchemaError
+        It is something else.
+    """
+    if not isinstance(given, xr.Dataset) or not _holds(given, _STUDIES[function]):
+        raise SchemaError(_refusal(function, given))
+    return given
 
 
 def check_motion(given: object, function: str) -> None:

@@ -1,0 +1,110 @@
+"""Ensembles: empirical distributions, and what overturning depends on."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import xarray as xr
+
+from rockframe.plot._axes import COLOURS, grid, label_of
+from rockframe.plot._given import check_study
+from rockframe.plot._title import set_title
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+def ensemble(dataset: xr.Dataset, *, title: str | None = None) -> "Figure":
+    """Draw an empirical distribution with its bands.
+
+    Dark, the bounds that hold at each value; light, those that hold everywhere at once.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        Of :func:`rockframe.ensemble_statistics`.
+    title : str, optional
+        Title of the figure.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Not yet shown nor saved.
+
+    Raises
+    ------
+    SchemaError
+        The dataset is no ensemble.
+    """
+    from matplotlib.figure import Figure
+
+    given = check_study(dataset, "ensemble")
+    figure = Figure(figsize=(6.0, 4.2), layout="constrained")
+    axes = figure.subplots()
+    values = given["ordered_value"].rename(str(given.attrs["variable"]))
+    for names, alpha in (
+        (("simultaneous_lower_bound", "simultaneous_upper_bound"), 0.12),
+        (("cumulative_probability_lower_bound", "cumulative_probability_upper_bound"), 0.25),
+    ):
+        low, high = (given[name].to_numpy() for name in names)
+        axes.fill_between(
+            values, low, high, step="post", color=COLOURS[0], alpha=alpha, linewidth=0.0
+        )
+    axes.step(values, given["cumulative_probability"], where="post", color=COLOURS[0])
+    axes.set(xlabel=label_of(values), ylabel="share of the ensemble [-]", ylim=(0.0, 1.02))
+    grid(axes)
+    count = int(given["member_count"])
+    set_title(figure, title or f"{count} members; bands of confidence {given.confidence:g}")
+    return figure
+
+
+def probability(dataset: xr.Dataset, *, title: str | None = None) -> "Figure":
+    """Draw what the verdict depends on, and how the share that overturns goes with it.
+
+    Left, first-order indices; right, for the parameter that matters most, the shares that
+    overturned in groups of cases.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        Of :func:`rockframe.probability_of_overturning`.
+    title : str, optional
+        Title of the figure; the verdict unless given.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Not yet shown nor saved.
+
+    Raises
+    ------
+    SchemaError
+        The dataset is no such sample.
+    """
+    from matplotlib.figure import Figure
+
+    given = check_study(dataset, "probability")
+    figure = Figure(figsize=(8.4, 3.8), layout="constrained")
+    left, right = figure.subplots(1, 2)
+    names = [str(name).replace("_", " ") for name in given["parameter"].to_numpy()]
+    left.barh(names[::-1], given["first_order_index"].to_numpy()[::-1], color=COLOURS[0])
+    left.set(xlabel="first-order index [-]", xlim=(0.0, None))
+    first = given[str(given["parameter"].to_numpy()[0])]
+    verdict = given["overturned"].to_numpy().astype(np.float64)
+    known = ~np.isnan(verdict)
+    if first.dtype.kind == "f":
+        cuts = np.quantile(first.to_numpy()[known], np.linspace(0.0, 1.0, 13))
+        place = np.clip(np.searchsorted(cuts, first.to_numpy()[known], side="right") - 1, 0, 11)
+        shares = [verdict[known][place == k].mean() for k in range(12)]
+        right.stairs(shares, cuts, fill=True, color=COLOURS[2], alpha=0.6)
+        right.set(xlabel=label_of(first))
+    else:
+        labels, place = np.unique(first.to_numpy()[known].astype(str), return_inverse=True)
+        right.bar(
+            range(len(labels)), [verdict[known][place == k].mean() for k in range(len(labels))]
+        )
+        right.set(xlabel="motion")
+    right.set(ylabel="share that overturns [-]", ylim=(0.0, 1.02))
+    for axes in (left, right):
+        grid(axes)
+    set_title(figure, title or str(given.attrs["verdict"]))
+    return figure

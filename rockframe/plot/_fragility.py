@@ -1,0 +1,108 @@
+"""Fragilities: curves with bands over one measure, contours over two."""
+
+from typing import TYPE_CHECKING, Any, Final, cast
+
+import numpy as np
+import xarray as xr
+
+from rockframe.plot._axes import COLOURS, grid, label_of
+from rockframe.plot._given import check_study
+from rockframe.plot._title import set_title
+from rockframe.results.variables.analyses import FragilityStatus
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_NAME: Final = "exceedance_probability"
+_LEVELS: Final = (0.05, 0.16, 0.5, 0.84, 0.95)
+_KNOWN: Final = (FragilityStatus.FITTED, FragilityStatus.SEPARATED)
+
+
+def fragility(dataset: xr.Dataset, *, title: str | None = None) -> "Figure":
+    """Draw the probability that limit states are exceeded.
+
+    Over one measure, a curve for each limit state with its confidence band, and the shares that
+    were counted, with the bounds of Clopper and Pearson. Over two measures, contours of the
+    probability, in a panel for each limit state that has a fit.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        Of :func:`rockframe.fragility`.
+    title : str, optional
+        Title of the figure; the verdict unless given.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Not yet shown nor saved.
+
+    Raises
+    ------
+    SchemaError
+        The dataset is no fragility; the message names the function that draws what was given.
+    """
+    from matplotlib.figure import Figure
+
+    given = check_study(dataset, "fragility")
+    if "limit_state" not in given.dims:
+        given = given.expand_dims("limit_state")
+    measures = [str(dim) for dim in given[_NAME].dims if dim != "limit_state"]
+    states = [given.isel(limit_state=k) for k in range(given.sizes["limit_state"])]
+    if len(measures) == 1:
+        figure = Figure(figsize=(6.4, 4.4), layout="constrained")
+        _curves(figure.subplots(), states, measures[0])
+    else:
+        fitted = FragilityStatus.FITTED
+        drawn = [one for one in states if int(one["fragility_status"]) == fitted] or states[-1:]
+        figure = Figure(figsize=(1.0 + 4.2 * len(drawn), 4.2), layout="constrained")
+        panels = cast("Any", figure.subplots(1, len(drawn), squeeze=False))[0]
+        for axes, one in zip(panels, drawn, strict=True):
+            _contours(axes, one, measures)
+    set_title(figure, title or str(dataset.attrs.get("verdict", "")))
+    return figure
+
+
+def _curves(axes: "Axes", states: list[xr.Dataset], measure: str) -> None:
+    for number, one in enumerate(states):
+        colour = COLOURS[number % len(COLOURS)]
+        along = one[measure].to_numpy()
+        name = _name(one)
+        if int(one["fragility_status"]) in _KNOWN:
+            low, high = (one[f"{_NAME}_{end}_bound"].to_numpy() for end in ("lower", "upper"))
+            axes.fill_between(along, low, high, color=colour, alpha=0.15, linewidth=0.0)
+            axes.plot(along, one[_NAME].to_numpy(), color=colour, label=name)
+        else:
+            axes.plot([], [], color=colour, label=f"{name}: no fit")
+        fraction = one["stripe_fraction"].to_numpy()
+        ends = [one[f"stripe_fraction_{end}_bound"].to_numpy() for end in ("lower", "upper")]
+        reach = np.abs(np.stack(ends) - fraction)
+        # side by side where limit states were counted at one intensity
+        place = one["stripe_intensity"].to_numpy() * 1.012 ** (number - 0.5 * (len(states) - 1))
+        axes.errorbar(place, fraction, yerr=reach, fmt="o", color=colour, ms=3.0, lw=0.8, alpha=0.7)
+    axes.set(
+        xlabel=label_of(states[0][measure]),
+        ylabel="probability of exceedance [-]",
+        ylim=(-0.02, 1.02),
+    )
+    axes.set_xlim(left=0.0)
+    axes.legend(frameon=False, fontsize="small", loc="best")
+    grid(axes)
+
+
+def _contours(axes: "Axes", one: xr.Dataset, measures: list[str]) -> None:
+    across, up = measures
+    surface = one[_NAME].transpose(up, across)
+    axes.contourf(
+        one[across], one[up], surface, levels=np.linspace(0.0, 1.0, 21), cmap="Blues", alpha=0.8
+    )
+    lines = axes.contour(
+        one[across], one[up], surface, levels=_LEVELS, colors=COLOURS[0], linewidths=0.9
+    )
+    axes.clabel(lines, fontsize="small", fmt="%.2f")
+    axes.set(xlabel=label_of(one[across]), ylabel=label_of(one[up]), title=_name(one))
+
+
+def _name(one: xr.Dataset) -> str:
+    return str(one["limit_state"].item()) if "limit_state" in one.coords else "counted"

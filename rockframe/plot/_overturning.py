@@ -1,0 +1,253 @@
+"""Dynamic analyses, maps of overturning, and spectra over the size of the block."""
+
+from typing import TYPE_CHECKING, Any, Final, cast
+
+import numpy as np
+import xarray as xr
+
+from rockframe.plot._axes import COLOURS, STANDS, grid, label_of, plain_ticks, steps_of
+from rockframe.plot._given import check_study
+from rockframe.plot._title import set_title
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_MOST_NAMED: Final = 8
+"""Motions with a line in the legend."""
+_WAYS: Final = ("#cc6677", "#1f3a5f", "#6699cc", "#ddaa33", "#999999")
+_CAPPED: Final = 1.0
+"""Peaks over the overturning angle that are drawn alike."""
+
+
+def dynamic_analysis(dataset: xr.Dataset, *, title: str | None = None) -> "Figure":
+    """Draw peak rotations over the intensity, and the share of motions that overturned.
+
+    Left, a line for each motion, and a mark where it first overturns; hollow marks where the
+    verdict changes again. Right, the share of motions whose capacity is below an intensity, for
+    each limit state.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        Of :func:`rockframe.incremental_dynamic_analysis`.
+    title : str, optional
+        Title of the figure; the verdict unless given.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Not yet shown nor saved.
+
+    Raises
+    ------
+    SchemaError
+        The dataset is no dynamic analysis.
+    """
+    from matplotlib.figure import Figure
+
+    given = check_study(dataset, "dynamic_analysis")
+    name = str(given.attrs.get("intensity", "scale"))
+    intensity = given[name].broadcast_like(given["peak_relative_rotation"])
+    figure = Figure(figsize=(9.0, 4.2), layout="constrained")
+    left, right = figure.subplots(1, 2, width_ratios=(1.4, 1))
+    colours = steps_of(given["motion"])
+    last = given.isel(limit_state=-1)
+    for number, colour in enumerate(colours):
+        one, along = given.isel(motion=number), intensity.isel(motion=number)
+        peak = one["peak_relative_rotation"].clip(max=_CAPPED)
+        label = str(one["motion"].item()) if given.sizes["motion"] <= _MOST_NAMED else None
+        left.plot(along, peak, color=colour, lw=0.9, label=label)
+        flips = last.isel(motion=number)["scale_above"].to_numpy()
+        places = _at(flips[~np.isnan(flips)], one["scale"].to_numpy(), along.to_numpy())
+        left.plot(places[:1], np.full(len(places[:1]), _CAPPED), "o", color=colour, ms=4)
+        rest = places[1:]
+        left.plot(rest, np.full(len(rest), _CAPPED), "o", mfc="white", color=colour, ms=3)
+    left.set(
+        xlabel=label_of(given[name]), ylabel=r"peak of $|\alpha|/\theta$ [-]", ylim=(0.0, 1.06)
+    )
+    left.set_xlim(left=0.0)
+    if given.sizes["motion"] <= _MOST_NAMED:
+        left.legend(frameon=False, fontsize="x-small")
+    for number, state in enumerate(given["limit_state"].to_numpy()):
+        capacity = given["capacity_scale"].isel(limit_state=number).to_numpy()
+        places = [
+            float(_at(np.array([scale]), given["scale"].to_numpy(), along)[0])
+            for scale, along in zip(capacity, intensity.transpose("motion", "scale").to_numpy(),
+                                    strict=True)
+            if not np.isnan(scale)
+        ]  # fmt: skip
+        ordered = np.sort(np.array([0.0, *places]))
+        shares = np.arange(len(ordered)) / max(1, len(capacity))
+        colour = COLOURS[number % len(COLOURS)]
+        right.step(ordered, shares, where="post", color=colour, label=str(state))
+    right.set(xlabel=label_of(given[name]), ylabel="share of the motions [-]", ylim=(0.0, 1.02))
+    right.set_xlim(left.get_xlim())
+    right.legend(frameon=False, fontsize="small")
+    for axes in (left, right):
+        grid(axes)
+    set_title(figure, title or str(given.attrs["verdict"]))
+    return figure
+
+
+def overturning_map(dataset: xr.Dataset, *, title: str | None = None) -> "Figure":
+    """Draw which pulses overturn, after how many impacts, and the boundaries between.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        Of :func:`rockframe.overturning_map`.
+    title : str, optional
+        Title of the figure.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Not yet shown nor saved; on rigid ground the axes are amplitude over that of uplift and
+        frequency over the block's.
+
+    Raises
+    ------
+    SchemaError
+        The dataset is no such map.
+    """
+    from matplotlib.colors import ListedColormap
+    from matplotlib.figure import Figure
+    from matplotlib.patches import Patch
+
+    given = check_study(dataset, "overturning_map")
+    relative = "relative_pulse_frequency" in given.coords
+    across = given["relative_pulse_frequency" if relative else "frequency"]
+    up = given["relative_peak_ground_acceleration" if relative else "amplitude"]
+    told = int(given.attrs["impacts_told_apart"])
+    count = given["impacts_before_overturning"].transpose("amplitude", "frequency")
+    colours = [STANDS, *(_WAYS[min(k, len(_WAYS) - 1)] for k in range(told + 1))]
+    figure = Figure(figsize=(6.6, 4.6), layout="constrained")
+    axes = figure.subplots()
+    axes.pcolormesh(
+        across,
+        up,
+        count.fillna(-1.0),
+        cmap=ListedColormap(colours),
+        vmin=-1.5,
+        vmax=told + 0.5,
+        shading="nearest",
+    )
+    middle = 0.5 * (given["amplitude_below"] + given["amplitude_above"])
+    size = float(up[-1] / given["amplitude"][-1])
+    for number in range(given.sizes.get("boundary", 0)):
+        axes.plot(across, size * middle.isel(boundary=number), ".", color="black", ms=2.0)
+    axes.set(
+        xlabel=r"frequency over the block's, $\omega_p/p$ [-]" if relative else label_of(across),
+        ylabel=r"amplitude over that of uplift [-]" if relative else label_of(up),
+    )
+    words = ["stands", *(_after(k, told) for k in range(told + 1))]
+    patches = [Patch(color=one, label=text) for one, text in zip(colours, words, strict=True)]
+    figure.legend(handles=patches, loc="outside lower center", ncols=2, frameon=False)
+    set_title(figure, title or "What overturns: dots are boundaries that were halved")
+    return figure
+
+
+def rocking_spectrum(dataset: xr.Dataset, *, title: str | None = None) -> "Figure":
+    """Draw peak rotations over the size of the block, a panel for each slenderness.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        Of :func:`rockframe.rocking_spectrum`.
+    title : str, optional
+        Title of the figure.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Not yet shown nor saved.
+
+    Raises
+    ------
+    SchemaError
+        The dataset is no rocking spectrum.
+    """
+    given = check_study(dataset, "rocking_spectrum")
+    figure, panels = _panels(given)
+    for place, axes in enumerate(panels):
+        one = given.isel(slenderness=place)
+        _lines(axes, one["peak_relative_rotation"].clip(max=_CAPPED))
+        axes.axhline(_CAPPED, color="0.5", lw=0.8, ls=":")
+        axes.set(xscale="log", ylim=(0.0, 1.06), title=f"H/B = {float(one['slenderness']):.3g}")
+        axes.set_xlabel(r"$2\pi/p$ [s]")
+    panels[0].set_ylabel(r"peak of $|\alpha|/\theta$ [-]")
+    _finish(figure, panels, given, title or "Rocking spectrum")
+    return figure
+
+
+def overturning_spectrum(dataset: xr.Dataset, *, title: str | None = None) -> "Figure":
+    """Draw the least intensity that overturns over the size of the block, on logarithmic axes.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        Of :func:`rockframe.overturning_spectrum`.
+    title : str, optional
+        Title of the figure.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Not yet shown nor saved.
+
+    Raises
+    ------
+    SchemaError
+        The dataset is no overturning spectrum.
+    """
+    given = check_study(dataset, "overturning_spectrum")
+    figure, panels = _panels(given)
+    measure = given["capacity_intensity"].rename(str(given.attrs["intensity"]))
+    for place, axes in enumerate(panels):
+        one = measure.isel(slenderness=place)
+        _lines(axes, one)
+        axes.set(xscale="log", yscale="log", title=f"H/B = {float(one['slenderness']):.3g}")
+        axes.set_xlabel(r"$2\pi/p$ [s]")
+    panels[0].set_ylabel(label_of(measure))
+    _finish(figure, panels, given, title or "Least intensity that overturns")
+    return figure
+
+
+def _at(scales: np.ndarray, known: np.ndarray, along: np.ndarray) -> np.ndarray:
+    """Give intensities at scales, of which they are a power."""
+    power = np.log(along[-1] / along[0]) / np.log(known[-1] / known[0])
+    return along[0] * (scales / known[0]) ** power
+
+
+def _after(count: int, told: int) -> str:
+    words = "after 1 impact" if count == 1 else f"after {count} impacts"
+    words = "without an impact" if count == 0 else words
+    return f"overturns {words}{' or more' if count == told else ''}"
+
+
+def _panels(given: xr.Dataset) -> tuple["Figure", Any]:
+    from matplotlib.figure import Figure
+
+    count = given.sizes["slenderness"]
+    figure = Figure(figsize=(1.4 + 4.0 * count, 4.2), layout="constrained")
+    return figure, cast("Any", figure.subplots(1, count, sharey=True, squeeze=False))[0]
+
+
+def _lines(axes: "Axes", values: xr.DataArray) -> None:
+    for number, colour in enumerate(steps_of(values["motion"])):
+        one = values.isel(motion=number)
+        label = str(one["motion"].item())
+        axes.plot(one["rocking_period"], one, color=colour, lw=1.0, label=label)
+    grid(axes)
+
+
+def _finish(figure: "Figure", panels: Any, given: xr.Dataset, title: str) -> None:
+    for axes in panels:
+        plain_ticks(axes)
+    if given.sizes["motion"] <= _MOST_NAMED:
+        handles, labels = panels[0].get_legend_handles_labels()
+        figure.legend(
+            handles, labels, loc="outside lower center", fontsize="x-small", frameon=False
+        )
+    set_title(figure, title)

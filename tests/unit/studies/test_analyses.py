@@ -1,0 +1,366 @@
+"""Dynamic analysis, maps, spectra, probabilities, ensembles: labels, brute force, files."""
+
+import numpy as np
+import pytest
+import xarray as xr
+from scipy import stats
+
+import rockframe as rf
+from rockframe.errors import ComponentError, SchemaError, StudyError
+from rockframe.results.schema import SCHEMA
+from rockframe.studies.brackets import Bracket, brackets_of, narrowed, padded
+from rockframe.studies.ranking import ranked
+
+BLOCK = rf.Block(width="0.5 m", height="2 m", mass="400 kg")
+SYSTEM = rf.System(BLOCK)
+QUIET = {"progress": False}
+FAST = {"accuracy": "fast", "free_vibration": "4 s", **QUIET}
+
+
+def motions(sign=1.0):
+    return {
+        f"seed {k}": rf.GroundMotion.stochastic(6.6, "5 km", seed=k, stress_drop="20 MPa").scaled(
+            sign
+        )
+        for k in range(4)
+    }
+
+
+@pytest.fixture(scope="module")
+def analysis():
+    return rf.incremental_dynamic_analysis(
+        SYSTEM, motions(), scale=np.arange(0.5, 6.1, 0.5), limits=["uplift", 0.4],
+        intensity="PGA", free_vibration="4 s", **QUIET,
+    )  # fmt: skip
+
+
+def checked(dataset, tmp_path):
+    """Whether variables have the units of the schema, and files hold the dataset."""
+    for name, one in dataset.variables.items():
+        assert one.attrs.get("long_name"), name
+        if name in SCHEMA and SCHEMA[name].unit is not None:
+            assert "units" in one.attrs, name
+    dataset.to_netcdf(tmp_path / "found.nc")
+    with xr.open_dataset(tmp_path / "found.nc") as again:
+        xr.testing.assert_identical(again.load().drop_attrs(), dataset.drop_attrs())
+    return True
+
+
+# dynamic analysis ----------------------------------------------------------------------------
+
+
+def test_brackets_of_a_dynamic_analysis_are_those_of_single_runs(analysis, tmp_path):
+    assert checked(analysis, tmp_path)
+    assert analysis.limit_state.values.tolist() == ["uplift", "rotation 0.4", "overturning"]
+    assert analysis.capacity_scale.dims == ("limit_state", "motion")
+    several = 0
+    for name, motion in motions().items():
+        one = analysis.sel(motion=name)
+        uplift = float(one.capacity_scale.sel(limit_state="uplift"))
+        pga = motion.peak_acceleration.m_as("m/s^2")
+        assert uplift * pga == pytest.approx(9.80665 / 4.0, rel=1e-3)
+        flips = int(one.flip_count.sel(limit_state="overturning"))
+        several += flips > 1
+        for place in range(flips):
+            flip = one.isel(flip=place).sel(limit_state="overturning")
+            below, above = float(flip.scale_below), float(flip.scale_above)
+            assert 0.0 < above - below <= 1e-3 * above
+            fell = [
+                bool(
+                    SYSTEM.simulate(motion.scaled(s), free_vibration="4 s", outputs=None).overturned
+                )
+                for s in (below, above)
+            ]
+            assert fell == [not flip.exceeds_above, bool(flip.exceeds_above)]
+    assert several, "none of the motions shows more than one crossing"
+
+
+def test_a_dynamic_analysis_is_that_of_the_mirrored_motions(analysis):
+    mirrored = rf.incremental_dynamic_analysis(
+        SYSTEM, motions(-1.0), scale=np.arange(0.5, 6.1, 0.5), limits=["uplift", 0.4],
+        free_vibration="4 s", **QUIET,
+    )  # fmt: skip
+    for name in ("capacity_scale", "scale_below", "flip_count", "peak_rotation"):
+        xr.testing.assert_equal(
+            mirrored[name].drop_vars("motion"), analysis[name].drop_vars("motion")
+        )
+
+
+def test_a_dynamic_analysis_agrees_with_the_critical_scale(analysis):
+    for name, motion in motions().items():
+        least = analysis.capacity_scale.sel(motion=name, limit_state="overturning").item()
+        looked = rf.critical_scale(SYSTEM, motion, largest=6.0, free_vibration="4 s", runs=200)
+        assert looked.critical_scale.item() <= least * (1.0 + 1e-3)
+
+
+def test_a_stored_analysis_goes_on_where_it_was(tmp_path, monkeypatch):
+    options = {"scale": [1.0, 2.0, 4.0], **FAST}
+    kept = rf.incremental_dynamic_analysis(SYSTEM, motions(), store=tmp_path / "s", **options)
+    plain = rf.incremental_dynamic_analysis(SYSTEM, motions(), **options)
+    folders = sorted(path.name for path in (tmp_path / "s").iterdir())
+    assert folders[:2] == ["round 01", "round 02"]
+    assert folders[-1] == "scan"
+    from rockframe.studies.sweeps import execution
+
+    def refuse(*given, **named):
+        pytest.fail("what is kept was run again")
+
+    monkeypatch.setattr(execution, "run_chunk", refuse)
+    again = rf.incremental_dynamic_analysis(SYSTEM, motions(), store=tmp_path / "s", **options)
+    for one in (kept, again):
+        xr.testing.assert_identical(one.drop_attrs(), plain.drop_attrs())
+
+
+def test_a_fragility_of_capacities(analysis):
+    found = rf.fragility(analysis, "PGA")
+    capacity = analysis.capacity_scale.sel(limit_state="overturning")
+    pga = [one.peak_acceleration.m_as("m/s^2") for one in motions().values()]
+    logs = np.log(capacity.values * pga)
+    assert np.isfinite(logs).all()
+    last = found.sel(limit_state="overturning")
+    assert np.log(last.median_intensity.item()) == pytest.approx(logs.mean(), abs=1e-3)
+    assert last.dispersion.item() == pytest.approx(logs.std(), abs=1e-3)
+    assert found.sel(limit_state="uplift").median_intensity.item() == pytest.approx(
+        9.80665 / 4.0, rel=1e-3
+    )
+    with pytest.raises(ComponentError, match="was not asked for"):
+        rf.fragility(analysis, limits=[0.7])
+
+
+def test_brackets_split_where_a_third_verdict_lies_between():
+    truth = [(1.234, 2.0), (1.301, -1.0), (3.3, 0.0), (9.0, 0.0)]
+
+    def verdict(scale):
+        return next((after for at, after in reversed(truth) if scale >= at), -1.0)
+
+    scales = np.array([1.0, 1.5, 2.0, 3.0, 4.0])
+    shown = np.array([[[verdict(s) for s in scales]]])
+    assert [one.below for one in brackets_of(scales, shown)] == [3.0]
+    scales = np.array([1.0, 1.25, 4.0])
+    shown = np.array([[[verdict(s) for s in scales]]])
+    runs = []
+
+    def sweep(number, lines, middles):
+        runs.append(number)
+        return xr.Dataset(
+            {"status": ("case", np.zeros(len(middles), int)), "at": ("case", middles)}
+        )
+
+    found = narrowed(
+        brackets_of(scales, shown), sweep,
+        lambda seen: np.array([[verdict(s) for s in seen["at"].values]]), width=1e-6,
+    )  # fmt: skip
+    assert [one.above for one in found] == pytest.approx([1.234, 1.301, 3.3], rel=1e-6)
+    assert [(one.before, one.after) for one in found] == [(-1.0, 2.0), (2.0, -1.0), (-1.0, 0.0)]
+    assert runs == list(range(1, len(runs) + 1))
+    below, above, before, _ = padded([*found, Bracket(0, 1, 1.0, 2.0, 0.0, 1.0)], (1, 2))
+    assert below.shape == above.shape == (1, 2, 3)
+    assert np.isnan(before[0, 1]).tolist() == [False, True, True]
+    nan = np.array([[[0.0, np.nan, 1.0]]])
+    assert [(one.below, one.above) for one in brackets_of(scales, nan)] == [(1.0, 4.0)]
+
+
+# maps and spectra ----------------------------------------------------------------------------
+
+
+def test_a_map_has_its_labels_and_gives_cases_back(tmp_path):
+    pulse = rf.GroundMotion.sine_pulse("-3 m/s^2", "2 Hz")
+    options = {"amplitude": ([3, 6, 12], "m/s^2"), "frequency": (["1 Hz", "2 Hz"]), **FAST}
+    found = rf.overturning_map(SYSTEM, pulse, **options)
+    assert checked(found, tmp_path)
+    assert found.impacts_before_overturning.dims == ("amplitude", "frequency")
+    assert (found.amplitude.units, found.frequency.units) == ("m s^-2", "Hz")
+    alone = rf.case(found, amplitude="6 m/s^2", frequency="2 Hz")
+    again = rf.GroundMotion.sine_pulse("-6 m/s^2", "2 Hz")
+    assert alone.motion.to_dict()["amplitude"].startswith("-")
+    assert alone.motion.si.horizontal.samples == pytest.approx(again.si.horizontal.samples)
+    picked = found.peak_rotation.sel(amplitude=6.0, frequency=2.0).item()
+    assert alone.simulate().peak_rotation.item() == picked
+    mirrored = rf.overturning_map(SYSTEM, rf.GroundMotion.sine_pulse, **options)
+    for name in ("impacts_before_overturning", "amplitude_above", "impacts_above", "peak_rotation"):
+        assert np.array_equal(mirrored[name].values, found[name].values, equal_nan=True), name
+
+
+def test_a_rocking_spectrum_is_single_runs_of_blocks_of_that_size(tmp_path):
+    found = rf.rocking_spectrum(
+        SYSTEM, motions(), periods=([2.0, 3.0], "s"), slenderness=[3, 5], **FAST
+    )
+    assert checked(found, tmp_path)
+    assert found.peak_relative_rotation.dims == ("slenderness", "rocking_period", "motion")
+    one = {"slenderness": 5.0, "rocking_period": 3.0, "motion": "seed 1"}
+    case = rf.case(found, **one)
+    block = case.system.parts.block
+    assert 2.0 * np.pi / block.frequency.m_as("rad/s") == pytest.approx(3.0, rel=1e-12)
+    assert block.height.m_as("m") / block.width.m_as("m") == pytest.approx(5.0, rel=1e-12)
+    assert case.simulate().peak_rotation.item() == found.peak_rotation.sel(one).item()
+    for system, words in (
+        (
+            rf.System(
+                rf.FrameEquivalent(width="4 m", height="18 m", mass="99 t", shape_factor=2.92)
+            ),
+            "Frame",
+        ),
+        (rf.System(BLOCK.replace(centre_of_mass=("0.8 m", "0 m"))), "centre of mass"),
+    ):
+        with pytest.raises(ComponentError, match=words):
+            rf.rocking_spectrum(system, motions(), periods=(["2 s"]))
+
+
+def test_an_overturning_spectrum_is_a_dynamic_analysis_of_each_block():
+    scales = [0.5, 1.0, 2.0, 4.0, 8.0]
+    found = rf.overturning_spectrum(
+        SYSTEM, motions(), periods=(["2 s", "4 s"]), scale=scales, **FAST
+    )
+    for place in range(2):
+        sizes = found.isel(slenderness=0, rocking_period=place)
+        width, height = (f"{sizes[name].item()!r} m" for name in ("width", "height"))
+        system = rf.System(BLOCK.replace(width=width, height=height))
+        one = rf.incremental_dynamic_analysis(system, motions(), scale=scales, **FAST)
+        assert np.array_equal(sizes.capacity_scale, one.capacity_scale[0], equal_nan=True)
+    pga = [one.peak_acceleration.m_as("m/s^2") for one in motions().values()]
+    assert found.capacity_intensity.units == "m s^-2"
+    xr.testing.assert_allclose(
+        found.capacity_intensity, found.capacity_scale * xr.DataArray(pga, dims="motion")
+    )
+
+
+# probability ---------------------------------------------------------------------------------
+
+
+def test_a_probability_is_that_of_the_same_cases_run_alone(tmp_path):
+    pulse = rf.GroundMotion.sine_pulse("4 m/s^2", "1.5 Hz")
+    spread = {"width": ("normal", "0.5 m", "5 cm"), "scale": ("lognormal", 1.0, 0.4)}
+    found = rf.probability_of_overturning(SYSTEM, pulse, spread=spread, cases=120, seed=3, **FAST)
+    assert checked(found, tmp_path)
+    falls = 0
+    for k in range(0, 120, 10):
+        block = BLOCK.replace(width=f"{found.width[k].item()!r} m")
+        run = rf.System(block).simulate(
+            pulse.scaled(found.scale[k].item()), accuracy="fast", free_vibration="4 s", outputs=None
+        )
+        assert run.overturned.item() == found.overturned[k].item()
+        falls += run.overturned.item()
+    count = int(found.overturned.sum())
+    assert found.overturning_probability.item() == count / 120
+    exact = stats.binomtest(count, 120).proportion_ci(0.95, method="exact")
+    bounds = [found[f"overturning_probability_{end}_bound"].item() for end in ("lower", "upper")]
+    assert bounds == pytest.approx([exact.low, exact.high], abs=1e-12)
+    # a Latin hypercube has one case in each of as many classes
+    share = stats.norm.cdf(found.width.values, 0.5, 0.05)
+    assert sorted((share * 120).astype(int)) == list(range(120))
+    share = stats.lognorm.cdf(found.scale.values, 0.4)
+    assert sorted((share * 120).astype(int)) == list(range(120))
+    again = rf.probability_of_overturning(SYSTEM, pulse, spread=spread, cases=120, seed=3, **FAST)
+    xr.testing.assert_identical(found.drop_attrs(), again.drop_attrs())
+
+
+def test_ways_to_draw_and_distributions():
+    pulse = rf.GroundMotion.sine_pulse("4 m/s^2", "1.5 Hz")
+    for sampling in ("random", "sobol", "latin"):
+        found = rf.probability_of_overturning(
+            SYSTEM, [pulse, pulse.scaled(0.5)], cases=64, sampling=sampling, **QUIET,
+            spread={"height": (stats.uniform(1.8, 0.4), "m"), "scale": ("uniform", 0.5, 2.0)},
+        )  # fmt: skip
+        assert ((found.height >= 1.8) & (found.height <= 2.2)).all()
+        names, counts = np.unique(found.motion.values.astype(str), return_counts=True)
+        assert len(names) == 2
+        assert counts.sum() == 64
+        assert sorted(found.parameter.values) == ["height", "motion", "scale"]
+
+
+def test_bad_spreads_are_told_all_at_once():
+    pulse = rf.GroundMotion.sine_pulse("4 m/s^2", "1.5 Hz")
+    with pytest.raises(StudyError) as problem:
+        rf.probability_of_overturning(
+            SYSTEM, pulse,
+            spread={"girth": ("normal", 1, 2), "width": ("normal", 1.0, 0.1),
+                    "height": ("gamma", "1 m", "2 m"), "restraint": ("uniform", "centre", "x")},
+        )  # fmt: skip
+    assert len(problem.value.faults) == 4
+    with pytest.raises(ComponentError, match="distributions by names"):
+        rf.probability_of_overturning(SYSTEM, pulse, spread={})
+
+
+def test_the_ranking_is_that_of_sobol_indices():
+    """Y = [a + 0.5 b > 0] of normal a, b: the first-order indices by integration."""
+    rng = np.random.default_rng(8)
+    a, b, c = rng.normal(size=(3, 40_000))
+    verdict = (a + 0.5 * b > 0.0).astype(float)
+    found = ranked({"c": c, "b": b, "a": a, "word": rng.choice(["x", "y"], 40_000)}, verdict)
+    assert list(found)[:2] == ["a", "b"]
+    grid = np.linspace(-8.0, 8.0, 20_001)
+    for name, own, other in (("a", 1.0, 0.5), ("b", 0.5, 1.0)):
+        share = stats.norm.cdf(own * grid / other)
+        weight = stats.norm.pdf(grid)
+        variance = np.trapezoid((share - 0.5) ** 2 * weight, grid)
+        assert found[name].first_order == pytest.approx(variance / 0.25, abs=0.02)
+    assert found["c"].first_order < 0.003
+    assert found["a"].chance < 1e-100
+    assert found["c"].chance > 1e-4
+    expected = stats.ks_2samp(a[verdict == 1.0], a[verdict == 0.0]).statistic
+    assert found["a"].distance == expected
+    assert np.isnan(ranked({"a": a}, np.ones(40_000))["a"].first_order)
+
+
+# ensembles -----------------------------------------------------------------------------------
+
+
+def test_bands_of_ensembles_hold_as_often_as_they_say():
+    rng = np.random.default_rng(4)
+    held = {"pointwise": 0, "everywhere": 0, "quantile": 0}
+    rounds, count = 400, 25
+    for _ in range(rounds):
+        found = rf.ensemble_statistics(
+            xr.DataArray(rng.random(count), dims="motion", name="share"),
+            quantiles=[0.5], confidence=0.9,
+        )  # fmt: skip
+        # the distribution function at a fixed place is a fixed number
+        below = found.ordered_value.values <= 0.4
+        low = found.cumulative_probability_lower_bound.values[below]
+        high = found.cumulative_probability_upper_bound.values[below]
+        held["pointwise"] += (
+            (low[-1] if below.any() else 0.0) <= 0.4 <= (high[-1] if below.any() else 1.0)
+        )
+        value = found.ordered_value.values
+        up, share = found.simultaneous_upper_bound.values, found.cumulative_probability.values
+        reach = (up - share)[up < 1.0].max()
+        jumps = np.concatenate([[0.0], share[:-1]])
+        held["everywhere"] += bool(
+            np.maximum(np.abs(share - value), np.abs(jumps - value)).max() <= reach
+        )
+        ends = found.quantile_value_lower_bound.item(), found.quantile_value_upper_bound.item()
+        held["quantile"] += ends[0] <= 0.5 <= ends[1]
+    assert held["pointwise"] / rounds >= 0.88
+    assert 0.86 <= held["everywhere"] / rounds <= 0.94
+    assert held["quantile"] / rounds >= 0.88
+
+
+def test_an_ensemble_of_runs_has_the_units_of_its_variable(tmp_path):
+    runs = rf.sweep(SYSTEM, motions(), scale=[1.0, 3.0], **FAST)
+    found = rf.ensemble_statistics(runs, "peak_rotation")
+    assert checked(found, tmp_path)
+    assert found.ordered_value.units == found.quantile_value.units == "rad"
+    assert found.ordered_value.values.tolist() == sorted(runs.peak_rotation.values.ravel())
+    assert found.member_count.item() == 8
+    with pytest.raises(SchemaError, match="expected one of"):
+        rf.ensemble_statistics(runs, "height_of_fall")
+    with pytest.raises(ComponentError, match="no values"):
+        rf.ensemble_statistics(xr.DataArray([np.nan], dims="motion", name="x"))
+
+
+def test_figures_are_drawn_of_what_they_are_for(analysis):
+    drawn = {
+        "dynamic_analysis": analysis,
+        "fragility": rf.fragility(analysis),
+        "rocking_spectrum": rf.rocking_spectrum(
+            SYSTEM, motions(), periods=(["2 s", "3 s"]), **FAST
+        ),
+        "ensemble": rf.ensemble_statistics(analysis),
+    }
+    for name, dataset in drawn.items():
+        figure = getattr(rf.plot, name)(dataset)
+        figure.canvas.draw()
+        with pytest.raises(SchemaError, match=f"rf.plot.{name} needs"):
+            getattr(rf.plot, name)(xr.Dataset())
+    with pytest.raises(SchemaError, match=r"rf\.plot\.fragility draws it"):
+        rf.plot.ensemble(drawn["fragility"])
