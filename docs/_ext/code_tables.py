@@ -8,6 +8,15 @@ from sphinx.util.docutils import SphinxDirective
 
 import rockframe as rf
 from rockframe.dynamics.events import ContactState, EventKind
+from rockframe.results.variables.analyses import (
+    DYNAMIC_ANALYSIS,
+    ENSEMBLE,
+    FRAGILITY,
+    OVERTURNING_MAP,
+    PROBABILITY,
+    SPECTRA,
+    FragilityStatus,
+)
 from rockframe.results.variables.comparison import COMPARISON
 from rockframe.results.variables.identification import FREE_DECAY, FitStatus
 from rockframe.results.variables.requests import (
@@ -100,6 +109,13 @@ TABLES: dict[str, Callable[[], Rows]] = {
     "comparison": lambda: _variables(COMPARISON),
     "critical-scale": lambda: _variables(CRITICAL_SCALE),
     "sweep": lambda: _variables(SWEEP),
+    "dynamic-analysis": lambda: _variables(DYNAMIC_ANALYSIS),
+    "fragility": lambda: _variables(FRAGILITY),
+    "fragility-statuses": lambda: _flags(FragilityStatus),
+    "overturning-map": lambda: _variables(OVERTURNING_MAP),
+    "spectra": lambda: _variables(SPECTRA),
+    "probability": lambda: _variables(PROBABILITY),
+    "ensemble": lambda: _variables(ENSEMBLE),
     "outcomes": lambda: _flags(Outcome),
     "rest": lambda: _variables(REST),
     "held": lambda: _variables(HELD),

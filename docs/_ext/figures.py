@@ -9,6 +9,13 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
+from analysis_figures import (
+    cabinet_analysis,
+    cabinet_fragility,
+    office_contents,
+    overturning_spectrum,
+    sine_map,
+)
 from granite_figures import granite_calibration, granite_fit
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -163,6 +170,11 @@ FIGURES = (
     cost_model,
     critical_scale,
     size_and_pulse,
+    cabinet_fragility,
+    cabinet_analysis,
+    sine_map,
+    overturning_spectrum,
+    office_contents,
     granite_fit,
     granite_calibration,
 )
