@@ -52,6 +52,7 @@ if TYPE_CHECKING:
     from rockframe.studies import Case as Case
     from rockframe.studies import case as case
     from rockframe.studies import critical_scale as critical_scale
+    from rockframe.studies import earthquake_sequences as earthquake_sequences
     from rockframe.studies import ensemble_statistics as ensemble_statistics
     from rockframe.studies import fragility as fragility
     from rockframe.studies import fragility_of_counts as fragility_of_counts
@@ -116,6 +117,7 @@ _HOMES = {
         "Case",
         "case",
         "critical_scale",
+        "earthquake_sequences",
         "ensemble_statistics",
         "fragility",
         "fragility_of_counts",
@@ -165,6 +167,7 @@ __all__ = [
     "case",
     "concat",
     "critical_scale",
+    "earthquake_sequences",
     "ensemble_statistics",
     "errors",
     "extension",

@@ -14,6 +14,7 @@ from rockframe.results.variables.analyses import (
     FRAGILITY,
     OVERTURNING_MAP,
     PROBABILITY,
+    SEQUENCES,
     SPECTRA,
     FragilityStatus,
 )
@@ -115,6 +116,7 @@ TABLES: dict[str, Callable[[], Rows]] = {
     "overturning-map": lambda: _variables(OVERTURNING_MAP),
     "spectra": lambda: _variables(SPECTRA),
     "probability": lambda: _variables(PROBABILITY),
+    "sequences": lambda: _variables(SEQUENCES),
     "ensemble": lambda: _variables(ENSEMBLE),
     "outcomes": lambda: _flags(Outcome),
     "rest": lambda: _variables(REST),

@@ -69,6 +69,7 @@ def dynamic_analysis(dataset: xr.Dataset, *, title: str | None = None) -> "Figur
     left.set_xlim(left=0.0)
     if given.sizes["motion"] <= _MOST_NAMED:
         left.legend(frameon=False, fontsize="x-small")
+    most = 0.0
     for number, state in enumerate(given["limit_state"].to_numpy()):
         capacity = given["capacity_scale"].isel(limit_state=number).to_numpy()
         places = [
@@ -78,11 +79,12 @@ def dynamic_analysis(dataset: xr.Dataset, *, title: str | None = None) -> "Figur
             if not np.isnan(scale)
         ]  # fmt: skip
         ordered = np.sort(np.array([0.0, *places]))
+        most = max(most, float(ordered[-1]))
         shares = np.arange(len(ordered)) / max(1, len(capacity))
         colour = COLOURS[number % len(COLOURS)]
         right.step(ordered, shares, where="post", color=colour, label=str(state))
     right.set(xlabel=label_of(given[name]), ylabel="share of the motions [-]", ylim=(0.0, 1.02))
-    right.set_xlim(left.get_xlim())
+    right.set_xlim(0.0, 1.15 * most if most > 0.0 else left.get_xlim()[1])
     right.legend(frameon=False, fontsize="small")
     for axes in (left, right):
         grid(axes)

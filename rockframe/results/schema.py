@@ -8,6 +8,7 @@ from rockframe.results.variables.analyses import (
     FRAGILITY,
     OVERTURNING_MAP,
     PROBABILITY,
+    SEQUENCES,
     SPECTRA,
 )
 from rockframe.results.variables.comparison import COMPARISON
@@ -54,6 +55,7 @@ _TABLES: Final = (
     SPECTRA,
     PROBABILITY,
     ENSEMBLE,
+    SEQUENCES,
     FREE_DECAY,
 )
 
@@ -79,6 +81,8 @@ COORDINATES: Final = (
     "slenderness",
     "parameter",
     "quantile",
+    "sequence",
+    "earthquake",
 )
 """Variables that label a dimension."""
 

@@ -7,6 +7,7 @@ from rockframe.studies.fragility.exports import to_openquake, to_pelicun
 from rockframe.studies.fragility.fragility import fragility, fragility_of_counts
 from rockframe.studies.overturning_map import overturning_map
 from rockframe.studies.probability import probability_of_overturning
+from rockframe.studies.sequences import earthquake_sequences
 from rockframe.studies.spectra import overturning_spectrum, rocking_spectrum
 from rockframe.studies.sweeps.case import Case, case
 from rockframe.studies.sweeps.sweep import open_study, sweep
@@ -15,6 +16,7 @@ __all__ = [
     "Case",
     "case",
     "critical_scale",
+    "earthquake_sequences",
     "ensemble_statistics",
     "fragility",
     "fragility_of_counts",

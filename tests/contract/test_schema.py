@@ -215,6 +215,8 @@ DIMENSION_NAMES = {
     "amplitude",
     "rocking_period",
     "slenderness",
+    "sequence",
+    "earthquake",
     "rank",
     "quantile",
 }

@@ -4,7 +4,7 @@ from enum import IntEnum
 from typing import Final
 
 from rockframe.results.variables.identification import PARAMETER
-from rockframe.results.variables.variable import FLIP, Variable, count, flag
+from rockframe.results.variables.variable import FLIP, Variable, count, flag, number
 from rockframe.units import Unit
 
 LIMIT_STATE: Final = ("limit_state",)
@@ -249,3 +249,16 @@ ENSEMBLE: Final = (
     count("member_count", "number of members of the ensemble"),
 )
 """Of ensembles."""
+
+SEQUENCES: Final = (
+    Variable("sequence", ("sequence",), None, "sequence of earthquakes", dtype="str"),
+    number("earthquake", "number of the earthquake in its sequence"),
+    Variable(
+        "overturning_earthquake",
+        ("sequence",),
+        Unit.ONE,
+        "number of the earthquake that overturned the block, 0 if none did",
+        dtype="int64",
+    ),
+)
+"""Of earthquakes in sequence."""

@@ -85,7 +85,8 @@ def fragility(
     Notes
     -----
     A capacity C is lognormal with median theta and dispersion beta, and a run of intensity x
-    exceeds where C < x, with probability Phi(ln(x / theta) / beta), Baker (2015). The fit is
+    exceeds where C < x, with probability Phi(ln(x / theta) / beta), :eq:`eq-fragility-curve`,
+    Baker (2015). The fit is
     the greatest likelihood, :eq:`eq-fragility-likelihood`. A fit that does not exist is told of
     by ``fragility_status``, with NaN in its place: no run exceeded, all did, those that did
     are separated from those that did not, so that beta would be zero, or
@@ -98,7 +99,7 @@ def fragility(
     >>> motions = [rf.GroundMotion.stochastic(6.5, "10 km", seed=k) for k in range(8)]
     >>> runs = rf.sweep(system, motions, scale=[0.5, 1, 2, 4], accuracy="fast")
     >>> found = rf.fragility(runs, "PGA")
-    >>> list(found.limit_state.values)
+    >>> found.limit_state.values.tolist()
     ['uplift', 'overturning']
     """
     runs = check_runs(runs, owner=_OWNER)

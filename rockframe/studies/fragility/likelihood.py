@@ -128,8 +128,8 @@ def fit(trials: Trials, bands: Bands) -> Fit:
     trials : Trials
         The data.
     bands : Bands
-        Whether the covariance is the inverse of the information, or the sandwich of both
-        around the scores summed over clusters.
+        Whether the covariance is the inverse of the information, or the sandwich of the scores
+        summed over clusters, :eq:`eq-fragility-sandwich`.
 
     Returns
     -------
@@ -230,7 +230,7 @@ def information(trials: Trials, coefficients: Array) -> Array:
 
 
 def boundary(trials: Trials, found: Fit, level: float) -> Array:
-    """Give the boundary of the region of a likelihood ratio, for a fit of one measure.
+    """Give the boundary of the region :eq:`eq-fragility-region`, for a fit of one measure.
 
     The range of any function of the coefficients in this region is its interval by profile
     likelihood.

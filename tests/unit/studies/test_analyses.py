@@ -364,3 +364,38 @@ def test_figures_are_drawn_of_what_they_are_for(analysis):
             getattr(rf.plot, name)(xr.Dataset())
     with pytest.raises(SchemaError, match=r"rf\.plot\.fragility draws it"):
         rf.plot.ensemble(drawn["fragility"])
+
+
+# sequences -----------------------------------------------------------------------------------
+
+
+def test_earthquakes_in_sequence_are_runs_that_go_on(tmp_path):
+    """Each starts where the one before ended: the same as going on from its dataset."""
+    system = rf.System(BLOCK, rf.TwoSpringSupport(frequency_ratio=15, damping_ratio=0.1))
+    one, two = list(motions().values())[:2]
+    two = two.with_vertical(one.scaled(0.3))
+    given = {"first": [one, two.scaled(0.9), one], "short": [two.scaled(4.0)]}
+    found = rf.earthquake_sequences(system, given, pause="0.5 s", **QUIET)
+    assert checked(found, tmp_path)
+    assert found.peak_rotation.dims == ("sequence", "earthquake")
+    assert np.isnan(found.peak_rotation.sel(sequence="short").values[1:]).all()
+    assert found.overturning_earthquake.values.tolist() == [0, 1]
+    response = system.simulate(one, free_vibration="0.5 s", outputs=())
+    peaks = [response.peak_rotation.item()]
+    for motion in (two.scaled(0.9), one):
+        response = system.simulate(motion, free_vibration="0.5 s", initial=response)
+        peaks.append(max(peaks[-1], response.peak_rotation.item()))
+    assert found.peak_rotation.sel(sequence="first").values == pytest.approx(peaks, rel=1e-4)
+
+
+def test_pulses_keep_their_polynomials_in_a_sequence():
+    pulse = rf.GroundMotion.cosine_pulse("3 m/s^2", "1 Hz", 0.5)
+    found = rf.earthquake_sequences(SYSTEM, [[pulse, pulse]], pause="8 s", **QUIET)
+    alone = SYSTEM.simulate(pulse, free_vibration="8 s", outputs=None)
+    peaks = found.peak_rotation.squeeze().values
+    assert peaks == pytest.approx([alone.peak_rotation.item()] * 2, rel=1e-9)
+    with pytest.raises(ComponentError, match="resample"):
+        rf.earthquake_sequences(SYSTEM, [[pulse, motions()["seed 0"]]])
+    for wrong in ({}, [[]], [["x"]], 3):
+        with pytest.raises(ComponentError):
+            rf.earthquake_sequences(SYSTEM, wrong)

@@ -1,0 +1,237 @@
+"""Earthquakes in sequence: how far each of them takes a system that the ones before have left."""
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from concurrent.futures import Executor
+from dataclasses import replace
+from itertools import accumulate
+from os import PathLike
+from typing import TYPE_CHECKING, Any, Final, cast
+
+import numpy as np
+import xarray as xr
+
+from rockframe.comparison.models import check_system
+from rockframe.errors import ComponentError, shown
+from rockframe.motion import GroundMotion
+from rockframe.results.dataset import build_dataset
+from rockframe.results.outcome import Array
+from rockframe.results.variables.studies import MOTION
+from rockframe.signals import Motion, Signal
+from rockframe.signals.signal import COEFFICIENTS
+from rockframe.solve.accuracy import AccuracyLevel
+from rockframe.studies.limit_states import overturns
+from rockframe.studies.sweeps.sweep import sweep
+from rockframe.system.options import Overturning
+from rockframe.units import NOT_NEGATIVE, TIME, to_si
+
+if TYPE_CHECKING:
+    from rockframe.components import InitialState
+    from rockframe.simulation.system import System
+    from rockframe.system.options import AccuracyLike, OverturningLike
+    from rockframe.units import QuantityLike
+
+_OWNER: Final = "earthquake_sequences"
+_SAME_STEP: Final = 1e-9
+"""Relative difference up to which two time steps are the same."""
+NUMBER: Final = "earthquake"
+
+
+def earthquake_sequences(
+    system: "System",
+    sequences: "Mapping[str, Sequence[GroundMotion]] | Sequence[Sequence[GroundMotion]]",
+    *,
+    pause: "QuantityLike" = "20 s",
+    initial: "InitialState | None" = None,
+    accuracy: "AccuracyLike" = AccuracyLevel.STANDARD,
+    overturning: "OverturningLike" = Overturning.STOP,
+    store: "str | PathLike[str] | None" = None,
+    executor: Executor | None = None,
+    chunk: int | None = None,
+    progress: bool | None = None,
+) -> xr.Dataset:
+    """Run earthquakes one after the other, each from where the one before has left the system.
+
+    Parameters
+    ----------
+    system : System
+        The scene.
+    sequences : mapping of str to sequence of GroundMotion, or sequence of sequences
+        Earthquakes in their order, such as a main shock and its aftershocks; of one time step.
+    pause : str or Quantity, optional
+        Still ground after each of them [s].
+    initial, accuracy, overturning : optional
+        As for :meth:`rockframe.System.simulate`.
+    store, executor, chunk, progress : optional
+        As for :func:`rockframe.sweep`.
+
+    Returns
+    -------
+    xarray.Dataset
+        The scalars of runs over ``sequence`` and ``earthquake``: what has happened from the
+        start of the sequence until the pause after that earthquake is over, NaN beyond the last
+        one; and over ``sequence`` ``overturning_earthquake``, the number of the one that
+        overturned the block, 0 if none did.
+
+    Raises
+    ------
+    UnitsError, ComponentError
+        No motions, or motions of several time steps; `pause` has a wrong unit or none.
+    StudyError
+        As for :func:`rockframe.sweep`.
+
+    Notes
+    -----
+    The motions are joined, with their polynomials, and zeros between them; each row of the
+    result is a run from the start of its sequence, so that nothing is lost in between. On rigid
+    ground, on pads and on soil a block that has come to rest remembers nothing; a base of
+    one's own may.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> system = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
+    >>> shock = rf.GroundMotion.sine_pulse("3 m/s^2", "1 Hz")
+    >>> found = rf.earthquake_sequences(system, {"growing": [shock, shock.scaled(3)]})
+    >>> found.overturning_earthquake.item()
+    2
+    """
+    check_system(system, _OWNER)
+    rest = to_si(pause, TIME, owner=_OWNER, name="pause", condition=NOT_NEGATIVE)
+    named = _sequences(sequences)
+    joined = {name: list(accumulate(each, _followed(rest))) for name, each in named.items()}
+    longest = max(len(each) for each in joined.values())
+    motions = {
+        f"{name}, {number}": _joined(motion, None, rest)
+        for name, each in joined.items()
+        for number, motion in enumerate(each, start=1)
+    }
+    runs = sweep(
+        system,
+        motions,
+        initial=initial,
+        accuracy=accuracy,
+        overturning=overturning,
+        store=store,
+        executor=executor,
+        chunk=chunk,
+        progress=progress,
+    )
+    places = [
+        (row, number) for row, each in enumerate(joined.values()) for number in range(len(each))
+    ]
+    arranged = _arranged(runs, places, (len(joined), longest))
+    labels = build_dataset(
+        {
+            "sequence": np.array(list(joined), dtype=object),
+            NUMBER: np.arange(1, longest + 1),
+            "overturning_earthquake": _first(arranged),
+        },
+        {},
+    )
+    found = arranged.assign(labels.data_vars).assign_coords(labels.coords)
+    falls = int((labels["overturning_earthquake"] > 0).sum())
+    verdict = f"Of {len(joined)} sequences {falls} overturned."
+    return found.assign_attrs(title="Earthquakes in sequence", pause=rest, verdict=verdict)
+
+
+def _sequences(given: object) -> dict[str, list[GroundMotion]]:
+    """Read the sequences, and check that their motions fit."""
+    if isinstance(given, Mapping):
+        named = {str(name): each for name, each in cast("Mapping[Any, Any]", given).items()}
+    elif isinstance(given, Iterable) and not isinstance(given, str):
+        several = list(cast("Iterable[Any]", given))
+        named = {f"sequence {number}": each for number, each in enumerate(several, start=1)}
+    else:
+        named = {}
+    found: dict[str, list[GroundMotion]] = {}
+    for name, each in named.items():
+        motions = [each] if isinstance(each, GroundMotion) else list(each)
+        if not motions or not all(isinstance(one, GroundMotion) for one in motions):
+            msg = f"{_OWNER}: {name!r} needs GroundMotions in their order, got {shown(each)}"
+            raise ComponentError(msg)
+        found[name] = motions
+    if not found:
+        msg = f"{_OWNER}: found {shown(given)}; expected sequences of GroundMotions"
+        raise ComponentError(msg)
+    steps = sorted({one.si.time_step for each in found.values() for one in each})
+    if not math.isclose(steps[0], steps[-1], rel_tol=_SAME_STEP):
+        msg = (
+            f"{_OWNER}: the motions have time steps from {steps[0]!r} s to {steps[-1]!r} s; "
+            f"resample them, for example motion.resampled('{steps[0]!r} s')"
+        )
+        raise ComponentError(msg)
+    return found
+
+
+def _followed(rest: float) -> Any:
+    """Give what joins two motions with a pause between."""
+
+    def joined(first: GroundMotion, second: GroundMotion) -> GroundMotion:
+        return _joined(first, second, rest)
+
+    return joined
+
+
+def _joined(first: GroundMotion, second: GroundMotion | None, rest: float) -> GroundMotion:
+    """Join motions, or put still ground after one."""
+    one = first.si
+    still = max(1, round(rest / one.time_step)) if second is not None or rest > 0.0 else 0
+    if still == 0:
+        return first
+    two = None if second is None else second.si
+    upwards = one.vertical is not None or (two is not None and two.vertical is not None)
+    horizontal = _after(one.horizontal, None if two is None else two.horizontal, still)
+    vertical = None
+    if upwards:
+        above = one.vertical or replace(one.horizontal, samples=0.0 * one.horizontal.samples,
+                                        polynomials=None, name="vertical")  # fmt: skip
+        vertical = _after(above, None if two is None else two.vertical, still, two)
+    names = first.name if second is None else f"{first.name}, then {second.name}"
+    return GroundMotion(Motion(horizontal, vertical), name=names)
+
+
+def _after(
+    first: Signal, second: Signal | None, still: int, length: Motion | None = None
+) -> Signal:
+    """Put a signal after another one, with intervals of still ground between."""
+    samples = [first.samples, np.zeros(still - 1 if second is not None or length else still)]
+    pieces = [_six(first.pieces), np.zeros((still, COEFFICIENTS))]
+    if second is not None:
+        samples.append(second.samples)
+        pieces.append(_six(second.pieces))
+    elif length is not None:
+        count = length.horizontal.samples.size
+        samples.append(np.zeros(count))
+        pieces.append(np.zeros((count - 1, COEFFICIENTS)))
+    return Signal(first.time_step, np.concatenate(samples), np.concatenate(pieces), first.name)
+
+
+def _six(pieces: Array) -> Array:
+    return np.pad(pieces, ((0, 0), (0, COEFFICIENTS - pieces.shape[1])))
+
+
+def _arranged(
+    runs: xr.Dataset, places: list[tuple[int, int]], shape: tuple[int, int]
+) -> xr.Dataset:
+    """Give runs along motions the dimensions of sequences and earthquakes."""
+    rows, numbers = (np.array(each) for each in zip(*places, strict=True))
+    found: dict[str, xr.Variable] = {}
+    for name, one in runs.data_vars.items():
+        if one.dims != (MOTION,):
+            continue
+        gaps = np.prod(shape) > len(places)
+        values = np.full(shape, np.nan) if gaps else np.empty(shape, dtype=one.dtype)
+        values[rows, numbers] = one.to_numpy()
+        attributes = dict(one.attrs)
+        if gaps and "flag_values" in attributes:
+            attributes["flag_values"] = attributes["flag_values"].astype(np.float64)
+        found[str(name)] = xr.Variable(("sequence", NUMBER), values, attributes)
+    others = {"message": runs["message"]} if "message" in runs.coords else {}
+    return xr.Dataset(found, coords=others, attrs=runs.attrs)
+
+
+def _first(found: xr.Dataset) -> Array:
+    """Give the number of the earthquake that overturned; 0 if none did."""
+    fell = overturns(found).transpose("sequence", NUMBER).to_numpy() == 1.0
+    return np.where(fell.any(axis=1), fell.argmax(axis=1) + 1, 0)
