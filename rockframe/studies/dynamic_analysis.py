@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 import xarray as xr
 
+from rockframe.comparison.models import check_system
 from rockframe.errors import StudyError
 from rockframe.results.dataset import build_dataset
 from rockframe.results.variables.studies import MOTION
@@ -120,6 +121,7 @@ def incremental_dynamic_analysis(
     >>> round(found.capacity_scale.item(), 2)
     1.13
     """
+    check_system(system, _OWNER)
     states = limit_states(limits, owner=_OWNER)
     scales = read_scales(scale, owner=_OWNER, most=_MOST_SCALES)
     share = read_width(width, owner=_OWNER)

@@ -247,7 +247,7 @@ def _measure(
             runs, Intensity.read(given, period, owner=_OWNER), motions, owner=_OWNER
         )
     dims = set(runs["status"].dims)
-    if given.name is None or not set(given.dims) <= dims or given.name in dims - {given.name}:
+    if given.name is None or not set(given.dims) <= dims:
         msg = (
             f"{_OWNER}: an intensity of one's own needs a name and dimensions among "
             f"{', '.join(map(str, runs['status'].dims))}, got {given.name!r} over {given.dims}"
