@@ -34,6 +34,7 @@ class RecordUnit:
 _G: Final = RecordUnit("g_0", STANDARD_GRAVITY)
 _MILLI_G: Final = RecordUnit("1e-3 g_0", 1e-3 * STANDARD_GRAVITY)
 _PER_CENT_G: Final = RecordUnit("1e-2 g_0", 1e-2 * STANDARD_GRAVITY)
+_TENTH_G: Final = RecordUnit("1e-1 g_0", 1e-1 * STANDARD_GRAVITY)
 _GAL: Final = RecordUnit("cm/s^2", 0.01)
 _MILLI_GAL: Final = RecordUnit("1e-3 cm/s^2", 1e-5)
 
@@ -57,6 +58,7 @@ ACCELERATION_UNITS: Final[dict[str, RecordUnit]] = {
     **dict.fromkeys(("g", "g's", "gs", "g0", "g_0", "gravity", "standard_gravity"), _G),
     **dict.fromkeys(("mg", "milli-g", "millig", "g/1000"), _MILLI_G),
     **dict.fromkeys(("%g", "g/100"), _PER_CENT_G),
+    **dict.fromkeys(("g/10",), _TENTH_G),
     **dict.fromkeys(("gal", "gals", "galileo"), _GAL),
     **dict.fromkeys(("mgal", "milligal"), _MILLI_GAL),
     **{

@@ -31,6 +31,7 @@ from rockframe.motion.readers.cosmos_tables import (
 from rockframe.motion.readers.fixed import fixed_width, whole
 from rockframe.motion.readers.orientation import Orientation, azimuth_of, orientation_of
 from rockframe.motion.readers.source import Metadata, Record, Request, Source, shown
+from rockframe.motion.readers.stated import compare_peak, surplus
 from rockframe.motion.unit_names import acceleration_unit
 
 NAME: Final = "cosmos"
@@ -39,7 +40,7 @@ SUFFIXES: Final = (".v1c", ".v2c", ".v1", ".v2")
 
 _FIRST_LINE: Final = re.compile(r"^(.{0,60}?)\(Format v?(\d[\d.]{0,8}) with (\d{1,3}) text", re.I)
 _DATA_LINE: Final = re.compile(
-    r"^\s*(\d{1,12})\s+(\S.{0,40}?)\s*\bpts\b.{0,60}?\bunits\s*=\s*([^,]{0,40}?)\s*,"
+    r"^\s*(\d{1,12})\s+(\S.{0,40}?)\s*\bpts\b.{0,60}?\bunits\s*=\s*([^,=]{0,40}?)\s*,?"
     r"\s*Format\s*=\s*\(\s*(\d{0,4})\s*[A-Z](\d{1,3})(?:\.\d{1,3}[A-Z]?\d{0,2})?\s*\)",
     re.IGNORECASE,
 )
@@ -48,6 +49,7 @@ _CHANNEL: Final = re.compile(r"Chan\s*(\S{1,8}?)\s*:\s*(.{0,30}?)\s*(?:\(|$)", r
 _SCNL: Final = re.compile(r"\bSCNL>?:?\s*(\w{1,8})\.(\w{1,8})\.(\w{1,8})\.(\S{1,8})")
 _STATION: Final = re.compile(r"\bCode:\s*(\S{1,20})\s*(.{0,60})")
 _START: Final = re.compile(r"start time:\s*(\S.{0,30}?)\s*(?:\(|RcrdId|$)", re.IGNORECASE)
+_DAY: Final = re.compile(r"(?:Mon|Tue|Wed|Thu|Fri|Sat|Sun)\w{0,6}[ ,]+\w{3}", re.IGNORECASE)
 _LENGTH_SHARE: Final = 0.01
 _FIRST_LINE_WIDTH: Final = 120
 _MOST_BLOCKS: Final = 1_500
@@ -170,19 +172,24 @@ def _samples(source: Source, request: Request, header: Header) -> Record:
     if quantity is not None and quantity != ACCELERATION and quantity in QUANTITIES:
         found = f"{QUANTITIES[quantity]} (code {quantity})"
         raise source.refuse(found=found, expected="an acceleration", line=header.integers_at + 1)
-    unit, as_read, warnings = choose_unit(
-        source, request, _unit_name(source, request, header, match.group(3), line), line
-    )
+    name = _unit_name(source, request, header, match.group(3), line)
+    unit, as_read, warnings = choose_unit(source, request, name, line)
     count = int(match.group(1))
     time_step = _time_step(source, header, count)
     check_asked_time_step(source, request, time_step, header.real_line(62))
-    values = fixed_width(
-        source,
-        line,
-        count,
-        width=int(match.group(5)),
-        per_line=int(match.group(4) or 1),
-    )
+    per_line = int(match.group(4) or 1)
+    values = fixed_width(source, line, count, width=int(match.group(5)), per_line=per_line)
+    peak = header.real(64)
+    if peak is not None and quantity == ACCELERATION:
+        warnings += compare_peak(
+            source,
+            values,
+            unit,
+            printed=f"{peak:.12g}",
+            printed_unit=as_read if request.unit is None else name,
+            line=header.real_line(64),
+        )
+    warnings += surplus(source, line + -(-count // per_line), f"line {line}")
     metadata = {**_description(header), "unit_as_read": as_read}
     return Record(time_step, values, unit, metadata, warnings=tuple(warnings))
 
@@ -199,7 +206,7 @@ def _data_line(source: Source, header: Header) -> tuple[int, re.Match[str]]:
 
 def _unit_name(source: Source, request: Request, header: Header, text: str, line: int) -> str:
     match = _UNIT_CODE.match(text)
-    name = match.group(1).strip() if match else text.strip()
+    name = (match.group(1) if match else text).strip().rstrip(".")
     code = whole(match.group(2)) if match else header.integer(3)
     known, by_code = acceleration_unit(name), acceleration_unit(UNITS.get(code or 0, ""))
     agree = known is None or by_code is None or math.isclose(known.factor, by_code.factor)
@@ -234,10 +241,12 @@ def _time_step(source: Source, header: Header, count: int) -> float:
 def _description(header: Header) -> Metadata:
     metadata: Metadata = {"description": header.line(1).split("(")[0].strip()}
     event = re.sub(r"^(?:Record|Rcrd) of\s+", "", header.line(2).strip(), flags=re.IGNORECASE)
-    if event:
+    if _DAY.match(event):  # no event was found yet: the day of the record stands in its place
+        metadata["event_time"] = event
+    elif event:
         metadata["event"] = event
     origin = header.line(4).strip()
-    if origin.casefold().startswith("origin:"):
+    if origin.casefold().startswith("origin:") and re.search(r"\d", origin):
         metadata["event_time"] = " ".join(origin[7:].split())
     station = _STATION.search(header.line(5))
     if station is not None:

@@ -2,10 +2,16 @@
 
 A file is a row of such blocks, one per channel, each closed by a line ``/&``. A
 block of volume 2 holds acceleration, velocity and displacement; only the
-acceleration is read. Each announces itself::
+acceleration is read. Each announces itself in one of these ways::
 
     1138 POINTS OF ACCEL DATA EQUALLY SPACED AT  .020 SEC.  (UNITS: CM/SEC/SEC)
     7500 points of accel data equally spaced at  .010 sec, in cm/sec2. (8f10.6)
+    1887 POINTS OF ACC DATA EQUALLY SPACED AT   .020 SEC.  IN UNITS CM/SEC/SEC
+   13200 Accelerogram points at 200 pts/sec in units of g .      Format: (8f9.6)
+
+The third is that of the University of Southern California, which leaves the unit away
+at times: it is then the unit of the peak that the text states. Older files of volume 1
+hold pairs of time and acceleration; see :mod:`rockframe.motion.readers.csmip_pairs`.
 
 Reference: A. F. Shakal and M. J. Huang, "Standard Tape Format for CSMIP
 Strong-Motion Data Tapes", Report OSMS 85-03, California Division of Mines and
@@ -17,7 +23,7 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import dataclass
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from rockframe.motion.readers.checks import (
     check_asked_time_step,
@@ -25,31 +31,43 @@ from rockframe.motion.readers.checks import (
     choose_unit,
 )
 from rockframe.motion.readers.components import Component, choose_component
-from rockframe.motion.readers.fixed import fixed_width, whole
+from rockframe.motion.readers.csmip_header import (
+    FIRST_LINE,
+    channel_of,
+    description,
+    is_corrected,
+    length_of,
+    peak_of,
+)
+from rockframe.motion.readers.csmip_pairs import Pairs, find_pairs, read_pairs
+from rockframe.motion.readers.fixed import fixed_width
 from rockframe.motion.readers.orientation import Orientation, orientation_of
-from rockframe.motion.readers.source import Metadata, Record, Request, Source, shown
+from rockframe.motion.readers.source import Record, Request, Source, shown
+from rockframe.motion.readers.stated import compare_length, compare_peak, surplus
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rockframe.errors import RecordError
+    from rockframe.motion.unit_names import RecordUnit
+    from rockframe.signals.arrays import Array
 
 NAME: Final = "csmip"
-TITLE: Final = "CSMIP volume file (V1, V2)"
+TITLE: Final = "CSMIP volume file (V1, V2), also of USC and RENADIC"
 SUFFIXES: Final = (".v1", ".v2", ".raw")
 
-_FIRST_LINE: Final = re.compile(r"^\s*(UN)?CORRECTED ACCELEROGRAM", re.IGNORECASE)
 _SMC: Final = re.compile(r"^\s*\d\s")
 _SPECTRA: Final = re.compile(r"^\s*RESPONSE AND FOURIER", re.IGNORECASE)
 _DATA_LINE: Final = re.compile(
-    r"^\s*(\d{1,12})\s+POINTS OF (ACCEL|VELOC|DISPL)\S{0,10} DATA EQUALLY SPACED AT\s+"
-    r"([\d.]{1,12})\s+SEC",
+    r"^\s*(\d{1,12})\s+(?:POINTS OF ACC(?:EL\S{0,10})? DATA EQUALLY SPACED AT\s+"
+    r"([\d.]{1,12})\s+SEC|ACCELEROGRAM POINTS AT\s+([\d.]{1,12})\s+(?:PTS|POINTS|SAMPLES)/SEC)",
     re.IGNORECASE,
 )
-_UNIT: Final = re.compile(r"(?:UNITS?\s*[:=]\s*|,\s*IN\s+)\(?([^\s(),;]{1,20})", re.IGNORECASE)
-_LAYOUT: Final = re.compile(r"\(\s*(\d{1,3})F(\d{1,3})\.\d{1,2}\s*\)", re.IGNORECASE)
-_CHANNEL: Final = re.compile(
-    r"\bCHA?N\s+(\d{1,4})\s*:\s*(.{0,30}?)\s*(?:\(|FROM\b|LOCATION|$)", re.IGNORECASE
+_UNIT: Final = re.compile(
+    r"(?:\bUNITS?\s*(?:[:=]|\bOF\b)?\s*|,\s*IN\s+)\(?([^\s(),;:=]{1,20})", re.IGNORECASE
 )
-_LOCATION: Final = re.compile(r"\bLOCATION\s*:\s*(.{1,60})", re.IGNORECASE)
-_STATION: Final = re.compile(r"\bSTATION NO\.?\s*(\S{1,20})", re.IGNORECASE)
+_LAYOUT: Final = re.compile(r"\(\s*(\d{1,3})F(\d{1,3})\.\d{1,2}\s*\)", re.IGNORECASE)
 _INTERVAL: Final = re.compile(r"EQUALLY-SPACED INTERVALS OF\s+([\d.]{1,12})\s+SEC", re.IGNORECASE)
-_DEGREES: Final = re.compile(r"^(\d{1,3})\s*DEG\S{0,5}$", re.IGNORECASE)
 _LONGEST_HEADER: Final = 200
 _MOST_CHANNELS: Final = 500
 _PER_LINE: Final = 8
@@ -65,12 +83,13 @@ class _Block:
     line: int
     count: int
     interval: str
+    rate: str
 
 
 def recognises(source: Source) -> bool:
     """Tell whether the first line calls itself an accelerogram, without SMC's digit."""
     first = next((line for line in source.top(4) if line.strip()), "")
-    named = _FIRST_LINE.match(first) is not None and "GNS" not in first
+    named = FIRST_LINE.match(first) is not None and "GNS" not in first
     return (named and _SMC.match(first) is None) or _SPECTRA.match(first) is not None
 
 
@@ -97,12 +116,12 @@ def read(source: Source, request: Request) -> Record:
     if _SPECTRA.match(source.top(1)[0]):
         found = "response spectra (volume 3)"
         raise source.refuse(found=found, expected="an acceleration (volume 1 or 2)", line=1)
-    blocks = _blocks(source)
-    if not blocks:
+    components = [_component(source, request, block) for block in _blocks(source)]
+    components = components or _components_of_pairs(source, request)
+    if not components:
         found = f"no evenly sampled accelerations below {shown(source.start)}"
         expected = "a line such as '1138 points of accel data equally spaced at .020 sec'"
         raise source.refuse(found=found, expected=expected, line=1)
-    components = [_component(source, request, block) for block in blocks]
     return choose_component(source, request, components)
 
 
@@ -113,26 +132,34 @@ def _blocks(source: Source) -> list[_Block]:
         if "/&" in line[:10]:
             first = index + 1
             continue
-        if "points of" not in line[:40].casefold():
+        if "points" not in line[:40].casefold():
             continue  # most lines hold numbers: see at once that this one does
         match = _DATA_LINE.match(line[:200])
-        if match is not None and match.group(2).upper() == "ACCEL":
+        if match is not None:
             start = max(first, index - _LONGEST_HEADER)
             header = source.top(index - start, start)
-            blocks.append(_Block(start, header, index, int(match.group(1)), match.group(3)))
+            count, interval, rate = match.groups()
+            blocks.append(_Block(start, header, index, int(count), interval or "", rate or ""))
             first = index + 1
         if len(blocks) > _MOST_CHANNELS:
-            expected = f"at most {_MOST_CHANNELS} channels"
-            raise source.refuse(found="more channels", expected=expected, line=index + 1)
+            raise _too_many(source, index + 1)
     return blocks
 
 
-def _component(source: Source, request: Request, block: _Block) -> Component:
-    channel, name, line = _channel(block)
+def _too_many(source: Source, line: int) -> RecordError:
+    expected = f"at most {_MOST_CHANNELS} channels"
+    return source.refuse(found="more channels", expected=expected, line=line)
 
+
+def _component(source: Source, request: Request, block: _Block) -> Component:
     def samples() -> Record:
         return _samples(source, request, block)
 
+    return _named(block.header, block.first, samples)
+
+
+def _named(header: list[str], first: int, samples: Callable[[], Record]) -> Component:
+    channel, name, line = channel_of(header, first)
     return Component(
         name or (None if channel is None else f"channel {channel}"),
         samples,
@@ -142,37 +169,87 @@ def _component(source: Source, request: Request, block: _Block) -> Component:
     )
 
 
-def _channel(block: _Block) -> tuple[int | None, str, int]:
-    found: tuple[int | None, str, int] = (None, "", block.first + 1)
-    for line, text in enumerate(block.header, start=block.first + 1):
-        match = _CHANNEL.search(text)
-        if match is None:
-            continue
-        name = match.group(2).strip()
-        degrees = _DEGREES.match(name)
-        found = (whole(match.group(1)), degrees.group(1) if degrees else name, line)
-        if name:
-            break
-    return found
-
-
 def _samples(source: Source, request: Request, block: _Block) -> Record:
     line = block.line + 1
     text = source.top(1, block.line)[0]
     said = _UNIT.search(text)
     name = said.group(1).rstrip(".") if said else None
+    peak = peak_of(block.header, block.first, corrected=is_corrected(block.header))
+    if name is None and peak is not None:
+        name, line = peak.unit, peak.line
     unit, as_read, warnings = choose_unit(source, request, name, line)
+    line = block.line + 1
     time_step = _time_step(source, block)
     check_asked_time_step(source, request, time_step, line)
     per_line, width = _layout(source, block, text)
     values = fixed_width(source, line, block.count, width=width, per_line=per_line)
-    metadata = {**_description(block), "unit_as_read": as_read}
-    return Record(time_step, values, unit, metadata, warnings=tuple(warnings))
+    behind = surplus(source, line + -(-block.count // per_line), f"line {line}")
+    doubts = _doubts(source, block.header, block.first, time_step, values, unit)
+    metadata = {**description(block.header), "unit_as_read": as_read}
+    return Record(time_step, values, unit, metadata, warnings=(*warnings, *doubts, *behind))
+
+
+def _doubts(
+    source: Source,
+    header: list[str],
+    first: int,
+    time_step: float,
+    values: Array,
+    unit: RecordUnit,
+) -> list[str]:
+    doubts: list[str] = []
+    peak = peak_of(header, first, corrected=is_corrected(header))
+    if peak is not None:
+        doubts += compare_peak(
+            source, values, unit, printed=peak.text, printed_unit=peak.unit, line=peak.line
+        )
+    length = length_of(header, first)
+    if length is not None:
+        doubts += compare_length(
+            source, values.size, time_step, printed=length.text, line=length.line
+        )
+    return doubts
+
+
+def _components_of_pairs(source: Source, request: Request) -> list[Component]:
+    components: list[Component] = []
+    last = -2
+    for index, line in enumerate(source.lines):
+        if "accelerogram" not in line[:60].casefold() or FIRST_LINE.match(line[:200]) is None:
+            continue
+        pairs = None if index == last + 1 else find_pairs(source, index)
+        last = index
+        if pairs is not None:
+            components.append(_component_of_pairs(source, request, index, pairs))
+        if len(components) > _MOST_CHANNELS:
+            raise _too_many(source, index + 1)
+    return components
+
+
+def _component_of_pairs(source: Source, request: Request, first: int, pairs: Pairs) -> Component:
+    header = source.top(min(pairs.data_at - first, _LONGEST_HEADER), first)
+
+    def samples() -> Record:
+        unit, as_read, warnings = choose_unit(source, request, pairs.unit, pairs.unit_line)
+        time_step, values = read_pairs(source, pairs)
+        line = pairs.data_at + 1
+        check_time_step(source, time_step, line)
+        check_asked_time_step(source, request, time_step, line)
+        doubts = _doubts(source, header, first, time_step, values, unit)
+        metadata = {**description(header), "unit_as_read": as_read}
+        return Record(time_step, values, unit, metadata, warnings=(*warnings, *doubts))
+
+    return _named(header, first, samples)
 
 
 def _time_step(source: Source, block: _Block) -> float:
     line = block.line + 1
-    time_step = _seconds(source, block.interval, line)
+    time_step = _seconds(source, block.interval or block.rate, line)
+    if block.rate:
+        if not time_step > 0.0:
+            found = f"{time_step!r} points per second"
+            raise source.refuse(found=found, expected="a rate above zero", line=line)
+        time_step = 1.0 / time_step
     check_time_step(source, time_step, line)
     for number, text in enumerate(block.header, start=block.first + 1):
         match = _INTERVAL.search(text)
@@ -212,30 +289,3 @@ def _layout(source: Source, block: _Block, text: str) -> tuple[int, int]:
             line=block.line + 2,
         )
     return _PER_LINE, width
-
-
-def _description(block: _Block) -> Metadata:
-    lines = [text.strip() for text in block.header]
-    metadata: Metadata = {}
-    place = next((k for k, text in enumerate(lines) if _FIRST_LINE.match(text)), 0)
-    corrected = place + 1 < len(lines) and _FIRST_LINE.match(lines[place + 1]) is not None
-    event = place + (2 if corrected else 1)
-    if place < len(lines) and lines[place]:
-        metadata["description"] = "corrected" if corrected else "uncorrected"
-    if event < len(lines) and lines[event]:
-        metadata["event"] = " ".join(lines[event].split())
-    if event + 1 < len(lines) and lines[event + 1]:
-        metadata["event_time"] = " ".join(lines[event + 1].split("(")[0].split())
-    for number, text in enumerate(lines):
-        station = _STATION.search(text)
-        if station is not None:
-            metadata["station"] = station.group(1)
-            if number + 1 < len(lines) and lines[number + 1]:
-                metadata["station_name"] = re.split(r"\s{3,}", lines[number + 1])[0]
-            break
-    for text in lines:
-        location = _LOCATION.search(text)
-        if location is not None:
-            metadata["sensor_location"] = " ".join(location.group(1).split())
-            break
-    return metadata

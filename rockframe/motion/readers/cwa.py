@@ -38,8 +38,10 @@ from rockframe.motion.readers.orientation import (
     orientation_of,
 )
 from rockframe.motion.readers.source import Metadata, Record, Request, Source, shown
+from rockframe.motion.readers.stated import compare_peak
 
 if TYPE_CHECKING:
+    from rockframe.motion.unit_names import RecordUnit
     from rockframe.signals.arrays import Array
 
 NAME: Final = "cwa"
@@ -51,6 +53,10 @@ _MARKS: Final = frozenset(("stationcode", "samplerate", "datasequence", "amplitu
 _COLUMN: Final = re.compile(r"([A-Za-z]{1,8})\s*(?:\(\s*([-+])\s*\))?")
 _LAYOUT: Final = re.compile(r"(\d{1,2})F(\d{1,2})\.(\d{1,2})", re.IGNORECASE)
 _UNIT: Final = re.compile(r"\s*([^\s.,;()]{1,12})(.*)")
+_PEAKS: Final = re.compile(
+    r"^#\s*AmplitudeMAX\.?\s*([A-Za-z]{1,8})\s*:\s*([-+.\d]{1,12})\s*~\s*([-+.\d]{1,12})\s*$",
+    re.IGNORECASE,
+)
 _LONGEST_HEADER: Final = 60
 _KEPT: Final = {
     "stationcode": "station",
@@ -102,7 +108,9 @@ def read(source: Source, request: Request) -> Record:
 
     def reader(place: int) -> Record:
         values = table.read()
-        said = (*warnings, *table.warnings)
+        name = columns[place - 1][0]
+        doubts = _compare_peaks(source, name, values[:, place], unit, as_read)
+        said = (*warnings, *table.warnings, *doubts)
         about: Metadata = {**metadata, **table.metadata}
         return Record(time_step, values[:, place].copy(), unit, about, warnings=said)
 
@@ -213,6 +221,27 @@ def _columns(source: Source, header: Keys) -> tuple[list[tuple[str, Orientation]
             direction = azimuth_of((direction.azimuth + 180.0) % 360.0)
         columns.append((name if sign != "-" else f"-{name}", direction))
     return columns, line
+
+
+def _compare_peaks(
+    source: Source, name: str, values: Array, unit: RecordUnit, unit_name: str
+) -> list[str]:
+    for line, text in enumerate(source.top(_LONGEST_HEADER), start=1):
+        match = _PEAKS.match(text)
+        if match is not None and match.group(1).casefold() == name.lstrip("-").casefold():
+            # the largest and the smallest value
+            larger = max(match.groups()[1:], key=lambda printed: _size(printed))
+            return compare_peak(
+                source, values, unit, printed=larger, printed_unit=unit_name, line=line
+            )
+    return []
+
+
+def _size(printed: str) -> float:
+    try:
+        return abs(float(printed))
+    except ValueError:
+        return 0.0
 
 
 def _description(header: Keys) -> Metadata:

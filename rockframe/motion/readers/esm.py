@@ -1,7 +1,11 @@
-"""ESM and ITACA files (DYNA 1.2 ASCII): lines ``KEY: value``, then one number per line.
+"""ESM and ITACA files (DYNA ASCII): lines ``KEY: value``, then one number per line.
+
+The header of DYNA 1.0 to 1.2 has 64 lines or fewer. That of ITACA 1.1, which came
+before, calls the component ``COMPONENT`` instead of ``STREAM``, its version
+``DATA_VERSION``, and its data ``UNPROCESSED`` or ``PROCESSED ACCELERATION``.
 
 Reference: Engineering Strong-Motion Database (ESM) and Italian Accelerometric
-Archive (ITACA), ASCII format ``HEADER_FORMAT: DYNA 1.2``, 64 header lines.
+Archive (ITACA), ASCII format ``HEADER_FORMAT: DYNA 1.2``.
 """
 
 from __future__ import annotations
@@ -16,8 +20,7 @@ from rockframe.motion.readers.checks import (
 )
 from rockframe.motion.readers.components import Component, choose_component
 from rockframe.motion.readers.declared import settle_count
-from rockframe.motion.readers.fixed import whole
-from rockframe.motion.readers.keys import Keys, kept, needed
+from rockframe.motion.readers.keys import Keys, kept, needed, needed_count
 from rockframe.motion.readers.numbers import (
     ends_inside_number,
     free_format,
@@ -26,13 +29,19 @@ from rockframe.motion.readers.numbers import (
 )
 from rockframe.motion.readers.orientation import orientation_of
 from rockframe.motion.readers.source import Metadata, Record, Request, Source, shown
+from rockframe.motion.readers.stated import compare_length, compare_peak
 
 NAME: Final = "esm"
-TITLE: Final = "ESM or ITACA file (DYNA 1.2 ASCII)"
-SUFFIXES: Final = (".asc",)
+TITLE: Final = "ESM or ITACA file (DYNA ASCII)"
+SUFFIXES: Final = (".asc", ".dat")
+
+PEAK_UNIT: Final = "cm/s^2"
+"""Of the peak in the header, as its key says, whatever the samples are in."""
 
 _KEY: Final = re.compile(r"^([A-Z][A-Z0-9_/^ ]{2,60}?)\s*:\s*(.*?)\s*$")
-_MARKS: Final = frozenset(("SAMPLING_INTERVAL_S", "NDATA", "STREAM", "DATABASE_VERSION"))
+_MARKS: Final = frozenset(
+    ("SAMPLING_INTERVAL_S", "NDATA", "STREAM", "DATABASE_VERSION", "DATA_VERSION")
+)
 _LONGEST_HEADER: Final = 120
 _KEPT: Final = {
     "EVENT_NAME": "event",
@@ -73,7 +82,7 @@ def read(source: Source, request: Request) -> Record:
     """
     header, first = _header(source)
     kind, kind_line = header.get("DATA_TYPE", ("", 0))
-    if kind and kind.casefold() != "acceleration":
+    if kind and kind.casefold().removeprefix("un").removeprefix("processed ") != "acceleration":
         found = f"DATA_TYPE {shown(kind)}"
         raise source.refuse(found=found, expected="an acceleration", line=kind_line)
     interval, line = needed(source, header, "SAMPLING_INTERVAL_S")
@@ -82,14 +91,9 @@ def read(source: Source, request: Request) -> Record:
     check_asked_time_step(source, request, time_step, line)
     unit_name, unit_line = header.get("UNITS", ("", 0))
     unit, as_read, warnings = choose_unit(source, request, unit_name or None, unit_line or None)
-    announced, count_line = needed(source, header, "NDATA")
-    declared = whole(announced)
-    if declared is None or declared < 1:
-        found = f"NDATA {shown(announced)}"
-        expected = "a whole number above zero"
-        raise source.refuse(found=found, expected=expected, line=count_line)
+    declared, count_line = needed_count(source, header, "NDATA")
     metadata = {**_description(header), "unit_as_read": as_read}
-    name, name_line = header.get("STREAM", ("", 0))
+    name, name_line = header.get("STREAM", header.get("COMPONENT", ("", 0)))
 
     def samples() -> Record:
         values = free_format(source, first)
@@ -99,7 +103,15 @@ def read(source: Source, request: Request) -> Record:
         counts, differing = settle_count(
             source, declared=declared, counted=int(values.size), what="NDATA", line=count_line
         )
-        said = (*warnings, *differing)
+        peak, peak_line = header.get("PGA_CM/S^2", ("", 0))
+        length, length_line = header.get("DURATION_S", ("", 0))
+        doubts = (
+            *compare_peak(
+                source, values, unit, printed=peak, printed_unit=PEAK_UNIT, line=peak_line
+            ),
+            *compare_length(source, values.size, time_step, printed=length, line=length_line),
+        )
+        said = (*warnings, *differing, *doubts)
         return Record(time_step, values, unit, {**metadata, **counts}, warnings=said)
 
     component = Component(name or None, samples, orientation_of(name), line=name_line or None)

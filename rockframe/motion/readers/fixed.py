@@ -17,7 +17,9 @@ _LONGEST_COUNT: Final = 12
 _WHOLE: Final = re.compile(r"[-+]?\d+", re.ASCII)
 
 
-def fixed_width(source: Source, first: int, count: int, *, width: int, per_line: int) -> Array:
+def fixed_width(
+    source: Source, first: int, count: int, *, width: int, per_line: int, indent: int = 0
+) -> Array:
     """Read numbers of one width that stand side by side.
 
     Parameters
@@ -32,6 +34,8 @@ def fixed_width(source: Source, first: int, count: int, *, width: int, per_line:
         Characters of each.
     per_line : int
         Numbers in a full line.
+    indent : int, optional
+        Characters at the start of each line that belong to no number.
 
     Returns
     -------
@@ -52,7 +56,7 @@ def fixed_width(source: Source, first: int, count: int, *, width: int, per_line:
     if count > MAXIMUM_SAMPLES:
         raise too_many(source, count, line=first)
     needed = -(-count // per_line)
-    lines = [line.rstrip() for line in source.lines[first : first + needed]]
+    lines = [line.rstrip()[indent:] for line in source.lines[first : first + needed]]
     if len(lines) < needed or not lines[-1]:
         held = min(sum(len(line) // width for line in lines), count - 1)
         raise source.refuse(

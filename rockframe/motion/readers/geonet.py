@@ -31,6 +31,7 @@ from rockframe.motion.readers.orientation import (
     orientation_of,
 )
 from rockframe.motion.readers.source import Metadata, Record, Request, Source, shown
+from rockframe.motion.readers.stated import compare_length, compare_peak
 
 NAME: Final = "geonet"
 TITLE: Final = "GeoNet accelerogram (V1A, V2A)"
@@ -44,6 +45,10 @@ _COMPONENT: Final = re.compile(r"^\s*Component\s+(\S{1,12})", re.IGNORECASE)
 _SITE: Final = re.compile(r"^\s*Site\s+(\S{1,12})", re.IGNORECASE)
 _POINTS: Final = re.compile(r"Number of points\s+(\d{1,9})", re.IGNORECASE)
 _INTERVAL: Final = re.compile(r"data at\s+([\d.]{1,9})\s+sec interval", re.IGNORECASE)
+_PEAK: Final = re.compile(
+    r"^\s*Acceleration:\s*peak\s+([-+.\d]{1,15})\s+(\S{1,10}/s/s)\b", re.IGNORECASE
+)
+_LENGTH: Final = re.compile(r"\bDuration\s+([.\d]{1,12})\s*sec", re.IGNORECASE)
 _TEXT_LINES: Final = 16
 _HEADER_LINES: Final = 26
 _REALS: Final = 20
@@ -196,6 +201,17 @@ def _samples(source: Source, request: Request, block: _Block) -> Record:
     check_asked_time_step(source, request, time_step, line)
     unit, as_read, warnings = choose_unit(source, request, UNIT, None)
     values = fixed_width(source, block.data, block.count, **_LAYOUT)
+    for number, text in enumerate(source.top(_TEXT_LINES, block.index), start=block.index + 1):
+        peak, length = _PEAK.match(text), _LENGTH.search(text)
+        if peak is not None:
+            printed, name = peak.groups()
+            warnings += compare_peak(
+                source, values, unit, printed=printed, printed_unit=name, line=number
+            )
+        if length is not None:
+            warnings += compare_length(
+                source, values.size, time_step, printed=length.group(1), line=number
+            )
     metadata = {**_description(source, block), "unit_as_read": as_read}
     return Record(time_step, values, unit, metadata, warnings=tuple(warnings))
 

@@ -4,15 +4,50 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, TypeAlias
 
+from rockframe.motion.readers.fixed import whole
 from rockframe.motion.readers.numbers import number
+from rockframe.motion.readers.source import shown
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
     from rockframe.motion.readers.source import Metadata, Source
 
 Keys: TypeAlias = "dict[str, tuple[str, int]]"
 """Value and line, from 1, of each key."""
+
+
+def read_keys(lines: Iterable[str], first: int = 1) -> Keys:
+    """Read lines ``KEY   : value``; of a key that comes twice the first counts.
+
+    Parameters
+    ----------
+    lines : iterable of str
+        Header.
+    first : int, optional
+        Number of the first of them, from 1.
+
+    Returns
+    -------
+    dict
+        By the keys without blanks around them, as printed; without lines of another kind.
+    """
+    keys: Keys = {}
+    for line, text in enumerate(lines, start=first):
+        key, colon, value = text.partition(":")
+        if colon and key.strip():
+            keys.setdefault(key.strip(), (value.strip(), line))
+    return keys
+
+
+def needed_count(source: Source, keys: Keys, key: str) -> tuple[int, int]:
+    """Give a number of samples that must be there and above zero, and its line."""
+    text, line = needed(source, keys, key)
+    count = whole(text)
+    if count is None or count < 1:
+        found, expected = f"{key} {shown(text)}", "a whole number above zero"
+        raise source.refuse(found=found, expected=expected, line=line)
+    return count, line
 
 
 def needed(source: Source, keys: Keys, key: str) -> tuple[str, int]:

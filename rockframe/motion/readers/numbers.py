@@ -25,8 +25,8 @@ _FEWEST: Final = 4
 _CHUNK: Final = 2**20
 
 
-def free_format(source: Source, first: int) -> Array:
-    """Read all numbers from a line to the end of the file.
+def free_format(source: Source, first: int, end: int | None = None) -> Array:
+    """Read all numbers from a line to the end of the file, or to another line.
 
     Parameters
     ----------
@@ -34,6 +34,8 @@ def free_format(source: Source, first: int) -> Array:
         File.
     first : int
         Index of the first line of data, from 0.
+    end : int, optional
+        Index of the first line behind them.
 
     Returns
     -------
@@ -47,11 +49,11 @@ def free_format(source: Source, first: int) -> Array:
     """
     parts: list[Array] = []
     count = 0
-    for start, end in _chunks(source, first):
-        part = _fields(source, start, end)
+    for start, stop in _chunks(source, first, len(source.lines) if end is None else end):
+        part = _fields(source, start, stop)
         count += part.size
         if count > MAXIMUM_SAMPLES:
-            raise too_many(source, count, line=end)
+            raise too_many(source, count, line=stop)
         parts.append(part)
     return np.concatenate(parts) if parts else np.empty(0)
 
@@ -131,15 +133,18 @@ def ends_inside_number(source: Source, fields: Sequence[str]) -> bool:
     -------
     bool
         True if nothing follows the last number, and it has fewer digits than
-        the numbers before it, which all have the same.
+        the numbers before it, which all have the same. A line as long as the one
+        before it was not cut: some programs print a zero as 0 at the end of its field.
     """
     last_line = source.lines[-1]
     if not last_line or last_line[-1].isspace():
         return False
-    shapes = {_shape(field) for field in fields[-_SAME_SHAPE - 1 : -1]}
+    if len(source.lines) > 1 and len(last_line) == len(source.lines[-2]) and " 0" in last_line[-2:]:
+        return False
+    shapes = {shape_of(field) for field in fields[-_SAME_SHAPE - 1 : -1]}
     if len(shapes) != 1 or len(fields) < _FEWEST:
         return False
-    usual, last = shapes.pop(), _shape(fields[-1])
+    usual, last = shapes.pop(), shape_of(fields[-1])
     return usual is not None and (last is None or last < usual)
 
 
@@ -167,16 +172,16 @@ def last_fields(source: Source, first: int, count: int = _SAME_SHAPE + 1) -> lis
     return fields[-count:]
 
 
-def _chunks(source: Source, first: int) -> Iterator[tuple[int, int]]:
+def _chunks(source: Source, first: int, last: int) -> Iterator[tuple[int, int]]:
     # in pieces, so that the fields of a long file are never all in memory
     start, size = first, 0
-    for index in range(first, len(source.lines)):
+    for index in range(first, last):
         size += len(source.lines[index]) + 1
         if size >= _CHUNK:
             yield start, index + 1
             start, size = index + 1, 0
-    if start < len(source.lines):
-        yield start, len(source.lines)
+    if start < last:
+        yield start, last
 
 
 def _fields(source: Source, first: int, end: int) -> Array:
@@ -206,7 +211,8 @@ def with_e(field: str) -> str:
     return field.replace("D", "E").replace("d", "e")
 
 
-def _shape(field: str) -> tuple[int, int] | None:
+def shape_of(field: str) -> tuple[int, int] | None:
+    """Count the digits of the exponent and behind the point; None if it is no number."""
     match = _SHAPE.fullmatch(field)
     if match is None:
         return None

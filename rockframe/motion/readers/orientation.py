@@ -13,8 +13,8 @@ VERTICAL: Final = "vertical"
 
 _FULL_CIRCLE: Final = 360.0
 _COMPASS: Final = {
-    **dict.fromkeys(("n", "ns", "n-s", "north"), 0.0),
-    **dict.fromkeys(("e", "ew", "e-w", "east"), 90.0),
+    **dict.fromkeys(("n", "ns", "n-s", "sn", "north"), 0.0),
+    **dict.fromkeys(("e", "ew", "e-w", "we", "east"), 90.0),
     **dict.fromkeys(("s", "south"), 180.0),
     **dict.fromkeys(("w", "west"), 270.0),
 }

@@ -6,6 +6,9 @@ The line with the number of points comes in several dialects::
     NPTS=  18000, DT= .00500 SEC                strong-motion database
     NPTS=   7999, DT=   .0050 SEC,              NGA-West2
     NPTS=3930,DT=.005                           no blanks, also dt= in lower case
+
+Some files set marks around header and data: ``*** Begin data ***`` above that line, and
+``*** End Data ***`` below the last number.
 """
 
 from __future__ import annotations
@@ -41,6 +44,8 @@ _UNIT: Final = re.compile(
     r"\bunits?\s*(?:\bof\b|\bare\b|\bis\b|[:=])\s*\(?\s*([^\s(),;]+)", re.IGNORECASE
 )
 _OTHER_KIND: Final = re.compile(r"\b(VELOCITY|DISPLACEMENT)\b", re.IGNORECASE)
+_END_MARK: Final = re.compile(r"\*{2,}\s*END\b.{0,20}", re.IGNORECASE)
+_LAST_LINES: Final = 50
 _SHOWN_DIGITS: Final = 40
 _DATE: Final = re.compile(r"\d{1,4}[/-]\d{1,2}[/-]\d{1,4}")
 
@@ -90,8 +95,9 @@ def read(source: Source, request: Request) -> Record:
     name = None if given is None else str(given)
 
     def samples() -> Record:
-        values = free_format(source, index + 1)
-        if ends_inside_number(source, last_fields(source, index + 1)):
+        end = _end_mark(source)
+        values = free_format(source, index + 1, end)
+        if end is None and ends_inside_number(source, last_fields(source, index + 1)):
             found = f"the end of the file inside a number ({values.size} of {declared} samples)"
             raise source.refuse(found=found, expected="a complete file", line=source.last_line)
         counts, differing = settle_count(
@@ -114,6 +120,15 @@ def _points_line(source: Source) -> int:
         expected="a PEER header with a line such as 'NPTS=  7999, DT=   .0050 SEC'",
         line=1,
     )
+
+
+def _end_mark(source: Source) -> int | None:
+    """Find the mark below the last number; nothing but blank lines may follow it."""
+    for index in range(len(source.lines) - 1, max(len(source.lines) - _LAST_LINES, 0), -1):
+        text = source.lines[index].strip()
+        if text:
+            return index if _END_MARK.match(text) else None
+    return None
 
 
 def _points_and_step(source: Source, index: int) -> tuple[int, float]:

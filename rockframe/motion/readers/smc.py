@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 import re
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from rockframe.motion.readers.checks import (
     check_asked_time_step,
@@ -28,6 +28,7 @@ from rockframe.motion.readers.fixed import (
     header_number,
     whole,
 )
+from rockframe.motion.readers.numbers import NUMBER
 from rockframe.motion.readers.orientation import (
     DOWNWARDS,
     UNKNOWN,
@@ -37,6 +38,11 @@ from rockframe.motion.readers.orientation import (
     orientation_of,
 )
 from rockframe.motion.readers.source import Metadata, Record, Request, Source, shown
+from rockframe.motion.readers.stated import compare_peak, surplus
+
+if TYPE_CHECKING:
+    from rockframe.motion.unit_names import RecordUnit
+    from rockframe.signals.arrays import Array
 
 NAME: Final = "smc"
 TITLE: Final = "USGS SMC file"
@@ -44,6 +50,9 @@ SUFFIXES: Final = (".smc",)
 
 UNIT: Final = "cm/sec/sec"
 """Of the data, by the specification."""
+
+UNKNOWN_KIND: Final = "UNKNOWN"
+"""Kind 0, of files whose maker did not say what they hold."""
 
 _KIND: Final = re.compile(
     r"^\s*([0-6])\s+((?:UN)?CORRECTED ACCELEROGRAM|VELOCITY|DISPLACEMENT|"
@@ -62,6 +71,8 @@ _DATA_LAYOUT: Final = {"width": 10, "per_line": 8}
 _UNKNOWN_INTEGER: Final = -32768
 _UNKNOWN_REAL: Final = 1.7e38
 _FASTEST: Final = 1e5
+_PEAKS: Final = (30, 32)
+_REAL: Final = re.compile(NUMBER, re.ASCII)
 _HORIZONTAL: Final = 90
 _DOWN: Final = 180
 
@@ -106,9 +117,13 @@ def _check_kind(source: Source) -> None:
     if match is None:
         expected = "a first line such as '2 CORRECTED ACCELEROGRAM'"
         raise source.refuse(found=shown(source.start), expected=expected, line=1)
-    if "ACCELEROGRAM" not in match.group(2).upper():
+    if not _is_accelerogram(match):
         found = f"{shown(match.group(0))}, which is no accelerogram"
         raise source.refuse(found=found, expected="an acceleration", line=1)
+
+
+def _is_accelerogram(match: re.Match[str]) -> bool:
+    return "ACCELEROGRAM" in match.group(2).upper() or match.group(2).upper() == UNKNOWN_KIND
 
 
 def _component(source: Source) -> tuple[str | None, Orientation]:
@@ -156,11 +171,30 @@ def _samples(source: Source, request: Request) -> Record:
     unit, as_read, warnings = choose_unit(source, request, UNIT, None)
     values = fixed_width(source, first, count, **_DATA_LAYOUT)
     problem = whole(cell(source, _INTEGERS, 18, **_INTEGER_LAYOUT))
+    kind = _KIND.match(source.top(1)[0])
+    if kind is not None and kind.group(2).upper() == UNKNOWN_KIND:
+        words = f"{source.path}, line 1: the file does not say what it holds; an accelerogram "
+        warnings.append(f"{words}in {as_read} is assumed")
+    warnings += _doubts(source, values, unit)
+    warnings += surplus(
+        source, first + -(-count // _DATA_LAYOUT["per_line"]), "integer 17 (line 14)"
+    )
     if problem == 1:
         words = f"{source.path}, line 14: the file marks a problem (integer 18); see its comments"
         warnings.append(words)
     metadata = {**_description(source), "unit_as_read": as_read}
     return Record(time_step, values, unit, metadata, warnings=tuple(warnings))
+
+
+def _doubts(source: Source, values: Array, unit: RecordUnit) -> list[str]:
+    """Hold the largest of the peaks in reals 30 and 32 against the samples."""
+    printed = [cell(source, _REALS, place, **_REAL_LAYOUT) for place in _PEAKS]
+    stated = [abs(float(text)) for text in printed if _REAL.fullmatch(text)]
+    known = [value for value in stated if value < _UNKNOWN_REAL / 10.0]
+    if len(known) < len(_PEAKS):
+        return []
+    peak, line = f"{max(known):.9g}", _REALS + 1 + (_PEAKS[0] - 1) // _REAL_LAYOUT["per_line"]
+    return compare_peak(source, values, unit, printed=peak, printed_unit=UNIT, line=line)
 
 
 def _time_step(source: Source) -> float:
