@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 HEADER_LINES: Final = 20
 _MOST_COMMENTS: Final = 2_000
 _LAST: Final = 50
+_MOST_NUMBERS: Final = 900_000
 COMMENT_MARKS: Final = ("#", "%")
 
 _NUMBER: Final = re.compile(NUMBER, re.ASCII)
@@ -86,8 +87,11 @@ def read_table(source: Source, most_columns: int) -> Table:
     columns = len(_split(rows[0], separator))
     _check_header(source, header, separator, columns)
     if columns > most_columns:
-        expected = "one (acceleration) or two (time, acceleration)"
+        expected = f"at most {most_columns}: the time, if any, and accelerations"
         raise source.refuse(found=f"{columns} columns", expected=expected, line=lines[0])
+    if columns * len(rows) > _MOST_NUMBERS:
+        found = f"{columns} columns of {len(rows)} rows"
+        raise source.refuse(found=found, expected=f"at most {_MOST_NUMBERS} numbers in all")
     if decimal_comma:
         rows = [text.replace(",", ".") for text in rows]
     plain = is_plain(body)
@@ -161,7 +165,7 @@ def _header(source: Source) -> tuple[list[tuple[int, str]], int]:
             break
         header.append((index + 1, text[:HEADER_WIDTH]))
     found = f"no row of numbers below {shown(source.start)}"
-    expected = f"one or two columns of numbers below at most {HEADER_LINES} header lines"
+    expected = f"columns of numbers below at most {HEADER_LINES} header lines"
     raise source.refuse(found=found, expected=expected, line=header[0][0] if header else 1)
 
 

@@ -1,4 +1,4 @@
-"""Plain text: one column (acceleration) or two (time, acceleration)."""
+"""Plain text: columns of numbers, one of them or none the time."""
 
 from __future__ import annotations
 
@@ -11,33 +11,40 @@ from rockframe.motion.readers.checks import (
     check_time_step,
     choose_unit,
 )
-from rockframe.motion.readers.columns import HEADER_LINES, Table, read_table, split_header
+from rockframe.motion.readers.columns import HEADER_LINES, Table, read_table
 from rockframe.motion.readers.components import Component, choose_component
-from rockframe.motion.readers.numbers import ends_inside_number
-from rockframe.motion.readers.source import Metadata, Record, Request, Source, shown
+from rockframe.motion.readers.declared import settle_count
+from rockframe.motion.readers.numbers import ends_inside_number, free_format, last_fields
+from rockframe.motion.readers.source import Metadata, Record, Request, Source
+from rockframe.motion.readers.stated import compare_peak
+from rockframe.motion.readers.text_first_lines import (
+    FirstLines,
+    find_first_lines,
+    looks_like_step,
+)
+from rockframe.motion.readers.text_header import (
+    Column,
+    acceleration_columns,
+    column_names,
+    has_times,
+    stated_peak,
+    stated_step,
+    time_scale,
+    unit_of_header,
+)
 from rockframe.motion.readers.timing import uniform_step
-from rockframe.motion.unit_names import acceleration_unit, other_quantity
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from rockframe.signals.arrays import Array
 
 NAME: Final = "text"
-TITLE: Final = "text or CSV, one column (acceleration) or two (time, acceleration)"
+TITLE: Final = "text or CSV, columns of accelerations, with or without the time"
 SUFFIXES: Final = (".txt", ".csv", ".dat", ".tsv", ".asc")
 
-TIME_UNITS: Final = {
-    **dict.fromkeys(("s", "sec", "secs", "sec.", "second", "seconds"), 1.0),
-    **dict.fromkeys(("ms", "msec", "millisecond", "milliseconds"), 1e-3),
-}
+MOST_COLUMNS: Final = 12
 
-# brackets inside brackets once, as in [1/(s^2)]; no blank can be matched in two ways
-_BRACKETED: Final = re.compile(r"[(\[{]([^()\[\]{}]*(?:\([^()]*\)[^()\[\]{}]*)?)[)\]}]")
-_STATED: Final = re.compile(
-    r"\bunits?\s*(?:\bof\b|\bare\b|\bis\b|[:=])\s*[(\[]?\s*([^\s()\[\],;]+)", re.IGNORECASE
-)
-_ACCELERATION_NAME: Final = re.compile(r"\W*(acc|a\b|ag\b)", re.IGNORECASE)
-_TIME_NAME: Final = re.compile(r"\W*(time|t)\b", re.IGNORECASE)
-_OTHER_KIND: Final = re.compile(r"(?<![a-z])(vel|disp)", re.IGNORECASE)
+_AGREEMENT: Final = 1e-3
+_ROUNDING: Final = 1e-6
 
 
 def recognises(source: Source) -> bool:
@@ -46,7 +53,7 @@ def recognises(source: Source) -> bool:
 
 
 def read(source: Source, request: Request) -> Record:
-    """Read one or two columns of numbers.
+    """Read columns of numbers.
 
     Parameters
     ----------
@@ -62,9 +69,13 @@ def read(source: Source, request: Request) -> Record:
     Raises
     ------
     RecordError
-        Not one or two columns of numbers, an uneven time step, or no unit.
+        No columns of numbers, a spectrum, an uneven time step, no unit, or several
+        components and none was asked for.
     """
-    table = read_table(source, most_columns=2)
+    first_lines = find_first_lines(source)
+    if first_lines is not None:
+        return _counted(source, request, first_lines)
+    table = read_table(source, MOST_COLUMNS)
     rows, columns = table.values.shape
     if rows < 2:
         found = "one row of numbers"
@@ -72,34 +83,136 @@ def read(source: Source, request: Request) -> Record:
     if ends_inside_number(source, table.last_fields):
         found = f"the end of the file inside a number ({rows} samples)"
         raise source.refuse(found=found, expected="a complete file", line=table.lines[-1])
-    names = _column_names(source, table)
-    unit_name, unit_line = _acceleration_unit(source, table, asked=request.unit is not None)
-    unit, as_read, warnings = choose_unit(source, request, unit_name, unit_line)
-    metadata: Metadata = {"unit_as_read": as_read}
+    names, line = column_names(source, table)
+    timed = has_times(table, names)
+    held = acceleration_columns(source, table, names, line, timed=timed)
+    metadata: Metadata = {}
     if table.header:
         metadata["description"] = table.header[0][1].lstrip("#% \t")
-    if columns == 1:
-        time_step = _asked_step(source, request)
-    else:
-        scale = _time_scale(source, table, names)
+    warnings: list[str] = []
+    first = 0
+    if timed:
+        scale = time_scale(source, table, names)
         time_step = _step(source, table, scale)
         check_asked_time_step(source, request, time_step, table.lines[1])
+        warnings += _compare_step(source, table, time_step)
         start = float(table.values[0, 0]) * scale
         if start != 0.0:
             metadata["start_time"] = start
-    samples = table.values[:, -1].copy()
-    record = Record(time_step, samples, unit, metadata, warnings=tuple(warnings))
-    return choose_component(source, request, [Component(None, lambda: record)])
+    else:
+        time_step = _step_without_times(source, request, table)
+        first, warnings = _first_sample(source, request, table)
 
+    def samples(column: Column) -> Record:
+        values = table.values[first:, column.place].copy()
+        return _record(source, request, table, column, time_step, values, metadata, warnings)
 
-def _asked_step(source: Source, request: Request) -> float:
-    if request.time_step is None:
-        raise source.refuse(
-            found="one column and no times",
-            expected="a column of times, or the argument time_step such as time_step='0.005 s'",
+    if len(held) == 1 and columns <= 2:
+        only = Component(None, lambda: samples(held[0]))
+        return choose_component(source, request, [only])
+    components = [
+        Component(
+            column.name,
+            lambda column=column: samples(column),
+            column.orientation,
+            channel=place,
+            line=line,
         )
+        for place, column in enumerate(held, start=1)
+    ]
+    return choose_component(source, request, components)
+
+
+def _record(
+    source: Source,
+    request: Request,
+    table: Table,
+    column: Column,
+    time_step: float,
+    values: Array,
+    metadata: Metadata,
+    warnings: list[str],
+) -> Record:
+    name, line = column.unit, None
+    if name is None or table.values.shape[1] <= 2:
+        name, line = unit_of_header(source, table, asked=request.unit is not None)
+    unit, as_read, said = choose_unit(source, request, name, line)
+    peak = stated_peak(table.header) if table.values.shape[1] <= 2 else None
+    if peak is not None:
+        printed, peak_unit, peak_line = peak
+        said += compare_peak(
+            source, values, unit, printed=printed, printed_unit=peak_unit, line=peak_line
+        )
+    about: Metadata = {"unit_as_read": as_read, **metadata}
+    return Record(time_step, values, unit, about, warnings=(*said, *warnings))
+
+
+def _counted(source: Source, request: Request, head: FirstLines) -> Record:
+    check_asked_time_step(source, request, head.time_step, head.line)
+
+    def samples() -> Record:
+        unit, as_read, warnings = choose_unit(source, request, None, None)
+        values = free_format(source, head.data_at)
+        if ends_inside_number(source, last_fields(source, head.data_at)):
+            found = f"the end of the file inside a number ({values.size} samples)"
+            raise source.refuse(found=found, expected="a complete file", line=source.last_line)
+        counts, differing = settle_count(
+            source,
+            declared=head.count,
+            counted=int(values.size),
+            what="the number in front",
+            line=head.line,
+        )
+        above = [text.strip() for text in source.top(head.line - 1) if text.strip()]
+        metadata: Metadata = {"unit_as_read": as_read, **counts}
+        if above:
+            metadata["description"] = above[0].lstrip("#% \t")
+        history = (f"{head.count} samples and a time step, as line {head.line} says",)
+        return Record(
+            head.time_step, values, unit, metadata, history, warnings=(*warnings, *differing)
+        )
+
+    return choose_component(source, request, [Component(None, samples)])
+
+
+def _step_without_times(source: Source, request: Request, table: Table) -> float:
+    stated = stated_step(table.header)
+    if stated is not None:
+        time_step, line = stated
+        check_time_step(source, time_step, line)
+        check_asked_time_step(source, request, time_step, line)
+        return time_step
+    if request.time_step is None:
+        found = f"{'one column' if table.values.shape[1] == 1 else 'accelerations'} and no times"
+        example = "time_step='0.005 s'"
+        if table.values.shape[1] == 1 and looks_like_step(table):
+            found += f", below {table.first_fields[0]}, which looks like a time step"
+            example = f"time_step='{table.first_fields[0]} s'"
+        expected = f"a column of times, or the argument time_step such as {example}"
+        raise source.refuse(found=found, expected=expected)
     check_time_step(source, request.time_step, None)
     return request.time_step
+
+
+def _first_sample(source: Source, request: Request, table: Table) -> tuple[int, list[str]]:
+    """Tell whether the samples begin in the second row, below the time step, and say so."""
+    asked = request.time_step
+    if asked is None or table.values.shape[1] > 1:
+        return 0, []
+    number, line = table.first_fields[0], table.lines[0]
+    where = f"{source.path}, line {line}: {number} is"
+    same = math.isclose(float(table.values[0, 0]), asked, rel_tol=_ROUNDING)
+    if same and looks_like_step(table):
+        return 1, [f"{where} the time step, as time_step says, and not read as a sample"]
+    if same:
+        return 0, [f"{where} the time step that was asked for; it is read as a sample"]
+    if looks_like_step(table):
+        raise source.refuse(
+            found=f"{number} above the samples, which looks like a time step",
+            expected=f"the {asked!r} s asked for by the argument time_step, or no such line",
+            line=line,
+        )
+    return 0, []
 
 
 def _step(source: Source, table: Table, scale: float) -> float:
@@ -115,94 +228,11 @@ def _step(source: Source, table: Table, scale: float) -> float:
     return seconds
 
 
-def _column_names(source: Source, table: Table) -> list[str]:
-    columns = table.values.shape[1]
-    for line, text in reversed(table.header):
-        names = split_header(text, table.separator)
-        if len(names) != columns:
-            continue
-        last = names[-1]
-        if _OTHER_KIND.search(last) and not _ACCELERATION_NAME.match(last):
-            raise source.refuse(
-                found=f"the column {shown(last)}", expected="an acceleration", line=line
-            )
-        if columns == 2 and (_ACCELERATION_NAME.match(names[0]) or _TIME_NAME.match(last)):
-            found = f"the columns {names[0]!r}, {last!r}"
-            raise source.refuse(
-                found=found, expected="the time first, then the acceleration", line=line
-            )
-        return names
-    return []
-
-
-def _time_scale(source: Source, table: Table, names: list[str]) -> float:
-    for name in names[:1]:
-        for unit in _in_brackets(name):
-            known = TIME_UNITS.get(unit.casefold())
-            if known is None:
-                line = table.header[-1][0]
-                found = f"the unit {unit!r} of the times"
-                raise source.refuse(
-                    found=found, expected="seconds (s) or milliseconds (ms)", line=line
-                )
-            return known
-        if name.casefold() in TIME_UNITS:
-            return TIME_UNITS[name.casefold()]
-    units = {
-        TIME_UNITS[unit.casefold()]
-        for _, text in table.header
-        for unit in _in_brackets(text)
-        if unit.casefold() in TIME_UNITS
-    }
-    return units.pop() if len(units) == 1 else 1.0
-
-
-def _acceleration_unit(
-    source: Source, table: Table, *, asked: bool
-) -> tuple[str | None, int | None]:
-    unknown: tuple[str, int] | None = None
-    other: tuple[str, int] | None = None
-    known: list[tuple[str, int, float]] = []
-    for line, name, certain in _unit_candidates(table):
-        unit = acceleration_unit(name)
-        if unit is not None:
-            known.append((name, line, unit.factor))
-        elif certain and name.casefold() not in TIME_UNITS:
-            if other_quantity(name) is not None:
-                other = other or (name, line)
-            else:
-                unknown = unknown or (name, line)
-    if known:
-        name, line, factor = known[0]
-        differing = [entry for entry in known if not math.isclose(entry[2], factor)]
-        if differing and not asked:
-            found = f"the units {name!r} and {differing[0][0]!r} (line {differing[0][1]})"
-            raise source.refuse(found=found, expected="one unit, or the argument unit", line=line)
-        return name, line
-    return other or unknown or (None, None)
-
-
-def _unit_candidates(table: Table) -> Iterator[tuple[int, str, bool]]:
-    # nearest the numbers first; in brackets, after the word "unit", or as a field
-    # of its own; "certain" is a name that must be a unit
-    columns = table.values.shape[1]
-    for position, (line, text) in enumerate(reversed(table.header)):
-        fields = split_header(text, table.separator)
-        is_unit = [_is_unit(field) for field in fields]
-        for field, unit in zip(fields, is_unit, strict=True):
-            if unit and ("/" in field or (all(is_unit) and len(fields) == columns)):
-                yield line, field, True
-        for name in _STATED.findall(text):
-            yield line, name.rstrip("."), True
-        in_brackets = _in_brackets(text)
-        for name in in_brackets:
-            yield line, name, position == 0 and name == in_brackets[-1]
-
-
-def _in_brackets(text: str) -> list[str]:
-    return [name.strip() for name in _BRACKETED.findall(text)]
-
-
-def _is_unit(name: str) -> bool:
-    known = acceleration_unit(name) is not None or other_quantity(name) is not None
-    return known or name.casefold() in TIME_UNITS
+def _compare_step(source: Source, table: Table, time_step: float) -> list[str]:
+    stated = stated_step(table.header)
+    if stated is None or math.isclose(stated[0], time_step, rel_tol=_AGREEMENT):
+        return []
+    return [
+        f"{source.path}, line {stated[1]}: the header states a time step of {stated[0]:g} s, "
+        f"but the times are {time_step:g} s apart; the times are used"
+    ]

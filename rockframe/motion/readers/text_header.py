@@ -1,0 +1,403 @@
+"""What the lines above columns of numbers say: names, units, time step, peak."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+from rockframe.motion.readers.columns import Table, split_header
+from rockframe.motion.readers.numbers import NUMBER
+from rockframe.motion.readers.orientation import UNKNOWN, Orientation, orientation_of
+from rockframe.motion.readers.source import Source, shown
+from rockframe.motion.unit_names import acceleration_unit, other_quantity
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+TIME_UNITS: Final = {
+    **dict.fromkeys(("s", "sec", "secs", "sec.", "second", "seconds"), 1.0),
+    **dict.fromkeys(("ms", "msec", "millisecond", "milliseconds"), 1e-3),
+}
+
+# brackets inside brackets once, as in [1/(s^2)]; no blank can be matched in two ways
+_BRACKETED: Final = re.compile(r"[(\[{]([^()\[\]{}]*(?:\([^()]*\)[^()\[\]{}]*)?)[)\]}]")
+_STATED: Final = re.compile(
+    r"\bunits?\s*(?:\bof\b|\bare\b|\bis\b|[:=])\s*[(\[]?\s*([^\s()\[\],;]+)", re.IGNORECASE
+)
+_ACCELERATION_NAME: Final = re.compile(r"\W*(acc|a\b|ag\b)", re.IGNORECASE)
+_TIME_NAME: Final = re.compile(r"\W*(time|t)\b", re.IGNORECASE)
+_OTHER_KIND: Final = re.compile(r"(?<![a-z])(vel|disp)", re.IGNORECASE)
+_PERIOD_NAME: Final = re.compile(r"\W*(period|freq|omega|t_?n\b)", re.IGNORECASE)
+_SPECTRAL_NAME: Final = re.compile(
+    r"\W*(?:pseudo|p?s_?[adv](?![a-z])|f(?:ourier|as\b|ft\b))|.*spectr", re.IGNORECASE
+)
+_SPECTRUM: Final = re.compile(
+    r"\b(?:response|acceleration|design|target|hazard|elastic|floor|fourier)[ -]+spectr(?:um|a)\b|"
+    r"\bspectral\s+acceleration",
+    re.IGNORECASE,
+)
+_MATCHED: Final = re.compile(r"match|compatib|artificial|time", re.IGNORECASE)
+_STEP: Final = re.compile(
+    rf"(?:\bd_?t|\bdelta[ _]?t|\btime[ _-]?(?:step|increment|interval)|"
+    rf"\bsampl(?:ing|e)[ _-]?(?:interval|period))\s*(?:[(\[]\s*([a-z]{{1,7}})\.?\s*[)\]])?"
+    rf"\s*[:=]\s*({NUMBER})\s*([a-z]{{0,7}})",
+    re.IGNORECASE | re.ASCII,
+)
+_RATE: Final = re.compile(
+    rf"(?:\bsampl(?:ing|e)[ _-]?(?:rate|frequency))\s*(?:[(\[]\s*(?:hz|sps)\s*[)\]])?"
+    rf"\s*[:=]\s*({NUMBER})",
+    re.IGNORECASE | re.ASCII,
+)
+_PEAK: Final = re.compile(
+    rf"\b(?:pga|peak(?: ground)? acceleration)\s*(?:[(\[]\s*([^()\[\]]{{1,12}})[)\]])?"
+    rf"\s*[:=]\s*({NUMBER})\s*([a-z][a-z0-9/^*-]{{0,11}})?",
+    re.IGNORECASE | re.ASCII,
+)
+_WORDS: Final = re.compile(r"[^\W_]+")
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of accelerations.
+
+    Parameters
+    ----------
+    place : int
+        Which column, from 0.
+    name : str
+        As the header has it, without a unit; ``column 2`` if there is none.
+    orientation : Orientation
+        Which way it is positive, if its name tells.
+    unit : str or None
+        Of this column alone.
+    """
+
+    place: int
+    name: str
+    orientation: Orientation = UNKNOWN
+    unit: str | None = None
+
+
+def column_names(source: Source, table: Table) -> tuple[list[str], int]:
+    """Find the names of the columns, and refuse those of another quantity or of a spectrum.
+
+    Parameters
+    ----------
+    source : Source
+        File.
+    table : Table
+        Its columns and header.
+
+    Returns
+    -------
+    tuple of list of str, and int
+        One for each column, or none, and their line, from 1.
+
+    Raises
+    ------
+    RecordError
+        A spectrum, a velocity or a displacement, or the time behind the acceleration.
+    """
+    columns = table.values.shape[1]
+    names, line = _names(table, columns)
+    _check_no_spectrum(source, table, names, line)
+    if not names or columns > 2:
+        return names, line
+    last = names[-1]
+    if _is_other(last):
+        raise source.refuse(
+            found=f"the column {shown(last)}", expected="an acceleration", line=line
+        )
+    if columns == 2 and (_ACCELERATION_NAME.match(names[0]) or _TIME_NAME.match(last)):
+        both = all(_direction(name) != UNKNOWN for name in names)
+        if not both or _TIME_NAME.match(last):
+            found = f"the columns {names[0]!r}, {last!r}"
+            expected = "the time first, then the acceleration"
+            raise source.refuse(found=found, expected=expected, line=line)
+    return names, line
+
+
+def _names(table: Table, columns: int) -> tuple[list[str], int]:
+    for line, text in reversed(table.header):
+        names = split_header(text, table.separator)
+        if len(names) == columns and not all(map(_is_unit, names)):
+            return names, line
+        if table.separator is None:  # single blanks, and units in brackets behind the names
+            told = _BRACKETED.sub(lambda match: match.group().replace(" ", ""), text)
+            parts = re.sub(r"\s+(?=[(\[])", "", told.lstrip("#% \t")).split()
+            if len(parts) == columns > 1 and not all(map(_is_unit, parts)):
+                return parts, line
+    return [], 1
+
+
+def _check_no_spectrum(source: Source, table: Table, names: list[str], line: int) -> None:
+    expected = "accelerations over time"
+    if len(names) > 1 and (
+        _PERIOD_NAME.match(names[0]) or all(map(_SPECTRAL_NAME.match, names[1:]))
+    ):
+        found = f"a spectrum, the columns {names[0]!r}, {names[1]!r}"
+        raise source.refuse(found=found, expected=expected, line=line)
+    if names and any(_TIME_NAME.match(name) or _direction(name) != UNKNOWN for name in names):
+        return
+    for number, text in table.header:
+        if _SPECTRUM.search(text) and not _MATCHED.search(text) and table.values.shape[1] > 1:
+            raise source.refuse(found=f"a spectrum ({shown(text)})", expected=expected, line=number)
+
+
+def has_times(table: Table, names: list[str]) -> bool:
+    """Tell whether the first column holds times.
+
+    Parameters
+    ----------
+    table : Table
+        Columns.
+    names : list of str
+        Of the columns, or none.
+
+    Returns
+    -------
+    bool
+        As its name or its unit says; without names, whether there are two columns, or its
+        numbers rise all along, which no acceleration does.
+    """
+    columns = table.values.shape[1]
+    if columns == 1:
+        return False
+    if names:
+        first = names[0]
+        named = _TIME_NAME.match(first) is not None or first.casefold() in TIME_UNITS
+        timed = any(unit.casefold() in TIME_UNITS for unit in in_brackets(first))
+        directions = all(_direction(name) != UNKNOWN for name in names)
+        return named or timed or (columns == 2 and not directions)
+    return columns == 2 or bool((table.values[1:, 0] > table.values[:-1, 0]).all())
+
+
+def acceleration_columns(
+    source: Source, table: Table, names: list[str], line: int, *, timed: bool
+) -> list[Column]:
+    """List the columns of accelerations; velocities and displacements beside them are left out.
+
+    Parameters
+    ----------
+    source : Source
+        File.
+    table : Table
+        Columns.
+    names : list of str
+        Of the columns, or none.
+    line : int
+        Of the names, from 1.
+    timed : bool
+        Whether the first column holds times.
+
+    Returns
+    -------
+    list of Column
+
+    Raises
+    ------
+    RecordError
+        None of them is an acceleration.
+    """
+    columns = table.values.shape[1]
+    places = range(1 if timed else 0, columns)
+    if not names or len(places) == 1:
+        # of a single one the header as a whole tells the unit
+        return [Column(place, f"column {place + 1}") for place in places]
+    units = _unit_row(table, columns)
+    found: list[Column] = []
+    for place in places:
+        own = [*in_brackets(names[place])[-1:], *units[place : place + 1]]
+        if _is_other(names[place]) or any(map(other_quantity, own)):
+            continue
+        known = next((unit for unit in own if acceleration_unit(unit) is not None), None)
+        plain = _BRACKETED.sub("", names[place]).strip() or names[place]
+        found.append(Column(place, plain, _direction(plain), known))
+    if not found:
+        names_found = ", ".join(names[:6])
+        raise source.refuse(found=f"the columns {names_found}", expected="accelerations", line=line)
+    return found
+
+
+def _unit_row(table: Table, columns: int) -> list[str]:
+    for _, text in reversed(table.header):
+        fields = split_header(text, table.separator)
+        if len(fields) == columns and all(map(_is_unit, fields)):
+            return fields
+    return []
+
+
+def time_scale(source: Source, table: Table, names: list[str]) -> float:
+    """Give the unit of the times in seconds.
+
+    Parameters
+    ----------
+    source : Source
+        File.
+    table : Table
+        Columns.
+    names : list of str
+        Of the columns, or none.
+
+    Returns
+    -------
+    float
+
+    Raises
+    ------
+    RecordError
+        Another unit than seconds and milliseconds.
+    """
+    for name in names[:1]:
+        for unit in in_brackets(name):
+            known = TIME_UNITS.get(unit.casefold())
+            if known is None:
+                line = table.header[-1][0]
+                found = f"the unit {unit!r} of the times"
+                raise source.refuse(
+                    found=found, expected="seconds (s) or milliseconds (ms)", line=line
+                )
+            return known
+        if name.casefold() in TIME_UNITS:
+            return TIME_UNITS[name.casefold()]
+    units = {
+        TIME_UNITS[unit.casefold()]
+        for _, text in table.header
+        for unit in in_brackets(text)
+        if unit.casefold() in TIME_UNITS
+    }
+    return units.pop() if len(units) == 1 else 1.0
+
+
+def unit_of_header(source: Source, table: Table, *, asked: bool) -> tuple[str | None, int | None]:
+    """Find the unit of the accelerations in the header.
+
+    Parameters
+    ----------
+    source : Source
+        File.
+    table : Table
+        Columns.
+    asked : bool
+        Whether the caller gave a unit, so that two in the header do no harm.
+
+    Returns
+    -------
+    tuple of (str or None) and (int or None)
+        Its name and line, from 1.
+
+    Raises
+    ------
+    RecordError
+        The header names two.
+    """
+    unknown: tuple[str, int] | None = None
+    other: tuple[str, int] | None = None
+    known: list[tuple[str, int, float]] = []
+    for line, name, certain in _unit_candidates(table):
+        unit = acceleration_unit(name)
+        if unit is not None:
+            known.append((name, line, unit.factor))
+        elif certain and name.casefold() not in TIME_UNITS:
+            if other_quantity(name) is not None:
+                other = other or (name, line)
+            else:
+                unknown = unknown or (name, line)
+    if known:
+        name, line, factor = known[0]
+        differing = [entry for entry in known if not math.isclose(entry[2], factor)]
+        if differing and not asked:
+            found = f"the units {name!r} and {differing[0][0]!r} (line {differing[0][1]})"
+            raise source.refuse(found=found, expected="one unit, or the argument unit", line=line)
+        return name, line
+    return other or unknown or (None, None)
+
+
+def stated_step(header: list[tuple[int, str]]) -> tuple[float, int] | None:
+    """Find a time step, or a sampling rate, that the header states, and its line.
+
+    Parameters
+    ----------
+    header : list of tuple of int and str
+        Lines from 1, and their text.
+
+    Returns
+    -------
+    tuple of float [s] and int, or None
+    """
+    for line, text in header:
+        step, rate = _STEP.search(text), _RATE.search(text)
+        if step is not None:
+            before, printed, behind = step.groups()
+            scale = TIME_UNITS.get((before or behind or "s").casefold(), 1.0)
+            value = float(printed.upper().replace("D", "E"))
+            return float(f"{value * scale:.15g}"), line
+        if rate is not None:
+            value = float(rate.group(1).upper().replace("D", "E"))
+            if 0.0 < value < math.inf:
+                return 1.0 / value, line
+    return None
+
+
+def stated_peak(header: list[tuple[int, str]]) -> tuple[str, str, int] | None:
+    """Find a peak that the header states: the number as printed, its unit, its line.
+
+    Parameters
+    ----------
+    header : list of tuple of int and str
+        Lines from 1, and their text.
+
+    Returns
+    -------
+    tuple of str, str and int, or None
+    """
+    for line, text in header:
+        match = _PEAK.search(text)
+        if match is not None:
+            before, printed, behind = match.groups()
+            unit = (before or behind or "").strip()
+            if unit:
+                return printed, unit, line
+    return None
+
+
+def in_brackets(text: str) -> list[str]:
+    """Give what stands in brackets."""
+    return [name.strip() for name in _BRACKETED.findall(text)]
+
+
+def _unit_candidates(table: Table) -> Iterator[tuple[int, str, bool]]:
+    # nearest the numbers first; in brackets, after the word "unit", or as a field
+    # of its own; "certain" is a name that must be a unit
+    columns = table.values.shape[1]
+    for position, (line, text) in enumerate(reversed(table.header)):
+        fields = split_header(text, table.separator)
+        is_unit = [_is_unit(field) for field in fields]
+        for field, unit in zip(fields, is_unit, strict=True):
+            if unit and ("/" in field or (all(is_unit) and len(fields) == columns)):
+                yield line, field, True
+        for name in _STATED.findall(text):
+            yield line, name.rstrip("."), True
+        bracketed = in_brackets(text)
+        for name in bracketed:
+            yield line, name, position == 0 and name == bracketed[-1]
+
+
+def _is_other(name: str) -> bool:
+    return _OTHER_KIND.search(name) is not None and _ACCELERATION_NAME.match(name) is None
+
+
+def _direction(name: str) -> Orientation:
+    plain = _BRACKETED.sub("", name).strip()
+    whole = orientation_of(plain)
+    if whole != UNKNOWN:
+        return whole
+    words = _WORDS.findall(plain)
+    return orientation_of(words[-1]) if len(words) > 1 else UNKNOWN
+
+
+def _is_unit(name: str) -> bool:
+    known = acceleration_unit(name) is not None or other_quantity(name) is not None
+    return known or name.casefold() in TIME_UNITS
