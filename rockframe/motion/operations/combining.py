@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import math
+import warnings
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final, cast
 
 import numpy as np
 
-from rockframe.errors import ComponentError
+from rockframe.errors import ComponentError, RecordWarning
 from rockframe.motion.operations.following import following, other_motion
 from rockframe.motion.processing.sampling import padded
+from rockframe.motion.readers.components import SENSE
+from rockframe.motion.readers.orientation import DOWNWARDS, UPWARDS
+from rockframe.motion.readers.orientation import VERTICAL as EITHER
 from rockframe.signals import Motion, Signal
 from rockframe.signals.signal import COEFFICIENTS, VERTICAL
 from rockframe.units import ANGLE, to_si
@@ -30,16 +34,24 @@ def with_vertical(motion: Made, other: MotionValue) -> Made:
     Parameters
     ----------
     other : GroundMotion
-        Of the same time step; the shorter of the two is padded with zeros.
+        Of the same time step; the shorter of the two is padded with zeros. One that its
+        file calls positive downwards (``metadata["positive"]``, as of a component ``DWN``)
+        is turned over.
 
     Returns
     -------
     GroundMotion
+        Its vertical acceleration is positive upwards.
 
     Raises
     ------
     ComponentError
         Not a motion, or another time step.
+
+    Warns
+    -----
+    RecordWarning
+        The file of `other` does not say whether it is positive upwards or downwards.
     """
     owner, si = f"{type(motion).__name__}.with_vertical", motion.si
     theirs = other_motion(other, si, owner).si
@@ -47,11 +59,24 @@ def with_vertical(motion: Made, other: MotionValue) -> Made:
     upwards = replace(padded(theirs.horizontal, count), time_step=si.time_step, name=VERTICAL)
     verb = "vertical component" if si.vertical is None else "vertical component replaced:"
     steps = [f"{verb} {other.name} (sha256 {other.sha256[:12]})"]
+    sense = other.metadata.get(SENSE)
+    if sense == DOWNWARDS:
+        upwards = _turned_over(upwards)
+        named = other.metadata.get("component", other.name)
+        steps.append(f"component {named} turned over: positive upwards")
+    elif sense == EITHER:
+        words = (
+            f"{owner}: the file of {other.name} does not say whether it is positive upwards or "
+            "downwards; upwards is assumed"
+        )
+        warnings.warn(words, RecordWarning, stacklevel=2)
     for label, one in (("horizontal", motion), ("vertical", other)):
         if len(one) < count:
             steps.append(f"{label} component padded with {count - len(one)} zeros")
     result = Motion(padded(si.horizontal, count), upwards)
     about = {f"vertical_{key}": value for key, value in other.metadata.items()}
+    if sense is not None:
+        about[f"vertical_{SENSE}"] = UPWARDS
     known = None if other.recipe is None else dict(other.recipe)
     operation = None if known is None else {"with_vertical": {"other": known}}
     return following(motion, result, *steps, operation=operation, metadata=about)
@@ -132,6 +157,11 @@ def rotated(
     )
     metadata["component"] += f" rotated by {math.degrees(turn):.6g} degrees"
     return following(motion, result, *steps, operation=operation, metadata=metadata)
+
+
+def _turned_over(signal: Signal) -> Signal:
+    pieces = None if signal.polynomials is None else -signal.polynomials
+    return replace(signal, samples=-signal.samples, polynomials=pieces)
 
 
 def _turn_to(motion: MotionValue, target: float, other: MotionValue, owner: str) -> float:

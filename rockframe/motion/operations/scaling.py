@@ -9,6 +9,8 @@ import numpy as np
 
 from rockframe.errors import ComponentError
 from rockframe.motion.operations.following import following
+from rockframe.motion.readers.components import SENSE
+from rockframe.motion.readers.orientation import DOWNWARDS, UPWARDS
 from rockframe.signals.path import ground_path
 from rockframe.signals.polynomials import greatest
 from rockframe.signals.spectra import (
@@ -24,6 +26,7 @@ if TYPE_CHECKING:
     from rockframe.motion.value import Made
     from rockframe.signals import Signal
 
+_OPPOSITE: Final = {UPWARDS: DOWNWARDS, DOWNWARDS: UPWARDS}
 _USUAL_DAMPING: Final = 0.05
 
 
@@ -109,7 +112,12 @@ def _times(motion: Made, ratio: float, step: str, given: dict[str, float | str])
             pieces = None if signal.polynomials is None else signal.polynomials * ratio
             return replace(signal, samples=signal.samples * ratio, polynomials=pieces)
 
-    return following(motion, motion.si.each(times), step, operation={"scaled": given})
+    about: dict[str, str] = {}
+    sense = motion.metadata.get(SENSE)
+    if ratio < 0.0 and sense in _OPPOSITE:  # mirrored: what was positive upwards is so downwards
+        about[SENSE] = _OPPOSITE[str(sense)]
+    operation = {"scaled": given}
+    return following(motion, motion.si.each(times), step, operation=operation, metadata=about)
 
 
 class _Target(NamedTuple):

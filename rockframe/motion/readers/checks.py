@@ -18,10 +18,22 @@ TIME_STEP_LIMITS: Final = (1e-6, 10.0)
 """Time steps outside are refused [s]."""
 USUAL_TIME_STEPS: Final = (1e-4, 0.1)
 """Time steps outside are warned about [s]."""
-USUAL_PEAKS: Final = (1e-4, 5.0)
-"""Peaks outside are warned about [g]."""
+USUAL_PEAKS: Final = (1e-4, 1.5)
+"""Peaks outside are warned about [g].
+
+Few records exceed 1.5 g, and a file in m/s^2 that passes for one in g does from 0.15 g on.
+"""
+USUAL_OFFSET: Final = 1e-3
+"""Offsets below are not looked at [g]."""
+OFFSET_SHARE: Final = 0.15
+"""Offsets above are warned about, as a share of the largest distance from them."""
+
+MISSING: Final = (999.0, 9999.0, 99999.0, 999999.0, 12345.0, 32768.0, 1.7e38)
+"""What agencies write, with either sign, where a sample is missing."""
 
 _ROUNDING: Final = 1e-6
+_FEWEST_FOR_OFFSET: Final = 50
+_ENDS: Final = 10
 
 
 def choose_unit(
@@ -111,6 +123,43 @@ def check_asked_time_step(
         )
 
 
+def check_no_marks(source: Source, samples: Array) -> None:
+    """Refuse marks of missing samples that stand among the samples.
+
+    Parameters
+    ----------
+    source : Source
+        File.
+    samples : ndarray, shape (n,)
+        As they stand in the file.
+
+    Raises
+    ------
+    RecordError
+        One of `MISSING` stands where the samples on both of its sides are less than half of it.
+    """
+    size = np.abs(samples)
+    marked = np.isin(size, MISSING)
+    if not marked.any():
+        return
+    places = np.flatnonzero(marked)
+    others = np.flatnonzero(~marked)
+    if others.size:
+        after = np.searchsorted(others, places)
+        beside = np.maximum(
+            size[others[np.maximum(after - 1, 0)]], size[others[np.minimum(after, others.size - 1)]]
+        )
+        places = places[beside < 0.5 * size[places]]
+    if places.size:
+        first = int(places[0])
+        found = (
+            f"{samples[first]:.9g} as sample {first + 1}, alone among much smaller ones, "
+            f"{places.size} times such a value"
+        )
+        expected = "samples without marks of missing ones; fill them first, see from_times"
+        raise source.refuse(found=found, expected=expected)
+
+
 def plausibility(source: Source, time_step: float, samples: Array, unit: RecordUnit) -> list[str]:
     """Say what looks like a wrong unit or a wrong time step.
 
@@ -139,9 +188,30 @@ def plausibility(source: Source, time_step: float, samples: Array, unit: RecordU
             f"{source.path}: the peak acceleration is {peak:.4g} g (usual: {low:g} g to "
             f"{high:g} g); is the unit {unit.spelling} right?"
         )
+    offset = _offset(samples)
+    with np.errstate(over="ignore"):
+        in_g = offset * unit.factor / STANDARD_GRAVITY
+    if abs(in_g) > USUAL_OFFSET:
+        warnings.append(
+            f"{source.path}: the samples lie around an offset of {in_g:.4g} g, from the first to "
+            "the last; baseline_corrected(order=0) subtracts their mean"
+        )
     short, long = USUAL_TIME_STEPS
     if not short <= time_step <= long:
         warnings.append(
             f"{source.path}: the time step is {time_step:.4g} s (usual: {short:g} s to {long:g} s)"
         )
     return warnings
+
+
+def _offset(samples: Array) -> float:
+    # the ground comes to rest: the mean of its acceleration is next to nothing, and so is that
+    # of what stands before and after the strong motion
+    if samples.size < _FEWEST_FOR_OFFSET:
+        return 0.0
+    part = max(samples.size // _ENDS, _FEWEST_FOR_OFFSET)
+    with np.errstate(over="ignore", invalid="ignore"):
+        means = [float(np.mean(piece)) for piece in (samples, samples[:part], samples[-part:])]
+        swing = float(np.max(np.abs(samples - means[0])))
+    one_sided = min(means) > 0.0 or max(means) < 0.0
+    return means[0] if one_sided and min(map(abs, means)) > OFFSET_SHARE * swing else 0.0

@@ -25,6 +25,9 @@ if TYPE_CHECKING:
     from rockframe.errors import RecordError
     from rockframe.motion.readers.source import Metadata, Record, Request, Source
 
+SENSE: Final = "positive"
+"""Key of the metadata of a vertical component: which way it is positive."""
+
 _CHANNEL: Final = re.compile(r"(?:channel|chan|ch)?\.?\s*#?(\d{1,4})", re.ASCII)
 _ROUNDING: Final = 1e-6
 _LISTED: Final = 40
@@ -187,9 +190,12 @@ def _alone(
         )
     # asked for as upwards, not by the name that the file gives it
     by_direction = asked is not None and not _has_name(asked, chosen)
+    sense = chosen.orientation.vertical
     if by_direction and orientation_of(asked or "").vertical == UPWARDS:
         record, step, warning = _upwards(source, record, chosen)
-        history, warnings = (*history, *step), (*warnings, *warning)
+        history, warnings, sense = (*history, *step), (*warnings, *warning), UPWARDS
+    if sense is not None:
+        metadata[SENSE] = sense
     return replace(record, metadata=metadata, history=history, warnings=warnings)
 
 

@@ -14,12 +14,12 @@ from __future__ import annotations
 
 import importlib
 import io
-import math
 import re
+import struct
+import sys
 import warnings
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, Final
-
-import numpy as np
 
 from rockframe.errors import RecordError
 from rockframe.motion.readers.checks import (
@@ -27,18 +27,19 @@ from rockframe.motion.readers.checks import (
     check_time_step,
 )
 from rockframe.motion.readers.components import Component, choose_component
+from rockframe.motion.readers.counts import record_of_counts
 from rockframe.motion.readers.orientation import UNKNOWN, Orientation, orientation_of
 from rockframe.motion.readers.source import (
-    MAXIMUM_SAMPLES,
     Metadata,
     Record,
     Request,
     Source,
 )
 from rockframe.motion.readers.station_xml import Response, Responses
+from rockframe.motion.readers.traces import by_channel, codes_of, joined
 
 if TYPE_CHECKING:
-    from rockframe.signals.arrays import Array
+    from collections.abc import Generator
 
 NAME: Final = "miniseed"
 TITLE: Final = "miniSEED file (through ObsPy)"
@@ -48,6 +49,9 @@ BINARY: Final = True
 # sequence number, kind, then the codes of station, location, channel and network
 _RECORD: Final = re.compile(rb"[0-9 ]{6}[DRQM][ \x00]([A-Z0-9 ]{12})")
 _SHORTEST_RECORD: Final = 128
+_HEADER: Final = 48
+_FIELDS: Final = "HHBBBxHHhh"  # start, number of samples, factor and multiplier of the rate
+_APART: Final = 2.0  # samples; the start may be rounded, and corrected in another field
 _VERSION_3: Final = b"MS\x03"
 _INSTALL: Final = "ObsPy to read miniSEED; install it with: pip install 'rockframe[records]'"
 _EXPECTED: Final = "miniSEED records that are complete"
@@ -119,21 +123,69 @@ def _obspy(source: Source) -> Any:
         raise source.refuse(found=found, expected=_INSTALL) from problem
 
 
-def _check_count(source: Source) -> None:
-    # ObsPy takes long over many channels; records begin at multiples of the shortest one
-    places = range(0, len(source.data), _SHORTEST_RECORD)
-    names = {match.group(1) for at in places if (match := _RECORD.match(source.data, at))}
-    if len(names) > _MOST_CHANNELS:
-        expected = f"at most {_MOST_CHANNELS} in a file"
-        raise source.refuse(found=f"{len(names)} channels", expected=expected)
+def _check_pieces(source: Source) -> None:
+    """Refuse more channels or pieces than ObsPy joins in a second, from the headers alone."""
+    ends: dict[bytes, float] = {}
+    pieces = 0
+    data = source.data
+    # records begin at multiples of the shortest one
+    for at in range(0, len(data) - _HEADER, _SHORTEST_RECORD):
+        match = _RECORD.match(data, at)
+        if match is None:
+            continue
+        name = match.group(1)
+        order = ">" if 1900 <= int.from_bytes(data[at + 20 : at + 22], "big") <= 2100 else "<"
+        year, day, hour, minute, second, tenths, count, factor, multiplier = struct.unpack_from(
+            order + _FIELDS, data, at + 20
+        )
+        start = ((year * 366.0 + day) * 24.0 + hour) * 3600.0 + minute * 60.0 + second
+        start += 1e-4 * tenths
+        rate = _rate(factor, multiplier)
+        # a day that begins a year differs by more than a piece is long; it is one more piece
+        pieces += name not in ends or abs(start - ends[name]) * rate > _APART
+        ends[name] = start + (count / rate if rate else 0.0)
+        if len(ends) > _MOST_CHANNELS:
+            expected = "a file of one event or station"
+            raise source.refuse(found=f"more than {_MOST_CHANNELS} channels", expected=expected)
+        if pieces > _MOST_TRACES:
+            expected = "channels without gaps and overlaps"
+            raise source.refuse(found=f"more than {_MOST_TRACES} pieces", expected=expected)
+
+
+def _rate(factor: int, multiplier: int) -> float:
+    """Give samples per second; negative numbers stand for periods and divisors."""
+    over = float(factor) if factor > 0 else (-1.0 / factor if factor else 0.0)
+    return over * (
+        float(multiplier) if multiplier > 0 else -1.0 / multiplier if multiplier else 1.0
+    )
+
+
+@contextmanager
+def _quietly() -> Generator[None]:
+    """Keep what ObsPy says of damaged files from the terminal.
+
+    It raises errors in callbacks of the C library under it, which Python cannot pass on
+    and prints; what is wrong shows in what comes back.
+    """
+    hook = sys.unraisablehook
+    sys.unraisablehook = _unsaid
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            yield
+    finally:
+        sys.unraisablehook = hook
+
+
+def _unsaid(problem: object) -> None:
+    """Take note of nothing."""
 
 
 def _channels(source: Source) -> dict[str, list[Any]]:
     obspy = _obspy(source)
-    _check_count(source)
+    _check_pieces(source)
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
+        with _quietly():
             # the headers first: they may announce more than fits in memory
             announced = obspy.read(io.BytesIO(source.data), format="MSEED", headonly=True)
             total = sum(int(trace.stats.npts) for trace in announced)
@@ -148,9 +200,7 @@ def _channels(source: Source) -> dict[str, list[Any]]:
         # ObsPy and the library under it fail on damaged files in many ways
         found = f"miniSEED that cannot be read ({type(problem).__name__})"
         raise source.refuse(found=found, expected=_EXPECTED) from problem
-    channels: dict[str, list[Any]] = {}
-    for trace in stream:
-        channels.setdefault(str(trace.id), []).append(trace)
+    channels = by_channel(stream)
     if not channels:
         raise source.refuse(found="no data records", expected=_EXPECTED)
     return channels
@@ -165,12 +215,12 @@ def _component(
     *,
     several: bool,
 ) -> Component:
-    network, station, location, channel = (*name.split("."), "", "", "", "")[:4]
+    network, station, location, channel = codes_of(name)
     first = min(traces, key=lambda trace: trace.stats.starttime)
     response = problem = None
     if responses is not None:
         try:
-            response = responses.of(name, first.stats.starttime)
+            response = responses.of(name, first.stats.starttime.datetime)
         except RecordError as refusal:  # of no matter if another channel is read
             problem = refusal
     direction = UNKNOWN if response is None else response.orientation
@@ -193,66 +243,9 @@ def _samples(
     response: Response | None,
     metadata: Metadata,
 ) -> Record:
-    counts, time_step, start = _joined(source, traces)
+    counts, time_step, start = joined(source, traces)
     check_time_step(source, time_step, None)
     check_asked_time_step(source, request, time_step, None)
     about: Metadata = {key: value for key, value in metadata.items() if value}
     about["record_time"] = start
-    if request.unit is not None and request.unit_name is not None:
-        about["unit_as_read"] = request.unit_name
-        history = (f"the samples taken as accelerations in {request.unit_name}, as asked for",)
-        return Record(time_step, counts, request.unit, about, history)
-    if response is None:
-        found = "counts, and no response of the instrument"
-        expected = (
-            "StationXML beside the file or as the argument response, or the argument unit if "
-            "the samples are accelerations"
-        )
-        raise source.refuse(found=found, expected=expected)
-    offset = float(math.fsum(counts) / counts.size)
-    about |= {
-        "unit_as_read": "counts",
-        "sensitivity": response.sensitivity,
-        "offset_removed": offset,
-        "response_file": response.file,
-        "response_sha256": response.sha256,
-    }
-    history = (
-        f"counts less their mean of {offset:.9g}, divided by the sensitivity of "
-        f"{response.sensitivity:.9g} counts per {response.unit.spelling} ({response.file}); "
-        "the response of the instrument is taken as flat",
-    )
-    return Record(
-        time_step, (counts - offset) / response.sensitivity, response.unit, about, history
-    )
-
-
-def _joined(source: Source, traces: list[Any]) -> tuple[Array, float, str]:
-    traces = sorted(traces, key=lambda trace: trace.stats.starttime)
-    first = traces[0].stats
-    time_step = float(f"{float(first.delta):.12g}")
-    parts: list[Array] = []
-    count = 0
-    for trace in traces:
-        rate = float(trace.stats.sampling_rate)
-        if not math.isclose(rate, float(first.sampling_rate), rel_tol=1e-6):
-            found = f"sampling rates of {float(first.sampling_rate):g} Hz and {rate:g} Hz"
-            raise source.refuse(found=found, expected="one sampling rate in a channel")
-        shift = float(trace.stats.starttime - first.starttime) - count * time_step
-        if abs(shift) > 0.5 * time_step:
-            what = "gap" if shift > 0.0 else "overlap"
-            found = f"a {what} of {abs(shift):.6g} s before {trace.stats.starttime}"
-            raise source.refuse(found=found, expected="a channel without gaps and overlaps")
-        data = np.asarray(trace.data)
-        if data.ndim != 1 or data.dtype.kind not in "iuf":
-            found = f"samples of the kind {data.dtype}"
-            raise source.refuse(found=found, expected="whole or real numbers")
-        parts.append(data.astype(np.float64))
-        count += data.size
-    if not 2 <= count <= MAXIMUM_SAMPLES:
-        expected = f"2 to {MAXIMUM_SAMPLES} samples in a channel"
-        raise source.refuse(found=f"{count} samples", expected=expected)
-    counts = np.concatenate(parts)
-    if not np.isfinite(counts).all():
-        raise source.refuse(found="samples that are not finite", expected="finite samples")
-    return counts, time_step, str(first.starttime)
+    return record_of_counts(source, request, counts, time_step, about, response)

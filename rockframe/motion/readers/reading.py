@@ -9,9 +9,13 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from rockframe.errors import RockframeError
-from rockframe.motion.readers import miniseed
-from rockframe.motion.readers.checks import check_time_step, plausibility
-from rockframe.motion.readers.registry import added_failed, by_name, recognised
+from rockframe.motion.readers.checks import check_no_marks, check_time_step, plausibility
+from rockframe.motion.readers.registry import (
+    WITH_RESPONSE,
+    added_failed,
+    by_name,
+    recognised,
+)
 from rockframe.motion.readers.source import (
     MAXIMUM_SAMPLES,
     Metadata,
@@ -87,20 +91,16 @@ def read_record(path: PathLike, format_name: str | None, request: Request) -> Re
     chosen = None if format_name is None else by_name(str(format_name))
     source = load(path)
     entry = chosen or recognised(source)
-    if request.response is not None and entry.own and entry.name != miniseed.NAME:
-        expected = f"a {miniseed.TITLE}, which the argument response goes with"
+    if request.response is not None and entry.own and entry.name not in WITH_RESPONSE:
+        kinds = ", ".join(WITH_RESPONSE)
+        expected = f"a file of counts ({kinds}), which the argument response goes with"
         raise source.refuse(found=f"a {entry.title}", expected=expected)
     record = _read(entry, source, request)
     if isinstance(record, StoredMotion):
         return Reading(
             record.si, record.metadata, record.history, name=record.name, recipe=record.recipe
         )
-    check_time_step(source, record.time_step, None)
-    si = Motion.of_samples(
-        record.time_step,
-        _in_si(source, record.samples, record.unit),
-        None if record.vertical is None else _in_si(source, record.vertical, record.unit),
-    )
+    si, doubts = to_motion(source, record)
     base = base_name(source.path)
     metadata = {
         **record.metadata,
@@ -112,8 +112,41 @@ def read_record(path: PathLike, format_name: str | None, request: Request) -> Re
         f"read {base} ({entry.title}, unit {record.metadata.get('unit_as_read', '')}): "
         f"{record.samples.size} samples at {record.time_step!r} s"
     )
-    usual = plausibility(source, record.time_step, record.samples, record.unit)
-    return Reading(si, metadata, (step, *record.history), (*record.warnings, *usual))
+    said = tuple(dict.fromkeys((*record.warnings, *doubts)))
+    return Reading(si, metadata, (step, *record.history), said)
+
+
+def to_motion(source: Source, record: Record) -> tuple[Motion, list[str]]:
+    """Check a record and convert it to SI units.
+
+    Parameters
+    ----------
+    source : Source
+        File, for messages.
+    record : Record
+        As read.
+
+    Returns
+    -------
+    tuple of Motion and list of str
+        And what looks doubtful about it.
+
+    Raises
+    ------
+    RecordError
+        A time step that no record has, marks of missing samples, or numbers that overflow.
+    """
+    check_time_step(source, record.time_step, None)
+    held = [part for part in (record.samples, record.vertical) if part is not None]
+    for samples in held:
+        check_no_marks(source, samples)
+    doubts = [plausibility(source, record.time_step, samples, record.unit) for samples in held]
+    si = Motion.of_samples(
+        record.time_step,
+        _in_si(source, record.samples, record.unit),
+        None if record.vertical is None else _in_si(source, record.vertical, record.unit),
+    )
+    return si, [words for one in doubts for words in one]
 
 
 def _read(entry: Format, source: Source, request: Request) -> Record | StoredMotion:

@@ -9,8 +9,12 @@ from typing import TYPE_CHECKING, Any, Final, Protocol, cast
 
 from rockframe.errors import ComponentError, RecordError
 from rockframe.motion.readers import (
+    afad,
+    asdf,
+    bhrc,
     cosmos,
     csmip,
+    csmnc,
     cwa,
     esm,
     geonet,
@@ -18,8 +22,11 @@ from rockframe.motion.readers import (
     miniseed,
     netcdf,
     peer_at2,
+    resorce,
+    sac,
     smc,
     text,
+    unam,
 )
 from rockframe.motion.readers.source import Record, Request, Source, StoredMotion, shown
 
@@ -103,9 +110,15 @@ def _own(module: Any) -> Format:
 # asked in this order; text takes every column of numbers, so it comes last
 _OWN: Final = tuple(
     _own(module)
-    for module in (peer_at2, cosmos, csmip, smc, esm, knet, geonet, cwa, netcdf, miniseed)
+    for module in (
+        *(peer_at2, cosmos, csmip, smc, esm, knet, geonet, cwa),
+        *(afad, bhrc, csmnc, resorce, unam),
+        *(asdf, netcdf, miniseed, sac),
+    )
 )
 _LAST: Final = _own(text)
+WITH_RESPONSE: Final = (miniseed.NAME, sac.NAME, asdf.NAME)
+"""Formats that may hold counts, which the response of the instrument makes accelerations."""
 _registered: list[Format] = []
 
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 import importlib
 import math
 from dataclasses import dataclass
+from datetime import UTC, datetime
 from functools import cached_property
 from itertools import islice
 from pathlib import Path
@@ -37,6 +38,7 @@ _MOST_EPOCHS: Final = 1_000
 _LONGEST: Final = 60
 _ROOT: Final = "FDSNStationXML"
 _SENSITIVITY: Final = "{*}Response/{*}InstrumentSensitivity"
+_UNSAID: Final = ("", "none")
 _LEVEL: Final = 5.0
 _UPRIGHT: Final = 85.0
 
@@ -92,15 +94,15 @@ class Responses:
         self._left = _LARGEST  # bytes, of all files together
         self._read: dict[Path, _Inventory | None] = {}
 
-    def of(self, name: str, time: Any) -> Response | None:
+    def of(self, name: str, time: datetime) -> Response | None:
         """Find the response of a channel.
 
         Parameters
         ----------
         name : str
             ``NET.STA.LOC.CHA``.
-        time : obspy.UTCDateTime
-            Start of the record.
+        time : datetime
+            Start of the record, in coordinated universal time, without a zone.
 
         Returns
         -------
@@ -161,10 +163,16 @@ class _Inventory:
     file: Source
     channels: Mapping[str, list[Any]]
 
-    def response(self, name: str, time: Any) -> Response | None:
+    def response(self, name: str, time: datetime) -> Response | None:
         epochs = self.channels.get(name, [])[:_MOST_EPOCHS]
         channel = next((epoch for epoch in epochs if _in_use(epoch, time)), None)
         return None if channel is None else _response(self.file, channel, name)
+
+
+def response_in(file: Source, name: str, time: datetime) -> Response | None:
+    """Find the response of a channel in one StationXML, as :meth:`Responses.of` does."""
+    inventory = _inventory(file) if len(file.data) <= _LARGEST else None
+    return None if inventory is None else inventory.response(name, time)
 
 
 def _given(response: str) -> _Inventory:
@@ -180,7 +188,12 @@ def _given(response: str) -> _Inventory:
 
 
 def _inventory(file: Source) -> _Inventory | None:
-    etree = importlib.import_module("lxml.etree")  # comes with ObsPy
+    try:
+        etree = importlib.import_module("lxml.etree")
+    except ImportError as problem:
+        found = "StationXML, and no lxml in this Python"
+        expected = "lxml to read it; install it with: pip install 'rockframe[records]'"
+        raise file.refuse(found=found, expected=expected) from problem
     # entities stay as they are: nothing is fetched, and nothing grows
     parser = etree.XMLParser(resolve_entities=False, no_network=True)
     try:
@@ -212,19 +225,26 @@ def _response(file: Source, channel: Any, name: str) -> Response | None:
         raise file.refuse(found=found, expected=expected, line=line)
     output = _text(sensitivity, "{*}OutputUnits/{*}Name").casefold()
     value = _number(sensitivity, "{*}Value")
-    if "count" not in output or value is None or math.isclose(value, 0.0):
+    # some archives leave the unit of the output away, or write None: an overall sensitivity
+    # is that of the digital output all the same
+    counts = "count" in output or output in _UNSAID
+    if not counts or value is None or math.isclose(value, 0.0):
         found = f"{name} with a sensitivity of {_text(sensitivity, '{*}Value')} {output}"
         raise file.refuse(found=found, expected="counts per acceleration, not zero", line=line)
     return Response(value, unit, _orientation(channel), base_name(file.path), file.sha256)
 
 
-def _in_use(channel: Any, time: Any) -> bool:
+def _in_use(channel: Any, time: datetime) -> bool:
     start, end = channel.get("startDate"), channel.get("endDate")
-    moment = type(time)
     try:
-        return (start is None or moment(start) <= time) and (end is None or time <= moment(end))
-    except (TypeError, ValueError):  # no dates
+        return (start is None or _moment(start) <= time) and (end is None or time <= _moment(end))
+    except (ValueError, OverflowError):  # no dates
         return False
+
+
+def _moment(text: str) -> datetime:
+    moment = datetime.fromisoformat(text.strip()[:_LONGEST])
+    return moment if moment.tzinfo is None else moment.astimezone(UTC).replace(tzinfo=None)
 
 
 def _orientation(channel: Any) -> Orientation:
