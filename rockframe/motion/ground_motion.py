@@ -7,8 +7,22 @@ from typing import TYPE_CHECKING
 
 from rockframe.errors import ComponentError, shown
 from rockframe.motion import dataset, description
-from rockframe.motion.constructors import cycloidal, records, synthetic, wavelets
-from rockframe.motion.operations import combining, correcting, scaling, storeys, timing
+from rockframe.motion.constructors import (
+    cycloidal,
+    records,
+    synthetic,
+    tables,
+    traces,
+    wavelets,
+)
+from rockframe.motion.operations import (
+    combining,
+    correcting,
+    scaling,
+    storeys,
+    timing,
+    writing,
+)
 from rockframe.motion.value import MotionValue
 from rockframe.signals import Motion
 
@@ -16,8 +30,9 @@ from rockframe.signals import Motion
 class GroundMotion(MotionValue):
     """Acceleration of the ground over time; immutable.
 
-    Build one with :meth:`read`, :meth:`from_arrays`, :meth:`from_dataset`, or as
-    an analytic pulse: :meth:`sine_pulse`, :meth:`type_a_pulse`,
+    Build one with :meth:`read`, :meth:`from_arrays`, :meth:`from_times`,
+    :meth:`from_frame`, :meth:`from_trace`, :meth:`from_dataset`, or as an
+    analytic pulse: :meth:`sine_pulse`, :meth:`type_a_pulse`,
     :meth:`ricker_wavelet` and others, or as a synthetic earthquake with
     :meth:`stochastic`. Every processing step returns a new motion
     and adds a sentence to its `history`.
@@ -77,6 +92,9 @@ class GroundMotion(MotionValue):
 
     read = classmethod(records.read)
     from_arrays = classmethod(records.from_arrays)
+    from_times = classmethod(tables.from_times)
+    from_frame = classmethod(tables.from_frame)
+    from_trace = classmethod(traces.from_trace)
 
     sine_pulse = classmethod(cycloidal.sine_pulse)
     cosine_pulse = classmethod(cycloidal.cosine_pulse)
@@ -92,6 +110,7 @@ class GroundMotion(MotionValue):
 
     to_dataset = dataset.to_dataset
     from_dataset = classmethod(dataset.from_dataset)
+    to_at2 = writing.to_at2
     to_dict = description.to_dict
     from_dict = classmethod(description.from_dict)
 

@@ -10,7 +10,7 @@ import xarray as xr
 
 from rockframe.errors import ComponentError, UnitsError, shown
 from rockframe.motion.unit_names import RecordUnit, acceleration_unit
-from rockframe.units import ACCELERATION, Measure, to_si
+from rockframe.units import ACCELERATION, TIME, Measure, to_si
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -27,6 +27,7 @@ QuantityLike: TypeAlias = "str | Quantity"
 RatioLike: TypeAlias = "float | str | Quantity"
 ArrayLike: TypeAlias = "Quantity | xr.DataArray | tuple[Sequence[float] | npt.NDArray[Any], str]"
 
+_TIME_AXES: Final = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
 _EXAMPLE: Final = "(values, 'm/s^2')"
 _TRY_UNIT: Final = Measure("an acceleration", ACCELERATION.unit, "m/s^2")
 
@@ -145,6 +146,65 @@ def argument_unit(unit: object, *, owner: str) -> RecordUnit:
     raise UnitsError(msg) from cause
 
 
+def times_to_si(value: object, *, owner: str, name: str) -> Array:
+    """Convert an array argument to times in seconds, or refuse it.
+
+    Parameters
+    ----------
+    value : Quantity, (sequence, unit), DataArray with a ``units`` attribute, or dates
+        What the user gave; dates and spans of time (NumPy, pandas) need no unit.
+    owner, name : str
+        Function and argument, for the message.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [s], of dates from the first.
+
+    Raises
+    ------
+    UnitsError
+        No unit, an unknown unit, or a unit of another kind.
+    ComponentError
+        Not one-dimensional, not numbers, or not rising.
+    """
+    values: object = value
+    factor = 1.0
+    dates = getattr(value, "dtype", None)
+    if getattr(dates, "kind", "") in {"m", "M"}:
+        found = seconds_of(getattr(value, "values", value), "s")
+        if found is None:
+            msg = f"{owner}: {name} needs two or more dates, and none missing"
+            raise ComponentError(msg)
+        values = found
+    elif _is_data_array(value):
+        array = cast("xr.DataArray", value)
+        factor = to_si(f"1 {array.attrs.get('units', '')}", TIME, owner=owner, name=name)
+        values = array.values
+    elif _is_quantity(value):
+        given = cast("Any", value)
+        factor = to_si(type(given)(1.0, given.units), TIME, owner=owner, name=name)
+        values = given.magnitude
+    elif (
+        isinstance(value, tuple)
+        and len(pair := cast("tuple[object, ...]", value)) == 2
+        and isinstance(pair[1], str)
+    ):
+        factor = to_si(f"1 {pair[1]}", TIME, owner=owner, name=name)
+        values = pair[0]
+    else:
+        msg = (
+            f"{owner}: {name} needs an array of times with a unit such as {TIME.unit}, got "
+            f"{shown(value)}; write for example {name}=(values, 's')"
+        )
+        raise UnitsError(msg)
+    times = _scaled(values, factor, owner, name)
+    if times.size < 2 or not np.isfinite(times).all() or not (np.diff(times) > 0.0).all():
+        msg = f"{owner}: {name} needs two or more finite times that rise from each to the next"
+        raise ComponentError(msg)
+    return times
+
+
 def _unit_factor(unit: str, owner: str, name: str, *, udunits: bool = False) -> float:
     known = acceleration_unit(unit)
     if udunits and known is not None and known.spelling.endswith("/s^2"):
@@ -188,8 +248,8 @@ def _is_data_array(value: object) -> bool:
     return isinstance(value, xr.DataArray)
 
 
-def declared_step(value: object) -> float | None:
-    """Give the mean step of a DataArray's own time axis, if it has one.
+def declared_times(value: object) -> Array | None:
+    """Give the times that an array carries itself: a time axis, or the index of a Series.
 
     Parameters
     ----------
@@ -198,15 +258,48 @@ def declared_step(value: object) -> float | None:
 
     Returns
     -------
-    float or None
-        In the axis's own unit, which is taken for seconds [s].
+    ndarray, shape (n,), or None
+        From the first [s]. None without times: an index that only counts is none, nor is an
+        axis in a unit that is no time.
     """
-    if not _is_data_array(value):
+    if _is_data_array(value):
+        array = cast("Any", value)
+        if array.ndim != 1 or array.dims[0] not in array.coords or array.dims[0] != "time":
+            return None
+        axis = array[array.dims[0]]
+        return seconds_of(axis.values, axis.attrs.get("units", "s"))
+    held = cast("tuple[object, ...]", value)[0] if isinstance(value, tuple) and value else value
+    if _is_quantity(held):
+        held = cast("Any", held).magnitude
+    index = getattr(held, "index", None)
+    if not hasattr(held, "iloc") or index is None:  # no pandas Series
         return None
-    array = cast("Any", value)
-    if array.ndim != 1 or array.dims[0] not in array.coords or array.size < 2:
+    return seconds_of(index.values, "s")
+
+
+def seconds_of(axis: object, unit: object) -> Array | None:
+    """Give an axis in seconds from its first time.
+
+    Parameters
+    ----------
+    axis : array_like, shape (n,)
+        Dates, spans of time, or real numbers.
+    unit : str
+        Of real numbers.
+
+    Returns
+    -------
+    ndarray, shape (n,), or None
+        None if it is no axis of two times or more; whole numbers count, and are no times.
+    """
+    values: npt.NDArray[Any] = np.asarray(axis)
+    if values.ndim != 1 or values.size < 2:
         return None
-    axis = array[array.dims[0]]
-    if axis.dims[0] != "time" or axis.dtype.kind != "f" or axis.attrs.get("units", "s") != "s":
+    if values.dtype.kind in "mM":
+        if np.isnat(values).any():
+            return None
+        return (values - values[0]) / np.timedelta64(1, "s")
+    scale = _TIME_AXES.get(str(unit))
+    if values.dtype.kind != "f" or scale is None:
         return None
-    return float(axis[-1] - axis[0]) / (axis.size - 1)
+    return (values - values[0]).astype(np.float64) * scale

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from rockframe.errors import ComponentError, RecordWarning
-from rockframe.motion.quantities import accelerations_to_si, argument_unit, declared_step
+from rockframe.motion.quantities import accelerations_to_si, argument_unit, declared_times
 from rockframe.motion.readers.components import component_names
 from rockframe.motion.readers.reading import read_record
 from rockframe.motion.readers.source import Request
@@ -21,8 +21,10 @@ if TYPE_CHECKING:
     from rockframe.motion.quantities import ArrayLike, QuantityLike
     from rockframe.motion.readers.source import PathLike
     from rockframe.motion.value import Made
+    from rockframe.signals.arrays import Array
 
 _SAME_STEP: Final = 1e-6
+_UNEVEN: Final = 0.01
 
 
 def read(
@@ -120,7 +122,8 @@ def from_arrays(
     ----------
     acceleration : Quantity, (sequence, unit) or DataArray, shape (n,)
         Horizontal acceleration; a DataArray needs the attribute ``units``
-        [m s^-2].
+        [m s^-2]. The times of a DataArray, or of a pandas Series as the sequence, must
+        be those of `time_step`.
     time_step : str or Quantity
         Time between samples [s].
     vertical : Quantity, (sequence, unit) or DataArray, shape (n,), optional
@@ -137,7 +140,8 @@ def from_arrays(
     UnitsError
         An array or the time step has no unit, or a wrong one.
     ComponentError
-        Not finite, not one-dimensional, or of different lengths.
+        Not finite, not one-dimensional, of different lengths, or with times of its own
+        that are uneven or of another step.
     """
     owner = f"{kind.__name__}.from_arrays"
     step = to_si(time_step, TIME_STEP, owner=owner, name="time_step", condition=POSITIVE)
@@ -152,12 +156,26 @@ def from_arrays(
             )
             raise ComponentError(msg)
     for label, array in (("acceleration", acceleration), ("vertical", vertical)):
-        declared = declared_step(array)
-        if declared is not None and not np.isclose(declared, step, rtol=_SAME_STEP, atol=0.0):
-            msg = (
-                f"{owner}: the time axis of {label} has the step {declared:.9g} s, "
-                f"but time_step is {step:.9g} s"
-            )
-            raise ComponentError(msg)
+        times = declared_times(array)
+        if times is not None:
+            _check_times(times, step, owner=owner, label=label)
     words = f"built from arrays: {across.size} samples at {step!r} s"
     return kind(Motion.of_samples(step, across, upwards), name=name or UNNAMED, history=(words,))
+
+
+def _check_times(times: Array, step: float, *, owner: str, label: str) -> None:
+    """Refuse times of an array that are not those of the time step given with it."""
+    declared = float(times[-1]) / (times.size - 1)
+    if not np.isclose(declared, step, rtol=_SAME_STEP, atol=0.0):
+        msg = (
+            f"{owner}: the time axis of {label} has the step {declared:.9g} s, "
+            f"but time_step is {step:.9g} s"
+        )
+        raise ComponentError(msg)
+    apart = np.abs(times - step * np.arange(times.size))
+    if np.max(apart) > _UNEVEN * step:
+        msg = (
+            f"{owner}: the time axis of {label} is not even (sample {int(apart.argmax())} is "
+            f"{apart.max():.3g} s from its place); use from_times, which resamples"
+        )
+        raise ComponentError(msg)

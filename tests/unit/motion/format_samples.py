@@ -6,11 +6,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from unit.motion import dialect_samples as dialects
+from unit.motion.dialect_samples import COUNT, TENTHS, VALUES, peak
 from unit.motion.motion_files import G, at2, numbers, rows
 
-COUNT = 61
-VALUES = {name: np.round(300.0 * numbers(COUNT)[::step], 3) for name, step in (("N", 1), ("U", -1))}
-VALUES["E"] = np.round(0.5 * VALUES["N"] + 0.25 * VALUES["U"], 3)
 COUNTS = np.round(1e4 * numbers(COUNT)).astype(int) - 12085
 
 
@@ -275,7 +274,8 @@ def geonet_component(values, *, name: str, azimuth: int, corrected: bool = True,
         "Instrument corrected data at 0.020 sec intervals",
         "Band-pass filter transition bands are .10-.25 Hz and 24.50-25.50 Hz",
         f"Component {name:5} Some Accelerometer Axis",
-        "Acceleration:  peak    -41.6 mm/s/s at  43.68 sec     rms      2.2 mm/s/s",
+        f"Acceleration:  peak {layout.get('peak', peak(values)):8.1f} mm/s/s at  43.68 sec"
+        "     rms      2.2 mm/s/s",
         "Velocity:      peak     1.65 mm/s   at  43.56 sec     rms     0.09 mm/s",
         "Displacement:  peak    0.131 mm     at  43.66 sec     rms    0.007 mm",
     ]
@@ -317,7 +317,7 @@ def cwa(
         f"#RecordLength(sec): {COUNT / 50}",
         f"#SampleRate(Hz): {rate}",
         "#AmplitudeUnit:  gal. DCoffset(corr)",
-        "#AmplitudeMAX. U:    0.658~   -0.837",
+        f"#AmplitudeMAX. U: {max(VALUES['U']):8.3f}~ {min(VALUES['U']):8.3f}",
         f"#DataSequence: {sequence}",
         f"#Data: {layout} ",
     ]
@@ -363,6 +363,23 @@ def _text_samples() -> dict[str, Sample]:
         "geonet1": ("geonet", "s.V1A", geonet(corrected=False), 0.02, tenths["N"], "196", "S16W"),
         "cwa": ("cwa", "s.dat", cwa(), 0.02, north, "N", "N"),
         "cwa pair": ("cwa", "p.dat", cwa(), 0.02, east, ("E", "U"), "E"),
+    }
+    tenths_of_g = {key: 0.1 * G * values for key, values in TENTHS.items()}
+    thousandths = {key: np.round(1e-3 * values, 6) * G for key, values in VALUES.items()}
+    marked = np.round(values, 5)
+    files |= {
+        "at2 marked": ("peer-at2", "m.AT2", dialects.marked_at2(marked), 0.01, marked * G),
+        "cgs": ("csmip", "c.V1", dialects.cgs(), 0.01, thousandths["E"], "E", "90"),
+        "usc": ("csmip", "u.s0a", dialects.usc(), 0.01, east, None, "N08W"),
+        "usc no unit": ("csmip", "u.s0b", dialects.usc(unit=""), 0.01, east, None, "N08W"),
+        "pairs": ("csmip", "p.v1", dialects.pairs(), 0.01, tenths_of_g["N"], "NS", "NS"),
+        "itaca": ("esm", "i.DAT", dialects.itaca(), 0.01, east, None, "WE"),
+        "afad": ("afad", "a.txt", dialects.afad(), 0.01, east, "E", "E-W"),
+        "bhrc": ("bhrc", "b.V1", dialects.bhrc(), 0.01, tenths_of_g["E"], "140", "T3"),
+        "csmnc": ("csmnc", "d.dat", dialects.csmnc(), 0.01, east, None, "EW"),
+        "resorce": ("resorce", "r.cor.acc", dialects.resorce(), 0.01, north, None, "NS"),
+        "unam": ("unam", "u.012", dialects.unam(), 0.01, north, "S", "S00E"),
+        "columns": ("text", "3.csv", dialects.three_columns(), 0.01, east, "E", "E"),
     }
     assert up.size == COUNT
     return {

@@ -123,6 +123,7 @@ def test_layouts(write, layout, form):
     expect(read(write, cosmos_block("acceleration", NORTH, layout=layout, form=form)))
 
 
+@pytest.mark.filterwarnings("ignore:.*lie around an offset")
 def test_numbers_that_touch_are_told_apart_by_their_width(write):
     values = np.round(-100.0 - abs(NORTH), 3)
     text = cosmos_block("acceleration", values, layout="8F8.3", form="{:8.3f}")

@@ -99,6 +99,7 @@ class TestWithObspy:
         with pytest.raises(RecordError, match=r"counts, and no response.*argument unit"):
             GroundMotion.read(write(miniseed(), "r.mseed"))
 
+    @pytest.mark.filterwarnings("ignore:.*lie around an offset")
     def test_samples_with_a_unit_are_taken_as_they_are(self, write):
         write(station_xml(), "r.xml")
         motion = GroundMotion.read(write(miniseed(COUNTS // 100), "r.mseed"), unit="gal")
@@ -195,5 +196,5 @@ class TestWithObspy:
         letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
         codes = ["".join(code) for code in itertools.product(letters[:5], letters, letters)]
         data = b"".join(miniseed(channel=code) for code in codes[:1001])
-        with pytest.raises(RecordError, match="1001 channels; expected at most 1000"):
+        with pytest.raises(RecordError, match="more than 1000 channels"):
             GroundMotion.read(write(data, "r.mseed"), unit="gal")

@@ -248,6 +248,7 @@ class TestCwa:
         motion = self.read(write, text, component="N")
         np.testing.assert_allclose(motion.si.horizontal.samples, VALUES["U"] * 0.01, rtol=1e-12)
 
+    @pytest.mark.filterwarnings("ignore:.*lie around an offset")
     def test_columns_that_touch(self, write):
         table = np.column_stack(
             [0.02 * np.arange(COUNT), *(-99_900.0 + VALUES[key] for key in "UNE")]

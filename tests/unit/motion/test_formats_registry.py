@@ -68,8 +68,15 @@ def test_formats_are_listed_with_name_title_and_suffixes():
         "k-net",
         "geonet",
         "cwa",
+        "afad",
+        "bhrc",
+        "csmnc",
+        "resorce",
+        "unam",
+        "asdf",
         "netcdf",
         "miniseed",
+        "sac",
         "text",
     ]
     for entry in listed:
@@ -212,6 +219,6 @@ def test_what_an_added_reader_refuses_stays_as_it_is(write, registered):
         GroundMotion.read(write(FILE, "r.mup"))
 
 
-def test_a_response_goes_with_miniseed_only(write):
+def test_a_response_goes_with_counts_only(write):
     with pytest.raises(RecordError, match="which the argument response goes with"):
         GroundMotion.read(write("0,1\n1,2\n", "r.csv"), unit="g", response="response.xml")

@@ -34,7 +34,7 @@ def test_accelerograms(write, kind, rate):
 
 @pytest.mark.parametrize(
     "kind",
-    ["3 VELOCITY", "4 DISPLACEMENT", "5 RESPONSE SPECTRA", "6 FOURIER AMPLITUDE", "0 UNKNOWN"],
+    ["3 VELOCITY", "4 DISPLACEMENT", "5 RESPONSE SPECTRA", "6 FOURIER AMPLITUDE"],
 )
 @pytest.mark.parametrize("given", [{}, {"unit": "g"}, {"format": "smc"}])
 def test_other_quantities_are_refused(write, kind, given):
@@ -43,6 +43,13 @@ def test_other_quantities_are_refused(write, kind, given):
     assert caught.value.line == 1
 
 
+def test_a_kind_that_the_file_does_not_tell_is_taken_for_an_accelerogram_with_a_warning(write):
+    with pytest.warns(RecordWarning, match="line 1: the file does not say what it holds"):
+        motion = read(write, smc(kind="0 UNKNOWN"))
+    np.testing.assert_allclose(motion.si.horizontal.samples, NORTH * 0.01, rtol=1e-13)
+
+
+@pytest.mark.filterwarnings("ignore:.*lie around an offset")
 def test_numbers_without_a_blank_between_them(write):
     # as the files are: "-2.2223E+0-1.9234E+0"
     printed = [

@@ -1,0 +1,276 @@
+"""Constructors of motions from times and values: uneven times, and data frames."""
+
+from __future__ import annotations
+
+import warnings
+from enum import StrEnum
+from typing import TYPE_CHECKING, Any, Final, cast
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from rockframe.arguments import one_of_words
+from rockframe.errors import ComponentError, RecordWarning, shown
+from rockframe.motion.processing.sampling import instants_of
+from rockframe.motion.quantities import (
+    accelerations_to_si,
+    argument_unit,
+    seconds_of,
+    times_to_si,
+)
+from rockframe.motion.readers.components import SENSE
+from rockframe.motion.readers.orientation import DOWNWARDS, orientation_of
+from rockframe.motion.readers.source import MAXIMUM_SAMPLES, Metadata
+from rockframe.motion.readers.timing import uniform_step
+from rockframe.motion.value import UNNAMED
+from rockframe.signals import Motion
+from rockframe.units import POSITIVE, TIME_STEP, to_si
+
+if TYPE_CHECKING:
+    from rockframe.motion.quantities import ArrayLike, QuantityLike
+    from rockframe.motion.value import Made
+    from rockframe.signals.arrays import Array
+
+_SAME_STEP: Final = 1e-6
+_COARSER: Final = 1.5
+
+
+class Between(StrEnum):
+    """What an acceleration is taken to be between its uneven times."""
+
+    LINEAR = "linear"
+    CUBIC = "cubic"
+
+
+_HOW: Final = {
+    Between.LINEAR: "straight lines between them",
+    Between.CUBIC: "a cubic spline through them",
+}
+
+
+def from_times(
+    kind: type[Made],
+    times: ArrayLike,
+    acceleration: ArrayLike,
+    time_step: QuantityLike,
+    vertical: ArrayLike | None = None,
+    *,
+    interpolation: Between | str = Between.LINEAR,
+    name: str | None = None,
+) -> Made:
+    """Build a motion from accelerations at uneven times, read off at an even time step.
+
+    Parameters
+    ----------
+    times : Quantity, (sequence, unit), DataArray or dates, shape (n,)
+        Rising; dates and spans of time (NumPy, pandas) need no unit [s].
+    acceleration : Quantity, (sequence, unit) or DataArray, shape (n,)
+        Horizontal acceleration at these times [m s^-2].
+    time_step : str or Quantity
+        Of the motion [s].
+    vertical : Quantity, (sequence, unit) or DataArray, shape (n,), optional
+        Vertical acceleration, upwards, at the same times [m s^-2].
+    interpolation : {"linear", "cubic"}, optional
+        Between the times: straight lines, or a cubic spline.
+    name : str, optional
+        For titles and messages.
+
+    Returns
+    -------
+    GroundMotion
+        From the first time on; what was done is in its history.
+
+    Raises
+    ------
+    UnitsError
+        An array or the time step has no unit, or a wrong one.
+    ComponentError
+        Times that do not rise, arrays that are not finite or of different lengths, another
+        interpolation, or a time step that gives fewer than two samples or too many.
+
+    Warns
+    -----
+    RecordWarning
+        `time_step` is longer than the times usually are apart: what lies between the new
+        samples is lost, and folded into lower frequencies.
+
+    Examples
+    --------
+    >>> from rockframe.motion import GroundMotion
+    >>> digitised = GroundMotion.from_times(
+    ...     ([0.0, 0.03, 0.05, 0.1], "s"), ([0.0, 0.3, 0.1, 0.0], "m/s^2"), "0.01 s"
+    ... )
+    >>> digitised.acceleration.m.round(3).tolist()
+    [0.0, 0.1, 0.2, 0.3, 0.2, 0.1, 0.08, 0.06, 0.04, 0.02, 0.0]
+    """
+    owner = f"{kind.__name__}.from_times"
+    between = one_of_words(Between, interpolation, owner=owner, name="interpolation")
+    step = to_si(time_step, TIME_STEP, owner=owner, name="time_step", condition=POSITIVE)
+    instants = times_to_si(times, owner=owner, name="times")
+    length = float(instants[-1] - instants[0])
+    if not step <= length or length / step > MAXIMUM_SAMPLES:
+        msg = (
+            f"{owner}: time_step = {step:.6g} s must give 2 to {MAXIMUM_SAMPLES} samples of "
+            f"{length:.6g} s"
+        )
+        raise ComponentError(msg)
+    grid = instants_of(length, step)
+    read: list[Array] = []
+    for label, array in (("acceleration", acceleration), ("vertical", vertical)):
+        if array is None:
+            continue
+        values = accelerations_to_si(array, owner=owner, name=label)
+        if values.size != instants.size or not np.isfinite(values).all():
+            msg = (
+                f"{owner}: {label} has {values.size} samples at {instants.size} times; it needs "
+                "as many, and finite ones"
+            )
+            raise ComponentError(msg)
+        read.append(_read_off(instants - instants[0], values, grid, between))
+    gaps = np.diff(instants)
+    if step > _COARSER * float(np.median(gaps)):
+        words = (
+            f"{owner}: time_step = {step:.6g} s is longer than the times are apart (mostly "
+            f"{np.median(gaps):.6g} s); use a shorter one, then resampled, which filters"
+        )
+        warnings.warn(words, RecordWarning, stacklevel=2)
+    said = (
+        f"built from {instants.size} samples {gaps.min():.6g} s to {gaps.max():.6g} s apart, "
+        f"{_HOW[between]}, read off every {step!r} s"
+    )
+    return kind(Motion.of_samples(step, *read), name=name or UNNAMED, history=(said,))
+
+
+def _read_off(times: Array, values: Array, grid: Array, between: Between) -> Array:
+    if between is Between.LINEAR:
+        return np.interp(grid, times, values)
+    spline: Any = CubicSpline(times, values)
+    return np.asarray(spline(grid), dtype=np.float64)
+
+
+def from_frame(
+    kind: type[Made],
+    frame: Any,
+    unit: str,
+    component: str | None = None,
+    vertical: str | None = None,
+    *,
+    time: str | None = None,
+    time_step: QuantityLike | None = None,
+    name: str | None = None,
+) -> Made:
+    """Build a motion from columns of a pandas DataFrame.
+
+    Parameters
+    ----------
+    frame : pandas.DataFrame
+        With one row for each sample.
+    unit : str
+        Unit of the accelerations as record files spell it: ``"g"``, ``"gal"``, ...
+    component : str, optional
+        Column with the horizontal acceleration; the only one, unless given.
+    vertical : str, optional
+        Column with the vertical acceleration; one called ``"DWN"`` or ``"down"`` is
+        turned over.
+    time : str, optional
+        Column with the times, in seconds or as dates; unless given, the index counts
+        as the times if it holds dates or real numbers.
+    time_step : str or Quantity, optional
+        Needed without times [s].
+    name : str, optional
+        For titles and messages.
+
+    Returns
+    -------
+    GroundMotion
+
+    Raises
+    ------
+    UnitsError
+        `unit` is not an acceleration, or `time_step` not a time.
+    ComponentError
+        No frame, no such column or several, no times and no time step, times that
+        contradict it or are uneven (see :meth:`from_times`), or samples that are no
+        finite numbers.
+
+    Examples
+    --------
+    >>> import pandas as pd
+    >>> from rockframe.motion import GroundMotion
+    >>> frame = pd.DataFrame({"t": [0.0, 0.01, 0.02], "N": [0.0, 0.1, -0.1]})
+    >>> GroundMotion.from_frame(frame, "g", "N", time="t").metadata["azimuth"]
+    0.0
+    """
+    owner = f"{kind.__name__}.from_frame"
+    if not (hasattr(frame, "columns") and hasattr(frame, "index") and hasattr(frame, "loc")):
+        msg = f"{owner}: frame needs a pandas DataFrame, got {shown(frame)}"
+        raise ComponentError(msg)
+    record_unit = argument_unit(unit, owner=owner)
+    labels = [label for label in frame.columns if label not in (time, vertical)]
+    if component is None and len(labels) != 1:
+        listed = ", ".join(repr(label) for label in labels[:10]) or "none"
+        msg = f"{owner}: component must name one of the columns {listed}"
+        raise ComponentError(msg)
+    chosen = labels[0] if component is None else component
+    across = _column(frame, chosen, owner, "component") * record_unit.factor
+    step = _step(frame, time, time_step, owner)
+    metadata: Metadata = {"component": str(chosen), "unit_as_read": str(unit)}
+    direction = orientation_of(str(chosen))
+    if direction.azimuth is not None:
+        metadata["azimuth"] = direction.azimuth
+    if direction.vertical is not None:
+        metadata[SENSE] = direction.vertical
+    history = [f"built from the column {chosen} of a data frame: {across.size} samples"]
+    upwards = None
+    if vertical is not None:
+        upwards = _column(frame, vertical, owner, "vertical") * record_unit.factor
+        metadata["vertical_component"] = str(vertical)
+        if orientation_of(str(vertical)).vertical == DOWNWARDS:
+            upwards = -upwards
+            history.append(f"component {vertical} turned over: positive upwards")
+    si = Motion.of_samples(step, across, upwards)
+    return kind(si, name=name or str(chosen), metadata=metadata, history=tuple(history))
+
+
+def _column(frame: Any, label: object, owner: str, argument: str) -> Array:
+    if label not in frame.columns:
+        listed = ", ".join(repr(one) for one in list(frame.columns)[:10])
+        msg = f"{owner}: {argument} {label!r} is none of the columns {listed}"
+        raise ComponentError(msg)
+    values = np.asarray(frame[label].values)
+    if values.ndim != 1 or values.dtype.kind not in "fiu" or not np.isfinite(values).all():
+        msg = f"{owner}: the column {label!r} must hold finite numbers, and no gaps"
+        raise ComponentError(msg)
+    return values.astype(np.float64)
+
+
+def _step(frame: Any, time: str | None, time_step: QuantityLike | None, owner: str) -> float:
+    asked = None
+    if time_step is not None:
+        asked = to_si(time_step, TIME_STEP, owner=owner, name="time_step", condition=POSITIVE)
+    if time is None:
+        axis = frame.index.values
+    elif time in frame.columns:
+        axis = np.asarray(frame[time].values)
+        axis = axis if axis.dtype.kind in "mM" else axis.astype(np.float64)
+    else:
+        msg = f"{owner}: time {time!r} is none of the columns"
+        raise ComponentError(msg)
+    times = seconds_of(axis, "s")
+    if times is None:
+        if asked is None:
+            msg = f"{owner}: the frame holds no times; give time, or time_step='0.01 s'"
+            raise ComponentError(msg)
+        return asked
+    printed = [repr(one) for one in cast("list[float]", times.tolist())]
+    step, misfit = uniform_step(times, printed)
+    if misfit is not None:
+        msg = (
+            f"{owner}: the times are not even ({printed[misfit]} s after {printed[misfit - 1]} s); "
+            "use from_times, which resamples"
+        )
+        raise ComponentError(msg)
+    if asked is not None and not np.isclose(asked, step, rtol=_SAME_STEP, atol=0.0):
+        msg = f"{owner}: the times have the step {step:.9g} s, but time_step is {asked:.9g} s"
+        raise ComponentError(msg)
+    return step

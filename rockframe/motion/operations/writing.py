@@ -1,0 +1,89 @@
+"""Writing a ground motion to a file that other programs read."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+from rockframe.arguments import one_of_words
+from rockframe.constants import STANDARD_GRAVITY
+from rockframe.errors import ComponentError
+
+if TYPE_CHECKING:
+    import os
+
+    from rockframe.motion.value import MotionValue
+
+_TITLE: Final = "PEER FORMAT ACCELERATION FILE, WRITTEN BY ROCKFRAME"
+_UNIT: Final = "ACCELERATION TIME SERIES IN UNITS OF G"
+_PER_LINE: Final = 5
+_USUAL_DECIMALS: Final = 4
+
+
+class Written(StrEnum):
+    """Which component of a motion is written."""
+
+    HORIZONTAL = "horizontal"
+    VERTICAL = "vertical"
+
+
+def to_at2(
+    motion: MotionValue,
+    path: str | os.PathLike[str],
+    component: Written | str = Written.HORIZONTAL,
+) -> None:
+    """Write a PEER acceleration file (AT2), which most programs read.
+
+    Parameters
+    ----------
+    path : str or path-like
+        File; one that is there is written over.
+    component : {"horizontal", "vertical"}, optional
+        Which component; the vertical one is written positive upwards.
+
+    Raises
+    ------
+    ComponentError
+        Another component, or the motion has no vertical one.
+    OSError
+        The file cannot be written.
+
+    Notes
+    -----
+    Four lines above the numbers: a title; event, station and component; the unit; number
+    of samples and time step. Then the samples in g, five in a line, with eight digits: read
+    back they differ by 5e-8 of themselves at most. The time step is written with all its digits. Of
+    an analytic motion the samples are written, not the function between them.
+    """
+    owner = f"{type(motion).__name__}.to_at2"
+    which = one_of_words(Written, component, owner=owner, name="component")
+    signal = motion.si.horizontal
+    named = str(motion.metadata.get("component", ""))
+    if which is Written.VERTICAL:
+        if motion.si.vertical is None:
+            msg = f"{owner}: the motion has no vertical component"
+            raise ComponentError(msg)
+        signal, named = motion.si.vertical, "UP"
+    step = motion.si.time_step
+    usual = f"{step:.{_USUAL_DECIMALS}f}"
+    printed_step = usual if float(usual) == step else repr(step)
+    event = str(motion.metadata.get("event", motion.name))
+    station = str(motion.metadata.get("station", ""))
+    about = [" ".join(_plain(part).replace(",", " ").split()) for part in (event, station, named)]
+    samples = [f"{value:15.7E}" for value in (signal.samples / STANDARD_GRAVITY).tolist()]
+    rows = [samples[k : k + _PER_LINE] for k in range(0, len(samples), _PER_LINE)]
+    lines = [
+        _TITLE,
+        ", ".join(about),
+        _UNIT,
+        f"NPTS= {len(samples):6d}, DT= {printed_step:>7} SEC,",
+        *("".join(row) for row in rows),
+    ]
+    text = "\n".join(lines) + "\n"
+    Path(path).expanduser().write_text(text, encoding="ascii", newline="\n")
+
+
+def _plain(text: str) -> str:
+    """Keep what every program reads: printable ASCII."""
+    return text.encode("ascii", "replace").decode("ascii")
