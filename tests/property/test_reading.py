@@ -10,6 +10,7 @@ import re
 import sys
 import time
 import tracemalloc
+from pathlib import Path
 
 import netCDF4
 import numpy as np
@@ -18,7 +19,8 @@ from hypothesis import HealthCheck, event, given, settings
 from hypothesis import strategies as st
 from property.damaged_files import DAMAGE, damaged
 from records import record_path
-from unit.motion.binary_samples import miniseed, netcdf, station_xml
+from unit.motion.binary_samples import asdf, miniseed, netcdf, station_xml
+from unit.motion.dialect_samples import sac
 from unit.motion.format_samples import SAMPLES, cosmos, knet
 
 from rockframe.errors import RecordError
@@ -43,6 +45,17 @@ REAL = {  # and how to ask for it
     "GEONET_20180212_211557_WPWS_20.V2A": {"component": ("S16W", "Up")},
     "MSEED_TA.M04C..HNE_20140824.mseed": {"unit": "gal"},
     "MSEED_TA.M04C.StationXML.xml": {},
+    "more/AFAD_20170720223109_4801.txt": {"component": ("N", "U")},
+    "more/BHRC_5526-1.V1": {"component": ("L1", "V2")},
+    "more/COSMOS_CE23837.V1C": {"component": "channel 1"},
+    "more/CSMIP_CE89146.V1": {"component": "90"},
+    "more/CSMNC_ua0001.dat": {},
+    "more/OPENSEES_elCentro.at2": {},
+    "more/RENADIC_altohospicio0911131.v1": {"component": "NS"},
+    "more/RESORCE_16840_H1.cor.acc": {},
+    "more/SAC_20190706031952.CJ.T001230.HNE.sac": {"unit": "m/s^2"},
+    "more/UNAM_CUP50401.012": {"component": ("N90E", "V")},
+    "more/USC_017m30bt.s0a": {},
 }
 NAMES = sorted(entry.name for entry in formats())
 ODD_ARGUMENTS = st.fixed_dictionaries(
@@ -112,23 +125,35 @@ def folder(tmp_path_factory):
     return path
 
 
+class Files(dict):
+    """Files by a short name; a failing example shows no bytes of theirs."""
+
+    def __repr__(self) -> str:
+        return f"<{len(self)} files>"
+
+
 @pytest.fixture(scope="module")
 def undamaged(folder):
-    """Name, bytes and a component of a file of every format."""
-    held = {key: (entry.name, entry.data, entry.component) for key, entry in SAMPLES.items()}
-    binary = {
-        "netcdf": ("d.nc", netcdf(folder), None),
-        "miniseed": ("s.mseed", miniseed(), None),
-    }
-    return held | binary
+    """Name, bytes and what to ask for of a file of every format."""
+    held = Files(
+        {key: (one.name, one.data, {"component": one.component}) for key, one in SAMPLES.items()}
+    )
+    held["netcdf"] = ("d.nc", netcdf(folder), {})
+    held["miniseed"] = ("s.mseed", miniseed(), {})
+    held["sac"] = ("s.sac", sac(), {"unit": "gal"})
+    held["asdf"] = ("w.h5", asdf(folder), {"component": ("N", "Z")})
+    return held
 
 
-@pytest.mark.parametrize("key", [*SAMPLES, "netcdf", "miniseed"])
+BINARY = ["netcdf", "miniseed", "sac", "asdf"]
+
+
+@pytest.mark.parametrize("key", [*SAMPLES, *BINARY])
 @examples(150)
 @given(damage=DAMAGE, arguments=ARGUMENTS)
 def test_damaged_files_of_every_format(folder, undamaged, key, damage, arguments):
-    name, data, component = undamaged[key]
-    asked = {"component": component, **arguments}
+    name, data, given = undamaged[key]
+    asked = {**given, **arguments}
     event(check(folder / name, damaged(data, damage), **asked))
 
 
@@ -138,13 +163,13 @@ def test_damaged_files_of_every_format(folder, undamaged, key, damage, arguments
 def test_damaged_files_as_published(folder, name, damage, arguments):
     asked = {**REAL[name], **arguments}
     data = record_path(name).read_bytes()
-    event(check(folder / name, damaged(data, damage), **asked))
+    event(check(folder / Path(name).name, damaged(data, damage), **asked))
 
 
 @examples(150)
 @given(
     data=st.one_of(st.binary(max_size=300), st.text(max_size=300).map(str.encode)),
-    name=st.sampled_from(["r.AT2", "r.csv", "r.V2", "r.nc", "r.mseed", "r"]),
+    name=st.sampled_from(["r.AT2", "r.csv", "r.V2", "r.nc", "r.mseed", "r.sac", "r"]),
     arguments=ARGUMENTS,
 )
 def test_any_bytes(folder, data, name, arguments):

@@ -1,17 +1,22 @@
 """Small made-up files of the formats that are not text, and StationXML to go with them."""
 
+import json
 import struct
 from pathlib import Path
 
+import netCDF4
+import numpy as np
 from unit.motion.format_samples import COUNTS, VALUES
 
 from rockframe.motion import GroundMotion
 
 
-def miniseed(counts=COUNTS, *, channel: str = "HNE", rate: int = 100, start: int = 0) -> bytes:
+def miniseed(
+    counts=COUNTS, *, channel: str = "HNE", rate: int = 100, start: int = 0, tenths: int = 0
+) -> bytes:
     """One 512-byte record of 32-bit integers (SEED manual 2.4, chapter 8)."""
     head = b"000001D " + b"MADE ".ljust(5) + b"  " + channel.encode() + b"XX"
-    head += struct.pack(">HHBBBBH", 2018, 24, 10, 51, start, 0, 0)
+    head += struct.pack(">HHBBBBH", 2018, 24, 10, 51, start, 0, tenths)
     head += struct.pack(">HhhBBBBiHH", len(counts), rate, 1, 0, 0, 0, 1, 0, 64, 48)
     head += struct.pack(">HHBBBB", 1000, 0, 3, 1, 9, 0)
     body = head.ljust(64, b"\x00") + struct.pack(f">{len(counts)}i", *counts.tolist())
@@ -47,3 +52,40 @@ def netcdf(folder: Path) -> bytes:
     motion = GroundMotion.from_arrays((level, "m/s^2"), "0.01 s", (upwards, "m/s^2"), name="stored")
     motion.scaled(0.5).to_dataset().to_netcdf(path)
     return path.read_bytes()
+
+
+def asdf(
+    folder: Path,
+    *,
+    unit: str | None = "cm/s^2",
+    xml: str | None = None,
+    tag: str = "made_default",
+    rate: float = 100.0,
+    channels=(("HNE", "E"), ("HNN", "N"), ("HNZ", "U")),
+) -> bytes:
+    """The workspace of an event as gmprocess lays it out: groups and arrays of HDF5."""
+    path = folder / "made.h5"
+    with netCDF4.Dataset(path, "w") as file:
+        file.setncatts({"file_format": "ASDF", "file_format_version": "1.0.3"})
+        group = file.createGroup("Waveforms").createGroup("XX.MADE")
+        for code, key in channels:
+            times = "2018-01-24T10:51:00__2018-01-24T10:51:01"
+            _array(group, f"XX.MADE.--.{code}__{times}__{tag}", VALUES[key]).setncatts(
+                {"sampling_rate": rate, "starttime": np.int64(1516791060 * 10**9)}
+            )
+        if xml is not None:
+            _array(group, "StationXML", np.frombuffer(xml.encode(), np.int8))
+        if unit is not None:
+            told = json.dumps({"standard": {"units": unit}}).encode()
+            statistics = file.createGroup("AuxiliaryData").createGroup("StreamSupplementalStats")
+            name = f"XX.MADE.--.HN_{tag}"
+            _array(statistics.createGroup("XX.MADE"), name, np.frombuffer(told, np.uint8))
+    return path.read_bytes()
+
+
+def _array(group, name: str, values):
+    dimension = f"n{len(group.variables)}"
+    group.createDimension(dimension, len(values))
+    variable = group.createVariable(name, values.dtype, (dimension,))
+    variable[:] = values
+    return variable

@@ -2,7 +2,10 @@
 
 import importlib.util
 import itertools
+import subprocess
 import sys
+import time
+import tracemalloc
 
 import numpy as np
 import pytest
@@ -198,3 +201,61 @@ class TestWithObspy:
         data = b"".join(miniseed(channel=code) for code in codes[:1001])
         with pytest.raises(RecordError, match="more than 1000 channels"):
             GroundMotion.read(write(data, "r.mseed"), unit="gal")
+
+    def test_pieces_that_overlap_are_refused_from_their_headers(self, write):
+        path = write(miniseed(COUNTS[:4]) * 70_000, "r.mseed")
+        start = time.process_time()
+        tracemalloc.start()
+        try:
+            with pytest.raises(RecordError, match="more than 2000 pieces"):
+                GroundMotion.read(path, unit="gal")
+            held = tracemalloc.get_traced_memory()[1]
+        finally:
+            tracemalloc.stop()
+        assert held < 100e6
+        assert time.process_time() - start < 1.0
+
+    @pytest.mark.filterwarnings("ignore:.*lie around an offset")
+    def test_pieces_without_a_gap_are_no_more_than_one(self, write):
+        counts = np.tile(COUNTS[:50], 2)
+        pieces = b"".join(
+            miniseed(counts[:50], start=k // 2, tenths=5000 * (k % 2)) for k in range(100)
+        )
+        assert len(GroundMotion.read(write(pieces, "r.mseed"), unit="mgal")) == 5000
+
+    def test_nothing_of_what_obspy_says_comes_to_the_terminal(self, write):
+        # a length of 10^9 samples, and data that end early: errors in callbacks of the library
+        code = (
+            "import sys; from rockframe.motion import GroundMotion\n"
+            "from rockframe.errors import RecordError\n"
+            "hook = sys.unraisablehook\n"
+            "for path in sys.argv[1:]:\n"
+            "    try: GroundMotion.read(path, unit='gal')\n"
+            "    except RecordError: pass\n"
+            "assert sys.unraisablehook is hook"
+        )
+        paths: list[str] = []
+        for place, byte in itertools.product((30, 39, 44, 46, 52, 53, 54), (0, 1, 7, 255)):
+            data = bytearray(miniseed() * 2)
+            data[place] = byte
+            paths.append(str(write(bytes(data), f"{place}_{byte}.mseed")))
+        done = subprocess.run(
+            [sys.executable, "-W", "ignore", "-c", code, *paths],
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        assert done.stderr == ""
+        assert done.stdout == ""
+
+    @pytest.mark.parametrize("output", ["None", "", "COUNTS", "counts"])
+    def test_an_output_unit_that_is_left_away_is_counts(self, write, output):
+        xml = station_xml(sensitivity=1e3).replace("COUNTS", output)
+        path = write(miniseed(), "r.mseed")
+        motion = GroundMotion.read(path, response=write(xml, "given.xml"))
+        assert motion.metadata["sensitivity"] == 1e3
+
+    def test_an_output_in_volts_is_refused(self, write):
+        xml = station_xml().replace("COUNTS", "V")
+        with pytest.raises(RecordError, match="expected counts per acceleration"):
+            GroundMotion.read(write(miniseed(), "r.mseed"), response=write(xml, "given.xml"))

@@ -21,6 +21,10 @@ ESM = "ESM_HI.ARS1..HNE.D.20190728.160908.C.ACC.ASC"
 GEONET = "GEONET_20180212_211557_WPWS_20.V2A"
 CWA = "CWA_20180206_1-EAS.dat"
 MINISEED = "MSEED_TA.M04C..HNE_20140824.mseed"
+MORE = "more/"
+RENADIC = MORE + "RENADIC_altohospicio0911131.v1"
+UNAM = MORE + "UNAM_CUP50401.012"
+SAC = MORE + "SAC_20190706031952.CJ.T001230.HNE.sac"
 STATION_XML = "MSEED_TA.M04C.StationXML.xml"
 TCU128 = "PEERSMD_CHICHI_TCU128-N.AT2"
 TCU128_EAST = "SLAMMER_CHICHI_TCU128-090.txt"
@@ -40,9 +44,33 @@ RECORDS = [
     (ESM, {}, "esm", 0.005, 19128, 0.300022 / 980.665, "cm/s^2"),
     (GEONET, {"component": "S74E"}, "geonet", 0.02, 5800, 0.01978, "mm/s^2"),
     (CWA, {"component": "N"}, "cwa", 0.02, 6000, 0.00231, "gal"),
+    # the peaks are those that the files state
+    (
+        MORE + "AFAD_20170720223109_4801.txt",
+        {"component": "E"},
+        "afad",
+        *(0.01, 13494),
+        0.02656,
+        "gal",
+    ),
+    (MORE + "BHRC_5526-1.V1", {"component": "L1"}, "bhrc", *(0.005, 9472), 0.00592, "G/10"),
+    (MORE + "COSMOS_CE23837.V1C", {"component": "HNN"}, "cosmos", *(0.005, 13400), 0.10543, "g"),
+    (MORE + "CSMIP_CE89146.V1", {"component": "360"}, "csmip", *(0.005, 13200), 0.07918, "g"),
+    (MORE + "CSMNC_ua0001.dat", {}, "csmnc", *(0.005, 12800), 16.986 / 980.665, "CM/SEC/SEC"),
+    (MORE + "DYNA_dyna10_head_only.ASC", {}, "esm", *(0.005, 20), 134.7 / 980.665, "cm/s^2"),
+    (MORE + "DYNA_itaca11_head_only.DAT", {}, "esm", *(0.005, 20), 134.7 / 980.665, "cm/s^2"),
+    (MORE + "MATLAB_Hollister.dat", {"unit": "m/s^2"}, "text", *(0.02, 601), 0.13733, "m/s^2"),
+    (MORE + "OPENSEES_elCentro.at2", {}, "peer-at2", *(0.02, 1559), 0.31882, "g"),
+    (RENADIC, {"component": "EW"}, "csmip", *(0.01, 3500), 0.0506, "G/10"),
+    (MORE + "RESORCE_16840_H1.cor.acc", {}, "resorce", *(0.005, 12400), 0.00102, "m/s/s"),
+    (UNAM, {"component": "N90E"}, "unam", *(0.004, 17502), 1.19 / 980.665, "Gal"),
+    (MORE + "USC_017m30bt.s0a", {}, "csmip", *(0.02, 1887), 242.3945 / 980.665, "CM/SEC/SEC"),
+    (MORE + "USC_274o42pv.s0b", {"component": "UP"}, "csmip", *(0.02, 574), 0.00968, "cm/sec/sec"),
+    (SAC, {"unit": "m/s^2"}, "sac", *(0.02, 15001), 0.043384 / 9.80665, "m/s^2"),
 ]
 
 
+@pytest.mark.filterwarnings("ignore:.*(declares 17500 samples|lie around an offset)")
 @pytest.mark.parametrize(("name", "given", "kind", "time_step", "count", "peak", "unit"), RECORDS)
 def test_records_have_their_published_step_count_and_peak(
     name, given, kind, time_step, count, peak, unit
@@ -54,7 +82,7 @@ def test_records_have_their_published_step_count_and_peak(
     assert motion.si.peak / STANDARD_GRAVITY == pytest.approx(peak, abs=1e-5)
     assert motion.metadata["format"] == kind
     assert motion.metadata["unit_as_read"] == unit
-    assert motion.metadata["source_file"] == name
+    assert motion.metadata["source_file"] == path.name
     assert motion.metadata["source_sha256"] == hashlib.sha256(path.read_bytes()).hexdigest()
     assert GroundMotion.read(path, format=kind, **given) == motion
 
@@ -72,6 +100,9 @@ def test_records_have_their_published_step_count_and_peak(
         (CSMIP, "UP", 171.589, 1e-2),
         (COSMOS, "BNZ", 6.852, 1e-2),
         (SMC, "360", 104.4078, 1e-2),
+        (MORE + "AFAD_20170720223109_4801.txt", "N-S", 21.838512, 1e-2),
+        (MORE + "AFAD_20170720223109_4801.txt", "U-D", 9.799439, 1e-2),
+        (RENADIC, "NS", 0.838, 0.980665),
     ],
 )
 def test_every_component_has_the_peak_that_its_header_prints(name, component, peak, unit):

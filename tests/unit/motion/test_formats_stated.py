@@ -1,0 +1,179 @@
+"""What a file says of itself is held against its data, and what looks wrong is said."""
+
+import re
+
+import numpy as np
+import pytest
+from unit.motion import dialect_samples as made
+from unit.motion import format_samples as formats
+from unit.motion.dialect_samples import COUNT, VALUES, peak
+
+from rockframe.errors import RecordError, RecordWarning
+from rockframe.motion import GroundMotion
+
+COSMOS = formats.cosmos_block("acceleration", VALUES["E"])
+REAL_64 = re.compile(r"(?<=Format= \(5F15\.6\)\n)((?:.*\n){12})(.{45})(.{15})")
+
+
+def cosmos(stated: float) -> str:
+    """A COSMOS file with a peak in real 64, the fourth of the thirteenth line."""
+    return REAL_64.sub(lambda m: f"{m.group(1)}{m.group(2)}{stated:15.6f}", COSMOS)
+
+
+def smc(stated: float) -> str:
+    """An SMC file with peaks in reals 30 and 32."""
+    lines = formats.smc(VALUES["E"]).split("\n")
+    for line, field in ((22, 4), (23, 1)):
+        start = 15 * field
+        lines[line] = f"{lines[line][:start]}{stated:15.7E}{lines[line][start + 15 :]}"
+    return "\n".join(lines)
+
+
+def geonet(stated: float) -> str:
+    values = np.round(10.0 * VALUES["E"], 1)
+    return formats.geonet_component(values, name="S74E", azimuth=106, peak=10.0 * stated)
+
+
+# of every format that states a peak: a file with that peak, and how to ask for its component
+STATED = {
+    "cosmos": (cosmos, {}),
+    "csmip": (lambda stated: made.usc(stated=stated), {}),
+    "smc": (smc, {}),
+    "esm": (lambda stated: formats.esm(**{"PGA_CM/S^2": f"{-stated:.6f}"}), {}),
+    "itaca": (lambda stated: made.itaca(**{"PGA_CM/S^2": f"{stated:.6f}"}), {}),
+    "geonet": (geonet, {}),
+    "cwa": (
+        lambda stated: formats.cwa().replace(
+            "#DataSequence", f"#AmplitudeMAX. E: 0.0~ {-stated:.3f}\n#DataSequence"
+        ),
+        {"component": "E"},
+    ),
+    "afad": (
+        lambda stated: made.afad(**{"RAW PGA VALUES (gal)": f"(E-W) {stated:.6f}"}),
+        {"component": "E"},
+    ),
+    "csmnc": (
+        lambda stated: re.sub(r"PEAK VALUE: *\S+", f"PEAK VALUE: {stated:.3f}", made.csmnc()),
+        {},
+    ),
+    "unam": (
+        lambda stated: re.sub(r"(Gal\), C1-C6 *: /.*?/).*?/", rf"\g<1>{-stated:.3f}/", made.unam()),
+        {"component": "E"},
+    ),
+    "text": (
+        lambda stated: (
+            f"# PGA = {stated:.3f} cm/s^2, dt = 0.01 s, unit: gal\n"
+            + "".join(f"{value:.3f}\n" for value in VALUES["E"])
+        ),
+        {},
+    ),
+}
+
+
+@pytest.mark.parametrize("key", STATED)
+def test_a_stated_peak_must_be_that_of_the_samples(key, write):
+    text, given = STATED[key]
+    truth = peak(VALUES["E"])
+    for share in (1.0, 1.005, 0.995):
+        GroundMotion.read(write(text(share * truth), "record"), **given)
+    for share in (1.05, 0.95, 0.1, 9.81):
+        path = write(text(share * truth), "record")
+        with pytest.warns(RecordWarning, match=r"line \d+: the header states a peak of") as caught:
+            motion = GroundMotion.read(path, **given)
+        assert len(caught) == 1
+        line = int(re.search(r"line (\d+)", str(caught[0].message)).group(1))
+        stated = re.search(r"a peak of (\S+)", str(caught[0].message)).group(1)
+        digits = re.sub(r"[^0-9]", "", stated)[:3]
+        assert digits in re.sub(r"[^0-9]", "", path.read_text().split("\n")[line - 1])
+        assert motion.si.peak == pytest.approx(0.01 * truth, rel=1e-3)
+
+
+def test_a_peak_that_is_zero_or_no_number_is_not_known(write):
+    for printed in ("0.0", "", "unknown", "1e999"):
+        GroundMotion.read(write(formats.esm(**{"PGA_CM/S^2": printed}), "r.ASC"))
+
+
+@pytest.mark.parametrize(
+    ("text", "given"),
+    [
+        (formats.esm(DURATION_S="1.2"), {}),
+        (made.pairs().replace("RECORD LENGTH =  0.600", "RECORD LENGTH =  1.200"), {}),
+        (made.csmnc().replace("DURATION:  0.61", "DURATION:  1.2"), {}),
+        (made.unam().replace("/0.61/0.61/0.61", "/1.2/1.2/1.2"), {"component": "E"}),
+        (formats.geonet().replace("Duration 1.2 sec", "Duration 2.4 sec"), {"component": "S74E"}),
+    ],
+    ids=["esm", "csmip", "csmnc", "unam", "geonet"],
+)
+def test_a_stated_length_must_be_that_of_the_samples(text, given, write):
+    asked = {"component": "EW"} if "RENADIC" in text or "G/10" in text else given
+    with pytest.warns(RecordWarning, match=r"line \d+: the header states a length of"):
+        GroundMotion.read(write(text, "record"), **asked)
+
+
+@pytest.mark.parametrize(
+    ("text", "mark", "given"),
+    [
+        (made.cgs(), "/&", {"component": "360"}),
+        (COSMOS, "End-of-data", {}),
+        (formats.smc(), None, {}),
+        (made.bhrc(), "/&", {"component": "L1"}),
+        (made.resorce(), None, {}),
+    ],
+    ids=["csmip", "cosmos", "smc", "bhrc", "resorce"],
+)
+def test_rows_behind_the_announced_samples_are_said_to_be_left_out(text, mark, given, write):
+    own = GroundMotion.read(write(text, "record"), **given)
+    lines = text.rstrip("\n").split("\n")
+    end = next((k for k, line in enumerate(lines) if mark and line.startswith(mark)), len(lines))
+    # the last full row of the samples, once more and twice
+    extra = [lines[end - 2]] * 2
+    path = write("\n".join([*lines[:end], *extra, *lines[end:]]) + "\n", "record")
+    with pytest.warns(RecordWarning, match=rf"line {end + 1}: 2 rows of numbers behind"):
+        assert GroundMotion.read(path, **given).sha256 == own.sha256
+
+
+def column(values, unit="gal") -> str:
+    return f"# unit: {unit}, dt = 0.01 s\n" + "".join(f"{value:.6f}\n" for value in values)
+
+
+RANDOM = np.random.default_rng(3)
+SHAKING = 200.0 * np.exp(-(((np.arange(2000) - 700.0) / 300.0) ** 2)) * RANDOM.standard_normal(2000)
+
+
+@pytest.mark.parametrize("mark", [-999.0, 9999.0, -99999.0, -12345.0, -999999.0])
+@pytest.mark.parametrize("places", [[400], [0], [1999], [50, 51, 52], [10, 900]])
+def test_marks_of_missing_samples_are_refused(write, mark, places):
+    values = 0.5 * SHAKING
+    values[places] = mark
+    with pytest.raises(RecordError, match=rf"{mark:.9g} as sample {places[0] + 1}, alone"):
+        GroundMotion.read(write(column(values), "r.txt"))
+
+
+def test_a_sample_like_a_mark_among_samples_as_large_is_a_sample(write):
+    values = 900.0 * np.sin(0.3 * np.arange(500))
+    values[100:103] = (990.0, 999.0, 980.0)
+    GroundMotion.read(write(column(values), "r.txt"))
+
+
+@pytest.mark.parametrize("offset", [0.3, -0.3, 0.1])
+def test_a_constant_offset_is_mentioned(write, offset):
+    path = write(column(SHAKING / 980.665 + offset, "g"), "r.txt")
+    with pytest.warns(RecordWarning, match="lie around an offset of") as caught:
+        motion = GroundMotion.read(path)
+    said = float(re.search(r"offset of (\S+) g", str(caught[0].message)).group(1))
+    assert said == pytest.approx(offset, abs=0.01)
+    assert abs(motion.baseline_corrected(order=0).si.horizontal.samples.mean()) < 1e-9
+    GroundMotion.read(write(column(SHAKING / 980.665, "g"), "r.txt"))
+
+
+def test_files_in_metres_that_pass_for_g_are_doubted_from_0_15_g_on(write):
+    shaking = SHAKING / np.abs(SHAKING).max()
+    for peak_in_g in (0.16, 0.3, 0.5, 1.0):
+        path = write(column(9.80665 * peak_in_g * shaking, "g"), "r.txt")
+        with pytest.warns(RecordWarning, match="is the unit g_0 right"):
+            GroundMotion.read(path)
+    GroundMotion.read(write(column(1.4 * shaking, "g"), "r.txt"))
+
+
+def test_the_counts_of_the_samples_are_as_announced():
+    assert COUNT == 61

@@ -1,0 +1,233 @@
+"""Motions from uneven times, data frames and traces, and the times that an array carries."""
+
+import importlib.util
+from types import SimpleNamespace
+
+import numpy as np
+import pandas as pd
+import pytest
+import xarray as xr
+
+from rockframe.errors import ComponentError, RecordError, RecordWarning, UnitsError
+from rockframe.motion import GroundMotion
+
+COUNT = 200
+STEP = 0.01
+TIMES = STEP * np.arange(COUNT)
+VALUES = np.random.default_rng(5).standard_normal(COUNT)
+UNEVEN = TIMES + np.where(np.arange(COUNT) % 7 == 3, 0.003, 0.0)
+DATES = pd.date_range("2020-01-01", periods=COUNT, freq="10ms")
+
+
+class TestTimesOfAnArray:
+    @pytest.mark.parametrize("index", [TIMES, DATES, DATES - DATES[0], DATES.tz_localize("UTC")])
+    def test_an_index_of_times_must_be_that_of_the_time_step(self, index):
+        series = pd.Series(VALUES, index=index)
+        motion = GroundMotion.from_arrays((series, "m/s^2"), "0.01 s")
+        assert motion.si.horizontal.samples.tolist() == VALUES.tolist()
+        with pytest.raises(ComponentError, match=r"has the step 0\.01 s, but time_step is 0\.02 s"):
+            GroundMotion.from_arrays((series, "m/s^2"), "0.02 s")
+        with pytest.raises(ComponentError, match="time axis of vertical"):
+            GroundMotion.from_arrays((VALUES, "m/s^2"), "0.02 s", (series, "m/s^2"))
+
+    def test_an_index_that_counts_is_no_time(self):
+        for index in (None, np.arange(5, COUNT + 5)):
+            series = pd.Series(VALUES, index=index)
+            assert len(GroundMotion.from_arrays((series, "m/s^2"), "0.02 s")) == COUNT
+
+    def test_an_uneven_index_is_refused(self):
+        series = pd.Series(VALUES, index=UNEVEN)
+        with pytest.raises(ComponentError, match=r"is not even.*from_times"):
+            GroundMotion.from_arrays((series, "m/s^2"), "0.01 s")
+
+    @pytest.mark.parametrize(
+        ("axis", "attributes"),
+        [(TIMES, {}), (1e3 * TIMES, {"units": "ms"}), (DATES.values, {})],
+    )
+    def test_a_time_axis_of_any_kind(self, axis, attributes):
+        array = xr.DataArray(VALUES, {"time": ("time", axis, attributes)}, attrs={"units": "m/s^2"})
+        assert len(GroundMotion.from_arrays(array, "0.01 s")) == COUNT
+        with pytest.raises(ComponentError, match=r"has the step 0\.01 s"):
+            GroundMotion.from_arrays(array, "0.02 s")
+
+
+class TestFromTimes:
+    def test_straight_lines_between_the_times(self):
+        motion = GroundMotion.from_times((UNEVEN, "s"), (VALUES, "m/s^2"), "0.005 s")
+        grid = 0.005 * np.arange(len(motion))
+        assert grid[-1] <= UNEVEN[-1] < grid[-1] + 0.005
+        expected = [
+            VALUES[k] + (VALUES[k + 1] - VALUES[k]) * (t - UNEVEN[k]) / (UNEVEN[k + 1] - UNEVEN[k])
+            for t in grid
+            for k in [min(np.searchsorted(UNEVEN, t, "right") - 1, COUNT - 2)]
+        ]
+        np.testing.assert_allclose(motion.si.horizontal.samples, expected, atol=1e-12)
+        assert "0.007 s to 0.013 s apart, straight lines between them" in motion.history[0]
+
+    def test_a_cubic_through_a_cubic_is_that_cubic(self):
+        cubic = 1.0 + UNEVEN - 3.0 * UNEVEN**2 + 0.5 * UNEVEN**3
+        motion = GroundMotion.from_times(
+            (UNEVEN, "s"), (cubic, "m/s^2"), "4 ms", interpolation="cubic"
+        )
+        t = 0.004 * np.arange(len(motion))
+        expected = 1.0 + t - 3.0 * t**2 + 0.5 * t**3
+        np.testing.assert_allclose(motion.si.horizontal.samples, expected, atol=1e-10)
+
+    def test_even_times_of_the_same_step_change_nothing(self):
+        motion = GroundMotion.from_times(
+            (TIMES, "s"), (VALUES, "cm/s^2"), "0.01 s", (-VALUES, "cm/s^2"), name="made up"
+        )
+        np.testing.assert_allclose(motion.si.horizontal.samples, 0.01 * VALUES, atol=1e-14)
+        np.testing.assert_allclose(motion.si.vertical.samples, -0.01 * VALUES, atol=1e-14)
+        assert motion.name == "made up"
+
+    def test_dates(self):
+        motion = GroundMotion.from_times(DATES, (VALUES, "m/s^2"), "0.01 s")
+        np.testing.assert_allclose(motion.si.horizontal.samples, VALUES, atol=1e-6)
+
+    def test_a_longer_step_than_between_the_times_is_warned_about(self):
+        with pytest.warns(RecordWarning, match="longer than the times are apart"):
+            GroundMotion.from_times((TIMES, "s"), (VALUES, "m/s^2"), "0.02 s")
+
+    @pytest.mark.parametrize(
+        ("times", "values", "step", "words"),
+        [
+            (TIMES[::-1], VALUES, "0.01 s", "rise from each to the next"),
+            ([0.0], [1.0], "0.01 s", "two or more"),
+            ([0.0, np.nan], [1.0, 1.0], "0.01 s", "finite times"),
+            (TIMES, VALUES[:-1], "0.01 s", "199 samples at 200 times"),
+            (TIMES, [np.nan, *VALUES[1:]], "0.01 s", "finite ones"),
+            (TIMES, VALUES, "1e-9 s", "must give 2 to"),
+            (TIMES, VALUES, "3 s", "must give 2 to"),
+        ],
+    )
+    def test_what_is_refused(self, times, values, step, words):
+        with pytest.raises(ComponentError, match=words):
+            GroundMotion.from_times((times, "s"), (values, "m/s^2"), step)
+
+    def test_units_are_needed(self):
+        with pytest.raises(UnitsError, match="needs an array of times with a unit"):
+            GroundMotion.from_times(TIMES, (VALUES, "m/s^2"), "0.01 s")
+        with pytest.raises(UnitsError):
+            GroundMotion.from_times((TIMES, "m"), (VALUES, "m/s^2"), "0.01 s")
+        with pytest.raises(ComponentError, match="interpolation"):
+            GroundMotion.from_times(
+                (TIMES, "s"), (VALUES, "m/s^2"), "0.01 s", interpolation="nearest"
+            )
+
+
+FRAME = pd.DataFrame({"t": TIMES, "N": VALUES, "E": 2.0 * VALUES, "DWN": 3.0 * VALUES})
+
+
+class TestFromFrame:
+    @pytest.mark.parametrize("frame", [FRAME, FRAME.assign(t=DATES)])
+    def test_columns_and_a_column_of_times(self, frame):
+        motion = GroundMotion.from_frame(frame, "gal", "E", time="t")
+        np.testing.assert_allclose(motion.si.horizontal.samples, 0.02 * VALUES, rtol=1e-14)
+        assert motion.si.time_step == STEP
+        assert (motion.metadata["component"], motion.metadata["azimuth"]) == ("E", 90.0)
+
+    def test_one_that_points_down_is_turned_over(self):
+        motion = GroundMotion.from_frame(FRAME, "gal", "N", "DWN", time="t")
+        np.testing.assert_allclose(motion.si.vertical.samples, -0.03 * VALUES, rtol=1e-14)
+        assert motion.history[-1] == "component DWN turned over: positive upwards"
+
+    def test_times_in_the_index_or_a_time_step(self):
+        only = pd.DataFrame({"acc": VALUES}, index=TIMES)
+        assert GroundMotion.from_frame(only, "g").si.time_step == STEP
+        counted = pd.DataFrame({"acc": VALUES})
+        assert GroundMotion.from_frame(counted, "g", time_step="0.02 s").si.time_step == 0.02
+        with pytest.raises(ComponentError, match="holds no times"):
+            GroundMotion.from_frame(counted, "g")
+        with pytest.raises(ComponentError, match=r"step 0\.01 s, but time_step is 0\.02 s"):
+            GroundMotion.from_frame(only, "g", time_step="0.02 s")
+
+    @pytest.mark.parametrize(
+        ("given", "words"),
+        [
+            ({}, "component must name one of the columns 'N', 'E', 'DWN'"),
+            ({"component": "U"}, "component 'U' is none of the columns"),
+            ({"component": "N", "vertical": "Z"}, "vertical 'Z' is none of the columns"),
+        ],
+    )
+    def test_columns_that_are_not_there(self, given, words):
+        with pytest.raises(ComponentError, match=words):
+            GroundMotion.from_frame(FRAME, "g", time="t", **given)
+
+    def test_what_else_is_refused(self):
+        with pytest.raises(ComponentError, match="needs a pandas DataFrame"):
+            GroundMotion.from_frame(VALUES, "g")
+        with pytest.raises(UnitsError):
+            GroundMotion.from_frame(FRAME, "s", "N", time="t")
+        with pytest.raises(ComponentError, match=r"not even.*from_times"):
+            GroundMotion.from_frame(FRAME.assign(t=UNEVEN), "g", "N", time="t")
+        with pytest.raises(ComponentError, match="'x' is none of the columns"):
+            GroundMotion.from_frame(FRAME, "g", "N", time="x")
+        with pytest.raises(ComponentError, match="must hold finite numbers"):
+            GroundMotion.from_frame(FRAME.assign(N=np.nan), "g", "N", time="t")
+
+
+def trace(channel="HNE", values=VALUES, *, start=0.0, rate=100.0, **more):
+    """What a trace of ObsPy looks like from outside."""
+    stats = {"delta": 1.0 / rate, "sampling_rate": rate, "starttime": start, **more}
+    held = SimpleNamespace(**stats)
+    held.get = stats.get
+    return SimpleNamespace(id=f"XX.MADE..{channel}", data=np.asarray(values), stats=held)
+
+
+def stream(*traces):
+    return SimpleNamespace(traces=list(traces))
+
+
+class TestFromTrace:
+    def test_one_trace(self):
+        motion = GroundMotion.from_trace(trace(), "gal")
+        np.testing.assert_allclose(motion.si.horizontal.samples, 0.01 * VALUES, rtol=1e-14)
+        assert motion.name == "XX.MADE.HNE"
+        assert motion.metadata["azimuth"] == 90.0
+        assert motion.metadata["unit_as_read"] == "gal"
+
+    def test_a_pair_of_a_stream(self):
+        held = stream(trace("HNN"), trace("HNE"), trace("HNZ", 2.0 * VALUES))
+        motion = GroundMotion.from_trace(held, "gal", ("N", "Z"))
+        np.testing.assert_allclose(motion.si.vertical.samples, 0.02 * VALUES, rtol=1e-14)
+        with pytest.raises(RecordError, match="3 components"):
+            GroundMotion.from_trace(held, "gal")
+
+    def test_pieces_of_a_channel_are_joined_unless_there_is_a_gap(self):
+        whole = GroundMotion.from_trace(trace(), "gal")
+        pieces = stream(trace(values=VALUES[:80]), trace(values=VALUES[80:], start=0.8))
+        assert GroundMotion.from_trace(pieces, "gal").sha256 == whole.sha256
+        pieces = stream(trace(values=VALUES[:80]), trace(values=VALUES[80:], start=0.85))
+        with pytest.raises(RecordError, match=r"a gap of 0\.05 s"):
+            GroundMotion.from_trace(pieces, "gal")
+        masked = np.ma.masked_array(VALUES, VALUES > 1.0)
+        held = trace()
+        held.data = masked
+        with pytest.raises(RecordError, match="masked samples"):
+            GroundMotion.from_trace(held, "gal")
+
+    def test_the_unit_is_given_or_stated(self):
+        with pytest.raises(RecordError, match="no unit of the samples"):
+            GroundMotion.from_trace(trace())
+        stated = trace(standard={"units": "cm/s^2"})
+        assert GroundMotion.from_trace(stated).metadata["unit_as_read"] == "cm/s^2"
+        with pytest.warns(RecordWarning, match=r"peak acceleration is .* g"):
+            GroundMotion.from_trace(trace(), "g")
+
+    @pytest.mark.parametrize("given", [3, "path", VALUES, stream(), None])
+    def test_what_is_no_trace(self, given):
+        with pytest.raises(ComponentError, match="needs an ObsPy Trace, or a Stream"):
+            GroundMotion.from_trace(given, "gal")
+
+    @pytest.mark.skipif(importlib.util.find_spec("obspy") is None, reason="ObsPy is not installed")
+    @pytest.mark.filterwarnings("ignore::DeprecationWarning")
+    def test_obspy_itself(self):
+        import obspy
+
+        own = obspy.Trace(VALUES, {"network": "XX", "station": "MADE", "channel": "HNE"})
+        own.stats.sampling_rate = 100.0
+        for given in (own, obspy.Stream([own])):
+            motion = GroundMotion.from_trace(given, "gal")
+            assert motion.sha256 == GroundMotion.from_trace(trace(), "gal").sha256
+            assert motion.metadata["record_time"] == "1970-01-01T00:00:00.000000Z"

@@ -1,0 +1,178 @@
+"""Text of several columns, leading counts and time steps, stated steps, tables of spectra."""
+
+import numpy as np
+import pytest
+from unit.motion.motion_files import G, numbers
+
+from rockframe.errors import RecordError, RecordWarning
+from rockframe.motion import GroundMotion
+
+COUNT = 64
+VALUES = numbers(COUNT)
+
+
+def read(write, text, name="r.txt", **given):
+    return GroundMotion.read(write(text, name), **given)
+
+
+def column(head: str = "", values=VALUES) -> str:
+    return head + "".join(f"{value:.7f}\n" for value in values)
+
+
+def table(head: str, columns, separator=",", step=0.01) -> str:
+    rows = zip(*columns, strict=True)
+    return head + "".join(
+        separator.join([f"{step * k:.2f}", *(f"{value:.7f}" for value in row)]) + "\n"
+        for k, row in enumerate(rows)
+    )
+
+
+class TestSpectra:
+    @pytest.mark.parametrize(
+        "head",
+        [
+            "Period (s),Sa (g)\n",
+            "T (s),PSA (g)\n",
+            "T (s),Sa_RotD50 (g)\n",
+            "T,Spectral acceleration (g)\n",
+            "Tn (s),acceleration (g)\n",
+            "Frequency (Hz),acceleration (g)\n",
+            "# 5 % damped response spectrum (g)\n",
+            "# design spectrum, units: g\n",
+        ],
+    )
+    @pytest.mark.parametrize("separator", [",", " "])
+    def test_a_table_of_a_spectrum_at_even_periods_is_refused(self, write, head, separator):
+        text = table(head.replace(",", separator), [np.abs(VALUES)], separator)
+        for given in ({}, {"unit": "g"}, {"format": "text", "unit": "g"}):
+            with pytest.raises(RecordError, match="a spectrum") as caught:
+                read(write, text, **given)
+            assert caught.value.line == 1
+
+    @pytest.mark.parametrize(
+        "head",
+        [
+            "T (s),a (g)\n",
+            "t,acc (g)\n",
+            "# matched to the target spectrum\ntime (s),acc (g)\n",
+            "# artificial, compatible with a response spectrum, unit: g\n",
+            "# station Sa Pobla\ntime (s),acc (g)\n",
+        ],
+    )
+    def test_motions_are_not_taken_for_spectra(self, write, head):
+        assert len(read(write, table(head, [VALUES]))) == COUNT
+
+
+class TestStatedSteps:
+    @pytest.mark.parametrize(
+        ("head", "step"),
+        [
+            ("# dt = 0.005 s, unit: g\n", 0.005),
+            ("# unit: g\n# DT=.01\n", 0.01),
+            ("% time step (ms): 4, unit: g\n", 0.004),
+            ("# Time Increment (s)   : 0.02\n# unit: g\n", 0.02),
+            ("# sampling rate: 200 Hz, unit: g\n", 0.005),
+            ("# Sampling Frequency (Hz) = 128\n# unit: g\n", 1.0 / 128.0),
+        ],
+    )
+    def test_of_the_header_it_counts(self, write, head, step):
+        assert read(write, column(head)).si.time_step == step
+        assert read(write, column(head), time_step=f"{step!r} s").si.time_step == step
+        with pytest.raises(RecordError, match=r"line \d: .*expected the 0\.03 s asked for"):
+            read(write, column(head), time_step="0.03 s")
+
+    def test_times_that_differ_from_it_are_used_with_a_warning(self, write):
+        text = table("# dt = 0.005 s\ntime (s),acc (g)\n", [VALUES])
+        with pytest.warns(RecordWarning, match=r"line 1: .* 0\.005 s, but the times are 0\.01 s"):
+            assert read(write, text).si.time_step == 0.01
+
+
+class TestFirstLines:
+    @pytest.mark.parametrize("first", ["0.01\n", ".0050\n", "0.02\n", "1e-2\n"])
+    def test_a_time_step_on_top_of_a_column_is_no_sample(self, write, first):
+        text = first + column()
+        tidy = "e" not in first
+        if tidy:
+            with pytest.raises(RecordError, match="looks like a time step"):
+                read(write, text, unit="g")
+            with pytest.raises(RecordError, match="above the samples"):
+                read(write, text, unit="g", time_step="0.5 s")
+        with pytest.warns(RecordWarning, match="the time step"):
+            motion = read(write, text, unit="g", time_step=f"{float(first)} s")
+        assert len(motion) == COUNT + (not tidy)
+
+    def test_a_first_sample_printed_like_the_others_stays_one(self, write):
+        motion = read(write, column(values=[0.005, *VALUES]), unit="g", time_step="0.01 s")
+        assert len(motion) == COUNT + 1
+
+    @pytest.mark.parametrize(
+        "head", ["{n} 0.01\n", "0.01 {n}\n", "{n}\n0.01\n", "made up\n{n} 0.01\n", "# x\n{n} .01\n"]
+    )
+    @pytest.mark.parametrize("per_line", [1, 5, 8])
+    def test_a_count_and_a_time_step(self, write, head, per_line):
+        printed = [f"{value:.7f}" for value in VALUES]
+        body = "\n".join(" ".join(printed[k : k + per_line]) for k in range(0, COUNT, per_line))
+        motion = read(write, f"{head.format(n=COUNT)}{body}\n", unit="g")
+        assert motion.si.horizontal.samples.tolist() == (VALUES * G).tolist()
+        assert motion.si.time_step == 0.01
+        with pytest.raises(RecordError, match=r"expected the 0\.02 s asked for"):
+            read(write, f"{head.format(n=COUNT)}{body}\n", unit="g", time_step="0.02 s")
+
+    def test_a_count_that_is_not_that_of_the_numbers(self, write):
+        rows = "\n".join(" ".join(f"{v:.7f}" for v in VALUES[k : k + 8]) for k in range(0, 64, 8))
+        with pytest.warns(RecordWarning, match="declares 66 samples, but the file holds 64"):
+            read(write, f"66 0.01\n{rows}\n", unit="g")
+        with pytest.raises(RecordError, match="expected 640 samples"):
+            read(write, f"640 0.01\n{rows}\n", unit="g")
+
+
+class TestColumns:
+    COLUMNS = (VALUES, 0.5 * VALUES, -0.25 * VALUES)
+
+    def test_three_components_with_names(self, write):
+        text = table("time (s),N (g),E (g),DWN (g)\n", self.COLUMNS)
+        motion = read(write, text, component=("N", "U"))
+        assert motion.si.horizontal.samples.tolist() == (VALUES * G).tolist()
+        np.testing.assert_allclose(motion.si.vertical.samples, 0.25 * VALUES * G, atol=1e-6)
+        assert motion.history[-1] == "component DWN turned over: positive upwards"
+        with pytest.raises(RecordError, match=r"3 components: 'N' .*, 'E' .*, 'DWN'"):
+            read(write, text)
+
+    def test_names_of_other_kinds(self, write):
+        text = table("Time,acc_x,HNE,Acc_Z\ns,m/s2,m/s2,m/s2\n", self.COLUMNS)
+        assert read(write, text, component="acc_x").si.horizontal.samples[3] == VALUES[3]
+        assert read(write, text, component="E").metadata["component"] == "HNE"
+        assert read(write, text, component="U").metadata["component"] == "Acc_Z"
+
+    def test_without_times(self, write):
+        rows = "".join(f"{a:.7f} {b:.7f} {c:.7f}\n" for a, b, c in zip(*self.COLUMNS, strict=True))
+        named = "N  E  Z\n" + rows
+        motion = read(write, named, component="E", unit="g", time_step="0.02 s")
+        assert (motion.si.time_step, motion.metadata["azimuth"]) == (0.02, 90.0)
+        bare = read(write, rows, component="column 2", unit="g", time_step="0.02 s")
+        assert bare.sha256 == motion.sha256
+        with pytest.raises(RecordError, match="no times"):
+            read(write, named, component="E", unit="g")
+
+    def test_without_names_a_column_that_rises_holds_the_times(self, write):
+        text = table("", self.COLUMNS)
+        motion = read(write, text, component="column 3", unit="g")
+        assert motion.si.time_step == 0.01
+        np.testing.assert_allclose(motion.si.horizontal.samples, 0.5 * VALUES * G, atol=1e-6)
+
+    def test_velocities_and_displacements_beside_an_acceleration_are_left_out(self, write):
+        head = "Time (s),Acceleration (g),Velocity (cm/s),Displacement (cm)\n"
+        motion = read(write, table(head, self.COLUMNS))
+        assert motion.si.horizontal.samples.tolist() == (VALUES * G).tolist()
+        with pytest.raises(RecordError, match="expected accelerations"):
+            read(write, table("time (s),vx (cm/s),vy (cm/s),vz (cm/s)\n", self.COLUMNS))
+
+
+def test_a_zero_printed_short_at_the_end_of_its_field_is_no_cut_number(write):
+    rows = [f"{0.02 * k:20.15f}{value:20.15f}" for k, value in enumerate(VALUES)]
+    text = "\n".join(rows[:-1]) + f"\n{0.02 * (COUNT - 1):20.15f}{'0':>20}"
+    motion = read(write, text, unit="g")
+    assert len(motion) == COUNT
+    assert motion.si.horizontal.samples[-1] == 0.0
+    with pytest.raises(RecordError, match="inside a number"):
+        read(write, "\n".join(rows)[:-3], unit="g")

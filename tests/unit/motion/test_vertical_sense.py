@@ -1,0 +1,85 @@
+"""A vertical component is positive upwards in a motion, whatever its file calls it."""
+
+import numpy as np
+import pytest
+from unit.motion.dialect_samples import VALUES, sac
+from unit.motion.format_samples import csmip_channel, cwa, smc
+from unit.motion.motion_files import EVENT, at2, numbers
+
+from rockframe.errors import RecordWarning
+from rockframe.motion import GroundMotion
+
+COUNT = 61
+POINTS = f"NPTS= {COUNT}, DT= .01 SEC"
+
+
+def pair(write, name: str):
+    """A level component of one file, and a vertical one of another, by the name it has there."""
+    values = numbers(COUNT)
+    level = GroundMotion.read(write(at2(POINTS, values), "h.AT2"))
+    event = EVENT.replace(", 67", f", {name}")
+    path = write(at2(POINTS, 0.5 * values, event=event), "v.AT2")
+    return level, GroundMotion.read(path, component=name), 0.5 * values * 9.80665
+
+
+@pytest.mark.parametrize(
+    ("name", "sign"),
+    [
+        *((name, -1.0) for name in ("DWN", "DOWN", "DN", "D")),
+        *((name, 1.0) for name in ("UP", "U")),
+    ],
+)
+def test_the_name_tells(write, name, sign):
+    level, vertical, values = pair(write, name)
+    motion = level.with_vertical(vertical)
+    np.testing.assert_allclose(motion.si.vertical.samples, sign * values, rtol=1e-6)
+    turned = f"component {name} turned over: positive upwards"
+    assert (turned in motion.history) == (sign < 0.0)
+    assert motion.metadata["vertical_positive"] == "up"
+    assert motion.metadata["vertical_component"] == name
+
+
+@pytest.mark.parametrize("name", ["V", "VERT", "VER"])
+def test_a_name_that_does_not_tell_is_warned_about(write, name):
+    level, vertical, values = pair(write, name)
+    with pytest.warns(RecordWarning, match="does not say whether it is positive upwards"):
+        motion = level.with_vertical(vertical)
+    np.testing.assert_allclose(motion.si.vertical.samples, values, rtol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("text", "name", "component"),
+    [
+        (cwa(sequence="Time U(-); N(+); E(+)"), "r.dat", "-U"),
+        (csmip_channel(2, VALUES["U"], channel=1, name="DOWN"), "r.V2", "DOWN"),
+        (smc(VALUES["U"], slope=180, name=""), "r.smc", "DOWN"),
+    ],
+    ids=["cwa", "csmip", "smc"],
+)
+def test_headers_of_other_formats_tell_too(write, text, name, component):
+    path = write(text, name)
+    vertical = GroundMotion.read(path, component=component)
+    assert vertical.metadata["positive"] == "down"
+    upwards = GroundMotion.read(path, component="U")
+    assert upwards.metadata["positive"] == "up"
+    np.testing.assert_array_equal(upwards.si.horizontal.samples, -vertical.si.horizontal.samples)
+    level = GroundMotion.from_arrays((VALUES["N"], "m/s^2"), f"{vertical.si.time_step!r} s")
+    both = [level.with_vertical(one).si.vertical.samples for one in (vertical, upwards)]
+    np.testing.assert_array_equal(both[0], both[1])
+
+
+def test_a_component_that_was_mirrored_points_the_other_way(write):
+    path = write(sac(VALUES["U"], incidence=180.0, channel="HNZ"), "r.sac")
+    down = GroundMotion.read(path, component="HNZ", unit="gal")
+    level = GroundMotion.from_arrays((VALUES["N"], "m/s^2"), "0.01 s")
+    expected = level.with_vertical(down).si.vertical.samples
+    for mirrored in (down.scaled(-1.0), down.scaled(-2.0).scaled(0.5), down.scaled(-1).scaled(1)):
+        vertical = level.with_vertical(mirrored).si.vertical.samples
+        np.testing.assert_allclose(vertical, expected, rtol=1e-14)
+
+
+def test_an_analytic_motion_has_no_sense_and_keeps_its_sign():
+    pulse = GroundMotion.sine_pulse()
+    both = pulse.with_vertical(pulse.scaled(-0.5))
+    assert both.si.vertical.samples.min() == pytest.approx(-0.5 * pulse.si.horizontal.samples.max())
+    assert "vertical_positive" not in both.metadata

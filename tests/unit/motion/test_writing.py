@@ -1,0 +1,68 @@
+"""AT2 files that are written: what other programs find there, and what comes back."""
+
+import numpy as np
+import pytest
+
+from rockframe.errors import ComponentError
+from rockframe.motion import GroundMotion
+
+VALUES = np.random.default_rng(7).standard_normal(203) * np.geomspace(1e-9, 3.0, 203)
+METADATA = {"event": "Somewhere, Some Day", "station": "Gilroy, Gavilan", "component": "067"}
+
+
+def made(step="0.005 s"):
+    motion = GroundMotion.from_arrays((VALUES, "m/s^2"), step, (-2.0 * VALUES, "m/s^2"))
+    return GroundMotion(motion.si, name="made up", metadata=METADATA)
+
+
+@pytest.mark.parametrize("component", ["horizontal", "vertical"])
+@pytest.mark.parametrize("step", ["0.005 s", "0.00390625 s", "0.02 s", "0.0033333333333333335 s"])
+def test_what_is_written_is_read_again(tmp_path, component, step):
+    motion = made(step)
+    path = tmp_path / "w.AT2"
+    motion.to_at2(path, component)
+    again = GroundMotion.read(path, component="067" if component == "horizontal" else "UP")
+    own = motion.si.horizontal if component == "horizontal" else motion.si.vertical
+    np.testing.assert_allclose(again.si.horizontal.samples, own.samples, rtol=5.1e-8)
+    assert again.si.time_step == motion.si.time_step
+    assert again.metadata["event"] == "Somewhere Some Day"
+    assert again.metadata["station"] == "Gilroy Gavilan"
+
+
+def test_the_layout_is_that_of_peer(tmp_path):
+    path = tmp_path / "w.AT2"
+    made().to_at2(path)
+    text = path.read_bytes()
+    assert b"\r" not in text
+    lines = text.decode("ascii").split("\n")
+    assert lines[2] == "ACCELERATION TIME SERIES IN UNITS OF G"
+    assert lines[3] == "NPTS=    203, DT=  0.0050 SEC,"
+    assert {len(line) for line in lines[4:44]} == {75}
+    assert float(lines[44][30:45]) == pytest.approx(VALUES[202] / 9.80665, rel=5.1e-8)
+    assert lines[45:] == [""]
+    fields = [float(field) for line in lines[4:] for field in line.split()]
+    assert len(fields) == 203
+
+
+def test_letters_that_not_every_program_reads(tmp_path):
+    motion = GroundMotion(made().si, metadata={"event": "İzmir", "station": "Muğla"})
+    motion.to_at2(tmp_path / "w.AT2")
+    assert GroundMotion.read(tmp_path / "w.AT2").metadata["station"] == "Mu?la"
+
+
+def test_what_cannot_be_written(tmp_path):
+    level = GroundMotion.from_arrays((VALUES, "m/s^2"), "0.01 s")
+    with pytest.raises(ComponentError, match="no vertical component"):
+        level.to_at2(tmp_path / "w.AT2", "vertical")
+    with pytest.raises(ComponentError, match="component must be 'horizontal' or 'vertical'"):
+        level.to_at2(tmp_path / "w.AT2", "up")
+    with pytest.raises(OSError, match=r"w\.AT2"):
+        level.to_at2(tmp_path / "nowhere" / "w.AT2")
+
+
+def test_an_analytic_motion_is_written_by_its_samples(tmp_path):
+    pulse = GroundMotion.sine_pulse()
+    pulse.to_at2(tmp_path / "w.AT2")
+    again = GroundMotion.read(tmp_path / "w.AT2")
+    samples = pulse.si.horizontal.samples
+    np.testing.assert_allclose(again.si.horizontal.samples, samples, rtol=5.1e-8, atol=1e-15)
