@@ -172,7 +172,7 @@ def times_to_si(value: object, *, owner: str, name: str) -> Array:
     factor = 1.0
     dates = getattr(value, "dtype", None)
     if getattr(dates, "kind", "") in {"m", "M"}:
-        found = seconds_of(getattr(value, "values", value), "s")
+        found = seconds_of(value, "s")
         if found is None:
             msg = f"{owner}: {name} needs two or more dates, and none missing"
             raise ComponentError(msg)
@@ -274,7 +274,7 @@ def declared_times(value: object) -> Array | None:
     index = getattr(held, "index", None)
     if not hasattr(held, "iloc") or index is None:  # no pandas Series
         return None
-    return seconds_of(index.values, "s")
+    return seconds_of(index, "s")
 
 
 def seconds_of(axis: object, unit: object) -> Array | None:
@@ -292,7 +292,12 @@ def seconds_of(axis: object, unit: object) -> Array | None:
     ndarray, shape (n,), or None
         None if it is no axis of two times or more; whole numbers count, and are no times.
     """
-    values: npt.NDArray[Any] = np.asarray(axis)
+    given: Any = axis
+    if getattr(getattr(axis, "dtype", None), "tz", None) is not None:
+        import pandas as pd
+
+        given = pd.DatetimeIndex(given).tz_convert("UTC").tz_localize(None)
+    values: npt.NDArray[Any] = np.asarray(given)
     if values.ndim != 1 or values.size < 2:
         return None
     if values.dtype.kind in "mM":

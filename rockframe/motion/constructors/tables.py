@@ -7,7 +7,6 @@ from enum import StrEnum
 from typing import TYPE_CHECKING, Any, Final, cast
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from rockframe.arguments import one_of_words
 from rockframe.errors import ComponentError, RecordWarning, shown
@@ -144,6 +143,8 @@ def from_times(
 def _read_off(times: Array, values: Array, grid: Array, between: Between) -> Array:
     if between is Between.LINEAR:
         return np.interp(grid, times, values)
+    from scipy.interpolate import CubicSpline  # loads much that nothing else here needs
+
     spline: Any = CubicSpline(times, values)
     return np.asarray(spline(grid), dtype=np.float64)
 
@@ -237,7 +238,7 @@ def _column(frame: Any, label: object, owner: str, argument: str) -> Array:
         listed = ", ".join(repr(one) for one in list(frame.columns)[:10])
         msg = f"{owner}: {argument} {label!r} is none of the columns {listed}"
         raise ComponentError(msg)
-    values = np.asarray(frame[label].values)
+    values = np.asarray(frame[label])
     if values.ndim != 1 or values.dtype.kind not in "fiu" or not np.isfinite(values).all():
         msg = f"{owner}: the column {label!r} must hold finite numbers, and no gaps"
         raise ComponentError(msg)
@@ -249,10 +250,11 @@ def _step(frame: Any, time: str | None, time_step: QuantityLike | None, owner: s
     if time_step is not None:
         asked = to_si(time_step, TIME_STEP, owner=owner, name="time_step", condition=POSITIVE)
     if time is None:
-        axis = frame.index.values
+        axis = frame.index
     elif time in frame.columns:
-        axis = np.asarray(frame[time].values)
-        axis = axis if axis.dtype.kind in "mM" else axis.astype(np.float64)
+        axis = frame[time]
+        if getattr(axis.dtype, "kind", "") not in "mM":
+            axis = np.asarray(axis, dtype=np.float64)
     else:
         msg = f"{owner}: time {time!r} is none of the columns"
         raise ComponentError(msg)

@@ -86,7 +86,7 @@ class _Header:
         """Give a text of so many words, up to its first zero; empty if it is not known."""
         data = self.text[8 * place : 8 * (place + count)].split(b"\x00")[0]
         text = "".join(c for c in data.decode("latin-1") if c.isprintable()).strip()
-        return "" if text == str(_UNKNOWN) else text
+        return "" if set(text.split()) <= {str(_UNKNOWN)} else text
 
 
 def recognises(source: Source) -> bool:
@@ -142,9 +142,11 @@ def _header(source: Source) -> _Header | None:
         return None
     for order in "<>":
         integers = np.frombuffer(data, f"{order}i4", _INTEGERS, 4 * _FLOATS)
-        floats = np.frombuffer(data, f"{order}f4", _FLOATS).astype(np.float64)
-        fits = integers[_VERSION] in _VERSIONS and integers[_EVEN] in (0, 1)
-        if fits and integers[_POINTS] > 0 and 0.0 < floats[_DELTA] < _LONGEST_STEP:
+        if integers[_VERSION] not in _VERSIONS or integers[_EVEN] not in (0, 1):
+            continue
+        with np.errstate(invalid="ignore"):  # any bytes may stand there
+            floats = np.frombuffer(data, f"{order}f4", _FLOATS).astype(np.float64)
+        if integers[_POINTS] > 0 and 0.0 < floats[_DELTA] < _LONGEST_STEP:
             return _Header(order, floats, integers, data[_TEXT:_HEADER])
     return None
 
@@ -162,7 +164,8 @@ def _samples(source: Source, request: Request, header: _Header, name: str) -> Re
     time_step = float(f"{header.floats[_DELTA]:.7g}")
     check_time_step(source, time_step, None)
     check_asked_time_step(source, request, time_step, None)
-    values = np.frombuffer(source.data, f"{header.order}f4", count, _HEADER).astype(np.float64)
+    with np.errstate(invalid="ignore"):
+        values = np.frombuffer(source.data, f"{header.order}f4", count, _HEADER).astype(np.float64)
     if not np.isfinite(values).all():
         raise source.refuse(found="samples that are not finite", expected="finite samples")
     metadata, start = _description(header)

@@ -197,7 +197,7 @@ def _step_without_times(source: Source, request: Request, table: Table) -> float
 def _first_sample(source: Source, request: Request, table: Table) -> tuple[int, list[str]]:
     """Tell whether the samples begin in the second row, below the time step, and say so."""
     asked = request.time_step
-    if asked is None or table.values.shape[1] > 1:
+    if asked is None or table.values.shape[1] > 1 or stated_step(table.header) is not None:
         return 0, []
     number, line = table.first_fields[0], table.lines[0]
     where = f"{source.path}, line {line}: {number} is"
