@@ -262,6 +262,19 @@ LONG = {
     "channels": SAMPLES["csmip2"].data * 2**9,
     "components": SAMPLES["geonet2"].data * 2**8,
     "counts": knet().encode() + b" 1" * 2**19,
+    "columns": b"0.01,2.0,3.0,4.0\n" * 300_000,
+    "columns of numbers": b"1 2 3\n" * 299_999,
+    "a leading count": b"999999 0.01\n" + b"1 2 3 4 5 6 7 8\n" * 300_000,
+    "a leading count of all": b"2400000 0.01\n" + b"1 2 3 4 5 6 7 8\n" * 300_000,
+    "pairs": SAMPLES["pairs"].data * 2**9,
+    "first lines of channels": b"UNCORRECTED ACCELEROGRAM DATA\n" * 2**18,
+    "rows of three columns": SAMPLES["afad"].data + b"1 2 3\n" * 300_000,
+    "rows of two columns": SAMPLES["afad"].data + b"1 2\n" * 300_000,
+    "rows of wide columns": SAMPLES["unam"].data + b"     1.000     1.000     1.000\n" * 300_000,
+    "blocks": SAMPLES["bhrc"].data * 2**7,
+    "keys": b"Time Increment (s) : 0.01\nNumber of Data : 7\n" + b"a : b\n" * 300_000,
+    "numbers behind": SAMPLES["resorce"].data + b" 1.0000000E+00" * 2**18,
+    "marks": SAMPLES["at2 marked"].data * 2**10,
 }
 
 

@@ -54,8 +54,8 @@ BINARY: Final = True
 
 _MAGIC: Final = b"\x89HDF\r\n\x1a\n"
 _MARKS: Final = (b"Waveforms", b"file_format")
-_NODES: Final = (b"SNOD", b"OHDR")
-_MOST_NODES: Final = 4_000
+_NODES: Final = {b"SNOD": 4, b"OHDR": 1}  # what lists the objects, and how many each, about
+_MOST_OBJECTS: Final = 5_500
 _WAVEFORM: Final = re.compile(
     r"(\w{1,8}\.\w{1,8}\.[\w-]{0,8}\.\w{1,8})__([\dT:.Z-]{10,40})__([\dT:.Z-]{10,40})__(\S{1,80})"
 )
@@ -111,9 +111,11 @@ def read(source: Source, request: Request) -> Record:
     if request.unit is not None and request.response is not None:
         found = "the arguments unit and response"
         raise source.refuse(found=found, expected="one of them: accelerations, or counts")
-    if sum(map(source.data.count, _NODES)) > _MOST_NODES:
-        expected = "the workspace of one event, with fewer stations"
-        raise source.refuse(found="more arrays than are looked at", expected=expected)
+    objects = sum(source.data.count(mark) * held for mark, held in _NODES.items())
+    if objects > _MOST_OBJECTS:
+        found = f"about {objects} groups and arrays"
+        expected = f"at most {_MOST_OBJECTS}; open larger files with pyasdf and use from_trace"
+        raise source.refuse(found=found, expected=expected)
     import netCDF4
 
     try:

@@ -54,6 +54,7 @@ _TEXT: Final = 440
 _SAMPLE: Final = 4
 _UNKNOWN: Final = -12345
 _VERSIONS: Final = (6, 7)
+_FOOTER: Final = 176  # of version 7: 22 doubles
 _LONGEST_STEP: Final = 1e4
 _TIME_SERIES: Final = 1
 _KINDS: Final = {6: "a displacement", 7: "a velocity", 50: "volts"}
@@ -197,6 +198,9 @@ def _doubts(source: Source, header: _Header, values: Array, time_step: float) ->
                 f"{source.path}: the header states {said:.6g} as the {what} sample, but the "
                 f"samples have {is_there:.6g}"
             )
+    behind = len(source.data) - _HEADER - _SAMPLE * values.size
+    if behind not in (0, _FOOTER):
+        doubts.append(f"{source.path}: {behind} bytes behind the last sample are not read")
     begin, end = header.known(_BEGIN), header.known(_END)
     if begin is not None and end is not None:
         length = (values.size - 1) * time_step

@@ -66,6 +66,13 @@ class TestSac:
         with pytest.raises(RecordError, match="announced"):
             read_sac(write, count=2**31 - 1)
 
+    def test_more_than_announced(self, write):
+        own = read_sac(write)
+        with pytest.warns(RecordWarning, match="8 bytes behind the last sample are not read"):
+            more = GroundMotion.read(write(sac() + bytes(8), "r.sac"), unit="gal")
+        assert more.sha256 == own.sha256
+        GroundMotion.read(write(sac() + bytes(176), "r.sac"), unit="gal")
+
     @pytest.mark.parametrize(("incidence", "sign"), [(0.0, 1.0), (180.0, -1.0)])
     def test_up_and_down(self, write, incidence, sign):
         motion = read_sac(write, incidence=incidence, channel="HNZ", component="U")
