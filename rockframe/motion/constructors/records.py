@@ -58,8 +58,8 @@ def read(
     time_step : str or Quantity, optional
         For a column of samples without times [s].
     response : str or path-like, optional
-        StationXML with the response of the instrument, for counts in
-        miniSEED; looked for beside the file unless given.
+        StationXML with the response of the instrument, for counts
+        (miniSEED, SAC, ASDF); looked for beside the file unless given.
 
     Returns
     -------
@@ -81,8 +81,9 @@ def read(
     Warns
     -----
     RecordWarning
-        The file contradicts itself or an argument a little, its peak or time
-        step is unusual, or its only component is vertical.
+        The file contradicts itself or an argument a little (such as a stated peak
+        and its samples), its peak, offset or time step is unusual, or its only
+        component is vertical.
     """
     owner = f"{kind.__name__}.read"
     horizontal, vertical = component_names(component, owner=owner)

@@ -236,6 +236,7 @@ def _component_of_pairs(source: Source, request: Request, first: int, pairs: Pai
         check_time_step(source, time_step, line)
         check_asked_time_step(source, request, time_step, line)
         doubts = _doubts(source, header, first, time_step, values, unit)
+        doubts += surplus(source, pairs.behind, "'NO. OF POINTS'")
         metadata = {**description(header), "unit_as_read": as_read}
         return Record(time_step, values, unit, metadata, warnings=(*warnings, *doubts))
 

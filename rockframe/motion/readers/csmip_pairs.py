@@ -56,6 +56,11 @@ class Pairs:
     unit_line: int
     data_at: int
 
+    @property
+    def behind(self) -> int:
+        """Index of the first line behind them, from 0."""
+        return self.data_at + -(-2 * self.count // _FULL)
+
 
 def find_pairs(source: Source, first: int) -> Pairs | None:
     """Look for pairs below a channel's first line.
@@ -123,7 +128,7 @@ def read_pairs(source: Source, pairs: Pairs) -> tuple[float, Array]:
         )
     layout = {"width": width, "per_line": _FULL, "indent": indent}
     values = fixed_width(source, pairs.data_at, 2 * pairs.count, **layout).reshape(-1, 2)
-    rows = source.lines[pairs.data_at : pairs.data_at + -(-2 * pairs.count // _FULL)]
+    rows = source.lines[pairs.data_at : pairs.behind]
     printed = [
         row[indent + place : indent + place + width].strip()
         for row in rows

@@ -154,10 +154,10 @@ def _check_pieces(source: Source) -> None:
 
 def _rate(factor: int, multiplier: int) -> float:
     """Give samples per second; negative numbers stand for periods and divisors."""
-    over = float(factor) if factor > 0 else (-1.0 / factor if factor else 0.0)
-    return over * (
-        float(multiplier) if multiplier > 0 else -1.0 / multiplier if multiplier else 1.0
-    )
+    over = float(factor) if factor >= 0 else -1.0 / factor
+    if multiplier < 0:
+        return -over / multiplier
+    return over * multiplier if multiplier else over
 
 
 @contextmanager

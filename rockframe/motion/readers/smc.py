@@ -28,7 +28,7 @@ from rockframe.motion.readers.fixed import (
     header_number,
     whole,
 )
-from rockframe.motion.readers.numbers import NUMBER
+from rockframe.motion.readers.numbers import NUMBER, with_e
 from rockframe.motion.readers.orientation import (
     DOWNWARDS,
     UNKNOWN,
@@ -189,7 +189,7 @@ def _samples(source: Source, request: Request) -> Record:
 def _doubts(source: Source, values: Array, unit: RecordUnit) -> list[str]:
     """Hold the largest of the peaks in reals 30 and 32 against the samples."""
     printed = [cell(source, _REALS, place, **_REAL_LAYOUT) for place in _PEAKS]
-    stated = [abs(float(text)) for text in printed if _REAL.fullmatch(text)]
+    stated = [abs(float(with_e(text))) for text in printed if _REAL.fullmatch(text)]
     known = [value for value in stated if value < _UNKNOWN_REAL / 10.0]
     if len(known) < len(_PEAKS):
         return []

@@ -27,11 +27,10 @@ from rockframe.motion.readers.text_header import (
     acceleration_columns,
     column_names,
     has_times,
-    stated_peak,
-    stated_step,
     time_scale,
     unit_of_header,
 )
+from rockframe.motion.readers.text_stated import stated_peak, stated_step
 from rockframe.motion.readers.timing import uniform_step
 
 if TYPE_CHECKING:

@@ -1,4 +1,4 @@
-"""What the lines above columns of numbers say: names, units, time step, peak."""
+"""What the lines above columns of numbers say: names, units, and whether it is a spectrum."""
 
 from __future__ import annotations
 
@@ -8,18 +8,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from rockframe.motion.readers.columns import Table, split_header
-from rockframe.motion.readers.numbers import NUMBER
 from rockframe.motion.readers.orientation import UNKNOWN, Orientation, orientation_of
 from rockframe.motion.readers.source import Source, shown
+from rockframe.motion.readers.text_stated import TIME_UNITS
 from rockframe.motion.unit_names import acceleration_unit, other_quantity
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
-
-TIME_UNITS: Final = {
-    **dict.fromkeys(("s", "sec", "secs", "sec.", "second", "seconds"), 1.0),
-    **dict.fromkeys(("ms", "msec", "millisecond", "milliseconds"), 1e-3),
-}
 
 # brackets inside brackets once, as in [1/(s^2)]; no blank can be matched in two ways
 _BRACKETED: Final = re.compile(r"[(\[{]([^()\[\]{}]*(?:\([^()]*\)[^()\[\]{}]*)?)[)\]}]")
@@ -39,22 +34,6 @@ _SPECTRUM: Final = re.compile(
     re.IGNORECASE,
 )
 _MATCHED: Final = re.compile(r"match|compatib|artificial|time", re.IGNORECASE)
-_STEP: Final = re.compile(
-    rf"(?:\bd_?t|\bdelta[ _]?t|\btime[ _-]?(?:step|increment|interval)|"
-    rf"\bsampl(?:ing|e)[ _-]?(?:interval|period))\s*(?:[(\[]\s*([a-z]{{1,7}})\.?\s*[)\]])?"
-    rf"\s*[:=]\s*({NUMBER})\s*([a-z]{{0,7}})",
-    re.IGNORECASE | re.ASCII,
-)
-_RATE: Final = re.compile(
-    rf"(?:\bsampl(?:ing|e)[ _-]?(?:rate|frequency))\s*(?:[(\[]\s*(?:hz|sps)\s*[)\]])?"
-    rf"\s*[:=]\s*({NUMBER})",
-    re.IGNORECASE | re.ASCII,
-)
-_PEAK: Final = re.compile(
-    rf"\b(?:pga|peak(?: ground)? acceleration)\s*(?:[(\[]\s*([^()\[\]]{{1,12}})[)\]])?"
-    rf"\s*[:=]\s*({NUMBER})\s*([a-z][a-z0-9/^*-]{{0,11}})?",
-    re.IGNORECASE | re.ASCII,
-)
 _WORDS: Final = re.compile(r"[^\W_]+")
 
 
@@ -313,54 +292,6 @@ def unit_of_header(source: Source, table: Table, *, asked: bool) -> tuple[str | 
             raise source.refuse(found=found, expected="one unit, or the argument unit", line=line)
         return name, line
     return other or unknown or (None, None)
-
-
-def stated_step(header: list[tuple[int, str]]) -> tuple[float, int] | None:
-    """Find a time step, or a sampling rate, that the header states, and its line.
-
-    Parameters
-    ----------
-    header : list of tuple of int and str
-        Lines from 1, and their text.
-
-    Returns
-    -------
-    tuple of float [s] and int, or None
-    """
-    for line, text in header:
-        step, rate = _STEP.search(text), _RATE.search(text)
-        if step is not None:
-            before, printed, behind = step.groups()
-            scale = TIME_UNITS.get((before or behind or "s").casefold(), 1.0)
-            value = float(printed.upper().replace("D", "E"))
-            return float(f"{value * scale:.15g}"), line
-        if rate is not None:
-            value = float(rate.group(1).upper().replace("D", "E"))
-            if 0.0 < value < math.inf:
-                return 1.0 / value, line
-    return None
-
-
-def stated_peak(header: list[tuple[int, str]]) -> tuple[str, str, int] | None:
-    """Find a peak that the header states: the number as printed, its unit, its line.
-
-    Parameters
-    ----------
-    header : list of tuple of int and str
-        Lines from 1, and their text.
-
-    Returns
-    -------
-    tuple of str, str and int, or None
-    """
-    for line, text in header:
-        match = _PEAK.search(text)
-        if match is not None:
-            before, printed, behind = match.groups()
-            unit = (before or behind or "").strip()
-            if unit:
-                return printed, unit, line
-    return None
 
 
 def in_brackets(text: str) -> list[str]:

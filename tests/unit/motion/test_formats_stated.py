@@ -116,10 +116,11 @@ def test_a_stated_length_must_be_that_of_the_samples(text, given, write):
         (made.cgs(), "/&", {"component": "360"}),
         (COSMOS, "End-of-data", {}),
         (formats.smc(), None, {}),
+        (made.pairs(), "/&", {"component": "EW"}),
         (made.bhrc(), "/&", {"component": "L1"}),
         (made.resorce(), None, {}),
     ],
-    ids=["csmip", "cosmos", "smc", "bhrc", "resorce"],
+    ids=["csmip", "cosmos", "smc", "pairs", "bhrc", "resorce"],
 )
 def test_rows_behind_the_announced_samples_are_said_to_be_left_out(text, mark, given, write):
     own = GroundMotion.read(write(text, "record"), **given)
