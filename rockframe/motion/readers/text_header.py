@@ -28,6 +28,8 @@ _PERIOD_NAME: Final = re.compile(r"\W*(period|freq|omega|t_?n\b)", re.IGNORECASE
 _SPECTRAL_NAME: Final = re.compile(
     r"\W*(?:pseudo|p?s_?[adv](?![a-z])|f(?:ourier|as\b|ft\b))|.*spectr", re.IGNORECASE
 )
+_CERTAINLY_SPECTRAL: Final = re.compile(r"\W*(?:pseudo|psa\b)|.*spectr", re.IGNORECASE)
+_IN_TIME: Final = re.compile(r"\W*time\b", re.IGNORECASE)
 _SPECTRUM: Final = re.compile(
     r"\b(?:response|acceleration|design|target|hazard|elastic|floor|fourier)[ -]+spectr(?:um|a)\b|"
     r"\bspectral\s+acceleration",
@@ -113,9 +115,9 @@ def _names(table: Table, columns: int) -> tuple[list[str], int]:
 
 def _check_no_spectrum(source: Source, table: Table, names: list[str], line: int) -> None:
     expected = "accelerations over time"
-    if len(names) > 1 and (
-        _PERIOD_NAME.match(names[0]) or all(map(_SPECTRAL_NAME.match, names[1:]))
-    ):
+    # beside a "time" a name such as SV04 is that of a station; beside a "T" it is a spectrum
+    spectral = _CERTAINLY_SPECTRAL if _IN_TIME.match(names[0] if names else "") else _SPECTRAL_NAME
+    if len(names) > 1 and (_PERIOD_NAME.match(names[0]) or all(map(spectral.match, names[1:]))):
         found = f"a spectrum, the columns {names[0]!r}, {names[1]!r}"
         raise source.refuse(found=found, expected=expected, line=line)
     if names and any(_TIME_NAME.match(name) or _direction(name) != UNKNOWN for name in names):

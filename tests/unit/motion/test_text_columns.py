@@ -35,6 +35,7 @@ class TestSpectra:
             "T (s),PSA (g)\n",
             "T (s),Sa_RotD50 (g)\n",
             "T,Spectral acceleration (g)\n",
+            "time (s),PSA (g)\n",
             "Tn (s),acceleration (g)\n",
             "Frequency (Hz),acceleration (g)\n",
             "# 5 % damped response spectrum (g)\n",
@@ -57,6 +58,7 @@ class TestSpectra:
             "# matched to the target spectrum\ntime (s),acc (g)\n",
             "# artificial, compatible with a response spectrum, unit: g\n",
             "# station Sa Pobla\ntime (s),acc (g)\n",
+            "time (s),SV04 (g)\n",
         ],
     )
     def test_motions_are_not_taken_for_spectra(self, write, head):
