@@ -19,7 +19,7 @@ from rockframe.units import POSITIVE, TIME_STEP, to_si
 
 if TYPE_CHECKING:
     from rockframe.motion.quantities import ArrayLike, QuantityLike
-    from rockframe.motion.readers.source import PathLike
+    from rockframe.motion.readers.source import PathLike, RecordLike
     from rockframe.motion.value import Made
     from rockframe.signals.arrays import Array
 
@@ -29,7 +29,7 @@ _UNEVEN: Final = 0.01
 
 def read(
     kind: type[Made],
-    path: PathLike,
+    path: RecordLike,
     format: str | None = None,  # noqa: A002
     component: str | tuple[str, str] | None = None,
     unit: str | None = None,
@@ -41,8 +41,10 @@ def read(
 
     Parameters
     ----------
-    path : str or path-like
-        File.
+    path : str, path-like, bytes or file object
+        File, by its path (``~`` is the user's folder), by its bytes, or open. It may be packed
+        by gzip, or be the only one in a zip or tar archive; :func:`rockframe.read_suite` reads
+        archives of many.
     format : str, optional
         A name of :func:`rockframe.motion.formats`; recognised from the
         file unless given.
@@ -102,7 +104,7 @@ def read(
         warnings.warn(message, RecordWarning, stacklevel=2)
     return kind(
         reading.si,
-        name=reading.name or PurePath(path).stem,
+        name=reading.name or PurePath(reading.file).stem,
         metadata=reading.metadata,
         history=reading.history,
         recipe=reading.recipe,

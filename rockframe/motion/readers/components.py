@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final, cast
 
 import numpy as np
 
-from rockframe.errors import ComponentError
+from rockframe.errors import ComponentError, RecordError
 from rockframe.motion.readers.orientation import (
     DOWNWARDS,
     UNKNOWN,
@@ -22,7 +22,6 @@ from rockframe.motion.readers.orientation import (
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from rockframe.errors import RecordError
     from rockframe.motion.readers.source import Metadata, Record, Request, Source
 
 SENSE: Final = "positive"
@@ -68,6 +67,22 @@ class Component:
         about = ", ".join(part for part in (where, direction) if part and part != self.name)
         name = repr(self.name or "")
         return f"{name} ({about})" if about else name
+
+
+class EveryComponentError(RecordError):
+    """All components of a file were asked for, not one of them.
+
+    Parameters
+    ----------
+    path : str
+        The file.
+    components : sequence of Component
+        What it holds.
+    """
+
+    def __init__(self, path: str, components: Sequence[Component]) -> None:
+        self.components = tuple(components)
+        super().__init__(path, found=_listed(components), expected="one component at a time")
 
 
 def component_names(given: object, *, owner: str) -> tuple[str | None, str | None]:
@@ -133,6 +148,8 @@ def choose_component(source: Source, request: Request, components: Sequence[Comp
     directions, among the channel numbers. Without a name, the only component is
     read, or the only one that is not vertical.
     """
+    if request.every:
+        raise EveryComponentError(source.path, components)
     if request.vertical is not None and len(components) == 1:
         raise source.refuse(
             found=f"one component, {components[0].label}",
@@ -157,6 +174,21 @@ def choose_component(source: Source, request: Request, components: Sequence[Comp
             line=upwards.line,
         )
     return _pair(source, chosen, upwards)
+
+
+def named(source: Source, component: Component) -> Record:
+    """Read a component as it is, a vertical one upwards, with its name in the metadata."""
+    record = component.read()
+    done: tuple[str, ...] = ()
+    warned: tuple[str, ...] = ()
+    if component.orientation.vertical is not None:
+        record, done, warned = _upwards(source, record, component)
+    return replace(
+        record,
+        metadata={**record.metadata, **_about(component)},
+        history=(*record.history, *done),
+        warnings=(*record.warnings, *warned),
+    )
 
 
 def _across(source: Source, request: Request, components: Sequence[Component]) -> Component:

@@ -79,6 +79,7 @@ def read(source: Source, request: Request) -> StoredMotion:
 
 def _stored(source: Source) -> StoredMotion:
     import netCDF4
+    from xarray.backends import NetCDF4DataStore
 
     from rockframe.motion.dataset import NoMotionError, check_no_result, stored_motion
 
@@ -87,11 +88,11 @@ def _stored(source: Source) -> StoredMotion:
             # nothing that a damaged file makes the libraries say is of use
             warnings.simplefilter("ignore")
             # before xarray, which loads the axes at once: a file may declare more than it holds
-            with netCDF4.Dataset(source.path) as file:
+            with netCDF4.Dataset("in memory", memory=source.data) as file:
                 check_no_result(file.ncattrs())
                 _check_declared(source, file.variables)
-            # undecoded: the numbers as they were written
-            with xr.open_dataset(source.path, engine="netcdf4", decode_cf=False) as dataset:
+                # undecoded: the numbers as they were written
+                dataset = xr.open_dataset(NetCDF4DataStore(file), decode_cf=False)
                 arguments = stored_motion(_only_motion(dataset).load())
     except RecordError:
         raise

@@ -10,6 +10,7 @@ import numpy as np
 
 from rockframe.errors import RockframeError
 from rockframe.motion.readers.checks import check_no_marks, check_time_step, plausibility
+from rockframe.motion.readers.components import EveryComponentError, named
 from rockframe.motion.readers.registry import (
     WITH_RESPONSE,
     added_failed,
@@ -19,8 +20,8 @@ from rockframe.motion.readers.registry import (
 from rockframe.motion.readers.source import (
     MAXIMUM_SAMPLES,
     Metadata,
-    PathLike,
     Record,
+    RecordLike,
     Request,
     Source,
     StoredMotion,
@@ -55,6 +56,10 @@ class Reading:
         Of a motion that was stored with its name.
     recipe : mapping, optional
         Of an analytic motion that was stored.
+    file : str
+        Name of the file, without its folder.
+    vertical : bool
+        Whether it is a vertical component, read for itself.
     """
 
     si: Motion
@@ -63,14 +68,16 @@ class Reading:
     warnings: tuple[str, ...] = ()
     name: str | None = None
     recipe: Mapping[str, Any] | None = None
+    file: str = ""
+    vertical: bool = False
 
 
-def read_record(path: PathLike, format_name: str | None, request: Request) -> Reading:
+def read_record(given: RecordLike, format_name: str | None, request: Request) -> Reading:
     """Read a record file.
 
     Parameters
     ----------
-    path : str or path-like
+    given : str, path-like, bytes or file object
         File.
     format_name : str or None
         A name of :func:`formats`; recognised from the file if None.
@@ -89,19 +96,65 @@ def read_record(path: PathLike, format_name: str | None, request: Request) -> Re
         No such format.
     """
     chosen = None if format_name is None else by_name(str(format_name))
-    source = load(path)
+    source = load(given)
     entry = chosen or recognised(source)
     if request.response is not None and entry.own and entry.name not in WITH_RESPONSE:
         kinds = ", ".join(WITH_RESPONSE)
         expected = f"a file of counts ({kinds}), which the argument response goes with"
         raise source.refuse(found=f"a {entry.title}", expected=expected)
-    record = _read(entry, source, request)
+    return _reading(entry, source, _read(entry, source, request))
+
+
+def read_components(source: Source, format_name: str | None, request: Request) -> list[Reading]:
+    """Read all components of a file.
+
+    Parameters
+    ----------
+    source : Source
+        File.
+    format_name : str or None
+        A name of :func:`formats`; recognised from the file if None.
+    request : Request
+        What the caller asked for.
+
+    Returns
+    -------
+    list of Reading
+        One for each, vertical ones too, in the order of the file.
+
+    Raises
+    ------
+    RecordError
+        The file cannot be read as a ground-motion record.
+    ComponentError
+        No such format.
+    """
+    entry = by_name(format_name) if format_name is not None else recognised(source)
+    try:
+        return [_reading(entry, source, _read(entry, source, replace(request, every=True)))]
+    except EveryComponentError as found:
+        components = found.components
+    return [
+        replace(
+            _reading(entry, source, named(source, component)),
+            vertical=component.orientation.vertical is not None,
+        )
+        for component in components
+    ]
+
+
+def _reading(entry: Format, source: Source, record: Record | StoredMotion) -> Reading:
+    base = base_name(source.path)
     if isinstance(record, StoredMotion):
         return Reading(
-            record.si, record.metadata, record.history, name=record.name, recipe=record.recipe
+            record.si,
+            record.metadata,
+            record.history,
+            name=record.name,
+            recipe=record.recipe,
+            file=base,
         )
     si, doubts = to_motion(source, record)
-    base = base_name(source.path)
     metadata = {
         **record.metadata,
         "format": entry.name,
@@ -113,7 +166,7 @@ def read_record(path: PathLike, format_name: str | None, request: Request) -> Re
         f"{record.samples.size} samples at {record.time_step!r} s"
     )
     said = tuple(dict.fromkeys((*record.warnings, *doubts)))
-    return Reading(si, metadata, (step, *record.history), said)
+    return Reading(si, metadata, (step, *record.history), said, file=base)
 
 
 def to_motion(source: Source, record: Record) -> tuple[Motion, list[str]]:

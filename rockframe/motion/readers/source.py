@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import hashlib
-import os
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 from rockframe.errors import RecordError
+from rockframe.motion.readers.archives import MAXIMUM_BYTES as MAXIMUM_BYTES
+from rockframe.motion.readers.received import PathLike as PathLike
+from rockframe.motion.readers.received import RecordLike as RecordLike
+from rockframe.motion.readers.received import received
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -19,12 +22,9 @@ if TYPE_CHECKING:
     from rockframe.signals.arrays import Array
 
 Metadata: TypeAlias = "dict[str, str | float | int]"
-PathLike: TypeAlias = "str | os.PathLike[str]"
 
-# What bounds time and memory: no file may cost more than about a second or 200 MB,
-# whatever stands in it.
-MAXIMUM_BYTES: Final = 40 * 2**20
-"""Largest file that is opened at all."""
+# What bounds time and memory beside MAXIMUM_BYTES: no file may cost more than about a second
+# or 200 MB, whatever stands in it.
 MAXIMUM_TEXT: Final = 16 * 2**20
 """Largest file that is read as text [byte]."""
 MAXIMUM_LINES: Final = 350_000
@@ -52,9 +52,9 @@ class Source:
     Parameters
     ----------
     path : str
-        As given, for messages.
+        As given, for messages; of a file that was packed, with its name inside.
     data : bytes
-        All bytes of the file.
+        All bytes of the file, unpacked.
     sha256 : str
         Of the bytes.
     """
@@ -149,6 +149,8 @@ class Request:
         Component to read beside it, as the vertical one.
     response : str, optional
         File with the response of the instrument.
+    every : bool
+        Whether all components are asked for; they come in an `EveryComponentError`.
     """
 
     unit: RecordUnit | None = None
@@ -157,6 +159,7 @@ class Request:
     component: str | None = None
     vertical: str | None = None
     response: str | None = None
+    every: bool = False
 
 
 @dataclass(frozen=True)
@@ -215,13 +218,13 @@ class StoredMotion:
     recipe: Mapping[str, Any] | None
 
 
-def load(path: PathLike) -> Source:
+def load(given: RecordLike) -> Source:
     """Read the bytes of a file, or refuse it.
 
     Parameters
     ----------
-    path : str or path-like
-        File.
+    given : str, path-like, bytes or file object
+        A file, which gzip may have packed, or a zip or tar archive that holds one file.
 
     Returns
     -------
@@ -230,10 +233,13 @@ def load(path: PathLike) -> Source:
     Raises
     ------
     RecordError
-        Missing, a directory, not readable, or too large.
+        Missing, a directory, not readable, too large, or an archive of several files.
     """
-    name = str(path)
-    data = _bytes(path, name)
+    return source_of(*received(given))
+
+
+def source_of(name: str, data: bytes) -> Source:
+    """Give bytes their name and their digest."""
     return Source(path=name, data=data, sha256=hashlib.sha256(data).hexdigest())
 
 
@@ -246,27 +252,6 @@ def shown(text: str) -> str:
     """Quote the first line of a text, shortened, for a message."""
     line = text.strip().split("\n", 1)[0].strip()
     return repr(line if len(line) <= _SHOWN else line[:_SHOWN] + "...")
-
-
-def _bytes(path: PathLike, name: str) -> bytes:
-    try:
-        place = Path(path)
-        if place.is_dir():
-            raise RecordError(name, found="a directory", expected="a record file")
-        if place.exists() and not place.is_file():
-            raise RecordError(name, found="no ordinary file", expected="a record file")
-        _check_size(place.stat().st_size, MAXIMUM_BYTES, name)
-        return place.read_bytes()
-    except FileNotFoundError as problem:
-        raise RecordError(name, found="no such file", expected="a record file") from problem
-    except OSError as problem:
-        found = f"a file that cannot be read ({problem.strerror})"
-        raise RecordError(name, found=found, expected="a readable record file") from problem
-    except (TypeError, ValueError) as problem:
-        if isinstance(problem, RecordError):
-            raise
-        found = f"{path!r}, which names no file"
-        raise RecordError(name, found=found, expected="the path of a record file") from problem
 
 
 def _check_size(size: int, limit: int, name: str) -> None:

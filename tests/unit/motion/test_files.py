@@ -29,7 +29,7 @@ CSV = "time (s),acceleration (g)\n" + "".join(
         (HTML.encode(), "web page"),
         (b"\xef\xbb\xbf\n" + HTML.lower().encode(), "web page"),
         (bytes(range(256)) * 8, "binary data"),
-        (b"\x1f\x8b\x08" + bytes(range(128, 256)) * 8, "binary data"),
+        (b"\x1f\x8b\x08" + bytes(range(128, 256)) * 8, "gzip file that cannot be unpacked"),
         (AT2.encode("utf-16"), "UTF-16"),
         (b"nothing but a few words\n", "'nothing but a few words'"),
     ],

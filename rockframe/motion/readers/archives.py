@@ -1,0 +1,315 @@
+"""Zip and tar archives, file by file in memory: nothing is ever written to the disk.
+
+An archive may be made to harm whoever unpacks it. So it may expand to no more than a hundred
+times its size, a file in it to no more than a record file may have, and names that lead out of
+it, links, devices, and archives inside it are told apart and not followed.
+"""
+
+from __future__ import annotations
+
+import gzip
+import re
+import tarfile
+import zipfile
+from dataclasses import dataclass
+from typing import IO, TYPE_CHECKING, Any, Final, cast
+
+from rockframe.errors import RecordError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+MAXIMUM_BYTES: Final = 40 * 2**20
+"""Largest file that is opened at all."""
+MOST_MEMBERS: Final = 10_000
+"""Most files of an archive."""
+MOST_EXPANSION: Final = 100
+"""Most bytes that a byte of an archive may become, beside one file of the largest size."""
+
+_ZIP: Final = (b"PK\x03\x04", b"PK\x05\x06")
+_GZIP: Final = b"\x1f\x8b"
+_TAR: Final = (257, b"ustar")
+_OTHERS: Final = {
+    b"7z\xbc\xaf\x27\x1c": "a 7z archive",
+    b"Rar!\x1a\x07": "a RAR archive",
+    b"\xfd7zXZ\x00": "a file packed by xz",
+    b"BZh": "a file packed by bzip2",
+    b"PK\x07\x08": "a part of a zip archive",
+}
+_EXPECTED: Final = "a record file, or one in a zip, tar or gzip file"
+_START: Final = 512
+_DIRECTORY_END: Final = b"PK\x05\x06"
+_END_LENGTH: Final = 22
+_LOCATOR: Final = b"PK\x06\x07"
+_LONGEST_DIRECTORY: Final = 2 * 2**20
+_ENCRYPTED: Final = 0x1
+_METHODS: Final = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
+_DRIVE: Final = re.compile(r"[A-Za-z]:")
+
+
+@dataclass(frozen=True)
+class Member:
+    """A file in an archive.
+
+    Parameters
+    ----------
+    name : str
+        Its path in the archive.
+    data : bytes or None
+        None where it was not unpacked.
+    reason : str
+        Why it was not.
+    """
+
+    name: str
+    data: bytes | None
+    reason: str = ""
+
+    @property
+    def hidden(self) -> bool:
+        """Whether it is one of the files that systems add for themselves."""
+        parts = self.name.replace("\\", "/").split("/")
+        return "__MACOSX" in parts or parts[-1].startswith(".")
+
+
+def is_archive(start: bytes) -> bool:
+    """Tell whether a file begins as zip and tar archives do."""
+    place, mark = _TAR
+    return start.startswith(_ZIP) or start[place : place + len(mark)] == mark
+
+
+def is_gzip(start: bytes) -> bool:
+    """Tell whether a file begins as those of gzip do."""
+    return start.startswith(_GZIP)
+
+
+def packs_tar(file: IO[bytes]) -> bool:
+    """Tell whether a file is a tar archive packed by gzip.
+
+    Parameters
+    ----------
+    file : file object
+        Open for reading; left at its start.
+
+    Returns
+    -------
+    bool
+    """
+    start = file.read(len(_GZIP))
+    file.seek(0)
+    if not is_gzip(start):
+        return False
+    try:
+        unpacked = gzip.GzipFile(fileobj=file).read(_START)
+    except Exception:  # damaged: whoever unpacks it says so
+        unpacked = b""
+    file.seek(0)
+    return is_archive(unpacked)
+
+
+def check_unpackable(name: str, start: bytes) -> None:
+    """Refuse what is packed in another way.
+
+    Parameters
+    ----------
+    name : str
+        For the message.
+    start : bytes
+        The first bytes of the file.
+
+    Raises
+    ------
+    RecordError
+        It is.
+    """
+    for mark, words in _OTHERS.items():
+        if start.startswith(mark):
+            raise RecordError(name, found=words, expected=_EXPECTED)
+
+
+def members(file: IO[bytes], name: str, size: int) -> Iterator[Member]:
+    """Unpack an archive file by file.
+
+    Parameters
+    ----------
+    file : file object
+        The archive, open for reading.
+    name : str
+        For messages.
+    size : int
+        Of the archive [byte].
+
+    Yields
+    ------
+    Member
+        Each file, unpacked or with the reason why it was not.
+
+    Raises
+    ------
+    RecordError
+        The archive is damaged, holds too many files, or expands to more than a hundred times
+        its size.
+    """
+    start = file.read(_START)
+    file.seek(0)
+    budget = _Budget(name, MOST_EXPANSION * size + MAXIMUM_BYTES)
+    unpack = _of_zip if start.startswith(_ZIP) else _of_tar
+    try:
+        for count, member in enumerate(unpack(file, name, budget)):
+            if count >= MOST_MEMBERS:
+                raise _too_many(name)
+            yield member
+    except RecordError:
+        raise
+    except Exception as problem:  # the libraries do not document all that damaged files raise
+        found = f"an archive that cannot be unpacked ({type(problem).__name__})"
+        raise RecordError(name, found=found, expected=_EXPECTED) from problem
+
+
+@dataclass
+class _Budget:
+    """What an archive may still expand to."""
+
+    name: str
+    left: int
+
+    def take(self, count: int) -> None:
+        self.left -= count
+        if self.left < 0:
+            found = f"an archive that expands to more than {MOST_EXPANSION} times its size"
+            raise RecordError(self.name, found=found, expected="an archive of records")
+
+
+def _of_zip(file: IO[bytes], name: str, budget: _Budget) -> Iterator[Member]:
+    _check_directory(file, name)
+    with zipfile.ZipFile(file) as archive:
+        for info in archive.infolist():
+            if info.is_dir():
+                continue
+            reason = _misnamed(info.filename) or _zip_fault(info)
+            if reason:
+                yield Member(_printable(info.filename), None, reason)
+                continue
+            try:
+                with archive.open(info) as stream:
+                    data = stream.read(MAXIMUM_BYTES + 1)
+            except Exception as problem:  # as above; the others may be sound
+                yield Member(info.filename, None, _damaged(problem))
+                continue
+            budget.take(len(data))
+            yield _member(info.filename, data)
+
+
+def _check_directory(file: IO[bytes], name: str) -> None:
+    """Refuse a list of contents that takes long to read, before it is read."""
+    file.seek(0, 2)
+    end = file.tell()
+    file.seek(max(0, end - 2**16 - 100))
+    tail = file.read()
+    file.seek(0)
+    place = len(tail) - _END_LENGTH  # without a comment, as the library looks first
+    if not (place >= 0 and tail.startswith(_DIRECTORY_END, place) and tail.endswith(b"\x00\x00")):
+        place = tail.rfind(_DIRECTORY_END)
+    if place < 0:
+        return  # the library says what is wrong
+    sizes = [int.from_bytes(tail[place + 12 : place + 16], "little")]
+    if tail[place - 20 : place - 16] == _LOCATOR:  # the long form, which stands before
+        sizes = [int.from_bytes(tail[place - 36 : place - 28], "little")]
+    if max(sizes) > _LONGEST_DIRECTORY:
+        raise _too_many(name)
+
+
+def _zip_fault(info: zipfile.ZipInfo) -> str:
+    if info.flag_bits & _ENCRYPTED:
+        return "an encrypted file"
+    if info.compress_type not in _METHODS:
+        return f"a file packed by a method that is not read (number {info.compress_type})"
+    kind = (info.external_attr >> 16) & 0o170000
+    return "a link" if kind == 0o120000 else ""
+
+
+def _of_tar(file: IO[bytes], name: str, budget: _Budget) -> Iterator[Member]:
+    packed = is_gzip(file.read(len(_GZIP)))
+    file.seek(0)
+    stream = cast("IO[bytes]", gzip.GzipFile(fileobj=file)) if packed else file
+    bounded = cast("IO[bytes]", _Bounded(stream, budget))
+    with tarfile.open(fileobj=bounded, mode="r:") as archive:
+        while (info := archive.next()) is not None:
+            if info.isdir():
+                continue
+            reason = _misnamed(info.name) or _tar_fault(info)
+            if reason:
+                yield Member(_printable(info.name), None, reason)
+                continue
+            inner = archive.extractfile(info)
+            data = b"" if inner is None else inner.read(MAXIMUM_BYTES + 1)
+            cast("Any", archive).members.clear()  # it would keep them all
+            yield _member(info.name, data)
+
+
+class _Bounded:
+    """A file that gives no more than an archive may expand to, and never much at once."""
+
+    def __init__(self, file: IO[bytes], budget: _Budget) -> None:
+        self._file = file
+        self._budget = budget
+        self._furthest = 0
+
+    def read(self, count: int = -1) -> bytes:
+        if not 0 <= count <= 2 * MAXIMUM_BYTES:
+            found = "an archive that announces more than a record has"
+            raise RecordError(self._budget.name, found=found, expected="an archive of records")
+        data = self._file.read(count)
+        self._spend()
+        return data
+
+    def seek(self, place: int, whence: int = 0) -> int:
+        if whence == 0:  # what is passed over has to be unpacked too
+            self._budget.take(max(0, place - self._furthest))
+            self._furthest = max(self._furthest, place)
+        return self._file.seek(place, whence)
+
+    def tell(self) -> int:
+        return self._file.tell()
+
+    def _spend(self) -> None:
+        place = self._file.tell()
+        self._budget.take(max(0, place - self._furthest))
+        self._furthest = max(self._furthest, place)
+
+
+def _tar_fault(info: tarfile.TarInfo) -> str:
+    if info.issym() or info.islnk():
+        return "a link"
+    if not info.isreg() or info.issparse():
+        return "no ordinary file"
+    return f"more than {MAXIMUM_BYTES // 2**20} MiB" if info.size > MAXIMUM_BYTES else ""
+
+
+def _member(name: str, data: bytes) -> Member:
+    if len(data) > MAXIMUM_BYTES:
+        return Member(name, None, f"more than {MAXIMUM_BYTES // 2**20} MiB")
+    if is_archive(data) or is_gzip(data):
+        return Member(name, None, "an archive inside an archive")
+    return Member(name, data)
+
+
+def _misnamed(name: str) -> str:
+    """Say what is wrong with the name of a file in an archive."""
+    plain = name.replace("\\", "/")
+    if plain.startswith("/") or _DRIVE.match(plain) or ".." in plain.split("/"):
+        return "a name that leads out of the archive"
+    return "" if name.isprintable() and plain.strip("/") else "a name that cannot be printed"
+
+
+def _printable(name: str) -> str:
+    return "".join(letter if letter.isprintable() else "?" for letter in name)[:200]
+
+
+def _damaged(problem: Exception) -> str:
+    return f"a file that cannot be unpacked ({type(problem).__name__})"
+
+
+def _too_many(name: str) -> RecordError:
+    found = f"an archive of more than {MOST_MEMBERS} files"
+    return RecordError(name, found=found, expected="an archive of records")
