@@ -38,11 +38,17 @@ if TYPE_CHECKING:
     from rockframe.errors import StudyError as StudyError
     from rockframe.errors import UnitsError as UnitsError
     from rockframe.identification import fit_free_decay as fit_free_decay
+    from rockframe.measures import (
+        average_spectral_acceleration as average_spectral_acceleration,
+    )
     from rockframe.measures import fourier_spectrum as fourier_spectrum
     from rockframe.measures import intensity_measures as intensity_measures
+    from rockframe.measures import principal_axes as principal_axes
     from rockframe.measures import response_spectrum as response_spectrum
+    from rockframe.measures import rotated_spectrum as rotated_spectrum
     from rockframe.measures import velocity_and_displacement as velocity_and_displacement
     from rockframe.motion import GroundMotion as GroundMotion
+    from rockframe.motion import HorizontalPair as HorizontalPair
     from rockframe.results.joining import concat as concat
     from rockframe.results.table import table as table
     from rockframe.simulation.certification import Certification as Certification
@@ -101,12 +107,15 @@ _HOMES = {
     "rockframe.comparison": ("Recommendation", "model_ladder", "recommend", "tradeoff"),
     "rockframe.identification": ("fit_free_decay",),
     "rockframe.measures": (
+        "average_spectral_acceleration",
         "fourier_spectrum",
         "intensity_measures",
+        "principal_axes",
         "response_spectrum",
+        "rotated_spectrum",
         "velocity_and_displacement",
     ),
-    "rockframe.motion": ("GroundMotion",),
+    "rockframe.motion": ("GroundMotion", "HorizontalPair"),
     "rockframe.results.joining": ("concat",),
     "rockframe.results.table": ("table",),
     "rockframe.simulation.certification": ("Certification",),
@@ -145,6 +154,7 @@ __all__ = [
     "CushionCap",
     "FrameEquivalent",
     "GroundMotion",
+    "HorizontalPair",
     "InitialState",
     "Member",
     "ModelWarning",
@@ -164,6 +174,7 @@ __all__ = [
     "UnitsError",
     "WinklerSoil",
     "__version__",
+    "average_spectral_acceleration",
     "case",
     "concat",
     "critical_scale",
@@ -182,11 +193,13 @@ __all__ = [
     "overturning_map",
     "overturning_spectrum",
     "plot",
+    "principal_axes",
     "probability_of_overturning",
     "recommend",
     "register",
     "response_spectrum",
     "rocking_spectrum",
+    "rotated_spectrum",
     "sweep",
     "table",
     "to_openquake",

@@ -9,8 +9,8 @@ import xarray as xr
 from rockframe.components import Block
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError, shown
-from rockframe.measures.about import about
-from rockframe.measures.component import GroundComponent, component_of, signal_of
+from rockframe.measures.component import GroundComponent, component_of
+from rockframe.measures.several import looked_at
 from rockframe.results.dataset import build_dataset
 from rockframe.signals import Signal
 from rockframe.signals.accumulation import (
@@ -32,6 +32,8 @@ from rockframe.signals.spectra import DAMPING_RATIO, check_cost
 from rockframe.units import ACCELERATION, POSITIVE, to_ratio, to_si
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from rockframe.motion import GroundMotion
     from rockframe.motion.quantities import QuantityLike, RatioLike
 
@@ -40,7 +42,7 @@ _STANDARDIZED_THRESHOLD: Final = 0.025  # g, EPRI (1991)
 
 
 def intensity_measures(
-    motion: "GroundMotion",
+    motion: "GroundMotion | Mapping[str, GroundMotion]",
     *,
     block: Block | None = None,
     component: str = "horizontal",
@@ -52,8 +54,8 @@ def intensity_measures(
 
     Parameters
     ----------
-    motion : GroundMotion
-        The motion.
+    motion : GroundMotion, or mapping of str to GroundMotion
+        The motion, or several by their labels, such as a suite.
     block : Block, optional
         The block, or FrameEquivalent, that the motion is to rock; adds the measures that
         depend on it.
@@ -69,8 +71,8 @@ def intensity_measures(
     Returns
     -------
     xarray.Dataset
-        Scalars: ``peak_ground_acceleration`` [m s^-2], ``peak_ground_velocity`` [m s^-1],
-        ``peak_ground_displacement`` [m]; ``arias_intensity``,
+        Scalars, of several motions over ``motion``: ``peak_ground_acceleration`` [m s^-2],
+        ``peak_ground_velocity`` [m s^-1], ``peak_ground_displacement`` [m]; ``arias_intensity``,
         ``cumulative_absolute_velocity`` and ``standardized_cumulative_absolute_velocity``
         [m s^-1]; ``significant_duration_5_75``, ``significant_duration_5_95``,
         ``bracketed_duration`` [s]; ``housner_spectrum_intensity`` [m]; ``mean_period``,
@@ -106,8 +108,7 @@ def intensity_measures(
     >>> round(float(measures.relative_peak_ground_acceleration), 4)
     2.0394
     """
-    signal = signal_of(motion, component, owner=_OWNER)
-    which = component_of(component, owner=_OWNER)
+    looked = looked_at(motion, component, owner=_OWNER)
     accelerations = {
         "threshold": threshold,
         "gravity": f"{STANDARD_GRAVITY!r} m/s^2" if gravity is None else gravity,
@@ -117,23 +118,30 @@ def intensity_measures(
         for name, value in accelerations.items()
     )
     damping = to_ratio(damping_ratio, owner=_OWNER, name="damping_ratio", condition=DAMPING_RATIO)
-    check_cost(signal, np.concatenate([HOUSNER_PERIODS, PULSE_PERIODS]), owner=_OWNER)
-    values = _of_ground(signal, threshold=level, damping_ratio=damping, gravity=g)
     if block is not None:
-        _check_block(block, which)
-        values |= _of_block(signal, block, values, gravity=g)
-    return build_dataset(
-        values,
+        _check_block(block, component_of(component, owner=_OWNER))
+
+    def measured(signal: Signal) -> dict[str, float]:
+        check_cost(signal, np.concatenate([HOUSNER_PERIODS, PULSE_PERIODS]), owner=_OWNER)
+        values = _of_ground(signal, threshold=level, damping_ratio=damping, gravity=g)
+        if block is not None:
+            values |= _of_block(signal, block, values, gravity=g)
+        return values
+
+    dataset = build_dataset(
+        looked.together(looked.each(measured)),
         {
-            **about(motion, which),
+            **looked.attributes,
             "threshold": f"{level!r} {ACCELERATION.unit}",
             "gravity": f"{g!r} {ACCELERATION.unit}",
             "damping_ratio": damping,
             **({} if block is None else {"block": repr(block)}),
         },
+        over=looked.over,
         title="Intensity measures",
         source="integration from sample to sample",
     )
+    return looked.labelled(dataset)
 
 
 def _of_ground(

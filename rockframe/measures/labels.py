@@ -17,6 +17,7 @@ def build_over(
     values: "Mapping[str, Array]",
     attributes: Mapping[str, str | float | int],
     *,
+    over: tuple[str, ...] = (),
     title: str,
     source: str,
 ) -> xr.Dataset:
@@ -33,6 +34,8 @@ def build_over(
         Arrays by their names in the schema.
     attributes : mapping
         Strings and numbers.
+    over : tuple of str, optional
+        Dimensions that all values have before their own.
     title, source : str
         What the dataset holds, and how it was computed.
 
@@ -40,7 +43,7 @@ def build_over(
     -------
     xarray.Dataset
     """
-    dataset = build_dataset(values, attributes, title=title, source=source)
+    dataset = build_dataset(values, attributes, over=over, title=title, source=source)
     for name, (axis, meaning) in axes.items():
         labels = {**SCHEMA[name].attributes(), "long_name": meaning}
         dataset = dataset.assign_coords({name: (name, axis.copy(), labels)})

@@ -6,15 +6,15 @@ import numpy as np
 import xarray as xr
 
 from rockframe.errors import ComponentError, shown
-from rockframe.measures.about import about
-from rockframe.measures.component import component_of, signal_of
 from rockframe.measures.labels import build_over
+from rockframe.measures.several import looked_at
+from rockframe.signals import Signal
 from rockframe.signals.arrays import Array
 from rockframe.signals.spectra import DAMPING_RATIO, check_cost, pseudo_spectra, spectral_peaks
 from rockframe.units import PERIOD, to_ratio, to_si_values
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
 
     from rockframe.motion import GroundMotion
     from rockframe.motion.quantities import ArrayLike, QuantityLike, RatioLike
@@ -24,7 +24,7 @@ _OWNER: Final = "response_spectrum"
 
 
 def response_spectrum(
-    motion: "GroundMotion",
+    motion: "GroundMotion | Mapping[str, GroundMotion]",
     periods: "ArrayLike | Iterable[QuantityLike] | None" = None,
     damping_ratios: "Iterable[RatioLike] | RatioLike" = (0.05,),
     *,
@@ -34,8 +34,9 @@ def response_spectrum(
 
     Parameters
     ----------
-    motion : GroundMotion
-        The motion. The ground stands still before and after it.
+    motion : GroundMotion, or mapping of str to GroundMotion
+        The motion, or several by their labels, such as a suite. The ground stands still before
+        and after it.
     periods : (sequence, unit), Quantity or sequence of str, optional
         Undamped natural periods, increasing; 0 stands for a rigid oscillator. 100 per
         decade from 0.01 s to 10 s unless given [s].
@@ -51,7 +52,7 @@ def response_spectrum(
         ``spectral_displacement`` [m], relative velocity ``spectral_velocity`` [m s^-1] and
         absolute acceleration ``absolute_spectral_acceleration`` [m s^-2]; and, from the
         first, ``pseudo_spectral_velocity`` [m s^-1] and ``pseudo_spectral_acceleration``
-        [m s^-2], :eq:`eq-pseudo-spectra`.
+        [m s^-2], :eq:`eq-pseudo-spectra`. Of several motions, over ``motion`` before these.
 
     Raises
     ------
@@ -76,54 +77,104 @@ def response_spectrum(
     >>> spectrum.pseudo_spectral_acceleration.values.round(4).tolist()
     [[1.0, 1.7321, 0.3963]]
     """
-    signal = signal_of(motion, component, owner=_OWNER)
-    seconds = _periods(periods)
-    ratios = _damping_ratios(damping_ratios)
-    check_cost(signal, seconds, owner=_OWNER)
+    looked = looked_at(motion, component, owner=_OWNER)
+    seconds = checked_periods(periods, owner=_OWNER)
+    ratios = checked_ratios(damping_ratios, owner=_OWNER)
+    for signal in looked.things:
+        check_cost(signal, seconds, owner=_OWNER)
+    values = looked.together(looked.each(lambda signal: _spectra(signal, seconds, ratios)))
+    dataset = build_over(
+        oscillator_axes(ratios, seconds),
+        values,
+        looked.attributes,
+        over=looked.over,
+        title="Response spectra",
+        source="recurrence of Nigam and Jennings",
+    )
+    return looked.labelled(dataset)
+
+
+def oscillator_axes(ratios: Array, seconds: Array) -> dict[str, tuple[Array, str]]:
+    """Give the axes of spectra and their meanings, for :func:`build_over`."""
+    return {
+        "damping_ratio": (ratios, "damping ratio of the oscillator"),
+        "period": (seconds, "undamped period of the oscillator"),
+    }
+
+
+def _spectra(signal: Signal, seconds: Array, ratios: Array) -> dict[str, Array]:
     found = np.array([spectral_peaks(signal, seconds, ratio) for ratio in ratios.tolist()])
     pseudo_velocity, pseudo_acceleration = pseudo_spectra(signal, seconds, found[:, :, 0])
-    values = {
+    return {
         "spectral_displacement": found[:, :, 0],
         "spectral_velocity": found[:, :, 1],
         "absolute_spectral_acceleration": found[:, :, 2],
         "pseudo_spectral_velocity": pseudo_velocity,
         "pseudo_spectral_acceleration": pseudo_acceleration,
     }
-    return build_over(
-        {
-            "damping_ratio": (ratios, "damping ratio of the oscillator"),
-            "period": (seconds, "undamped period of the oscillator"),
-        },
-        values,
-        about(motion, component_of(component, owner=_OWNER)),
-        title="Response spectra",
-        source="recurrence of Nigam and Jennings",
-    )
 
 
-def _periods(given: object) -> Array:
+def checked_periods(given: object, *, owner: str) -> Array:
+    """Read the argument `periods`.
+
+    Parameters
+    ----------
+    given : (sequence, unit), Quantity or sequence of str, or None
+        What the user gave; 100 per decade from 0.01 s to 10 s unless given.
+    owner : str
+        Function, for the message.
+
+    Returns
+    -------
+    ndarray, shape (k,)
+        [s]
+
+    Raises
+    ------
+    UnitsError
+        Without a unit, or with one of another kind.
+    ComponentError
+        None, negative, or not increasing.
+    """
     if given is None:
         decades = np.arange(-2 * _PERIODS_PER_DECADE, _PERIODS_PER_DECADE + 1)
         return 10.0 ** (decades / _PERIODS_PER_DECADE)
-    seconds = np.array(to_si_values(given, PERIOD, owner=_OWNER, name="periods"))
+    seconds = np.array(to_si_values(given, PERIOD, owner=owner, name="periods"))
     if seconds.size == 0 or seconds[0] < 0.0 or not (np.diff(seconds) > 0.0).all():
         msg = (
-            f"{_OWNER}: periods must be one or more, from zero up and increasing, "
-            f"got {shown(given)}"
+            f"{owner}: periods must be one or more, from zero up and increasing, got {shown(given)}"
         )
         raise ComponentError(msg)
     return seconds
 
 
-def _damping_ratios(given: Any) -> Array:
+def checked_ratios(given: Any, *, owner: str) -> Array:
+    """Read the argument `damping_ratios`.
+
+    Parameters
+    ----------
+    given : float or sequence of float
+        What the user gave [1].
+    owner : str
+        Function, for the message.
+
+    Returns
+    -------
+    ndarray, shape (r,)
+
+    Raises
+    ------
+    ComponentError
+        None, one out of range, or one given twice.
+    """
     if isinstance(given, np.ndarray):
         given = np.atleast_1d(given)
     values: list[Any] = list(given) if isinstance(given, list | tuple | np.ndarray) else [given]
     ratios = [
-        to_ratio(value, owner=_OWNER, name="damping_ratios", condition=DAMPING_RATIO)
+        to_ratio(value, owner=owner, name="damping_ratios", condition=DAMPING_RATIO)
         for value in values
     ]
     if not ratios or len(set(ratios)) < len(ratios):
-        msg = f"{_OWNER}: damping_ratios must be one or more, each once, got {shown(given)}"
+        msg = f"{owner}: damping_ratios must be one or more, each once, got {shown(given)}"
         raise ComponentError(msg)
     return np.array(ratios)

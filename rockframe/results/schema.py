@@ -12,6 +12,7 @@ from rockframe.results.variables.analyses import (
     SPECTRA,
 )
 from rockframe.results.variables.comparison import COMPARISON
+from rockframe.results.variables.directions import DIRECTIONS
 from rockframe.results.variables.identification import FREE_DECAY
 from rockframe.results.variables.motions import MEASURES
 from rockframe.results.variables.requests import (
@@ -46,6 +47,7 @@ _TABLES: Final = (
     REST,
     MODES,
     MEASURES,
+    DIRECTIONS,
     COMPARISON,
     CRITICAL_SCALE,
     SWEEP,

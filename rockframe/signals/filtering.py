@@ -24,6 +24,7 @@ Rows: TypeAlias = NDArray[np.intp]
 
 
 _STEPS_AT_ONCE: Final = 250_000
+_KNOTS_AT_ONCE: Final = 4096
 
 
 class _Steps:
@@ -74,6 +75,80 @@ def filter_all(pieces: Array, time_step: float, damping: float, periods: Array) 
     return found
 
 
+def filter_pairs(
+    pieces: tuple[Array, Array],
+    time_step: float,
+    damping: float,
+    periods: Array,
+    directions: Array,
+) -> Array:
+    """Find the peaks of all oscillators in all directions, like `march_pairs`.
+
+    Parameters
+    ----------
+    pieces : tuple of two ndarray, shape (n, m)
+        Accelerations of the ground in every interval, of both components [m s^-2].
+    time_step : float
+        Length of an interval [s].
+    damping : float
+        Damping ratio [1].
+    periods : ndarray, shape (k,)
+        Periods, greater than zero [s].
+    directions : ndarray, shape (d, 2)
+        Cosines and sines.
+
+    Returns
+    -------
+    ndarray, shape (k, d)
+        Greatest relative displacement [m].
+    """
+    found = np.zeros((periods.size, len(directions)))
+    still = np.zeros((STEPS_PER_PERIOD, pieces[0].shape[1]))
+    for k, period in enumerate(periods.tolist()):
+        state = np.zeros((2, 2))
+        parts = int(np.ceil(STEPS_PER_PERIOD * time_step / period))
+        rows = max(1, _STEPS_AT_ONCE // parts)
+        for first in range(0, len(pieces[0]), rows):
+            steps = [
+                _Steps(time_step / parts, divided(one[first : first + rows], parts))
+                for one in pieces
+            ]
+            _follow_pair(steps, period, damping, state, directions, found[k])
+        rest = _Steps(period / STEPS_PER_PERIOD, still)
+        _follow_pair([rest, rest], period, damping, state, directions, found[k])
+    return found
+
+
+def _follow_pair(
+    steps: list[_Steps],
+    period: float,
+    damping: float,
+    state: Array,
+    directions: Array,
+    most: Array,
+) -> None:
+    """Follow both components; update their states and the greatest displacements (SI)."""
+    histories = np.array(
+        [_histories(one, period, damping, start) for one, start in zip(steps, state, strict=True)]
+    )
+    state[:] = histories[:, :2, -1] / [1.0, steps[0].length]
+    for first in range(0, histories.shape[2] - 1, _KNOTS_AT_ONCE):
+        knots = histories[:, :, first : first + _KNOTS_AT_ONCE + 1]
+        size = np.hypot(knots[0], knots[1])
+        # in no direction is there more than displacement and velocity at the end of a step
+        reach = np.flatnonzero(size[0, 1:] + size[1, 1:] > most.min())
+        if reach.size == 0:
+            continue
+        u, v, w = np.einsum("dc,cqn->qdn", directions, knots[:, :, reach])
+        next_u, next_v, next_w = np.einsum("dc,cqn->qdn", directions, knots[:, :, reach + 1])
+        most[:] = np.maximum(most, np.abs(next_u).max(axis=1))
+        d, n = np.nonzero((v * next_v < 0.0) & (np.abs(next_u) + np.abs(next_v) > most[:, None]))
+        inside: Any = turning_value(
+            u[d, n], v[d, n], w[d, n], next_u[d, n], next_v[d, n], next_w[d, n]
+        )
+        np.maximum.at(most, d, np.abs(inside))
+
+
 def _may_swing_higher(periods: Array, damping: float, state: Array, found: Array) -> Any:
     """Tell which oscillators may pass their peaks when left alone: their energy only falls."""
     frequency = 2.0 * np.pi / periods
@@ -88,12 +163,9 @@ def _follow(steps: _Steps, period: float, damping: float, state: Array, greatest
     """Follow one oscillator; update displacement and velocity, and their greatest (SI)."""
     length = steps.length
     kappa = 2.0 * np.pi * length / period
-    step = np.empty((2, 2 + steps.pieces.shape[1]))
-    fill_step(kappa, damping, step)
-    u, v = _march(step, length**2 * step[:, 2:] @ steps.pieces.T, state * [1.0, length])
+    u, v, w = _histories(steps, period, damping, state)
     stiffness, drag = kappa**2, 2.0 * damping * kappa
     pull = drag * v + stiffness * u
-    w = -pull - steps.knots
     rate = drag * w + stiffness * v
 
     def jerk(rows: Rows) -> tuple[Array, Array]:
@@ -111,6 +183,16 @@ def _follow(steps: _Steps, period: float, damping: float, state: Array, greatest
     )
     greatest[:] = np.maximum(greatest, found / length ** np.arange(QUANTITIES))
     state[:] = u[-1], v[-1] / length
+
+
+def _histories(steps: _Steps, period: float, damping: float, state: Array) -> Array:
+    """Give u, V and W at the knots, shape (3, n + 1), from displacement and velocity (SI)."""
+    length = steps.length
+    kappa = 2.0 * np.pi * length / period
+    step = np.empty((2, 2 + steps.pieces.shape[1]))
+    fill_step(kappa, damping, step)
+    u, v = _march(step, length**2 * step[:, 2:] @ steps.pieces.T, state * [1.0, length])
+    return np.array([u, v, -2.0 * damping * kappa * v - kappa**2 * u - steps.knots])
 
 
 def _march(step: Array, driven: Array, start: Array) -> tuple[Array, Array]:

@@ -189,6 +189,18 @@ DIMENSIONS = {
     "slenderness": (0, 0, 0, 0),
     "overturning_probability": (0, 0, 0, 0),
     "cumulative_probability": (0, 0, 0, 0),
+    "median_rotated_acceleration": (0, 1, -2, 0),
+    "greatest_rotated_acceleration": (0, 1, -2, 0),
+    "geometric_mean_acceleration": (0, 1, -2, 0),
+    "direction_of_greatest": (0, 0, 0, 1),
+    "vertical_spectral_acceleration": (0, 1, -2, 0),
+    "vertical_to_horizontal_ratio": (0, 0, 0, 0),
+    "major_axis_angle": (0, 0, 0, 1),
+    "major_arias_intensity": (0, 1, -1, 0),
+    "minor_arias_intensity": (0, 1, -1, 0),
+    "average_spectral_acceleration": (0, 1, -2, 0),
+    "average_geometric_mean_acceleration": (0, 1, -2, 0),
+    "average_median_rotated_acceleration": (0, 1, -2, 0),
 }
 DIMENSION_NAMES = {
     "time",

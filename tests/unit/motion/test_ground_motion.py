@@ -236,7 +236,13 @@ def test_only_public_names_are_shown():
 
     inner = [name for name in dir(GroundMotion) if name.startswith("_")]
     assert all(name.endswith("__") for name in inner)
-    assert dir(rockframe.motion) == ["GroundMotion", "formats", "register", "unregister"]
+    assert dir(rockframe.motion) == [
+        "GroundMotion",
+        "HorizontalPair",
+        "formats",
+        "register",
+        "unregister",
+    ]
 
 
 def test_help_shows_constructors_and_operations():

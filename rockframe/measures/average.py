@@ -1,0 +1,117 @@
+"""Average spectral acceleration."""
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, Final, cast
+
+import numpy as np
+import xarray as xr
+
+from rockframe.errors import ComponentError
+from rockframe.measures.directions import rotated_spectrum
+from rockframe.measures.response import checked_periods, response_spectrum
+from rockframe.motion.pair import HorizontalPair
+from rockframe.results.dataset import build_dataset
+from rockframe.units import PERIOD
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from rockframe.motion import GroundMotion
+    from rockframe.motion.quantities import ArrayLike, QuantityLike, RatioLike
+
+_OWNER: Final = "average_spectral_acceleration"
+_REFERENCES: Final = "Eads et al. (2015), Earthquake Engng. Struct. Dyn. 44, 2057-2073"
+_OF_PAIRS: Final = {
+    "geometric_mean_acceleration": "average_geometric_mean_acceleration",
+    "median_rotated_acceleration": "average_median_rotated_acceleration",
+}
+
+
+def average_spectral_acceleration(
+    motion: "GroundMotion | HorizontalPair | Mapping[str, GroundMotion | HorizontalPair]",
+    periods: "ArrayLike | Iterable[QuantityLike]",
+    damping_ratio: "RatioLike" = 0.05,
+    *,
+    component: str = "horizontal",
+) -> xr.Dataset:
+    """Compute the geometric mean of a spectrum over periods, Sa_avg.
+
+    Parameters
+    ----------
+    motion : GroundMotion or HorizontalPair, or mapping of str to one of these
+        The motion or the pair, or several by their labels.
+    periods : (sequence, unit), Quantity or sequence of str
+        All of equal weight, such as 57 from 0.2 to 3 times the first period of a building;
+        increasing, and above zero [s].
+    damping_ratio : float, optional
+        Of the oscillators [1].
+    component : {"horizontal", "vertical"}, optional
+        Which acceleration of a motion.
+
+    Returns
+    -------
+    xarray.Dataset
+        Scalars, of several over ``motion`` [m s^-2]: of motions
+        ``average_spectral_acceleration``, :eq:`eq-average-acceleration`; of pairs
+        ``average_geometric_mean_acceleration`` and ``average_median_rotated_acceleration``, the
+        same of the spectra of :func:`rockframe.rotated_spectrum`.
+
+    Raises
+    ------
+    UnitsError
+        Periods without a unit, or with one of another kind.
+    ComponentError
+        Neither motions nor pairs, or an argument out of range.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> pulse = rf.GroundMotion.sine_pulse("1 m/s^2", "1 Hz", cycles=0.5)
+    >>> found = average_spectral_acceleration(pulse, ["0.5 s", "1 s", "2 s"])
+    >>> round(float(found.average_spectral_acceleration), 3)
+    1.257
+    """
+    seconds = checked_periods(_given(periods), owner=_OWNER)
+    if not (seconds > 0.0).all():
+        msg = f"{_OWNER}: periods must be above zero, whose logarithm is averaged"
+        raise ComponentError(msg)
+    with_unit = (seconds, str(PERIOD.unit))
+    things = list(motion.values()) if isinstance(motion, Mapping) else [motion]
+    if things and all(isinstance(one, HorizontalPair) for one in things):
+        spectrum = rotated_spectrum(cast("Any", motion), with_unit, damping_ratio)
+        names = _OF_PAIRS
+    else:
+        spectrum = response_spectrum(
+            cast("Any", motion), with_unit, damping_ratio, component=component
+        )
+        names = {"pseudo_spectral_acceleration": _OWNER}
+    averages: dict[str, Any] = {}
+    for name, average in names.items():
+        with np.errstate(divide="ignore"):
+            logarithms: Any = np.log(spectrum[name].isel(damping_ratio=0))
+        averages[average] = np.exp(logarithms.mean("period")).to_numpy()
+    several = "motion" in spectrum.dims
+    kept = ("motion", "motion_sha256", "component")
+    dataset = build_dataset(
+        averages,
+        {
+            **{name: spectrum.attrs[name] for name in kept if name in spectrum.attrs},
+            "references": _REFERENCES,
+            "damping_ratio": float(spectrum["damping_ratio"][0]),
+            "lowest_period": float(seconds[0]),
+            "highest_period": float(seconds[-1]),
+            "periods": int(seconds.size),
+        },
+        over=("motion",) if several else (),
+        title="Average spectral acceleration",
+        source="recurrence of Nigam and Jennings",
+    )
+    return dataset.assign_coords(motion=spectrum["motion"]) if several else dataset
+
+
+def _given(periods: object) -> object:
+    """Refuse None, for which spectra have periods of their own."""
+    if periods is None:
+        msg = f"{_OWNER}: periods must be given, for example (np.linspace(0.2, 3, 57), 's')"
+        raise ComponentError(msg)
+    return periods

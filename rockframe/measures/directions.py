@@ -1,0 +1,238 @@
+"""Measures of two horizontal components: spectra in all directions, ratios, principal axes."""
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, Final, cast
+
+import numpy as np
+import xarray as xr
+
+from rockframe.arguments import whole_number
+from rockframe.constants import STANDARD_GRAVITY
+from rockframe.errors import ComponentError, shown
+from rockframe.measures.labels import build_over
+from rockframe.measures.response import checked_periods, checked_ratios, oscillator_axes
+from rockframe.measures.several import Looked, check_some
+from rockframe.motion.pair import HorizontalPair
+from rockframe.results.dataset import build_dataset
+from rockframe.signals.accumulation import arias_history
+from rockframe.signals.arrays import Array
+from rockframe.signals.rotated import rotated_displacements, rotated_peaks, unit_vectors
+from rockframe.signals.spectra import check_cost, pseudo_spectra, spectral_peaks
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from rockframe.motion.quantities import ArrayLike, QuantityLike, RatioLike
+    from rockframe.signals import Signal
+
+_SPECTRUM: Final = "rotated_spectrum"
+_AXES: Final = "principal_axes"
+_REFERENCES: Final = (
+    "Boore (2010), Bull. Seism. Soc. Am. 100, 1830-1835; Penzien and Watabe (1975), Earthquake "
+    "Engng. Struct. Dyn. 3, 365-373"
+)
+_MOST_DIRECTIONS: Final = 3600
+
+
+def rotated_spectrum(
+    pair: HorizontalPair | Mapping[str, HorizontalPair],
+    periods: "ArrayLike | Iterable[QuantityLike] | None" = None,
+    damping_ratios: "Iterable[RatioLike] | RatioLike" = (0.05,),
+    *,
+    directions: int = 180,
+) -> xr.Dataset:
+    """Compute the response spectra of two horizontal components in all directions.
+
+    Parameters
+    ----------
+    pair : HorizontalPair, or mapping of str to HorizontalPair
+        The components, or those of several records by their labels, such as the ``pairs`` of a
+        suite.
+    periods, damping_ratios : optional
+        As for :func:`rockframe.response_spectrum` [s], [1].
+    directions : int, optional
+        Directions over half a circle, evenly spaced; an even number.
+
+    Returns
+    -------
+    xarray.Dataset
+        Pseudo-spectral accelerations over ``damping_ratio`` and ``period``, of several records
+        over ``motion`` before these [m s^-2]: ``median_rotated_acceleration``, the median over
+        all directions (RotD50), and ``greatest_rotated_acceleration`` (RotD100),
+        :eq:`eq-rotated-percentiles`; ``geometric_mean_acceleration`` of the components as
+        recorded, :eq:`eq-geometric-mean`. ``direction_of_greatest`` is the direction of the
+        greatest, from the first component towards the second [rad]. Where there is a vertical
+        component, ``vertical_spectral_acceleration`` and ``vertical_to_horizontal_ratio`` [1],
+        :eq:`eq-vertical-to-horizontal`.
+
+    Raises
+    ------
+    UnitsError
+        Periods without a unit, or with one of another kind.
+    ComponentError
+        No pair, an odd number of directions, or periods and damping ratios as for
+        :func:`rockframe.response_spectrum`.
+
+    Notes
+    -----
+    As exact as :func:`rockframe.response_spectrum`: in the direction of a component it gives
+    that component's spectrum. Of several records the vertical one is given if all have it.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> north = rf.GroundMotion.sine_pulse("3 m/s^2", "1 Hz")
+    >>> east = rf.GroundMotion.sine_pulse("4 m/s^2", "1 Hz")
+    >>> spectrum = rotated_spectrum(rf.HorizontalPair(north, east), ["0 s", "1 s"])
+    >>> spectrum.greatest_rotated_acceleration.values.round(2).tolist()
+    [[5.0, 13.45]]
+    """
+    looked = _pairs(pair, owner=_SPECTRUM)
+    seconds = checked_periods(periods, owner=_SPECTRUM)
+    ratios = checked_ratios(damping_ratios, owner=_SPECTRUM)
+    count = whole_number(
+        directions, owner=_SPECTRUM, name="directions", lowest=2, highest=_MOST_DIRECTIONS
+    )
+    if count % 2:
+        msg = (
+            f"{_SPECTRUM}: directions must be even, to have both components among them, got {count}"
+        )
+        raise ComponentError(msg)
+    for one in looked.things:
+        check_cost(one.signals[0], seconds, owner=_SPECTRUM)
+    vectors = unit_vectors(count)
+    upwards = all(one.vertical is not None for one in looked.things)
+
+    def spectra(one: HorizontalPair) -> dict[str, Array]:
+        values = _spectra(one.signals, seconds, ratios, vectors)
+        if upwards and one.vertical is not None:
+            vertical = _vertical(one.vertical.si.horizontal, seconds, ratios)
+            horizontal = values["median_rotated_acceleration"]
+            with np.errstate(divide="ignore", invalid="ignore"):
+                ratio = vertical / horizontal
+            values["vertical_spectral_acceleration"] = vertical
+            values["vertical_to_horizontal_ratio"] = ratio
+        return values
+
+    dataset = build_over(
+        oscillator_axes(ratios, seconds),
+        looked.together(looked.each(spectra)),
+        {**looked.attributes, "directions": count},
+        over=looked.over,
+        title="Response spectra of two horizontal components",
+        source="recurrence of Nigam and Jennings",
+    )
+    return looked.labelled(dataset)
+
+
+def principal_axes(pair: HorizontalPair | Mapping[str, HorizontalPair]) -> xr.Dataset:
+    """Find the axes along which the horizontal components are uncorrelated.
+
+    Parameters
+    ----------
+    pair : HorizontalPair, or mapping of str to HorizontalPair
+        The components, or those of several records by their labels.
+
+    Returns
+    -------
+    xarray.Dataset
+        Scalars, of several records over ``motion``: ``major_axis_angle``, from the first
+        component towards the second, above -90 and up to 90 degrees [rad]; the Arias
+        intensities along the axes, ``major_arias_intensity`` and ``minor_arias_intensity``
+        [m s^-1].
+
+    Raises
+    ------
+    ComponentError
+        No pair.
+
+    Notes
+    -----
+    :eq:`eq-principal-axes`, after Penzien and Watabe (1975), over the whole motion. Of two
+    components of equal intensity that are uncorrelated any axes are principal ones.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> north = rf.GroundMotion.sine_pulse("3 m/s^2", "1 Hz")
+    >>> pair = rf.HorizontalPair(north, north.scaled(2))
+    >>> round(float(principal_axes(pair).major_axis_angle), 4)
+    1.1071
+    """
+    looked = _pairs(pair, owner=_AXES)
+    dataset = build_dataset(
+        looked.together(looked.each(_axes)),
+        looked.attributes,
+        over=looked.over,
+        title="Principal axes of two horizontal components",
+        source="integration from sample to sample",
+    )
+    return looked.labelled(dataset)
+
+
+def _spectra(
+    signals: "tuple[Signal, Signal]", seconds: Array, ratios: Array, vectors: Array
+) -> dict[str, Array]:
+    """Compute :eq:`eq-rotated-percentiles` and :eq:`eq-geometric-mean`."""
+    moving = np.flatnonzero(seconds > 0.0)
+    frequency = 2.0 * np.pi / seconds[moving]
+    all_directions = np.empty((ratios.size, seconds.size, len(vectors)))
+    all_directions[:] = rotated_peaks(*signals, vectors)
+    for place, ratio in enumerate(ratios.tolist()):
+        displacement = rotated_displacements(*signals, seconds[moving], ratio, vectors)
+        all_directions[place, moving] = frequency[:, None] ** 2 * displacement
+    half = len(vectors) // 2
+    greatest = all_directions.argmax(axis=2)
+    return {
+        "median_rotated_acceleration": np.median(all_directions, axis=2),
+        "greatest_rotated_acceleration": all_directions.max(axis=2),
+        "geometric_mean_acceleration": np.sqrt(
+            all_directions[:, :, 0] * all_directions[:, :, half]
+        ),
+        "direction_of_greatest": np.pi * greatest / len(vectors),
+    }
+
+
+def _vertical(signal: "Signal", seconds: Array, ratios: Array) -> Array:
+    peaks = np.array([spectral_peaks(signal, seconds, ratio) for ratio in ratios.tolist()])
+    return pseudo_spectra(signal, seconds, peaks[:, :, 0])[1]
+
+
+def _axes(pair: HorizontalPair) -> dict[str, float]:
+    """Compute :eq:`eq-principal-axes`."""
+    first, second = pair.signals
+    own = [_intensity(one) for one in (first, second)]
+    both = _intensity(pair.rotated("45 deg").si.horizontal)
+    common = both - 0.5 * (own[0] + own[1])
+    angle = 0.5 * math.atan2(2.0 * common, own[0] - own[1])
+    middle, spread = 0.5 * (own[0] + own[1]), math.hypot(common, 0.5 * (own[0] - own[1]))
+    return {
+        "major_axis_angle": angle,
+        "major_arias_intensity": middle + spread,
+        "minor_arias_intensity": max(middle - spread, 0.0),
+    }
+
+
+def _intensity(signal: "Signal") -> float:
+    return float(arias_history(signal, STANDARD_GRAVITY)[-1])
+
+
+def _pairs(given: object, *, owner: str) -> Looked[HorizontalPair]:
+    """Take one pair or several."""
+    if isinstance(given, HorizontalPair):
+        return Looked([given], None, {"motion": given.name, "references": _REFERENCES})
+    if not isinstance(given, Mapping):
+        wanted = "two horizontal components, rf.HorizontalPair(first, second)"
+        msg = f"{owner}: pair needs {wanted}, got {shown(given)}"
+        raise ComponentError(msg)
+    pairs = cast("Mapping[Any, Any]", given)
+    check_some(pairs, owner=owner)
+    for label, one in pairs.items():
+        if not isinstance(one, HorizontalPair):
+            msg = (
+                f"{owner}: {label!r} is {shown(one)}, expected a HorizontalPair; those of a suite "
+                "are suite.pairs"
+            )
+            raise ComponentError(msg)
+    return Looked(list(pairs.values()), [str(one) for one in pairs], {"references": _REFERENCES})

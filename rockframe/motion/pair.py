@@ -1,0 +1,202 @@
+"""Both horizontal components of a record."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+from rockframe.errors import ComponentError, RecordError, RecordWarning, shown
+from rockframe.motion.ground_motion import GroundMotion
+from rockframe.motion.operations.following import SAME_STEP
+from rockframe.motion.processing.sampling import padded
+from rockframe.motion.readers.reading import read_components
+from rockframe.motion.readers.source import Request, load
+
+if TYPE_CHECKING:
+    from rockframe.motion.quantities import QuantityLike
+    from rockframe.motion.readers.source import RecordLike
+    from rockframe.signals import Signal
+
+_RIGHT_ANGLE: Final = 90.0
+_TOLERANCE: Final = 1.0  # degree; agencies round azimuths to whole ones
+_EXAMPLE: Final = "HorizontalPair(north, east)"
+
+
+@dataclass(frozen=True)
+class HorizontalPair:
+    """Two horizontal components at a right angle, and perhaps the vertical one.
+
+    Parameters
+    ----------
+    first, second : GroundMotion
+        The horizontal components, of the same time step and, where their files tell it, of the
+        same start; the shorter one is taken as padded with zeros. Vertical components in them
+        are not looked at.
+    vertical : GroundMotion, optional
+        The vertical component, upwards.
+
+    Raises
+    ------
+    ComponentError
+        Not motions, of different time steps or starts, or not at a right angle by their
+        azimuths.
+
+    Examples
+    --------
+    >>> from rockframe import GroundMotion
+    >>> north = GroundMotion.sine_pulse("3 m/s^2", "1 Hz")
+    >>> east = GroundMotion.sine_pulse("4 m/s^2", "1 Hz")
+    >>> pair = HorizontalPair(north, east)
+    >>> pair.rotated("53.1301 deg").peak_acceleration.round(3)
+    <Quantity(5.0, 'meter / second ** 2')>
+    """
+
+    first: GroundMotion
+    second: GroundMotion
+    vertical: GroundMotion | None = None
+
+    def __post_init__(self) -> None:
+        owner = type(self).__name__
+        named: dict[str, Any] = {"first": self.first, "second": self.second}
+        if self.vertical is not None:
+            named["vertical"] = self.vertical
+        for name, motion in named.items():
+            if not isinstance(motion, GroundMotion):
+                msg = f"{owner}: {name} needs a GroundMotion, got {shown(motion)}; write {_EXAMPLE}"
+                raise ComponentError(msg)
+            _check_alike(self.first, motion, name, owner)
+        azimuths = [motion.metadata.get("azimuth") for motion in (self.first, self.second)]
+        known = [float(value) for value in azimuths if isinstance(value, int | float)]
+        if len(known) == 2:
+            apart = abs((known[1] - known[0] + 180.0) % 360.0 - 180.0)
+            if abs(apart - _RIGHT_ANGLE) > _TOLERANCE:
+                msg = (
+                    f"{owner}: the components point to {known[0]:g} and {known[1]:g} degrees, "
+                    "which are not at a right angle"
+                )
+                raise ComponentError(msg)
+
+    @classmethod
+    def read(cls, path: RecordLike, format: str | None = None) -> HorizontalPair:  # noqa: A002
+        """Read both horizontal components of one file, and the vertical one if it is there.
+
+        Parameters
+        ----------
+        path : str, path-like, bytes or file object
+            A file with two horizontal components.
+        format : str, optional
+            As for :meth:`GroundMotion.read`.
+
+        Returns
+        -------
+        HorizontalPair
+            In the order of the file.
+
+        Raises
+        ------
+        RecordError
+            It cannot be read, or does not hold two horizontal components and at most one
+            vertical one.
+        """
+        source = load(path)
+        readings = read_components(source, format, Request())
+        level = [one for one in readings if not one.vertical]
+        upwards = [one for one in readings if one.vertical]
+        if len(level) != 2 or len(upwards) > 1:
+            found = f"{len(level)} horizontal and {len(upwards)} vertical components"
+            expected = "two horizontal ones and at most one vertical; read them one by one"
+            raise RecordError(source.path, found=found, expected=expected)
+        for reading in readings:
+            for message in reading.warnings:
+                warnings.warn(message, RecordWarning, stacklevel=2)
+        motions = [
+            GroundMotion(
+                one.si,
+                name=f"{one.file} {one.metadata.get('component', '')}",
+                metadata=one.metadata,
+                history=one.history,
+            )
+            for one in (*level, *upwards)
+        ]
+        return cls(*motions)
+
+    @property
+    def name(self) -> str:
+        """What titles and messages call it."""
+        return f"{self.first.name}, {self.second.name}"
+
+    @property
+    def signals(self) -> tuple[Signal, Signal]:
+        """Both components in SI units, of the same length."""
+        count = max(len(self.first), len(self.second))
+        one, other = (padded(motion.si.horizontal, count) for motion in (self.first, self.second))
+        return one, other
+
+    def rotated(
+        self, angle: QuantityLike | None = None, *, azimuth: QuantityLike | None = None
+    ) -> GroundMotion:
+        """Give the horizontal component in another direction.
+
+        Parameters
+        ----------
+        angle : str or Quantity, optional
+            From the first component towards the second one [rad].
+        azimuth : str or Quantity, optional
+            Instead of `angle`: clockwise from north [rad].
+
+        Returns
+        -------
+        GroundMotion
+            With the vertical component beside it, if the pair has one.
+
+        Raises
+        ------
+        UnitsError, ComponentError
+            As for :meth:`GroundMotion.rotated`.
+        """
+        turned = self.first.rotated(self.second, angle, azimuth=azimuth)
+        return turned if self.vertical is None else turned.with_vertical(self.vertical)
+
+    def in_axes(self, angle: QuantityLike) -> HorizontalPair:
+        """Give the components along axes that are turned.
+
+        Parameters
+        ----------
+        angle : str or Quantity
+            From the first component towards the second one [rad].
+
+        Returns
+        -------
+        HorizontalPair
+
+        Raises
+        ------
+        UnitsError
+            Not an angle.
+        """
+        along = self.first.rotated(self.second, angle)
+        # the second axis of the turned pair is that of the second component, turned back
+        mirrored = self.first.scaled(-1.0)
+        across = self.second.rotated(mirrored, angle)
+        return HorizontalPair(_without_azimuth(along), _without_azimuth(across), self.vertical)
+
+
+def _without_azimuth(motion: GroundMotion) -> GroundMotion:
+    known: dict[str, Any] = {k: v for k, v in motion.metadata.items() if k != "azimuth"}
+    return GroundMotion(motion.si, name=motion.name, metadata=known, history=motion.history)
+
+
+def _check_alike(first: GroundMotion, other: GroundMotion, name: str, owner: str) -> None:
+    steps = first.si.time_step, other.si.time_step
+    if not math.isclose(*steps, rel_tol=SAME_STEP):
+        msg = (
+            f"{owner}: the time steps of first and {name} differ, {steps[0]!r} s and "
+            f"{steps[1]!r} s; resample one"
+        )
+        raise ComponentError(msg)
+    starts = first.metadata.get("record_time"), other.metadata.get("record_time")
+    if None not in starts and starts[0] != starts[1]:
+        msg = f"{owner}: first starts at {starts[0]}, {name} at {starts[1]}"
+        raise ComponentError(msg)
