@@ -71,6 +71,11 @@ if TYPE_CHECKING:
     from rockframe.studies import sweep as sweep
     from rockframe.studies import to_openquake as to_openquake
     from rockframe.studies import to_pelicun as to_pelicun
+    from rockframe.suites import MotionSuite as MotionSuite
+    from rockframe.suites import TargetSpectrum as TargetSpectrum
+    from rockframe.suites import read_suite as read_suite
+    from rockframe.suites import scale_to_target as scale_to_target
+    from rockframe.suites import select_for_target as select_for_target
     from rockframe.version import __version__ as __version__
 
 # Every scene needs these two. They are most of what has to be loaded: here, so that the
@@ -140,6 +145,13 @@ _HOMES = {
         "to_openquake",
         "to_pelicun",
     ),
+    "rockframe.suites": (
+        "MotionSuite",
+        "TargetSpectrum",
+        "read_suite",
+        "scale_to_target",
+        "select_for_target",
+    ),
     "rockframe.version": ("__version__",),
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
@@ -158,6 +170,7 @@ __all__ = [
     "InitialState",
     "Member",
     "ModelWarning",
+    "MotionSuite",
     "Recommendation",
     "RecordError",
     "RecordWarning",
@@ -170,6 +183,7 @@ __all__ = [
     "SolverWarning",
     "StudyError",
     "System",
+    "TargetSpectrum",
     "TwoSpringSupport",
     "UnitsError",
     "WinklerSoil",
@@ -195,11 +209,14 @@ __all__ = [
     "plot",
     "principal_axes",
     "probability_of_overturning",
+    "read_suite",
     "recommend",
     "register",
     "response_spectrum",
     "rocking_spectrum",
     "rotated_spectrum",
+    "scale_to_target",
+    "select_for_target",
     "sweep",
     "table",
     "to_openquake",

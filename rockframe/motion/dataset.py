@@ -20,7 +20,7 @@ from rockframe.units import Unit
 if TYPE_CHECKING:
     from rockframe.motion.value import Made, MotionValue
 
-_LONG_NAMES: Final = {
+LONG_NAMES: Final = {
     "acceleration": "horizontal ground acceleration",
     "vertical_acceleration": "vertical ground acceleration, upwards",
     "acceleration_pieces": "polynomials of the horizontal ground acceleration between samples",
@@ -88,7 +88,7 @@ def to_dataset(motion: MotionValue) -> xr.Dataset:
         name: (
             "time" if values.ndim == 1 else _PIECES_DIMS,
             values.copy(),
-            {"units": str(Unit.METRE_PER_SECOND_SQUARED), "long_name": _LONG_NAMES[name]},
+            {"units": str(Unit.METRE_PER_SECOND_SQUARED), "long_name": LONG_NAMES[name]},
         )
         for name, values in held.items()
         if values is not None

@@ -10,6 +10,7 @@ from rockframe.plot._overturning import (
     rocking_spectrum,
 )
 from rockframe.plot._response import response
+from rockframe.plot._selection import selection
 from rockframe.plot._spectra import spectra
 from rockframe.plot._tradeoff import tradeoff
 
@@ -23,6 +24,7 @@ __all__ = [
     "probability",
     "response",
     "rocking_spectrum",
+    "selection",
     "spectra",
     "tradeoff",
 ]

@@ -10,6 +10,9 @@ from rockframe.errors import ComponentError, SchemaError
 _NEEDED: Final = {
     "response": "the result of one run with histories, as system.simulate(motion) gives it",
     "tradeoff": "a comparison of models, as rf.tradeoff(system, motion) gives it",
+    "selection": (
+        "a set of motions beside its target, as rf.select_for_target(suite, target, 11) gives it"
+    ),
     "motion": "a GroundMotion",
     "spectra": "a GroundMotion",
     "fragility": "a fragility, as rf.fragility(runs) gives it",
@@ -48,6 +51,15 @@ _RUNGS: Final = (
     "model",
     "accuracy",
 )
+_SELECTION: Final = (
+    "scaled_spectral_acceleration",
+    "target_spectral_acceleration",
+    "target_standard_deviation",
+    "set_median_acceleration",
+    "set_standard_deviation",
+    "scale_factor",
+    "spectral_misfit",
+)
 _DRAWN_BY: Final = (
     # (variables, what they are, what draws them), the first that fits
     *(
@@ -55,6 +67,11 @@ _DRAWN_BY: Final = (
         for function, names in _STUDIES.items()
     ),
     (("run_time", "verdict_agrees"), "a comparison of models", "rf.plot.tradeoff draws it"),
+    (
+        ("scaled_spectral_acceleration", "target_spectral_acceleration"),
+        "a set of motions beside its target",
+        "rf.plot.selection draws it",
+    ),
     (("rotation", "time", "overturned"), "the result of a run", "rf.plot.response draws it"),
     (
         ("overturned", "peak_rotation"),
@@ -150,6 +167,25 @@ def check_study(given: object, function: str) -> xr.Dataset:
     if not isinstance(given, xr.Dataset) or not _holds(given, _STUDIES[function]):
         raise SchemaError(_refusal(function, given))
     return given
+
+
+def check_selection(given: object) -> None:
+    """Refuse what is not a set of motions beside a target.
+
+    Parameters
+    ----------
+    given : object
+        What the user gave to `rf.plot.selection`.
+
+    Raises
+    ------
+    SchemaError
+        It is something else, or lacks a variable.
+    """
+    wanted = ("scaled_spectral_acceleration", "target_spectral_acceleration")
+    if not isinstance(given, xr.Dataset) or not _holds(given, wanted):
+        raise SchemaError(_refusal("selection", given))
+    _check_complete("selection", given, _SELECTION)
 
 
 def check_motion(given: object, function: str) -> None:

@@ -31,6 +31,7 @@ from rockframe.results.variables.runs import (
 )
 from rockframe.results.variables.statics import HELD, MODES, REST
 from rockframe.results.variables.studies import CASE, CRITICAL_SCALE, MESSAGE, MOTION, SWEEP
+from rockframe.results.variables.suites import RECORDS, TARGETS
 
 _TABLES: Final = (
     HISTORIES,
@@ -48,6 +49,8 @@ _TABLES: Final = (
     MODES,
     MEASURES,
     DIRECTIONS,
+    RECORDS,
+    TARGETS,
     COMPARISON,
     CRITICAL_SCALE,
     SWEEP,

@@ -35,6 +35,8 @@ FRAME = rf.FrameEquivalent.from_members(
     beam_width="0.25 m",
     density="2500 kg/m^3",
 )
+PAIR = {"one": NOISE, "other": NOISE.scaled(-0.5)}
+TARGET = rf.TargetSpectrum.eurocode_8("0.1 g_0").with_deviation(0.5)
 GIVEN = {
     "stack": lambda: STACK.simulate(record(), outputs="energy"),
     "still": lambda: ON_PADS.simulate(duration="0.1 s"),
@@ -52,8 +54,29 @@ GIVEN = {
     "path": lambda: rf.velocity_and_displacement(NOISE),
     "response spectrum": lambda: rf.response_spectrum(NOISE, ["0.5 s", "1 s"]),
     "Fourier spectrum": lambda: rf.fourier_spectrum(NOISE),
+    "spectra of several": lambda: rf.response_spectrum(PAIR, ["0.5 s", "1 s"]),
+    "rotated spectra": lambda: rf.rotated_spectrum(rf.HorizontalPair(*PAIR.values()), ["1 s"]),
+    "principal axes": lambda: rf.principal_axes({"r": rf.HorizontalPair(*PAIR.values())}),
+    "average": lambda: rf.average_spectral_acceleration(PAIR, ["0.5 s", "1 s"]),
+    "suite": lambda: rf.MotionSuite(PAIR, verticals={"V": pulse()}).to_dataset(),
+    "scaled": lambda: rf.scale_to_target(PAIR, TARGET),
+    "selected": lambda: rf.select_for_target(PAIR, TARGET, 1, bounds=None),
 }  # fmt: skip
-TEXT_LABELS = {"tradeoff": {"model", "accuracy"}, "members": {"member"}}
+TEXT_LABELS = {
+    "tradeoff": {"model", "accuracy"},
+    "members": {"member"},
+    **{
+        name: {"motion"}
+        for name in (
+            "spectra of several",
+            "principal axes",
+            "average",
+            "suite",
+            "scaled",
+            "selected",
+        )
+    },
+}
 """Words as labels of a dimension, which CF would have beside it (6.1), and xarray on it."""
 
 CHECKS = []

@@ -109,7 +109,8 @@ def test_all_names_are_there():
 
 
 def test_only_what_is_meant_for_users_is_shown():
-    assert {"motion", "response", "spectra", "tradeoff", "fragility"} <= set(dir(rf.plot))
+    drawn = {"motion", "response", "selection", "spectra", "tradeoff", "fragility"}
+    assert drawn <= set(dir(rf.plot))
     assert not [name for name in dir(rf.plot) if name.startswith("_")]
     assert all(callable(getattr(rf.plot, name)) for name in dir(rf.plot))
     assert {name for name in rf.__all__ if name.endswith(("Error", "Warning"))} == set(

@@ -1,0 +1,79 @@
+"""A download of records: read, scaled to the spectrum of a code, and run.
+
+Usage: python examples/suite.py [records] [--count 7] [--folder results]
+
+`records` is a folder or an archive with records of both horizontal components. Without it a small
+download is made up: sixteen stations of a synthetic earthquake, packed as a zip archive. Prints the
+set that fits Eurocode 8 best and what becomes of a cabinet under it; writes selection.png,
+suite.nc and runs.csv.
+"""
+
+import argparse
+import io
+import zipfile
+from pathlib import Path
+
+import rockframe as rf
+
+STATIONS = 16
+
+
+def made_up() -> bytes:
+    """Pack accelerograms of sixteen stations, as a download would."""
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
+        for station in range(STATIONS):
+            distance = f"{8 + 2 * station} km"
+            for place, component in enumerate(("000", "090")):
+                motion = rf.GroundMotion.stochastic(6.8, distance, seed=2 * station + place)
+                values = motion.acceleration.m_as("g_0")
+                head = (
+                    f"made up\nMade Up, 1/1/2020, Station {station + 1}, {component}\n"
+                    f"ACCELERATION IN UNITS OF G\nNPTS= {values.size}, DT= .005 SEC\n"
+                )
+                lines = "\n".join(f"{value:.7e}" for value in values)
+                archive.writestr(f"RSN{station + 1}_MADE_{component}.AT2", head + lines)
+    return packed.getvalue()
+
+
+def main() -> None:
+    """Read a suite, choose among it, and let it shake a cabinet."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("records", nargs="?", help="folder or archive; made up if none")
+    parser.add_argument("--count", type=int, default=7, help="records to choose")
+    parser.add_argument("--folder", default=".", help="where the results are written")
+    arguments = parser.parse_args()
+    folder = Path(arguments.folder)
+    folder.mkdir(parents=True, exist_ok=True)
+
+    suite = rf.read_suite(arguments.records or made_up())
+    print(
+        f"{len(suite)} motions, {len(suite.pairs)} of both components, {len(suite.unread)} not read"
+    )
+
+    target = rf.TargetSpectrum.eurocode_8("0.3 g_0", "B")
+    found = rf.select_for_target(suite, target, arguments.count, combination="RotD50")
+    print(f"Closest to {target.name}: misfit of the set {float(found.set_misfit):.3f}")
+    for record in found["motion"].to_numpy():
+        row = found.sel(motion=record)
+        factor, misfit = float(row.scale_factor), float(row.spectral_misfit)
+        print(f"  {record:8} times {factor:.2f}, misfit {misfit:.2f}")
+    chosen = suite.scaled_to(found)
+
+    cabinet = rf.System(rf.Block(width="0.3 m", height="2 m", mass="200 kg"))
+    runs = rf.concat(
+        [cabinet.simulate(motion, outputs=None) for motion in chosen.values()],
+        "motion",
+        list(chosen),
+    )
+    fallen = int(runs.overturned.sum())
+    print(f"A cabinet 2 m high and 0.3 m deep falls under {fallen} of {len(chosen)} motions.")
+
+    rf.plot.selection(found).savefig(folder / "selection.png", dpi=150)
+    chosen.to_dataset().to_netcdf(folder / "suite.nc")
+    rf.table(runs).to_csv(folder / "runs.csv")
+    print(f"Written: {folder / 'selection.png'}, {folder / 'suite.nc'}, {folder / 'runs.csv'}")
+
+
+if __name__ == "__main__":
+    main()

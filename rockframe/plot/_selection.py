@@ -1,0 +1,96 @@
+"""Spectra of a set of motions beside the target that they are to fit."""
+
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+import xarray as xr
+
+from rockframe.plot._given import check_selection
+from rockframe.plot._title import set_title
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_SET: Final = "#222255"
+_TARGET: Final = "#cc6677"
+_MOST_NAMED: Final = 50
+_LETTERS: Final = 34
+
+
+def selection(dataset: xr.Dataset, *, title: str | None = None) -> "Figure":
+    """Draw the scaled spectra of a set, their median and spread, and the target.
+
+    Left the accelerations; right the misfit of each motion, in the order of the set.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        Of :func:`rockframe.scale_to_target` or :func:`rockframe.select_for_target`.
+    title : str, optional
+        Title of the figure; the target and the number of motions unless given.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Not yet shown nor saved. Bands reach one standard deviation of the logarithm to both
+        sides.
+
+    Raises
+    ------
+    SchemaError
+        The dataset is no such set.
+    """
+    from matplotlib.figure import Figure
+
+    check_selection(dataset)
+    count = dataset.sizes["motion"]
+    figure = Figure(figsize=(10.0, max(4.0, min(9.0, 1.0 + 0.16 * count))), layout="constrained")
+    axes: Any = figure.subplots(1, 2, width_ratios=[1.7, 1.0])
+    drawn = dataset.isel(period=np.flatnonzero(dataset["period"].to_numpy() > 0.0))
+    period = drawn["period"].to_numpy()
+    spectra, misfits = axes
+    for place in range(count):
+        spectra.plot(
+            period,
+            drawn["scaled_spectral_acceleration"].isel(motion=place),
+            color="0.7",
+            linewidth=0.6,
+            label="motions" if place == 0 else None,
+        )
+    for name, colour, words in (
+        ("set_median", _SET, "median"),
+        ("target_spectral", _TARGET, "target"),
+    ):
+        middle = drawn[f"{name}_acceleration"].to_numpy()
+        spread = drawn[f"{name.split('_')[0]}_standard_deviation"].to_numpy()
+        spectra.plot(period, middle, color=colour, linewidth=1.8, label=words)
+        if spread.any():
+            for sign in (-1.0, 1.0):
+                edge = middle * np.exp(sign * spread)
+                spectra.plot(period, edge, color=colour, linewidth=1.0, linestyle="--")
+    spectra.set(
+        xscale="log",
+        yscale="log",
+        xlabel="period [s]",
+        ylabel="pseudo-spectral acceleration [m s$^{-2}$]",
+    )
+    spectra.legend(fontsize="small", frameon=False)
+    labels = [str(label) for label in dataset["motion"].to_numpy()]
+    factors = dataset["scale_factor"].to_numpy()
+    misfits.barh(range(count), dataset["spectral_misfit"], color="0.7")
+    misfits.set(xlabel="misfit of the logarithm [-]", ylim=(count - 0.5, -0.5))
+    if count <= _MOST_NAMED:
+        words = [
+            f"{_short(name)}, $\\times${f:.3g}" for name, f in zip(labels, factors, strict=True)
+        ]
+        misfits.set_yticks(range(count), words, fontsize="x-small")
+    for panel in axes:
+        panel.grid(visible=True, which="major", color="0.9", linewidth=0.6)
+        panel.set_axisbelow(True)
+    set_title(figure, title or f"{count} motions; {dataset.attrs['target']}")
+    return figure
+
+
+def _short(name: str) -> str:
+    plain = name.replace("$", "\\$")
+    return plain if len(plain) <= _LETTERS else f"{plain[: _LETTERS - 3]}..."

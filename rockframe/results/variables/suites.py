@@ -1,0 +1,81 @@
+"""Variables of suites: what is known of records, and sets beside a target."""
+
+from typing import Final
+
+from rockframe.results.variables.variable import PERIOD, Variable, count
+from rockframe.units import Unit
+
+RECORDS: Final = (
+    Variable("record", (), None, "components of one name were recorded together", dtype="str"),
+    Variable("axis", (), None, "place in the record: H1, H2 or V", dtype="str"),
+    Variable("record_sequence_number", (), Unit.ONE, "number of the record in the NGA databases"),
+    Variable("event", (), None, "earthquake", dtype="str"),
+    Variable("year", (), Unit.ONE, "year of the earthquake"),
+    Variable("magnitude", (), Unit.ONE, "magnitude of the earthquake"),
+    Variable("mechanism", (), None, "mechanism of the rupture", dtype="str"),
+    Variable("station", (), None, "station", dtype="str"),
+    Variable("component", (), None, "component by the name in its file", dtype="str"),
+    Variable("azimuth", (), Unit.RADIAN, "direction of the component, clockwise from north"),
+    Variable("rupture_distance", (), Unit.METRE, "closest distance to the rupture"),
+    Variable(
+        "joyner_boore_distance", (), Unit.METRE, "closest distance to the rupture seen from above"
+    ),
+    Variable(
+        "shear_wave_velocity_30",
+        (),
+        Unit.METRE_PER_SECOND,
+        "shear-wave velocity of the uppermost 30 m, averaged over the time of travel",
+    ),
+    Variable(
+        "lowest_usable_frequency", (), Unit.HERTZ, "frequency below which the record is not usable"
+    ),
+    Variable("stated_pulse_period", (), Unit.SECOND, "period of the pulse as its source states"),
+    Variable("time_step", (), Unit.SECOND, "time between samples"),
+    Variable("duration", (), Unit.SECOND, "time from the first to the last sample"),
+    count("sample_count", "number of samples"),
+    Variable("scale_factor", (), Unit.ONE, "factor by which the motion was scaled"),
+    Variable(
+        "spectral_misfit",
+        (),
+        Unit.ONE,
+        "root mean square of the logarithm of scaled spectrum over target",
+    ),
+)
+"""Of a motion in a suite; in datasets over ``motion``."""
+
+TARGETS: Final = (
+    Variable(
+        "target_spectral_acceleration",
+        PERIOD,
+        Unit.METRE_PER_SECOND_SQUARED,
+        "pseudo-spectral acceleration that is aimed at",
+    ),
+    Variable(
+        "target_standard_deviation",
+        PERIOD,
+        Unit.ONE,
+        "standard deviation of the logarithm of the spectrum that is aimed at",
+    ),
+    Variable(
+        "scaled_spectral_acceleration",
+        PERIOD,
+        Unit.METRE_PER_SECOND_SQUARED,
+        "pseudo-spectral acceleration of the scaled motion",
+    ),
+    Variable(
+        "set_median_acceleration",
+        PERIOD,
+        Unit.METRE_PER_SECOND_SQUARED,
+        "geometric mean over the set of the scaled pseudo-spectral accelerations",
+    ),
+    Variable(
+        "set_standard_deviation",
+        PERIOD,
+        Unit.ONE,
+        "standard deviation over the set of the logarithm of the scaled spectra",
+    ),
+    Variable(
+        "set_misfit", (), Unit.ONE, "root mean square of the misfit of the set, with its spread"
+    ),
+)
+"""Of a set of motions beside a target spectrum."""

@@ -1,0 +1,216 @@
+"""What a selection chooses from: motions or pairs, their spectra, and their factors."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import TYPE_CHECKING, Any, Final, cast
+
+import numpy as np
+
+from rockframe.arguments import one_of_words
+from rockframe.errors import ComponentError, shown
+from rockframe.measures import response_spectrum, rotated_spectrum
+from rockframe.measures.response import checked_periods
+from rockframe.signals.arrays import Array
+from rockframe.suites.suite import MotionSuite
+from rockframe.suites.target import TargetSpectrum
+from rockframe.units import PERIOD, POSITIVE, to_ratio
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from rockframe.motion.quantities import ArrayLike, QuantityLike, RatioLike
+
+_USUAL_BAND: Final = (0.1, 4.0)
+_USUAL_COUNT: Final = 40
+
+
+class Combination(StrEnum):
+    """Whose spectrum is fitted: each motion's, or one of both components of a record."""
+
+    EACH = "each"
+    GEOMETRIC_MEAN = "geometric mean"
+    MEDIAN = "RotD50"
+    GREATEST = "RotD100"
+
+
+_OF_PAIRS: Final = {
+    Combination.GEOMETRIC_MEAN: "geometric_mean_acceleration",
+    Combination.MEDIAN: "median_rotated_acceleration",
+    Combination.GREATEST: "greatest_rotated_acceleration",
+}
+
+
+@dataclass(frozen=True)
+class Candidates:
+    """Motions or records beside a target.
+
+    Parameters
+    ----------
+    labels : tuple of str
+        Of n motions, or of records where both components are looked at together.
+    seconds : ndarray, shape (k,)
+        Periods at which spectra are compared [s].
+    logarithms : ndarray, shape (n, k)
+        Of the spectra, not scaled.
+    target : ndarray, shape (k,)
+        Logarithm of the target.
+    deviations : ndarray, shape (k,)
+        Its standard deviations.
+    factors : ndarray, shape (n,)
+        By which each is scaled, whatever the bounds [1].
+    bounds : tuple of float
+        Least and greatest factor.
+    events : tuple of str
+        Earthquake of each, empty where it is not known.
+    attributes : dict
+        What answers say of all this.
+    """
+
+    labels: tuple[str, ...]
+    seconds: Array
+    logarithms: Array
+    target: Array
+    deviations: Array
+    factors: Array
+    bounds: tuple[float, float]
+    events: tuple[str, ...]
+    attributes: dict[str, str | float | int]
+
+    def residuals(self, factors: Array) -> Array:
+        """Give the logarithms of scaled spectra over the target, shape (n, k)."""
+        return self.logarithms + np.log(factors)[:, None] - self.target
+
+    @property
+    def within(self) -> "NDArray[np.bool_]":
+        """Which factors lie within the bounds, shape (n,)."""
+        low, high = self.bounds
+        return (self.factors >= low) & (self.factors <= high)
+
+
+def candidates_of(
+    suite: object,
+    target: object,
+    *,
+    periods: "ArrayLike | Iterable[QuantityLike] | None",
+    conditioned_on: "ArrayLike | Iterable[QuantityLike] | None",
+    bounds: "tuple[RatioLike, RatioLike] | None",
+    combination: str,
+    owner: str,
+) -> Candidates:
+    """Check the arguments of a selection, and compute the spectra that it needs.
+
+    Parameters
+    ----------
+    suite : MotionSuite
+        What is chosen from.
+    target : TargetSpectrum
+        What is aimed at.
+    periods, conditioned_on, bounds, combination
+        As for :func:`rockframe.scale_to_target`.
+    owner : str
+        Function, for messages.
+
+    Returns
+    -------
+    Candidates
+
+    Raises
+    ------
+    UnitsError, ComponentError
+        As for :func:`rockframe.scale_to_target`.
+    """
+    if not isinstance(target, TargetSpectrum):
+        msg = (
+            f"{owner}: target needs a TargetSpectrum, got {shown(target)}; write for example "
+            "rf.TargetSpectrum.eurocode_8('0.2 g_0', 'B')"
+        )
+        raise ComponentError(msg)
+    if isinstance(suite, Mapping) and not isinstance(suite, MotionSuite):
+        suite = MotionSuite(cast("Any", suite))
+    if not isinstance(suite, MotionSuite):
+        msg = f"{owner}: suite needs a MotionSuite, got {shown(suite)}"
+        raise ComponentError(msg)
+    kind = one_of_words(Combination, combination, owner=owner, name="combination")
+    seconds = _usual(target) if periods is None else checked_periods(periods, owner=owner)
+    fixed = seconds if conditioned_on is None else checked_periods(conditioned_on, owner=owner)
+    every = np.unique(np.concatenate([seconds, fixed]))
+    goal = np.log(target.at_seconds(every, owner=owner))
+    labels, spectra, events = _spectra(suite, kind, every, target.damping_ratio, owner)
+    still = [label for label, row in zip(labels, spectra, strict=True) if not (row > 0.0).all()]
+    if still:
+        msg = f"{owner}: {still[0]!r} has no acceleration, and no factor brings it to a target"
+        raise ComponentError(msg)
+    logarithms = np.log(spectra)
+    held, compared = (np.searchsorted(every, one) for one in (fixed, seconds))
+    factors = np.exp((goal[held] - logarithms[:, held]).mean(axis=1))
+    return Candidates(
+        tuple(labels),
+        seconds,
+        logarithms[:, compared],
+        goal[compared],
+        target.deviations_at(seconds),
+        factors,
+        _bounds(bounds, owner),
+        tuple(events),
+        {
+            "target": target.name,
+            "damping_ratio": target.damping_ratio,
+            "combination": str(kind),
+            "conditioned_on": _conditioned(conditioned_on is not None, fixed),
+        },
+    )
+
+
+def _usual(target: TargetSpectrum) -> Array:
+    low, high = (float(np.clip(one, *target.limits)) for one in _USUAL_BAND)
+    return np.geomspace(low, high, _USUAL_COUNT) if high > low else np.array([low])
+
+
+def _bounds(given: "tuple[RatioLike, RatioLike] | None", owner: str) -> tuple[float, float]:
+    if given is None:
+        return 0.0, np.inf
+    values: tuple[Any, ...] = tuple(given)
+    if len(values) == 2:
+        low, high = (
+            to_ratio(one, owner=owner, name="bounds", condition=POSITIVE, example="(0.25, 4)")
+            for one in values
+        )
+        if low <= high:
+            return low, high
+    msg = f"{owner}: bounds must be the least and the greatest factor, got {shown(given)}"
+    raise ComponentError(msg)
+
+
+def _spectra(
+    suite: MotionSuite, kind: Combination, seconds: Array, damping_ratio: float, owner: str
+) -> tuple[list[str], Array, list[str]]:
+    with_unit = (seconds, str(PERIOD.unit))
+    if kind is Combination.EACH:
+        found = response_spectrum(suite, with_unit, damping_ratio)["pseudo_spectral_acceleration"]
+        motions = list(suite.values())
+        labels = list(suite)
+    else:
+        pairs = suite.pairs
+        if not pairs:
+            msg = (
+                f"{owner}: combination={str(kind)!r} needs both horizontal components of records, "
+                "and the suite has no pair"
+            )
+            raise ComponentError(msg)
+        found = rotated_spectrum(pairs, with_unit, damping_ratio)[_OF_PAIRS[kind]]
+        motions = [pair.first for pair in pairs.values()]
+        labels = list(pairs)
+    events = [str(motion.metadata.get("event", "")) for motion in motions]
+    return labels, found.isel(damping_ratio=0).to_numpy(), events
+
+
+def _conditioned(given: bool, fixed: Array) -> str:
+    if not given:
+        return "the mean logarithm over all periods"
+    if fixed.size == 1:
+        return f"the pseudo-spectral acceleration at {fixed[0]:.6g} s"
+    return (
+        f"the average spectral acceleration of {fixed.size} periods from {fixed[0]:.6g} s to "
+        f"{fixed[-1]:.6g} s"
+    )

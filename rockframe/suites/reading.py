@@ -1,0 +1,213 @@
+"""From files to a suite."""
+
+from pathlib import PurePath
+from typing import TYPE_CHECKING, Final
+
+from rockframe.errors import RecordError, RecordWarning, warn
+from rockframe.motion import GroundMotion
+from rockframe.motion.quantities import argument_unit
+from rockframe.motion.readers.reading import Reading, read_components
+from rockframe.motion.readers.source import Request, Source
+from rockframe.suites.files import Unread, files_of, unread
+from rockframe.suites.peer_table import Known, is_peer_table, read_peer_table
+from rockframe.suites.records import Component, assign_records, number_in_name
+from rockframe.suites.stored import is_stored_suite, stored_suite
+from rockframe.suites.suite import MotionSuite
+from rockframe.units import POSITIVE, TIME_STEP, to_si
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from rockframe.motion.quantities import QuantityLike
+    from rockframe.motion.readers.source import RecordLike
+
+_OWNER: Final = "read_suite"
+_OTHER_MOTIONS: Final = {".vt2": "a velocity", ".dt2": "a displacement"}
+_COMPANIONS: Final = (*_OTHER_MOTIONS, ".pdf", ".xml")
+"""Files that come with records and are none: of them nothing is warned."""
+_LISTED: Final = 3
+
+
+def read_suite(
+    path: "RecordLike | Iterable[RecordLike]",
+    *,
+    format: str | None = None,  # noqa: A002
+    unit: str | None = None,
+    time_step: "QuantityLike | None" = None,
+) -> MotionSuite:
+    r"""Read all records of a folder, of an archive, or of a list of files.
+
+    Parameters
+    ----------
+    path : str, path-like, bytes or file object, or iterable of these
+        A folder with all that is below it, a zip or tar archive (``.tar.gz`` too), such as a
+        download of the PEER database as it comes, one file, or several of these. ``~`` is the
+        user's folder. Also a netCDF file of :meth:`MotionSuite.to_dataset`.
+    format : str, optional
+        A name of :func:`rockframe.motion.formats` for all files; recognised unless given.
+    unit : str, optional
+        Unit of the samples, where files do not say, as for :meth:`GroundMotion.read`.
+    time_step : str or Quantity, optional
+        For columns of samples without times [s].
+
+    Returns
+    -------
+    MotionSuite
+        All components that could be read, in the order of the files; horizontal ones as
+        motions, vertical ones beside them. What could not be read stands in its ``unread``.
+
+    Raises
+    ------
+    RecordError
+        There is no such file or folder, an archive is damaged or made to harm, or there is no
+        horizontal component at all; the message says why the first files were not read.
+    UnitsError
+        `unit` is not an acceleration, or `time_step` not a time.
+    ComponentError
+        `format` is unknown.
+
+    Warns
+    -----
+    RecordWarning
+        Files were not read, or what was read is unusual; once for all of them.
+
+    Notes
+    -----
+    Components are put together by the record sequence number of PEER, in names of files or in
+    the table ``_SearchResults.csv``, else by station and earthquake, else by their file. What
+    the table tells is added to the metadata. Nothing is unpacked to the disk; an archive may
+    expand to a hundred times its size, archives in it are not opened, and links and names that
+    lead out of it are not followed.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> folder = Path(tempfile.mkdtemp())
+    >>> for name in ("north", "east"):
+    ...     text = "time (s),acceleration (g)\n0,0\n0.01,0.1\n0.02,-0.1\n"
+    ...     _ = (folder / f"{name}.csv").write_text(text)
+    >>> list(read_suite(folder))
+    ['east', 'north']
+    """
+    request = Request(
+        unit=None if unit is None else argument_unit(unit, owner=_OWNER),
+        unit_name=None if unit is None else str(unit),
+        time_step=None
+        if time_step is None
+        else to_si(time_step, TIME_STEP, owner=_OWNER, name="time_step", condition=POSITIVE),
+    )
+    found = _Found()
+    for file in files_of(path):
+        if isinstance(file, Unread):
+            found.left.append(file)
+        elif is_stored_suite(file):
+            return stored_suite(file)
+        else:
+            found.take(file, format, request)
+    found.complete()
+    level = {one.label: one.finished() for one in found.components if not one.vertical}
+    upwards = {one.label: one.finished() for one in found.components if one.vertical}
+    if not level:
+        raise _nothing(str(path), found, len(upwards))
+    _say(found)
+    reasons = {one.path: one.reason for one in found.left}
+    return MotionSuite(level, verticals=upwards, unread=reasons, remarks=found.remarks)
+
+
+class _Found:
+    """What was found so far."""
+
+    def __init__(self) -> None:
+        self.components: list[Component] = []
+        self.left: list[Unread] = []
+        self.remarks: list[str] = []
+        self._tables: dict[str, Known] = {}
+        self._table = ""
+        self._labels: set[str] = set()
+
+    def take(self, file: Source, format_name: str | None, request: Request) -> None:
+        """Read a file, or note why not."""
+        other = _OTHER_MOTIONS.get(file.suffix)
+        if other is not None:
+            self.left.append(Unread(file.path, f"found {other}; expected an acceleration"))
+            return
+        try:
+            if is_peer_table(file.data):
+                self._tables |= read_peer_table(file)
+                self._table = file.path
+                return
+            readings = read_components(file, format_name, request)
+        except RecordError as problem:
+            self.left.append(unread(file.path, problem))
+            return
+        for reading in readings:
+            self.remarks += [one for one in reading.warnings if one not in self.remarks]
+            label = self._label(reading, alone=len(readings) == 1)
+            motion = GroundMotion(
+                reading.si,
+                name=label,
+                metadata=reading.metadata,
+                history=reading.history,
+                recipe=reading.recipe,
+            )
+            component = Component(label, motion, reading.vertical, file.path)
+            number = number_in_name(reading.file)
+            if number is not None:
+                component.known["record_sequence_number"] = number
+            self.components.append(component)
+
+    def complete(self) -> None:
+        """Add what tables tell, and put components together."""
+        told = {name.casefold(): about for name, about in self._tables.items()}
+        there: set[str] = set()
+        for component in self.components:
+            name = str(component.motion.metadata.get("source_file", "")).casefold()
+            if name in told:
+                there.add(name)
+                component.known |= told[name]
+                component.vertical = component.vertical or told[name].get("axis") == "V"
+        self.left += [
+            Unread(f"{self._table}: {name}", "found no such file; expected it beside the table")
+            for name in self._tables
+            if name.casefold() not in there
+        ]
+        self.remarks += assign_records(self.components)
+
+    def _label(self, reading: Reading, *, alone: bool) -> str:
+        stem = reading.name or PurePath(reading.file).stem
+        plain = stem if alone else f"{stem} {reading.metadata.get('component', '')}".strip()
+        label, count = plain, 1
+        while label in self._labels:
+            count += 1
+            label = f"{plain} ({count})"
+        self._labels.add(label)
+        return label
+
+
+def _nothing(path: str, found: _Found, upwards: int) -> RecordError:
+    what = f"no horizontal component in {upwards + len(found.left)} files"
+    if upwards:
+        what += f", {upwards} vertical ones"
+    listed = "; ".join(f"{one.path}: {one.reason}" for one in found.left[:_LISTED])
+    expected = "records of ground motions" + (f" (not read: {listed[:600]})" if listed else "")
+    shown = path if len(path) <= 200 else f"{path[:197]}..."
+    return RecordError(shown, found=what, expected=expected)
+
+
+def _say(found: _Found) -> None:
+    """Warn once of all that is worth a warning."""
+    left = [one for one in found.left if not one.path.casefold().endswith(_COMPANIONS)]
+    words: list[str] = []
+    if left:
+        words.append(f"{len(left)} files not read ({_some(left)}; suite.unread lists all)")
+    if found.remarks:
+        listed = "; ".join(found.remarks[:_LISTED])
+        words.append(f"{len(found.remarks)} worth a look ({listed}; suite.remarks lists all)")
+    if words:
+        warn(f"{_OWNER}: {'; '.join(words)}", RecordWarning)
+
+
+def _some(left: list[Unread]) -> str:
+    listed = [f"{PurePath(one.path).name}: {one.reason}" for one in left[:_LISTED]]
+    return "; ".join(listed)

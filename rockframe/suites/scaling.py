@@ -1,0 +1,238 @@
+"""Scaling motions so that their spectra fit a target."""
+
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+import xarray as xr
+
+from rockframe.errors import ComponentError, SchemaError
+from rockframe.results.dataset import build_dataset
+from rockframe.results.joining import MOTION
+from rockframe.results.schema import SCHEMA
+from rockframe.suites.candidates import Candidates, Combination, candidates_of
+from rockframe.suites.columns import column
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from rockframe.motion import GroundMotion
+    from rockframe.motion.quantities import ArrayLike, QuantityLike, RatioLike
+    from rockframe.signals.arrays import Array
+    from rockframe.suites.suite import MotionSuite
+    from rockframe.suites.target import TargetSpectrum
+
+_OWNER: Final = "scale_to_target"
+USUAL_BOUNDS: Final = (0.25, 4.0)
+"""Factors within which scaling is taken for harmless."""
+_ROUNDING: Final = 1e-9
+
+
+def scale_to_target(
+    suite: "MotionSuite | Mapping[str, GroundMotion]",
+    target: "TargetSpectrum",
+    *,
+    periods: "ArrayLike | Iterable[QuantityLike] | None" = None,
+    conditioned_on: "ArrayLike | Iterable[QuantityLike] | None" = None,
+    bounds: "tuple[RatioLike, RatioLike] | None" = USUAL_BOUNDS,
+    combination: str = Combination.EACH,
+) -> xr.Dataset:
+    """Find the factor that brings each motion's spectrum to a target, and the misfit left.
+
+    Parameters
+    ----------
+    suite : MotionSuite, or mapping of str to GroundMotion
+        The motions.
+    target : TargetSpectrum
+        What is aimed at; its damping ratio is that of the spectra.
+    periods : (sequence, unit), Quantity or sequence of str, optional
+        At which spectra are compared, all of equal weight; 40 from 0.1 s to 4 s, evenly spaced
+        by their logarithms, unless given [s].
+    conditioned_on : (sequence, unit), Quantity or sequence of str, optional
+        One period, at which every scaled spectrum is to equal the target, or several, over
+        which the average spectral acceleration is to equal the target's [s].
+    bounds : tuple of two float, or None
+        Least and greatest factor; a factor beyond is set to the bound [1].
+    combination : {"each", "geometric mean", "RotD50", "RotD100"}, optional
+        Whether each motion has a factor of its own, or both components of a record a common
+        one, by this spectrum of both.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``motion``, which are records where components are combined: ``scale_factor`` [1],
+        :eq:`eq-scale-factor`; ``spectral_misfit`` [1], :eq:`eq-spectral-misfit`;
+        ``scaled_spectral_acceleration`` over ``period`` too [m s^-2]. Of all together over
+        ``period``: ``target_spectral_acceleration``, ``set_median_acceleration`` [m s^-2],
+        ``target_standard_deviation``, ``set_standard_deviation`` [1].
+
+    Raises
+    ------
+    UnitsError
+        Periods without a unit, or with one of another kind.
+    ComponentError
+        Not a suite or not a target; periods at which the target is not known; a motion without
+        acceleration; no pairs to combine; an argument out of range.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> suite = [rf.GroundMotion.stochastic(6, "20 km", seed=k) for k in (1, 2)]
+    >>> target = rf.TargetSpectrum.eurocode_8("0.1 g_0")
+    >>> found = scale_to_target(rf.MotionSuite(suite), target, conditioned_on=["1 s"], bounds=None)
+    >>> scaled = rf.MotionSuite(suite).scaled_to(found)
+    >>> spectrum = scaled.response_spectrum(["1 s"]).pseudo_spectral_acceleration
+    >>> bool(abs(spectrum - target.at(["1 s"])[0]).max() < 1e-12)
+    True
+    """
+    candidates = candidates_of(
+        suite,
+        target,
+        periods=periods,
+        conditioned_on=conditioned_on,
+        bounds=bounds,
+        combination=combination,
+        owner=_OWNER,
+    )
+    factors = np.clip(candidates.factors, *candidates.bounds)
+    return fitted(candidates, np.arange(len(candidates.labels)), factors, title="Scaled motions")
+
+
+def fitted(
+    candidates: Candidates,
+    places: "NDArray[np.intp]",
+    factors: "Array",
+    *,
+    title: str,
+    **attributes: str | float,
+) -> xr.Dataset:
+    """Label a set of scaled motions beside its target.
+
+    Parameters
+    ----------
+    candidates : Candidates
+        What there is to choose from.
+    places : ndarray of int, shape (m,)
+        Which of them are in the set, in order.
+    factors : ndarray, shape (n,)
+        Of all candidates [1].
+    title : str
+        What the dataset holds.
+    **attributes
+        What else it says.
+
+    Returns
+    -------
+    xarray.Dataset
+    """
+    residuals = candidates.residuals(factors)[places]
+    logarithms = residuals + candidates.target
+    low, high = candidates.bounds
+    edge = (factors[places] <= low * (1 + _ROUNDING)) | (factors[places] >= high * (1 - _ROUNDING))
+    of_each = build_dataset(
+        {
+            "scale_factor": factors[places],
+            "spectral_misfit": np.sqrt((residuals**2).mean(axis=1)),
+            "scaled_spectral_acceleration": np.exp(logarithms),
+        },
+        {
+            **candidates.attributes,
+            "least_factor": low,
+            "greatest_factor": high,
+            "factors_at_a_bound": int(edge.sum()),
+            **attributes,
+        },
+        over=(MOTION,),
+        title=title,
+        source="recurrence of Nigam and Jennings",
+    )
+    of_all = build_dataset(
+        {
+            "target_spectral_acceleration": np.exp(candidates.target),
+            "target_standard_deviation": candidates.deviations,
+            "set_median_acceleration": np.exp(logarithms.mean(axis=0)),
+            "set_standard_deviation": spread_of(logarithms),
+        },
+        {},
+    )
+    dataset = of_each.assign(of_all.data_vars)
+    labels = [candidates.labels[place] for place in places.tolist()]
+    meaning = {**SCHEMA["period"].attributes(), "long_name": "undamped period of the oscillator"}
+    dataset = dataset.assign_coords(
+        {
+            MOTION: (MOTION, labels, {"long_name": "ground motion"}),
+            "period": ("period", candidates.seconds, meaning),
+        }
+    )
+    for name in (MOTION, "period"):
+        # a coordinate has no missing values, so it needs no fill value (CF 2.5.1)
+        dataset[name].encoding["_FillValue"] = None
+    return dataset
+
+
+def spread_of(logarithms: "Array") -> "Array":
+    """Give the standard deviation over a set, shape (k,); zero of a single motion."""
+    if len(logarithms) < 2:
+        return np.zeros(logarithms.shape[1])
+    return logarithms.std(axis=0, ddof=1)
+
+
+def scaled_motions(
+    suite: "MotionSuite", found: xr.Dataset
+) -> "tuple[dict[str, GroundMotion], dict[str, GroundMotion]]":
+    """Scale the motions of a suite by the factors that were found.
+
+    Parameters
+    ----------
+    suite : MotionSuite
+        The suite that they were found for.
+    found : xarray.Dataset
+        Of :func:`scale_to_target` or :func:`select_for_target`.
+
+    Returns
+    -------
+    tuple of two dict of str to GroundMotion
+        Motions; vertical components, where components of records have common factors.
+
+    Raises
+    ------
+    SchemaError
+        No such dataset.
+    ComponentError
+        It is of motions that the suite does not have.
+    """
+    needed = ("scale_factor", "spectral_misfit", MOTION)
+    if any(name not in found.variables for name in needed) or "combination" not in found.attrs:
+        msg = "MotionSuite.scaled_to: expected a TargetSpectrum, or a dataset of scale_to_target"
+        raise SchemaError(msg)
+    each = found.attrs["combination"] == Combination.EACH
+    motions: dict[str, GroundMotion] = {}
+    upwards: dict[str, GroundMotion] = {}
+    for place, given in enumerate(found[MOTION].to_numpy()):
+        label = str(given)
+        factor = float(found["scale_factor"][place])
+        misfit = float(found["spectral_misfit"][place])
+        before = len(motions)
+        for name, motion in suite.items():
+            if (name if each else motion.metadata.get("record")) == label:
+                motions[name] = _scaled(motion, factor, misfit)
+        if len(motions) == before:
+            msg = f"MotionSuite.scaled_to: the suite has no {label!r}"
+            raise ComponentError(msg)
+        for name, motion in suite.verticals.items():
+            if not each and motion.metadata.get("record") == label:
+                upwards[name] = _scaled(motion, factor, misfit)
+    return motions, upwards
+
+
+def _scaled(motion: "GroundMotion", factor: float, misfit: float) -> "GroundMotion":
+    done = motion.scaled(factor)
+    before: Any = column("scale_factor", motion)
+    about = {
+        **done.metadata,
+        "scale_factor": factor * (1.0 if before is None else before),
+        "spectral_misfit": misfit,
+    }
+    return type(done)(
+        done.si, name=done.name, metadata=about, history=done.history, recipe=done.recipe
+    )

@@ -1,0 +1,243 @@
+"""Choosing the set of motions whose spectra fit a target best."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+import xarray as xr
+
+from rockframe.arguments import whole_number
+from rockframe.errors import ComponentError
+from rockframe.results.dataset import build_dataset
+from rockframe.suites.candidates import Combination, candidates_of
+from rockframe.suites.scaling import USUAL_BOUNDS, fitted
+from rockframe.units import NOT_NEGATIVE, to_ratio
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from rockframe.motion import GroundMotion
+    from rockframe.motion.quantities import ArrayLike, QuantityLike, RatioLike
+    from rockframe.signals.arrays import Array
+    from rockframe.suites.suite import MotionSuite
+    from rockframe.suites.target import TargetSpectrum
+
+_OWNER: Final = "select_for_target"
+_MOST_STARTS: Final = 20
+_MOST_PASSES: Final = 50
+_GAIN: Final = 1e-12
+_REFERENCES: Final = (
+    "Jayaram, Lin and Baker (2011), Earthquake Spectra 27, 797-815; Baker and Lee (2018), J. "
+    "Earthquake Eng. 22, 708-723"
+)
+
+
+def select_for_target(
+    suite: "MotionSuite | Mapping[str, GroundMotion]",
+    target: "TargetSpectrum",
+    count: int,
+    *,
+    periods: "ArrayLike | Iterable[QuantityLike] | None" = None,
+    conditioned_on: "ArrayLike | Iterable[QuantityLike] | None" = None,
+    bounds: "tuple[RatioLike, RatioLike] | None" = USUAL_BOUNDS,
+    combination: str = Combination.EACH,
+    spread_weight: "RatioLike | None" = None,
+    per_event: int | None = None,
+) -> xr.Dataset:
+    """Choose motions, each scaled, so that median and spread of their spectra fit a target.
+
+    Parameters
+    ----------
+    suite : MotionSuite, or mapping of str to GroundMotion
+        What is chosen from.
+    target : TargetSpectrum
+        Median that is aimed at, and the spread if it tells one.
+    count : int
+        How many motions; of records, where components are combined.
+    periods, conditioned_on, combination : optional
+        As for :func:`rockframe.scale_to_target` [s].
+    bounds : tuple of two float, or None
+        Least and greatest factor; motions whose factor lies beyond are not chosen [1].
+    spread_weight : float, optional
+        Weight of the spread beside the median; 1 where the target tells a spread, else 0, so
+        that only the median counts [1].
+    per_event : int, optional
+        Most motions of one earthquake, where it is known.
+
+    Returns
+    -------
+    xarray.Dataset
+        As of :func:`rockframe.scale_to_target` for the motions that were chosen, in the order
+        of their misfits; and ``set_misfit`` [1], :eq:`eq-set-misfit`.
+
+    Raises
+    ------
+    UnitsError
+        Periods without a unit, or with one of another kind.
+    ComponentError
+        As for :func:`rockframe.scale_to_target`; or fewer motions within the bounds than are to
+        be chosen.
+
+    Notes
+    -----
+    Greedy, after Jayaram, Lin and Baker (2011) and Baker and Lee (2018): a set grows by the
+    motion that makes it fit best, then each motion in turn gives way to the one that fits
+    better, until none does. That is done from several first motions, and the best set kept. A
+    better one may exist; no method of this kind can tell.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> suite = rf.MotionSuite([rf.GroundMotion.stochastic(6, "20 km", seed=k) for k in range(9)])
+    >>> target = rf.TargetSpectrum.eurocode_8("0.1 g_0")
+    >>> found = select_for_target(suite, target, 3)
+    >>> found.sizes["motion"]
+    3
+    """
+    candidates = candidates_of(
+        suite,
+        target,
+        periods=periods,
+        conditioned_on=conditioned_on,
+        bounds=bounds,
+        combination=combination,
+        owner=_OWNER,
+    )
+    wanted = whole_number(count, owner=_OWNER, name="count", lowest=1)
+    most = wanted
+    if per_event is not None:
+        most = whole_number(per_event, owner=_OWNER, name="per_event", lowest=1)
+    told = bool(candidates.deviations.any())
+    weight = float(told)
+    if spread_weight is not None:
+        weight = to_ratio(
+            spread_weight, owner=_OWNER, name="spread_weight", condition=NOT_NEGATIVE, example="1"
+        )
+    allowed = np.flatnonzero(candidates.within)
+    if allowed.size < wanted:
+        low, high = candidates.bounds
+        msg = (
+            f"{_OWNER}: {allowed.size} of {len(candidates.labels)} motions have factors from "
+            f"{low:g} to {high:g}, too few for a set of {wanted}; widen bounds, or lower count"
+        )
+        raise ComponentError(msg)
+    search = _Search(
+        candidates.residuals(candidates.factors)[allowed],
+        candidates.deviations,
+        weight,
+        _numbered([candidates.events[place] for place in allowed.tolist()]),
+        most,
+    )
+    chosen = search.best(wanted)
+    if chosen is None:
+        msg = (
+            f"{_OWNER}: at most {most} motions of an earthquake make no set of {wanted}; raise "
+            "per_event, or lower count"
+        )
+        raise ComponentError(msg)
+    misfits = np.sqrt((search.residuals[chosen] ** 2).mean(axis=1))
+    places = allowed[np.array(chosen)[np.argsort(misfits, kind="stable")]]
+    dataset = fitted(
+        candidates,
+        places,
+        candidates.factors,
+        title="Motions chosen for a target spectrum",
+        chosen_from=len(candidates.labels),
+        spread_weight=weight,
+        references=_REFERENCES,
+    )
+    return dataset.assign(build_dataset({"set_misfit": search.misfit(chosen)}, {}).data_vars)
+
+
+@dataclass(frozen=True)
+class _Search:
+    """The search for a set.
+
+    Parameters
+    ----------
+    residuals : ndarray, shape (n, k)
+        Logarithms of scaled spectra over the target.
+    deviations : ndarray, shape (k,)
+        Spread that is aimed at.
+    weight : float
+        Of the spread.
+    events : ndarray of int, shape (n,)
+        Earthquakes by numbers; -1 where it is not known.
+    most : int
+        Most motions of one earthquake.
+    """
+
+    residuals: "Array"
+    deviations: "Array"
+    weight: float
+    events: "NDArray[np.intp]"
+    most: int
+
+    def misfit(self, chosen: "list[int]") -> float:
+        """Compute :eq:`eq-set-misfit` of a set."""
+        *others, last = chosen
+        return float(self._misfits(others)[last])
+
+    def best(self, count: int) -> "list[int] | None":
+        """Find a set of so many; None where earthquakes do not suffice."""
+        alone = np.argsort((self.residuals**2).mean(axis=1), kind="stable")
+        found: list[tuple[float, list[int]]] = []
+        for first in alone[:_MOST_STARTS].tolist():
+            chosen = self._grown(first, count)
+            if chosen is not None:
+                chosen = self._improved(chosen)
+                found.append((self.misfit(chosen), chosen))
+        return min(found)[1] if found else None
+
+    def _misfits(self, others: "list[int]") -> "Array":
+        """Compute :eq:`eq-set-misfit` of a set with each candidate added in turn, shape (n,)."""
+        held = self.residuals[others]
+        count = len(others) + 1
+        mean = (held.sum(axis=0) + self.residuals) / count
+        squares = mean**2
+        if self.weight > 0.0:
+            spread = np.zeros_like(mean)
+            if count > 1:
+                total = (held**2).sum(axis=0) + self.residuals**2 - count * mean**2
+                spread = np.sqrt(np.maximum(total, 0.0) / (count - 1))
+            squares = squares + self.weight * (spread - self.deviations) ** 2
+        return np.sqrt(squares.mean(axis=1))
+
+    def _allowed(self, others: "list[int]") -> "NDArray[np.bool_]":
+        """Tell which candidates may be added to a set, shape (n,)."""
+        free = np.ones(len(self.residuals), dtype=bool)
+        free[others] = False
+        numbers, counts = np.unique(self.events[others], return_counts=True)
+        full = numbers[(counts >= self.most) & (numbers >= 0)]
+        return free & ~np.isin(self.events, full)
+
+    def _grown(self, first: int, count: int) -> "list[int] | None":
+        chosen = [first]
+        while len(chosen) < count:
+            misfits = np.where(self._allowed(chosen), self._misfits(chosen), np.inf)
+            place = int(np.argmin(misfits))
+            if not np.isfinite(misfits[place]):
+                return None
+            chosen.append(place)
+        return chosen
+
+    def _improved(self, chosen: "list[int]") -> "list[int]":
+        now = self.misfit(chosen)
+        for _ in range(_MOST_PASSES):
+            before = now
+            for slot in range(len(chosen)):
+                others = chosen[:slot] + chosen[slot + 1 :]
+                misfits = np.where(self._allowed(others), self._misfits(others), np.inf)
+                place = int(np.argmin(misfits))
+                if misfits[place] < now * (1.0 - _GAIN):
+                    now = float(misfits[place])
+                    chosen = [*others[:slot], place, *others[slot:]]
+            if now >= before:
+                break
+        return chosen
+
+
+def _numbered(events: "list[str]") -> "NDArray[np.intp]":
+    numbers = {event: k for k, event in enumerate(dict.fromkeys(filter(None, events)))}
+    return np.array([numbers.get(event, -1) for event in events], dtype=np.intp)

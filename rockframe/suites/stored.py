@@ -1,0 +1,273 @@
+"""A suite as a labelled dataset, and back, bit for bit.
+
+Motions differ in length: their samples stand one behind the other, and a count tells how many
+belong to each, the contiguous ragged array of CF 9.3.3.
+"""
+
+import json
+import math
+import warnings
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+import xarray as xr
+
+from rockframe.constants import CONVENTIONS
+from rockframe.errors import ComponentError, RecordError, SchemaError
+from rockframe.motion import GroundMotion
+from rockframe.motion.dataset import LONG_NAMES
+from rockframe.motion.readers import netcdf
+from rockframe.results.dataset import build_dataset
+from rockframe.results.joining import MOTION
+from rockframe.signals import Motion, Signal
+from rockframe.signals.signal import COEFFICIENTS, VERTICAL
+from rockframe.suites.columns import known_columns
+from rockframe.units import Unit
+
+if TYPE_CHECKING:
+    from rockframe.motion.readers.source import Source
+    from rockframe.suites.suite import MotionSuite
+
+_KIND: Final = "suite of ground motions"
+_TITLE: Final = "Suite of ground motions"
+_EXPECTED: Final = "a suite as MotionSuite.to_dataset().to_netcdf(...) writes it"
+_MOST_NUMBERS: Final = 20_000_000
+_TEXTS: Final = {
+    "motion_sha256": "digest of time step and samples",
+    "metadata": "what is known of the motion, as JSON",
+    "history": "what was done to the motion, a line for each step",
+    "recipe": "constructor and arguments of an analytic motion, as JSON",
+}
+_HELD: Final = {
+    # variable: dimension, count, words of the count
+    "acceleration": ("sample", "sample_count", ""),
+    "vertical_acceleration": ("vertical_sample", "vertical_sample_count", "vertical samples"),
+    "acceleration_pieces": ("piece", "piece_count", "polynomials"),
+    "vertical_acceleration_pieces": (
+        "vertical_piece",
+        "vertical_piece_count",
+        "vertical polynomials",
+    ),
+}
+
+
+def suite_dataset(suite: "MotionSuite") -> xr.Dataset:
+    """Write a suite as a dataset that plain xarray can store.
+
+    Parameters
+    ----------
+    suite : MotionSuite
+        The suite.
+
+    Returns
+    -------
+    xarray.Dataset
+        See :meth:`MotionSuite.to_dataset`.
+    """
+    motions = {**suite, **suite.verticals}
+    dataset = build_dataset(
+        known_columns(motions),
+        {
+            "Conventions": CONVENTIONS,
+            "kind": _KIND,
+            "verticals": len(suite.verticals),
+            "unread": json.dumps(dict(suite.unread)),
+            "remarks": json.dumps(list(suite.remarks)),
+        },
+        over=(MOTION,),
+        title=_TITLE,
+        source="records and models of ground motions",
+    )
+    texts = {
+        "motion_sha256": [one.sha256 for one in motions.values()],
+        "metadata": [json.dumps(dict(one.metadata)) for one in motions.values()],
+        "history": ["\n".join(one.history) for one in motions.values()],
+        "recipe": [
+            "" if one.recipe is None else json.dumps(dict(one.recipe)) for one in motions.values()
+        ],
+    }
+    for name, values in texts.items():
+        dataset[name] = (MOTION, np.array(values), {"long_name": _TEXTS[name]})
+    for name, (dim, count, words) in _HELD.items():
+        parts = [_arrays(motion.si)[name] for motion in motions.values()]
+        held = [part for part in parts if part is not None]
+        if not held:
+            continue
+        if words:
+            counts = np.array([0 if part is None else len(part) for part in parts])
+            about = {"long_name": f"number of {words}", "units": str(Unit.ONE)}
+            dataset[count] = (MOTION, counts, about)
+        dataset[count].attrs["sample_dimension"] = dim
+        dims = (dim,) if held[0].ndim == 1 else (dim, "power")
+        about = {"units": str(Unit.METRE_PER_SECOND_SQUARED), "long_name": LONG_NAMES[name]}
+        dataset[name] = (dims, np.concatenate(held), about)
+        dataset[name].encoding["_FillValue"] = None
+    labels = {"long_name": "ground motion"}
+    dataset = dataset.assign_coords({MOTION: (MOTION, list(motions), labels)})
+    dataset[MOTION].encoding["_FillValue"] = None
+    return dataset
+
+
+def motions_in(dataset: xr.Dataset) -> tuple[dict[str, GroundMotion], dict[str, Any]]:
+    """Read what :func:`suite_dataset` wrote.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        As written.
+
+    Returns
+    -------
+    dict of str to GroundMotion
+        All motions, the vertical ones last.
+    dict
+        How many of these are vertical, what was not read, and remarks.
+
+    Raises
+    ------
+    SchemaError
+        No such dataset, or samples that were changed since.
+    """
+    if dataset.attrs.get("kind") != _KIND:
+        found = dataset.attrs.get("title", "a dataset of another kind")
+        msg = f"found {found!r}; expected a dataset of MotionSuite.to_dataset"
+        raise SchemaError(msg)
+    try:
+        motions = _motions(dataset)
+        about = {
+            "verticals": int(dataset.attrs["verticals"]),
+            "unread": dict(json.loads(dataset.attrs["unread"])),
+            "remarks": tuple(json.loads(dataset.attrs["remarks"])),
+        }
+    except (KeyError, TypeError, ValueError, ComponentError, AttributeError) as problem:
+        if isinstance(problem, SchemaError):
+            raise
+        msg = f"found a suite that cannot be read ({problem}); expected {_EXPECTED}"
+        raise SchemaError(msg) from problem
+    return motions, about
+
+
+def is_stored_suite(source: "Source") -> bool:
+    """Tell whether a file is a netCDF file of a suite."""
+    if not netcdf.recognises(source):
+        return False
+    import netCDF4
+
+    try:
+        with (
+            warnings.catch_warnings(),
+            netCDF4.Dataset("in memory", memory=source.data) as file,
+        ):
+            warnings.simplefilter("ignore")
+            return getattr(file, "kind", None) == _KIND
+    except Exception:  # damaged: the reader of motions says so
+        return False
+
+
+def stored_suite(source: "Source") -> "MotionSuite":
+    """Read the netCDF file of a suite.
+
+    Parameters
+    ----------
+    source : Source
+        File.
+
+    Returns
+    -------
+    MotionSuite
+
+    Raises
+    ------
+    RecordError
+        It is damaged, or was changed since.
+    """
+    import netCDF4
+    from xarray.backends import NetCDF4DataStore
+
+    from rockframe.suites.suite import MotionSuite
+
+    try:
+        with (
+            warnings.catch_warnings(),
+            netCDF4.Dataset("in memory", memory=source.data) as file,
+        ):
+            warnings.simplefilter("ignore")
+            # a file may declare more than it holds
+            total = sum(math.prod(map(int, one.shape)) for one in file.variables.values())
+            if total > _MOST_NUMBERS:
+                expected = f"a suite of at most {_MOST_NUMBERS} numbers"
+                raise source.refuse(found=f"{total} numbers declared", expected=expected)
+            dataset = xr.open_dataset(NetCDF4DataStore(file), decode_times=False)
+            return MotionSuite.from_dataset(dataset.load())
+    except RecordError:
+        raise
+    except SchemaError as problem:
+        raise source.refuse(found=str(problem), expected=_EXPECTED) from problem
+    except Exception as problem:
+        # the libraries fail on damaged files in ways that they do not document
+        found = f"a netCDF file that cannot be read ({type(problem).__name__})"
+        raise source.refuse(found=found, expected=_EXPECTED) from problem
+
+
+def _arrays(si: Motion) -> dict[str, np.ndarray | None]:
+    upwards = si.vertical
+    return {
+        "acceleration": si.horizontal.samples,
+        "vertical_acceleration": None if upwards is None else upwards.samples,
+        "acceleration_pieces": si.horizontal.polynomials,
+        "vertical_acceleration_pieces": None if upwards is None else upwards.polynomials,
+    }
+
+
+def _motions(dataset: xr.Dataset) -> dict[str, GroundMotion]:
+    labels = [str(label) for label in dataset[MOTION].to_numpy()]
+    texts = {name: [str(one) for one in dataset[name].to_numpy()] for name in _TEXTS}
+    parts = {name: _parts(dataset, name, len(labels)) for name in _HELD}
+    steps = dataset["time_step"].to_numpy()
+    motions: dict[str, GroundMotion] = {}
+    for k, label in enumerate(labels):
+        step = float(steps[k])
+        samples, upwards, pieces, raised = (parts[name][k] for name in _HELD)
+        if samples is None:
+            msg = f"{label!r} has no samples"
+            raise SchemaError(msg)
+        vertical = None if upwards is None else Signal(step, upwards, raised, name=VERTICAL)
+        history = texts["history"][k]
+        recipe = texts["recipe"][k]
+        motion = GroundMotion(
+            Motion(Signal(step, samples, pieces), vertical),
+            name=label,
+            metadata=_mapping(texts["metadata"][k]),
+            history=tuple(history.split("\n")) if history else (),
+            recipe=_mapping(recipe) if recipe else None,
+        )
+        if motion.sha256 != texts["motion_sha256"][k]:
+            msg = f"found samples of {label!r} that were changed since; expected those written"
+            raise SchemaError(msg)
+        motions[label] = motion
+    return motions
+
+
+def _parts(dataset: xr.Dataset, name: str, count: int) -> list[np.ndarray | None]:
+    """Cut the samples of all motions into those of each."""
+    if name not in dataset.variables:
+        return [None] * count
+    values = dataset[name].to_numpy()
+    if name.endswith("_pieces") and values.shape[1:] != (COEFFICIENTS,):
+        msg = f"{name!r} has the shape {values.shape}"
+        raise SchemaError(msg)
+    counts = [int(one) for one in dataset[_HELD[name][1]].to_numpy()]
+    if min(counts) < 0 or sum(counts) != len(values):
+        msg = f"{name!r} has {len(values)} rows, but its counts add up to {sum(counts)}"
+        raise SchemaError(msg)
+    ends = np.cumsum(counts)
+    return [values[end - own : end] if own else None for own, end in zip(counts, ends, strict=True)]
+
+
+def _mapping(text: str) -> Mapping[str, Any]:
+    loaded: object = json.loads(text)
+    if not isinstance(loaded, dict):
+        msg = "a text that is not a JSON object"
+        raise SchemaError(msg)
+    return dict(loaded)

@@ -1,0 +1,446 @@
+"""Spectra that are aimed at: tables, and the shapes of codes."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from enum import StrEnum
+from typing import TYPE_CHECKING, Any, Final, Self
+
+import numpy as np
+import xarray as xr
+
+from rockframe.arguments import checked_dataset, one_of_words, whole_number
+from rockframe.errors import ComponentError, SchemaError
+from rockframe.signals.arrays import Array
+from rockframe.signals.spectra import DAMPING_RATIO
+from rockframe.units import (
+    ACCELERATION,
+    PERIOD,
+    POSITIVE,
+    Condition,
+    to_ratio,
+    to_si,
+    to_si_values,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from rockframe.motion.quantities import ArrayLike, QuantityLike, RatioLike
+
+_DEVIATION: Final = Condition("from 0 to 3", lambda value: 0.0 <= value <= 3.0)
+_HEIGHT: Final = 2.5
+_LEAST_CORRECTION: Final = 0.55
+_USUAL: Final = 0.05
+_ROUNDING: Final = 1e-9
+
+
+class GroundType(StrEnum):
+    """Ground types of Eurocode 8."""
+
+    A = "A"
+    B = "B"
+    C = "C"
+    D = "D"
+    E = "E"
+
+
+_EUROCODE: Final = {
+    # EN 1998-1:2004, Tables 3.2 and 3.3: S, T_B, T_C, T_D [1, s]
+    1: {
+        GroundType.A: (1.0, 0.15, 0.4, 2.0),
+        GroundType.B: (1.2, 0.15, 0.5, 2.0),
+        GroundType.C: (1.15, 0.20, 0.6, 2.0),
+        GroundType.D: (1.35, 0.20, 0.8, 2.0),
+        GroundType.E: (1.4, 0.15, 0.5, 2.0),
+    },
+    2: {
+        GroundType.A: (1.0, 0.05, 0.25, 1.2),
+        GroundType.B: (1.35, 0.05, 0.25, 1.2),
+        GroundType.C: (1.5, 0.10, 0.25, 1.2),
+        GroundType.D: (1.8, 0.10, 0.30, 1.2),
+        GroundType.E: (1.6, 0.05, 0.25, 1.2),
+    },
+}
+
+
+@dataclass(frozen=True)
+class TargetSpectrum:
+    """A pseudo-spectral acceleration that motions are to fit, perhaps with its spread.
+
+    Made by :meth:`from_table`, :meth:`from_spectrum`, :meth:`eurocode_8` or :meth:`asce_7`.
+
+    Parameters
+    ----------
+    name : str
+        For titles and messages.
+    shape : callable
+        Accelerations [m s^-2] at periods [s].
+    deviation : callable, optional
+        Standard deviations of the logarithm at periods [1].
+    damping_ratio : float
+        Of the oscillators [1].
+    limits : tuple of float
+        Periods between which it is known [s].
+    """
+
+    name: str
+    shape: Callable[[Array], Array] = field(repr=False)
+    deviation: Callable[[Array], Array] | None = field(default=None, repr=False)
+    damping_ratio: float = _USUAL
+    limits: tuple[float, float] = (0.0, math.inf)
+
+    @classmethod
+    def from_table(
+        cls,
+        periods: "ArrayLike | Iterable[QuantityLike]",
+        accelerations: "ArrayLike | Iterable[QuantityLike]",
+        *,
+        standard_deviations: "Sequence[float] | None" = None,
+        damping_ratio: "RatioLike" = _USUAL,
+        name: str = "table",
+    ) -> Self:
+        """Take a target from a table.
+
+        Parameters
+        ----------
+        periods : (sequence, unit), Quantity or sequence of str, k values
+            Increasing, above zero [s].
+        accelerations : (sequence, unit), Quantity or sequence of str, k values
+            Pseudo-spectral accelerations, of a set their median [m s^-2].
+        standard_deviations : sequence of float, k values, optional
+            Of the natural logarithm; the spread that a set is to have [1].
+        damping_ratio : float, optional
+            Of the oscillators [1].
+        name : str, optional
+            For titles and messages.
+
+        Returns
+        -------
+        TargetSpectrum
+            Straight between the periods of the table, where both axes are logarithmic;
+            unknown outside.
+
+        Raises
+        ------
+        UnitsError
+            Values without a unit, or with one of another kind.
+        ComponentError
+            Fewer than two periods, columns of different lengths, or values out of range.
+
+        Examples
+        --------
+        >>> target = TargetSpectrum.from_table((["0.1 s", "1 s"]), ([2.0, 0.2], "m/s^2"))
+        >>> target.at(["0.2 s"]).round(3).tolist()
+        [1.0]
+        """
+        owner = f"{cls.__name__}.from_table"
+        seconds = np.array(to_si_values(periods, PERIOD, owner=owner, name="periods"))
+        values = np.array(
+            to_si_values(accelerations, ACCELERATION, owner=owner, name="accelerations")
+        )
+        if seconds.size < 2 or seconds[0] <= 0.0 or not (np.diff(seconds) > 0.0).all():
+            msg = f"{owner}: periods must be two or more, above zero and increasing"
+            raise ComponentError(msg)
+        if values.shape != seconds.shape or not (values > 0.0).all():
+            msg = f"{owner}: accelerations must be {seconds.size}, as the periods, and above zero"
+            raise ComponentError(msg)
+        spread = None
+        if standard_deviations is not None:
+            deviations = np.array(
+                [
+                    to_ratio(one, owner=owner, name="standard_deviations", condition=_DEVIATION)
+                    for one in standard_deviations
+                ]
+            )
+            if deviations.shape != seconds.shape:
+                msg = f"{owner}: standard_deviations must be {seconds.size}, as the periods"
+                raise ComponentError(msg)
+            spread = _interpolated(seconds, deviations)
+        logarithm = _interpolated(seconds, np.log(values))
+        return cls(
+            name,
+            lambda at: np.exp(logarithm(at)),
+            spread,
+            to_ratio(damping_ratio, owner=owner, name="damping_ratio", condition=DAMPING_RATIO),
+            (float(seconds[0]), float(seconds[-1])),
+        )
+
+    @classmethod
+    def from_spectrum(cls, dataset: xr.Dataset, *, name: str = "spectrum") -> Self:
+        """Take a target from response spectra: of one motion, or the median of several.
+
+        Parameters
+        ----------
+        dataset : xarray.Dataset
+            Of :func:`rockframe.response_spectrum`, of one damping ratio; of several motions the
+            standard deviation of the logarithm becomes the spread.
+        name : str, optional
+            For titles and messages.
+
+        Returns
+        -------
+        TargetSpectrum
+
+        Raises
+        ------
+        SchemaError
+            No such dataset.
+        """
+        owner = f"{cls.__name__}.from_spectrum"
+        given = checked_dataset(dataset, owner=owner)
+        spectrum = given.get("pseudo_spectral_acceleration")
+        if spectrum is None or spectrum.sizes.get("damping_ratio") != 1:
+            msg = f"{owner}: expected a dataset of rf.response_spectrum with one damping ratio"
+            raise SchemaError(msg)
+        moving = spectrum.isel(damping_ratio=0, period=spectrum["period"].to_numpy() > 0.0)
+        others = [dim for dim in moving.dims if dim != "period"]
+        logarithm: Any = np.log(moving)
+        spread = None
+        if others and math.prod(moving.sizes[dim] for dim in others) > 1:
+            spread = logarithm.std(others, ddof=1).to_numpy().tolist()
+        return cls.from_table(
+            (moving["period"].to_numpy(), str(PERIOD.unit)),
+            (np.exp(logarithm.mean(others)).to_numpy(), str(ACCELERATION.unit)),
+            standard_deviations=spread,
+            damping_ratio=float(spectrum["damping_ratio"][0]),
+            name=name,
+        )
+
+    @classmethod
+    def eurocode_8(
+        cls,
+        ground_acceleration: "QuantityLike",
+        ground_type: str = GroundType.A,
+        *,
+        spectrum_type: int = 1,
+        soil_factor: "RatioLike | None" = None,
+        corner_periods: "Sequence[QuantityLike] | None" = None,
+        damping_ratio: "RatioLike" = _USUAL,
+    ) -> Self:
+        """Take the horizontal elastic spectrum of Eurocode 8.
+
+        Parameters
+        ----------
+        ground_acceleration : str or Quantity
+            Design ground acceleration on rock, a_g [m s^-2].
+        ground_type : {"A", "B", "C", "D", "E"}, optional
+            Gives soil factor and corner periods.
+        spectrum_type : {1, 2}, optional
+            1 for strong and distant earthquakes, 2 where no magnitude above 5.5 contributes.
+        soil_factor : float, optional
+            S, where a national annex has another one [1].
+        corner_periods : sequence of three str or Quantity, optional
+            T_B, T_C and T_D, likewise [s].
+        damping_ratio : float, optional
+            Of the oscillators [1].
+
+        Returns
+        -------
+        TargetSpectrum
+            :eq:`eq-eurocode-8`, EN 1998-1:2004, 3.2.2.2.
+
+        Raises
+        ------
+        UnitsError
+            An argument has no unit, or one of another kind.
+        ComponentError
+            Out of range.
+
+        Examples
+        --------
+        >>> target = TargetSpectrum.eurocode_8("0.2 g_0", "B")
+        >>> (target.at(["0 s", "0.3 s", "1 s"]) / 9.80665).round(3).tolist()
+        [0.24, 0.6, 0.3]
+        """
+        owner = f"{cls.__name__}.eurocode_8"
+        peak = to_si(
+            ground_acceleration,
+            ACCELERATION,
+            owner=owner,
+            name="ground_acceleration",
+            condition=POSITIVE,
+        )
+        kind = one_of_words(GroundType, ground_type, owner=owner, name="ground_type")
+        number = whole_number(spectrum_type, owner=owner, name="spectrum_type", lowest=1, highest=2)
+        soil, *corners = _EUROCODE[number][kind]
+        if soil_factor is not None:
+            soil = to_ratio(soil_factor, owner=owner, name="soil_factor", condition=POSITIVE)
+        if corner_periods is not None:
+            corners = to_si_values(corner_periods, PERIOD, owner=owner, name="corner_periods")
+        if len(corners) != 3 or not 0.0 < corners[0] < corners[1] < corners[2]:
+            msg = f"{owner}: corner_periods must be T_B, T_C and T_D, increasing"
+            raise ComponentError(msg)
+        damping = to_ratio(
+            damping_ratio, owner=owner, name="damping_ratio", condition=DAMPING_RATIO
+        )
+        correction = max(math.sqrt(10.0 / (5.0 + 100.0 * damping)), _LEAST_CORRECTION)
+
+        def shape(at: Array) -> Array:
+            """Compute :eq:`eq-eurocode-8`."""
+            first, second, third = corners
+            plateau = _HEIGHT * correction
+            longer = np.maximum(at, second)
+            rising = 1.0 + np.minimum(at, first) / first * (plateau - 1.0)
+            falling = plateau * second / longer * np.minimum(1.0, third / longer)
+            return peak * soil * np.where(at < first, rising, falling)
+
+        words = f"Eurocode 8, type {number}, ground {kind}, {peak:.4g} m/s^2"
+        return cls(words, shape, None, damping)
+
+    @classmethod
+    def asce_7(
+        cls,
+        short_period_acceleration: "QuantityLike",
+        one_second_acceleration: "QuantityLike",
+        *,
+        long_period: "QuantityLike" = "8 s",
+    ) -> Self:
+        """Take the design response spectrum of ASCE 7.
+
+        Parameters
+        ----------
+        short_period_acceleration : str or Quantity
+            S_DS [m s^-2].
+        one_second_acceleration : str or Quantity
+            S_D1 [m s^-2].
+        long_period : str or Quantity, optional
+            T_L [s].
+
+        Returns
+        -------
+        TargetSpectrum
+            :eq:`eq-asce-7`, ASCE/SEI 7-16, 11.4.6; of 5 % of critical damping.
+
+        Raises
+        ------
+        UnitsError
+            An argument has no unit, or one of another kind.
+        ComponentError
+            Out of range.
+
+        Examples
+        --------
+        >>> target = TargetSpectrum.asce_7("1 g_0", "0.6 g_0")
+        >>> (target.at(["0 s", "0.5 s", "2 s", "10 s"]) / 9.80665).round(3).tolist()
+        [0.4, 1.0, 0.3, 0.048]
+        """
+        owner = f"{cls.__name__}.asce_7"
+        named = {
+            "short_period_acceleration": short_period_acceleration,
+            "one_second_acceleration": one_second_acceleration,
+        }
+        short, one = (
+            to_si(value, ACCELERATION, owner=owner, name=name, condition=POSITIVE)
+            for name, value in named.items()
+        )
+        last = to_si(long_period, PERIOD, owner=owner, name="long_period", condition=POSITIVE)
+        corner = one / short  # s: the second of S_D1 divides out
+        if last <= corner:
+            msg = f"{owner}: long_period must exceed S_D1/S_DS, {corner:.4g} s"
+            raise ComponentError(msg)
+
+        def shape(at: Array) -> Array:
+            """Compute :eq:`eq-asce-7`."""
+            longer = np.maximum(at, corner)
+            rising = short * (0.4 + 0.6 * at / (0.2 * corner))
+            falling = one / longer * np.minimum(1.0, last / longer)
+            return np.where(at < 0.2 * corner, rising, falling)
+
+        return cls(f"ASCE 7, S_DS {short:.4g} m/s^2, S_D1 {one:.4g} m/s^2", shape)
+
+    def at(self, periods: "ArrayLike | Iterable[QuantityLike]") -> Array:
+        """Give the accelerations at periods.
+
+        Parameters
+        ----------
+        periods : (sequence, unit), Quantity or sequence of str
+            Zero or more [s].
+
+        Returns
+        -------
+        ndarray
+            [m s^-2]
+
+        Raises
+        ------
+        UnitsError
+            Periods without a unit, or with one of another kind.
+        ComponentError
+            Periods at which it is not known.
+        """
+        owner = f"{type(self).__name__}.at"
+        return self.at_seconds(
+            np.array(to_si_values(periods, PERIOD, owner=owner, name="periods")), owner=owner
+        )
+
+    def at_seconds(self, seconds: Array, *, owner: str) -> Array:
+        """Give the accelerations [m s^-2] at periods [s], or refuse these."""
+        low, high = self.limits
+        if seconds.min() < low * (1.0 - _ROUNDING) or seconds.max() > high * (1.0 + _ROUNDING):
+            msg = (
+                f"{owner}: periods from {seconds.min():.4g} s to {seconds.max():.4g} s, but the "
+                f"target {self.name!r} is known from {low:.4g} s to {high:.4g} s"
+            )
+            raise ComponentError(msg)
+        return self.shape(seconds)
+
+    def deviations_at(self, seconds: Array) -> Array:
+        """Give the standard deviations of the logarithm [1], zero where none is told."""
+        return np.zeros(seconds.size) if self.deviation is None else self.deviation(seconds)
+
+    def scaled(self, factor: "RatioLike") -> Self:
+        """Multiply the accelerations, as by an importance factor.
+
+        Parameters
+        ----------
+        factor : float
+            [1]
+
+        Returns
+        -------
+        TargetSpectrum
+
+        Raises
+        ------
+        UnitsError, ComponentError
+            Not a ratio above zero.
+        """
+        owner = f"{type(self).__name__}.scaled"
+        ratio = to_ratio(factor, owner=owner, name="factor", condition=POSITIVE)
+        before = self.shape
+        return replace(
+            self, name=f"{self.name}, times {ratio:g}", shape=lambda at: ratio * before(at)
+        )
+
+    def with_deviation(self, standard_deviation: "RatioLike") -> Self:
+        """Give a set the same spread at all periods.
+
+        Parameters
+        ----------
+        standard_deviation : float
+            Of the natural logarithm [1].
+
+        Returns
+        -------
+        TargetSpectrum
+
+        Raises
+        ------
+        UnitsError, ComponentError
+            Not a ratio from 0 to 3.
+        """
+        owner = f"{type(self).__name__}.with_deviation"
+        value = to_ratio(
+            standard_deviation, owner=owner, name="standard_deviation", condition=_DEVIATION
+        )
+        return replace(self, deviation=lambda at: np.full(at.size, value))
+
+
+def _interpolated(seconds: Array, values: Array) -> Callable[[Array], Array]:
+    logarithms = np.log(seconds)
+
+    def at(places: Array) -> Any:
+        return np.interp(np.log(places), logarithms, values)
+
+    return at

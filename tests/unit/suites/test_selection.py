@@ -1,0 +1,216 @@
+"""Scaling and selection: least squares by SciPy, sets by brute force."""
+
+from itertools import combinations
+
+import numpy as np
+import pytest
+from scipy.optimize import minimize_scalar
+from unit.suites.downloads import Station, download, packed
+
+import rockframe as rf
+from rockframe.errors import ComponentError, SchemaError
+
+PERIODS = (np.geomspace(0.1, 2.0, 12), "s")
+STATIONS = tuple(
+    Station(k, f"Quake {k % 4}", 6.0 + 0.1 * k, 10.0 + k, 300.0, vertical=k % 2 == 0)
+    for k in range(1, 13)
+)
+SUITE = rf.read_suite(packed(download(STATIONS)))
+FIRSTS = SUITE.select(axis="H1")
+TARGET = rf.TargetSpectrum.eurocode_8("0.25 g_0", "B")
+
+
+def spectra(suite, periods=PERIODS):
+    found = rf.response_spectrum(suite, periods, 0.05)
+    return found.pseudo_spectral_acceleration.values[:, 0]
+
+
+def test_factors_are_those_of_least_squares():
+    found = rf.scale_to_target(FIRSTS, TARGET, periods=PERIODS, bounds=None)
+    values, goal = spectra(FIRSTS), TARGET.at(PERIODS)
+    for k in range(len(FIRSTS)):
+        least = minimize_scalar(lambda x, row=values[k]: np.mean((x + np.log(row / goal)) ** 2))
+        assert float(found.scale_factor[k]) == pytest.approx(np.exp(least.x), rel=1e-6)
+        assert float(found.spectral_misfit[k]) == pytest.approx(np.sqrt(least.fun), rel=1e-6)
+    scaled = found.scale_factor.values[:, None] * values
+    np.testing.assert_allclose(found.scaled_spectral_acceleration, scaled, rtol=1e-12)
+    np.testing.assert_allclose(found.set_median_acceleration, np.exp(np.log(scaled).mean(axis=0)))
+    np.testing.assert_allclose(
+        found.set_standard_deviation, np.log(scaled).std(axis=0, ddof=1), rtol=1e-10
+    )
+    np.testing.assert_allclose(found.target_spectral_acceleration, goal, rtol=1e-14)
+
+
+def test_the_scaled_suite_has_the_spectra_that_were_told():
+    found = rf.scale_to_target(FIRSTS, TARGET, periods=PERIODS)
+    suite = FIRSTS.scaled_to(TARGET, periods=PERIODS)
+    np.testing.assert_allclose(spectra(suite), found.scaled_spectral_acceleration, rtol=1e-12)
+    for label, motion in suite.items():
+        row = found.sel(motion=label)
+        assert motion.metadata["scale_factor"] == float(row.scale_factor)
+        assert motion.metadata["spectral_misfit"] == float(row.spectral_misfit)
+        assert "scaled by" in motion.history[-1]
+    twice = suite.changed(lambda motion: motion.scaled(1.0)).scaled_to(TARGET, periods=PERIODS)
+    assert twice.table["scale_factor"].tolist() == pytest.approx(
+        suite.table["scale_factor"].tolist()
+    )
+
+
+def test_conditioned_on_a_period_or_an_average():
+    one = FIRSTS.scaled_to(TARGET, conditioned_on=["0.7 s"], periods=PERIODS, bounds=None)
+    np.testing.assert_allclose(spectra(one, ["0.7 s"])[:, 0], TARGET.at(["0.7 s"])[0], rtol=1e-12)
+    several = (np.linspace(0.2, 1.5, 9), "s")
+    many = FIRSTS.scaled_to(TARGET, conditioned_on=several, periods=PERIODS, bounds=None)
+    averages = many.average_spectral_acceleration(several).average_spectral_acceleration
+    goal = np.exp(np.log(TARGET.at(several)).mean())
+    np.testing.assert_allclose(averages, goal, rtol=1e-12)
+
+
+def test_bounds():
+    free = rf.scale_to_target(FIRSTS, TARGET, periods=PERIODS, bounds=None)
+    low, high = np.quantile(free.scale_factor, [0.2, 0.7])
+    bound = rf.scale_to_target(FIRSTS, TARGET, periods=PERIODS, bounds=(low, high))
+    np.testing.assert_allclose(bound.scale_factor, np.clip(free.scale_factor, low, high))
+    assert bound.attrs["factors_at_a_bound"] == int(
+        ((free.scale_factor < low) | (free.scale_factor > high)).sum()
+    )
+    chosen = rf.select_for_target(FIRSTS, TARGET, 5, periods=PERIODS, bounds=(low, high))
+    assert ((chosen.scale_factor >= low) & (chosen.scale_factor <= high)).all()
+    with pytest.raises(
+        ComponentError, match=r"of 12 motions have factors from .*too few for a set of 12"
+    ):
+        rf.select_for_target(FIRSTS, TARGET, 12, periods=PERIODS, bounds=(low, high))
+
+
+def test_both_components_have_one_factor():
+    names = {
+        "geometric mean": "geometric_mean_acceleration",
+        "RotD50": "median_rotated_acceleration",
+        "RotD100": "greatest_rotated_acceleration",
+    }
+    for combination, name in names.items():
+        arguments = {"periods": PERIODS, "combination": combination}
+        found = rf.scale_to_target(SUITE, TARGET, **arguments)
+        assert found["motion"].to_numpy().tolist() == list(SUITE.pairs)
+        values = SUITE.rotated_spectrum(PERIODS)[name].values[:, 0]
+        factors = np.exp(np.log(TARGET.at(PERIODS) / values).mean(axis=1)).clip(0.25, 4.0)
+        np.testing.assert_allclose(found.scale_factor, factors, rtol=1e-12)
+        suite = SUITE.scaled_to(TARGET, **arguments)
+        assert len(suite) == len(SUITE)
+        assert len(suite.verticals) == len(SUITE.verticals)
+        for label, motion in (*suite.items(), *suite.verticals.items()):
+            factor = float(found.scale_factor.sel(motion=motion.metadata["record"]))
+            before = SUITE.get(label, SUITE.verticals.get(label))
+            np.testing.assert_allclose(
+                motion.si.horizontal.samples, factor * before.si.horizontal.samples, rtol=1e-12
+            )
+    with pytest.raises(ComponentError, match="the suite has no pair"):
+        rf.scale_to_target(FIRSTS, TARGET, combination="RotD50")
+
+
+def misfit(residuals, chosen, deviations, weight) -> float:
+    """Misfit of a set, written out."""
+    held = residuals[list(chosen)]
+    spread = held.std(axis=0, ddof=1) if len(held) > 1 else np.zeros(held.shape[1])
+    return float(np.sqrt(np.mean(held.mean(axis=0) ** 2 + weight * (spread - deviations) ** 2)))
+
+
+@pytest.mark.parametrize("count", [1, 2, 4, 6])
+@pytest.mark.parametrize(
+    ("deviation", "weight"), [(None, None), (0.3, None), (0.5, 0.5), (None, 2.0)]
+)
+@pytest.mark.parametrize("conditioned", [None, ["0.5 s"]])
+def test_the_set_is_the_best_of_all(count, deviation, weight, conditioned):
+    target = TARGET if deviation is None else TARGET.with_deviation(deviation)
+    found = rf.select_for_target(
+        FIRSTS, target, count, periods=PERIODS, conditioned_on=conditioned, bounds=None,
+        spread_weight=weight,
+    )  # fmt: skip
+    fixed = PERIODS if conditioned is None else conditioned
+    factors = np.exp(np.log(target.at(fixed) / spectra(FIRSTS, fixed)).mean(axis=1))
+    residuals = np.log(factors[:, None] * spectra(FIRSTS) / target.at(PERIODS))
+    used = (0.0 if deviation is None else 1.0) if weight is None else weight
+    spread = np.full(12, deviation or 0.0)
+    every = {
+        chosen: misfit(residuals, chosen, spread, used) for chosen in combinations(range(12), count)
+    }
+    best = min(every, key=lambda chosen: every[chosen])
+    assert float(found.set_misfit) == pytest.approx(every[best], rel=1e-9)
+    assert set(found["motion"].to_numpy().tolist()) == {list(FIRSTS)[k] for k in best}
+    assert (np.diff(found.spectral_misfit) >= 0.0).all()
+
+
+def test_a_large_set_is_better_than_chance():
+    rng = np.random.default_rng(5)
+    target = TARGET.with_deviation(0.4)
+    found = rf.select_for_target(SUITE, target, 11, periods=PERIODS, bounds=None)
+    factors = np.exp(np.log(target.at(PERIODS) / spectra(SUITE)).mean(axis=1))
+    residuals = np.log(factors[:, None] * spectra(SUITE) / target.at(PERIODS))
+    spread = np.full(12, 0.4)
+    tried = [misfit(residuals, rng.choice(24, 11, replace=False), spread, 1.0) for _ in range(5000)]
+    assert float(found.set_misfit) < min(tried)
+
+
+def test_so_many_of_an_earthquake():
+    free = SUITE.chosen_for(TARGET, 8, periods=PERIODS, bounds=None)
+    assert len(free) == 8
+    bound = SUITE.chosen_for(TARGET, 8, periods=PERIODS, bounds=None, per_event=2)
+    events = [motion.metadata["event"] for motion in bound.values()]
+    assert max(events.count(event) for event in events) == 2
+    with pytest.raises(ComponentError, match="at most 1 motions of an earthquake make no set of 8"):
+        SUITE.chosen_for(TARGET, 8, periods=PERIODS, bounds=None, per_event=1)
+
+
+def test_a_set_of_records():
+    chosen = SUITE.chosen_for(TARGET, 3, periods=PERIODS, combination="RotD50")
+    assert len(chosen) == 6
+    assert len(chosen.pairs) == 3
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"target": "EC8"}, "target needs a TargetSpectrum, got 'EC8'"),
+        ({"suite": [1, 2]}, "suite needs a MotionSuite"),
+        ({"bounds": (4.0, 0.25)}, "bounds must be the least and the greatest"),
+        ({"bounds": (0.5,)}, "bounds must be the least and the greatest"),
+        ({"combination": "SRSS"}, "combination must be 'each' or"),
+        ({"count": 0}, "count must be a whole number"),
+        ({"spread_weight": -1.0}, "spread_weight must be zero or more"),
+        ({"periods": (["1 s", "0.5 s"])}, "increasing"),
+    ],
+)
+def test_arguments_are_checked(given, words):
+    arguments = {"suite": FIRSTS, "target": TARGET, "count": 2, **given}
+    with pytest.raises(ComponentError, match=words):
+        rf.select_for_target(**arguments)
+
+
+def test_other_faults():
+    still = rf.GroundMotion.from_arrays(([0.0, 0.0, 0.0], "m/s^2"), "0.01 s")
+    with pytest.raises(ComponentError, match="'still' has no acceleration"):
+        rf.scale_to_target({"still": still}, TARGET)
+    with pytest.raises(SchemaError, match="expected a TargetSpectrum, or"):
+        FIRSTS.scaled_to(FIRSTS.intensity_measures())
+    found = rf.scale_to_target(SUITE, TARGET, periods=PERIODS)
+    with pytest.raises(ComponentError, match="the suite has no 'RSN1_MADE_S1090'"):
+        FIRSTS.scaled_to(found)
+    short = rf.TargetSpectrum.from_table(([0.2, 1.0], "s"), ([1.0, 1.0], "m/s^2"))
+    assert rf.scale_to_target(FIRSTS, short).period.values[[0, -1]].tolist() == [0.2, 1.0]
+    with pytest.raises(ComponentError, match=r"is known from 0\.2 s to 1 s"):
+        rf.scale_to_target(FIRSTS, short, periods=PERIODS)
+
+
+def test_the_figure_shows_what_was_found():
+    target = TARGET.with_deviation(0.4)
+    found = rf.select_for_target(SUITE, target, 5, periods=PERIODS)
+    figure = rf.plot.selection(found)
+    spectra_axes, misfits = figure.axes
+    lines = {line.get_label(): line for line in spectra_axes.get_lines()}
+    np.testing.assert_array_equal(lines["target"].get_ydata(), found.target_spectral_acceleration)
+    np.testing.assert_array_equal(lines["median"].get_ydata(), found.set_median_acceleration)
+    assert len(spectra_axes.get_lines()) == 5 + 2 * 3
+    widths = [bar.get_width() for bar in misfits.patches]
+    np.testing.assert_array_equal(widths, found.spectral_misfit)
+    with pytest.raises(SchemaError, match=r"rf\.plot\.selection needs a set of motions"):
+        rf.plot.selection(FIRSTS.intensity_measures())
