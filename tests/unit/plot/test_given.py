@@ -11,6 +11,7 @@ from rockframe.errors import ComponentError, SchemaError
 PULSE = rf.GroundMotion.sine_pulse("2 m/s^2", "2 Hz")
 BLOCK = rf.Block(width="1 m", height="6 m", mass="10 t")
 SYSTEM = rf.System(BLOCK, rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1))
+TARGET = rf.TargetSpectrum.eurocode_8("0.2 g_0")
 
 MADE = {
     "run": lambda: SYSTEM.simulate(PULSE),
@@ -22,6 +23,7 @@ MADE = {
     "Fourier spectrum": lambda: rf.fourier_spectrum(PULSE),
     "ground": lambda: rf.velocity_and_displacement(PULSE),
     "measures": lambda: rf.intensity_measures(PULSE),
+    "set": lambda: rf.scale_to_target({"pulse": PULSE}, TARGET, bounds=None),
     "rest": SYSTEM.equilibrium,
     "rotation": lambda: SYSTEM.simulate(PULSE)["rotation"],
     "nothing": xr.Dataset,
@@ -40,6 +42,7 @@ WORDS = {
     "Fourier spectrum": ("a Dataset with a Fourier spectrum", "rf.plot.spectra draws it from"),
     "ground": ("velocity and displacement of the ground", "rf.plot.motion draws them from"),
     "measures": ("a Dataset with the title 'Intensity measures'",),
+    "set": ("a Dataset with a set of motions beside", "rf.plot.selection draws it"),
     "rest": ("a Dataset with the title 'Rest'",),
     "rotation": ("a DataArray, 'rotation'", "the whole Dataset"),
     "nothing": ("a Dataset of another kind",),
@@ -52,6 +55,7 @@ WORDS = {
 }
 DRAWN = {
     "response": (rf.plot.response, "run", "the result of one run with histories", SchemaError),
+    "selection": (rf.plot.selection, "set", "a set of motions beside its target", SchemaError),
     "tradeoff": (rf.plot.tradeoff, "rungs", "a comparison of models", SchemaError),
     "motion": (rf.plot.motion, "motion", "a GroundMotion", ComponentError),
     "spectra": (rf.plot.spectra, "motion", "a GroundMotion", ComponentError),
