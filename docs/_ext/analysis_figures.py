@@ -1,6 +1,7 @@
 """Figures of analyses of many runs, drawn when the manual is built."""
 
 import runpy
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -59,8 +60,10 @@ def sine_map() -> Figure:
 
 def overturning_spectrum() -> Figure:
     """Draw the least intensity that overturns over the size of the block."""
-    return rf.plot.overturning_spectrum(
-        rf.overturning_spectrum(
+    with warnings.catch_warnings():
+        # two of 4000 runs are less exact than the others, by less than a line is wide
+        warnings.simplefilter("ignore", rf.ModelWarning)
+        found = rf.overturning_spectrum(
             CABINET,
             _suite(4),
             periods=(np.geomspace(1.0, 8.0, 25), "s"),
@@ -70,7 +73,7 @@ def overturning_spectrum() -> Figure:
             free_vibration="4 s",
             accuracy="fast",
         )
-    )
+    return rf.plot.overturning_spectrum(found)
 
 
 def office_contents() -> Figure:
