@@ -16,6 +16,7 @@ from rockframe.solve.guards import WEIGHTS, may_fall, write_guards
 from rockframe.solve.lanes import fields
 from rockframe.solve.lanes.fields import places_of
 from rockframe.solve.march import SHORTEST, fit_step
+from rockframe.solve.schemes import rest_of
 from rockframe.solve.workspace import TERMS
 
 NO_VERTICAL = -1
@@ -126,8 +127,7 @@ def accept(system: System, room: Vector, lane: int, quiet: bool) -> None:
         r1 += limits[WEIGHTS + i] * end[i]
     left = max(clock[at.PEAK_LEFT], max(-r0, -r1))
     right = max(clock[at.PEAK_RIGHT], max(r0, r1))
-    rest = clock[at.ASKED] - h
-    following = rest if rest > SHORTEST * controls[at.DURATION] else controls[at.MAX_STEP]
+    following = rest_of(clock[at.ASKED], h, SHORTEST * controls[at.DURATION], controls)
     flown = clock[at.FLIGHT_TIME] + h
     supplied = clock[at.SUPPLIED] + works[1]
     flies = lane_of(whole, fields.OWN_WHOLE, lane)[fields.FLIES] == 1
