@@ -126,7 +126,7 @@ _AMBIGUOUS: Final = (
     ),
 )
 _NUMBER: Final = r"[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|nan\b|inf(?:inity)?\b)"
-_NUMBER_AND_UNIT: Final = re.compile(rf"\s*(?:{_NUMBER})\s*(?P<unit>.*)", re.DOTALL)
+_NUMBER_AND_UNIT: Final = re.compile(rf"\s*(?P<number>{_NUMBER})\s*(?P<unit>.*)", re.DOTALL)
 _NO_UNIT: Final = re.compile(
     # a second number, or a power of a number or of a power: no unit has them, and
     # pint would compute even 9**9**9
@@ -186,6 +186,9 @@ def to_si(
     ComponentError
         Not finite, or outside `condition`.
     """
+    number = _in_si(value, measure)
+    if number is not None:
+        return _check_value(number, value, condition, owner=owner, name=name)
     given = _parse(value, measure, owner=owner, name=name)
     _check_kind(given, value, measure, owner=owner, name=name)
     magnitude = given.m_as(str(measure.unit))
@@ -308,6 +311,16 @@ NOT_NEGATIVE: Final = Condition("zero or more", lambda value: value >= 0.0, boun
 UNIT_INTERVAL: Final = Condition(
     "above 0 and at most 1", lambda value: 0.0 < value <= 1.0, bounds=(0.0, 1.0)
 )
+
+
+def _in_si(value: object, measure: Measure) -> float | None:
+    """Read a value that is in the SI unit already: most are, and need no conversion."""
+    if not isinstance(value, str) or not value.endswith(measure.unit):
+        return None
+    parts = _NUMBER_AND_UNIT.fullmatch(value)
+    if parts is None or parts["unit"] != measure.unit:
+        return None
+    return float(parts["number"])
 
 
 def _parse(value: object, measure: Measure, *, owner: str, name: str) -> pint.Quantity[Any]:

@@ -141,7 +141,7 @@ def tradeoff(
             "benchmark_rtol": TIGHT,
             "repeats": repeats,
             "settings": json.dumps(exact),
-            "system_json": json.dumps(system.assembly.to_dict()),
+            "system_json": system.assembly.json,
             **motion_attributes(record),
         },
         over=DIMENSIONS,

@@ -1,6 +1,5 @@
 """A fit as a labelled dataset."""
 
-import json
 import math
 from collections.abc import Mapping
 from typing import Any, Final
@@ -81,7 +80,7 @@ def report(
         "model_description": fitted.describe(),
         "accuracy": accuracy,
         "motion": "none",
-        "system_json": json.dumps(fitted.assembly.to_dict()),
+        "system_json": fitted.assembly.json,
         **({"cautions": "; ".join(cautions)} if cautions else {}),
     }
     dataset = build_dataset(

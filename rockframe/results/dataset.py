@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
 from rockframe.constants import CONVENTIONS, PAPER_TITLE
 from rockframe.errors import SchemaError
@@ -45,7 +46,8 @@ def build_dataset(
     SchemaError
         A name is not in the schema, or a shape does not fit its dimensions.
     """
-    variables: dict[str, xr.Variable] = {}
+    variables: dict[str, tuple[tuple[str, ...], NDArray[Any]]] = {}
+    labels: dict[str, dict[str, Any]] = {}
     for name, value in values.items():
         row = SCHEMA.get(name)
         if row is None:
@@ -58,15 +60,18 @@ def build_dataset(
         if data.ndim != len(dims):
             msg = f"{name!r} needs the dimensions {dims}, got an array of shape {data.shape}"
             raise SchemaError(msg)
-        attributes_of = row.attributes("float64" if gaps else None)
-        variables[name] = xr.Variable(dims, data, attributes_of)
+        variables[name] = (dims, data)
+        labels[name] = row.attributes("float64" if gaps else None)
     coordinates = {name: variables.pop(name) for name in COORDINATES if name in variables}
     dataset = xr.Dataset(
         variables, coords=coordinates, attrs=_attributes(attributes, title, source)
     )
+    # labelled in place, since xarray copies each variable that it is handed with attributes
+    for name, label in labels.items():
+        dataset.variables[name].attrs = label
     for name in coordinates:
         # a coordinate has no missing values, so it needs no fill value (CF 2.5.1)
-        dataset[name].encoding["_FillValue"] = None
+        dataset.variables[name].encoding["_FillValue"] = None
     return dataset
 
 

@@ -7,6 +7,7 @@ from rockframe.errors import RockframeError, shown
 from rockframe.results.forces import OF_SOIL_FRICTION
 from rockframe.results.points import Point
 from rockframe.results.schema import GROUPS, ON_REQUEST, SCHEMA
+from rockframe.results.variables.variable import TIME
 from rockframe.system.assembly import Assembly
 from rockframe.units import LENGTH, to_si
 
@@ -34,12 +35,11 @@ def names_of(outputs: object, faults: list[str]) -> tuple[str, ...]:
         names = list(cast("Iterable[object]", outputs))
     else:
         names = [outputs]
-    always = {name for name, row in SCHEMA.items() if row.dims == ("time",)}
     wanted: set[str] = set()
     for name in names:
         if isinstance(name, str) and name in GROUPS:
             wanted.update(GROUPS[name])
-        elif isinstance(name, str) and (name in ON_REQUEST or name in always):
+        elif isinstance(name, str) and (name in ON_REQUEST or _is_history(name)):
             wanted.add(name)
         else:
             known = ", ".join(repr(other) for other in (*GROUPS, *ON_REQUEST))
@@ -47,6 +47,10 @@ def names_of(outputs: object, faults: list[str]) -> tuple[str, ...]:
                 f"outputs has no {shown(name)}; every run has its response, and on request {known}"
             )
     return tuple(name for name in ON_REQUEST if name in wanted)
+
+
+def _is_history(name: str) -> bool:
+    return name in SCHEMA and SCHEMA[name].dims == TIME
 
 
 NEEDED: Final = {

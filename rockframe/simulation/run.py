@@ -1,6 +1,5 @@
 """One run: the integration and the dataset."""
 
-import json
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -243,7 +242,7 @@ def _attributes(
         "solver_rejected_steps": summary.rejected_count,
         "solver_end_time": summary.end_time,
         **motion_attributes(plan.motion),
-        "system_json": json.dumps(system.to_dict()),
+        "system_json": system.json,
         "run_json": plan.to_json(),
     }
 

@@ -1,6 +1,5 @@
 """Labelled answers that need no run: rest, quasi-static rotation, small motion."""
 
-import json
 import math
 from collections.abc import Iterable
 
@@ -98,5 +97,5 @@ def _about(system: Assembly) -> dict[str, str]:
         "model": system.setting.model,
         "model_description": system.describe(),
         **slope_attributes(system.options.slope),
-        "system_json": json.dumps(system.to_dict()),
+        "system_json": system.json,
     }

@@ -1,6 +1,5 @@
 """How much of a motion it takes to overturn a block."""
 
-import json
 import math
 from collections.abc import Callable
 from dataclasses import replace
@@ -190,7 +189,7 @@ def critical_scale(
         "accuracy": plan.accuracy_name,
         **_cautions(system, plan_at, found, critical),
         **motion_attributes(motion),
-        "system_json": json.dumps(system.assembly.to_dict()),
+        "system_json": system.assembly.json,
         "run_json": plan.to_json(),
     }
     dataset = _labelled(found, critical, at_rest_to, attributes)

@@ -1,5 +1,6 @@
 """Assembly: parts and options checked together, and the scene they make."""
 
+import json
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -61,6 +62,11 @@ class Assembly:
     def describe(self) -> str:
         """Tell which model was picked, by which equations, and what it leaves out."""
         return self._description
+
+    @cached_property
+    def json(self) -> str:
+        """Parts and options as JSON text; without the motion."""
+        return json.dumps(self.to_dict())
 
     def __reduce__(self) -> tuple[object, ...]:
         # without what has been computed: equations hold functions that cannot be sent

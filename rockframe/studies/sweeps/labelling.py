@@ -76,7 +76,7 @@ def labels_of(study: Study) -> Labels:
         attributes["spectral_period"] = study.period
     if isinstance(scene, SystemScene):
         attributes["model"] = scene.assembly.setting.model
-        attributes["system_json"] = json.dumps(scene.assembly.to_dict())
+        attributes["system_json"] = scene.assembly.json
     else:
         attributes["function"] = str(scene.to_dict()["function"])
     return Labels(study.grid, tuple(study.motions), study.histories, attributes)
