@@ -25,7 +25,7 @@ from rockframe.results.slope import energies_on_slope, felt_ground, slope_attrib
 from rockframe.results.variables.runs import Direction
 from rockframe.signals import Motion
 from rockframe.simulation.answers import answers_of, ground_at
-from rockframe.simulation.audit import DOUBTFUL, unbalanced
+from rockframe.simulation.audit import doubtful, unbalanced
 from rockframe.simulation.beginning import end_attributes, start_of
 from rockframe.simulation.beside import Beside, what_showed
 from rockframe.simulation.certificate import certify
@@ -89,7 +89,9 @@ class Response:
     def cautions(self) -> list[Caution]:
         """Give what is to be warned of."""
         summary, plan = self.trajectory, self.plan
-        audit = unbalanced(plan, summary, self.beside, lambda other: beside(self.system, other))
+        audit = unbalanced(
+            self.system, plan, summary, self.beside, lambda other: beside(self.system, other)
+        )
         return [
             *_unfinished(summary, self.scales),
             *([] if audit is None else [(SolverWarning, audit)]),
@@ -247,9 +249,9 @@ def _attributes(
     }
 
 
-def nothing_to_say(summary: Summary) -> bool:
+def nothing_to_say(system: Assembly, summary: Summary) -> bool:
     """Whether a run with fixed steps has come to an end, with its energies in balance."""
-    return summary.status.finished and summary.energy_residual <= DOUBTFUL
+    return summary.status.finished and summary.energy_residual <= doubtful(system)
 
 
 def _unfinished(summary: Summary, scales: Scales) -> Iterator[Caution]:

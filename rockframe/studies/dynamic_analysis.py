@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from rockframe.components import InitialState
     from rockframe.motion import GroundMotion
     from rockframe.simulation.system import System
-    from rockframe.system.options import AccuracyLike, OverturningLike
+    from rockframe.system.options import OverturningLike, SweepAccuracyLike
     from rockframe.units import QuantityLike, RatioLike
 
 _OWNER: Final = "incremental_dynamic_analysis"
@@ -44,7 +44,7 @@ def incremental_dynamic_analysis(
     duration: "QuantityLike | None" = None,
     free_vibration: "QuantityLike | None" = None,
     initial: "InitialState | None" = None,
-    accuracy: "AccuracyLike" = AccuracyLevel.STANDARD,
+    accuracy: "SweepAccuracyLike" = AccuracyLevel.STANDARD,
     overturning: "OverturningLike" = Overturning.STOP,
     store: "str | PathLike[str] | None" = None,
     executor: Executor | None = None,

@@ -29,7 +29,7 @@ from rockframe.units import ACCELERATION, FREQUENCY, quantity
 if TYPE_CHECKING:
     from rockframe.components import InitialState
     from rockframe.simulation.system import System
-    from rockframe.system.options import AccuracyLike, OverturningLike
+    from rockframe.system.options import OverturningLike, SweepAccuracyLike
     from rockframe.units import QuantityLike, RatioLike
 
 _OWNER: Final = "overturning_map"
@@ -48,7 +48,7 @@ def overturning_map(
     duration: "QuantityLike | None" = None,
     free_vibration: "QuantityLike | None" = None,
     initial: "InitialState | None" = None,
-    accuracy: "AccuracyLike" = AccuracyLevel.STANDARD,
+    accuracy: "SweepAccuracyLike" = AccuracyLevel.STANDARD,
     overturning: "OverturningLike" = Overturning.CONTINUE,
     store: "str | PathLike[str] | None" = None,
     executor: Executor | None = None,

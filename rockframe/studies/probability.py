@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from rockframe.components import InitialState
     from rockframe.motion import GroundMotion
     from rockframe.simulation.system import System
-    from rockframe.system.options import AccuracyLike, OverturningLike
+    from rockframe.system.options import OverturningLike, SweepAccuracyLike
     from rockframe.units import QuantityLike, RatioLike
 
 _OWNER: Final = "probability_of_overturning"
@@ -48,7 +48,7 @@ def probability_of_overturning(
     duration: "QuantityLike | None" = None,
     free_vibration: "QuantityLike | None" = None,
     initial: "InitialState | None" = None,
-    accuracy: "AccuracyLike" = AccuracyLevel.STANDARD,
+    accuracy: "SweepAccuracyLike" = AccuracyLevel.STANDARD,
     overturning: "OverturningLike" = Overturning.STOP,
     store: "str | PathLike[str] | None" = None,
     executor: Executor | None = None,

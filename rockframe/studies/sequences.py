@@ -28,7 +28,7 @@ from rockframe.units import NOT_NEGATIVE, TIME, to_si
 if TYPE_CHECKING:
     from rockframe.components import InitialState
     from rockframe.simulation.system import System
-    from rockframe.system.options import AccuracyLike, OverturningLike
+    from rockframe.system.options import OverturningLike, SweepAccuracyLike
     from rockframe.units import QuantityLike
 
 _OWNER: Final = "earthquake_sequences"
@@ -43,7 +43,7 @@ def earthquake_sequences(
     *,
     pause: "QuantityLike" = "20 s",
     initial: "InitialState | None" = None,
-    accuracy: "AccuracyLike" = AccuracyLevel.STANDARD,
+    accuracy: "SweepAccuracyLike" = AccuracyLevel.STANDARD,
     overturning: "OverturningLike" = Overturning.STOP,
     store: "str | PathLike[str] | None" = None,
     executor: Executor | None = None,

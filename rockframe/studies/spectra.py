@@ -26,7 +26,7 @@ from rockframe.system.options import Overturning
 if TYPE_CHECKING:
     from rockframe.components import InitialState
     from rockframe.simulation.system import System
-    from rockframe.system.options import AccuracyLike, OverturningLike
+    from rockframe.system.options import OverturningLike, SweepAccuracyLike
     from rockframe.units import QuantityLike, RatioLike
 
     Motions = GroundMotion | Mapping[str, GroundMotion] | Sequence[GroundMotion]
@@ -45,7 +45,7 @@ def rocking_spectrum(
     duration: "QuantityLike | None" = None,
     free_vibration: "QuantityLike | None" = None,
     initial: "InitialState | None" = None,
-    accuracy: "AccuracyLike" = AccuracyLevel.STANDARD,
+    accuracy: "SweepAccuracyLike" = AccuracyLevel.STANDARD,
     overturning: "OverturningLike" = Overturning.STOP,
     store: "str | PathLike[str] | None" = None,
     executor: Executor | None = None,
@@ -132,7 +132,7 @@ def overturning_spectrum(
     duration: "QuantityLike | None" = None,
     free_vibration: "QuantityLike | None" = None,
     initial: "InitialState | None" = None,
-    accuracy: "AccuracyLike" = AccuracyLevel.STANDARD,
+    accuracy: "SweepAccuracyLike" = AccuracyLevel.STANDARD,
     overturning: "OverturningLike" = Overturning.STOP,
     store: "str | PathLike[str] | None" = None,
     executor: Executor | None = None,

@@ -48,6 +48,7 @@ OverturningLike: TypeAlias = Overturning | Literal["stop", "continue"]
 AccuracyLike: TypeAlias = (
     Accuracy | AccuracyLevel | Literal["fast", "standard", "reference"] | float
 )
+SweepAccuracyLike: TypeAlias = AccuracyLike | Literal["screen"]
 
 
 @dataclass(frozen=True)

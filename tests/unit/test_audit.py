@@ -7,7 +7,13 @@ from extremes.scenes import Scene, scenes
 
 import rockframe as rf
 from rockframe.simulation import audit
-from rockframe.simulation.audit import BY_TOLERANCE, DOUBTFUL, FIXED, unbalanced
+from rockframe.simulation.audit import (
+    BY_TOLERANCE,
+    DOUBTFUL,
+    DOUBTFUL_ON_SPRINGS,
+    FIXED,
+    unbalanced,
+)
 from rockframe.simulation.beside import Beside
 from rockframe.simulation.plan import plan_run
 from rockframe.simulation.run import outcome
@@ -16,9 +22,9 @@ SYSTEM, MOTION = Scene().system, Scene().motion
 STOOD = Beside(False, 0.1, (0.5,), course=(1.0, 0.2))
 
 
-def said(accuracy, residual, other=STOOD, base=STOOD):
+def said(accuracy, residual, other=STOOD, base=STOOD, system=SYSTEM):
     plan = plan_run(
-        SYSTEM.assembly,
+        system.assembly,
         MOTION,
         duration=None,
         free_vibration=None,
@@ -28,14 +34,14 @@ def said(accuracy, residual, other=STOOD, base=STOOD):
         outputs=None,
         overturning="stop",
     )
-    summary = replace(outcome(SYSTEM.assembly, plan), energy_residual=residual)
+    summary = replace(outcome(system.assembly, plan), energy_residual=residual)
     tried = []
 
     def run(beside):
         tried.append(beside.accuracy)
         return other
 
-    return unbalanced(plan, summary, lambda: base, run), tried
+    return unbalanced(system.assembly, plan, summary, lambda: base, run), tried
 
 
 @pytest.mark.parametrize("accuracy", ["standard", "reference", 1e-6])
@@ -49,9 +55,11 @@ def test_steps_by_tolerance_are_judged_by_their_balance(accuracy):
 
 @pytest.mark.parametrize("accuracy", ["fast", rf.Accuracy(substeps=20)])
 def test_fixed_steps_are_judged_by_a_run_by_tolerance_where_their_balance_leaves_it_open(accuracy):
-    assert said(accuracy, 0.5 * DOUBTFUL) == (None, [])
     standard = rf.Accuracy(rtol=2e-8)
-    assert said(accuracy, 2.0 * DOUBTFUL) == (None, [standard])
+    rigid = rf.System(SYSTEM.parts.block)
+    for system, limit in ((SYSTEM, DOUBTFUL_ON_SPRINGS), (rigid, DOUBTFUL)):
+        assert said(accuracy, 0.5 * limit, system=system) == (None, [])
+        assert said(accuracy, 2.0 * limit, system=system) == (None, [standard])
     text, tried = said(accuracy, 2.0 * FIXED)
     assert text.endswith("this is no solution; repeat the run with accuracy='standard'")
     assert not tried
@@ -66,7 +74,7 @@ def test_fixed_steps_are_judged_by_a_run_by_tolerance_where_their_balance_leaves
     ],
 )
 def test_another_course_is_said(other, words):
-    text, _ = said("fast", 2.0 * DOUBTFUL, other)
+    text, _ = said("fast", 2.0 * DOUBTFUL_ON_SPRINGS, other)
     assert words in text
     assert "repeat the run with accuracy='standard'" in text
 
@@ -74,7 +82,7 @@ def test_another_course_is_said(other, words):
 def test_a_run_that_was_cut_off_is_not_judged():
     cut_off = Beside(None, 0.1)
     assert said("fast", 1.0, base=cut_off) == (None, [])
-    assert said("fast", 2.0 * DOUBTFUL, other=cut_off)[0] is None
+    assert said("fast", 2.0 * DOUBTFUL_ON_SPRINGS, other=cut_off)[0] is None
 
 
 def test_a_run_that_is_no_solution_warns_and_says_so_in_its_cautions(monkeypatch):

@@ -10,6 +10,9 @@ CASE: Final = "case"
 MOTION: Final = "motion"
 MESSAGE: Final = "message"
 """Dimensions of sweeps, beside their axes."""
+REPEATED: Final = "repeated"
+VERDICT_CHANGED: Final = "verdict_changed"
+"""What is told of each case of a screened sweep."""
 
 
 class Outcome(IntEnum):
@@ -57,6 +60,14 @@ SWEEP: Final = (
     number(CASE, "number of the row in the table of cases"),
     Variable(MOTION, (MOTION,), None, "ground motion", dtype="str"),
     Variable(MESSAGE, (MESSAGE,), None, "what is said of cases, each text once", dtype="str"),
+    Variable(
+        REPEATED,
+        (),
+        None,
+        "whether the case was run again by tolerance, its verdict at fixed steps being in doubt",
+        dtype="bool",
+    ),
+    Variable(VERDICT_CHANGED, (), None, "whether the case then had another verdict", dtype="bool"),
     count("message_number", "place along message of what is said of the case"),
 )
 """Of a sweep, beside the scalars of its runs."""

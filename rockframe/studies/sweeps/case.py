@@ -15,12 +15,13 @@ from rockframe.arguments import checked_dataset
 from rockframe.components import InitialState
 from rockframe.errors import SchemaError, StudyError, shown
 from rockframe.motion import GroundMotion
-from rockframe.results.variables.studies import MOTION
+from rockframe.results.variables.studies import MOTION, REPEATED
 from rockframe.simulation.system import System
-from rockframe.solve.accuracy import Accuracy
+from rockframe.solve.accuracy import LEVELS, Accuracy
 from rockframe.studies.sweeps.axes import Axis, Changes
 from rockframe.studies.sweeps.motions import motions_of, scaled
 from rockframe.studies.sweeps.scenes import FunctionScene, Scene, SystemScene, scene_of
+from rockframe.studies.sweeps.screening import AGAIN
 from rockframe.studies.sweeps.store import Store
 from rockframe.studies.sweeps.study import Study
 from rockframe.system.assembly import Assembly
@@ -136,7 +137,10 @@ def case(
     for axis, value in values.items():
         if axis.changes is Changes.MOTION and motion is not None:
             motion = scaled(motion, axis.name, value, attributes.get("spectral_period"))
-    return Case(system, motion, _options(json.loads(attributes["run_json"])))
+    options = _options(json.loads(attributes["run_json"]))
+    if REPEATED in dataset and _value_of(dataset[REPEATED], place) == 1.0:
+        options["accuracy"] = LEVELS[AGAIN]
+    return Case(system, motion, options)
 
 
 def remembered(attributes: Mapping[str, Any]) -> Study | None:
@@ -200,7 +204,10 @@ def _value(dataset: xr.Dataset, name: str, place: Mapping[str, int]) -> Any:
     if name not in dataset.coords:
         msg = f"{_OWNER}: found a sweep without its coordinate {name!r}; expected it, or its case"
         raise SchemaError(msg)
-    along = dataset[name]
+    return _value_of(dataset[name], place)
+
+
+def _value_of(along: xr.DataArray, place: Mapping[str, int]) -> Any:
     return along.isel({dim: place[str(dim)] for dim in along.dims}).item()
 
 

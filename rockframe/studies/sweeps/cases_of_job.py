@@ -1,6 +1,7 @@
 """The cases of a job: scene, motion and plan of each, made when first asked for."""
 
-from typing import Any
+from collections.abc import Callable
+from typing import Any, TypeAlias
 
 from rockframe.errors import AssemblyError, heard
 from rockframe.motion import GroundMotion
@@ -10,6 +11,9 @@ from rockframe.studies.sweeps.motions import scaled
 from rockframe.studies.sweeps.study import Job
 from rockframe.system.assembly import Assembly
 
+Change: TypeAlias = Callable[[Assembly, Plan], Plan]
+"""Changes the plan of a case."""
+
 
 class CasesOfJob:
     """Scenes and motions of a job's cases.
@@ -18,10 +22,13 @@ class CasesOfJob:
     ----------
     job : Job
         The cases.
+    change : callable, optional
+        Gives from a scene and its plan the plan that is run.
     """
 
-    def __init__(self, job: Job) -> None:
+    def __init__(self, job: Job, change: Change | None = None) -> None:
         self.job = job
+        self._change = change
         self._of_scene = [
             (axis, each.tolist()) for axis, each in job.axes if axis.changes is not Changes.MOTION
         ]
@@ -30,6 +37,12 @@ class CasesOfJob:
         ]
         self._scenes: dict[tuple[Any, ...], tuple[Assembly, list[str]]] = {}
         self._motion: tuple[object, GroundMotion | None] = (None, None)
+
+    def changed(self, change: Change) -> "CasesOfJob":
+        """Give the same cases with other plans; what they are made of is shared."""
+        other = CasesOfJob(self.job, change)
+        other._scenes = self._scenes
+        return other
 
     def __len__(self) -> int:
         """Give the number of cases."""
@@ -86,4 +99,4 @@ class CasesOfJob:
         plan = fitted(self.job.arguments, system, self.motion(case), faults)
         if faults:
             raise AssemblyError(faults)
-        return system, said, plan
+        return system, said, plan if self._change is None else self._change(system, plan)

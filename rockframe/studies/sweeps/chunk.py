@@ -1,6 +1,6 @@
 """The runs of a chunk: from a job to arrays of scalars."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Final
 
@@ -10,10 +10,13 @@ from rockframe.errors import RockframeError
 from rockframe.results.outcome import Generic, scalars
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.runs import RunStatus
+from rockframe.results.variables.studies import REPEATED, VERDICT_CHANGED
 from rockframe.results.variables.variable import TIME
-from rockframe.simulation.run import NONE, Response, respond
+from rockframe.simulation.run import NONE
 from rockframe.studies.sweeps.cases_of_job import CasesOfJob
-from rockframe.studies.sweeps.side_by_side import Finished, run_side_by_side
+from rockframe.studies.sweeps.runs import Failed, each_run
+from rockframe.studies.sweeps.screening import Look, in_doubt, look_at, repeated
+from rockframe.studies.sweeps.side_by_side import Finished
 from rockframe.studies.sweeps.study import Histories, Job
 
 NO_TEXT: Final = 0
@@ -64,21 +67,20 @@ def run_chunk(job: Job, stopped: Callable[[], bool] = lambda: False) -> Rows | N
     Rows or None
         None where it was left off.
     """
-    told = _Telling(len(job.motion_of_case), job.histories)
     cases = CasesOfJob(job)
-    alone = set(range(len(job.motion_of_case)))
-    for finished in run_side_by_side(cases, stopped):
-        told.put_finished(finished)
-        alone.discard(finished.case)
-    for case in sorted(alone):
-        if stopped():
-            return None
-        try:
-            system, said, plan = cases.planned(case)
-            told.put(case, respond(system, plan), said)
-        except Exception as problem:  # whatever it is, it is this case's alone
-            told.refuse(case, problem)
-    return told.rows()
+    told = _Telling(len(cases), job.histories)
+    looks: dict[int, Look] = {}
+    for run in each_run(cases, range(len(cases)), stopped):
+        told.put(run)
+        if job.screened and isinstance(run, Finished):
+            looks[run.case] = look_at(cases, run)
+    if job.screened and not stopped():
+        doubtful = in_doubt(cases, looks, stopped)
+        told.screen(looks, doubtful)
+        for run in each_run(cases.changed(repeated), doubtful, stopped):
+            told.put(run)
+            told.compare(looks[run.case], run)
+    return None if stopped() else told.rows()
 
 
 class _Telling:
@@ -93,22 +95,44 @@ class _Telling:
         self._message = np.full(count, NO_TEXT, dtype=np.int32)
         self._texts: dict[str, int] = {NONE: NO_TEXT}
 
-    def put(self, case: int, response: Response, said: list[str]) -> None:
+    def put(self, run: Finished | Failed) -> None:
         """Note a run; of one without a verdict only what is said of it."""
-        summary = response.trajectory
-        self._say(case, "; ".join([*said, *(text for _, text in response.cautions())]) or NONE)
-        self._status[case] = summary.status
-        if summary.overturned is None:
+        if isinstance(run, Failed):
+            self._refuse(run.case, run.problem)
             return
-        self._put_scalars(case, response.scalars)
-        if self._kept is not None:
+        try:
+            self._finish(run)
+        except Exception as problem:  # as in the run itself
+            self._refuse(run.case, problem)
+
+    def _finish(self, run: Finished) -> None:
+        case, response = run.case, run.response
+        if self._status[case] != RunStatus.NOT_RUN:  # of a first run
+            self._clear(case)
+        cautions = [] if response is None else [text for _, text in response.cautions()]
+        self._say(case, "; ".join([*run.said, *cautions]) or NONE)
+        self._status[case] = run.summary.status
+        if run.summary.overturned is None:
+            self._clear(case)
+            return
+        told = scalars(run.summary, run.scales) if response is None else response.scalars
+        self._put_scalars(case, told)
+        if self._kept is not None and response is not None:
             self._put_histories(case, response.histories, self._kept)
 
-    def put_finished(self, run: Finished) -> None:
-        """Note a run that was made side by side with others."""
-        self._say(run.case, "; ".join(run.said) or NONE)
-        self._status[run.case] = run.summary.status
-        self._put_scalars(run.case, scalars(run.summary, run.scales))
+    def screen(self, every: Iterable[int], doubtful: Iterable[int]) -> None:
+        """Note which cases were screened, and whose verdict was in doubt."""
+        for case in every:
+            self._put_scalars(case, {REPEATED: 0.0, VERDICT_CHANGED: 0.0})
+        for case in doubtful:
+            self._put_scalars(case, {REPEATED: 1.0})
+
+    def compare(self, first: Look, again: Finished | Failed) -> None:
+        """Note whether the verdict of a case is another one than at first."""
+        if isinstance(again, Failed):
+            return
+        changed = again.summary.overturned is not first.overturned
+        self._put_scalars(again.case, {REPEATED: 1.0, VERDICT_CHANGED: float(changed)})
 
     def _put_scalars(self, case: int, values: Mapping[str, float]) -> None:
         for name, value in values.items():
@@ -126,13 +150,16 @@ class _Telling:
                 row = self._of(self._histories, name, (kept.count,))[case]
                 row[:count] = values[name][:count]
 
-    def refuse(self, case: int, problem: Exception) -> None:
+    def _refuse(self, case: int, problem: Exception) -> None:
         """Note why a case has no run."""
         words = str(problem) if isinstance(problem, RockframeError) else ""
         self._say(case, words or f"{type(problem).__name__}: {problem}")
+        self._clear(case)
+        self._status[case] = RunStatus.REFUSED
+
+    def _clear(self, case: int) -> None:
         for column in (*self._scalars.values(), *self._histories.values()):
             column[case] = np.nan
-        self._status[case] = RunStatus.REFUSED
 
     def rows(self) -> Rows:
         """Give what has been collected."""

@@ -13,19 +13,22 @@ from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import Generic
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.runs import EVENTS_AND_SCALARS, RunStatus
-from rockframe.results.variables.studies import CASE, MESSAGE, MOTION
+from rockframe.results.variables.studies import CASE, MESSAGE, MOTION, REPEATED, VERDICT_CHANGED
 from rockframe.results.variables.variable import TIME
 from rockframe.simulation.run import NONE
 from rockframe.studies.sweeps.axes import OWNER, Axis
 from rockframe.studies.sweeps.chunk import Rows
 from rockframe.studies.sweeps.grid import Grid
 from rockframe.studies.sweeps.scenes import SystemScene
+from rockframe.studies.sweeps.screening import SCREEN
 from rockframe.studies.sweeps.study import Histories, Study
 
 ALWAYS: Final = tuple(
     row.name for row in EVENTS_AND_SCALARS if not row.dims and row.name != "status"
 )
 """Scalars that every run has."""
+SCREENED: Final = (REPEATED, VERDICT_CHANGED)
+"""What every case of a screened sweep has beside."""
 _TITLE: Final = "Sweep of a rocking system"
 ALONE: Final = "each case alone"
 SIDE_BY_SIDE: Final = (
@@ -62,7 +65,7 @@ def labels_of(study: Study) -> Labels:
     arguments = study.arguments
     scene = study.scene
     attributes: dict[str, str | float | int] = {
-        "accuracy": arguments.accuracy_name,
+        "accuracy": SCREEN if study.screened else arguments.accuracy_name,
         "run_json": json.dumps(arguments.to_dict()),
         "axes_json": json.dumps([axis.to_dict() for axis in every_axis(study.grid)]),
         "motions_json": json.dumps(
@@ -104,7 +107,8 @@ def labelled(labels: Labels, found: Iterable[tuple[range, Rows]]) -> xr.Dataset:
     """
     grid = labels.grid
     rows = _joined(grid.count, found)
-    scalars = dict.fromkeys(ALWAYS, np.full(grid.count, np.nan)) | rows.scalars
+    always = ALWAYS + (SCREENED if labels.attributes["accuracy"] == SCREEN else ())
+    scalars = dict.fromkeys(always, np.full(grid.count, np.nan)) | rows.scalars
     # what cannot be counted before it has run stays a flag, also where nothing has
     values = {name: grid.arranged(scalars[name]) for name in SCHEMA if name in scalars}
     values |= {
@@ -213,4 +217,7 @@ def _verdict(rows: Rows) -> str:
         text += f"; {count - not_run - falls - stands} have no result"
     if not_run:
         text += f"; {not_run} have not been run"
+    if REPEATED in rows.scalars:
+        again, changed = (int((rows.scalars[name] == 1.0).sum()) for name in SCREENED)
+        text += f"; {again} near a flip were run again by tolerance, which changed {changed}"
     return f"{text}."

@@ -18,7 +18,7 @@ from rockframe.results.variables.requests import (
     REACTIONS,
 )
 from rockframe.results.variables.runs import ENERGY_HISTORIES, EVENTS_AND_SCALARS, HISTORIES
-from rockframe.results.variables.studies import CASE, MESSAGE, MOTION
+from rockframe.results.variables.studies import MOTION, SWEEP
 from rockframe.results.variables.variable import EVENT, TIME
 from rockframe.simulation.plan import STILL_GROUND_OUTPUT_STEP, Arguments, read_arguments
 from rockframe.studies.sweeps.axes import OWNER, Axis, Changes
@@ -30,9 +30,10 @@ from rockframe.studies.sweeps.motions import (
     motions_of,
 )
 from rockframe.studies.sweeps.scenes import FunctionScene, Scene, own_motion, scene_of
+from rockframe.studies.sweeps.screening import FIRST, SCREEN
 from rockframe.studies.sweeps.study import Histories as Kept
 from rockframe.studies.sweeps.study import Study, length_of
-from rockframe.system.options import AccuracyLike, OverturningLike
+from rockframe.system.options import OverturningLike, SweepAccuracyLike
 from rockframe.units import PERIOD, POSITIVE, QuantityLike, to_si
 
 Read = TypeVar("Read")
@@ -45,7 +46,7 @@ _RESULTS: Final = frozenset(
     )
     for row in table
 )  # fmt: skip
-_TAKEN: Final = _RESULTS | {*TIME, *EVENT, *POINT, CASE, MOTION, MESSAGE, "message_number"}
+_TAKEN: Final = _RESULTS | {*TIME, *EVENT, *POINT, *(row.name for row in SWEEP)}
 """Names that are not left for axes."""
 MOST_VALUES: Final = 1e9
 """Values of histories beyond which a sweep is refused: eight gigabytes."""
@@ -61,7 +62,7 @@ def plan_study(
     duration: QuantityLike | None,
     free_vibration: QuantityLike | None,
     initial: object,
-    accuracy: AccuracyLike,
+    accuracy: SweepAccuracyLike,
     output_step: QuantityLike | None,
     outputs: Sequence[str] | None,
     overturning: OverturningLike,
@@ -107,7 +108,7 @@ def plan_study(
             duration=duration,
             free_vibration=free_vibration,
             initial=cast("Any", initial),
-            accuracy=accuracy,
+            accuracy=FIRST if accuracy == SCREEN else accuracy,
             output_step=output_step,
             outputs=outputs,
             overturning=overturning,
@@ -140,7 +141,7 @@ def plan_study(
     kept = tried(lambda: _histories(made, given, arguments, outputs, grid.count), None)
     if faults:
         raise StudyError(*faults)
-    return Study(made, grid, given, arguments, seconds, kept)
+    return Study(made, grid, given, arguments, seconds, kept, screened=accuracy == SCREEN)
 
 
 def _motions(given: object, scene: Scene) -> dict[str, GroundMotion | None]:

@@ -1,6 +1,6 @@
 """Cases of a chunk that run side by side; the others are left to run alone."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any, Final
@@ -11,10 +11,10 @@ from rockframe.compiled import COMPILED
 from rockframe.results.outcome import Scales
 from rockframe.signals import Motion
 from rockframe.simulation.beginning import start_of
-from rockframe.simulation.run import nothing_to_say, scales_of
+from rockframe.simulation.run import Response, nothing_to_say, scales_of
 from rockframe.solve.beginning import begun
 from rockframe.solve.integrate import STILL_INTERVAL
-from rockframe.solve.lanes.integrate import LaneRun, integrate_lanes, kind_of
+from rockframe.solve.lanes.integrate import LaneRun, go_in_lanes, integrate_lanes, kind_of
 from rockframe.solve.layout import Status
 from rockframe.solve.trajectory import Summary, told_by
 from rockframe.studies.sweeps.cases_of_job import CasesOfJob
@@ -26,24 +26,30 @@ TOGETHER: Final = 512
 
 @dataclass(frozen=True)
 class Finished:
-    """A case that has run, and of which there is nothing to be warned.
+    """A case that has run.
 
     Parameters
     ----------
     case : int
         Its number in the job.
+    system : Assembly
+        Its scene.
     summary : Summary
         What became of it.
     scales : Scales
         What that is made relative to.
     said : list of str
         What was warned of when its scene was assembled.
+    response : Response or None
+        With the histories; of runs side by side, of which there is nothing to be warned, None.
     """
 
     case: int
+    system: Assembly
     summary: Summary
     scales: Scales
     said: list[str]
+    response: Response | None = None
 
 
 @dataclass(frozen=True)
@@ -83,13 +89,17 @@ class _Group:
         self.motion_of.append(self._motion_places[key])
 
 
-def run_side_by_side(cases: CasesOfJob, stopped: Callable[[], bool]) -> Iterator[Finished]:
+def run_side_by_side(
+    cases: CasesOfJob, which: Sequence[int], stopped: Callable[[], bool]
+) -> Iterator[Finished]:
     """Run what can run side by side.
 
     Parameters
     ----------
     cases : CasesOfJob
         All cases of a job.
+    which : sequence of int
+        Those to run.
     stopped : callable
         Whether to leave off; asked now and then.
 
@@ -101,9 +111,9 @@ def run_side_by_side(cases: CasesOfJob, stopped: Callable[[], bool]) -> Iterator
     if not (cases.job.side_by_side and COMPILED):
         return
     scenes: dict[Any, _Scene | None] = {}
-    for begin in range(0, len(cases), TOGETHER):
+    for begin in range(0, len(which), TOGETHER):
         groups: dict[Any, _Group] = {}
-        for case in range(begin, min(begin + TOGETHER, len(cases))):
+        for case in which[begin : begin + TOGETHER]:
             with suppress(Exception):  # which is told of where the case runs alone
                 _take_up(cases, case, scenes, groups)
         for group in groups.values():
@@ -137,6 +147,8 @@ def _take_up(
 def _prepared(cases: CasesOfJob, case: int, vertical: bool) -> _Scene | None:
     """Prepare a scene for lanes; None if its runs need a closer look."""
     system, said, plan = cases.planned(case)
+    if not go_in_lanes(plan.accuracy):
+        return None
     if not system.options.slope.level or (vertical and system.setting.settlement is None):
         return None  # the ground is another one for each scene; or a block may leave it
     interval = STILL_INTERVAL if plan.motion is None else plan.motion.si.time_step
@@ -160,5 +172,5 @@ def _run(group: _Group) -> Iterator[Finished]:
             substeps=scene.run.begun.substeps,
             **told_by(found.clock[k], found.counters[k]),
         )
-        if nothing_to_say(summary):
-            yield Finished(case, summary, scene.scales, scene.said)
+        if nothing_to_say(scene.system, summary):
+            yield Finished(case, scene.system, summary, scene.scales, scene.said)

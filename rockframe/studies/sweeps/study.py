@@ -31,6 +31,8 @@ _FIXED: Final = 4e-7
 """Of an interval of the motion, with fixed sub-steps [s]."""
 _BY_TOLERANCE: Final = 2e-6
 """The same at the tolerance of the level standard [s]."""
+_SCREENED: Final = 2.5
+"""Time of a run and of one with half as many steps again, over that of the first."""
 _SLOWER: Final = 300.0
 """Without compilation."""
 
@@ -81,6 +83,8 @@ class Job:
         What is kept beside scalars.
     side_by_side : bool
         Whether cases run in lanes, as far as they can.
+    screened : bool
+        Whether each is run twice, and again by tolerance where its verdict is in doubt.
     """
 
     scene: Scene
@@ -91,6 +95,7 @@ class Job:
     period: float | None
     histories: Histories | None
     side_by_side: bool
+    screened: bool
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,6 +116,8 @@ class Study:
         Of the oscillator, where spectral values are a target [s].
     histories : Histories or None
         What is kept beside scalars.
+    screened : bool
+        Whether each case is run twice, and again by tolerance where its verdict is in doubt.
     """
 
     scene: Scene
@@ -119,6 +126,7 @@ class Study:
     arguments: Arguments
     period: float | None = None
     histories: Histories | None = None
+    screened: bool = False
 
     def job(self, cases: range) -> Job:
         """Give the job of some cases."""
@@ -134,6 +142,7 @@ class Study:
             self.period,
             self.histories,
             self.side_by_side,
+            self.screened,
         )
 
     @property
@@ -162,6 +171,7 @@ class Study:
             "arguments": self.arguments.to_dict(),
             "period": self.period,
             "histories": None if self.histories is None else vars(self.histories),
+            "screened": self.screened,
         }
 
     @cached_property
@@ -178,6 +188,7 @@ class Study:
         if not fixed:
             one *= (2e-8 / float(self.arguments.accuracy.rtol or 1.0)) ** 0.2
         one *= IN_LANES if self.side_by_side else 1.0
+        one *= _SCREENED if self.screened else 1.0
         size = LONG_ENOUGH / (one if COMPILED else _SLOWER * one)
         fair = -(-self.grid.count // (4 * workers))
         return int(max(1, min(size, fair, LARGEST_CHUNK)))

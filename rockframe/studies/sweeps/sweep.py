@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from rockframe.components import InitialState
     from rockframe.motion import GroundMotion
     from rockframe.simulation.system import System
-    from rockframe.system.options import AccuracyLike, OverturningLike
+    from rockframe.system.options import OverturningLike, SweepAccuracyLike
     from rockframe.units import QuantityLike
 
 _LARGEST_CHUNK: Final = 1_000_000
@@ -43,7 +43,7 @@ def sweep(
     duration: "QuantityLike | None" = None,
     free_vibration: "QuantityLike | None" = None,
     initial: "InitialState | None" = None,
-    accuracy: "AccuracyLike" = AccuracyLevel.STANDARD,
+    accuracy: "SweepAccuracyLike" = AccuracyLevel.STANDARD,
     output_step: "QuantityLike | None" = None,
     outputs: Sequence[str] | None = None,
     overturning: "OverturningLike" = Overturning.STOP,
@@ -72,8 +72,11 @@ def sweep(
         number.
     period : str or Quantity, optional
         Of the oscillator of ``pseudo_spectral_acceleration`` [s].
-    duration, free_vibration, initial, accuracy, overturning : optional
+    duration, free_vibration, initial, overturning : optional
         As for :meth:`rockframe.System.simulate`; `initial` cannot be a dataset.
+    accuracy : {"fast", "standard", "reference", "screen"}, float or Accuracy
+        As for :meth:`rockframe.System.simulate`; or ``"screen"``: all cases at ``"fast"``, and
+        those near a flip of their verdict again at ``"standard"``, :eq:`eq-screened`.
     output_step : str or Quantity, optional
         Spacing of the histories; the time step of the motions unless given [s].
     outputs : sequence of str, optional
@@ -103,7 +106,7 @@ def sweep(
         and ``motion``; histories over ``time`` too. Of a case that could not be
         assembled or finished ``status`` tells, its ``message_number`` gives the place of the
         reason along ``message``, and its scalars are NaN. Truth values, flags and counts are
-        floats where that leaves gaps.
+        floats where that leaves gaps. Screened sweeps have ``repeated`` and ``verdict_changed``.
 
     Raises
     ------

@@ -1,0 +1,132 @@
+"""Screened sweeps: fast runs, and runs by tolerance where a verdict is near its flip."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import rockframe as rf
+from rockframe.studies.sweeps.screening import Look, is_sure
+from rockframe.studies.sweeps.study import FEWEST_IN_LANES
+
+pytestmark = pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
+
+SYSTEM = rf.System(
+    rf.Block.from_size(radius="2.5 m", slenderness=4.5, mass="20 t"),
+    rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1),
+)
+AXES = {"scale": np.linspace(0.4, 1.1, 32).tolist(), "frequency_ratio": [10.0, 14.0, 20.0, 28.0]}
+SCREENED = ("repeated", "verdict_changed")
+
+
+def shaking(count=700):
+    white = np.random.default_rng(8).normal(size=count)
+    smooth = np.convolve(white, np.ones(6) / 6, "same")
+    return rf.GroundMotion.from_arrays((6 * smooth, "m/s^2"), "0.02 s", name="noise")
+
+
+@pytest.fixture(scope="module")
+def runs():
+    return {
+        level: rf.sweep(SYSTEM, shaking(), **AXES, accuracy=level)
+        for level in ("fast", "screen", "standard")
+    }
+
+
+STANDS = Look(
+    overturned=False, share=0.6, impacts=20, time=np.nan, left=np.nan, direction=0, frequency=1.5
+)
+FALLS = Look(
+    overturned=True, share=1.0, impacts=20, time=8.0, left=12.0, direction=1, frequency=1.5
+)
+
+
+def test_a_verdict_is_sure_where_it_is_clear_of_three_times_its_error():
+    # a body that stands clears the overturning angle by 0.4, or by less in the finer run
+    for share, sure in ((0.6, True), (0.67, True), (0.71, False), (0.52, True), (0.46, False)):
+        assert is_sure(STANDS, replace(STANDS, share=share)) is sure
+    # of one that falls the energy at that angle has changed by 2 omega dt of itself
+    for time, sure in ((8.0, True), (8.1, True), (8.12, False), (7.88, False)):
+        assert is_sure(FALLS, replace(FALLS, time=time, left=20.0 - time)) is sure
+    late = replace(FALLS, left=0.1)
+    assert not is_sure(late, replace(late, time=8.04, left=0.06))
+    for other in (
+        replace(FALLS, direction=-1),
+        replace(FALLS, impacts=22),
+        replace(STANDS, share=0.99),
+        replace(FALLS, overturned=None),
+    ):
+        assert not is_sure(FALLS, other)
+    assert is_sure(FALLS, replace(FALLS, impacts=21))
+
+
+def test_cases_near_a_flip_are_those_of_standard_and_all_others_those_of_fast(runs):
+    fast, screen, standard = (runs[level] for level in ("fast", "screen", "standard"))
+    repeated = screen.repeated.astype(bool)
+    assert 0 < int(repeated.sum()) < 0.1 * repeated.size
+    for name in fast.data_vars:
+        if name in ("message_number", "message"):
+            continue
+        expected = xr.where(repeated, standard[name], fast[name])
+        np.testing.assert_array_equal(screen[name], expected, err_msg=str(name))
+    changed = fast.overturned != standard.overturned
+    assert int(changed.sum()) > 0  # else this shows nothing
+    assert (screen.overturned == standard.overturned).all()
+    np.testing.assert_array_equal(screen.verdict_changed, changed)
+    assert {screen[name].dtype for name in SCREENED} == {np.dtype(bool)}
+    assert not set(SCREENED) & set(fast.data_vars)
+    words = f"{int(repeated.sum())} near a flip were run again by tolerance"
+    assert words in screen.attrs["verdict"]
+    assert f"changed {int(changed.sum())}." in screen.attrs["verdict"]
+    assert screen.attrs["accuracy"] == "screen"
+
+
+def test_a_case_runs_alone_as_it_ran_in_the_sweep(runs):
+    screen = runs["screen"]
+    for again in (True, False):
+        place = np.argwhere(screen.repeated.to_numpy() == again)[0]
+        dims = screen.repeated.dims
+        labels = {dim: screen[dim].to_numpy()[k] for dim, k in zip(dims, place, strict=True)}
+        alone = rf.case(screen, **labels).simulate()
+        assert float(alone.peak_rotation) == float(screen.peak_rotation[tuple(place)])
+
+
+def test_chunks_stores_and_lanes_change_nothing(runs, tmp_path):
+    cases = {**AXES, "scale": np.linspace(0.4, 1.1, 128).tolist()}
+    lanes = rf.sweep(SYSTEM, shaking(), **cases, accuracy="screen")
+    assert lanes.repeated.size >= FEWEST_IN_LANES
+    kept = rf.sweep(SYSTEM, shaking(), **cases, accuracy="screen", chunk=57, store=tmp_path / "s")
+    several = rf.open_study(tmp_path / "s")
+    few = rf.sweep(SYSTEM, shaking(), **AXES, accuracy="screen", chunk=1)
+    for one, other in ((lanes, kept), (kept, several), (runs["screen"], few)):
+        xr.testing.assert_identical(one.drop_attrs(deep=False), other.drop_attrs(deep=False))
+
+
+def test_histories_of_repeated_cases_are_those_of_standard(runs):
+    repeated = runs["screen"].repeated.astype(bool)
+    few = {**AXES, "scale": runs["screen"].scale[repeated.any(["frequency_ratio", "motion"])][:2]}
+    few["scale"] = few["scale"].to_numpy().tolist()
+    every = {
+        level: rf.sweep(SYSTEM, shaking(), **few, accuracy=level, outputs=["rotation"])
+        for level in ("fast", "screen", "standard")
+    }
+    expected = xr.where(
+        every["screen"].repeated.astype(bool), every["standard"].rotation, every["fast"].rotation
+    )
+    xr.testing.assert_equal(every["screen"].rotation, expected)
+
+
+def test_cases_that_fail_are_not_screened():
+    def scene(mass):
+        if mass > 1.0:
+            msg = "too heavy"
+            raise ValueError(msg)
+        return SYSTEM
+
+    runs = rf.sweep(scene, shaking(60), mass=[1.0, 2.0], accuracy="screen")
+    assert runs.repeated.squeeze().to_numpy().tolist()[0] == 0.0
+    assert runs.repeated.isnull().squeeze().to_numpy().tolist() == [False, True]
+    assert "too heavy" in str(runs.message.to_numpy())
+    with pytest.raises(rf.RockframeError, match="screen"):
+        SYSTEM.simulate(shaking(60), accuracy="screen")
