@@ -22,7 +22,12 @@ class Changes(StrEnum):
     PART = "part"
     OPTION = "option"
     MOTION = "motion"
+    START = "start"
     ARGUMENT = "argument"
+
+
+OF_SCENES: Final = (Changes.PART, Changes.OPTION, Changes.ARGUMENT)
+"""What changes the system."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -18,10 +18,11 @@ from rockframe.motion import GroundMotion
 from rockframe.results.variables.studies import MOTION, REPEATED
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import LEVELS, Accuracy
-from rockframe.studies.sweeps.axes import Axis, Changes
+from rockframe.studies.sweeps.axes import OF_SCENES, Axis, Changes
 from rockframe.studies.sweeps.motions import motions_of, scaled
 from rockframe.studies.sweeps.scenes import FunctionScene, Scene, SystemScene, scene_of
 from rockframe.studies.sweeps.screening import AGAIN
+from rockframe.studies.sweeps.starts import started
 from rockframe.studies.sweeps.store import Store
 from rockframe.studies.sweeps.study import Study
 from rockframe.system.assembly import Assembly
@@ -130,7 +131,7 @@ def case(
     names: list[str] = json.loads(attributes["motion_names"])
     number = names.index(_value(dataset, MOTION, place))
     motion = motion_of(motions, number, attributes, known, kept)
-    of_scene = {axis: one for axis, one in values.items() if axis.changes is not Changes.MOTION}
+    of_scene = {axis: one for axis, one in values.items() if axis.changes in OF_SCENES}
     system = _system(made, of_scene)
     if motion is None:
         motion = system.motion
@@ -138,6 +139,8 @@ def case(
         if axis.changes is Changes.MOTION and motion is not None:
             motion = scaled(motion, axis.name, value, attributes.get("spectral_period"))
     options = _options(json.loads(attributes["run_json"]))
+    start = {axis.parameter: one for axis, one in values.items() if axis.changes is Changes.START}
+    options["initial"] = started(options["initial"], start)
     if REPEATED in dataset and _value_of(dataset[REPEATED], place) == 1.0:
         options["accuracy"] = LEVELS[AGAIN]
     return Case(system, motion, options)

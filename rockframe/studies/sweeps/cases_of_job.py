@@ -1,13 +1,16 @@
 """The cases of a job: scene, motion and plan of each, made when first asked for."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any, TypeAlias
 
+from rockframe.components import InitialState
 from rockframe.errors import AssemblyError, heard
 from rockframe.motion import GroundMotion
 from rockframe.simulation.plan import Plan, fitted
-from rockframe.studies.sweeps.axes import Changes
+from rockframe.studies.sweeps.axes import OF_SCENES, Changes
 from rockframe.studies.sweeps.motions import scaled
+from rockframe.studies.sweeps.starts import started
 from rockframe.studies.sweeps.study import Job
 from rockframe.system.assembly import Assembly
 
@@ -29,12 +32,12 @@ class CasesOfJob:
     def __init__(self, job: Job, change: Change | None = None) -> None:
         self.job = job
         self._change = change
-        self._of_scene = [
-            (axis, each.tolist()) for axis, each in job.axes if axis.changes is not Changes.MOTION
+        axes = [(axis, each.tolist()) for axis, each in job.axes]
+        self._scale = [(axis.name, each) for axis, each in axes if axis.changes is Changes.MOTION]
+        self._start = [
+            (axis.parameter, each) for axis, each in axes if axis.changes is Changes.START
         ]
-        self._scale = [
-            (axis.name, each.tolist()) for axis, each in job.axes if axis.changes is Changes.MOTION
-        ]
+        self._of_scene = [(axis, each) for axis, each in axes if axis.changes in OF_SCENES]
         self._scenes: dict[tuple[Any, ...], tuple[Assembly, list[str]]] = {}
         self._motion: tuple[object, GroundMotion | None] = (None, None)
 
@@ -51,6 +54,10 @@ class CasesOfJob:
     def scene_key(self, case: int) -> tuple[Any, ...]:
         """Give what cases of one scene have in common."""
         return tuple(each[case] for _, each in self._of_scene)
+
+    def start_key(self, case: int) -> tuple[float, ...]:
+        """Give what cases of one start have in common, where it is not that of all."""
+        return tuple(each[case] for _, each in self._start)
 
     def motion_key(self, case: int) -> tuple[int, float | None]:
         """Give what cases of one motion have in common, where it is not the scene's."""
@@ -96,7 +103,11 @@ class CasesOfJob:
         """
         system, said = self.scene(case)
         faults: list[str] = []
-        plan = fitted(self.job.arguments, system, self.motion(case), faults)
+        arguments = self.job.arguments
+        if self._start and isinstance(arguments.initial, InitialState):
+            values = {name: each[case] for name, each in self._start}
+            arguments = replace(arguments, initial=started(arguments.initial, values))
+        plan = fitted(arguments, system, self.motion(case), faults)
         if faults:
             raise AssemblyError(faults)
         return system, said, plan if self._change is None else self._change(system, plan)

@@ -24,6 +24,7 @@ from rockframe.studies.sweeps.axes import (
     words_of,
 )
 from rockframe.studies.sweeps.motions import TARGETS, target_words
+from rockframe.studies.sweeps.starts import STARTS, of_start
 from rockframe.system.assembly import Assembly, joined
 from rockframe.system.options import MEASURED, Coupling, Restraint, Rotation
 from rockframe.units import Measure, Unit, quantity
@@ -84,6 +85,8 @@ class SystemScene:
         """
         if name in TARGETS:
             return _of_motion(name, given)
+        if name in STARTS:
+            return of_start(name, given)
         kind, _, parameter = name.rpartition(".")
         if parameter in _OPTIONS and kind in ("", _SYSTEM):
             return _of_option(name, parameter, given)
@@ -162,7 +165,7 @@ class SystemScene:
                 f"axis {name!r} is a parameter of {' and '.join(kinds)}; name one, in "
                 f"axes={{...}}: {ways}"
             )
-        known = [*TARGETS, *_OPTIONS]
+        known = [*TARGETS, *_OPTIONS, *STARTS]
         known += [one for part in self._parts().values() for one in part.declared()]
         near = get_close_matches(parameter, known, n=3)
         meant = f"; was {' or '.join(map(repr, near))} meant?" if near else "."
@@ -188,6 +191,8 @@ class FunctionScene:
         arguments = self._arguments()
         if name in TARGETS and name not in arguments:
             return _of_motion(name, given)
+        if name in STARTS and name not in arguments:
+            return of_start(name, given)
         values, unit = free_values(given, name)
         return Axis(name, values, unit, name.replace("_", " "), Changes.ARGUMENT, name)
 

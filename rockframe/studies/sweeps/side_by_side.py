@@ -128,7 +128,7 @@ def _take_up(
     unscaled = cases.unscaled(case)
     length = None if unscaled is None else (unscaled.si.time_step, unscaled.si.duration)
     vertical = unscaled is not None and unscaled.si.vertical is not None
-    key = (cases.scene_key(case), length, vertical)
+    key = (cases.scene_key(case), cases.start_key(case), length, vertical)
     if key not in scenes:
         scenes[key] = None  # unless it can be prepared
         scenes[key] = _prepared(cases, case, vertical)

@@ -94,7 +94,8 @@ def sweep(
         Whether a bar shows how far it is (needs tqdm); where it can be seen unless given.
     **more_axes : values
         Axes, by the name of a parameter of one part (``frequency_ratio``) or of an option of
-        the system (``gravity``), by an argument of the function, or by what scales the
+        the system (``gravity``), by an argument of the function, by where runs start
+        (``initial_rotation``), or by what scales the
         motion: ``scale``, ``peak_ground_acceleration``, ``peak_ground_velocity`` or
         ``pseudo_spectral_acceleration``. Values with a unit are ``([1, 2], "m")``, a
         Quantity, or ``["1 m", "2 m"]``.

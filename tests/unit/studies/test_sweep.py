@@ -383,3 +383,56 @@ def test_the_integrator_is_asked_once_for_each_case(monkeypatch):
     monkeypatch.setattr(of_a_run, "integrate", lambda *a, **k: asked.append(1) or whole(*a, **k))
     rf.sweep(SYSTEM, PULSE, scale=[0.5, 1.0], damping_ratio=[0.1, 0.2, 0.3], **FAST)
     assert len(asked) == 6
+
+
+def test_axes_of_the_initial_state_begin_runs_where_they_say(monkeypatch):
+    from rockframe.studies.sweeps import study
+
+    axes = {
+        "initial_rotation": ["-2 deg", "0.5 deg", "3 deg"],
+        "initial_angular_velocity": ([0.0, 0.2], "rad/s"),
+        "frequency_ratio": [15.0, 25.0],
+    }
+    system = rf.System(
+        rf.Block(width="0.8 m", height="3.6 m", mass="4 t"),
+        rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1),
+    )
+    found = []
+    for fewest in (1, 10**9):
+        monkeypatch.setattr(study, "FEWEST_IN_LANES", fewest)
+        start = rf.InitialState(vertical_velocity="0.01 m/s")
+        runs = rf.sweep(system, None, **axes, duration="3 s", initial=start, accuracy="fast")
+        found.append(runs.drop_attrs(deep=False))
+    xr.testing.assert_identical(*found)
+    assert runs.initial_rotation.attrs == {"long_name": "initial rotation", "units": "rad"}
+    for labels in (
+        {"initial_rotation": "3 deg", "initial_angular_velocity": 0.2, "frequency_ratio": 15},
+        {"initial_rotation": "-2 deg", "initial_angular_velocity": 0.0, "frequency_ratio": 25},
+    ):
+        one = rf.case(runs, **labels)
+        angle = float(rf.InitialState(rotation=labels["initial_rotation"]).si.rotation)
+        same = rf.System(
+            system.parts.block,
+            rf.TwoSpringSupport(frequency_ratio=labels["frequency_ratio"], damping_ratio=0.1),
+        ).simulate(
+            duration="3 s",
+            initial=rf.InitialState(
+                rotation=f"{angle!r} rad",
+                angular_velocity=f"{labels['initial_angular_velocity']} rad/s",
+                vertical_velocity="0.01 m/s",
+            ),
+            accuracy="fast",
+        )
+        alone = one.simulate()
+        assert float(alone.rotation[0]) == angle
+        picked = runs.sel(
+            initial_rotation=angle,
+            initial_angular_velocity=labels["initial_angular_velocity"],
+            frequency_ratio=labels["frequency_ratio"],
+        ).squeeze()
+        for run in (alone, same):
+            assert float(run.peak_rotation) == float(picked.peak_rotation)
+    with pytest.warns(SolverWarning, match="not below the overturning angle"):
+        rf.sweep(system, initial_rotation=["40 deg"], duration="1 s", accuracy="fast")
+    with pytest.raises(StudyError, match="initial_rotation needs an angle"):
+        rf.sweep(system, initial_rotation=[0.1], duration="1 s")
