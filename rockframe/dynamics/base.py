@@ -140,6 +140,10 @@ class Base(Protocol):
         """Give the contact of an end that has left while the base still presses it."""
         ...
 
+    def unpressed(self, contact: int, left: bool) -> int:
+        """Give the contact of an end that stays held though the base has ceased to press it."""
+        ...
+
     def engaged(self, contact: int, left: bool, line: BaseLine, own: Any) -> int:
         """Give the contact after an end has come back and its body has been held."""
         ...

@@ -307,6 +307,11 @@ class Bed(NamedTuple):
         return contact
 
     @kernel
+    def unpressed(self, contact: int, left: bool) -> int:
+        """Give the contact itself."""
+        return contact
+
+    @kernel
     def engaged(self, contact: int, left: bool, line: BaseLine, own: Variables) -> int:
         """Give the contact itself."""
         return contact

@@ -177,6 +177,10 @@ class _OnPads:
         return self.pads.waiting(contact % CONTACTS, left) + contact - contact % CONTACTS
 
     @kernel
+    def unpressed(self, contact: int, left: bool) -> int:
+        return self.pads.unpressed(contact % CONTACTS, left) + contact - contact % CONTACTS
+
+    @kernel
     def engaged(self, contact: int, left: bool, line: BaseLine, own: Any) -> int:
         engaged = self.now(own).engaged(contact % CONTACTS, left, line, ())
         return engaged + contact - contact % CONTACTS

@@ -313,6 +313,11 @@ class Pads(NamedTuple):
         return with_corner(contact, left, LEAVING)
 
     @kernel
+    def unpressed(self, contact: int, left: bool) -> int:
+        """Give the contact of a corner that stays held though its pad has ceased to press it."""
+        return with_corner(contact, left, ENGAGING)
+
+    @kernel
     def engaged(self, contact: int, left: bool, line: BaseLine, own: Variables) -> int:
         """Give the contact after a corner has come back to its pad and been held."""
         if self.reaction(left, line) < 0.0:

@@ -184,10 +184,14 @@ def after_separation(
     """Give the mode after an end has left, and re-pin.
 
     An end that its base would press at once in flight slides, :eq:`eq-leaving-into-flight`.
-    One that the re-pinning of its own separation leaves pressed waits until it is let go.
+    One that the re-pinning of its own separation leaves pressed waits until it is let go; one
+    whose rise it would end altogether stays held, but is not pressed.
     """
     was, now = system.part_mode(mode, k), system.part_mode(new, k)
     repins = not has_same_hold(part, was, now)
+    before, lost, place = (
+        system.velocities(state), memory[REPINNING_LOSS], memory[HELD_PLACE + k],
+    )  # fmt: skip
     if repins:
         repin(system, part, k, mode, new, state, memory)
     line = part.body.base_line_at(system.state_of(k, state))
@@ -201,6 +205,15 @@ def after_separation(
                 contact = part.base.held(now.contact, left)
                 return system.with_part(new, k, Mode(contact, was.pivot, True))
     elif repins:
+        speed, noise = end_speed(part, left, system.state_of(k, state))
+        if speed <= noise:  # let go, it would be held again at the same instant, without end
+            system.blend_velocities(before, 0.0, state)
+            memory[REPINNING_LOSS], memory[HELD_PLACE + k] = lost, place
+            memory[LAST_EVENT] = SILENT
+            speed = following_speed(system, part, k, left, state)
+            set_end_speed(system, part, k, left, speed, 1.0, state)
+            contact = part.base.unpressed(was.contact, left)
+            return system.with_part(mode, k, Mode(contact, was.pivot, was.slides))
         waits = part.base.waiting(now.contact, left)
         return system.with_part(new, k, Mode(waits, now.pivot, False))
     return new
