@@ -110,7 +110,8 @@ def step_to_event(
     """Repeat a step up to the first crossing of a guard; give its length and the guard, or -1.
 
     The place is found on the dense solution, and corrected (Newton) on the Runge-Kutta solution
-    itself.
+    itself. The correction of a guard that rises from zero and falls again is kept from its first
+    root, the start, by bisection.
     """
     count, span = int(tables.active[mode]), span_of(whole, progress)
     crossed, place = earliest_crossing(equations, mode, count, span, tables, w)
@@ -120,16 +121,25 @@ def step_to_event(
     now = counters[at.INTERVAL] * progress.controls[at.TIME_STEP]
     now += progress.clock[at.INTO_INTERVAL]
     h, rates = place * whole, equations.guard_count + 1
+    tolerance, low, high = tables.tolerance[crossed], 0.0, whole
+    rises = h > 0.0 and w.before[crossed] <= tolerance and w.before[rates + crossed] > 0.0
     for correction in range(1 + POLISHING):
         if h > 0.0:
             march(equations, mode, h, tables, pieces, progress, w)
         else:
             stand_still(w)
         fall = w.after[rates + crossed]
-        settled = abs(w.after[crossed]) <= tables.tolerance[crossed]
-        if fall >= 0.0 or settled or correction == POLISHING:
+        settled = abs(w.after[crossed]) <= tolerance
+        if (fall >= 0.0 and not rises) or settled or correction == POLISHING:
             break
-        moved = min(max(h - w.after[crossed] / fall, 0.0), whole)
+        if w.after[crossed] > 0.0:
+            low = h
+        else:
+            high = h
+        moved = h - w.after[crossed] / fall if fall < 0.0 else low
+        if rises and not low < moved < high:
+            moved = 0.5 * (low + high)
+        moved = min(max(moved, 0.0), whole)
         if abs(moved - h) <= ROUNDING * (now + h):
             break
         h = moved
