@@ -62,9 +62,9 @@ def main() -> None:
     print(advice([bool(run.overturned.item()) for run in runs]))
 
     motions[SHOWN].to_dataset().to_netcdf(folder / "floor_motion.nc")
-    rf.plot.motion(motions[SHOWN]).savefig(folder / "floor_motion.png", dpi=150)
+    rf.plot.motion(motions[SHOWN]).figure.savefig(folder / "floor_motion.png", dpi=150)
     shown = folder / f"case_on_floor_{SHOWN}.png"
-    rf.plot.response(runs[SHOWN]).savefig(shown, dpi=150)
+    rf.plot.response(runs[SHOWN]).figure.savefig(shown, dpi=150)
     print(f"Motion of floor {SHOWN}: {folder / 'floor_motion.nc'}, figure of the case: {shown}")
 
 

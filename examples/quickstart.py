@@ -54,7 +54,7 @@ def simulate(record: str | None, component: str | None, folder: Path) -> None:
     print(response.attrs["verdict"])
 
     response.to_netcdf(folder / "quickstart.nc")
-    rf.plot.response(response).savefig(folder / "quickstart.png", dpi=150)
+    rf.plot.response(response).figure.savefig(folder / "quickstart.png", dpi=150)
     print(f"Results: {folder / 'quickstart.nc'}, figure: {folder / 'quickstart.png'}")
 
 

@@ -66,7 +66,7 @@ def main() -> None:
 
     folder = Path(arguments.folder)
     response.to_netcdf(folder / "six_storey_frame.nc")
-    rf.plot.response(response).savefig(folder / "six_storey_frame.png", dpi=150)
+    rf.plot.response(response).figure.savefig(folder / "six_storey_frame.png", dpi=150)
     print(f"Results: {folder / 'six_storey_frame.nc'}, figure: {folder / 'six_storey_frame.png'}")
 
 

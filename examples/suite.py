@@ -69,7 +69,7 @@ def main() -> None:
     fallen = int(runs.overturned.sum())
     print(f"A cabinet 2 m high and 0.3 m deep falls under {fallen} of {len(chosen)} motions.")
 
-    rf.plot.selection(found).savefig(folder / "selection.png", dpi=150)
+    rf.plot.selection(found).figure.savefig(folder / "selection.png", dpi=150)
     chosen.to_dataset().to_netcdf(folder / "suite.nc")
     rf.table(runs).to_csv(folder / "runs.csv")
     print(f"Written: {folder / 'selection.png'}, {folder / 'suite.nc'}, {folder / 'runs.csv'}")

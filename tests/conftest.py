@@ -1,11 +1,14 @@
 """Markers from the path: a test's kind is the folder it stands in."""
 
 import logging
+import os
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
+os.environ.setdefault("MPLBACKEND", "agg")
 _ROOT = Path(__file__).parent
 
 
@@ -32,6 +35,14 @@ def fallbacks() -> Iterator[list[str]]:
     said = "; ".join(_fallbacks.said)
     _fallbacks.said.clear()
     assert not said, said
+
+
+@pytest.fixture(autouse=True)
+def closed_figures() -> Iterator[None]:
+    """Close the figures of a test, of which pyplot would keep and warn of more than twenty."""
+    yield
+    if "matplotlib.pyplot" in sys.modules:
+        sys.modules["matplotlib.pyplot"].close("all")
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:

@@ -5,9 +5,11 @@ import warnings
 from pathlib import Path
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 import rockframe as rf
+from rockframe.plot import Panels
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 CABINET = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
@@ -20,14 +22,14 @@ def _suite(count: int) -> dict[str, rf.GroundMotion]:
     }
 
 
-def cabinet_fragility() -> Figure:
+def cabinet_fragility() -> Axes:
     """Draw the fragility of the guide."""
     scales = [0.5, 1, 1.5, 2, 3, 4, 6]
     runs = rf.sweep(CABINET, _suite(12), scale=scales, free_vibration="4 s")
     return rf.plot.fragility(rf.fragility(runs, "PGA", limits=["uplift", 0.3]))
 
 
-def cabinet_analysis() -> Figure:
+def cabinet_analysis() -> Panels:
     """Draw a dynamic analysis."""
     return rf.plot.dynamic_analysis(
         rf.incremental_dynamic_analysis(
@@ -41,7 +43,7 @@ def cabinet_analysis() -> Figure:
     )
 
 
-def sine_map() -> Figure:
+def sine_map() -> Axes:
     """Draw a map of overturning by one sine, small rotations."""
     block = rf.Block.from_size(radius="5 m", slenderness=10, mass="50 t")
     system = rf.System(block, rf.RigidGround(restitution=0.9), rotation="small")
@@ -58,7 +60,7 @@ def sine_map() -> Figure:
     )
 
 
-def overturning_spectrum() -> Figure:
+def overturning_spectrum() -> Panels:
     """Draw the least intensity that overturns over the size of the block."""
     with warnings.catch_warnings():
         # two of 4000 runs are less exact than the others, by less than a line is wide

@@ -17,6 +17,7 @@ from analysis_figures import (
     sine_map,
 )
 from granite_figures import granite_calibration, granite_fit
+from matplotlib import pyplot
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Arc, Polygon, Rectangle
@@ -27,6 +28,7 @@ from stochastic_figure import stochastic_motions
 from study_figures import critical_scale, size_and_pulse
 
 import rockframe as rf
+from rockframe.plot import Panels
 
 INK = "#1f3a5f"
 
@@ -40,14 +42,14 @@ def _six_storeys() -> rf.System:
     )
 
 
-def quickstart() -> Figure:
+def quickstart() -> Panels:
     """Draw the response of the quick start."""
     system = _six_storeys()
     motion = rf.GroundMotion.stochastic(6.8, "5 km", seed=29, stress_drop="20 MPa")
     return rf.plot.response(system.simulate(motion, free_vibration="10 s"))
 
 
-def rungs() -> Figure:
+def rungs() -> Panels:
     """Draw time and error of all models of the quick start's scene."""
     motion = rf.GroundMotion.stochastic(6.8, "5 km", seed=29, stress_drop="20 MPa")
     return rf.plot.tradeoff(rf.tradeoff(_six_storeys(), motion, repeats=3))
@@ -196,4 +198,7 @@ def setup(app: Sphinx) -> dict[str, bool]:
 
 if __name__ == "__main__":
     for figure in FIGURES:
-        figure().savefig(Path(sys.argv[1]) / f"{figure.__name__}.png", dpi=130)
+        # a function of rf.plot gives axes, which know their figure
+        drawn = figure().figure
+        drawn.savefig(Path(sys.argv[1]) / f"{figure.__name__}.png", dpi=130)
+        pyplot.close(drawn)

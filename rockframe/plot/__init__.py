@@ -9,12 +9,14 @@ from rockframe.plot._overturning import (
     overturning_spectrum,
     rocking_spectrum,
 )
+from rockframe.plot._panels import Panels
 from rockframe.plot._response import response
 from rockframe.plot._selection import selection
 from rockframe.plot._spectra import spectra
 from rockframe.plot._tradeoff import tradeoff
 
 __all__ = [
+    "Panels",
     "dynamic_analysis",
     "ensemble",
     "fragility",

@@ -7,13 +7,15 @@ import xarray as xr
 
 from rockframe.plot._axes import COLOURS, grid, label_of
 from rockframe.plot._given import check_study
-from rockframe.plot._title import set_title
+from rockframe.plot._panels import Panels, sheet, single
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    from matplotlib.axes import Axes
+
+    from rockframe.plot._panels import AxesLike
 
 
-def ensemble(dataset: xr.Dataset, *, title: str | None = None) -> "Figure":
+def ensemble(dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None = None) -> "Axes":
     """Draw an empirical distribution with its bands.
 
     Dark, the bounds that hold at each value; light, those that hold everywhere at once.
@@ -22,24 +24,23 @@ def ensemble(dataset: xr.Dataset, *, title: str | None = None) -> "Figure":
     ----------
     dataset : xarray.Dataset
         Of :func:`rockframe.ensemble_statistics`.
+    ax : Axes, optional
+        What is drawn in; a new figure unless given.
     title : str, optional
         Title of the figure.
 
     Returns
     -------
-    matplotlib.figure.Figure
-        Not yet shown nor saved.
+    matplotlib.axes.Axes
 
     Raises
     ------
     SchemaError
         The dataset is no ensemble.
     """
-    from matplotlib.figure import Figure
-
     given = check_study(dataset, "ensemble")
-    figure = Figure(figsize=(6.0, 4.2), layout="constrained")
-    axes = figure.subplots()
+    on = single(ax, "ensemble", (5.6, 3.9))
+    axes = on.axes
     values = given["ordered_value"].rename(str(given.attrs["variable"]))
     for names, alpha in (
         (("simultaneous_lower_bound", "simultaneous_upper_bound"), 0.12),
@@ -53,11 +54,13 @@ def ensemble(dataset: xr.Dataset, *, title: str | None = None) -> "Figure":
     axes.set(xlabel=label_of(values), ylabel="share of the ensemble [-]", ylim=(0.0, 1.02))
     grid(axes)
     count = int(given["member_count"])
-    set_title(figure, title or f"{count} members; bands of confidence {given.confidence:g}")
-    return figure
+    on.entitle(f"{count} members; bands of confidence {given.confidence:g}", title)
+    return axes
 
 
-def probability(dataset: xr.Dataset, *, title: str | None = None) -> "Figure":
+def probability(
+    dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None = None
+) -> "Panels":
     """Draw what the verdict depends on, and how the share that overturns goes with it.
 
     Left, first-order indices; right, for the parameter that matters most, the shares that
@@ -67,24 +70,24 @@ def probability(dataset: xr.Dataset, *, title: str | None = None) -> "Figure":
     ----------
     dataset : xarray.Dataset
         Of :func:`rockframe.probability_of_overturning`.
+    ax : two Axes, optional
+        What is drawn in; a new figure unless given.
     title : str, optional
         Title of the figure; the verdict unless given.
 
     Returns
     -------
-    matplotlib.figure.Figure
-        Not yet shown nor saved.
+    Panels
 
     Raises
     ------
     SchemaError
         The dataset is no such sample.
     """
-    from matplotlib.figure import Figure
-
     given = check_study(dataset, "probability")
-    figure = Figure(figsize=(8.4, 3.8), layout="constrained")
-    left, right = figure.subplots(1, 2)
+    names = ("indices", "shares")
+    on = sheet(ax, "probability", names, (7.6, 3.6), lambda figure: figure.subplots(1, 2))
+    left, right = on.panels
     names = [str(name).replace("_", " ") for name in given["parameter"].to_numpy()]
     left.barh(names[::-1], given["first_order_index"].to_numpy()[::-1], color=COLOURS[0])
     left.set(xlabel="first-order index [-]", xlim=(0.0, None))
@@ -95,16 +98,19 @@ def probability(dataset: xr.Dataset, *, title: str | None = None) -> "Figure":
         cuts = np.quantile(first.to_numpy()[known], np.linspace(0.0, 1.0, 13))
         place = np.clip(np.searchsorted(cuts, first.to_numpy()[known], side="right") - 1, 0, 11)
         shares = [verdict[known][place == k].mean() for k in range(12)]
-        right.stairs(shares, cuts, fill=True, color=COLOURS[2], alpha=0.6)
+        right.stairs(shares, cuts, fill=True, color=COLOURS[1], alpha=0.6)
         right.set(xlabel=label_of(first))
     else:
         labels, place = np.unique(first.to_numpy()[known].astype(str), return_inverse=True)
         right.bar(
-            range(len(labels)), [verdict[known][place == k].mean() for k in range(len(labels))]
+            range(len(labels)),
+            [verdict[known][place == k].mean() for k in range(len(labels))],
+            color=COLOURS[1],
+            alpha=0.6,
         )
         right.set(xlabel="motion")
     right.set(ylabel="share that overturns [-]", ylim=(0.0, 1.02))
-    for axes in (left, right):
+    for axes in on.panels:
         grid(axes)
-    set_title(figure, title or str(given.attrs["verdict"]))
-    return figure
+    on.entitle(str(given.attrs["verdict"]), title)
+    return on.panels

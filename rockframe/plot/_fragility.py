@@ -1,25 +1,28 @@
 """Fragilities: curves with bands over one measure, contours over two."""
 
-from typing import TYPE_CHECKING, Any, Final, cast
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import xarray as xr
 
 from rockframe.plot._axes import COLOURS, grid, label_of
 from rockframe.plot._given import check_study
-from rockframe.plot._title import set_title
+from rockframe.plot._panels import Panels, sheet, single
 from rockframe.results.variables.analyses import FragilityStatus
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+
+    from rockframe.plot._panels import AxesLike
 
 _NAME: Final = "exceedance_probability"
 _LEVELS: Final = (0.05, 0.16, 0.5, 0.84, 0.95)
 _KNOWN: Final = (FragilityStatus.FITTED, FragilityStatus.SEPARATED)
 
 
-def fragility(dataset: xr.Dataset, *, title: str | None = None) -> "Figure":
+def fragility(
+    dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None = None
+) -> "Axes | Panels":
     """Draw the probability that limit states are exceeded.
 
     Over one measure, a curve for each limit state with its confidence band, and the shares that
@@ -30,38 +33,40 @@ def fragility(dataset: xr.Dataset, *, title: str | None = None) -> "Figure":
     ----------
     dataset : xarray.Dataset
         Of :func:`rockframe.fragility`.
+    ax : Axes, or one for each limit state, optional
+        What is drawn in; a new figure unless given.
     title : str, optional
         Title of the figure; the verdict unless given.
 
     Returns
     -------
-    matplotlib.figure.Figure
-        Not yet shown nor saved.
+    matplotlib.axes.Axes, or Panels
+        The latter over two measures.
 
     Raises
     ------
     SchemaError
         The dataset is no fragility; the message names the function that draws what was given.
     """
-    from matplotlib.figure import Figure
-
     given = check_study(dataset, "fragility")
     if "limit_state" not in given.dims:
         given = given.expand_dims("limit_state")
     measures = [str(dim) for dim in given[_NAME].dims if dim != "limit_state"]
     states = [given.isel(limit_state=k) for k in range(given.sizes["limit_state"])]
     if len(measures) == 1:
-        figure = Figure(figsize=(6.4, 4.4), layout="constrained")
-        _curves(figure.subplots(), states, measures[0])
+        on = single(ax, "fragility", (6.0, 4.1))
+        _curves(on.axes, states, measures[0])
     else:
         fitted = FragilityStatus.FITTED
         drawn = [one for one in states if int(one["fragility_status"]) == fitted] or states[-1:]
-        figure = Figure(figsize=(1.0 + 4.2 * len(drawn), 4.2), layout="constrained")
-        panels = cast("Any", figure.subplots(1, len(drawn), squeeze=False))[0]
-        for axes, one in zip(panels, drawn, strict=True):
+        on = sheet(
+            ax, "fragility", [_name(one) for one in drawn], (0.8 + 3.6 * len(drawn), 3.8),
+            lambda figure: figure.subplots(1, len(drawn)),
+        )  # fmt: skip
+        for axes, one in zip(on.panels, drawn, strict=True):
             _contours(axes, one, measures)
-    set_title(figure, title or str(dataset.attrs.get("verdict", "")))
-    return figure
+    on.entitle(str(dataset.attrs.get("verdict", "")), title)
+    return on.axes if len(measures) == 1 else on.panels
 
 
 def _curves(axes: "Axes", states: list[xr.Dataset], measure: str) -> None:

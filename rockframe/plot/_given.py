@@ -96,13 +96,15 @@ _DRAWN_BY: Final = (
 )
 
 
-def check_run(given: object) -> None:
+def check_run(given: object, function: str) -> None:
     """Refuse what is not the result of one run with histories.
 
     Parameters
     ----------
     given : object
-        What the user gave to `rf.plot.response`.
+        What the user gave.
+    function : str
+        Which function of `rf.plot` it was given to.
 
     Raises
     ------
@@ -110,18 +112,18 @@ def check_run(given: object) -> None:
         It is something else, lacks a variable, holds several runs, or only an instant.
     """
     if not isinstance(given, xr.Dataset) or not _holds(given, ("rotation", "time", "overturned")):
-        raise SchemaError(_refusal("response", given))
-    _check_complete("response", given, _RUN)
+        raise SchemaError(_refusal(function, given))
+    _check_complete(function, given, _RUN)
     more = [str(name) for name in given["relative_rotation"].dims if name != "time"]
     if more:
         msg = (
-            f"rf.plot.response needs {_NEEDED['response']}, got several runs over "
+            f"rf.plot.{function} needs {_needed(function)}, got several runs over "
             f"{', '.join(more)}; pick one, for example with dataset.isel({more[0]}=0)"
         )
         raise SchemaError(msg)
     if given.sizes["time"] < 2:
         msg = (
-            f"rf.plot.response needs {_NEEDED['response']}, got one of a single instant; "
+            f"rf.plot.{function} needs {_needed(function)}, got one of a single instant; "
             "simulate for longer, or with a shorter output_step"
         )
         raise SchemaError(msg)
@@ -213,7 +215,7 @@ def _check_complete(function: str, given: xr.Dataset, names: tuple[str, ...]) ->
     missing = [repr(name) for name in names if name not in given.variables]
     if missing:
         msg = (
-            f"rf.plot.{function} needs {_NEEDED[function]}, got one that lacks "
+            f"rf.plot.{function} needs {_needed(function)}, got one that lacks "
             f"{', '.join(missing)}; give it the whole dataset"
         )
         raise SchemaError(msg)
@@ -221,7 +223,7 @@ def _check_complete(function: str, given: xr.Dataset, names: tuple[str, ...]) ->
 
 def _refusal(function: str, given: object) -> str:
     what, way = _words(function, given)
-    return f"rf.plot.{function} needs {_NEEDED[function]}, got {what}" + (f"; {way}" if way else "")
+    return f"rf.plot.{function} needs {_needed(function)}, got {what}" + (f"; {way}" if way else "")
 
 
 def _words(function: str, given: object) -> tuple[str, str]:
@@ -247,6 +249,11 @@ def _words(function: str, given: object) -> tuple[str, str]:
             return f"a Dataset with {what}", way
     title = given.attrs.get("title")
     return "a Dataset" + (f" with the title {title!r}" if title else " of another kind"), ""
+
+
+def _needed(function: str) -> str:
+    """Say what a function draws; what is not listed draws runs."""
+    return _NEEDED.get(function, _NEEDED["response"])
 
 
 def _holds(given: xr.Dataset, names: tuple[str, ...]) -> bool:

@@ -1,26 +1,40 @@
 """Dynamic analyses, maps of overturning, and spectra over the size of the block."""
 
-from typing import TYPE_CHECKING, Any, Final, cast
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import xarray as xr
 
-from rockframe.plot._axes import COLOURS, STANDS, grid, label_of, plain_ticks, steps_of
+from rockframe.plot._axes import (
+    BLUE,
+    COLOURS,
+    ORANGE,
+    SKY,
+    STANDS,
+    VERMILLION,
+    grid,
+    label_of,
+    plain_ticks,
+    steps_of,
+)
 from rockframe.plot._given import check_study
-from rockframe.plot._title import set_title
+from rockframe.plot._panels import Panels, Sheet, sheet, single
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+
+    from rockframe.plot._panels import AxesLike
 
 _MOST_NAMED: Final = 8
 """Motions with a line in the legend."""
-_WAYS: Final = ("#cc6677", "#1f3a5f", "#6699cc", "#ddaa33", "#999999")
+_WAYS: Final = (VERMILLION, BLUE, SKY, ORANGE, "0.6")
 _CAPPED: Final = 1.0
 """Peaks over the overturning angle that are drawn alike."""
 
 
-def dynamic_analysis(dataset: xr.Dataset, *, title: str | None = None) -> "Figure":
+def dynamic_analysis(
+    dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None = None
+) -> "Panels":
     """Draw peak rotations over the intensity, and the share of motions that overturned.
 
     Left, a line for each motion, and a mark where it first overturns; hollow marks where the
@@ -31,26 +45,28 @@ def dynamic_analysis(dataset: xr.Dataset, *, title: str | None = None) -> "Figur
     ----------
     dataset : xarray.Dataset
         Of :func:`rockframe.incremental_dynamic_analysis`.
+    ax : two Axes, optional
+        What is drawn in; a new figure unless given.
     title : str, optional
         Title of the figure; the verdict unless given.
 
     Returns
     -------
-    matplotlib.figure.Figure
-        Not yet shown nor saved.
+    Panels
 
     Raises
     ------
     SchemaError
         The dataset is no dynamic analysis.
     """
-    from matplotlib.figure import Figure
-
     given = check_study(dataset, "dynamic_analysis")
     name = str(given.attrs.get("intensity", "scale"))
     intensity = given[name].broadcast_like(given["peak_relative_rotation"])
-    figure = Figure(figsize=(9.0, 4.2), layout="constrained")
-    left, right = figure.subplots(1, 2, width_ratios=(1.4, 1))
+    on = sheet(
+        ax, "dynamic_analysis", ("peaks", "shares"), (7.6, 3.7),
+        lambda figure: figure.subplots(1, 2, width_ratios=(1.4, 1)),
+    )  # fmt: skip
+    left, right = on.panels
     colours = steps_of(given["motion"])
     last = given.isel(limit_state=-1)
     for number, colour in enumerate(colours):
@@ -62,13 +78,13 @@ def dynamic_analysis(dataset: xr.Dataset, *, title: str | None = None) -> "Figur
         places = _at(flips[~np.isnan(flips)], one["scale"].to_numpy(), along.to_numpy())
         left.plot(places[:1], np.full(len(places[:1]), _CAPPED), "o", color=colour, ms=4)
         rest = places[1:]
-        left.plot(rest, np.full(len(rest), _CAPPED), "o", mfc="white", color=colour, ms=3)
+        left.plot(rest, np.full(len(rest), _CAPPED), "o", mfc="none", color=colour, ms=3)
     left.set(
         xlabel=label_of(given[name]), ylabel=r"peak of $|\alpha|/\theta$ [-]", ylim=(0.0, 1.06)
     )
     left.set_xlim(left=0.0)
     if given.sizes["motion"] <= _MOST_NAMED:
-        left.legend(frameon=False, fontsize="x-small")
+        left.legend(frameon=False, fontsize="small")
     most = 0.0
     for number, state in enumerate(given["limit_state"].to_numpy()):
         capacity = given["capacity_scale"].isel(limit_state=number).to_numpy()
@@ -86,26 +102,30 @@ def dynamic_analysis(dataset: xr.Dataset, *, title: str | None = None) -> "Figur
     right.set(xlabel=label_of(given[name]), ylabel="share of the motions [-]", ylim=(0.0, 1.02))
     right.set_xlim(0.0, 1.15 * most if most > 0.0 else left.get_xlim()[1])
     right.legend(frameon=False, fontsize="small")
-    for axes in (left, right):
+    for axes in on.panels:
         grid(axes)
-    set_title(figure, title or str(given.attrs["verdict"]))
-    return figure
+    on.entitle(str(given.attrs["verdict"]), title)
+    return on.panels
 
 
-def overturning_map(dataset: xr.Dataset, *, title: str | None = None) -> "Figure":
+def overturning_map(
+    dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None = None
+) -> "Axes":
     """Draw which pulses overturn, after how many impacts, and the boundaries between.
 
     Parameters
     ----------
     dataset : xarray.Dataset
         Of :func:`rockframe.overturning_map`.
+    ax : Axes, optional
+        What is drawn in; a new figure unless given.
     title : str, optional
         Title of the figure.
 
     Returns
     -------
-    matplotlib.figure.Figure
-        Not yet shown nor saved; on rigid ground the axes are amplitude over that of uplift and
+    matplotlib.axes.Axes
+        On rigid ground the axes are amplitude over that of uplift and
         frequency over the block's.
 
     Raises
@@ -114,7 +134,6 @@ def overturning_map(dataset: xr.Dataset, *, title: str | None = None) -> "Figure
         The dataset is no such map.
     """
     from matplotlib.colors import ListedColormap
-    from matplotlib.figure import Figure
     from matplotlib.patches import Patch
 
     given = check_study(dataset, "overturning_map")
@@ -124,8 +143,8 @@ def overturning_map(dataset: xr.Dataset, *, title: str | None = None) -> "Figure
     told = int(given.attrs["impacts_told_apart"])
     count = given["impacts_before_overturning"].transpose("amplitude", "frequency")
     colours = [STANDS, *(_WAYS[min(k, len(_WAYS) - 1)] for k in range(told + 1))]
-    figure = Figure(figsize=(6.6, 4.6), layout="constrained")
-    axes = figure.subplots()
+    on = single(ax, "overturning_map", (6.0, 4.3))
+    axes = on.axes
     axes.pcolormesh(
         across,
         up,
@@ -145,25 +164,28 @@ def overturning_map(dataset: xr.Dataset, *, title: str | None = None) -> "Figure
     )
     words = ["stands", *(_after(k, told) for k in range(told + 1))]
     patches = [Patch(color=one, label=text) for one, text in zip(colours, words, strict=True)]
-    figure.legend(handles=patches, loc="outside lower center", ncols=2, frameon=False)
-    set_title(figure, title or "What overturns: dots are boundaries that were halved")
-    return figure
+    on.legend(patches, words, ncols=2)
+    on.entitle("What overturns: dots are boundaries that were halved", title)
+    return axes
 
 
-def rocking_spectrum(dataset: xr.Dataset, *, title: str | None = None) -> "Figure":
+def rocking_spectrum(
+    dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None = None
+) -> "Panels":
     """Draw peak rotations over the size of the block, a panel for each slenderness.
 
     Parameters
     ----------
     dataset : xarray.Dataset
         Of :func:`rockframe.rocking_spectrum`.
+    ax : Axes, one for each slenderness, optional
+        What is drawn in; a new figure unless given.
     title : str, optional
         Title of the figure.
 
     Returns
     -------
-    matplotlib.figure.Figure
-        Not yet shown nor saved.
+    Panels
 
     Raises
     ------
@@ -171,32 +193,36 @@ def rocking_spectrum(dataset: xr.Dataset, *, title: str | None = None) -> "Figur
         The dataset is no rocking spectrum.
     """
     given = check_study(dataset, "rocking_spectrum")
-    figure, panels = _panels(given)
-    for place, axes in enumerate(panels):
+    on = _sheet(ax, "rocking_spectrum", given)
+    for place, axes in enumerate(on.panels):
         one = given.isel(slenderness=place)
         _lines(axes, one["peak_relative_rotation"].clip(max=_CAPPED))
         axes.axhline(_CAPPED, color="0.5", lw=0.8, ls=":")
         axes.set(xscale="log", ylim=(0.0, 1.06), title=f"H/B = {float(one['slenderness']):.3g}")
         axes.set_xlabel(r"$2\pi/p$ [s]")
-    panels[0].set_ylabel(r"peak of $|\alpha|/\theta$ [-]")
-    _finish(figure, panels, given, title or "Rocking spectrum")
-    return figure
+    on.axes.set_ylabel(r"peak of $|\alpha|/\theta$ [-]")
+    _finish(on, given)
+    on.entitle("Rocking spectrum", title)
+    return on.panels
 
 
-def overturning_spectrum(dataset: xr.Dataset, *, title: str | None = None) -> "Figure":
+def overturning_spectrum(
+    dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None = None
+) -> "Panels":
     """Draw the least intensity that overturns over the size of the block, on logarithmic axes.
 
     Parameters
     ----------
     dataset : xarray.Dataset
         Of :func:`rockframe.overturning_spectrum`.
+    ax : Axes, one for each slenderness, optional
+        What is drawn in; a new figure unless given.
     title : str, optional
         Title of the figure.
 
     Returns
     -------
-    matplotlib.figure.Figure
-        Not yet shown nor saved.
+    Panels
 
     Raises
     ------
@@ -204,16 +230,17 @@ def overturning_spectrum(dataset: xr.Dataset, *, title: str | None = None) -> "F
         The dataset is no overturning spectrum.
     """
     given = check_study(dataset, "overturning_spectrum")
-    figure, panels = _panels(given)
+    on = _sheet(ax, "overturning_spectrum", given)
     measure = given["capacity_intensity"].rename(str(given.attrs["intensity"]))
-    for place, axes in enumerate(panels):
+    for place, axes in enumerate(on.panels):
         one = measure.isel(slenderness=place)
         _lines(axes, one)
         axes.set(xscale="log", yscale="log", title=f"H/B = {float(one['slenderness']):.3g}")
         axes.set_xlabel(r"$2\pi/p$ [s]")
-    panels[0].set_ylabel(label_of(measure))
-    _finish(figure, panels, given, title or "Least intensity that overturns")
-    return figure
+    on.axes.set_ylabel(label_of(measure))
+    _finish(on, given)
+    on.entitle("Least intensity that overturns", title)
+    return on.panels
 
 
 def _at(scales: np.ndarray, known: np.ndarray, along: np.ndarray) -> np.ndarray:
@@ -228,12 +255,12 @@ def _after(count: int, told: int) -> str:
     return f"overturns {words}{' or more' if count == told else ''}"
 
 
-def _panels(given: xr.Dataset) -> tuple["Figure", Any]:
-    from matplotlib.figure import Figure
-
-    count = given.sizes["slenderness"]
-    figure = Figure(figsize=(1.4 + 4.0 * count, 4.2), layout="constrained")
-    return figure, cast("Any", figure.subplots(1, count, sharey=True, squeeze=False))[0]
+def _sheet(ax: "AxesLike", function: str, given: xr.Dataset) -> Sheet:
+    names = [f"H/B = {float(value):.3g}" for value in given["slenderness"]]
+    return sheet(
+        ax, function, names, (1.2 + 3.2 * len(names), 3.9),
+        lambda figure: figure.subplots(1, len(names), sharey=True),
+    )  # fmt: skip
 
 
 def _lines(axes: "Axes", values: xr.DataArray) -> None:
@@ -244,12 +271,8 @@ def _lines(axes: "Axes", values: xr.DataArray) -> None:
     grid(axes)
 
 
-def _finish(figure: "Figure", panels: Any, given: xr.Dataset, title: str) -> None:
-    for axes in panels:
+def _finish(on: Sheet, given: xr.Dataset) -> None:
+    for axes in on.panels:
         plain_ticks(axes)
     if given.sizes["motion"] <= _MOST_NAMED:
-        handles, labels = panels[0].get_legend_handles_labels()
-        figure.legend(
-            handles, labels, loc="outside lower center", fontsize="x-small", frameon=False
-        )
-    set_title(figure, title)
+        on.legend(*on.axes.get_legend_handles_labels(), fontsize="small", ncols=2)

@@ -1,110 +1,293 @@
 """The response along time, laid out as in Figs. 7-15 of the paper."""
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 import xarray as xr
 
+from rockframe.errors import ComponentError, shown
+from rockframe.plot._axes import (
+    COLOURS,
+    GREEN,
+    GREY,
+    ORANGE,
+    VERMILLION,
+    ink,
+    key,
+    labelled,
+    zero_line,
+)
 from rockframe.plot._contact import draw_contact, draw_contact_legend
-from rockframe.plot._given import check_run, overturning_angles
-from rockframe.plot._title import set_title
+from rockframe.plot._events import draw_events
+from rockframe.plot._given import overturning_angles
+from rockframe.plot._panels import Panels, sheet
+from rockframe.plot._runs import Run, runs_of, verdict_of
+from rockframe.plot._units import RELATIVE, Shown, unit_of
+from rockframe.units import ACCELERATION, ANGLE, LENGTH
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_UPLIFT_COLOUR = "#8c510a"
-_CAP_COLOUR = "#999933"
-CONTACTS = {"contact_state": "pads", "soil_contact_state": "soil"}
+    from rockframe.plot._panels import AxesLike
+    from rockframe.plot._runs import RunsLike, Window
+
+CONTACTS: Final = {"contact_state": "pads", "soil_contact_state": "soil"}
 """Strips of contact states, and what they are called where there are two."""
+_HEIGHTS: Final = {"ground": 1.0, "rotation": 2.0, "vertical": 1.6, "contact": 0.35}
+_SI_ACCELERATION: Final = Shown(str(ACCELERATION.unit), 1.0)
+_SI_LENGTH: Final = Shown(str(LENGTH.unit), 1.0)
+_STACKED: Final = "rotation_on_cap"
 
 
-def response(dataset: xr.Dataset, *, title: str | None = None) -> "Figure":
+def response(
+    runs: "RunsLike",
+    *,
+    panels: "str | tuple[str, ...]" = tuple(_HEIGHTS),
+    window: "Window" = None,
+    rotation: str = RELATIVE,
+    vertical: str = RELATIVE,
+    acceleration: str = "m/s^2",
+    events: bool = False,
+    ax: "AxesLike" = None,
+    title: str | None = None,
+) -> "Panels":
     """Draw rotation, vertical displacement and contact states along time.
 
     Parameters
     ----------
-    dataset : xarray.Dataset
-        A result with histories.
+    runs : xarray.Dataset, or sequence or mapping of them
+        A result with histories; or several to compare. The keys of a mapping are the labels;
+        in a list, runs are called by their motions, models or accuracies, or else numbered.
+    panels : str or tuple of str, optional
+        Which are drawn, of ``"ground"``, ``"rotation"``, ``"vertical"`` and ``"contact"``. The
+        last one is a strip for each run; for each of its bases, where a cap carries the block.
+    window : (str or Quantity or None, str or Quantity or None), optional
+        Start and end of what is drawn; all of it unless given [s].
+    rotation : str, optional
+        Unit of rotations, such as ``"deg"`` or ``"rad"``; or ``"relative"``, over the overturning
+        angle, with degrees at the right.
+    vertical : str, optional
+        Unit of vertical displacements, such as ``"mm"``; or ``"relative"``, over the settlement
+        under the weight where the base gives way, with millimetres at the right.
+    acceleration : str, optional
+        Unit of the ground's acceleration, such as ``"g_0"``.
+    events : bool, optional
+        Whether events are marked on the rotation.
+    ax : Axes or sequence of Axes, optional
+        What is drawn in, one for each panel; a new figure unless given.
     title : str, optional
         Title of the figure; the verdict unless given.
 
     Returns
     -------
-    matplotlib.figure.Figure
-        Not yet shown nor saved. Where contact changes faster than the figure can show, the
-        strip has the mean colour of the states, by their shares of time.
+    Panels
+        Their ``figure`` is one of :mod:`matplotlib.pyplot`. Where contact changes faster than the
+        figure can show, the strip has the mean colour of the states, by their shares of time.
 
     Raises
     ------
     SchemaError
-        Not the result of one run, or of one without histories; the message names the
+        Not the result of a single run, or of one without histories; the message names the
         function that draws what was given.
+    UnitsError, ComponentError
+        A unit of another kind, an unknown panel, a window without samples, or Axes that are not
+        as many as the panels.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
+    >>> pulse = rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz")
+    >>> run = system.simulate(pulse, free_vibration="2 s")
+    >>> axes = rf.plot.response(run, panels="rotation", rotation="deg")
+    >>> axes[0].get_ylabel()
+    'rotation [°]'
+    >>> axes.figure.savefig("rotation.png")  # doctest: +SKIP
     """
-    from matplotlib.figure import Figure
+    given = runs_of(runs, "response", window)
+    units = {
+        "ground": unit_of(acceleration, ACCELERATION, function="response", name="acceleration"),
+        "rotation": _unless_relative(rotation, ANGLE, "rotation"),
+        "vertical": _unless_relative(vertical, LENGTH, "vertical"),
+    }
+    strips = _strips(given)
+    names = [
+        name
+        for panel in _chosen(panels)
+        for name in (strips if panel == "contact" else {panel: None})
+    ]
+    heights = [_HEIGHTS.get(name, _HEIGHTS["contact"]) for name in names]
 
-    check_run(dataset)
-    strips = [name for name in CONTACTS if name in dataset]
-    if "rotation_on_cap" not in dataset:
-        strips = strips[:1]  # one body: the soil's contact is the only one
-    figure = Figure(figsize=(8.0, 7.0 + 0.4 * (len(strips) - 1)), layout="constrained")
-    heights = [1.0, 2.0, 2.0, *[0.35] * len(strips)]
-    axes: Any = figure.subplots(
-        len(heights), 1, sharex=True, gridspec_kw={"height_ratios": heights}
+    def make(figure: "Figure") -> Any:
+        ratios = {"height_ratios": heights}
+        return figure.subplots(len(names), 1, sharex=True, gridspec_kw=ratios)
+
+    on = sheet(ax, "response", names, (8.0, 1.0 + 1.15 * sum(heights)), make)
+    drawn = dict(zip(names, on.panels, strict=True))
+    for name, axes in drawn.items():
+        if name in strips:
+            state, words = strips[name]
+            draw_contact(axes, state, words)
+        else:
+            _DRAW[name](axes, given, units[name])
+    if events and "rotation" in drawn:
+        draw_events(drawn["rotation"], given, units["rotation"])
+    below = [axes for name, axes in drawn.items() if name in strips]
+    if below:
+        draw_contact_legend(below[-1], next(iter(strips.values()))[0])
+    on.panels[-1].set_xlabel("time [s]")
+    ends = [run.time[[0, -1]] for run in given]
+    for axes in on.panels:
+        axes.set_xlim(min(start for start, _ in ends), max(end for _, end in ends))
+    on.entitle(verdict_of(given), title)
+    return on.panels
+
+
+def of_rotation(run: Run, unit: Shown | None, name: str = "rotation") -> Any:
+    """Give a rotation in a unit; over the overturning angle of its side where there is none."""
+    values = run.dataset[name].to_numpy()
+    if unit is not None:
+        return unit.of(values)
+    return relative(values, *overturning_angles(run.dataset))
+
+
+def relative(rotation: Any, left: float, right: float) -> Any:
+    """Give rotations over the overturning angle of their side."""
+    return np.asarray(rotation) / np.where(np.asarray(rotation) < 0.0, left, right)
+
+
+def _unless_relative(given: str, measure: Any, name: str) -> Shown | None:
+    if given == RELATIVE:
+        return None
+    return unit_of(given, measure, function="response", name=name)
+
+
+def _chosen(panels: object) -> tuple[str, ...]:
+    several = isinstance(panels, tuple | list)
+    chosen: tuple[str, ...] = tuple(panels) if several else (panels,)  # type: ignore[assignment]
+    if not chosen or any(panel not in _HEIGHTS for panel in chosen):
+        known = ", ".join(repr(name) for name in _HEIGHTS)
+        msg = f"rf.plot.response: panels are some of {known}, got {shown(panels)}"
+        raise ComponentError(msg)
+    return chosen
+
+
+def _strips(runs: list[Run]) -> dict[str, tuple[xr.DataArray, str]]:
+    """Give the strips of contact states with what is written beside them."""
+    found: dict[str, tuple[xr.DataArray, str]] = {}
+    for run in runs:
+        names = [name for name in CONTACTS if name in run.dataset]
+        if _STACKED not in run.dataset:
+            names = names[:1]  # one body: the soil's contact is the only one
+        for name in names:
+            words = [] if run.label is None else [run.label]
+            words += [CONTACTS[name]] if len(names) > 1 else []
+            text = ", ".join(words) or "contact"
+            found[f"contact of {text}" if words else text] = run.dataset[name], text
+    return found
+
+
+def _ground(axes: "Axes", runs: list[Run], unit: Shown | None) -> None:
+    unit = unit or _SI_ACCELERATION
+    alike = all(
+        run.dataset["ground_acceleration"].identical(runs[0].dataset["ground_acceleration"])
+        for run in runs
     )
-    time = dataset["time"].to_numpy()
-    _ground(axes[0], dataset, time)
-    _rotation(axes[1], dataset, time)
-    _vertical(axes[2], dataset, time)
-    for strip, name in zip(axes[3:], strips, strict=True):
-        draw_contact(strip, dataset[name], CONTACTS[name] if len(strips) > 1 else "contact")
-    draw_contact_legend(axes[-1], dataset[strips[0]])
-    axes[-1].set_xlabel("time [s]")
-    axes[0].set_xlim(time[0], time[-1])
-    set_title(figure, title or str(dataset.attrs.get("verdict", "")))
-    return figure
+    for run in runs[:1] if alike else runs:
+        colour = ink() if alike else run.colour
+        if alike and "vertical_ground_acceleration" in run.dataset:
+            upwards = unit.of(run.dataset["vertical_ground_acceleration"])
+            axes.plot(run.time, upwards, color=GREY, linewidth=0.6, label="vertical")
+        across = unit.of(run.dataset["ground_acceleration"])
+        axes.plot(run.time, across, color=colour, linewidth=0.8)
+    if axes.get_legend_handles_labels()[0]:
+        key(axes)
+    axes.set_ylabel(labelled("ground\n", unit.words).replace("\n ", "\n"))
 
 
-def _ground(axes: "Axes", dataset: xr.Dataset, time: Any) -> None:
-    axes.plot(time, dataset["ground_acceleration"], color="0.3", linewidth=0.8)
-    if "vertical_ground_acceleration" in dataset:
-        vertical = dataset["vertical_ground_acceleration"]
-        axes.plot(time, vertical, color="0.65", linewidth=0.6, label="vertical")
-        axes.legend(loc="upper right", fontsize="small")
-    axes.set_ylabel("ground\n[m s$^{-2}$]")
-
-
-def _rotation(axes: "Axes", dataset: xr.Dataset, time: Any) -> None:
-    left, right = overturning_angles(dataset)
-    axes.plot(time, dataset["relative_rotation"], color="#222255", linewidth=1.0, label="block")
-    uplift = float(dataset["uplift_angle"])
-    if "rotation_on_cap" in dataset:  # the uplift angle is that of the block on the cap
-        cap = dataset["cap_rotation"]
-        cap = cap / np.where(cap < 0.0, left, right)
-        axes.plot(time, cap, color=_CAP_COLOUR, linewidth=0.8, label="cap")
-        axes.legend(loc="upper right", fontsize="small")
-    elif np.isfinite(uplift) and uplift > 0.0:
-        for side, theta in ((-1.0, left), (1.0, right)):
-            axes.axhline(
-                side * uplift / theta,
-                color=_UPLIFT_COLOUR,
-                linewidth=0.7,
-                label="uplift" if side > 0.0 else None,
-            )
-        axes.legend(loc="upper right", fontsize="small")
-    if bool(dataset["overturned"]):
-        axes.axvline(float(dataset["overturning_time"]), color="#cc3311", linestyle=":")
-    axes.axhline(0.0, color="0.8", linewidth=0.5, zorder=0)
+def _rotation(axes: "Axes", runs: list[Run], unit: Shown | None) -> None:
+    several = len(runs) > 1
+    for run in runs:
+        dataset = run.dataset
+        axes.plot(
+            run.time, of_rotation(run, unit), color=run.colour, linestyle=run.style, linewidth=1.1,
+            label=run.label or "block",
+        )  # fmt: skip
+        if _STACKED in dataset and not several:
+            cap = of_rotation(run, unit, "cap_rotation")
+            axes.plot(run.time, cap, color=ORANGE, linewidth=0.9, label="cap")
+        elif not several:
+            _uplift(axes, dataset, unit)
+        if bool(dataset["overturned"]):
+            colour = run.colour if several else VERMILLION
+            axes.axvline(float(dataset["overturning_time"]), color=colour, linestyle=":")
+    if axes.get_legend_handles_labels()[1] != ["block"]:
+        key(axes)
+    zero_line(axes)
+    if unit is not None:
+        axes.set_ylabel(labelled("rotation", unit.words))
+        return
     axes.set_ylabel(r"rotation $\alpha/\theta$ [-]")
+    angles = {overturning_angles(run.dataset) for run in runs}
+    if len(angles) == 1:
+        _beside_in_degrees(axes, *angles.pop())
 
 
-def _vertical(axes: "Axes", dataset: xr.Dataset, time: Any) -> None:
-    if "relative_vertical_displacement" in dataset:
-        axes.plot(time, dataset["relative_vertical_displacement"], color="#225522", linewidth=1.0)
-        stacked = "rotation_on_cap" in dataset  # two settlements, so say which
-        whose = "\n($\\delta$ of the pads)" if stacked else ""
-        axes.set_ylabel(rf"vertical $y/\delta$ [-]{whose}")
-    else:
-        axes.plot(time, dataset["vertical_displacement"], color="#225522", linewidth=1.0)
-        axes.set_ylabel("vertical $y$ [m]")
-    axes.axhline(0.0, color="0.8", linewidth=0.5, zorder=0)
+def _uplift(axes: "Axes", dataset: xr.Dataset, unit: Shown | None) -> None:
+    """Draw the rotations at which contact is first lost."""
+    uplift = float(dataset["uplift_angle"])
+    if not (np.isfinite(uplift) and uplift > 0.0):
+        return
+    both = np.array([-uplift, uplift])
+    drawn = relative(both, *overturning_angles(dataset)) if unit is None else unit.of(both)
+    for place, label in zip(drawn, (None, "uplift"), strict=True):
+        axes.axhline(place, color=GREEN, linewidth=0.7, linestyle="--", label=label)
+
+
+def _beside_in_degrees(axes: "Axes", left: float, right: float) -> None:
+    """Write degrees at the right of an axis of rotations over the overturning angle."""
+
+    def degrees(share: Any) -> Any:
+        share = np.asarray(share, np.float64)
+        return np.degrees(share * np.where(share < 0.0, left, right))
+
+    def share(angle: Any) -> Any:
+        return relative(np.radians(np.asarray(angle, np.float64)), left, right)
+
+    axes.secondary_yaxis("right", functions=(degrees, share)).set_ylabel("[°]")
+
+
+def _vertical(axes: "Axes", runs: list[Run], unit: Shown | None) -> None:
+    name = "relative_vertical_displacement"
+    over_settlement = unit is None and all(name in run.dataset for run in runs)
+    metres = unit or _SI_LENGTH
+    for number, run in enumerate(runs):
+        shown_as = run.dataset[name if over_settlement else "vertical_displacement"]
+        values = shown_as.to_numpy() if over_settlement else metres.of(shown_as)
+        colour = COLOURS[number % len(COLOURS)]
+        axes.plot(run.time, values, color=colour, linestyle=run.style, linewidth=1.1)
+    zero_line(axes)
+    if not over_settlement:
+        axes.set_ylabel(labelled("vertical $y$", metres.words))
+        return
+    stacked = any(_STACKED in run.dataset for run in runs)  # two settlements, so say which
+    whose = "\n($\\delta$ of the pads)" if stacked else ""
+    axes.set_ylabel(rf"vertical $y/\delta$ [-]{whose}")
+    sizes = {settlement_in(run.dataset) for run in runs}
+    size = sizes.pop()
+    if not sizes and size > 0.0:
+        both = (lambda y: 1e3 * size * np.asarray(y), lambda y: np.asarray(y) / (1e3 * size))
+        axes.secondary_yaxis("right", functions=both).set_ylabel("[mm]")
+
+
+def settlement_in(run: xr.Dataset) -> float:
+    """Find the settlement by which vertical displacements were made relative [m]."""
+    share = run["relative_vertical_displacement"].to_numpy()
+    most = int(np.argmax(np.abs(share)))
+    if share[most] == 0.0:
+        return 0.0
+    return float(f"{float(run['vertical_displacement'][most]) / float(share[most]):.12g}")
+
+
+_DRAW: Final = {"ground": _ground, "rotation": _rotation, "vertical": _vertical}

@@ -1,23 +1,24 @@
 """Spectra of a set of motions beside the target that they are to fit."""
 
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import xarray as xr
 
+from rockframe.plot._axes import BLUE, GREY, VERMILLION, grid, plain_ticks
 from rockframe.plot._given import check_selection
-from rockframe.plot._title import set_title
+from rockframe.plot._panels import Panels, sheet
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    from rockframe.plot._panels import AxesLike
 
-_SET: Final = "#222255"
-_TARGET: Final = "#cc6677"
+_SET: Final = BLUE
+_TARGET: Final = VERMILLION
 _MOST_NAMED: Final = 50
 _LETTERS: Final = 34
 
 
-def selection(dataset: xr.Dataset, *, title: str | None = None) -> "Figure":
+def selection(dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None = None) -> "Panels":
     """Draw the scaled spectra of a set, their median and spread, and the target.
 
     Left the accelerations; right the misfit of each motion, in the order of the set.
@@ -26,13 +27,15 @@ def selection(dataset: xr.Dataset, *, title: str | None = None) -> "Figure":
     ----------
     dataset : xarray.Dataset
         Of :func:`rockframe.scale_to_target` or :func:`rockframe.select_for_target`.
+    ax : two Axes, optional
+        What is drawn in; a new figure unless given.
     title : str, optional
         Title of the figure; the target and the number of motions unless given.
 
     Returns
     -------
-    matplotlib.figure.Figure
-        Not yet shown nor saved. Bands reach one standard deviation of the logarithm to both
+    Panels
+        Bands reach one standard deviation of the logarithm to both
         sides.
 
     Raises
@@ -40,20 +43,21 @@ def selection(dataset: xr.Dataset, *, title: str | None = None) -> "Figure":
     SchemaError
         The dataset is no such set.
     """
-    from matplotlib.figure import Figure
-
     check_selection(dataset)
     count = dataset.sizes["motion"]
-    figure = Figure(figsize=(10.0, max(4.0, min(9.0, 1.0 + 0.16 * count))), layout="constrained")
-    axes: Any = figure.subplots(1, 2, width_ratios=[1.7, 1.0])
+    on = sheet(
+        ax, "selection", ("spectra", "misfits"), (8.6, max(4.0, min(9.0, 1.0 + 0.16 * count))),
+        lambda figure: figure.subplots(1, 2, width_ratios=[1.7, 1.0]),
+    )  # fmt: skip
     drawn = dataset.isel(period=np.flatnonzero(dataset["period"].to_numpy() > 0.0))
     period = drawn["period"].to_numpy()
-    spectra, misfits = axes
+    spectra, misfits = on.panels
     for place in range(count):
         spectra.plot(
             period,
             drawn["scaled_spectral_acceleration"].isel(motion=place),
-            color="0.7",
+            color=GREY,
+            alpha=0.6,
             linewidth=0.6,
             label="motions" if place == 0 else None,
         )
@@ -77,18 +81,18 @@ def selection(dataset: xr.Dataset, *, title: str | None = None) -> "Figure":
     spectra.legend(fontsize="small", frameon=False)
     labels = [str(label) for label in dataset["motion"].to_numpy()]
     factors = dataset["scale_factor"].to_numpy()
-    misfits.barh(range(count), dataset["spectral_misfit"], color="0.7")
+    misfits.barh(range(count), dataset["spectral_misfit"], color=GREY, alpha=0.7)
     misfits.set(xlabel="misfit of the logarithm [-]", ylim=(count - 0.5, -0.5))
     if count <= _MOST_NAMED:
         words = [
             f"{_short(name)}, $\\times${f:.3g}" for name, f in zip(labels, factors, strict=True)
         ]
         misfits.set_yticks(range(count), words, fontsize="x-small")
-    for panel in axes:
-        panel.grid(visible=True, which="major", color="0.9", linewidth=0.6)
-        panel.set_axisbelow(True)
-    set_title(figure, title or f"{count} motions; {dataset.attrs['target']}")
-    return figure
+    for panel in on.panels:
+        grid(panel)
+    plain_ticks(spectra)
+    on.entitle(f"{count} motions; {dataset.attrs['target']}", title)
+    return on.panels
 
 
 def _short(name: str) -> str:

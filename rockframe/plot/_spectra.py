@@ -1,121 +1,160 @@
-"""A motion with its spectra, laid out as in Fig. 21 of the paper."""
+"""Motions with their spectra, laid out as in Fig. 21 of the paper."""
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 import xarray as xr
 
-from rockframe.plot._given import check_motion
-from rockframe.plot._title import set_title
+from rockframe.plot._axes import colour_of, grid, ink, labelled, plain_ticks, style_of, zero_line
+from rockframe.plot._motions import Drawn, columns_of, motions_of
+from rockframe.plot._panels import Panels, sheet
+from rockframe.plot._runs import window_of
+from rockframe.plot._units import Shown, unit_of
+from rockframe.units import ACCELERATION
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
-    from rockframe.motion import GroundMotion
     from rockframe.motion.quantities import ArrayLike, QuantityLike, RatioLike
+    from rockframe.plot._motions import MotionsLike
+    from rockframe.plot._panels import AxesLike
+    from rockframe.plot._runs import Window
 
-_COLOURS = ("#222255", "#cc6677", "#117733", "#ddaa33", "#88ccee")
-_RESOLUTION = "0.05 Hz"  # of short pulses; that of long records is finer
-_PREFIX = {"horizontal": "", "vertical": "vertical_"}
+_RESOLUTION: Final = "0.05 Hz"  # of short pulses; that of long records is finer
+_PREFIX: Final = {"horizontal": "", "vertical": "vertical_"}
+_PANELS: Final = ("history", "response", "fourier")
 
 
 def spectra(
-    motion: "GroundMotion",
+    motion: "MotionsLike",
     periods: "ArrayLike | Iterable[QuantityLike] | None" = None,
     damping_ratios: "Iterable[RatioLike] | RatioLike" = (0.05,),
     *,
     component: str = "horizontal",
+    window: "Window" = None,
+    acceleration: str = "m/s^2",
+    ax: "AxesLike" = None,
     title: str | None = None,
-) -> "Figure":
+) -> "Panels":
     """Draw a motion along time, its response spectra and its Fourier spectrum.
 
     Parameters
     ----------
-    motion : GroundMotion
-        The motion.
+    motion : GroundMotion, or sequence or mapping of them
+        The motion, or several to compare.
     periods, damping_ratios : optional
         As for :func:`rockframe.measures.response_spectrum` [s], [1].
     component : {"horizontal", "vertical"}, optional
         Which acceleration.
+    window : (str or Quantity or None, str or Quantity or None), optional
+        Start and end of the history that is drawn; spectra are those of the whole motion [s].
+    acceleration : str, optional
+        Unit of accelerations, such as ``"g_0"``.
+    ax : three Axes, optional
+        What is drawn in: history, response spectra, Fourier spectra; a new figure unless given.
     title : str, optional
         Title of the figure; the motion's name unless given.
 
     Returns
     -------
-    matplotlib.figure.Figure
-        Not yet shown nor saved. The response spectra are those of the pseudo-spectral
-        acceleration.
+    Panels
+        The response spectra are those of the pseudo-spectral acceleration.
 
     Raises
     ------
     UnitsError, ComponentError
-        As for :func:`rockframe.measures.response_spectrum`.
+        As for :func:`rockframe.measures.response_spectrum`; or not three Axes.
     """
-    from matplotlib.figure import Figure
-
     from rockframe.measures import (
         fourier_spectrum,
         response_spectrum,
         velocity_and_displacement,
     )
 
-    check_motion(motion, "spectra")
-    response = response_spectrum(motion, periods, damping_ratios, component=component)
-    fourier = fourier_spectrum(motion, resolution=_RESOLUTION, component=component)
-    history = velocity_and_displacement(motion, component=component)
-    figure = Figure(figsize=(8.0, 6.0), layout="constrained")
-    axes: Any = figure.subplot_mosaic(
-        [["history", "history"], ["response", "fourier"]], height_ratios=[1.0, 1.7]
-    )
-    _history(axes["history"], history, f"{_PREFIX[str(component)]}ground_acceleration")
-    _response(axes["response"], response)
-    _fourier(axes["fourier"], fourier)
-    set_title(figure, title or motion.name)
-    return figure
+    given = motions_of(motion, "spectra")
+    cut = window_of(window, "spectra")
+    unit = unit_of(acceleration, ACCELERATION, function="spectra", name="acceleration")
+    found = [
+        (
+            one,
+            velocity_and_displacement(one.motion, component=component),
+            response_spectrum(one.motion, periods, damping_ratios, component=component),
+            fourier_spectrum(one.motion, resolution=_RESOLUTION, component=component),
+        )
+        for one in given
+    ]
+
+    def make(figure: Any) -> Any:
+        mosaic = [["history", "history"], ["response", "fourier"]]
+        drawn = figure.subplot_mosaic(mosaic, height_ratios=[1.0, 1.7])
+        return [drawn[name] for name in _PANELS]
+
+    on = sheet(ax, "spectra", _PANELS, (7.2, 5.4), make)
+    for one, history, response, fourier in found:
+        name = f"{_PREFIX[str(component)]}ground_acceleration"
+        _history(on.panels[0], history.sel(time=slice(*cut)), name, unit, one)
+        _response(on.panels[1], response, unit, one)
+        _fourier(on.panels[2], fourier, one)
+    _label(on.panels, found, unit)
+    if len(given) > 1:
+        on.legend(*on.panels[1].get_legend_handles_labels(), ncols=columns_of(given))
+    on.entitle(given[0].motion.name if len(given) == 1 else "", title)
+    return on.panels
 
 
-def _history(axes: "Axes", dataset: xr.Dataset, name: str) -> None:
-    time = dataset["time"].to_numpy()
-    axes.plot(time, dataset[name], color="0.3", linewidth=0.8)
-    axes.axhline(0.0, color="0.8", linewidth=0.5, zorder=0)
-    axes.set_xlim(time[0], time[-1])
-    axes.set_xlabel("time [s]")
-    axes.set_ylabel("acceleration\n[m s$^{-2}$]")
+def _history(axes: "Axes", dataset: xr.Dataset, name: str, unit: Shown, one: Drawn) -> None:
+    colour = ink() if one.label is None else one.colour
+    axes.plot(dataset["time"], unit.of(dataset[name]), color=colour, linewidth=0.8, label=one.label)
+    zero_line(axes)
 
 
-def _response(axes: "Axes", dataset: xr.Dataset) -> None:
+def _response(axes: "Axes", dataset: xr.Dataset, unit: Shown, one: Drawn) -> None:
     drawn = dataset.isel(period=np.flatnonzero(dataset["period"].to_numpy() > 0.0))
     ratios = dataset["damping_ratio"].to_numpy().tolist()
     for place, ratio in enumerate(ratios):
+        damping = f"{100.0 * ratio:g} %"
+        label = damping
+        if one.label is not None:
+            label = one.label if len(ratios) == 1 else f"{one.label}, {damping}"
         axes.semilogx(
             drawn["period"],
-            drawn["pseudo_spectral_acceleration"].isel(damping_ratio=place),
-            color=_COLOURS[place % len(_COLOURS)],
+            unit.of(drawn["pseudo_spectral_acceleration"].isel(damping_ratio=place)),
+            color=colour_of(place) if one.label is None else one.colour,
+            linestyle=style_of(place),
             linewidth=1.2,
-            label=f"{100.0 * ratio:g} %",
+            label=label,
         )
-    axes.set_xlabel("period [s]")
-    axes.set_ylabel("pseudo-spectral acceleration [m s$^{-2}$]")
-    axes.set_ylim(bottom=0.0)
-    axes.legend(title="damping", fontsize="small", title_fontsize="small", frameon=False)
-    _grid(axes)
 
 
-def _fourier(axes: "Axes", dataset: xr.Dataset) -> None:
+def _fourier(axes: "Axes", dataset: xr.Dataset, one: Drawn) -> None:
     drawn = dataset.isel(frequency=slice(1, None))
-    axes.semilogx(drawn["frequency"], drawn["fourier_amplitude"], color="0.3", linewidth=0.7)
-    highest = float(drawn["fourier_amplitude"].max())
+    colour = ink() if one.label is None else one.colour
+    axes.semilogx(drawn["frequency"], drawn["fourier_amplitude"], color=colour, linewidth=0.7)
+
+
+def _label(panels: Panels, found: list[Any], unit: Shown) -> None:
+    history, response, fourier = panels
+    several = len(found) > 1
+    times = [each[1]["time"].to_numpy() for each in found]
+    shown = [line.get_xdata() for line in history.get_lines() if len(line.get_xdata()) > 2]
+    ends = shown or times
+    history.set_xlim(min(time[0] for time in ends), max(time[-1] for time in ends))
+    history.set(
+        xlabel="time [s]",
+        ylabel=labelled("acceleration\n", unit.words).replace("\n ", "\n"),
+    )
+    response.set(xlabel="period [s]", ylabel=labelled("pseudo-spectral acceleration", unit.words))
+    response.set_ylim(bottom=0.0)
+    if not several:
+        response.legend(title="damping", fontsize="small", title_fontsize="small", frameon=False)
+    highest = max(float(each[3]["fourier_amplitude"].max()) for each in found)
     if highest > 0.0:
-        axes.set_yscale("log")
-        axes.set_ylim(1e-4 * highest, 2.0 * highest)
-    axes.set_xlabel("frequency [Hz]")
-    axes.set_ylabel("Fourier amplitude [m s$^{-1}$]")
-    _grid(axes)
-
-
-def _grid(axes: "Axes") -> None:
-    axes.grid(visible=True, which="major", color="0.88", linewidth=0.6)
-    axes.set_axisbelow(True)
+        fourier.set_yscale("log")
+        fourier.set_ylim(1e-4 * highest, 2.0 * highest)
+    fourier.set(xlabel="frequency [Hz]", ylabel="Fourier amplitude [m s$^{-1}$]")
+    plain_ticks(response, "x")
+    plain_ticks(fourier, "x")
+    grid(response)
+    grid(fourier)

@@ -5,13 +5,15 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 import xarray as xr
 
+from rockframe.plot._axes import GREY, grid, ink
 from rockframe.plot._given import check_rungs
-from rockframe.plot._title import set_title
+from rockframe.plot._panels import Panels, sheet
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
+
+    from rockframe.plot._panels import AxesLike
 
 _LEAST: Final = 1e-14
 """Errors of the integration below are drawn here: they are rounding."""
@@ -27,7 +29,7 @@ _LETTERS: Final = 120
 """That a row of the legend has room for."""
 
 
-def tradeoff(dataset: xr.Dataset, *, title: str | None = None) -> "Figure":
+def tradeoff(dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None = None) -> "Panels":
     """Draw a comparison of models and accuracies.
 
     Left, the error of the integration against the time of a run, a line for each model; right,
@@ -39,13 +41,14 @@ def tradeoff(dataset: xr.Dataset, *, title: str | None = None) -> "Figure":
     ----------
     dataset : xarray.Dataset
         Of :func:`rockframe.tradeoff`.
+    ax : two Axes, optional
+        What is drawn in; a new figure unless given.
     title : str, optional
         Title of the figure; scene and motion unless given.
 
     Returns
     -------
-    matplotlib.figure.Figure
-        Not yet shown nor saved.
+    Panels
 
     Raises
     ------
@@ -54,14 +57,17 @@ def tradeoff(dataset: xr.Dataset, *, title: str | None = None) -> "Figure":
         what was given.
     """
     from matplotlib import colormaps
-    from matplotlib.figure import Figure
     from matplotlib.ticker import LogLocator, NullLocator, StrMethodFormatter
 
     check_rungs(dataset)
     models = [str(name) for name in dataset["model"].to_numpy()]
-    figure = Figure(figsize=(11.0, max(3.6, 2.6 + 0.4 * len(models))), layout="constrained")
-    axes: Any = figure.subplots(1, 2)
-    colours = colormaps["viridis"](np.linspace(0.0, 0.8, len(models)))
+    on = sheet(
+        ax, "tradeoff", ("integration", "model and integration"),
+        (9.6, max(3.4, 2.4 + 0.4 * len(models))),
+        lambda figure: figure.subplots(1, 2),
+    )  # fmt: skip
+    axes = on.panels
+    colours = colormaps["viridis"](np.linspace(0.1, 0.8, len(models)))
     for place, (model, colour) in enumerate(zip(models, colours, strict=True)):
         row = dataset.sel(model=model)
         time = 1e3 * row["run_time"].to_numpy()
@@ -74,8 +80,7 @@ def tradeoff(dataset: xr.Dataset, *, title: str | None = None) -> "Figure":
         _line(axes[1], total, heights, row, colour)
     for panel in axes:
         panel.set(xscale="log")
-        panel.grid(visible=True, which="major", color="0.9")
-        panel.set_axisbelow(True)
+        grid(panel)
     axes[0].set(
         yscale="log",
         xlabel="time of a run [ms]",
@@ -96,10 +101,9 @@ def tradeoff(dataset: xr.Dataset, *, title: str | None = None) -> "Figure":
     keys = _keys(dataset, models)
     widths = [len(str(key.get_label())) + 6 for key in keys]
     columns = len(keys) if sum(widths) <= _LETTERS else max(1, _LETTERS // max(widths))
-    figure.legend(handles=keys, loc="outside lower center", ncols=columns, frameon=False)
-    words = f"{dataset.attrs.get('scene', '')}: {dataset.attrs.get('motion', '')}"
-    set_title(figure, words if title is None else title)
-    return figure
+    on.legend(keys, [str(key.get_label()) for key in keys], ncols=columns)
+    on.entitle(f"{dataset.attrs.get('scene', '')}: {dataset.attrs.get('motion', '')}", title)
+    return on.panels
 
 
 def _line(axes: "Axes", x: Any, y: Any, row: xr.Dataset, colour: Any) -> None:
@@ -110,7 +114,7 @@ def _line(axes: "Axes", x: Any, y: Any, row: xr.Dataset, colour: Any) -> None:
         marker = _MARKERS[k % len(_MARKERS)]
         axes.plot(x[k], y[k], marker, color=colour, mfc=face, ms=7)
         if not agrees[k]:
-            axes.plot(x[k], y[k], "x", color="black", ms=11)
+            axes.plot(x[k], y[k], "x", color=ink(), ms=11)
 
 
 def _mark_below(axes: "Axes", errors: Any) -> None:
@@ -126,7 +130,7 @@ def _mark_below(axes: "Axes", errors: Any) -> None:
     axes.xaxis.set_minor_locator(NullLocator())
     if not below:
         return
-    axes.axvspan(left, _TOLD_APART, color="0.94", zorder=0)
+    axes.axvspan(left, _TOLD_APART, color=GREY, alpha=0.12, zorder=0)
     ticks = [tick for tick in axes.get_xticks() if _TOLD_APART <= tick <= right]
     names = [f"$10^{{{round(np.log10(tick))}}}$" for tick in ticks]
     axes.set_xticks([_BELOW, *ticks], ["below", *names])
@@ -137,10 +141,10 @@ def _keys(dataset: xr.Dataset, models: list[str]) -> "list[Line2D]":
     from matplotlib.lines import Line2D
 
     keys = [
-        Line2D([], [], marker=_MARKERS[k % len(_MARKERS)], color="0.3", ls="none", label=str(name))
+        Line2D([], [], marker=_MARKERS[k % len(_MARKERS)], color=GREY, ls="none", label=str(name))
         for k, name in enumerate(dataset["accuracy"].to_numpy())
     ]
     if any(_SMALL in model for model in models):
-        style: Any = {"marker": "o", "color": "0.3", "mfc": "white", "ls": "none"}
+        style: Any = {"marker": "o", "color": GREY, "mfc": "white", "ls": "none"}
         keys.append(Line2D([], [], **style, label=f"hollow: {_SMALL}"))
-    return [*keys, Line2D([], [], marker="x", color="0.3", ls="none", ms=10, label="other verdict")]
+    return [*keys, Line2D([], [], marker="x", color=GREY, ls="none", ms=10, label="other verdict")]

@@ -362,7 +362,7 @@ def test_rungs_that_are_cut_off_are_no_rungs():
 
 
 def test_the_figure(measured):
-    figure = rf.plot.tradeoff(measured)
+    figure = rf.plot.tradeoff(measured).figure
     FigureCanvasAgg(figure).draw()
     left, right = figure.axes
     names = right.get_yticklabels()
@@ -378,11 +378,11 @@ def legend(figure):
 
 
 def test_the_legend_says_what_hollow_markers_are(measured):
-    figure = rf.plot.tradeoff(measured)
+    figure = rf.plot.tradeoff(measured).figure
     assert legend(figure)[-2:] == ["hollow: small rotations", "other verdict"]
     key = figure.legends[0].get_lines()[-2]
     assert key.get_markerfacecolor() == "white"
-    finite = rf.plot.tradeoff(measured.sel(model=["rigid ground", "two pads"]))
+    finite = rf.plot.tradeoff(measured.sel(model=["rigid ground", "two pads"])).figure
     assert legend(finite) == [*measured.accuracy.values, "other verdict"]
 
 
@@ -413,7 +413,7 @@ def test_small_errors_of_models_share_a_band(measured):
 
 
 def test_there_is_no_band_where_no_error_is_small(measured):
-    figure = rf.plot.tradeoff(measured.assign(history_error=measured.history_error + 2e-3))
+    figure = rf.plot.tradeoff(measured.assign(history_error=measured.history_error + 2e-3)).figure
     texts = [text.get_text() for text in figure.axes[1].get_xticklabels()]
     assert "below" not in texts
     assert figure.axes[1].get_xlim()[0] == 1e-6
@@ -421,7 +421,7 @@ def test_there_is_no_band_where_no_error_is_small(measured):
 
 @pytest.mark.parametrize("rungs", [{"model": [3], "accuracy": [0]}, {"model": slice(None)}])
 def test_nothing_is_drawn_beyond_the_figure(measured, rungs):
-    figure = rf.plot.tradeoff(measured.isel(rungs))
+    figure = rf.plot.tradeoff(measured.isel(rungs)).figure
     FigureCanvasAgg(figure).draw()
     for box in (
         *(axes.get_tightbbox() for axes in figure.axes),

@@ -10,7 +10,7 @@ PULSE = rf.GroundMotion.sine_pulse("2 m/s^2", "2 Hz")
 
 
 def test_a_motion_is_drawn_in_three_rows(tmp_path):
-    figure = rf.plot.motion(PULSE)
+    figure = rf.plot.motion(PULSE).figure
     assert isinstance(figure, Figure)
     labels = [axes.get_ylabel().split("\n")[0] for axes in figure.axes]
     assert labels == ["acceleration", "velocity", "displacement"]
@@ -22,7 +22,7 @@ def test_a_motion_is_drawn_in_three_rows(tmp_path):
 
 
 def test_a_vertical_component_is_drawn_too():
-    figure = rf.plot.motion(PULSE.with_vertical(PULSE.scaled(0.5)), title="both")
+    figure = rf.plot.motion(PULSE.with_vertical(PULSE.scaled(0.5)), title="both").figure
     texts = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
     assert texts == ["vertical", "horizontal"]
     assert figure.get_suptitle() == "both"
@@ -32,7 +32,7 @@ def test_a_vertical_component_is_drawn_too():
 def test_spectra_stand_below_the_history(component, tmp_path):
     motion = PULSE.with_vertical(PULSE.scaled(0.5))
     periods = (["0", "0.1", "0.5", "1"], "s")
-    figure = rf.plot.spectra(motion, periods, (0.02, 0.05), component=component)
+    figure = rf.plot.spectra(motion, periods, (0.02, 0.05), component=component).figure
     history, response, fourier = figure.axes
     factor = 1.0 if component == "horizontal" else 0.5
     assert history.get_lines()[0].get_ydata().max() == pytest.approx(2.0 * factor)
@@ -45,5 +45,5 @@ def test_spectra_stand_below_the_history(component, tmp_path):
 
 def test_ground_that_stands_still_can_be_drawn(tmp_path):
     still = rf.GroundMotion.from_arrays((np.zeros(50), "m/s^2"), "0.01 s")
-    rf.plot.motion(still).savefig(tmp_path / "motion.png")
-    rf.plot.spectra(still, (["0.1", "1"], "s")).savefig(tmp_path / "spectra.png")
+    rf.plot.motion(still).figure.savefig(tmp_path / "motion.png")
+    rf.plot.spectra(still, (["0.1", "1"], "s")).figure.savefig(tmp_path / "spectra.png")

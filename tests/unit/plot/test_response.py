@@ -44,7 +44,9 @@ def test_what_is_narrower_than_a_pixel_is_mixed(dpi):
     time = run["time"].values
     chatter = np.where(np.arange(time.size) % 2 == 0, 1, 2)
     states = np.where(time < 10.0, 0, np.where(time < 20.0, 1, np.where(time < 30.0, chatter, 2)))
-    figure = rf.plot.response(run.assign(contact_state=run["contact_state"].copy(data=states)))
+    figure = rf.plot.response(
+        run.assign(contact_state=run["contact_state"].copy(data=states))
+    ).figure
     figure.set_dpi(dpi)
     for start, colour in ((0, FULL), (10, LEFT), (20, 0.5 * (LEFT + RIGHT)), (30, RIGHT)):
         drawn = pixels(figure, figure.axes[-1], start + 0.5, start + 9.5)
@@ -57,7 +59,7 @@ def test_a_block_that_chatters_is_not_drawn_as_leaning_to_one_side():
     rocking = run["contact_state"].sel(time=slice(24.6, 26.9)).values
     assert np.mean(rocking == 1) == pytest.approx(0.5, abs=0.03)
     assert np.mean(rocking == 2) == pytest.approx(0.5, abs=0.03)
-    figure = rf.plot.response(run)
+    figure = rf.plot.response(run).figure
     drawn = pixels(figure, figure.axes[-1], 24.6, 26.9)
     np.testing.assert_allclose(drawn.mean(axis=0), 0.5 * (LEFT + RIGHT), atol=0.03)
 
@@ -83,7 +85,7 @@ LONGEST = (
 def test_a_title_is_broken_and_keeps_a_margin(words, lines):
     run = rf.System(BLOCK).simulate(PULSE, free_vibration="1 s")
     run.attrs["verdict"] = words
-    figure = rf.plot.response(run)
+    figure = rf.plot.response(run).figure
     assert figure.get_suptitle().split("\n") == lines
     FigureCanvasAgg(figure).draw()
     texts = [text for text in figure.texts if text.get_text() == "\n".join(lines)]
@@ -98,7 +100,7 @@ def test_the_verdict_of_a_run_that_was_not_finished_fits():
     with pytest.warns(rf.SolverWarning, match="Not finished"):
         run = rf.System(BLOCK).simulate(PULSE, free_vibration="5 s", accuracy=few)
     assert int(run["status"]) == Status.STEP_LIMIT
-    figure = rf.plot.response(run)
+    figure = rf.plot.response(run).figure
     assert max(len(line) for line in figure.get_suptitle().split("\n")) <= 96
     assert figure.get_suptitle().replace("\n", " ") == run.attrs["verdict"]
 
@@ -110,8 +112,8 @@ def test_of_two_settlements_the_label_names_the_one(coupling):
     cap = rf.CushionCap(height="0.4 m", mass="20 t", width="2.5 m")
     soil = rf.WinklerSoil(stiffness="9 MPa", damping_ratio=0.2)
     run = rf.System(block, pads, cap, soil, coupling=coupling).simulate(PULSE)
-    label = rf.plot.response(run).axes[2].get_ylabel()
+    label = rf.plot.response(run).figure.axes[2].get_ylabel()
     assert r"y/\delta" in label
     assert r"$\delta$ of the pads" in label
     alone = rf.System(block, pads).simulate(PULSE)
-    assert "of the pads" not in rf.plot.response(alone).axes[2].get_ylabel()
+    assert "of the pads" not in rf.plot.response(alone).figure.axes[2].get_ylabel()

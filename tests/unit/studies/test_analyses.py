@@ -358,7 +358,7 @@ def test_figures_are_drawn_of_what_they_are_for(analysis):
         "ensemble": rf.ensemble_statistics(analysis),
     }
     for name, dataset in drawn.items():
-        figure = getattr(rf.plot, name)(dataset)
+        figure = getattr(rf.plot, name)(dataset).figure
         figure.canvas.draw()
         with pytest.raises(SchemaError, match=f"rf.plot.{name} needs"):
             getattr(rf.plot, name)(xr.Dataset())

@@ -204,7 +204,7 @@ def test_other_faults():
 def test_the_figure_shows_what_was_found():
     target = TARGET.with_deviation(0.4)
     found = rf.select_for_target(SUITE, target, 5, periods=PERIODS)
-    figure = rf.plot.selection(found)
+    figure = rf.plot.selection(found).figure
     spectra_axes, misfits = figure.axes
     lines = {line.get_label(): line for line in spectra_axes.get_lines()}
     np.testing.assert_array_equal(lines["target"].get_ydata(), found.target_spectral_acceleration)

@@ -1,0 +1,74 @@
+"""Motions that are drawn: one, or several to compare."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final, TypeAlias, cast
+
+from rockframe.plot._axes import colour_of, style_of
+from rockframe.plot._given import check_motion
+
+if TYPE_CHECKING:
+    from rockframe.motion import GroundMotion
+
+    MotionsLike: TypeAlias = GroundMotion | Sequence[GroundMotion] | Mapping[Any, GroundMotion]
+
+
+_LETTERS: Final = 90
+"""That a row of a legend has room for."""
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """A motion with its label, colour and dashes; without a label where there is but one."""
+
+    motion: "GroundMotion"
+    label: str | None
+    colour: str
+    style: Any
+
+
+def columns_of(given: list[Drawn]) -> int:
+    """Give the columns of a legend that names motions below a figure."""
+    longest = max(len(one.label or "") for one in given)
+    return max(1, min(len(given), _LETTERS // (longest + 6)))
+
+
+def motions_of(given: object, function: str) -> list[Drawn]:
+    """Read one or several motions.
+
+    Parameters
+    ----------
+    given : GroundMotion, or sequence or mapping of them
+        What the user gave; a suite is such a mapping.
+    function : str
+        Which function of `rf.plot` it was given to.
+
+    Returns
+    -------
+    list of Drawn
+
+    Raises
+    ------
+    ComponentError
+        Something else.
+    """
+    from rockframe.motion import GroundMotion
+
+    labelled: dict[str, Any] = {}
+    if isinstance(given, Mapping):
+        labelled = {str(key): one for key, one in cast("Mapping[Any, Any]", given).items()}
+    elif isinstance(given, list | tuple):
+        several = cast("Sequence[Any]", given)
+        names = [str(getattr(one, "name", "")) for one in several]
+        alike = len(set(names)) < len(names)
+        labelled = {
+            f"{name} ({number})" if alike else name: one
+            for number, (name, one) in enumerate(zip(names, several, strict=True), start=1)
+        }
+    if labelled and all(isinstance(one, GroundMotion) for one in labelled.values()):
+        return [
+            Drawn(one, label, colour_of(number), style_of(number))
+            for number, (label, one) in enumerate(labelled.items())
+        ]
+    check_motion(given, function)
+    return [Drawn(cast("GroundMotion", given), None, colour_of(0), "-")]

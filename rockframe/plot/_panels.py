@@ -1,0 +1,129 @@
+"""Panels that figures are drawn in: those of a new pyplot figure, or given ones."""
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, TypeAlias, cast
+
+import numpy as np
+
+from rockframe.errors import ComponentError, shown
+from rockframe.plot._title import set_title
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    AxesLike: TypeAlias = Axes | Iterable[Any] | None
+
+
+class Panels(tuple[Any, ...]):
+    """The panels of one figure, in the order in which they were drawn.
+
+    A tuple of :class:`matplotlib.axes.Axes`, which can be handed back as ``ax=`` to draw something
+    else in the same panels.
+    """
+
+    __slots__ = ()
+
+    @property
+    def figure(self) -> "Figure":
+        """The figure that the panels belong to."""
+        return cast("Figure", self[0].get_figure(root=True))
+
+    def __repr__(self) -> str:
+        names = ", ".join(repr(_called(axes)) for axes in self)
+        return f"<{len(self)} panels: {names}>"
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """What is drawn on: panels, and their figure where it was made for them."""
+
+    panels: Panels
+    own: "Figure | None"
+
+    @property
+    def axes(self) -> "Axes":
+        """The panel, or the first of several."""
+        return self.panels[0]
+
+    def entitle(self, usual: str, title: str | None) -> None:
+        """Write the title above the figure; above given panels only one that was asked for."""
+        if self.own is not None:
+            set_title(self.own, title or usual)
+        elif title:
+            self.axes.set_title(title, fontsize="medium")
+
+    def legend(self, handles: Sequence[Any], labels: Sequence[str], **style: Any) -> None:
+        """Write a legend below the figure; of given panels, in the last one."""
+        if self.own is not None:
+            self.own.legend(handles, labels, loc="outside lower center", frameon=False, **style)
+        else:
+            self.panels[-1].legend(handles, labels, fontsize="small", frameon=False)
+
+
+def sheet(
+    ax: "AxesLike",
+    function: str,
+    names: Sequence[str],
+    size: tuple[float, float],
+    make: "Callable[[Figure], Any]",
+) -> Sheet:
+    """Take the panels that are given, or make a figure with new ones.
+
+    A figure is one of pyplot, so that a notebook shows it and ``show()`` opens a window. With
+    `ax` none is made.
+
+    Parameters
+    ----------
+    ax : Axes, iterable of Axes or None
+        What the user gave.
+    function : str
+        Which function of `rf.plot` it was given to.
+    names : sequence of str
+        What the panels are called, for the message.
+    size : (float, float)
+        Width and height of a new figure [in].
+    make : callable
+        Makes the panels of a new figure.
+
+    Returns
+    -------
+    Sheet
+
+    Raises
+    ------
+    ComponentError
+        Given are something else than Axes, or not as many as are drawn.
+    """
+    if ax is not None:
+        return Sheet(Panels(_given(ax, function, names)), None)
+    from matplotlib import pyplot
+
+    figure = pyplot.figure(figsize=size, layout="constrained")
+    return Sheet(Panels(np.ravel(make(figure))), figure)
+
+
+def single(ax: "AxesLike", function: str, size: tuple[float, float]) -> Sheet:
+    """Take the one panel that is given, or make a figure with one; see :func:`sheet`."""
+    return sheet(ax, function, ("the figure",), size, lambda figure: figure.subplots())
+
+
+def _given(ax: Any, function: str, names: Sequence[str]) -> "list[Axes]":
+    from matplotlib.axes import Axes
+
+    several = isinstance(ax, Iterable) and not isinstance(ax, str | Axes)
+    found = list(np.ravel(np.array(ax, dtype=object))) if several else [ax]
+    wanted = "one Axes" if len(names) == 1 else f"{len(names)} Axes, for {', '.join(names)}"
+    for one in found:
+        if not isinstance(one, Axes):
+            msg = f"rf.plot.{function}: ax must be {wanted}, got {shown(one)}"
+            raise ComponentError(msg)
+    if len(found) != len(names):
+        msg = f"rf.plot.{function}: ax must be {wanted}, got {len(found)} Axes"
+        raise ComponentError(msg)
+    return cast("list[Axes]", found)
+
+
+def _called(axes: "Axes") -> str:
+    return " ".join((axes.get_ylabel() or axes.get_title() or axes.get_xlabel()).split())

@@ -1,0 +1,138 @@
+"""Runs that are drawn: one, or several to compare, and a part of their time."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, TypeAlias, cast
+
+import numpy as np
+import xarray as xr
+
+from rockframe.errors import ComponentError, shown
+from rockframe.plot._axes import colour_of, style_of
+from rockframe.plot._given import check_run
+from rockframe.units import TIME, QuantityLike, to_si
+
+if TYPE_CHECKING:
+    Window: TypeAlias = tuple[QuantityLike | None, QuantityLike | None] | None
+    RunsLike: TypeAlias = xr.Dataset | Sequence[xr.Dataset] | Mapping[Any, xr.Dataset]
+
+
+@dataclass(frozen=True)
+class Run:
+    """A run with its label, colour and dashes; without a label where there is but one."""
+
+    dataset: xr.Dataset
+    label: str | None
+    colour: str
+    style: Any
+
+    @property
+    def time(self) -> Any:
+        """Times of the samples [s]."""
+        return self.dataset["time"].to_numpy()
+
+
+def runs_of(given: object, function: str, window: "Window") -> list[Run]:
+    """Read one or several runs, and take the part of them that is drawn.
+
+    Parameters
+    ----------
+    given : xarray.Dataset, or sequence or mapping of them
+        What the user gave.
+    function : str
+        Which function of `rf.plot` it was given to.
+    window : pair of str or Quantity, or None
+        Start and end of the part; None for that of the run.
+
+    Returns
+    -------
+    list of Run
+
+    Raises
+    ------
+    SchemaError
+        Something else than results of single runs with histories.
+    UnitsError, ComponentError
+        The window is no pair of times, or holds less than two samples.
+    """
+    cut = window_of(window, function)
+    labelled = _labelled(given)
+    if labelled is None:
+        check_run(given, function)
+        return [Run(_part(cast("xr.Dataset", given), cut, function), None, colour_of(0), "-")]
+    for one in labelled.values():
+        check_run(one, function)
+    return [
+        Run(_part(one, cut, function), label, colour_of(number), style_of(number))
+        for number, (label, one) in enumerate(labelled.items())
+    ]
+
+
+def window_of(window: object, function: str) -> tuple[float, float]:
+    """Read the part of the time that is drawn; infinite where an end is not given [s]."""
+    if window is None:
+        return -np.inf, np.inf
+    owner = f"rf.plot.{function}"
+    ends = list(cast("Any", window)) if isinstance(window, tuple | list) else []
+    if len(ends) != 2:
+        msg = (
+            f"{owner}: window must be a pair of times, of which None is the run's own, such as "
+            f"('2 s', '8 s'), got {shown(window)}"
+        )
+        raise ComponentError(msg)
+    start, end = (
+        float("nan") if one is None else to_si(one, TIME, owner=owner, name="window")
+        for one in ends
+    )
+    if start >= end:
+        msg = f"{owner}: window must end after it starts, got {shown(window)}"
+        raise ComponentError(msg)
+    return (-np.inf if np.isnan(start) else start), (np.inf if np.isnan(end) else end)
+
+
+def verdict_of(runs: list[Run]) -> str:
+    """Give the title of a figure: the verdict of a run; of several, what they have in common."""
+    if len(runs) == 1:
+        return str(runs[0].dataset.attrs.get("verdict", ""))
+    motions = {str(run.dataset.attrs.get("motion", "")) for run in runs}
+    return motions.pop() if len(motions) == 1 else ""
+
+
+def _labelled(given: object) -> dict[str, Any] | None:
+    """Give several runs by their labels; None where there is but one."""
+    if isinstance(given, Mapping) and not isinstance(given, xr.Dataset):
+        told = {str(key): one for key, one in cast("Mapping[Any, Any]", given).items()}
+        return told if told and _all_runs(list(told.values())) else None
+    if not isinstance(given, list | tuple) or not given:
+        return None
+    runs = list(cast("Sequence[Any]", given))
+    if not _all_runs(runs):
+        return None
+    for attribute in ("motion", "model", "accuracy"):
+        names = [str(run.attrs.get(attribute, "")) for run in runs]
+        if len(set(names)) == len(runs):
+            return dict(zip(names, runs, strict=True))
+    return {f"run {number}": run for number, run in enumerate(runs, start=1)}
+
+
+def _all_runs(given: list[Any]) -> bool:
+    return all(isinstance(one, xr.Dataset) for one in given)
+
+
+def _part(run: xr.Dataset, cut: tuple[float, float], function: str) -> xr.Dataset:
+    """Cut out a part of the time, and the events in it."""
+    if not np.isfinite(cut).any():
+        return run
+    time = run["time"].to_numpy()
+    inside = np.flatnonzero((time >= cut[0]) & (time <= cut[1]))
+    if inside.size < 2:
+        msg = (
+            f"rf.plot.{function}: the window holds {inside.size} of the run's samples, which go "
+            f"from {time[0]:.6g} s to {time[-1]:.6g} s; expected two at least"
+        )
+        raise ComponentError(msg)
+    part = run.isel(time=slice(int(inside[0]), int(inside[-1]) + 1))
+    if "event_time" in part:
+        when = part["event_time"].to_numpy()
+        part = part.isel(event=np.flatnonzero((when >= cut[0]) & (when <= cut[1])))
+    return part
