@@ -1,5 +1,6 @@
 """Figures of results and motions; matplotlib is imported when the first is drawn."""
 
+from rockframe.plot._animation import Animation, animation
 from rockframe.plot._ensembles import ensemble, probability
 from rockframe.plot._fragility import fragility
 from rockframe.plot._motion import motion
@@ -11,12 +12,15 @@ from rockframe.plot._overturning import (
 )
 from rockframe.plot._panels import Panels
 from rockframe.plot._response import response
+from rockframe.plot._scene import scene, state
 from rockframe.plot._selection import selection
 from rockframe.plot._spectra import spectra
 from rockframe.plot._tradeoff import tradeoff
 
 __all__ = [
+    "Animation",
     "Panels",
+    "animation",
     "dynamic_analysis",
     "ensemble",
     "fragility",
@@ -26,8 +30,10 @@ __all__ = [
     "probability",
     "response",
     "rocking_spectrum",
+    "scene",
     "selection",
     "spectra",
+    "state",
     "tradeoff",
 ]
 

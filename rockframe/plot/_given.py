@@ -9,6 +9,7 @@ from rockframe.errors import ComponentError, SchemaError
 
 _NEEDED: Final = {
     "response": "the result of one run with histories, as system.simulate(motion) gives it",
+    "scene": "a System",
     "tradeoff": "a comparison of models, as rf.tradeoff(system, motion) gives it",
     "selection": (
         "a set of motions beside its target, as rf.select_for_target(suite, target, 11) gives it"
@@ -112,7 +113,7 @@ def check_run(given: object, function: str) -> None:
         It is something else, lacks a variable, holds several runs, or only an instant.
     """
     if not isinstance(given, xr.Dataset) or not _holds(given, ("rotation", "time", "overturned")):
-        raise SchemaError(_refusal(function, given))
+        raise SchemaError(refuse(function, given))
     _check_complete(function, given, _RUN)
     more = [str(name) for name in given["relative_rotation"].dims if name != "time"]
     if more:
@@ -143,7 +144,7 @@ def check_rungs(given: object) -> None:
         It is something else, or lacks a variable.
     """
     if not isinstance(given, xr.Dataset) or not _holds(given, ("run_time", "verdict_agrees")):
-        raise SchemaError(_refusal("tradeoff", given))
+        raise SchemaError(refuse("tradeoff", given))
     _check_complete("tradeoff", given, _RUNGS)
 
 
@@ -167,7 +168,7 @@ def check_study(given: object, function: str) -> xr.Dataset:
         It is something else.
     """
     if not isinstance(given, xr.Dataset) or not _holds(given, _STUDIES[function]):
-        raise SchemaError(_refusal(function, given))
+        raise SchemaError(refuse(function, given))
     return given
 
 
@@ -186,7 +187,7 @@ def check_selection(given: object) -> None:
     """
     wanted = ("scaled_spectral_acceleration", "target_spectral_acceleration")
     if not isinstance(given, xr.Dataset) or not _holds(given, wanted):
-        raise SchemaError(_refusal("selection", given))
+        raise SchemaError(refuse("selection", given))
     _check_complete("selection", given, _SELECTION)
 
 
@@ -208,7 +209,28 @@ def check_motion(given: object, function: str) -> None:
     from rockframe.motion import GroundMotion
 
     if not isinstance(given, GroundMotion):
-        raise ComponentError(_refusal(function, given))
+        raise ComponentError(refuse(function, given))
+
+
+def check_system(given: object, function: str) -> None:
+    """Refuse what is not a system.
+
+    Parameters
+    ----------
+    given : object
+        What the user gave.
+    function : str
+        Which function of `rf.plot` it was given to.
+
+    Raises
+    ------
+    ComponentError
+        It is something else.
+    """
+    from rockframe.simulation.system import System
+
+    if not isinstance(given, System):
+        raise ComponentError(refuse(function, given))
 
 
 def _check_complete(function: str, given: xr.Dataset, names: tuple[str, ...]) -> None:
@@ -221,7 +243,8 @@ def _check_complete(function: str, given: xr.Dataset, names: tuple[str, ...]) ->
         raise SchemaError(msg)
 
 
-def _refusal(function: str, given: object) -> str:
+def refuse(function: str, given: object) -> str:
+    """Say what a function draws, what was given, and which way leads to a figure."""
     what, way = _words(function, given)
     return f"rf.plot.{function} needs {_needed(function)}, got {what}" + (f"; {way}" if way else "")
 

@@ -111,7 +111,7 @@ def response(
         "rotation": _unless_relative(rotation, ANGLE, "rotation"),
         "vertical": _unless_relative(vertical, LENGTH, "vertical"),
     }
-    strips = _strips(given)
+    strips = strips_of(given)
     names = [
         name
         for panel in _chosen(panels)
@@ -173,7 +173,7 @@ def _chosen(panels: object) -> tuple[str, ...]:
     return chosen
 
 
-def _strips(runs: list[Run]) -> dict[str, tuple[xr.DataArray, str]]:
+def strips_of(runs: list[Run]) -> dict[str, tuple[xr.DataArray, str]]:
     """Give the strips of contact states with what is written beside them."""
     found: dict[str, tuple[xr.DataArray, str]] = {}
     for run in runs:

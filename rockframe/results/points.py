@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rockframe.results.forces import BodyNumbers
-from rockframe.results.outcome import Generic
+from rockframe.results.outcome import Array, Generic
 
 
 @dataclass(frozen=True)
@@ -24,6 +24,34 @@ class Point:
     name: str
     x: float
     y: float
+
+
+def carried(
+    right: Array, up: Array, rotation: Array, *, small_rotation: bool
+) -> tuple[Array, Array]:
+    """Give how a rotation moves points about the point that they are measured from.
+
+    Parameters
+    ----------
+    right, up : ndarray
+        Places at rest, from the centre of rotation [m].
+    rotation : ndarray
+        Clockwise, of a shape that fits that of the places [rad].
+    small_rotation : bool
+        Whether widths are expanded to the first order, and heights to the second.
+
+    Returns
+    -------
+    across, above : ndarray
+        (R - 1) r of :eq:`eq-point-motion` [m].
+    """
+    if small_rotation:
+        half = 0.5 * rotation
+        return up * rotation, -right * rotation - up * (2.0 * half * half)
+    half = np.sin(0.5 * rotation)
+    rise = 2.0 * half * half  # 1 - cos a, to all digits
+    sine = np.sin(rotation)
+    return up * sine - right * rise, -right * sine - up * rise
 
 
 def point_histories(
@@ -50,17 +78,13 @@ def point_histories(
     right = np.array([point.x for point in points])[:, None] - body.eccentricity
     up = np.array([point.y for point in points])[:, None] - body.centre_height
     sine, cosine = body.sine_cosine(rotation)
-    half, _ = body.sine_cosine(0.5 * rotation)
-    rise = 2.0 * half * half  # 1 - cos a, to all digits
     # derivatives of the place about the centre of mass by the rotation
     across_rate, up_rate = up * cosine - right * sine, -right * cosine - up * sine
     across_bend, up_bend = -right * cosine - up * sine, right * sine - up * cosine
     if body.small_rotation:  # heights to second order, widths to first
         across_rate, up_rate = up + 0.0 * rotation, -right - up * rotation
         across_bend, up_bend = np.zeros_like(up_rate), -up + 0.0 * rotation
-        across, above = up * rotation, -right * rotation - up * rise
-    else:
-        across, above = up * sine - right * rise, -right * sine - up * rise
+    across, above = carried(right, up, rotation, small_rotation=body.small_rotation)
     square = rate * rate
     x, y = values["horizontal_displacement"], values["vertical_displacement"]
     a_x = values["absolute_horizontal_acceleration"]

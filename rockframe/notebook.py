@@ -1,0 +1,193 @@
+"""What notebooks show of parts, systems and motions: a drawing and the numbers, as HTML.
+
+Colours are those of the page, so that cards are legible on light and on dark ones.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from html import escape
+from typing import Any, Final, NamedTuple
+
+_PREFIXES: Final = ((1e9, "G"), (1e6, "M"), (1e3, "k"))
+_SCALED: Final = ("Pa", "N", "J")
+"""Units that are written with a prefix where they are many; so are those that begin with them."""
+_INK: Final = 'stroke="currentColor" fill="currentColor"'
+_TONES: Final = {
+    "block": 'fill="#0072b2" fill-opacity="0.25" stroke="#0072b2"',
+    "member": 'fill="#0072b2" fill-opacity="0.35" stroke="#0072b2"',
+    "cap": 'fill="#e69f00" fill-opacity="0.35" stroke="#e69f00"',
+    "pad": 'fill="#808080" fill-opacity="0.6" stroke="#808080"',
+    "soil": 'fill="#a6794f" fill-opacity="0.35" stroke="#a6794f"',
+    "ground": 'fill="#808080" fill-opacity="0.35" stroke="none"',
+}
+_TABLE: Final = "border-collapse:collapse;margin:0;font-size:inherit"
+_CELL: Final = "text-align:left;padding:1px 12px 1px 0;background:transparent;border:none"
+
+
+class Shape(NamedTuple):
+    """A polygon, or a dot where it has but one point."""
+
+    tone: str
+    points: Sequence[tuple[float, float]]
+
+
+def in_words(arguments: Mapping[str, Any]) -> dict[str, str]:
+    """Give arguments as people write them.
+
+    Parameters
+    ----------
+    arguments : mapping of str to float or str
+        Numbers, numbers with SI units, and words, as ``to_dict`` of a part gives them.
+
+    Returns
+    -------
+    dict of str to str
+        Without ``type`` and what is longer than a few words.
+    """
+    found = {name.replace("_", " "): _written(value) for name, value in arguments.items()
+             if name != "type"}  # fmt: skip
+    return {name: words for name, words in found.items() if len(words) <= _LONGEST}
+
+
+_LONGEST: Final = 60
+
+
+def card(title: str, rows: Mapping[str, str], drawing: str = "", more: str = "") -> str:
+    """Give a card: a title, a drawing and a table of names and values.
+
+    Parameters
+    ----------
+    title : str
+        Plain text, as are the names and values.
+    rows : mapping of str to str
+        Values by their names.
+    drawing, more : str
+        HTML of the drawing, and of what stands below the table.
+
+    Returns
+    -------
+    str
+    """
+    cells = "".join(
+        f'<tr style="background:transparent"><th style="{_CELL};font-weight:normal;opacity:0.7">'
+        f'{escape(name)}</th><td style="{_CELL}">{escape(value)}</td></tr>'
+        for name, value in rows.items()
+    )
+    table = f'<table style="{_TABLE}"><tbody>{cells}</tbody></table>' if cells else ""
+    return (
+        '<div style="display:flex;gap:16px;align-items:flex-start">'
+        f"{drawing}<div><div><b>{escape(title)}</b></div>{table}{more}</div></div>"
+    )
+
+
+def drawing(shapes: Iterable[Shape], *, size: float = 130.0) -> str:
+    """Draw polygons to scale.
+
+    Parameters
+    ----------
+    shapes : iterable of Shape
+        From back to front, y upwards.
+    size : float
+        Of the longer side [px].
+
+    Returns
+    -------
+    str
+        An SVG element.
+    """
+    given = list(shapes)
+    places = [point for shape in given for point in shape.points]
+    left, right = min(x for x, _ in places), max(x for x, _ in places)
+    low, high = min(y for _, y in places), max(y for _, y in places)
+    scale = size / max(right - left, high - low, 1e-12)
+
+    def at(point: tuple[float, float]) -> tuple[float, float]:
+        return 4.0 + scale * (point[0] - left), 4.0 + scale * (high - point[1])
+
+    drawn = "".join(_element(shape, [at(point) for point in shape.points]) for shape in given)
+    width, height = scale * (right - left) + 8.0, scale * (high - low) + 8.0
+    return _svg(width, height, drawn)
+
+
+def curve(values: Sequence[float], *, width: float = 260.0, height: float = 60.0) -> str:
+    """Draw values along time.
+
+    Parameters
+    ----------
+    values : sequence of float
+        At equal distances.
+    width, height : float
+        Of the drawing [px].
+
+    Returns
+    -------
+    str
+        An SVG element; of many values lowest and highest ones are drawn.
+    """
+    most = max((abs(value) for value in values), default=0.0) or 1.0
+    count = len(values)
+    step = max(1, -(-count // 300))
+    ends = [
+        (k, extreme) for k in range(0, count, step) for extreme in _extremes(values[k : k + step])
+    ]
+    points = " ".join(
+        f"{width * k / max(count - 1, 1):.1f},{0.5 * height - 0.48 * height * value / most:.1f}"
+        for k, value in ends
+    )
+    axis = f'<path d="M0 {0.5 * height:.1f}H{width:.0f}" stroke="currentColor" opacity="0.3"/>'
+    line = f'<polyline points="{points}" fill="none" stroke="#0072b2" stroke-width="1"/>'
+    return _svg(width, height, axis + line)
+
+
+def _extremes(values: Sequence[float]) -> tuple[float, ...]:
+    return (values[0],) if len(values) == 1 else (min(values), max(values))
+
+
+def _svg(width: float, height: float, drawn: str) -> str:
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:.0f}" height="{height:.0f}" '
+        f'viewBox="0 0 {width:.1f} {height:.1f}" style="flex:none">{drawn}</svg>'
+    )
+
+
+def _element(shape: Shape, points: Sequence[tuple[float, float]]) -> str:
+    if len(points) == 1:
+        ((x, y),) = points
+        return f'<circle cx="{x:.1f}" cy="{y:.1f}" r="2.5" {_INK}/>'
+    corners = " ".join(f"{x:.1f},{y:.1f}" for x, y in points)
+    return f'<polygon points="{corners}" {_TONES[shape.tone]}/>'
+
+
+def _written(value: Any) -> str:
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, int | float):
+        return f"{value:.6g}"
+    number, _, unit = str(value).partition(" ")
+    try:
+        size = float(number)
+    except ValueError:
+        return str(value)
+    return number_with_unit(size, unit)
+
+
+def number_with_unit(size: float, unit: str) -> str:
+    """Write a number in an SI unit as people do: 99 t, 9 MPa, 250 kN m^-1.
+
+    Parameters
+    ----------
+    size : float
+        In that unit.
+    unit : str
+        As :class:`rockframe.units.Unit` spells it.
+
+    Returns
+    -------
+    str
+    """
+    if unit == "kg" and abs(size) >= 1e3:
+        return f"{1e-3 * size:.6g} t"
+    if unit.split(" ")[0] in _SCALED:
+        for factor, prefix in _PREFIXES:
+            if abs(size) >= factor:
+                return f"{size / factor:.6g} {prefix}{unit}"
+    return f"{size:.6g} {unit}".rstrip()

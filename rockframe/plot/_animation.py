@@ -1,0 +1,238 @@
+"""Scenes that move, with the trace of the rotation below."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final, cast
+
+import numpy as np
+import xarray as xr
+
+from rockframe.errors import ComponentError, shown
+from rockframe.plot._artists import CONTACT, SceneArtist
+from rockframe.plot._axes import BLUE, GREY
+from rockframe.plot._given import check_run
+from rockframe.plot._panels import sheet
+from rockframe.plot._response import response, strips_of
+from rockframe.plot._runs import Run, runs_of
+from rockframe.plot._scene import Moving, size_of
+
+if TYPE_CHECKING:
+    from matplotlib.animation import FuncAnimation
+    from matplotlib.figure import Figure
+
+    from rockframe.plot._panels import AxesLike, Panels
+    from rockframe.plot._runs import Window
+
+_USUAL_FRAMES: Final = 200
+"""That an animation has at most unless its speed is given."""
+_FRAMED: Final = 60
+"""Instants that the limits of the drawing are taken from."""
+_KINDS: Final = (".gif", ".html", ".htm")
+
+
+class Animation:
+    """A run as an animation.
+
+    Notebooks show it as a player with buttons; :meth:`save` writes a GIF or an HTML file.
+    """
+
+    def __init__(
+        self, animated: "FuncAnimation", panels: "Panels", rate: float, times: np.ndarray
+    ) -> None:
+        self._animated, self._rate = animated, rate
+        self.panels = panels
+        self.times = times
+
+    @property
+    def figure(self) -> "Figure":
+        """The figure that moves."""
+        return self.panels.figure
+
+    def save(self, path: "str | Path", *, dpi: float = 100.0) -> Path:
+        """Write the animation into a file.
+
+        Parameters
+        ----------
+        path : str or Path
+            Its name ends in ``.gif``; or in ``.html``, for a player in a page of its own.
+        dpi : float, optional
+            Pixels per inch of the frames.
+
+        Returns
+        -------
+        Path
+
+        Raises
+        ------
+        ComponentError
+            Another ending.
+        """
+        from matplotlib.animation import PillowWriter
+
+        file = Path(path)
+        if file.suffix.lower() not in _KINDS:
+            msg = f"Animation.save: the name must end in .gif or .html, got {shown(str(path))}"
+            raise ComponentError(msg)
+        if file.suffix.lower() == ".gif":
+            self._animated.save(file, writer=PillowWriter(fps=cast("Any", self._rate)), dpi=dpi)
+        else:
+            page = f'<!doctype html><meta charset="utf-8">{self.to_html(dpi=dpi)}'
+            file.write_text(page, encoding="utf-8")
+        return file
+
+    def to_html(self, *, dpi: float = 100.0) -> str:
+        """Give the animation as a player that stands in a page, with all of its pictures.
+
+        Parameters
+        ----------
+        dpi : float, optional
+            Pixels per inch of the frames.
+
+        Returns
+        -------
+        str
+        """
+        from matplotlib import rc_context
+
+        whole: Any = {"animation.embed_limit": 1e6, "savefig.dpi": dpi}
+        with rc_context(whole):
+            return self._animated.to_jshtml(fps=cast("Any", self._rate), default_mode="loop")
+
+    def close(self) -> None:
+        """Close the figure."""
+        from matplotlib import pyplot
+
+        pyplot.close(self.figure)
+
+    def _repr_html_(self) -> str:
+        html = self.to_html()
+        self.close()  # or the notebook would show its last picture too
+        return html
+
+    def __repr__(self) -> str:
+        length = self.times.size / self._rate
+        return f"<animation of {self.times.size} frames, {length:.1f} s; save('run.gif')>"
+
+
+def animation(
+    run: xr.Dataset,
+    *,
+    window: "Window" = None,
+    speed: float | None = None,
+    frames_per_second: float = 20.0,
+    magnify: float = 1.0,
+    rotation: str = "deg",
+    ax: "AxesLike" = None,
+    title: str | None = None,
+) -> Animation:
+    """Animate a run: the scene to scale and where it touches, above the trace of the rotation.
+
+    Parameters
+    ----------
+    run : xarray.Dataset
+        A result with histories.
+    window : (str or Quantity or None, str or Quantity or None), optional
+        Start and end of what is shown; all of it unless given [s].
+    speed : float, optional
+        Time of the run over that of the animation; 1, or more where the animation would have more
+        than 200 frames, unless given [1].
+    frames_per_second : float, optional
+        Of the animation.
+    magnify : float, optional
+        By which displacements are multiplied in the drawing of the scene [1].
+    rotation : str, optional
+        Unit of the trace, as for :func:`rockframe.plot.response`.
+    ax : sequence of Axes, optional
+        For the scene, the rotation and each strip of contact; a new figure unless given.
+    title : str, optional
+        Title of the figure; the verdict unless given.
+
+    Returns
+    -------
+    Animation
+        Its frames are the samples that are nearest; contact that changes faster is seen in the
+        strip at the bottom.
+
+    Raises
+    ------
+    SchemaError
+        Not the result of a single run with histories.
+    UnitsError, ComponentError
+        A window, speed or factor that is none.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
+    >>> run = system.simulate(rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz"))
+    >>> moving = rf.plot.animation(run)
+    >>> moving
+    <animation of 21 frames, 1.1 s; save('run.gif')>
+    >>> moving.save("run.gif")  # doctest: +SKIP
+    """
+    from matplotlib.animation import FuncAnimation
+
+    check_run(run, "animation")
+    (drawn,) = runs_of(run, "animation", window)
+    rate = _positive(frames_per_second, "frames_per_second")
+    length = float(drawn.time[-1] - drawn.time[0])
+    fitting = max(1.0, length * rate / _USUAL_FRAMES)
+    faster = fitting if speed is None else _positive(speed, "speed")
+    count = max(2, 1 + round(length * rate / faster))
+    times = np.linspace(drawn.time[0], drawn.time[-1], count)
+    moving = Moving(drawn.dataset, "animation", magnify)
+    shown_at = _nearest(drawn, times)
+    width, height = size_of(moving.drawer, wide=False)
+    names = ["scene", "rotation", *strips_of([drawn])]
+    heights = [height, 1.3, *[0.25] * (len(names) - 2)]
+    on = sheet(
+        ax, "animation", names, (max(width, 5.4), 0.6 + sum(heights)),
+        lambda figure: figure.subplots(len(names), 1, height_ratios=heights),
+    )  # fmt: skip
+    above, trace, *strips = on.panels
+    response(drawn.dataset, panels=("rotation", "contact"), rotation=rotation, ax=[trace, *strips])
+    trace.tick_params(labelbottom=False)
+    artist = SceneArtist(above, moving.drawer)
+    spread = shown_at[np.linspace(0, count - 1, min(count, _FRAMED)).astype(int)]
+    artist.frame([moving.at(int(place)) for place in spread])
+    artist.rest(moving.upright)
+    artist.mark(moving.points)
+    cursors = [axes.axvline(times[0], color=GREY, linewidth=1.0) for axes in (trace, *strips)]
+    line = trace.get_lines()[0]
+    across, up = (np.asarray(values, np.float64) for values in line.get_data())
+    (dot,) = trace.plot([], [], "o", color=BLUE, markersize=6.0, zorder=5)
+    clock = above.set_title("", fontsize="medium")
+
+    def draw(number: int) -> list[Any]:
+        place = int(shown_at[number])
+        artist.draw(moving.at(place))
+        now = float(drawn.time[place])
+        for cursor in cursors:
+            cursor.set_xdata([now, now])
+        dot.set_data([across[place]], [up[place]])
+        touches = any(moving.at(place).bearing())
+        dot.set_color(BLUE if touches else CONTACT)
+        clock.set_text(moving.words(place))
+        return []
+
+    draw(0)
+    on.entitle(str(run.attrs.get("verdict", "")), title)
+    if on.own is not None:  # places are found once, not for every frame
+        on.own.canvas.draw()
+        on.own.set_layout_engine("none")
+    animated = FuncAnimation(on.panels.figure, draw, frames=count, interval=1e3 / rate, blit=False)
+    animated._draw_was_started = True  # type: ignore[attr-defined]  # not shown is no mistake
+    return Animation(animated, on.panels, rate, drawn.time[shown_at])
+
+
+def _nearest(run: Run, times: np.ndarray) -> np.ndarray:
+    after = np.clip(np.searchsorted(run.time, times), 1, run.time.size - 1)
+    before = after - 1
+    return np.where(times - run.time[before] <= run.time[after] - times, before, after)
+
+
+def _positive(given: object, name: str) -> float:
+    number = float(given) if isinstance(given, int | float) else -1.0
+    if not 0.0 < number < np.inf:
+        msg = f"rf.plot.animation: {name} must be a number above zero, got {shown(given)}"
+        raise ComponentError(msg)
+    return number

@@ -1,0 +1,255 @@
+"""Scenes to scale: as they stand, and at an instant of a run."""
+
+import warnings
+from typing import TYPE_CHECKING, Final, cast
+
+import numpy as np
+import xarray as xr
+
+from rockframe.errors import ComponentError, RockframeWarning, SchemaError, shown
+from rockframe.plot._artists import SceneArtist, labels_of
+from rockframe.plot._given import check_run, check_system
+from rockframe.plot._layout import Drawer
+from rockframe.plot._panels import single
+from rockframe.results.outcome import Array
+from rockframe.results.placement import UPRIGHT, Placement
+from rockframe.system.geometry import Geometry, geometry_of
+from rockframe.units import LENGTH, TIME, QuantityLike, to_si
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from matplotlib.axes import Axes
+
+    from rockframe.plot._panels import AxesLike
+    from rockframe.simulation.system import System
+
+_FOLLOWED: Final = (
+    "rotation",
+    "horizontal_displacement",
+    "vertical_displacement",
+    "contact_state",
+    "cap_rotation",
+    "cap_angular_velocity",
+    "cap_vertical_displacement",
+    "soil_contact_state",
+)
+"""What the place of a scene's parts follows from; of the cap, where there is one."""
+
+
+def scene(
+    system: "System",
+    *,
+    points: "Mapping[str, tuple[QuantityLike, QuantityLike]] | None" = None,
+    legend: bool = True,
+    ax: "AxesLike" = None,
+    title: str | None = None,
+) -> "Axes":
+    """Draw a scene to scale, upright and at rest.
+
+    Parameters
+    ----------
+    system : System
+        The scene.
+    points : mapping of str to (str or Quantity, str or Quantity), optional
+        Points to be marked, as for :meth:`rockframe.System.simulate` [m].
+    legend : bool, optional
+        Whether the parts are named beside the drawing, with their numbers.
+    ax : Axes, optional
+        What is drawn in; a new figure unless given.
+    title : str, optional
+        Title of the figure.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        In metres, with the middle of the lowest base at the origin. A block is drawn as the
+        rectangle of its width and height, whatever it was made from; a frame with its members.
+        Pads have no thickness in the equations; they are drawn with one.
+
+    Raises
+    ------
+    ComponentError
+        Not a system.
+    UnitsError
+        A point has no unit.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> block = rf.Block(width="0.8 m", height="4 m", mass="2 t")
+    >>> axes = rf.plot.scene(rf.System(block), points={"top": ("0 m", "4 m")})
+    >>> axes.get_xlabel()
+    '[m]'
+    """
+    check_system(system, "scene")
+    drawer = Drawer(geometry_of(system.assembly))
+    at = Placement(drawer.geometry, UPRIGHT, system.restraint)
+    marked = {
+        name: tuple(
+            to_si(one, LENGTH, owner="rf.plot.scene", name=f"point {name!r}") for one in place
+        )
+        for name, place in (points or {}).items()
+    }
+    on = single(ax, "scene", size_of(drawer, wide=legend))
+    artist = SceneArtist(on.axes, drawer, names=labels_of(system.parts, drawer.geometry))
+    artist.frame([at])
+    artist.mark(marked)
+    artist.draw(at)
+    if legend:
+        artist.legend()
+    on.entitle("", title)
+    return on.axes
+
+
+def state(
+    run: xr.Dataset,
+    time: "QuantityLike | None" = None,
+    *,
+    magnify: float = 1.0,
+    ax: "AxesLike" = None,
+    title: str | None = None,
+) -> "Axes":
+    """Draw a scene to scale at an instant of a run, and where it touches.
+
+    Parameters
+    ----------
+    run : xarray.Dataset
+        A result with histories.
+    time : str or Quantity, optional
+        The instant; the nearest sample is drawn. That of the largest rotation over the overturning
+        angle unless given [s].
+    magnify : float, optional
+        By which displacements are multiplied [1].
+    ax : Axes, optional
+        What is drawn in; a new figure unless given.
+    title : str, optional
+        Title of the figure; time and rotation unless given.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        In metres, relative to the ground, :eq:`eq-scene-places`; dashed, the block at rest.
+        Contact has its own colour: points and lines where bases bear, pads that are pressed.
+
+    Raises
+    ------
+    SchemaError
+        Not the result of a single run with histories, or one that does not tell its system.
+    UnitsError, ComponentError
+        The time has no unit or lies outside of the run; the factor is not positive.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
+    >>> run = system.simulate(rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz"))
+    >>> axes = rf.plot.state(run, "0.8 s")
+    >>> axes.get_title()
+    ''
+    """
+    check_run(run, "state")
+    moving = Moving(run, "state", magnify)
+    place = moving.nearest(time)
+    at = moving.at(place)
+    on = single(ax, "state", size_of(moving.drawer, wide=False))
+    artist = SceneArtist(on.axes, moving.drawer)
+    artist.frame([at])
+    artist.rest(moving.upright)
+    artist.mark(moving.points)
+    artist.draw(at)
+    on.entitle(moving.words(place), title)
+    return on.axes
+
+
+class Moving:
+    """A run as a scene that moves.
+
+    Parameters
+    ----------
+    run : xarray.Dataset
+        A result with histories.
+    function : str
+        Which function of `rf.plot` it was given to.
+    magnify : float
+        By which displacements are multiplied [1].
+    """
+
+    def __init__(self, run: xr.Dataset, function: str, magnify: object) -> None:
+        from rockframe.simulation.system import System
+
+        self.function = function
+        number = float(cast("float", magnify)) if isinstance(magnify, int | float) else -1.0
+        if not 0.0 < number < np.inf:
+            msg = f"rf.plot.{function}: magnify must be a number above zero, got {shown(magnify)}"
+            raise ComponentError(msg)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", RockframeWarning)  # they were said when it ran
+            self.system = System.from_dataset(run)
+        self.drawer = Drawer(geometry_of(self.system.assembly), number)
+        self.run = run
+        self.time = run["time"].to_numpy()
+        missing = [name for name in _FOLLOWED[:4] if name not in run]
+        if missing:
+            msg = f"rf.plot.{function}: the run lacks {', '.join(map(repr, missing))}"
+            raise SchemaError(msg)
+        self._columns = {name: run[name].to_numpy() for name in _FOLLOWED if name in run}
+
+    @property
+    def geometry(self) -> Geometry:
+        """Of the scene."""
+        return self.drawer.geometry
+
+    @property
+    def upright(self) -> Placement:
+        """The scene at rest."""
+        return Placement(self.geometry, UPRIGHT, self.system.restraint)
+
+    @property
+    def points(self) -> "dict[str, tuple[float, ...]]":
+        """Points that the run was asked for, by their names [m]."""
+        if "point" not in self.run.dims:
+            return {}
+        names = self.run["point"].to_numpy()
+        places = zip(self.run["point_x"].to_numpy(), self.run["point_y"].to_numpy(), strict=True)
+        return {str(name): (float(x), float(y)) for name, (x, y) in zip(names, places, strict=True)}
+
+    def at(self, place: int) -> Placement:
+        """Give the scene at a sample."""
+        values = {name: float(column[place]) for name, column in self._columns.items()}
+        return Placement(self.geometry, values, self.system.restraint)
+
+    def nearest(self, time: object) -> int:
+        """Find the sample nearest to a time, or that of the largest rotation."""
+        if time is None:
+            return int(np.argmax(np.abs(self.run["relative_rotation"].to_numpy())))
+        owner = f"rf.plot.{self.function}"
+        when = to_si(time, TIME, owner=owner, name="time")
+        slack = 1e-9 * (self.time[-1] - self.time[0])
+        if not self.time[0] - slack <= when <= self.time[-1] + slack:
+            msg = (
+                f"{owner}: the run goes from {self.time[0]:.6g} s to {self.time[-1]:.6g} s, got "
+                f"time={shown(time)}"
+            )
+            raise ComponentError(msg)
+        return int(np.argmin(np.abs(self.time - when)))
+
+    def words(self, place: int) -> str:
+        """Tell time and rotation of a sample."""
+        angle = np.degrees(self._columns["rotation"][place])
+        share = float(self.run["relative_rotation"][place])
+        text = f"{self.time[place]:.3f} s: {angle:.2f}°, {100.0 * share:.0f} % of overturning"
+        factor = self.drawer.magnify
+        return text if factor == 1.0 else f"{text}; displacements times {factor:g}"
+
+    def corners(self, places: Array) -> Array:
+        """Give all corners of the block at samples, which a drawing must hold."""
+        found = [self.drawer.lay_out(self.at(int(place))).block for place in places]
+        return np.vstack(found)
+
+
+def size_of(drawer: Drawer, *, wide: bool) -> tuple[float, float]:
+    """Give the size of a figure that a scene fits [in]."""
+    geometry = drawer.geometry
+    tall = (geometry.level + geometry.height) / (2.0 * drawer.reach)
+    return (5.6 if wide else 4.2), float(np.clip(3.6 * tall, 3.2, 5.6))

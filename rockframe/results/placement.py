@@ -1,0 +1,106 @@
+"""Where the parts of a scene are at an instant of a run, :eq:`eq-scene-places`."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from rockframe.dynamics.events import ContactState
+from rockframe.dynamics.restraint import PIVOT_LEFT, PIVOT_RIGHT, pivot_of
+from rockframe.results.outcome import Array
+from rockframe.results.points import carried
+from rockframe.system.geometry import Geometry
+from rockframe.system.options import Restraint
+from rockframe.system.restraints import restraint_code
+
+UPRIGHT: Mapping[str, float] = {
+    "rotation": 0.0,
+    "horizontal_displacement": 0.0,
+    "vertical_displacement": 0.0,
+    "contact_state": float(ContactState.FULL),
+}
+"""The values of a scene that is upright and at rest."""
+
+
+@dataclass(frozen=True)
+class Placement:
+    """A scene at an instant: the moves of its bodies, and which ends bear.
+
+    Parameters
+    ----------
+    geometry : Geometry
+        Of the scene.
+    values : mapping of str to float
+        Of the instant, by their names in the schema.
+    restraint : Restraint
+        Which point of the base is held horizontally.
+    """
+
+    geometry: Geometry
+    values: Mapping[str, float]
+    restraint: Restraint
+
+    def block(self, points: Array) -> Array:
+        """Give where points of the block are, and of all that it is one body with.
+
+        Parameters
+        ----------
+        points : ndarray, shape (points, 2)
+            At rest, from the middle of the lowest base [m].
+
+        Returns
+        -------
+        ndarray, shape (points, 2)
+            Along and normal to the base line, relative to the ground [m].
+        """
+        values = self.values
+        moves = values["horizontal_displacement"], values["vertical_displacement"]
+        return self._moved(points, self.geometry.moved, values["rotation"], moves)
+
+    def cap(self, points: Array) -> Array:
+        """Give where points of the cap are, as :meth:`block` does."""
+        if not self.geometry.stacked or self.geometry.cap is None:
+            return self.block(points)
+        half_width, height = self.geometry.cap
+        rotation = self.values.get("cap_rotation", 0.0)
+        pin = half_width * self._held_side(rotation)
+        # the centre of mass about the held point, which does not move, as in eq-kinematics
+        across, _ = carried(
+            np.array(-pin), np.array(0.5 * height), np.array(rotation),
+            small_rotation=self.geometry.small_rotation,
+        )  # fmt: skip
+        moves = float(across), self.values.get("cap_vertical_displacement", 0.0)
+        return self._moved(points, (0.0, 0.5 * height), rotation, moves)
+
+    @property
+    def cap_rotation(self) -> float:
+        """Of what the block stands on [rad]."""
+        return self.values.get("cap_rotation", 0.0) if self.geometry.stacked else 0.0
+
+    def bearing(self, name: str = "contact_state") -> tuple[bool, bool]:
+        """Tell whether the left and the right end of a base bear."""
+        state = self.values.get(name, float(ContactState.FULL))
+        full = state == ContactState.FULL
+        return full or state == ContactState.LEFT, full or state == ContactState.RIGHT
+
+    def _held_side(self, rotation: float) -> float:
+        """Give -1, 0 or 1 for the left end, the middle or the right end of the cap's base."""
+        left, right = self.bearing("soil_contact_state")
+        if not (left or right):
+            return 0.0
+        rate = self.values.get("cap_angular_velocity", 0.0)
+        pivot = pivot_of(restraint_code(self.restraint), left, right, rotation, rate)
+        return {PIVOT_LEFT: -1.0, PIVOT_RIGHT: 1.0}.get(pivot, 0.0)
+
+    def _moved(
+        self,
+        points: Array,
+        centre: tuple[float, float],
+        rotation: float,
+        moves: tuple[float, float],
+    ) -> Array:
+        right, up = (points - np.array(centre)).T
+        across, above = carried(
+            right, up, np.array(rotation), small_rotation=self.geometry.small_rotation
+        )
+        return points + np.column_stack([across + moves[0], above + moves[1]])

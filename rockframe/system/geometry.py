@@ -1,0 +1,134 @@
+"""Where the parts of a scene are, upright and at rest: what a drawing of it shows."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from rockframe.components import FrameEquivalent
+from rockframe.system.assembly import Assembly
+from rockframe.system.bodies import cap_under
+from rockframe.system.stacked import StackedSetting
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Geometry:
+    """Sizes and places of a scene's parts, in SI units, as :eq:`eq-scene-places` needs them.
+
+    Places count to the right of the middle of the lowest base, and up from it.
+
+    Parameters
+    ----------
+    outline : ndarray, shape (corners, 2)
+        Of the block, from the middle of its own base.
+    members : tuple of ndarray
+        Outlines of a frame's members, in the same coordinates.
+    half_width : float
+        Of the block's base.
+    centre : (float, float)
+        The block's centre of mass, in the coordinates of its outline.
+    moved : (float, float)
+        The centre of mass of the body that results are of, from the middle of the lowest base:
+        that of the block, or of block and cap where these are one body.
+    cap : (float, float) or None
+        Half the width and the height of the cap.
+    pads_sink, bed_sinks : float or None
+        Settlements under the weight of pads and of soil, where the scene has them.
+    stacked : bool
+        Whether pads stand between block and cap, which then move apart.
+    inclination : float
+        By which the base line rises to the right [rad].
+    small_rotation : bool
+        Whether the kinematics are expanded in the rotation.
+    """
+
+    outline: Array
+    members: tuple[Array, ...]
+    half_width: float
+    centre: tuple[float, float]
+    moved: tuple[float, float]
+    cap: tuple[float, float] | None
+    pads_sink: float | None
+    bed_sinks: float | None
+    stacked: bool
+    inclination: float
+    small_rotation: bool
+
+    @property
+    def level(self) -> float:
+        """Height of the block's base above the lowest base [m]."""
+        return 0.0 if self.cap is None else self.cap[1]
+
+    @property
+    def height(self) -> float:
+        """Of the block [m]."""
+        return float(self.outline[:, 1].max())
+
+    @property
+    def base_half_width(self) -> float:
+        """Of the lowest base [m]."""
+        return self.half_width if self.cap is None else self.cap[0]
+
+    @property
+    def block(self) -> Array:
+        """Outline of the block, from the middle of the lowest base [m]."""
+        return self.outline + np.array([0.0, self.level])
+
+    @property
+    def cap_outline(self) -> Array | None:
+        """Outline of the cap, from the middle of its base [m]."""
+        return None if self.cap is None else rectangle(*self.cap)
+
+
+def rectangle(half_width: float, height: float, x: float = 0.0, y: float = 0.0) -> Array:
+    """Give the corners of a rectangle that stands on the middle of its lower side [m]."""
+    left, right, top = x - half_width, x + half_width, y + height
+    return np.array([(left, y), (right, y), (right, top), (left, top)])
+
+
+def geometry_of(scene: Assembly) -> Geometry:
+    """Give the geometry of a scene.
+
+    Parameters
+    ----------
+    scene : Assembly
+        The checked scene.
+
+    Returns
+    -------
+    Geometry
+    """
+    parts, setting = scene.parts, scene.setting
+    block = parts.the_block
+    cap = None if parts.cap is None else cap_under(block, parts.the_cap)
+    stacked = isinstance(setting, StackedSetting)
+    above_pads = setting.upper if stacked else setting
+    on_bed = setting.lower if stacked else setting
+    body = setting.body
+    level = 2.0 * cap.half_height if stacked and cap is not None else 0.0
+    return Geometry(
+        outline=rectangle(block.half_width, block.height),
+        members=members_of(parts.block),
+        half_width=block.half_width,
+        centre=(block.eccentricity, block.centre_height),
+        moved=(body.eccentricity, level + body.centre_height),
+        cap=None if cap is None else (cap.half_width, 2.0 * cap.half_height),
+        pads_sink=None if parts.pads is None else above_pads.settlement or 0.0,
+        bed_sinks=None if parts.soil is None else on_bed.settlement or 0.0,
+        stacked=stacked,
+        inclination=scene.options.inclination,
+        small_rotation=scene.options.small,
+    )
+
+
+def members_of(block: object) -> tuple[Array, ...]:
+    """Give the outlines of a frame's members whose sizes are known [m]."""
+    if not isinstance(block, FrameEquivalent):
+        return ()
+    return tuple(
+        rectangle(0.5 * one.width, one.height, one.x, one.y - 0.5 * one.height)
+        for one in (member.si for member in block.members)
+        if one.width is not None and one.height is not None
+    )
