@@ -82,6 +82,7 @@ if TYPE_CHECKING:
 # first simulation does not wait for them.
 for _library in ("pint", "xarray"):
     import_module(_library)
+import_module(f"{__name__}.accessor")  # so that every dataset has it
 
 _HOMES = {
     "rockframe.components": (

@@ -12,15 +12,15 @@ _SCALED: Final = ("Pa", "N", "J")
 """Units that are written with a prefix where they are many; so are those that begin with them."""
 _INK: Final = 'stroke="currentColor" fill="currentColor"'
 _TONES: Final = {
-    "block": 'fill="#0072b2" fill-opacity="0.25" stroke="#0072b2"',
-    "member": 'fill="#0072b2" fill-opacity="0.35" stroke="#0072b2"',
+    "block": 'fill="#0072b2" fill-opacity="0.25" stroke="#3a8fc7"',
+    "member": 'fill="#0072b2" fill-opacity="0.35" stroke="#3a8fc7"',
     "cap": 'fill="#e69f00" fill-opacity="0.35" stroke="#e69f00"',
     "pad": 'fill="#808080" fill-opacity="0.6" stroke="#808080"',
     "soil": 'fill="#a6794f" fill-opacity="0.35" stroke="#a6794f"',
     "ground": 'fill="#808080" fill-opacity="0.35" stroke="none"',
 }
-_TABLE: Final = "border-collapse:collapse;margin:0;font-size:inherit"
-_CELL: Final = "text-align:left;padding:1px 12px 1px 0;background:transparent;border:none"
+TABLE: Final = "border-collapse:collapse;color:inherit;margin:0;font-size:inherit"
+CELL: Final = "text-align:left;padding:1px 12px 1px 0;background:transparent;border:none"
 
 
 class Shape(NamedTuple):
@@ -68,11 +68,11 @@ def card(title: str, rows: Mapping[str, str], drawing: str = "", more: str = "")
     str
     """
     cells = "".join(
-        f'<tr style="background:transparent"><th style="{_CELL};font-weight:normal;opacity:0.7">'
-        f'{escape(name)}</th><td style="{_CELL}">{escape(value)}</td></tr>'
+        f'<tr style="background:transparent"><th style="{CELL};font-weight:normal;opacity:0.7">'
+        f'{escape(name)}</th><td style="{CELL}">{escape(value)}</td></tr>'
         for name, value in rows.items()
     )
-    table = f'<table style="{_TABLE}"><tbody>{cells}</tbody></table>' if cells else ""
+    table = f'<table style="{TABLE}"><tbody>{cells}</tbody></table>' if cells else ""
     return (
         '<div style="display:flex;gap:16px;align-items:flex-start">'
         f"{drawing}<div><div><b>{escape(title)}</b></div>{table}{more}</div></div>"
@@ -134,7 +134,7 @@ def curve(values: Sequence[float], *, width: float = 260.0, height: float = 60.0
         for k, value in ends
     )
     axis = f'<path d="M0 {0.5 * height:.1f}H{width:.0f}" stroke="currentColor" opacity="0.3"/>'
-    line = f'<polyline points="{points}" fill="none" stroke="#0072b2" stroke-width="1"/>'
+    line = f'<polyline points="{points}" fill="none" stroke="#3a8fc7" stroke-width="1"/>'
     return _svg(width, height, axis + line)
 
 

@@ -21,6 +21,14 @@ from matplotlib import pyplot
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Arc, Polygon, Rectangle
+from plot_figures import (
+    compared_runs,
+    diagrams,
+    response_with_events,
+    scene_and_state,
+    suite_spectra,
+    write_card,
+)
 from pulse_figures import cycloidal_pulses, wavelets
 from speed_figures import cost_model, work_precision
 from sphinx.application import Sphinx
@@ -161,6 +169,11 @@ def six_storeys_released() -> Figure:
 
 FIGURES = (
     quickstart,
+    response_with_events,
+    compared_runs,
+    scene_and_state,
+    diagrams,
+    suite_spectra,
     rungs,
     conventions,
     three_storeys_released,
@@ -197,6 +210,7 @@ def setup(app: Sphinx) -> dict[str, bool]:
 
 
 if __name__ == "__main__":
+    write_card(Path(sys.argv[1]))
     for figure in FIGURES:
         # a function of rf.plot gives axes, which know their figure
         drawn = figure().figure

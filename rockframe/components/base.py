@@ -11,6 +11,7 @@ from rockframe.components.parameters import DERIVED, REQUIRED, Declared
 from rockframe.components.registry import register
 from rockframe.components.values import SIValues
 from rockframe.errors import ComponentError, ModelWarning, shown, warn
+from rockframe.notebook import Shape, card, drawing, in_words
 
 
 class Component:
@@ -137,6 +138,15 @@ class Component:
     def __repr__(self) -> str:
         given = ", ".join(f"{name}={value!r}" for name, value in self._arguments().items())
         return f"{type(self).__name__}({given})"
+
+    def _shapes(self) -> list[Shape]:
+        """Give what notebooks draw of the component, to scale; nothing unless it has a shape."""
+        return []
+
+    def _repr_html_(self) -> str:
+        shapes = self._shapes()
+        drawn = drawing(shapes) if shapes else ""
+        return card(type(self).__name__, in_words(self._arguments()), drawn)
 
     def __reduce__(self) -> tuple[object, ...]:
         return (type(self).from_dict, (self._arguments(),))

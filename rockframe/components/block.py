@@ -20,6 +20,7 @@ from rockframe.components.shapes.parts import body_of_parts
 from rockframe.components.shapes.reading import Place, Points
 from rockframe.components.values import Quantity, SIProperty, SIValues
 from rockframe.errors import ComponentError, shown
+from rockframe.notebook import Shape
 from rockframe.units import (
     ANGLE,
     ANGULAR_VELOCITY,
@@ -175,6 +176,11 @@ class Block(Component):
         check_representable(si, type(self).__name__)
         check_rocks(si, type(self).__name__)
         return si
+
+    def _shapes(self) -> list[Shape]:
+        half, si = self.si.half_width, self.si
+        outline = [(-half, 0.0), (half, 0.0), (half, si.height), (-half, si.height)]
+        return [Shape("block", outline), Shape("block", [(si.eccentricity, si.centre_height)])]
 
     @classmethod
     def from_density(

@@ -8,6 +8,7 @@ from rockframe.components.alternatives import OneOf
 from rockframe.components.base import Component
 from rockframe.components.parameters import Parameter
 from rockframe.components.values import SIValues
+from rockframe.notebook import Shape
 from rockframe.units import (
     DENSITY,
     LENGTH,
@@ -85,6 +86,13 @@ class CushionCap(Component):
         depth: QuantityLike | None = None,
     ) -> None:
         super().__init__(height=height, mass=mass, width=width, density=density, depth=depth)
+
+    def _shapes(self) -> list[Shape]:
+        si = self.si
+        if si.width is None:
+            return []
+        half = 0.5 * si.width
+        return [Shape("cap", [(-half, 0.0), (half, 0.0), (half, si.height), (-half, si.height)])]
 
     def _numbers(self, given: SIValues) -> CushionCapSI:
         by_density = given.density is not None

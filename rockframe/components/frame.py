@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Iterable, Mapping
-from typing import Any, Self
+from typing import Any, Final, Self
 
 import xarray as xr
 
@@ -15,9 +15,13 @@ from rockframe.components.frame_table import members_table
 from rockframe.components.parameters import DERIVED, Ratio
 from rockframe.components.values import Quantity
 from rockframe.errors import ComponentError, SchemaError, shown
+from rockframe.notebook import Shape
 from rockframe.units import LENGTH, POSITIVE, QuantityLike, RatioLike, quantity
 
 _LEAST_SHAPE_FACTOR = 1.0 - 1e-9  # a shape factor derived from an inertia is rounded
+
+
+_CORNERS: Final = ((-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5))
 
 
 class FrameEquivalent(Block):
@@ -251,6 +255,14 @@ class FrameEquivalent(Block):
     def members(self) -> tuple[Member, ...]:
         """Members that the frame was built from; none if it was built from its parameters."""
         return () if self._building is None else self._building.members
+
+    def _shapes(self) -> list[Shape]:
+        members = [
+            Shape("member", [(si.x + a * si.width, si.y + b * si.height) for a, b in _CORNERS])
+            for si in (member.si for member in self.members)
+            if si.width is not None and si.height is not None
+        ]
+        return [*super()._shapes(), *members]
 
     @property
     def depth(self) -> Quantity | None:

@@ -126,6 +126,14 @@ class MotionValue:
             f"peak {self.si.peak:.5g} m/s^2{vertical}>"
         )
 
+    def __dir__(self) -> list[str]:
+        return [name for name in super().__dir__() if not name.startswith("_")]
+
+    def _repr_html_(self) -> str:
+        from rockframe.motion.card import motion_card
+
+        return motion_card(self)
+
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, MotionValue):
             return NotImplemented

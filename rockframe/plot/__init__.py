@@ -1,6 +1,7 @@
 """Figures of results and motions; matplotlib is imported when the first is drawn."""
 
 from rockframe.plot._animation import Animation, animation
+from rockframe.plot._diagrams import energies, moment_rotation, phase
 from rockframe.plot._ensembles import ensemble, probability
 from rockframe.plot._fragility import fragility
 from rockframe.plot._motion import motion
@@ -15,18 +16,25 @@ from rockframe.plot._response import response
 from rockframe.plot._scene import scene, state
 from rockframe.plot._selection import selection
 from rockframe.plot._spectra import spectra
+from rockframe.plot._studies import critical_scale, free_decay, sweep
+from rockframe.plot._suites import suite
 from rockframe.plot._tradeoff import tradeoff
 
 __all__ = [
     "Animation",
     "Panels",
     "animation",
+    "critical_scale",
     "dynamic_analysis",
+    "energies",
     "ensemble",
     "fragility",
+    "free_decay",
+    "moment_rotation",
     "motion",
     "overturning_map",
     "overturning_spectrum",
+    "phase",
     "probability",
     "response",
     "rocking_spectrum",
@@ -34,6 +42,8 @@ __all__ = [
     "selection",
     "spectra",
     "state",
+    "suite",
+    "sweep",
     "tradeoff",
 ]
 

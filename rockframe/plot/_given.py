@@ -25,6 +25,9 @@ _NEEDED: Final = {
     "overturning_spectrum": "a spectrum, as rf.overturning_spectrum(system, ...) gives it",
     "probability": "a sample, as rf.probability_of_overturning(system, motions, ...) gives it",
     "ensemble": "an ensemble, as rf.ensemble_statistics(runs) gives it",
+    "critical_scale": "a critical scale, as rf.critical_scale(system, motion) gives it",
+    "free_decay": "a fit, as rf.fit_free_decay(system, measured) gives it",
+    "suite": "a set of GroundMotions",
 }
 _STUDIES: Final = {
     "fragility": ("exceedance_probability", "fragility_status"),
@@ -34,6 +37,8 @@ _STUDIES: Final = {
     "overturning_spectrum": ("capacity_intensity", "rocking_period"),
     "probability": ("overturning_probability", "first_order_index"),
     "ensemble": ("ordered_value", "cumulative_probability"),
+    "critical_scale": ("critical_scale", "scale_above", "outcome", "peak_rotation"),
+    "free_decay": ("fitted_value", "parameter", "initial_rotation"),
 }
 """Variables by which the results of studies are known, by what draws them."""
 _RUN: Final = (
@@ -61,6 +66,13 @@ _SELECTION: Final = (
     "scale_factor",
     "spectral_misfit",
 )
+_KNOWN: Final = {
+    **_STUDIES,
+    "tradeoff": ("run_time", "verdict_agrees"),
+    "selection": ("scaled_spectral_acceleration", "target_spectral_acceleration"),
+    "response": ("relative_rotation", "time", "contact_state"),
+}
+"""Variables by which a dataset is known, by what draws it."""
 _DRAWN_BY: Final = (
     # (variables, what they are, what draws them), the first that fits
     *(
@@ -95,6 +107,40 @@ _DRAWN_BY: Final = (
         "rf.plot.motion draws them from the motion itself",
     ),
 )
+
+
+def drawn_by(given: xr.Dataset) -> str:
+    """Give the function that draws a dataset.
+
+    Parameters
+    ----------
+    given : xarray.Dataset
+        Any dataset.
+
+    Returns
+    -------
+    str
+        Its name in `rf.plot`.
+
+    Raises
+    ------
+    SchemaError
+        No function draws such a dataset; the message says what else can be done.
+    """
+    for function, names in _KNOWN.items():
+        if _holds(given, names):
+            return function
+    if "peak_relative_rotation" in given and given["peak_relative_rotation"].ndim > 0:
+        return "sweep"
+    for names, what, way in _DRAWN_BY:
+        if _holds(given, names):
+            msg = f"no function of rf.plot draws a Dataset with {what}; {way}"
+            raise SchemaError(msg)
+    msg = (
+        "no function of rf.plot draws this dataset; known are results of runs, sweeps, studies "
+        "and comparisons"
+    )
+    raise SchemaError(msg)
 
 
 def check_run(given: object, function: str) -> None:

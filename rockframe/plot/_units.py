@@ -63,4 +63,4 @@ def unit_of(given: object, measure: Measure, *, function: str, name: str) -> Sho
         msg = f"{owner}: {name} must be a unit, such as {str(measure.unit)!r}, got {shown(given)}"
         raise ComponentError(msg)
     size = to_si(f"1 {given}", measure, owner=owner, name=name)
-    return Shown(_WRITTEN.get(given, given), size)
+    return Shown(_WRITTEN.get(given, given).replace("*", " "), size)

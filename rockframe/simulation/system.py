@@ -172,6 +172,14 @@ class System:
             f"rotation={str(self.rotation)!r}{coupling}{slope})"
         )
 
+    def __dir__(self) -> list[str]:
+        return [name for name in super().__dir__() if not name.startswith("_")]
+
+    def _repr_html_(self) -> str:
+        from rockframe.system.card import system_card
+
+        return system_card(self._assembly, type(self).__name__)
+
     def describe(self) -> str:
         """Tell which model was picked, by which equations, and what it leaves out.
 

@@ -115,6 +115,14 @@ class MotionSuite(Mapping[str, GroundMotion]):
 
     # what is known --------------------------------------------------------------------------
 
+    def __dir__(self) -> list[str]:
+        return [name for name in super().__dir__() if not name.startswith("_")]
+
+    def _repr_html_(self) -> str:
+        from rockframe.suites.card import suite_card
+
+        return suite_card(self)
+
     @property
     def verticals(self) -> Mapping[str, GroundMotion]:
         """Vertical components, by their labels."""

@@ -1,0 +1,118 @@
+"""What every dataset has as ``dataset.rockframe``: figures, tables and a summary of results."""
+
+from typing import TYPE_CHECKING, Any
+
+import xarray as xr
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from rockframe.simulation.system import System
+
+_SHOWN = (
+    "peak_rotation",
+    "peak_relative_rotation",
+    "overturning_time",
+    "first_uplift_time",
+    "impact_count",
+    "energy_residual",
+)
+
+
+@xr.register_dataset_accessor("rockframe")
+class RockframeAccessor:
+    """Figures, tables and a summary of a result of rockframe, also of one read back from a file.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The result.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
+    >>> run = system.simulate(rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz"))
+    >>> panels = run.rockframe.plot(rotation="deg")
+    >>> run.rockframe.table("events").event_kind[0]
+    'uplift'
+    >>> run.rockframe.system == system
+    True
+    """
+
+    def __init__(self, dataset: xr.Dataset) -> None:
+        self._dataset = dataset
+
+    def __dir__(self) -> list[str]:
+        return ["plot", "summary", "system", "table"]
+
+    def plot(self, **options: Any) -> Any:
+        """Draw the dataset with the function of :mod:`rockframe.plot` that draws its kind.
+
+        Parameters
+        ----------
+        **options
+            Of that function.
+
+        Returns
+        -------
+        matplotlib.axes.Axes or rockframe.plot.Panels
+
+        Raises
+        ------
+        SchemaError
+            No function draws such a dataset.
+        """
+        from rockframe import plot
+        from rockframe.plot._given import drawn_by
+
+        return getattr(plot, drawn_by(self._dataset))(self._dataset, **options)
+
+    def table(self, contents: str = "scalars") -> "pd.DataFrame":
+        """Give the dataset as :func:`rockframe.table` does.
+
+        Parameters
+        ----------
+        contents : {"scalars", "histories", "events"}, optional
+            What the rows are.
+
+        Returns
+        -------
+        pandas.DataFrame
+
+        Raises
+        ------
+        SchemaError, ComponentError
+            As :func:`rockframe.table`.
+        """
+        from rockframe.results.table import table
+
+        return table(self._dataset, contents)
+
+    @property
+    def system(self) -> "System":
+        """The system that a run came from, as :meth:`rockframe.System.from_dataset` gives it."""
+        from rockframe.simulation.system import System
+
+        return System.from_dataset(self._dataset)
+
+    @property
+    def summary(self) -> str:
+        """What the dataset holds and what became of it, in a few lines."""
+        given = self._dataset
+        lines = [str(given.attrs[name]) for name in ("title", "verdict") if name in given.attrs]
+        lines += [
+            f"{name}: {given.attrs[name]}"
+            for name in ("model", "motion", "accuracy")
+            if name in given.attrs
+        ]
+        if len(given.sizes) > 0:
+            lines.append("over " + ", ".join(f"{dim} ({n})" for dim, n in given.sizes.items()))
+        for name in _SHOWN:
+            if name in given and given[name].ndim == 0:
+                unit = str(given[name].attrs.get("units", "1"))
+                lines.append(f"{name}: {given[name].item():.4g}{'' if unit == '1' else f' {unit}'}")
+        return "\n".join(lines)
+
+    def __repr__(self) -> str:
+        return self.summary

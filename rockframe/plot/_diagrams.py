@@ -1,0 +1,321 @@
+"""Diagrams of runs without time along the axis, and energies: phases, moments, balances."""
+
+import warnings
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+import xarray as xr
+
+from rockframe.errors import RockframeWarning, SchemaError
+from rockframe.plot._axes import COLOURS, GREY, colour_of, grid, ink, key, labelled, zero_line
+from rockframe.plot._given import overturning_angles, refuse
+from rockframe.plot._panels import single
+from rockframe.plot._response import of_rotation, relative
+from rockframe.plot._runs import Run, runs_of, verdict_of
+from rockframe.plot._units import RELATIVE, Shown, unit_of
+from rockframe.results.schema import ENERGIES, SCHEMA
+from rockframe.units import ANGLE, Measure, Unit
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from rockframe.plot._panels import AxesLike
+    from rockframe.plot._runs import RunsLike, Window
+    from rockframe.simulation.system import System
+
+MOMENT: Final = Measure("a moment", Unit.NEWTON_METRE, "1 kN*m")
+ENERGY: Final = Measure("an energy", Unit.JOULE, "1 kJ")
+_STATES: Final = ("kinetic_energy", "potential_energy", "elastic_energy")
+_ANGLES: Final = 401
+"""At which a body is held for a curve of moments."""
+
+
+def phase(
+    runs: "RunsLike",
+    *,
+    window: "Window" = None,
+    rotation: str = RELATIVE,
+    ax: "AxesLike" = None,
+    title: str | None = None,
+) -> "Axes":
+    """Draw the rate of the rotation over the rotation.
+
+    Parameters
+    ----------
+    runs : xarray.Dataset, or sequence or mapping of them
+        A result with histories; or several to compare, as for :func:`rockframe.plot.response`.
+    window : (str or Quantity or None, str or Quantity or None), optional
+        Start and end of what is drawn; all of it unless given [s].
+    rotation : str, optional
+        Unit of rotations, such as ``"deg"``; rates have it per second. Or ``"relative"``, over
+        the overturning angle.
+    ax : Axes, optional
+        What is drawn in; a new figure unless given.
+    title : str, optional
+        Title of the figure; the verdict unless given.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        A dot marks the start of each run, crosses the rotations of unstable equilibrium.
+
+    Raises
+    ------
+    SchemaError
+        Not the result of a single run with histories.
+    UnitsError, ComponentError
+        A unit of another kind, or a window without samples.
+    """
+    given = runs_of(runs, "phase", window)
+    unit = _angle(rotation, "phase")
+    on = single(ax, "phase", (5.6, 4.4))
+    for run in given:
+        across, up = of_rotation(run, unit), _rate(run, unit)
+        on.axes.plot(
+            across, up, color=run.colour, linestyle=run.style, linewidth=0.9, label=run.label
+        )
+        on.axes.plot(across[:1], up[:1], "o", color=run.colour, markersize=5.0)
+        left, right = overturning_angles(run.dataset)
+        ends = np.array([-left, right])
+        ends = relative(ends, left, right) if unit is None else unit.of(ends)
+        on.axes.plot(ends, [0.0, 0.0], "x", color=ink(), markersize=6.0)
+    _about_zero(on.axes)
+    words, per_second = ("-", "s^-1") if unit is None else (unit.words, f"{unit.words} s^-1")
+    on.axes.set(
+        xlabel=labelled(r"rotation $\alpha/\theta$" if unit is None else "rotation", words),
+        ylabel=labelled(
+            r"rate $\dot\alpha/\theta$" if unit is None else "rate of the rotation", per_second
+        ),
+    )
+    if len(given) > 1:
+        key(on.axes)
+    on.entitle(verdict_of(given), title)
+    return on.axes
+
+
+def moment_rotation(
+    given: "System | RunsLike",
+    *,
+    largest: float = 1.2,
+    window: "Window" = None,
+    rotation: str = "deg",
+    moment: str = "kN*m",
+    ax: "AxesLike" = None,
+    title: str | None = None,
+) -> "Axes":
+    """Draw the moment of the base over the rotation: held, and in runs.
+
+    Parameters
+    ----------
+    given : System, or xarray.Dataset, or sequence or mapping of them
+        A system, of which the moment that the base gives is drawn in vertical equilibrium,
+        :meth:`rockframe.System.moment_rotation`; or runs with
+        ``outputs=("base_overturning_moment",)``. Beneath a single run of one body that moment is
+        dashed.
+    largest : float, optional
+        Rotation up to which a system is held, over the overturning angle of the side [1].
+    window : (str or Quantity or None, str or Quantity or None), optional
+        Start and end of what is drawn of runs; all of it unless given [s].
+    rotation, moment : str, optional
+        Units.
+    ax : Axes, optional
+        What is drawn in; a new figure unless given.
+    title : str, optional
+        Title of the figure; the verdict of a run unless given.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        Of a block on pads on a cap the rotations are those of the block on the cap, where a run
+        is drawn.
+
+    Raises
+    ------
+    SchemaError
+        Neither a system nor runs with histories of the moment.
+    UnitsError, ComponentError
+        A unit of another kind, or a window without samples.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> pads = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
+    >>> system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"), pads)
+    >>> axes = rf.plot.moment_rotation(system)
+    >>> axes.get_xlabel()
+    'rotation [°]'
+    """
+    from rockframe.simulation.system import System
+
+    angle = unit_of(rotation, ANGLE, function="moment_rotation", name="rotation")
+    size = unit_of(moment, MOMENT, function="moment_rotation", name="moment")
+    if isinstance(given, System):
+        held = _held(given, largest)
+        on = single(ax, "moment_rotation", (5.6, 4.2))
+        _draw_held(on.axes, held, angle, size)
+        on.entitle("", title)
+    else:
+        runs = runs_of(given, "moment_rotation", window)
+        _need(runs, ("base_overturning_moment",), "moment_rotation")
+        on = single(ax, "moment_rotation", (5.6, 4.2))
+        if len(runs) == 1 and "rotation_on_cap" not in runs[0].dataset:
+            _draw_beneath(on.axes, runs[0], angle, size)
+        for run in runs:
+            name = "rotation_on_cap" if "rotation_on_cap" in run.dataset else "rotation"
+            on.axes.plot(
+                angle.of(run.dataset[name]), size.of(run.dataset["base_overturning_moment"]),
+                color=run.colour, linestyle=run.style, linewidth=0.9, label=run.label,
+            )  # fmt: skip
+        if on.axes.get_legend_handles_labels()[0]:
+            key(on.axes)
+        on.entitle(verdict_of(runs), title)
+    _about_zero(on.axes)
+    on.axes.set(
+        xlabel=labelled("rotation", angle.words), ylabel=labelled("moment of the base", size.words)
+    )
+    return on.axes
+
+
+def energies(
+    run: xr.Dataset,
+    *,
+    window: "Window" = None,
+    energy: str = "kJ",
+    ax: "AxesLike" = None,
+    title: str | None = None,
+) -> "Axes":
+    """Draw where the energy of a run is, and where it went.
+
+    Parameters
+    ----------
+    run : xarray.Dataset
+        A result with ``outputs=("energy",)``.
+    window : (str or Quantity or None, str or Quantity or None), optional
+        Start and end of what is drawn; all of it unless given [s].
+    energy : str, optional
+        Unit.
+    ax : Axes, optional
+        What is drawn in; a new figure unless given.
+    title : str, optional
+        Title of the figure; the verdict unless given.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        Areas above one another: energies from their values at the start, and what was lost; a
+        line is what was put in. Where the areas reach up to the line the balance holds.
+
+    Raises
+    ------
+    SchemaError
+        Not the result of a single run with energies.
+    UnitsError, ComponentError
+        A unit of another kind, or a window without samples.
+    """
+    given = runs_of(run, "energies", None)
+    if len(given) > 1:
+        raise SchemaError(refuse("energies", run))
+    _need(given, ENERGIES, "energies")
+    unit = unit_of(energy, ENERGY, function="energies", name="energy")
+    (whole,) = given
+    from_start = {
+        name: unit.of(whole.dataset[name] - (whole.dataset[name][0] if name in _STATES else 0.0))
+        for name in ENERGIES
+    }
+    (part,) = runs_of(run, "energies", window)
+    first = int(np.searchsorted(whole.time, part.time[0]))
+    kept = slice(first, first + part.time.size)
+    on = single(ax, "energies", (7.2, 3.9))
+    order = [name for name in ENERGIES if name != "input_energy"]
+    areas = [name for name in reversed(order) if np.any(from_start[name] != 0.0)]
+    names = {name: name.removesuffix("_energy").replace("_", " ") for name in ENERGIES}
+    colours = {name: COLOURS[number % len(COLOURS)] for number, name in enumerate(order)}
+    # what can fall below zero, as gravity energy of a leaning body, is drawn below zero
+    for sign in (1.0, -1.0):
+        below = np.zeros(part.time.size)
+        for name in areas:
+            values = sign * np.maximum(sign * from_start[name][kept], 0.0)
+            if sign < 0.0 and not values.any():
+                continue
+            on.axes.fill_between(
+                part.time, below, below + values, color=colours[name], alpha=0.6, linewidth=0.0,
+                label=names[name] if sign > 0.0 else None,
+            )  # fmt: skip
+            below = below + values
+    on.axes.plot(
+        part.time, from_start["input_energy"][kept], color=ink(), linewidth=1.1, label="input"
+    )
+    zero_line(on.axes)
+    on.axes.set(xlabel="time [s]", ylabel=labelled("energy", unit.words))
+    on.axes.set_xlim(part.time[0], part.time[-1])
+    on.legend(*on.axes.get_legend_handles_labels(), ncols=4)
+    on.entitle(verdict_of(given), title)
+    return on.axes
+
+
+def _angle(rotation: str, function: str) -> Shown | None:
+    if rotation == RELATIVE:
+        return None
+    return unit_of(rotation, ANGLE, function=function, name="rotation")
+
+
+def _rate(run: Run, unit: Shown | None) -> Any:
+    """Give the rate of the rotation; over the overturning angle of its side without a unit."""
+    rate = run.dataset["angular_velocity"].to_numpy()
+    if unit is not None:
+        return unit.of(rate)
+    left, right = overturning_angles(run.dataset)
+    return rate / np.where(run.dataset["rotation"].to_numpy() < 0.0, left, right)
+
+
+def _held(system: "System", largest: float) -> xr.Dataset:
+    left, right = system.setting.overturning_angles
+    angles = np.linspace(-largest * left, largest * right, _ANGLES)
+    return system.moment_rotation((angles, str(ANGLE.unit)))
+
+
+def _draw_held(axes: "Axes", held: xr.Dataset, angle: Shown, size: Shown) -> None:
+    for number, (name, words) in enumerate(
+        (("base_moment", "of the base"), ("restoring_moment", "that holds the body"))
+    ):
+        values = size.of(held[name])
+        style = "-" if number == 0 else "--"
+        axes.plot(
+            angle.of(held["angle"]), values, color=colour_of(number), linestyle=style, label=words
+        )
+    key(axes, title="moment", title_fontsize="small")
+
+
+def _draw_beneath(axes: "Axes", run: Run, angle: Shown, size: Shown) -> None:
+    """Draw the moment in equilibrium beneath that of a run, as far as it rotates."""
+    from rockframe.simulation.system import System
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RockframeWarning)  # they were said when it ran
+        system = System.from_dataset(run.dataset)
+    rotation = run.dataset["rotation"].to_numpy()
+    angles = np.linspace(rotation.min(), rotation.max(), _ANGLES)
+    held = system.moment_rotation((angles, str(ANGLE.unit)))
+    axes.plot(
+        angle.of(held["angle"]), size.of(held["base_moment"]), "--", color=GREY, linewidth=1.2,
+        label="in equilibrium",
+    )  # fmt: skip
+
+
+def _need(runs: list[Run], names: tuple[str, ...], function: str) -> None:
+    for run in runs:
+        missing = [name for name in names if name not in run.dataset]
+        if missing:
+            asked = "energy" if missing[0] in ENERGIES else missing[0]
+            text = SCHEMA[missing[0]].long_name
+            msg = (
+                f"rf.plot.{function} needs {missing[0]!r}, the {text}, which runs have on request: "
+                f"system.simulate(motion, outputs=({asked!r},))"
+            )
+            raise SchemaError(msg)
+
+
+def _about_zero(axes: "Axes") -> None:
+    grid(axes)
+    zero_line(axes)
+    axes.axvline(0.0, color=GREY, alpha=0.6, linewidth=0.5, zorder=0)

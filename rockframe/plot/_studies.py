@@ -1,0 +1,288 @@
+"""Results of studies along one axis or two: sweeps, critical scales, sequences, fitted tests."""
+
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+import xarray as xr
+
+from rockframe.arguments import checked_dataset
+from rockframe.errors import ComponentError, SchemaError, shown
+from rockframe.plot._axes import (
+    BLUE,
+    GREY,
+    VERMILLION,
+    colour_of,
+    grid,
+    ink,
+    key,
+    label_of,
+    labelled,
+    style_of,
+    zero_line,
+)
+from rockframe.plot._given import check_study
+from rockframe.plot._panels import Panels, sheet, single
+from rockframe.plot._units import unit_of
+from rockframe.results.variables.studies import Outcome
+from rockframe.units import ANGLE
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from rockframe.plot._panels import AxesLike
+
+_MOST_LINES: Final = 12
+_PANELS: Final = ("histories", "residual")
+
+
+def critical_scale(
+    dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None = None
+) -> "Axes":
+    """Draw the peak rotation over the scale of a motion, and where the verdict changes.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        Of :func:`rockframe.critical_scale`.
+    ax : Axes, optional
+        What is drawn in; a new figure unless given.
+    title : str, optional
+        Title of the figure; the verdict unless given.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        Shaded, the scales that overturn; a line at the least of them.
+
+    Raises
+    ------
+    SchemaError
+        The dataset is no such result.
+    """
+    given = check_study(dataset, "critical_scale")
+    scale, outcome = given["scale"].to_numpy(), given["outcome"].to_numpy()
+    name = "peak_relative_rotation" if "peak_relative_rotation" in given else "peak_rotation"
+    peak = given[name].to_numpy()
+    on = single(ax, "critical_scale", (6.4, 3.6))
+    ends = np.append(given["scale_above"].to_numpy(), scale.max())
+    falls = given["overturns_above"].to_numpy().astype(bool)
+    for number in np.flatnonzero(falls):
+        on.axes.axvspan(ends[number], ends[number + 1], color=VERMILLION, alpha=0.15, linewidth=0.0)
+    for value, colour, words, marker in (
+        (Outcome.STANDS, BLUE, "stands", "o"),
+        (Outcome.OVERTURNS, VERMILLION, "overturns", "X"),
+    ):
+        chosen = outcome == value
+        on.axes.plot(scale[chosen], peak[chosen], marker, markersize=3.5, color=colour, label=words)
+    least = float(given["critical_scale"])
+    if np.isfinite(least):
+        on.axes.axvline(least, color=ink(), linestyle=":", linewidth=1.0, label=f"{least:.4g}")
+    on.axes.set(xlabel="scale of the motion [-]", ylabel=label_of(given[name]))
+    on.axes.set_ylim(bottom=0.0)
+    grid(on.axes)
+    key(on.axes)
+    on.entitle(str(given.attrs.get("verdict", "")), title)
+    return on.axes
+
+
+def sweep(
+    runs: xr.Dataset,
+    variable: str = "peak_relative_rotation",
+    *,
+    ax: "AxesLike" = None,
+    title: str | None = None,
+) -> "Axes":
+    """Draw a scalar of many runs over one or two of their axes.
+
+    Over one axis, a line; over an axis and motions or a second axis that is short, a line for each;
+    over two longer axes, a map of colours.
+
+    Parameters
+    ----------
+    runs : xarray.Dataset
+        Of :func:`rockframe.sweep`, :func:`rockframe.concat` or
+        :func:`rockframe.earthquake_sequences`, with two dimensions at most; choose from more, for
+        example with ``runs.isel(motion=0)``.
+    variable : str, optional
+        What is drawn, such as ``"peak_rotation"`` or ``"overturned"``.
+    ax : Axes, optional
+        What is drawn in; a new figure unless given.
+    title : str, optional
+        Title of the figure.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        Crosses stand where runs overturned, whatever is drawn.
+
+    Raises
+    ------
+    SchemaError
+        No dataset, no such variable, or more than two dimensions.
+    """
+    given = checked_dataset(runs, owner="rf.plot.sweep")
+    values = _values(given, variable)
+    fell = given.get("overturned")
+    fell = None if fell is None or set(fell.dims) != set(values.dims) else fell == 1
+    dims = sorted((str(dim) for dim in values.dims), key=lambda dim: _is_axis(given, dim))
+    on = single(ax, "sweep", (6.4, 4.2))
+    if len(dims) == 1 or min(values.sizes.values()) <= _MOST_LINES:
+        # lines along the longest axis that has numbers
+        along = max(dims, key=lambda dim: (_is_axis(given, dim), values.sizes[dim]))
+        others = [dim for dim in dims if dim != along]
+        _draw_lines(on.axes, given, values, fell, along, others)
+    else:
+        _draw_map(on.axes, given, values.transpose(*dims), dims)
+    on.entitle(str(given.attrs.get("title", "")), title)
+    return on.axes
+
+
+def free_decay(
+    dataset: xr.Dataset,
+    *,
+    rotation: str = "deg",
+    ax: "AxesLike" = None,
+    title: str | None = None,
+) -> "Panels":
+    """Draw a test of free decay beside the system that was fitted to it, and what is left.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        Of :func:`rockframe.fit_free_decay`.
+    rotation : str, optional
+        Unit of rotations.
+    ax : two Axes, optional
+        What is drawn in; a new figure unless given.
+    title : str, optional
+        Title of the figure; the fitted values unless given.
+
+    Returns
+    -------
+    Panels
+        Of tests that give peaks alone, these are drawn.
+
+    Raises
+    ------
+    SchemaError
+        The dataset is no such fit.
+    UnitsError
+        A unit of another kind.
+    """
+    given = check_study(dataset, "free_decay")
+    unit = unit_of(rotation, ANGLE, function="free_decay", name="rotation")
+    histories = "measured_rotation" in given
+    if histories:
+        names = ("measured_rotation", "fitted_rotation", "rotation_residual")
+        times = [given["time"].to_numpy()] * 3
+    else:
+        names = ("measured_peak_rotation", "fitted_peak_rotation", "peak_rotation_residual")
+        place = given["measured_peak_rotation"].dims[0]
+        counted = np.arange(1, given.sizes[place] + 1)
+        timed = "measured_peak_time" in given
+        measured = given["measured_peak_time"].to_numpy() if timed else counted
+        fitted = given["fitted_peak_time"].to_numpy() if timed else counted
+        times = [measured, fitted, measured]
+    on = sheet(
+        ax, "free_decay", _PANELS, (7.2, 4.4),
+        lambda figure: figure.subplots(2, 1, sharex=True, height_ratios=(2.2, 1)),
+    )  # fmt: skip
+    above, below = on.panels
+    dots = "-" if histories else "o"
+    above.plot(times[0], unit.of(given[names[0]]), dots, color=ink(), lw=1.4, label="measured")
+    style = "--" if histories else "x"
+    above.plot(times[1], unit.of(given[names[1]]), style, color=VERMILLION, lw=1.0, label="fitted")
+    below.plot(times[2], unit.of(given[names[2]]), dots, color=GREY, lw=0.8, markersize=3.0)
+    for axes, words in ((above, "rotation"), (below, "measured\nless fitted")):
+        zero_line(axes)
+        axes.set_ylabel(labelled(words, unit.words))
+        grid(axes)
+    below.set_xlabel("time [s]" if histories or "measured_peak_time" in given else "peak")
+    key(above)
+    on.entitle(_fitted_words(given), title)
+    return on.panels
+
+
+def _fitted_words(given: xr.Dataset) -> str:
+    values = zip(
+        given["parameter"].to_numpy(),
+        given["fitted_value"].to_numpy(),
+        given["standard_error"].to_numpy(),
+        strict=True,
+    )
+    return "; ".join(
+        f"{str(name).replace('_', ' ')} {value:.4g} ± {error:.2g}" for name, value, error in values
+    )
+
+
+def _values(given: xr.Dataset, variable: object) -> xr.DataArray:
+    if not isinstance(variable, str) or variable not in given.data_vars:
+        known = ", ".join(
+            repr(str(name)) for name, one in given.data_vars.items() if 0 < one.ndim < 3
+        )
+        msg = f"rf.plot.sweep: the runs have no {shown(variable)}; they have {known}"
+        raise SchemaError(msg)
+    values = given[variable]
+    if not 1 <= values.ndim <= 2:
+        dims = ", ".join(map(str, values.dims)) or "none"
+        msg = (
+            f"rf.plot.sweep draws over one or two axes, {variable!r} has {values.ndim} ({dims}); "
+            "choose from the others, for example with runs.isel(motion=0)"
+        )
+        raise SchemaError(msg)
+    if values.dtype.kind not in "fiub":
+        msg = f"rf.plot.sweep: {variable!r} holds no numbers"
+        raise ComponentError(msg)
+    return values
+
+
+def _is_axis(given: xr.Dataset, dim: str) -> bool:
+    """Whether a dimension has numbers along it."""
+    return dim in given.coords and given[dim].dtype.kind in "fiu"
+
+
+def _along(given: xr.Dataset, dim: str) -> tuple[Any, str]:
+    """Give places along a dimension, and what it is called."""
+    if _is_axis(given, dim):
+        return given[dim].to_numpy(), label_of(given[dim])
+    return np.arange(given.sizes[dim]), dim.replace("_", " ")
+
+
+def _draw_lines(
+    axes: "Axes", given: xr.Dataset, values: xr.DataArray, fell: Any, along: str,
+    others: list[str],
+) -> None:  # fmt: skip
+    places, words = _along(given, along)
+    rows = values.expand_dims("one") if not others else values
+    across = others[0] if others else "one"
+    overturned = None if fell is None else (fell.expand_dims("one") if not others else fell)
+    for number in range(rows.sizes[across]):
+        line = rows.isel({across: number}).to_numpy().astype(np.float64)
+        label = None
+        if others:
+            name = given[across][number].item() if across in given.coords else number
+            text = name if isinstance(name, str) else f"{name:.4g}"
+            label = text if across == "motion" else f"{across.replace('_', ' ')} {text}"
+        axes.plot(
+            places, line, marker="o", markersize=3.0, color=colour_of(number),
+            linestyle=style_of(number // 6), linewidth=1.0, label=label,
+        )  # fmt: skip
+        if overturned is not None:
+            down = overturned.isel({across: number}).to_numpy().astype(bool)
+            axes.plot(places[down], line[down], "x", color=ink(), markersize=6.0)
+    if not _is_axis(given, along) and along in given.coords:
+        names = [str(name) for name in given[along].to_numpy()]
+        axes.set_xticks(places, names, rotation=30, ha="right", fontsize="small")
+    axes.set(xlabel=words, ylabel=label_of(values))
+    grid(axes)
+    if others:
+        key(axes, frameon=False)
+
+
+def _draw_map(axes: "Axes", given: xr.Dataset, values: xr.DataArray, dims: list[str]) -> None:
+    (up, up_words), (across, across_words) = (_along(given, dim) for dim in dims)
+    mesh = axes.pcolormesh(
+        across, up, values.to_numpy().astype(np.float64), cmap="viridis", shading="nearest"
+    )
+    axes.set(xlabel=across_words, ylabel=up_words)
+    axes.figure.colorbar(mesh, ax=axes, label=label_of(values))

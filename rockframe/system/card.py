@@ -1,0 +1,67 @@
+"""Systems as notebooks show them: the scene to scale, and its numbers."""
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from rockframe.notebook import Shape, card, drawing, in_words
+from rockframe.system.geometry import Array, Geometry, geometry_of, rectangle
+
+if TYPE_CHECKING:
+    from rockframe.system.assembly import Assembly
+
+_PAD: Final = 0.06
+"""Thickness with which pads are drawn, over the width of the base."""
+
+
+def system_card(scene: "Assembly", name: str) -> str:
+    """Give drawing and numbers of a scene as HTML."""
+    setting, options = scene.setting, scene.options
+    rows = {"model": setting.model}
+    for part in scene.parts.structural():
+        numbers = in_words(part.to_dict())
+        rows[type(part).__name__] = ", ".join(f"{one} {value}" for one, value in numbers.items())
+    left, right = setting.overturning_angles
+    to_left, to_right = (f"{np.degrees(side):.4g}°" for side in (left, right))
+    both = f"{to_left} to the left, {to_right} to the right"
+    rows["overturning angle"] = to_left if left == right else both
+    if np.isfinite(setting.uplift_angle):
+        rows["uplift angle"] = f"{np.degrees(setting.uplift_angle):.4g}°"
+    if options.inclination:
+        rows["inclination"] = f"{np.degrees(options.inclination):.4g}°"
+    if scene.parts.motion is not None:
+        rows["motion"] = scene.parts.motion.name
+    return card(name, rows, drawing(shapes_of(geometry_of(scene))))
+
+
+def shapes_of(geometry: Geometry) -> list[Shape]:
+    """Give the parts of a scene, upright and at rest, from back to front."""
+    half, width = geometry.base_half_width, 2.0 * geometry.half_width
+    pad = 0.0 if geometry.pads_sink is None else _PAD * width
+    lift = np.array([0.0, pad])
+    below = 0.0 if geometry.stacked else pad
+    reach, depth = 1.7 * half, 0.5 * half
+    band = rectangle(reach, depth, y=-depth - below)
+    found = [("ground" if geometry.bed_sinks is None else "soil", band)]
+    if geometry.cap_outline is not None:
+        found.append(("cap", geometry.cap_outline))
+    raised = lift if geometry.stacked else np.zeros(2)
+    if pad:
+        level = geometry.level if geometry.stacked else -pad
+        for side in (-0.83, 0.83):
+            place = side * geometry.half_width
+            found.append(("pad", rectangle(0.17 * geometry.half_width, pad, place, level)))
+    found.append(("block", geometry.block + raised))
+    level_up = np.array([0.0, geometry.level])
+    found += [("member", member + level_up + raised) for member in geometry.members]
+    centre = np.array([geometry.centre]) + level_up + raised
+    return [
+        Shape(tone, [(float(x), float(y)) for x, y in _turned(points, geometry)])
+        for tone, points in (*found, ("block", centre))
+    ]
+
+
+def _turned(points: Array, geometry: Geometry) -> Array:
+    """Turn the base line up to the right."""
+    sine, cosine = np.sin(geometry.inclination), np.cos(geometry.inclination)
+    return points @ np.array([(cosine, sine), (-sine, cosine)])

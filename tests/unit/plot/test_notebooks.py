@@ -1,0 +1,180 @@
+"""What notebooks show, and what datasets say of themselves."""
+
+import re
+from html.parser import HTMLParser
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import rockframe as rf
+from rockframe.errors import SchemaError
+from rockframe.notebook import curve, in_words, number_with_unit
+
+BLOCK = rf.Block(width="0.8 m", height="4 m", mass="2 t", centre_of_mass=("2 m", "0.1 m"))
+PADS = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
+CAP = rf.CushionCap(height="0.2 m", width="1 m", mass="500 kg")
+SOIL = rf.WinklerSoil(stiffness="9 MPa", damping_ratio=0.2)
+PULSE = rf.GroundMotion.sine_pulse("2 m/s^2", "1 Hz")
+NASTY = rf.GroundMotion.from_arrays(([0.0, 1.0, -3.0], "m/s^2"), "0.5 s", name="<b>&\"'")
+
+
+class Balanced(HTMLParser):
+    """Fails where elements do not close one another in turn."""
+
+    def __init__(self):
+        super().__init__()
+        self.open, self.text = [], []
+
+    def handle_starttag(self, tag, attrs):
+        self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        self.text.append(data)
+
+
+def shown(thing):
+    """Text of a card, which is whole and says nothing about colours of text or page."""
+    html = thing._repr_html_()
+    page = Balanced()
+    page.feed(html)
+    assert not [tag for tag in page.open if tag not in ("path", "polyline", "polygon", "circle")]
+    assert not re.search(r"(?<![-\w])color:(?!inherit)", html)
+    assert "background:white" not in html
+    return " ".join(page.text), html
+
+
+def test_cards_hold_the_numbers():
+    text, html = shown(rf.System(BLOCK, PADS, CAP, SOIL))
+    for words in ("coupled", "width 0.8 m", "mass 2 t", "frequency ratio 20", "stiffness 9 MPa",
+                  "to the left", "uplift angle"):  # fmt: skip
+        assert words in text
+    assert html.count("<polygon") == 5  # soil, cap, two pads, block
+    text, html = shown(BLOCK)
+    assert "eccentricity" in text
+    assert html.count("<polygon") == html.count("<circle") == 1
+    assert shown(SOIL)[1].count("<svg") == 0
+    text, _ = shown(PULSE)
+    assert "2 m/s² (0.204 g)" in text
+
+
+def test_a_drawing_is_to_scale_and_stands_on_its_base():
+    _, html = shown(BLOCK)
+    corners = re.search(r'<polygon points="([^"]*)"', html)[1].split()
+    places = np.array([[float(part) for part in pair.split(",")] for pair in corners])
+    width, height = np.ptp(places, axis=0)
+    assert height / width == pytest.approx(5.0, rel=0.01)
+    dot = re.search(r'cx="([\d.]*)" cy="([\d.]*)"', html)
+    across = (float(dot[1]) - places[:, 0].min()) / width
+    assert across == pytest.approx(0.5 + 0.1 / 0.8, abs=0.01)
+
+
+def test_what_users_name_is_escaped():
+    for thing in (NASTY, rf.MotionSuite({"<i>": NASTY})):
+        text, html = shown(thing)
+        assert "<b>" not in html.replace("<div><b>", "").replace("</b></div>", "")
+        assert "<i>" not in html
+        assert "3 m/s²" in text
+
+
+def test_a_suite_shows_its_first_motions_and_counts_the_others():
+    text, html = shown(rf.MotionSuite({f"m{k}": PULSE for k in range(11)}))
+    assert html.count("<svg") == 8
+    assert "and 3 more" in text
+
+
+def test_a_curve_keeps_its_extremes_and_few_points():
+    values = np.zeros(100_000)
+    values[54_321] = 1.0
+    values[54_322] = -0.5
+    drawn = curve(values.tolist(), width=200.0, height=100.0)
+    points = re.search(r'points="([^"]*)"', drawn)[1].split()
+    heights = [float(point.split(",")[1]) for point in points]
+    assert len(points) <= 600
+    assert min(heights) == pytest.approx(2.0)
+    assert max(heights) == pytest.approx(74.0)
+
+
+def test_numbers_are_written_as_people_do():
+    cases = {(99e3, "kg"): "99 t", (250.0, "kg"): "250 kg", (9e6, "Pa"): "9 MPa",
+             (2.5e5, "N m^-1"): "250 kN m^-1", (4.0, "m"): "4 m", (0.5, "s"): "0.5 s"}  # fmt: skip
+    for (size, unit), words in cases.items():
+        assert number_with_unit(size, unit) == words
+    assert in_words({"type": "x", "shape_factor": 2.92}) == {"shape factor": "2.92"}
+
+
+def test_only_public_names_are_completed():
+    run = rf.System(BLOCK).simulate(PULSE)
+    for thing in (rf.System(BLOCK), BLOCK, PULSE, rf.MotionSuite({"a": PULSE}), run.rockframe):
+        assert not [name for name in dir(thing) if name.startswith("_")]
+    assert {"simulate", "describe", "parts"} <= set(dir(rf.System(BLOCK)))
+    assert {"scaled", "window", "si"} <= set(dir(PULSE))
+
+
+def test_a_dataset_read_back_plots_and_tabulates_itself(tmp_path):
+    system = rf.System(BLOCK, PADS)
+    run = system.simulate(PULSE, free_vibration="1 s")
+    run.to_netcdf(tmp_path / "run.nc")
+    with xr.open_dataset(tmp_path / "run.nc") as stored:
+        drawn = stored.rockframe.plot(panels="rotation", rotation="rad")[0].get_lines()[0]
+        np.testing.assert_array_equal(drawn.get_ydata(), run.rotation)
+        xr.testing.assert_identical(
+            stored.rockframe.table("events").to_xarray(), rf.table(run, "events").to_xarray()
+        )
+        assert stored.rockframe.system == system.__class__(BLOCK, PADS, PULSE)
+        summary = stored.rockframe.summary
+    assert run.attrs["verdict"] in summary
+    assert f"peak_rotation: {run.peak_rotation.item():.4g} rad" in summary
+
+
+def test_each_kind_of_dataset_finds_what_draws_it():
+    rocking = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
+    options = {"free_vibration": "2 s", "progress": False}
+    runs = rf.sweep(rocking, {"pulse": PULSE}, scale=[0.5, 1.0, 1.5], **options)
+    axes = runs.rockframe.plot()
+    line = axes.get_lines()[0]
+    np.testing.assert_array_equal(line.get_xdata(), [0.5, 1.0, 1.5])
+    np.testing.assert_array_equal(
+        line.get_ydata(), runs.peak_relative_rotation.transpose("motion", "scale")[0]
+    )
+    assert axes.get_xlabel() == "scale [-]"
+    found = rf.critical_scale(rocking, PULSE, free_vibration="2 s")
+    axes = found.rockframe.plot()
+    (line,) = [line for line in axes.get_lines() if line.get_linestyle() == ":"]
+    assert line.get_xdata()[0] == found.critical_scale.item()
+    with pytest.raises(SchemaError, match=r"rf\.plot\.spectra draws them from the motion itself"):
+        rf.response_spectrum(PULSE, (["0.1", "1"], "s")).rockframe.plot()
+    with pytest.raises(
+        SchemaError, match=r"the runs have no 'height'; they have .*'peak_rotation'"
+    ):
+        rf.plot.sweep(runs, "height")
+
+
+def test_a_suite_is_drawn_with_its_median_and_target():
+    suite = {"one": PULSE, "two": PULSE.scaled(4.0)}
+    target = rf.TargetSpectrum.eurocode_8("0.2 g_0")
+    periods = ([0.2, 0.5, 1.0], "s")
+    axes = rf.plot.suite(suite, periods, target=target, acceleration="m/s^2")
+    lines = {line.get_label(): line.get_ydata() for line in axes.get_lines()}
+    single = rf.response_spectrum(PULSE, periods).pseudo_spectral_acceleration[0]
+    np.testing.assert_allclose(lines["two"], 4.0 * lines["one"])
+    np.testing.assert_allclose(lines["one"], single)
+    np.testing.assert_allclose(lines["median"], 2.0 * single)  # geometric mean of 1 and 4
+    np.testing.assert_allclose(lines["target"], target.at(periods))
+
+
+def test_a_fitted_test_is_drawn_beside_its_measurement():
+    system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
+    run = system.simulate(
+        duration="8 s", initial=rf.InitialState(rotation="0.1 rad"), output_step="0.02 s"
+    )
+    found = rf.fit_free_decay(system, run.rotation)
+    above, below = found.rockframe.plot(rotation="rad")
+    measured, fitted = above.get_lines()[:2]
+    np.testing.assert_array_equal(measured.get_ydata(), found.measured_rotation)
+    np.testing.assert_array_equal(fitted.get_ydata(), found.fitted_rotation)
+    np.testing.assert_array_equal(below.get_lines()[0].get_ydata(), found.rotation_residual)
+    assert "restitution" in above.figure.get_suptitle()

@@ -1,0 +1,186 @@
+"""Where figures are drawn, in which units, and what part of a run; several runs in one figure."""
+
+import numpy as np
+import pytest
+from matplotlib import pyplot as plt
+from matplotlib.axes import Axes
+
+import rockframe as rf
+from rockframe.errors import ComponentError, SchemaError, UnitsError
+
+BLOCK = rf.Block(width="0.8 m", height="4 m", mass="2 t", centre_of_mass=("2 m", "0.05 m"))
+SYSTEM = rf.System(BLOCK, rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1))
+PULSE = rf.GroundMotion.sine_pulse("2 m/s^2", "1 Hz")
+
+
+@pytest.fixture(scope="module")
+def runs():
+    named = {"whole": 1.0, "less": 0.8}
+    return {
+        name: SYSTEM.simulate(
+            PULSE.scaled(scale), free_vibration="3 s", outputs=("energy", "reaction")
+        )
+        for name, scale in named.items()
+    }
+
+
+def lines(axes, least=3):
+    return [line for line in axes.get_lines() if len(line.get_xdata()) >= least]
+
+
+def test_new_figures_are_those_of_pyplot_and_given_axes_make_none(runs):
+    before = plt.get_fignums()
+    panels = rf.plot.response(runs["whole"])
+    assert panels.figure.number in plt.get_fignums()
+    assert all(isinstance(axes, Axes) for axes in panels)
+    assert repr(panels).startswith("<4 panels: 'ground [m/s$^{2}$]'") or "ground" in repr(panels)
+    figure, (left, right) = plt.subplots(1, 2)
+    open_now = plt.get_fignums()
+    given = rf.plot.response(runs["whole"], panels="rotation", ax=left)
+    assert given[0] is left
+    assert rf.plot.phase(runs["whole"], ax=right) is right
+    again = rf.plot.response(runs["less"], ax=panels, title="both")
+    assert list(again) == list(panels)
+    assert panels[0].get_title() == "both"
+    assert plt.get_fignums() == open_now
+    assert given.figure is figure
+    assert len(before) + 2 == len(open_now)
+
+
+def test_axes_that_do_not_fit_are_refused_before_anything_is_drawn(runs):
+    figure, axes = plt.subplots(2, 1)
+    count = len(plt.get_fignums())
+    wanted = r"ax must be 4 Axes, for ground, rotation, vertical, contact, got 2 Axes"
+    with pytest.raises(ComponentError, match=wanted):
+        rf.plot.response(runs["whole"], ax=axes)
+    with pytest.raises(ComponentError, match="ax must be one Axes, got"):
+        rf.plot.phase(runs["whole"], ax=figure)
+    with pytest.raises(ComponentError, match=r"panels are some of 'ground', .* got 'ground floor'"):
+        rf.plot.response(runs["whole"], panels="ground floor")
+    with pytest.raises(UnitsError, match="rotation needs an angle"):
+        rf.plot.response(runs["whole"], rotation="mm")
+    with pytest.raises(UnitsError, match="window needs a time"):
+        rf.plot.response(runs["whole"], window=(1.0, 2.0))
+    with pytest.raises(ComponentError, match="window must end after it starts"):
+        rf.plot.response(runs["whole"], window=("2 s", "1 s"))
+    with pytest.raises(ComponentError, match="holds 0 of the run's samples, which go from 0 s"):
+        rf.plot.response(runs["whole"], window=("200 s", None))
+    assert len(plt.get_fignums()) == count
+
+
+def test_units_and_windows_change_what_is_drawn_and_how_it_is_labelled(runs):
+    run = runs["whole"]
+    ground, rotation, vertical, _ = rf.plot.response(
+        run, rotation="deg", vertical="mm", acceleration="g_0", window=("0.5 s", "2 s")
+    )
+    inside = run.sel(time=slice(0.5, 2.0))
+    expected = (
+        (ground, inside.ground_acceleration / 9.80665, "[g]"),
+        (rotation, np.degrees(inside.rotation), "rotation [°]"),
+        (vertical, 1e3 * inside.vertical_displacement, "[mm]"),
+    )
+    for axes, values, words in expected:
+        drawn = lines(axes)[0]
+        np.testing.assert_allclose(drawn.get_ydata(), values, rtol=1e-12)
+        np.testing.assert_array_equal(drawn.get_xdata(), inside.time)
+        assert words in axes.get_ylabel()
+        assert axes.get_xlim() == (inside.time[0], inside.time[-1])
+
+
+def test_degrees_and_millimetres_stand_beside_what_is_relative(runs):
+    """The body leans more easily to the right, so that a share is fewer degrees there."""
+    run = runs["whole"]
+    panels = rf.plot.response(run)
+    panels.figure.canvas.draw()
+    share, millimetres = panels[1].child_axes[0], panels[2].child_axes[0]
+    low, high = panels[1].get_ylim()
+    left, right = run.left_overturning_angle.item(), run.right_overturning_angle.item()
+    assert left > right
+    ends = np.degrees([low * left, high * right])
+    np.testing.assert_allclose(share.get_ylim(), ends, rtol=1e-9)
+    settlement = 1e3 * SYSTEM.equilibrium().pad_settlement.item()
+    drawn = np.array(panels[2].get_ylim()) * settlement
+    np.testing.assert_allclose(millimetres.get_ylim(), drawn, rtol=1e-9)
+
+
+def test_several_runs_have_a_line_a_label_and_a_strip_each(runs):
+    panels = rf.plot.response(runs)
+    assert len(panels) == 3 + 2
+    drawn = {line.get_label(): line for line in lines(panels[1])}
+    for name, run in runs.items():
+        np.testing.assert_array_equal(drawn[name].get_ydata(), run.relative_rotation)
+    styles = {(drawn[name].get_color(), drawn[name].get_linestyle()) for name in runs}
+    assert len(styles) == 2
+    assert len({style for _, style in styles}) == 2
+    assert [axes.get_ylabel() for axes in panels[3:]] == list(runs)
+    listed = rf.plot.phase(list(runs.values()))
+    assert [text.get_text() for text in listed.get_legend().get_texts()] == [
+        run.attrs["motion"] for run in runs.values()
+    ]
+    with pytest.raises(SchemaError, match="got a value of type list"):
+        rf.plot.response([runs["whole"], 3])
+
+
+def test_events_stand_where_they_happened(runs):
+    run = runs["whole"]
+    axes = rf.plot.response(run, panels="rotation", rotation="deg", events=True)[0]
+    marks = {line.get_label(): line for line in axes.get_lines() if line.get_marker() != "None"}
+    kinds = run.event_kind.to_numpy()
+    impacts = kinds == 2
+    assert impacts.any()
+    np.testing.assert_array_equal(marks["impact"].get_xdata(), run.event_time[impacts])
+    drawn = marks["impact"].get_ydata()
+    np.testing.assert_allclose(drawn, np.degrees(run.event_rotation[impacts]), rtol=1e-12)
+    assert "pivot change" not in marks
+
+
+def test_motions_are_drawn_in_their_units_and_compared():
+    panels = rf.plot.motion(PULSE, acceleration="g_0", displacement="cm", window=(None, "0.5 s"))
+    drawn = lines(panels[0])[0]
+    inside = PULSE.si.horizontal.times <= 0.5
+    np.testing.assert_allclose(
+        drawn.get_ydata(), PULSE.si.horizontal.samples[inside] / 9.80665, rtol=1e-12
+    )
+    assert panels[2].get_ylabel() == "displacement\n[cm]"
+    both = rf.plot.motion([PULSE, PULSE.scaled(0.5)])
+    assert len(lines(both[1])) == 2
+    assert len(both.figure.legends[0].get_texts()) == 2
+    spectra = rf.plot.spectra({"a": PULSE, "b": PULSE.scaled(2)}, (["0.5", "1"], "s"))
+    a, b = lines(spectra[1], 2)
+    np.testing.assert_allclose(b.get_ydata(), 2.0 * a.get_ydata(), rtol=1e-9)
+
+
+def test_energies_fill_up_to_what_was_put_in(runs):
+    run = runs["whole"]
+    axes = rf.plot.energies(run, energy="J")
+    tops = np.zeros(run.time.size)
+    for area in axes.collections:
+        corners = area.get_paths()[0].vertices
+        assert np.isin(corners[:, 0], run.time).all()
+    (line,) = [line for line in axes.get_lines() if line.get_label() == "input"]
+    np.testing.assert_array_equal(line.get_ydata(), run.input_energy)
+    names = ("kinetic", "potential", "elastic", "dissipated", "impact", "repinning")
+    for name in names:
+        values = run[f"{name}_energy"]
+        tops = tops + values - (values[0] if name in names[:3] else 0.0)
+    np.testing.assert_allclose(tops, run.input_energy, atol=1e-4 * float(run.input_energy.max()))
+    with pytest.raises(SchemaError, match=r"outputs=\('energy',\)"):
+        rf.plot.energies(run.drop_vars("kinetic_energy"))
+
+
+def test_moments_and_phases_are_those_of_system_and_run(runs):
+    run = runs["whole"]
+    axes = rf.plot.moment_rotation(SYSTEM, moment="N*m", rotation="rad")
+    held = SYSTEM.moment_rotation(([0.05], "rad"))
+    (line,) = [line for line in lines(axes) if line.get_label() == "of the base"]
+    found = np.interp(0.05, line.get_xdata(), line.get_ydata())
+    assert found == pytest.approx(held.base_moment.item(), rel=1e-4)
+    axes = rf.plot.moment_rotation(run)
+    drawn = lines(axes)[1]
+    np.testing.assert_allclose(drawn.get_ydata(), 1e-3 * run.base_overturning_moment, rtol=1e-12)
+    assert axes.get_ylabel() == "moment of the base [kN m]"
+    phase = rf.plot.phase(run, rotation="deg")
+    np.testing.assert_allclose(
+        lines(phase)[0].get_ydata(), np.degrees(run.angular_velocity), rtol=1e-12
+    )
+    assert phase.get_ylabel() == "rate of the rotation [° s$^{-1}$]"

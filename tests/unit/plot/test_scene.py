@@ -1,0 +1,191 @@
+"""Scenes to scale: places of corners, pads, soil and cap against closed forms."""
+
+import numpy as np
+import pytest
+from matplotlib.patches import Polygon
+
+import rockframe as rf
+from rockframe.errors import ComponentError, UnitsError
+from rockframe.plot._layout import Drawer
+from rockframe.plot._scene import Moving
+from rockframe.results.placement import UPRIGHT, Placement
+from rockframe.system.geometry import geometry_of
+from rockframe.system.options import Restraint
+
+BLOCK = rf.Block(width="0.8 m", height="4 m", mass="2 t", centre_of_mass=("1.8 m", "0.1 m"))
+EVEN = rf.Block(width="2 m", height="8 m", mass="50 t")
+PADS = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
+CAP = rf.CushionCap(height="0.4 m", mass="20 t", width="2.5 m")
+SOIL = rf.WinklerSoil(stiffness="9 MPa", damping_ratio=0.2)
+PULSE = rf.GroundMotion.sine_pulse("2.2 m/s^2", "1 Hz")
+
+
+def drawn(system, run, place):
+    moving = Moving(run, "state", 1.0)
+    return moving.at(place), moving.drawer.lay_out(moving.at(place))
+
+
+def turned(point, about, angle):
+    """Turn a point clockwise."""
+    across, up = np.array(point) - about
+    sine, cosine = np.sin(angle), np.cos(angle)
+    moved = np.array([across * cosine + up * sine, up * cosine - across * sine])
+    return np.array(about) + moved
+
+
+def test_on_rigid_ground_a_block_turns_about_the_corner_that_bears():
+    run = rf.System(BLOCK).simulate(PULSE, free_vibration="2 s")
+    seen = set()
+    for place in range(0, run.sizes["time"], 7):
+        angle = run.rotation[place].item()
+        corner = 0.4 if angle > 0.0 else -0.4
+        expected = [turned(point, (corner, 0.0), angle) for point in
+                    ((-0.4, 0.0), (0.4, 0.0), (0.4, 4.0), (-0.4, 4.0))]  # fmt: skip
+        _, found = drawn(None, run, place)
+        np.testing.assert_allclose(found.block, expected, atol=1e-9)
+        np.testing.assert_allclose(
+            found.centre, turned((0.1, 1.8), (corner, 0.0), angle), atol=1e-9
+        )
+        (touching,) = found.touching
+        if int(run.contact_state[place]) != 0:
+            np.testing.assert_allclose(touching, [(corner, 0.0)], atol=1e-9)
+            seen.add(corner)
+    assert seen == {-0.4, 0.4}
+
+
+@pytest.mark.parametrize("parts", [(), (PADS,), (SOIL,), (CAP, SOIL), (PADS, CAP, SOIL)])
+def test_a_point_of_the_body_is_drawn_where_the_run_says_it_is(parts):
+    system = rf.System(EVEN, *parts)
+    point = {"top": ("1 m", "7 m")}
+    run = system.simulate(PULSE, free_vibration="1 s", points=point)
+    moving = Moving(run, "state", 1.0)
+    below = 0.4 if len(parts) == 3 else 0.0  # points count from the base of the body of the run
+    lift = moving.drawer.pad_thickness if len(parts) == 3 else 0.0
+    for place in range(0, run.sizes["time"], 40):
+        at = moving.at(place)
+        (found,) = moving.drawer.points(at, np.array([(1.0, 7.0)]))
+        moved = [
+            run[f"point_{name}_displacement"][0, place].item()
+            for name in ("horizontal", "vertical")
+        ]
+        raised = lift * np.array([np.sin(at.cap_rotation), np.cos(at.cap_rotation)])
+        np.testing.assert_allclose(found, np.array([1.0, 7.0 + below]) + moved + raised, atol=1e-12)
+
+
+def test_soil_touches_as_far_as_the_run_says():
+    run = rf.System(EVEN, SOIL).simulate(PULSE, free_vibration="2 s")
+    lengths = run.contact_length.to_numpy()
+    assert lengths.min() < 1.5
+    for place in range(0, run.sizes["time"], 25):
+        _, found = drawn(None, run, place)
+        length = sum(np.hypot(*(one[-1] - one[0])) for one in found.touching)
+        assert length == pytest.approx(lengths[place], abs=2.0 / 80 + 1e-9)
+
+
+def test_pads_are_as_high_as_the_block_lets_them_be():
+    system = rf.System(EVEN, PADS)
+    run = system.simulate(PULSE, free_vibration="2 s")
+    free = system.equilibrium().pad_settlement.item()
+    for place in range(0, run.sizes["time"], 25):
+        at, found = drawn(system, run, place)
+        corners = at.block(np.array([(-1.0, 0.0), (1.0, 0.0)]))
+        for pad, corner, bears in zip(found.pads, corners, found.pads_bear, strict=True):
+            assert pad[3, 1] == pytest.approx(min(corner[1], free), abs=1e-9)
+            if abs(corner[1] - free) > 1e-6:
+                assert bears == (corner[1] < free)
+
+
+def test_a_cap_under_pads_turns_about_the_end_that_the_soil_holds():
+    geometry = geometry_of(rf.System(EVEN, PADS, CAP, SOIL).assembly)
+    values = {
+        "rotation": 0.0, "horizontal_displacement": 0.0, "vertical_displacement": 0.0,
+        "contact_state": 0.0, "cap_rotation": 0.1, "soil_contact_state": 2.0,
+    }  # fmt: skip
+    held = (1.25, 0.0)
+    outline = geometry.cap_outline
+    for rule, moved in ((Restraint.CONTACT_STATE, held), (Restraint.CENTRE, (0.0, 0.0))):
+        at = Placement(geometry, values, rule)
+        across = [turned(point, moved, 0.1)[0] for point in outline]
+        np.testing.assert_allclose(at.cap(outline)[:, 0], across, atol=1e-12)
+    # and it rises by what the run says of its centre
+    (middle,) = at.cap(np.array([(0.0, 0.2)]))
+    assert middle[1] == pytest.approx(0.2)
+
+
+def test_block_and_cap_stay_together_on_their_pads():
+    """The cap's place along the base is not in the results; the gap shows how well it is met."""
+    run = rf.System(EVEN, PADS, CAP, SOIL).simulate(PULSE, free_vibration="2 s")
+    rocked = float(np.abs(run.cap_rotation).max())
+    for place in range(0, run.sizes["time"], 25):
+        at, _ = drawn(None, run, place)
+        if int(run.contact_state[place]) != 0:
+            continue
+        (base,) = at.block(np.array([(0.0, 0.4)]))
+        (top,) = at.cap(np.array([(0.0, 0.4)]))
+        assert abs(base[0] - top[0]) < 1.3 * 1.25 * rocked**2 + 1e-3
+
+
+def test_an_inclined_base_turns_the_drawing():
+    level = Drawer(geometry_of(rf.System(EVEN, PADS).assembly))
+    slope = Drawer(geometry_of(rf.System(EVEN, PADS, inclination="5 deg").assembly))
+    values = dict(UPRIGHT)
+    flat = level.lay_out(Placement(level.geometry, values, Restraint.CONTACT_STATE))
+    found = slope.lay_out(Placement(slope.geometry, values, Restraint.CONTACT_STATE))
+    expected = [turned(point, (0.0, 0.0), -np.radians(5.0)) for point in flat.block]
+    np.testing.assert_allclose(found.block, expected, atol=1e-12)
+    assert found.ground[1, 1] > found.ground[0, 1]
+
+
+def test_displacements_are_magnified_about_the_place_at_rest():
+    run = rf.System(EVEN, PADS).simulate(PULSE, free_vibration="1 s")
+    place = int(np.argmax(np.abs(run.rotation.to_numpy())))
+    rest, once = (Moving(run, "state", 1.0) for _ in range(2))
+    at_rest = rest.drawer.lay_out(rest.upright).block
+    moved = once.drawer.lay_out(once.at(place)).block - at_rest
+    thrice = Moving(run, "state", 3.0)
+    np.testing.assert_allclose(
+        thrice.drawer.lay_out(thrice.at(place)).block - at_rest, 3.0 * moved, atol=1e-12
+    )
+    with pytest.raises(ComponentError, match="magnify must be a number above zero, got 0"):
+        rf.plot.state(run, magnify=0)
+
+
+def test_what_is_drawn_of_a_state_is_the_layout_of_its_sample():
+    run = rf.System(EVEN, PADS).simulate(PULSE, free_vibration="1 s")
+    axes = rf.plot.state(run, "0.75 s")
+    place = int(np.argmin(np.abs(run.time.to_numpy() - 0.75)))
+    _, expected = drawn(None, run, place)
+    patches = [patch.get_xy()[:-1] for patch in axes.patches if isinstance(patch, Polygon)]
+    assert any(np.allclose(corners, expected.block) for corners in patches if len(corners) == 4)
+    assert f"{run.time[place].item():.3f} s" in axes.figure.get_suptitle()
+    with pytest.raises(ComponentError, match="the run goes from 0 s to 2 s, got time='9 s'"):
+        rf.plot.state(run, "9 s")
+    with pytest.raises(UnitsError, match="time needs a time"):
+        rf.plot.state(run, 0.75)
+
+
+def test_a_scene_names_its_parts_and_its_points():
+    axes = rf.plot.scene(rf.System(EVEN, PADS, CAP, SOIL), points={"roof": ("0 m", "8 m")})
+    words = " ".join(text.get_text() for text in axes.get_legend().get_texts())
+    for part in ("Block", "mass 50 t", "TwoSpringSupport", "CushionCap", "stiffness 9 MPa"):
+        assert part in words
+    assert [text.get_text() for text in axes.texts] == ["roof"]
+    with pytest.raises(ComponentError, match=r"rf\.plot\.scene needs a System, got a value"):
+        rf.plot.scene(3.0)
+
+
+def test_an_animation_moves_from_sample_to_sample_and_is_written(tmp_path):
+    from PIL import Image
+
+    run = rf.System(EVEN, PADS).simulate(PULSE, free_vibration="1 s")
+    moving = rf.plot.animation(run, frames_per_second=4)
+    np.testing.assert_allclose(np.diff(moving.times), 0.25, atol=0.01)
+    path = moving.save(tmp_path / "run.gif", dpi=40)
+    with Image.open(path) as picture:
+        assert picture.n_frames == moving.times.size == 9
+    page = moving.save(tmp_path / "run.html", dpi=40).read_text()
+    assert page.count("data:image/png;base64,") == 9
+    assert "http" not in page.split("<script", 1)[0]
+    with pytest.raises(ComponentError, match=r"must end in \.gif or \.html, got"):
+        moving.save(tmp_path / "run.mp4")
+    assert rf.plot.animation(run, speed=2.0).times.size == 21
