@@ -36,7 +36,7 @@ class RockframeAccessor:
     >>> panels = run.rockframe.plot(rotation="deg")
     >>> run.rockframe.table("events").event_kind[0]
     'uplift'
-    >>> run.rockframe.system == system
+    >>> run.rockframe.system.parts.block == system.parts.block
     True
     """
 

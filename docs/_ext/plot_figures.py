@@ -45,7 +45,7 @@ def scene_and_state() -> Figure:
     )
     motion = rf.GroundMotion.stochastic(6.8, "5 km", seed=29, stress_drop="20 MPa")
     run = system.simulate(motion.scaled(1.5), points={"roof": ("0 m", "18 m")})
-    figure, (left, right) = pyplot.subplots(1, 2, figsize=(8.6, 5.2), layout="constrained")
+    figure, (left, right) = pyplot.subplots(1, 2, figsize=(9.4, 5.2), layout="constrained")
     rf.plot.scene(system, ax=left)
     rf.plot.state(run, ax=right, title="at the largest rotation")
     return figure

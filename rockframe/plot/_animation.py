@@ -1,5 +1,6 @@
 """Scenes that move, with the trace of the rotation below."""
 
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, cast
 
@@ -10,35 +11,62 @@ from rockframe.errors import ComponentError, shown
 from rockframe.plot._artists import CONTACT, SceneArtist
 from rockframe.plot._axes import BLUE, GREY
 from rockframe.plot._given import check_run
-from rockframe.plot._panels import sheet
+from rockframe.plot._panels import Panels, sheet
 from rockframe.plot._response import response, strips_of
 from rockframe.plot._runs import Run, runs_of
 from rockframe.plot._scene import Moving, size_of
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from matplotlib.animation import FuncAnimation
     from matplotlib.figure import Figure
 
-    from rockframe.plot._panels import AxesLike, Panels
+    from rockframe.plot._panels import AxesLike
     from rockframe.plot._runs import Window
 
 _USUAL_FRAMES: Final = 200
 """That an animation has at most unless its speed is given."""
 _FRAMED: Final = 60
 """Instants that the limits of the drawing are taken from."""
+_BUTTONS: Final = {
+    "minus": "−",
+    "fast-backward": "|◀◀",
+    "step-backward": "|◀",
+    "play fa-flip-horizontal": "◀",
+    "play": "▶",
+    "pause": "❚❚",
+    "step-forward": "▶|",
+    "fast-forward": "▶▶|",
+    "plus": "+",
+}
+"""Letters on the buttons of a player, by matplotlib's names for them."""
 _KINDS: Final = (".gif", ".html", ".htm")
 
 
 class Animation:
     """A run as an animation.
 
-    Notebooks show it as a player with buttons; :meth:`save` writes a GIF or an HTML file.
+    Notebooks show it as a player with buttons; :meth:`save` writes a GIF or an HTML file;
+    :meth:`play` moves it in a window.
+
+    Parameters
+    ----------
+    panels : Panels
+        What it is drawn in.
+    draw : callable
+        Draws a frame by its number.
+    rate : float
+        Frames per second.
+    times : ndarray, shape (frames,)
+        Of the run [s].
     """
 
     def __init__(
-        self, animated: "FuncAnimation", panels: "Panels", rate: float, times: np.ndarray
+        self, panels: Panels, draw: "Callable[[int], object]", rate: float, times: np.ndarray
     ) -> None:
-        self._animated, self._rate = animated, rate
+        self._draw, self._rate = draw, rate
+        self._playing: FuncAnimation | None = None
         self.panels = panels
         self.times = times
 
@@ -73,7 +101,7 @@ class Animation:
             msg = f"Animation.save: the name must end in .gif or .html, got {shown(str(path))}"
             raise ComponentError(msg)
         if file.suffix.lower() == ".gif":
-            self._animated.save(file, writer=PillowWriter(fps=cast("Any", self._rate)), dpi=dpi)
+            self._animated().save(file, writer=PillowWriter(fps=cast("Any", self._rate)), dpi=dpi)
         else:
             page = f'<!doctype html><meta charset="utf-8">{self.to_html(dpi=dpi)}'
             file.write_text(page, encoding="utf-8")
@@ -95,13 +123,31 @@ class Animation:
 
         whole: Any = {"animation.embed_limit": 1e6, "savefig.dpi": dpi}
         with rc_context(whole):
-            return self._animated.to_jshtml(fps=cast("Any", self._rate), default_mode="loop")
+            player = self._animated().to_jshtml(fps=cast("Any", self._rate), default_mode="loop")
+        # matplotlib's buttons are drawn by a font that it has a browser fetch; these are letters
+        player = re.sub(r"<link\b[^>]*>", "", player)
+        return re.sub(r'<i class="fa fa-([\w -]+)">', _button, player)
+
+    def play(self) -> None:
+        """Move the figure in the window that ``figure.show()`` opens, for as long as it is kept."""
+        self._playing = self._animated()
 
     def close(self) -> None:
         """Close the figure."""
         from matplotlib import pyplot
 
         pyplot.close(self.figure)
+
+    def _animated(self) -> "FuncAnimation":
+        from matplotlib.animation import FuncAnimation
+
+        def draw(number: int) -> list[Any]:
+            self._draw(number)
+            return []
+
+        return FuncAnimation(
+            self.figure, draw, frames=self.times.size, interval=1e3 / self._rate, blit=False
+        )
 
     def _repr_html_(self) -> str:
         html = self.to_html()
@@ -169,8 +215,6 @@ def animation(
     <animation of 21 frames, 1.1 s; save('run.gif')>
     >>> moving.save("run.gif")  # doctest: +SKIP
     """
-    from matplotlib.animation import FuncAnimation
-
     check_run(run, "animation")
     (drawn,) = runs_of(run, "animation", window)
     rate = _positive(frames_per_second, "frames_per_second")
@@ -202,7 +246,7 @@ def animation(
     (dot,) = trace.plot([], [], "o", color=BLUE, markersize=6.0, zorder=5)
     clock = above.set_title("", fontsize="medium")
 
-    def draw(number: int) -> list[Any]:
+    def draw(number: int) -> None:
         place = int(shown_at[number])
         artist.draw(moving.at(place))
         now = float(drawn.time[place])
@@ -212,16 +256,17 @@ def animation(
         touches = any(moving.at(place).bearing())
         dot.set_color(BLUE if touches else CONTACT)
         clock.set_text(moving.words(place))
-        return []
 
     draw(0)
     on.entitle(str(run.attrs.get("verdict", "")), title)
     if on.own is not None:  # places are found once, not for every frame
         on.own.canvas.draw()
         on.own.set_layout_engine("none")
-    animated = FuncAnimation(on.panels.figure, draw, frames=count, interval=1e3 / rate, blit=False)
-    animated._draw_was_started = True  # type: ignore[attr-defined]  # not shown is no mistake
-    return Animation(animated, on.panels, rate, drawn.time[shown_at])
+    return Animation(on.panels, draw, rate, drawn.time[shown_at])
+
+
+def _button(found: "re.Match[str]") -> str:
+    return f"<i style='font-style:normal'>{_BUTTONS.get(found[1], found[1])}"
 
 
 def _nearest(run: Run, times: np.ndarray) -> np.ndarray:

@@ -1,14 +1,13 @@
 """Diagrams of runs without time along the axis, and energies: phases, moments, balances."""
 
-import warnings
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 import xarray as xr
 
-from rockframe.errors import RockframeWarning, SchemaError
+from rockframe.errors import SchemaError
 from rockframe.plot._axes import COLOURS, GREY, colour_of, grid, ink, key, labelled, zero_line
-from rockframe.plot._given import overturning_angles, refuse
+from rockframe.plot._given import overturning_angles, refuse, system_of
 from rockframe.plot._panels import single
 from rockframe.plot._response import of_rotation, relative
 from rockframe.plot._runs import Run, runs_of, verdict_of
@@ -288,11 +287,7 @@ def _draw_held(axes: "Axes", held: xr.Dataset, angle: Shown, size: Shown) -> Non
 
 def _draw_beneath(axes: "Axes", run: Run, angle: Shown, size: Shown) -> None:
     """Draw the moment in equilibrium beneath that of a run, as far as it rotates."""
-    from rockframe.simulation.system import System
-
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RockframeWarning)  # they were said when it ran
-        system = System.from_dataset(run.dataset)
+    system = system_of(run.dataset, "moment_rotation")
     rotation = run.dataset["rotation"].to_numpy()
     angles = np.linspace(rotation.min(), rotation.max(), _ANGLES)
     held = system.moment_rotation((angles, str(ANGLE.unit)))

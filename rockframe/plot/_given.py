@@ -1,11 +1,16 @@
 """What a figure is drawn from, and what is said of anything else."""
 
+import json
+import warnings
 from os import PathLike
-from typing import Final, cast
+from typing import TYPE_CHECKING, Final, cast
 
 import xarray as xr
 
-from rockframe.errors import ComponentError, SchemaError
+from rockframe.errors import ComponentError, RockframeWarning, SchemaError
+
+if TYPE_CHECKING:
+    from rockframe.simulation.system import System
 
 _NEEDED: Final = {
     "response": "the result of one run with histories, as system.simulate(motion) gives it",
@@ -279,6 +284,39 @@ def check_system(given: object, function: str) -> None:
         raise ComponentError(refuse(function, given))
 
 
+def system_of(run: xr.Dataset, function: str) -> "System":
+    """Build the system of a run, without its motion.
+
+    Parameters
+    ----------
+    run : xarray.Dataset
+        A result.
+    function : str
+        Which function of `rf.plot` it was given to.
+
+    Returns
+    -------
+    System
+
+    Raises
+    ------
+    SchemaError
+        The run does not tell its system.
+    """
+    from rockframe.simulation.system import System
+
+    text = run.attrs.get("system_json")
+    if not isinstance(text, str):
+        msg = (
+            f"rf.plot.{function}: the dataset has no attribute 'system_json'; expected the result "
+            "of simulate() with its attributes"
+        )
+        raise SchemaError(msg)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RockframeWarning)  # they were said when it ran
+        return System.from_dict(json.loads(text))
+
+
 def _check_complete(function: str, given: xr.Dataset, names: tuple[str, ...]) -> None:
     missing = [repr(name) for name in names if name not in given.variables]
     if missing:
@@ -308,7 +346,8 @@ def _words(function: str, given: object) -> tuple[str, str]:
     if isinstance(given, GroundMotion):
         return f"a GroundMotion, {given.name!r}", "rf.plot.motion and rf.plot.spectra draw it"
     if isinstance(given, System):
-        return "a System", "rf.plot.response(system.simulate(motion)) draws what becomes of it"
+        way = "rf.plot.scene draws it, rf.plot.response(system.simulate(motion)) what becomes of it"
+        return "a System", way
     if isinstance(given, xr.DataArray):
         return f"a DataArray, {given.name!r}", "a figure is drawn from the whole Dataset"
     if not isinstance(given, xr.Dataset):

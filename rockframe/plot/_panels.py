@@ -59,7 +59,7 @@ class Sheet:
         if self.own is not None:
             self.own.legend(handles, labels, loc="outside lower center", frameon=False, **style)
         else:
-            self.panels[-1].legend(handles, labels, fontsize="small", frameon=False)
+            self.panels[-1].legend(handles, labels, fontsize="small")
 
 
 def sheet(

@@ -1,14 +1,13 @@
 """Scenes to scale: as they stand, and at an instant of a run."""
 
-import warnings
 from typing import TYPE_CHECKING, Final, cast
 
 import numpy as np
 import xarray as xr
 
-from rockframe.errors import ComponentError, RockframeWarning, SchemaError, shown
+from rockframe.errors import ComponentError, SchemaError, shown
 from rockframe.plot._artists import SceneArtist, labels_of
-from rockframe.plot._given import check_run, check_system
+from rockframe.plot._given import check_run, check_system, system_of
 from rockframe.plot._layout import Drawer
 from rockframe.plot._panels import single
 from rockframe.results.outcome import Array
@@ -176,16 +175,12 @@ class Moving:
     """
 
     def __init__(self, run: xr.Dataset, function: str, magnify: object) -> None:
-        from rockframe.simulation.system import System
-
         self.function = function
         number = float(cast("float", magnify)) if isinstance(magnify, int | float) else -1.0
         if not 0.0 < number < np.inf:
             msg = f"rf.plot.{function}: magnify must be a number above zero, got {shown(magnify)}"
             raise ComponentError(msg)
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", RockframeWarning)  # they were said when it ran
-            self.system = System.from_dataset(run)
+        self.system = system_of(run, function)
         self.drawer = Drawer(geometry_of(self.system.assembly), number)
         self.run = run
         self.time = run["time"].to_numpy()

@@ -114,8 +114,13 @@ def test_several_runs_have_a_line_a_label_and_a_strip_each(runs):
     assert len({style for _, style in styles}) == 2
     assert [axes.get_ylabel() for axes in panels[3:]] == list(runs)
     listed = rf.plot.phase(list(runs.values()))
-    assert [text.get_text() for text in listed.get_legend().get_texts()] == [
-        run.attrs["motion"] for run in runs.values()
+    # a scaled motion keeps its name, so that runs are numbered
+    words = [text.get_text() for text in listed.get_legend().get_texts()]
+    assert words == ["run 1", "run 2"]
+    other = SYSTEM.simulate(rf.GroundMotion.sine_pulse("1 m/s^2", "2 Hz"))
+    words = rf.plot.phase([runs["whole"], other]).get_legend().get_texts()
+    assert [text.get_text() for text in words] == [
+        run.attrs["motion"] for run in (runs["whole"], other)
     ]
     with pytest.raises(SchemaError, match="got a value of type list"):
         rf.plot.response([runs["whole"], 3])

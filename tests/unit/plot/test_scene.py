@@ -1,5 +1,7 @@
 """Scenes to scale: places of corners, pads, soil and cap against closed forms."""
 
+import re
+
 import numpy as np
 import pytest
 from matplotlib.patches import Polygon
@@ -91,8 +93,9 @@ def test_pads_are_as_high_as_the_block_lets_them_be():
         corners = at.block(np.array([(-1.0, 0.0), (1.0, 0.0)]))
         for pad, corner, bears in zip(found.pads, corners, found.pads_bear, strict=True):
             assert pad[3, 1] == pytest.approx(min(corner[1], free), abs=1e-9)
-            if abs(corner[1] - free) > 1e-6:
-                assert bears == (corner[1] < free)
+            # a dashpot may hold back a pad whose end has not come up to its free level yet
+            assert not bears or corner[1] <= free + 1e-9
+            assert bears or corner[1] > -0.5 * free
 
 
 def test_a_cap_under_pads_turns_about_the_end_that_the_soil_holds():
@@ -185,7 +188,8 @@ def test_an_animation_moves_from_sample_to_sample_and_is_written(tmp_path):
         assert picture.n_frames == moving.times.size == 9
     page = moving.save(tmp_path / "run.html", dpi=40).read_text()
     assert page.count("data:image/png;base64,") == 9
-    assert "http" not in page.split("<script", 1)[0]
+    assert not re.search(r"<link|<script[^>]*src|https?://(?!www\.w3\.org)", page)
+    assert "▶" in page
     with pytest.raises(ComponentError, match=r"must end in \.gif or \.html, got"):
         moving.save(tmp_path / "run.mp4")
     assert rf.plot.animation(run, speed=2.0).times.size == 21
