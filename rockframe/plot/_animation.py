@@ -30,7 +30,7 @@ _USUAL_FRAMES: Final = 200
 _FRAMED: Final = 60
 """Instants that the limits of the drawing are taken from."""
 _BUTTONS: Final = {
-    "minus": "−",
+    "minus": "slower",
     "fast-backward": "|◀◀",
     "step-backward": "|◀",
     "play fa-flip-horizontal": "◀",
@@ -38,7 +38,7 @@ _BUTTONS: Final = {
     "pause": "❚❚",
     "step-forward": "▶|",
     "fast-forward": "▶▶|",
-    "plus": "+",
+    "plus": "faster",
 }
 """Letters on the buttons of a player, by matplotlib's names for them."""
 _KINDS: Final = (".gif", ".html", ".htm")
@@ -227,7 +227,7 @@ def animation(
     shown_at = _nearest(drawn, times)
     width, height = size_of(moving.drawer, wide=False)
     names = ["scene", "rotation", *strips_of([drawn])]
-    heights = [height, 1.3, *[0.25] * (len(names) - 2)]
+    heights = [height, 1.3, *[0.42] * (len(names) - 2)]
     on = sheet(
         ax, "animation", names, (max(width, 5.4), 0.6 + sum(heights)),
         lambda figure: figure.subplots(len(names), 1, height_ratios=heights),

@@ -101,8 +101,11 @@ class Drawer:
         cap = None if outline is None else self._moved(at.cap, outline)
         pads, bear = self._pads(at)
         soil, touching = self._soil(at)
-        if not touching and geometry.bed_sinks is None and geometry.pads_sink is None:
-            touching = self._ends(block[:2], at.bearing())
+        ends = tuple(block[k : k + 1] for k in (0, 1) if at.bearing()[k])
+        if pads:
+            touching = (*touching, *ends)
+        elif soil is None:
+            touching = (block[:2],) if len(ends) > 1 else ends
         floor = 0.0 if geometry.stacked else -self.pad_thickness
         ground = np.array([(-self.reach, floor), (self.reach, floor)])
         found = Layout(block, cap, members, centre, pads, bear, soil, touching, ground)
@@ -172,12 +175,6 @@ class Drawer:
         ]
         touching = (surface[below],) if below.any() else ()
         return np.vstack(edges), touching
-
-    @staticmethod
-    def _ends(base: Array, bearing: tuple[bool, bool]) -> tuple[Array, ...]:
-        if all(bearing):
-            return (base,)
-        return tuple(base[k : k + 1] for k in (0, 1) if bearing[k])
 
     def _turned(self, points: Array) -> Array:
         """Turn the base line up to the right."""

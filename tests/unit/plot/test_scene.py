@@ -91,6 +91,10 @@ def test_pads_are_as_high_as_the_block_lets_them_be():
     for place in range(0, run.sizes["time"], 25):
         at, found = drawn(system, run, place)
         corners = at.block(np.array([(-1.0, 0.0), (1.0, 0.0)]))
+        bearing = [corner for corner, bears in zip(corners, found.pads_bear, strict=True) if bears]
+        np.testing.assert_allclose(
+            np.reshape(found.touching, (-1, 2)), np.reshape(bearing, (-1, 2)), atol=1e-12
+        )
         for pad, corner, bears in zip(found.pads, corners, found.pads_bear, strict=True):
             assert pad[3, 1] == pytest.approx(min(corner[1], free), abs=1e-9)
             # a dashpot may hold back a pad whose end has not come up to its free level yet
