@@ -9,6 +9,7 @@ from rockframe.errors import ComponentError, shown
 from rockframe.motion import dataset, description
 from rockframe.motion.constructors import (
     cycloidal,
+    embedded,
     records,
     synthetic,
     tables,
@@ -30,9 +31,9 @@ from rockframe.signals import Motion
 class GroundMotion(MotionValue):
     """Acceleration of the ground over time; immutable.
 
-    Build one with :meth:`read`, :meth:`from_arrays`, :meth:`from_times`,
-    :meth:`from_frame`, :meth:`from_trace`, :meth:`from_dataset`, or as an
-    analytic pulse: :meth:`sine_pulse`, :meth:`type_a_pulse`,
+    Build one with :meth:`read`, :meth:`example`, :meth:`from_arrays`,
+    :meth:`from_times`, :meth:`from_frame`, :meth:`from_trace`,
+    :meth:`from_dataset`, or as an analytic pulse: :meth:`sine_pulse`, :meth:`type_a_pulse`,
     :meth:`ricker_wavelet` and others, or as a synthetic earthquake with
     :meth:`stochastic`. Every processing step returns a new motion
     and adds a sentence to its `history`.
@@ -91,6 +92,7 @@ class GroundMotion(MotionValue):
     # argument is the class, or the motion.
 
     read = classmethod(records.read)
+    example = classmethod(embedded.example)
     from_arrays = classmethod(records.from_arrays)
     from_times = classmethod(tables.from_times)
     from_frame = classmethod(tables.from_frame)
