@@ -29,7 +29,7 @@ from plot_figures import (
     suite_spectra,
     write_card,
 )
-from pulse_figures import cycloidal_pulses, wavelets
+from pulse_figures import cycloidal_pulses, velocity_pulse, wavelets
 from speed_figures import cost_model, work_precision
 from sphinx.application import Sphinx
 from stochastic_figure import stochastic_motions
@@ -180,6 +180,7 @@ FIGURES = (
     six_storeys_released,
     cycloidal_pulses,
     wavelets,
+    velocity_pulse,
     stochastic_motions,
     work_precision,
     cost_model,

@@ -61,3 +61,15 @@ def wavelets() -> Figure:
             "double impulse": made.double_impulse("0.5 m/s", "0.5 s", "0.25 s"),
         }
     )
+
+
+def velocity_pulse() -> Figure:
+    """Draw the pulse that is found in a synthetic motion to which one was added."""
+    shaking = rf.GroundMotion.stochastic(6.5, "15 km", seed=1).resampled("0.01 s")
+    pulse = rf.GroundMotion.mavroeidis_papageorgiou_pulse("80 cm/s", "0.5 Hz", 2.2, "0 deg")
+    samples = shaking.si.horizontal.samples
+    samples = samples + pulse.si.at(np.arange(samples.size) * shaking.si.time_step - 8.0)
+    motion = rf.GroundMotion.from_arrays((samples, "m/s^2"), "0.01 s")
+    found = motion.velocity_pulse()
+    above, _ = rf.plot.velocity_pulse(found, title=str(found))
+    return above.get_figure(root=True)

@@ -22,10 +22,10 @@ from rockframe.signals.durations import exceedance, time_between_shares
 from rockframe.signals.path import ground_path
 from rockframe.signals.periods import (
     HOUSNER_PERIODS,
-    PULSE_PERIODS,
+    PREDOMINANT_PERIODS,
     housner_intensity,
     mean_period,
-    pulse_period,
+    predominant_period,
 )
 from rockframe.signals.polynomials import greatest
 from rockframe.signals.spectra import DAMPING_RATIO, check_cost
@@ -64,7 +64,7 @@ def intensity_measures(
     threshold : str or Quantity, optional
         Of the bracketed duration [m s^-2].
     damping_ratio : float, optional
-        Of the velocity spectrum behind the Housner intensity and the pulse period [1].
+        Of the velocity spectrum behind the Housner intensity and its predominant period [1].
     gravity : str or Quantity, optional
         Standard gravity unless given [m s^-2].
 
@@ -76,10 +76,10 @@ def intensity_measures(
         ``cumulative_absolute_velocity`` and ``standardized_cumulative_absolute_velocity``
         [m s^-1]; ``significant_duration_5_75``, ``significant_duration_5_95``,
         ``bracketed_duration`` [s]; ``housner_spectrum_intensity`` [m]; ``mean_period``,
-        ``predominant_pulse_period`` [s].
+        ``predominant_velocity_period`` [s].
         With a block ``overturning_angle`` [rad], ``uplift_acceleration`` [m s^-2],
         ``uplift_duration`` [s], ``relative_peak_ground_acceleration``,
-        ``relative_peak_ground_velocity`` and ``relative_pulse_frequency`` [1].
+        ``relative_peak_ground_velocity`` and ``relative_predominant_frequency`` [1].
 
     Raises
     ------
@@ -122,7 +122,7 @@ def intensity_measures(
         _check_block(block, component_of(component, owner=_OWNER))
 
     def measured(signal: Signal) -> dict[str, float]:
-        check_cost(signal, np.concatenate([HOUSNER_PERIODS, PULSE_PERIODS]), owner=_OWNER)
+        check_cost(signal, np.concatenate([HOUSNER_PERIODS, PREDOMINANT_PERIODS]), owner=_OWNER)
         values = _of_ground(signal, threshold=level, damping_ratio=damping, gravity=g)
         if block is not None:
             values |= _of_block(signal, block, values, gravity=g)
@@ -164,7 +164,7 @@ def _of_ground(
         "bracketed_duration": exceedance(signal, threshold)[0],
         "housner_spectrum_intensity": housner_intensity(signal, damping_ratio),
         "mean_period": mean_period(signal),
-        "predominant_pulse_period": pulse_period(signal, damping_ratio),
+        "predominant_velocity_period": predominant_period(signal, damping_ratio),
     }
 
 
@@ -174,14 +174,14 @@ def _of_block(
     """Compute :eq:`eq-rocking-measures`."""
     uplift = gravity * math.tan(block.si.overturning_angle)
     frequency = block.si.frequency_at(gravity)
-    pulse = 2.0 * math.pi / of_ground["predominant_pulse_period"]
+    predominant = 2.0 * math.pi / of_ground["predominant_velocity_period"]
     return {
         "overturning_angle": block.si.overturning_angle,
         "uplift_acceleration": uplift,
         "uplift_duration": exceedance(signal, uplift)[1],
         "relative_peak_ground_acceleration": of_ground["peak_ground_acceleration"] / uplift,
         "relative_peak_ground_velocity": frequency * of_ground["peak_ground_velocity"] / uplift,
-        "relative_pulse_frequency": pulse / frequency,
+        "relative_predominant_frequency": predominant / frequency,
     }
 
 

@@ -3,8 +3,16 @@
 from rockframe.motion.ground_motion import GroundMotion
 from rockframe.motion.pair import HorizontalPair
 from rockframe.motion.readers import formats, register, unregister
+from rockframe.motion.velocity_pulse import VelocityPulse
 
-__all__ = ["GroundMotion", "HorizontalPair", "formats", "register", "unregister"]
+__all__ = [
+    "GroundMotion",
+    "HorizontalPair",
+    "VelocityPulse",
+    "formats",
+    "register",
+    "unregister",
+]
 
 
 def __dir__() -> list[str]:

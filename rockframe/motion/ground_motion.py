@@ -19,6 +19,7 @@ from rockframe.motion.constructors import (
 from rockframe.motion.operations import (
     combining,
     correcting,
+    pulses,
     scaling,
     storeys,
     timing,
@@ -124,3 +125,5 @@ class GroundMotion(MotionValue):
     with_vertical = combining.with_vertical
     rotated = combining.rotated
     through_storeys = storeys.through_storeys
+
+    velocity_pulse = pulses.velocity_pulse

@@ -4,19 +4,26 @@ from __future__ import annotations
 
 import math
 import warnings
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
 
 from rockframe.errors import ComponentError, RecordError, RecordWarning, shown
 from rockframe.motion.ground_motion import GroundMotion
 from rockframe.motion.operations.following import SAME_STEP
+from rockframe.motion.operations.pulses import LONGEST, SHORTEST, searched, velocity_of
 from rockframe.motion.processing.sampling import padded
+from rockframe.motion.processing.velocity_pulses import strongest
+from rockframe.motion.quantities import with_quantity
 from rockframe.motion.readers.reading import read_components
 from rockframe.motion.readers.source import Request, load
+from rockframe.units import ANGLE
 
 if TYPE_CHECKING:
     from rockframe.motion.quantities import QuantityLike
     from rockframe.motion.readers.source import RecordLike
+    from rockframe.motion.velocity_pulse import VelocityPulse
     from rockframe.signals import Signal
 
 _RIGHT_ANGLE: Final = 90.0
@@ -158,6 +165,37 @@ class HorizontalPair:
         """
         turned = self.first.rotated(self.second, angle, azimuth=azimuth)
         return turned if self.vertical is None else turned.with_vertical(self.vertical)
+
+    def velocity_pulse(
+        self, *, shortest_period: QuantityLike = SHORTEST, longest_period: QuantityLike = LONGEST
+    ) -> VelocityPulse[GroundMotion]:
+        """Find the strongest velocity pulse of all directions, extract it, and judge it.
+
+        Parameters
+        ----------
+        shortest_period, longest_period : str or Quantity, optional
+            Between which periods it is looked for [s].
+
+        Returns
+        -------
+        VelocityPulse
+            Of the component in the direction `angle`, in which the wavelet transform of the
+            velocity is greatest, :eq:`eq-pulse-direction` (Shahi and Baker 2014).
+
+        Raises
+        ------
+        UnitsError, ComponentError
+            As for :meth:`GroundMotion.velocity_pulse`.
+        """
+        dt = self.first.si.time_step
+        owner = f"{type(self).__name__}.velocity_pulse"
+        periods = searched(shortest_period, longest_period, dt, owner=owner)
+        velocities = np.array([velocity_of(signal) for signal in self.signals])
+        direction = strongest(velocities, dt, periods).direction
+        pulse = self.rotated(f"{direction!r} rad").velocity_pulse(
+            shortest_period=shortest_period, longest_period=longest_period
+        )
+        return replace(pulse, angle=with_quantity(direction, ANGLE))
 
     def in_axes(self, angle: QuantityLike) -> HorizontalPair:
         """Give the components along axes that are turned.

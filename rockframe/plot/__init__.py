@@ -19,6 +19,7 @@ from rockframe.plot._spectra import spectra
 from rockframe.plot._studies import critical_scale, free_decay, sweep
 from rockframe.plot._suites import suite
 from rockframe.plot._tradeoff import tradeoff
+from rockframe.plot._velocity_pulse import velocity_pulse
 
 __all__ = [
     "Animation",
@@ -45,6 +46,7 @@ __all__ = [
     "suite",
     "sweep",
     "tradeoff",
+    "velocity_pulse",
 ]
 
 

@@ -22,8 +22,8 @@ HOUSNER_BAND: Final = (0.1, 2.5)
 HOUSNER_PERIODS: Final = np.linspace(*HOUSNER_BAND, 241)
 """Where the velocity spectrum is computed for its integral [s]."""
 
-PULSE_PERIODS: Final = 10.0 ** (np.arange(-100, 131) / 100.0)
-"""Where its peak is looked for: 0.1 s to 20 s [s]."""
+PREDOMINANT_PERIODS: Final = 10.0 ** (np.arange(-100, 131) / 100.0)
+"""Where the peak of the velocity spectrum is looked for: 0.1 s to 20 s [s]."""
 
 
 def mean_period(signal: Signal) -> float:
@@ -66,7 +66,7 @@ def housner_intensity(signal: Signal, damping_ratio: float) -> float:
     return float(np.trapezoid(velocity, HOUSNER_PERIODS))
 
 
-def pulse_period(signal: Signal, damping_ratio: float) -> float:
+def predominant_period(signal: Signal, damping_ratio: float) -> float:
     """Find the period where the pseudo-velocity spectrum has its peak.
 
     Parameters
@@ -81,16 +81,18 @@ def pulse_period(signal: Signal, damping_ratio: float) -> float:
     float
         Between 0.1 s and 20 s; NaN for ground that stands still [s].
     """
-    velocity = _pseudo_velocity(signal, PULSE_PERIODS, damping_ratio)
+    velocity = _pseudo_velocity(signal, PREDOMINANT_PERIODS, damping_ratio)
     if not velocity.max() > 0.0:
         return math.nan
     top = int(np.argmax(velocity))
     if not 0 < top < velocity.size - 1:
-        return float(PULSE_PERIODS[top])
+        return float(PREDOMINANT_PERIODS[top])
     # vertex of the parabola through three points, evenly spaced in log T
     left, middle, right = velocity[top - 1 : top + 2].tolist()
     shift = 0.5 * (left - right) / (left - 2.0 * middle + right)
-    return float(PULSE_PERIODS[top] * (PULSE_PERIODS[1] / PULSE_PERIODS[0]) ** shift)
+    return float(
+        PREDOMINANT_PERIODS[top] * (PREDOMINANT_PERIODS[1] / PREDOMINANT_PERIODS[0]) ** shift
+    )
 
 
 def _pseudo_velocity(signal: Signal, periods: Array, damping_ratio: float) -> Array:

@@ -40,7 +40,7 @@ POWERS: Final = {
     "cumulative_absolute_velocity": 1,
     "housner_spectrum_intensity": 1,
     "mean_period": 0,
-    "predominant_pulse_period": 0,
+    "predominant_velocity_period": 0,
     "significant_duration_5_75": 0,
     "significant_duration_5_95": 0,
     RATIO: 0,

@@ -234,7 +234,10 @@ def test_measures_of_a_sine_pulse():
         "uplift_duration": length * (1.0 - 2.0 * math.asin(uplift / amplitude) / math.pi),
         "relative_peak_ground_acceleration": amplitude / uplift,
         "relative_peak_ground_velocity": p * 2.0 * amplitude / rate / uplift,
-        "relative_pulse_frequency": 2.0 * math.pi / found.predominant_pulse_period.item() / p,
+        "relative_predominant_frequency": 2.0
+        * math.pi
+        / found.predominant_velocity_period.item()
+        / p,
     }
     for name, value in expected.items():
         assert found[name].item() == pytest.approx(value, rel=1e-9), name
@@ -276,7 +279,7 @@ def test_mean_and_predominant_period_of_a_long_harmonic():
     motion = rf.GroundMotion.harmonic("1 m/s^2", "1.25 Hz", duration="200 s")
     found = intensity_measures(motion)
     assert found.mean_period.item() == pytest.approx(0.8, rel=2e-3)
-    assert found.predominant_pulse_period.item() == pytest.approx(0.8, rel=5e-3)
+    assert found.predominant_velocity_period.item() == pytest.approx(0.8, rel=5e-3)
 
 
 # records against another library -------------------------------------------------------------

@@ -63,7 +63,7 @@ MEASURES: Final = (
     ),
     Variable("mean_period", (), Unit.SECOND, "mean period of the Fourier spectrum"),
     Variable(
-        "predominant_pulse_period",
+        "predominant_velocity_period",
         (),
         Unit.SECOND,
         "period at the peak of the pseudo-velocity spectrum",
@@ -93,10 +93,13 @@ MEASURES: Final = (
         "peak ground velocity times the block's frequency over the acceleration of uplift",
     ),
     Variable(
-        "relative_pulse_frequency",
+        "relative_predominant_frequency",
         (),
         Unit.ONE,
-        "angular frequency of the predominant pulse over the block's",
+        "angular frequency of the peak of the pseudo-velocity spectrum over the block's",
+    ),
+    Variable(
+        "relative_pulse_frequency", (), Unit.ONE, "angular frequency of the pulse over the block's"
     ),
     Variable(
         "spectral_displacement", OSCILLATOR, Unit.METRE, "greatest absolute relative displacement"

@@ -112,7 +112,7 @@ def test_a_frame_stands_for_a_block(motion):
 def test_ground_that_stands_still():
     still = rf.GroundMotion.from_arrays((np.zeros(100), "m/s^2"), "0.01 s")
     measures = intensity_measures(still, block=BLOCK)
-    undefined = {"mean_period", "predominant_pulse_period", "relative_pulse_frequency"}
+    undefined = {"mean_period", "predominant_velocity_period", "relative_predominant_frequency"}
     of_the_block = {"overturning_angle", "uplift_acceleration"}
     for name, value in measures.data_vars.items():
         if name in undefined:

@@ -27,10 +27,10 @@ POWERS = {
     "significant_duration_5_95": 0,
     "housner_spectrum_intensity": 1,
     "mean_period": 0,
-    "predominant_pulse_period": 0,
+    "predominant_velocity_period": 0,
     "relative_peak_ground_acceleration": 1,
     "relative_peak_ground_velocity": 1,
-    "relative_pulse_frequency": 0,
+    "relative_predominant_frequency": 0,
 }
 
 
@@ -106,8 +106,8 @@ def test_a_slower_and_weaker_motion_is_the_same_to_a_larger_block():
     for name in ("relative_peak_ground_acceleration", "relative_peak_ground_velocity"):
         assert other[name].item() == pytest.approx(one[name].item(), rel=1e-12)
     # the period is read from a grid
-    assert other.relative_pulse_frequency.item() == pytest.approx(
-        one.relative_pulse_frequency.item(), rel=2e-2
+    assert other.relative_predominant_frequency.item() == pytest.approx(
+        one.relative_predominant_frequency.item(), rel=2e-2
     )
 
 

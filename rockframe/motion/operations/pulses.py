@@ -1,0 +1,166 @@
+"""Finding the velocity pulse of a ground motion."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from rockframe.errors import ComponentError
+from rockframe.motion.operations.following import following, lost_pieces
+from rockframe.motion.processing import velocity_pulses
+from rockframe.motion.quantities import with_quantity
+from rockframe.motion.velocity_pulse import VelocityPulse
+from rockframe.signals import Motion
+from rockframe.signals.path import ground_path
+from rockframe.signals.polynomials import knots_of
+from rockframe.units import PERIOD, POSITIVE, TIME, VELOCITY, to_si
+
+if TYPE_CHECKING:
+    from rockframe.motion.quantities import QuantityLike
+    from rockframe.motion.value import Made
+    from rockframe.signals import Signal
+    from rockframe.signals.arrays import Array
+
+SHORTEST: Final = "0.25 s"
+LONGEST: Final = "15 s"
+"""Periods between which a pulse is looked for unless told otherwise (Shahi and Baker 2014)."""
+
+_STEPS_PER_PERIOD: Final = 4.0
+
+
+def velocity_pulse(
+    motion: Made,
+    *,
+    shortest_period: QuantityLike = SHORTEST,
+    longest_period: QuantityLike = LONGEST,
+) -> VelocityPulse[Made]:
+    """Find the strongest pulse in the velocity, extract it, and judge it (Baker 2007).
+
+    Parameters
+    ----------
+    shortest_period, longest_period : str or Quantity, optional
+        Between which periods it is looked for [s].
+
+    Returns
+    -------
+    VelocityPulse
+        Period, indicator, extracted pulse and residual motion.
+
+    Raises
+    ------
+    UnitsError
+        A period that is no time.
+    ComponentError
+        The ground stands still; or the shortest period is not below the longest, or shorter
+        than four time steps.
+
+    Notes
+    -----
+    Of the horizontal component as it is, from rest and not corrected: a record that drifts has
+    a pulse as long as itself. The criteria are those for components normal to the fault; of
+    other components, look with :meth:`HorizontalPair.velocity_pulse` for the direction of the
+    pulse first.
+
+    Examples
+    --------
+    >>> motion = GroundMotion.mavroeidis_papageorgiou_pulse("80 cm/s", "0.5 Hz", 2.2, "0 deg")
+    >>> print(motion.velocity_pulse())
+    velocity pulse of 2.26 s about 1.997 s, indicator 1: pulse-like
+    """
+    owner, si = f"{type(motion).__name__}.velocity_pulse", motion.si
+    dt = si.time_step
+    periods = searched(shortest_period, longest_period, dt, owner=owner)
+    velocity = velocity_of(si.horizontal)
+    if not np.any(velocity):
+        msg = f"{owner}: {motion.name!r} stands still; it has no pulse"
+        raise ComponentError(msg)
+    place = velocity_pulses.strongest(velocity[None, :], dt, periods)
+    wavelets = velocity_pulses.extracted(velocity, dt, place)
+    wavelet = velocity_pulses.wavelet_of(place.period, dt)
+    within = velocity_pulses.sum_of(wavelets, wavelet, 0, velocity.size)
+    found = velocity_pulses.measures(velocity, within, dt)
+    # still ground before and after, so that all wavelets begin and end at rest
+    reach = wavelet.size // 2 + 1
+    before = max(0, reach - min(middle for middle, _ in wavelets))
+    after = max(0, reach + max(middle for middle, _ in wavelets) + 1 - velocity.size)
+    whole = velocity_pulses.sum_of(wavelets, wavelet, -before, before + velocity.size + after)
+    # central differences, whose sums by the trapezoidal rule end where they began
+    pulse = np.gradient(whole, dt)
+    rest = _padded(si.horizontal.samples, before, after)
+    upwards = None if si.vertical is None else _padded(si.vertical.samples, before, after)
+    words = (
+        f"{before} samples of still ground put before and {after} after it",
+        f"velocity pulse of {place.period:.6g} s about {place.sample * dt:.6g} s: "
+        f"{len(wavelets)} Daubechies wavelets (Baker 2007)",
+    )
+    dropped = lost_pieces(si)
+    return VelocityPulse(
+        period=with_quantity(place.period, TIME),
+        time=with_quantity(place.sample * dt, TIME),
+        peak_velocity=with_quantity(float(np.abs(velocity).max()), VELOCITY),
+        peak_ratio=found.peak_ratio,
+        energy_ratio=found.energy_ratio,
+        indicator=found.indicator,
+        pulse_start=with_quantity(found.pulse_start, TIME),
+        motion_start=with_quantity(found.motion_start, TIME),
+        extracted=following(
+            motion, Motion.of_samples(dt, pulse), *dropped, *words, "the pulse alone"
+        ),
+        residual=following(
+            motion,
+            Motion.of_samples(dt, rest - pulse, upwards),
+            *dropped,
+            *words,
+            "the pulse taken out",
+        ),
+        lead=with_quantity(before * dt, TIME),
+    )
+
+
+def searched(shortest: QuantityLike, longest: QuantityLike, dt: float, *, owner: str) -> Array:
+    """Read the arguments between which periods a pulse is looked for.
+
+    Parameters
+    ----------
+    shortest, longest : str or Quantity
+        What the user gave [s].
+    dt : float
+        Time step [s].
+    owner : str
+        Class and method, for the message.
+
+    Returns
+    -------
+    ndarray, shape (k,)
+        All periods that are looked at [s].
+
+    Raises
+    ------
+    UnitsError
+        Not times.
+    ComponentError
+        In the wrong order, or too short for the motion.
+    """
+    first, last = (
+        to_si(value, PERIOD, owner=owner, name=name, condition=POSITIVE)
+        for name, value in (("shortest_period", shortest), ("longest_period", longest))
+    )
+    if not (_STEPS_PER_PERIOD * dt <= first < last and math.isfinite(last)):
+        msg = (
+            f"{owner}: shortest_period = {first:.6g} s must be below longest_period = "
+            f"{last:.6g} s and at least {_STEPS_PER_PERIOD:g} time steps, "
+            f"{_STEPS_PER_PERIOD * dt:.6g} s"
+        )
+        raise ComponentError(msg)
+    return velocity_pulses.periods_between(first, last)
+
+
+def velocity_of(signal: Signal) -> Array:
+    """Give the velocity of ground that starts from rest, at the samples [m s^-1]."""
+    return knots_of(ground_path(signal)[0])
+
+
+def _padded(samples: Array, before: int, after: int) -> Array:
+    return np.concatenate([np.zeros(before), samples, np.zeros(after)])

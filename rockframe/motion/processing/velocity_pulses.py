@@ -1,0 +1,248 @@
+"""The strongest pulse in a velocity: found, extracted and judged (Baker 2007)."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+
+from rockframe.motion.processing.daubechies import (
+    CENTRE_FREQUENCY,
+    SUPPORT,
+    mother_wavelet,
+)
+from rockframe.signals.arrays import Array
+
+PERIOD_RATIO: Final = 1.02
+"""From one period of the wavelet transform to the next [1]."""
+
+WAVELETS: Final = 10
+"""Wavelets that a pulse is made of (Baker 2007)."""
+
+REACH: Final = 0.4
+"""How far they lie from the first one, over their scale [1] (Shahi and Baker 2014)."""
+
+INDICATOR: Final = (-23.3, 14.6, 20.5)
+"""Constant, and factors of the ratios of peak velocities and energies [1] (Baker 2007)."""
+
+PULSE_SHARE: Final = 0.1
+MOTION_SHARE: Final = 0.2
+"""Shares of the squared velocities of pulse and motion that mark their starts (Baker 2007)."""
+
+_REFINEMENT: Final = 10
+
+
+class Place(NamedTuple):
+    """Where the wavelet transform is greatest.
+
+    Parameters
+    ----------
+    period : float
+        Pseudo-period of the wavelet [s].
+    sample : int
+        Its middle.
+    direction : float
+        From the first of two components towards the second; zero of one [rad].
+    """
+
+    period: float
+    sample: int
+    direction: float
+
+
+class Measures(NamedTuple):
+    """What tells whether a motion is that of a pulse.
+
+    Parameters
+    ----------
+    peak_ratio, energy_ratio : float
+        Peak and sum of squares of what the pulse leaves of the velocity, over those of the
+        whole [1].
+    indicator : float
+        From 0, no pulse, to 1 [1].
+    pulse_start, motion_start : float
+        When a tenth of the squares of the pulse is reached, and a fifth of those of the
+        whole [s].
+    """
+
+    peak_ratio: float
+    energy_ratio: float
+    indicator: float
+    pulse_start: float
+    motion_start: float
+
+
+def periods_between(shortest: float, longest: float) -> Array:
+    """Give the periods at which a pulse is looked for [s]."""
+    count = math.ceil(math.log(longest / shortest) / math.log(PERIOD_RATIO)) + 1
+    return np.geomspace(shortest, longest, max(count, 2))
+
+
+def strongest(velocities: Array, dt: float, periods: Array) -> Place:
+    """Find where the wavelet transform is greatest, :eq:`eq-wavelet-coefficient`.
+
+    Parameters
+    ----------
+    velocities : ndarray, shape (c, n)
+        One component, or two at a right angle: then in the direction in which it is greatest,
+        :eq:`eq-pulse-direction` [m s^-1].
+    dt : float
+        Time step [s].
+    periods : ndarray, shape (k,)
+        Where it is looked for [s].
+
+    Returns
+    -------
+    Place
+        The period is that of the greatest coefficient between the periods given, in ten steps.
+    """
+    from scipy import fft
+
+    count = velocities.shape[1]
+    reach = wavelet_of(float(periods[-1]), dt).size
+    size = fft.next_fast_len(count + reach, real=True)
+    transforms = np.fft.rfft(velocities, size)
+    greatest, period, sample = -1.0, 0.0, 0
+    for one in periods.tolist():
+        wavelet = wavelet_of(one, dt)
+        transform = np.conj(np.fft.rfft(wavelet, size))
+        products = np.fft.irfft(transforms * transform, size)
+        # nothing moves before and after; a wavelet may reach beyond both ends
+        coefficients = np.roll(products, wavelet.size // 2, axis=1)[:, :count]
+        squares: Array = np.sum(coefficients**2, axis=0)
+        top = int(np.argmax(squares))
+        if squares[top] > greatest:
+            greatest, period, sample = float(squares[top]), one, top
+    near = np.geomspace(period / PERIOD_RATIO, period * PERIOD_RATIO, 2 * _REFINEMENT + 1)
+    near = near[(near >= periods[0]) & (near <= periods[-1])]
+    found = np.array([_at(velocities, sample, wavelet_of(one, dt)) for one in near.tolist()])
+    best = int(np.argmax(np.sum(found**2, axis=1)))
+    direction = math.atan2(found[best, 1], found[best, 0]) if len(velocities) == 2 else 0.0
+    return Place(float(near[best]), sample, direction % math.pi)
+
+
+def extracted(velocity: Array, dt: float, place: Place) -> list[tuple[int, float]]:
+    """Take the strongest wavelets about a place, one after the other, out of a velocity.
+
+    Parameters
+    ----------
+    velocity : ndarray, shape (n,)
+        [m s^-1]
+    dt : float
+        Time step [s].
+    place : Place
+        Of the first one, and the period of all.
+
+    Returns
+    -------
+    list of (int, float)
+        Middles and coefficients, :eq:`eq-extracted-pulse` [m s^-1].
+    """
+    wavelet = wavelet_of(place.period, dt)
+    reach = math.ceil(REACH * place.period * CENTRE_FREQUENCY / dt)
+    around = range(max(0, place.sample - reach), min(velocity.size - 1, place.sample + reach) + 1)
+    left = velocity.copy()
+    wavelets: list[tuple[int, float]] = []
+    for _ in range(WAVELETS):
+        coefficients = _about(left, around, wavelet)
+        top = int(np.argmax(np.abs(coefficients)))
+        wavelets.append((around[top], float(coefficients[top])))
+        left -= sum_of([wavelets[-1]], wavelet, 0, velocity.size)
+    return wavelets
+
+
+def sum_of(wavelets: list[tuple[int, float]], wavelet: Array, start: int, count: int) -> Array:
+    """Add wavelets.
+
+    Parameters
+    ----------
+    wavelets : list of (int, float)
+        Middles and coefficients [m s^-1].
+    wavelet : ndarray, shape (2 m + 1,)
+        As :func:`wavelet_of` gives it.
+    start, count : int
+        First sample that is asked for, which may be negative, and how many.
+
+    Returns
+    -------
+    ndarray, shape (count,)
+        [m s^-1]
+    """
+    total = np.zeros(count)
+    for middle, coefficient in wavelets:
+        begin = middle - wavelet.size // 2 - start
+        first, last = max(0, begin), min(count, begin + wavelet.size)
+        total[first:last] += coefficient * wavelet[first - begin : last - begin]
+    return total
+
+
+def measures(velocity: Array, pulse: Array, dt: float) -> Measures:
+    """Compare what the pulse leaves with the whole, :eq:`eq-pulse-indicator`.
+
+    Parameters
+    ----------
+    velocity, pulse : ndarray, shape (n,)
+        The whole, and the pulse [m s^-1].
+    dt : float
+        Time step [s].
+
+    Returns
+    -------
+    Measures
+    """
+    left = velocity - pulse
+    peak_ratio = float(np.abs(left).max() / np.abs(velocity).max())
+    energy_ratio = float(left @ left / (velocity @ velocity))
+    constant, of_peak, of_energy = INDICATOR
+    exponent = constant + of_peak * peak_ratio + of_energy * energy_ratio
+    return Measures(
+        peak_ratio,
+        energy_ratio,
+        1.0 / (1.0 + math.exp(exponent)),
+        _reached(pulse, PULSE_SHARE) * dt,
+        _reached(velocity, MOTION_SHARE) * dt,
+    )
+
+
+def wavelet_of(period: float, dt: float) -> Array:
+    """Sample the wavelet of a period about its middle.
+
+    Parameters
+    ----------
+    period : float
+        Pseudo-period, :eq:`eq-pseudo-period` [s].
+    dt : float
+        Time step [s].
+
+    Returns
+    -------
+    ndarray, shape (2 m + 1,)
+        Of unit sum of squares [1].
+    """
+    scale = period * CENTRE_FREQUENCY / dt
+    half = math.ceil(0.5 * SUPPORT * scale)
+    wavelet = mother_wavelet(np.arange(-half, half + 1) / scale + 0.5 * SUPPORT)
+    return wavelet / math.sqrt(float(wavelet @ wavelet))
+
+
+def _reached(velocity: Array, share: float) -> int:
+    """Count the samples until the sum of squares has reached a share of the whole."""
+    grown = np.cumsum(velocity**2)
+    return int(np.searchsorted(grown, share * grown[-1]))
+
+
+def _about(velocity: Array, samples: range, wavelet: Array) -> Array:
+    """Give the coefficients of a wavelet about some samples that follow one another."""
+    from scipy import signal as module
+
+    signal: Any = module
+    half = wavelet.size // 2
+    still = np.zeros(half)
+    reached = np.concatenate([still, velocity, still])[samples[0] : samples[-1] + wavelet.size]
+    return signal.correlate(reached, wavelet, mode="valid")
+
+
+def _at(velocities: Array, sample: int, wavelet: Array) -> Array:
+    """Give the coefficient of a wavelet about a sample, of each component."""
+    return np.array([_about(one, range(sample, sample + 1), wavelet)[0] for one in velocities])
