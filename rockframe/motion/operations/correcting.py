@@ -35,6 +35,7 @@ def filtered(
     high: QuantityLike | None = None,
     order: int = 4,
     causal: bool = False,
+    keep_padding: bool = False,
 ) -> Made:
     """Apply a Butterworth filter, zero-phase unless told otherwise.
 
@@ -50,6 +51,10 @@ def filtered(
     causal : bool, optional
         Run the filter forwards only: nothing moves before its time, but phases are
         shifted; the amplitude at a corner is divided by the square root of 2.
+    keep_padding : bool, optional
+        Keep what the filter makes of the still ground before and after the motion, which is
+        longer then. Needed where velocity or displacement matter: a filter spreads the motion
+        beyond both ends, and without these tails the ground does not come back to rest.
 
     Returns
     -------
@@ -61,13 +66,17 @@ def filtered(
         Not a frequency.
     ComponentError
         No corner, corners in the wrong order or beyond the Nyquist
-        frequency, an order outside 1 to 12, or `causal` neither True nor False.
+        frequency, an order outside 1 to 12, or `causal` or `keep_padding` neither True nor
+        False.
 
     Notes
     -----
     For a zero-phase filter the motion is padded with zeros at both ends, 1.5 order/f
-    of the lowest corner f, and cut back to its length afterwards. A causal filter
-    starts from rest, as if zeros had gone before.
+    of the lowest corner f, and cut back to its length afterwards unless `keep_padding`. A
+    causal filter starts from rest, as if zeros had gone before; its padding is at the end.
+
+    Integrated, a motion that was cut back drifts after ``low``: velocity and displacement of
+    the tails are missing. With the padding both return to zero.
     """
     owner, si = f"{type(motion).__name__}.filtered", motion.si
     corners = {
@@ -91,9 +100,10 @@ def filtered(
             )
             raise ComponentError(msg)
     order = whole_number(order, owner=owner, name="order", lowest=1, highest=_HIGHEST_ORDER)
-    if not isinstance(cast("object", causal), bool):
-        msg = f"{owner}: causal must be True or False, got {shown(causal)}"
-        raise ComponentError(msg)
+    for name, given in (("causal", causal), ("keep_padding", keep_padding)):
+        if not isinstance(cast("object", given), bool):
+            msg = f"{owner}: {name} must be True or False, got {shown(given)}"
+            raise ComponentError(msg)
     padding = padding_samples(si.time_step, min(corners.values()), order)
     if padding > MAXIMUM_SAMPLES:
         msg = f"{owner}: a corner of {min(corners.values()):.6g} Hz is too low for this motion"
@@ -101,7 +111,13 @@ def filtered(
     result = with_samples(
         si,
         lambda signal: butterworth(
-            si.time_step, signal.samples, low=lower, high=upper, order=order, causal=causal
+            si.time_step,
+            signal.samples,
+            low=lower,
+            high=upper,
+            order=order,
+            causal=causal,
+            keep_padding=keep_padding,
         ),
     )
     band = ", ".join(f"{name} corner {value:.9g} Hz" for name, value in corners.items())
@@ -110,9 +126,13 @@ def filtered(
         if causal
         else f"forwards and backwards, {band}, padded with {padding} zeros at both ends"
     )
-    step = f"Butterworth filter of order {order}, {way}"
-    given = {name: f"{value!r} {FREQUENCY.unit}" for name, value in corners.items()}
-    operation = {"filtered": {**given, "order": order, "causal": causal}}
+    before = 1 if causal else padding
+    kept = f", padding kept: {before} samples before and {padding} after" if keep_padding else ""
+    step = f"Butterworth filter of order {order}, {way}{kept}"
+    asked = {name: f"{value!r} {FREQUENCY.unit}" for name, value in corners.items()}
+    operation = {
+        "filtered": {**asked, "order": order, "causal": causal, "keep_padding": keep_padding}
+    }
     return following(motion, result, step, *lost_pieces(si), operation=operation)
 
 

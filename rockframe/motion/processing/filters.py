@@ -20,6 +20,7 @@ def butterworth(
     high: float | None,
     order: int,
     causal: bool = False,
+    keep_padding: bool = False,
 ) -> Array:
     """Run a Butterworth filter over the zero-padded samples.
 
@@ -35,11 +36,14 @@ def butterworth(
         Of each pass.
     causal : bool, optional
         Run it forwards only, instead of forwards and backwards.
+    keep_padding : bool, optional
+        Leave what the filter makes of the zeros: at both ends, of a causal one at the end and
+        one zero at the start.
 
     Returns
     -------
-    ndarray, shape (n,)
-        Padding removed.
+    ndarray, shape (n,), (n + 2 p,) or (n + p + 1,)
+        Padding removed unless it is kept.
     """
     from scipy import signal as module
 
@@ -54,13 +58,14 @@ def butterworth(
     sos = signal.butter(order, corners, btype=kind, fs=1.0 / dt, output="sos")
     lowest = min(corner for corner in (low, high) if corner is not None)
     padding = padding_samples(dt, lowest, order)
-    if causal:  # at rest before the motion, which zeros would not change
-        once: Array = signal.sosfilt(sos, samples)
-        return once
     rest = np.zeros(padding)
+    if causal:  # at rest before the motion, which zeros would not change
+        # but for one of them: a motion that starts with a jump rises to it from there
+        once: Array = signal.sosfilt(sos, np.concatenate([[0.0], samples, rest]))
+        return once if keep_padding else once[1 : samples.size + 1]
     padded = np.concatenate([rest, samples, rest])
     result: Array = signal.sosfiltfilt(sos, padded, padtype=None)
-    return result[padding : padding + samples.size]
+    return result if keep_padding else result[padding : padding + samples.size]
 
 
 def padding_samples(dt: float, lowest: float, order: int) -> int:

@@ -239,6 +239,7 @@ def test_only_public_names_are_shown():
     assert dir(rockframe.motion) == [
         "GroundMotion",
         "HorizontalPair",
+        "VelocityPulse",
         "formats",
         "register",
         "unregister",

@@ -5,6 +5,7 @@ import pytest
 from scipy import signal
 
 from rockframe.errors import ComponentError, UnitsError
+from rockframe.measures import velocity_and_displacement
 from rockframe.motion import GroundMotion
 
 RNG = np.random.default_rng(20)
@@ -267,6 +268,28 @@ def test_a_band_is_padded_for_its_lower_corner():
     assert band.si.horizontal.samples == pytest.approx(padded[6000:6400], abs=1e-12)
 
 
+@pytest.mark.parametrize("causal", [False, True])
+@pytest.mark.parametrize("arguments", [{"low": "0.1 Hz"}, {"low": "0.2 Hz", "high": "25 Hz"}])
+def test_with_its_padding_a_filtered_motion_ends_at_rest(causal, arguments):
+    """The motion is pushed off and ends in full swing, so that it drifts."""
+    record = GroundMotion.example("loma-prieta").window("5 s", "15 s")
+    cut = record.filtered(**arguments, causal=causal)
+    kept = record.filtered(**arguments, causal=causal, keep_padding=True)
+    before = round((len(kept) - len(cut)) / 2) if not causal else 1
+    within = kept.si.horizontal.samples[before : before + len(cut)]
+    np.testing.assert_allclose(within, cut.si.horizontal.samples, rtol=0.0, atol=1e-15)
+    ends = {}
+    for name, found in (("cut", cut), ("kept", kept)):
+        path = velocity_and_displacement(found)
+        ends[name] = [
+            abs(float(values[-1])) / float(np.abs(values).max())
+            for values in (path.ground_velocity, path.ground_displacement)
+        ]
+    assert max(ends["cut"]) > (0.02 if causal else 0.5)
+    assert max(ends["kept"]) < 1e-4
+    assert "padding kept: " in kept.history[-1]
+
+
 @pytest.mark.parametrize(
     ("arguments", "error", "words"),
     [
@@ -287,6 +310,7 @@ def test_a_band_is_padded_for_its_lower_corner():
         ({"high": "5 Hz", "order": 2.0}, ComponentError, "order must be a whole number"),
         ({"high": "5 Hz", "order": True}, ComponentError, "order must be a whole number"),
         ({"high": "5 Hz", "causal": 1}, ComponentError, "causal must be True or False, got 1"),
+        ({"high": "5 Hz", "keep_padding": "y"}, ComponentError, "keep_padding must be True or"),
     ],
 )
 def test_filters_that_are_refused(arguments, error, words):
