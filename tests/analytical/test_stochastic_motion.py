@@ -15,6 +15,7 @@ from scipy.integrate import quad
 
 import rockframe as rf
 from rockframe.motion.stochastic import PointSource, Site, accelerogram, path, site, source
+from rockframe.motion.stochastic.source import Corners
 from rockframe.motion.stochastic.synthesis import WINDOW_LENGTH, exponential_window
 
 pytestmark = pytest.mark.analytical
@@ -39,6 +40,68 @@ STEP = 0.005
 
 def peaks_over_seeds(model, seeds):
     return np.mean([np.abs(accelerogram(model, STEP, seed)).max() for seed in range(seeds)])
+
+
+# two corners, against recorded motions -------------------------------------------------------
+
+PERIODS = [1.0, 2.0, 3.0]
+# mean (of logarithms) of the four NGA-West2 models of pyGMM 0.8 at PERIODS [g]: strike-slip on a
+# vertical fault, 20 km, 760 m/s; depth to its top 3 km, 1.5 km and 0.5 km
+RECORDED = {
+    6.0: (0.0436, 0.0153, 0.0077),
+    6.5: (0.0723, 0.0296, 0.0167),
+    7.0: (0.0989, 0.0443, 0.0273),
+}
+
+
+@pytest.mark.parametrize("magnitude", RECORDED)
+def test_two_corners_come_nearer_to_recorded_motions_at_long_periods(magnitude):
+    ratios = {}
+    for kind in ("one corner", "two corners"):
+        motions = {
+            seed: rf.GroundMotion.stochastic(magnitude, "20 km", seed, source=kind)
+            for seed in range(12)
+        }
+        spectra = rf.response_spectrum(motions, (PERIODS, "s")).pseudo_spectral_acceleration
+        mean = np.exp(np.log(spectra.squeeze().values).mean(axis=0)) / 9.80665
+        ratios[kind] = mean / RECORDED[magnitude]
+    assert ratios["one corner"].min() > 1.15
+    assert ratios["one corner"].max() > 1.5
+    assert ratios["two corners"].min() > 0.7
+    assert ratios["two corners"].max() < 1.45
+
+
+@pytest.mark.parametrize("magnitude", [4.0, 6.0, 7.5])
+def test_two_corners_keep_both_ends_of_the_spectrum(magnitude):
+    one = PointSource(magnitude, 20e3)
+    two = replace(one, corners=Corners.TWO)
+    lower, upper, share = two.two_corners
+    assert lower == pytest.approx(10.0 ** (2.181 - 0.496 * magnitude))
+    assert share == pytest.approx(10.0 ** (0.605 - 0.255 * magnitude))
+    assert lower < one.corner_frequency < upper
+    ends = np.array([1e-4 * lower, 1e3 * upper])
+    np.testing.assert_allclose(
+        two.displacement_spectrum(ends), one.displacement_spectrum(ends), rtol=1e-4
+    )
+    between = two.displacement_spectrum(np.array([lower])) / one.displacement_spectrum(
+        np.array([lower])
+    )
+    hand = (1.0 - share) / 2.0 + share / (1.0 + (lower / upper) ** 2)
+    hand *= 1.0 + (lower / one.corner_frequency) ** 2
+    assert between[0] == pytest.approx(hand, rel=1e-12)
+    assert two.duration - one.duration == pytest.approx(
+        0.5 / lower + 0.5 / upper - 1.0 / one.corner_frequency
+    )
+
+
+def test_a_source_of_two_corners_is_told_and_built_again():
+    motion = rf.GroundMotion.stochastic(6.5, "15 km", 3, source="two corners", vertical=0.5)
+    assert motion.metadata["source"] == "two corners"
+    assert rf.GroundMotion.from_dict(motion.to_dict()) == motion
+    with pytest.raises(rf.ComponentError, match="source must be 'one corner' or 'two corners'"):
+        rf.GroundMotion.stochastic(6.5, "15 km", 3, source="three")
+    with pytest.raises(rf.ComponentError, match="take 'one corner'"):
+        rf.GroundMotion.stochastic(6.5, "15 km", 3, source="two corners", stress_drop="1 kPa")
 
 
 # the target, against SMSIM -------------------------------------------------------------------

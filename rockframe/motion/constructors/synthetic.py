@@ -23,7 +23,7 @@ from rockframe.units import (
 
 if TYPE_CHECKING:
     from rockframe.motion.quantities import QuantityLike, RatioLike
-    from rockframe.motion.stochastic import PointSource, Site
+    from rockframe.motion.stochastic import Corners, PointSource, Site
     from rockframe.motion.value import Made
 
 MODEL: Final = (
@@ -65,6 +65,7 @@ def stochastic(
     quality_exponent: RatioLike = 0.45,
     kappa: QuantityLike = "0.035 s",
     site: Site | str = "rock 760",
+    source: Corners | str = "one corner",
     vertical: RatioLike | None = None,
     time_step: QuantityLike = "0.005 s",
 ) -> Made:
@@ -99,6 +100,10 @@ def stochastic(
     site : Site or str, optional
         ``"rock 760"`` or ``"rock 620"``: mean shear-wave velocity of the upper
         30 m in m/s.
+    source : Corners or str, optional
+        ``"one corner"``: the spectrum of a point, which from magnitude 6 on is too strong at
+        periods of 1 s to 5 s; ``"two corners"``: that of a large fault, which mends most of it
+        (Atkinson and Silva 2000, Boore et al. 2014).
     vertical : float, optional
         Vertical over horizontal spectrum, the same at all frequencies; no
         vertical component unless given [1].
@@ -116,8 +121,8 @@ def stochastic(
         A wrong unit, or none.
     ComponentError
         A magnitude, distance or time step outside its range, a seed that is not
-        a whole number, an unknown site, a value that is not positive, or values
-        out of all proportion.
+        a whole number, an unknown site or source, a value that is not positive, or
+        values out of all proportion.
 
     Warns
     -----
@@ -130,11 +135,11 @@ def stochastic(
     >>> motion.metadata["seed"]
     1
     """
-    from rockframe.motion.stochastic import PointSource, Site, accelerogram
+    from rockframe.motion.stochastic import Corners, PointSource, Site, accelerogram
 
     owner = f"{kind.__name__}.stochastic"
     number, amount = partial(to_ratio, owner=owner), partial(to_si, owner=owner)
-    source = PointSource(
+    earthquake = PointSource(
         magnitude=number(magnitude, name="magnitude", condition=_MAGNITUDES, example="6.5"),
         distance=amount(distance, _DISTANCE, name="distance", condition=_DISTANCES),
         stress_drop=amount(stress_drop, _STRESS, name="stress_drop", condition=POSITIVE),
@@ -148,21 +153,22 @@ def stochastic(
         quality_exponent=number(quality_exponent, name="quality_exponent", condition=_EXPONENTS),
         kappa=amount(kappa, _KAPPA, name="kappa", condition=NOT_NEGATIVE),
         site=one_of_words(Site, site, owner=owner, name="site"),
+        corners=one_of_words(Corners, source, owner=owner, name="source"),
     )
     first = whole_number(seed, owner=owner, name="seed", lowest=0)
     ratio = None
     if vertical is not None:
         ratio = number(vertical, name="vertical", condition=POSITIVE)
     step = amount(time_step, _STEP, name="time_step", condition=_STEPS)
-    for message in _extrapolations(source, owner):
+    for message in _extrapolations(earthquake, owner):
         warnings.warn(message, ModelWarning, stacklevel=2)
-    across = accelerogram(source, step, first)
-    upwards = None if ratio is None else ratio * accelerogram(source, step, first, stream=1)
-    given = _arguments(source, first, ratio, step)
-    what = f"magnitude {source.magnitude:.6g} at {source.distance / 1e3:.6g} km"
+    across = accelerogram(earthquake, step, first)
+    upwards = None if ratio is None else ratio * accelerogram(earthquake, step, first, stream=1)
+    given = _arguments(earthquake, first, ratio, step)
+    what = f"magnitude {earthquake.magnitude:.6g} at {earthquake.distance / 1e3:.6g} km"
     return kind(
         Motion.of_samples(step, across, upwards),
-        name=f"stochastic motion, {what}, {source.site}, seed {first}",
+        name=f"stochastic motion, {what}, {earthquake.site}, seed {first}",
         metadata={"model": MODEL, **given},
         history=(
             "drawn from a stochastic point source: "
@@ -176,9 +182,17 @@ def _extrapolations(source: PointSource, owner: str) -> list[str]:
     """Tell what is beyond the model's calibration; refuse what cannot be meant."""
     from rockframe.motion.stochastic.path import LARGEST_DISTANCE
 
-    if source.duration > LONGEST_DURATION:
+    try:
+        duration = source.duration
+    except ArithmeticError as problem:
         msg = (
-            f"{owner}: an earthquake of these properties would last {source.duration:.6g} s; "
+            f"{owner}: source = {str(source.corners)!r} has {problem}; stress_drop or "
+            "shear_wave_velocity is too low for it, take 'one corner'"
+        )
+        raise ComponentError(msg) from problem
+    if duration > LONGEST_DURATION:
+        msg = (
+            f"{owner}: an earthquake of these properties would last {duration:.6g} s; "
             f"stress_drop, shear_wave_velocity or magnitude is out of proportion"
         )
         raise ComponentError(msg)
@@ -200,6 +214,8 @@ def _arguments(
     source: PointSource, seed: int, vertical: float | None, time_step: float
 ) -> dict[str, str | float | int]:
     """Give the arguments that build the same motion again, whatever the defaults become."""
+    from rockframe.motion.stochastic import Corners
+
     return {
         "magnitude": source.magnitude,
         "distance": f"{source.distance!r} {_DISTANCE.unit}",
@@ -211,6 +227,7 @@ def _arguments(
         "quality_exponent": source.quality_exponent,
         "kappa": f"{source.kappa!r} {_KAPPA.unit}",
         "site": str(source.site),
+        **({} if source.corners is Corners.ONE else {"source": str(source.corners)}),
         **({} if vertical is None else {"vertical": vertical}),
         "time_step": f"{time_step!r} {_STEP.unit}",
     }

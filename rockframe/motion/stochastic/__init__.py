@@ -2,6 +2,7 @@
 
 from rockframe.motion.stochastic.point_source import PointSource
 from rockframe.motion.stochastic.site import Site
+from rockframe.motion.stochastic.source import Corners
 from rockframe.motion.stochastic.synthesis import accelerogram
 
-__all__ = ["PointSource", "Site", "accelerogram"]
+__all__ = ["Corners", "PointSource", "Site", "accelerogram"]

@@ -38,6 +38,8 @@ class PointSource:
         Loss of high frequencies at the site [s].
     site : Site
         Ground of the site.
+    corners : Corners
+        Corner frequencies of the source.
     """
 
     magnitude: float
@@ -49,6 +51,7 @@ class PointSource:
     quality_exponent: float = 0.45
     kappa: float = 0.035
     site: site.Site = site.Site.ROCK_760
+    corners: source.Corners = source.Corners.ONE
 
     @property
     def moment(self) -> float:
@@ -57,8 +60,19 @@ class PointSource:
 
     @property
     def corner_frequency(self) -> float:
-        """Corner frequency of the source [Hz]."""
+        """Corner frequency of a source that has one [Hz]."""
         return source.corner_frequency(self.moment, self.stress_drop, self.shear_wave_velocity)
+
+    @property
+    def two_corners(self) -> tuple[float, float, float]:
+        """Corner frequencies [Hz] and the share of the upper one [1], of a source with two."""
+        return source.two_corners(self.magnitude, self.corner_frequency)
+
+    @property
+    def lowest_corner(self) -> float:
+        """The corner frequency, or the lower of two [Hz]."""
+        one = self.corners is source.Corners.ONE
+        return self.corner_frequency if one else self.two_corners[0]
 
     @property
     def effective_distance(self) -> float:
@@ -68,7 +82,12 @@ class PointSource:
     @property
     def duration(self) -> float:
         """Duration of source and path together, :eq:`eq-duration` [s]."""
-        return 1.0 / self.corner_frequency + path.path_duration(self.effective_distance)
+        if self.corners is source.Corners.ONE:
+            of_source = 1.0 / self.corner_frequency
+        else:
+            lower, upper, _ = self.two_corners
+            of_source = 0.5 / lower + 0.5 / upper
+        return of_source + path.path_duration(self.effective_distance)
 
     def displacement_spectrum(self, frequency: Array) -> Array:
         """Compute the Fourier amplitude of the displacement, :eq:`eq-target-spectrum`.
@@ -85,9 +104,13 @@ class PointSource:
         """
         level = source.displacement_level(self.moment, self.shear_wave_velocity, self.density)
         distance = self.effective_distance
+        if self.corners is source.Corners.ONE:
+            shape = source.source_shape(frequency, self.corner_frequency)
+        else:
+            shape = source.two_corner_shape(frequency, self.two_corners)
         return (
             level
-            * source.source_shape(frequency, self.corner_frequency)
+            * shape
             * path.geometric_spreading(distance)
             * path.crustal_attenuation(
                 frequency, distance, self.quality_factor, self.quality_exponent

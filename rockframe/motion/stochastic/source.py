@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from enum import StrEnum
 from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
@@ -25,6 +26,20 @@ CORNER: Final = 0.4906
 
 Boore (2003) has it as 4.906e6, for km/s, bar and dyn cm.
 """
+
+
+LOWER_CORNER: Final = (2.181, -0.496)
+"""Lower of two corner frequencies: log10(f/Hz) = a + b M (Atkinson and Silva 2000)."""
+
+SHARE_OF_UPPER: Final = (0.605, -0.255)
+"""Share of the upper one in the spectrum: log10 = a + b M (Atkinson and Silva 2000)."""
+
+
+class Corners(StrEnum):
+    """How many corner frequencies the spectrum of the source has."""
+
+    ONE = "one corner"
+    TWO = "two corners"
 
 
 def seismic_moment(magnitude: float) -> float:
@@ -101,3 +116,55 @@ def source_shape(frequency: Array, corner: float) -> Array:
         1 for long waves [1].
     """
     return 1.0 / (1.0 + (frequency / corner) ** 2)
+
+
+def two_corners(magnitude: float, corner: float) -> tuple[float, float, float]:
+    """Compute the corner frequencies of a large fault, :eq:`eq-two-corners`.
+
+    Parameters
+    ----------
+    magnitude : float
+        Moment magnitude [1].
+    corner : float
+        Corner frequency of the source with one corner, whose high frequencies are kept [Hz].
+
+    Returns
+    -------
+    lower, upper : float
+        Corner frequencies [Hz].
+    share : float
+        Of the upper one [1].
+
+    Raises
+    ------
+    ArithmeticError
+        The lower corner alone exceeds these high frequencies.
+    """
+    (a, b), (c, d) = LOWER_CORNER, SHARE_OF_UPPER
+    lower = 10.0 ** (a + b * magnitude)
+    share = 10.0 ** (c + d * magnitude)
+    square = (corner**2 - (1.0 - share) * lower**2) / share
+    if not square > lower**2:
+        msg = f"no upper corner above the lower one of {lower:.4g} Hz"
+        raise ArithmeticError(msg)
+    return lower, math.sqrt(square), share
+
+
+def two_corner_shape(frequency: Array, corners: tuple[float, float, float]) -> Array:
+    """Compute the shape of a displacement spectrum with two corners, :eq:`eq-two-corner-shape`.
+
+    Parameters
+    ----------
+    frequency : ndarray
+        [Hz]
+    corners : tuple of three float
+        As :func:`two_corners` gives them.
+
+    Returns
+    -------
+    ndarray
+        1 for long waves [1].
+    """
+    lower, upper, share = corners
+    of_lower, of_upper = source_shape(frequency, lower), source_shape(frequency, upper)
+    return (1.0 - share) * of_lower + share * of_upper

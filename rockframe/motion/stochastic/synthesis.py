@@ -49,7 +49,7 @@ def accelerogram(source: PointSource, time_step: float, seed: int, stream: int =
 
     window = exponential_window(WINDOW_LENGTH * source.duration, time_step)
     noise = window * normal_numbers(window.size, seed, stream)
-    fade = math.ceil(max(1.0 / source.corner_frequency, SHORTEST_FADE) / time_step)
+    fade = math.ceil(max(1.0 / source.lowest_corner, SHORTEST_FADE) / time_step)
     count = window.size + 2 * fade
     # twice as long as needed: what the filter spreads beyond the ends must not come round
     points = cast("int", fft.next_fast_len(2 * count, real=True))
