@@ -1,13 +1,18 @@
 """Response spectra of linear oscillators."""
 
+import math
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 import xarray as xr
 
+from rockframe.arguments import one_of_words
 from rockframe.errors import ComponentError, shown
 from rockframe.measures.labels import build_over
 from rockframe.measures.several import looked_at
+from rockframe.motion.operations.timing import Interpolation
+from rockframe.motion.processing.sampling import band_limited
 from rockframe.signals import Signal
 from rockframe.signals.arrays import Array
 from rockframe.signals.spectra import DAMPING_RATIO, check_cost, pseudo_spectra, spectral_peaks
@@ -19,6 +24,9 @@ if TYPE_CHECKING:
     from rockframe.motion import GroundMotion
     from rockframe.motion.quantities import ArrayLike, QuantityLike, RatioLike
 
+SAMPLES_PER_PERIOD: Final = 25
+"""Samples of the shortest period of a band-limited motion: lines between them lower it by 0.5 %."""
+
 _PERIODS_PER_DECADE: Final = 100
 _OWNER: Final = "response_spectrum"
 
@@ -29,6 +37,7 @@ def response_spectrum(
     damping_ratios: "Iterable[RatioLike] | RatioLike" = (0.05,),
     *,
     component: str = "horizontal",
+    interpolation: str = "linear",
 ) -> xr.Dataset:
     """Compute the response spectra of a motion.
 
@@ -44,6 +53,10 @@ def response_spectrum(
         Shares of critical damping, from 0 to 1 [1].
     component : {"horizontal", "vertical"}, optional
         Which acceleration.
+    interpolation : {"linear", "band-limited"}, optional
+        What a record is between its samples: straight lines, as a simulation sees it, or the
+        motion with these samples and nothing beyond their Nyquist frequency. The lines lower
+        the ordinates at periods shorter than about ten time steps.
 
     Returns
     -------
@@ -60,7 +73,8 @@ def response_spectrum(
         Periods without a unit, or with one of another kind.
     ComponentError
         The motion lacks the component, periods do not increase or are so short that they
-        need too many steps, or a damping ratio is out of range or given twice.
+        need too many steps, a damping ratio is out of range or given twice, or another
+        `interpolation`.
 
     Notes
     -----
@@ -80,13 +94,16 @@ def response_spectrum(
     looked = looked_at(motion, component, owner=_OWNER)
     seconds = checked_periods(periods, owner=_OWNER)
     ratios = checked_ratios(damping_ratios, owner=_OWNER)
+    between = one_of_words(Interpolation, interpolation, owner=_OWNER, name="interpolation")
+    if between is Interpolation.BAND_LIMITED:
+        looked = replace(looked, things=[_refined(one, seconds) for one in looked.things])
     for signal in looked.things:
         check_cost(signal, seconds, owner=_OWNER)
     values = looked.together(looked.each(lambda signal: _spectra(signal, seconds, ratios)))
     dataset = build_over(
         oscillator_axes(ratios, seconds),
         values,
-        looked.attributes,
+        {**looked.attributes, "interpolation": str(between)},
         over=looked.over,
         title="Response spectra",
         source="recurrence of Nigam and Jennings",
@@ -100,6 +117,21 @@ def oscillator_axes(ratios: Array, seconds: Array) -> dict[str, tuple[Array, str
         "damping_ratio": (ratios, "damping ratio of the oscillator"),
         "period": (seconds, "undamped period of the oscillator"),
     }
+
+
+def _refined(signal: Signal, seconds: Array) -> Signal:
+    """Sample a record so finely that straight lines hold all of it, :eq:`eq-straight-lines`."""
+    if signal.analytic:
+        return signal
+    shortest = float(seconds.min(initial=np.inf))
+    needed = SAMPLES_PER_PERIOD * signal.time_step / shortest if shortest > 0.0 else np.inf
+    # a record holds no period shorter than two time steps
+    parts = math.ceil(min(needed, 0.5 * SAMPLES_PER_PERIOD))
+    if parts <= 1:
+        return signal
+    step = signal.time_step / parts
+    samples = band_limited(signal.time_step, signal.samples, step)
+    return replace(signal, time_step=step, samples=samples, polynomials=None)
 
 
 def _spectra(signal: Signal, seconds: Array, ratios: Array) -> dict[str, Array]:

@@ -310,19 +310,22 @@ class MotionSuite(Mapping[str, GroundMotion]):
         damping_ratios: "Iterable[RatioLike] | RatioLike" = (0.05,),
         *,
         component: str = "horizontal",
+        interpolation: str = "linear",
     ) -> xr.Dataset:
         """Compute the response spectra of all motions, over ``motion``.
 
         Parameters
         ----------
-        periods, damping_ratios, component : optional
+        periods, damping_ratios, component, interpolation : optional
             As for :func:`rockframe.response_spectrum` [s], [1].
 
         Returns
         -------
         xarray.Dataset
         """
-        return response_spectrum(self, periods, damping_ratios, component=component)
+        return response_spectrum(
+            self, periods, damping_ratios, component=component, interpolation=interpolation
+        )
 
     def rotated_spectrum(
         self,

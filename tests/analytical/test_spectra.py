@@ -250,6 +250,44 @@ def test_measures_of_a_sine_pulse():
         assert found[name].item() == pytest.approx(reached[1] - reached[0], rel=1e-4)
 
 
+@pytest.mark.parametrize(("step", "lost"), [(0.01, 0.046), (0.02, 0.175)])
+def test_a_coarse_record_keeps_its_short_periods_when_it_is_refined(step, lost):
+    """A swell of 12 Hz, of which there are 8.3 and 4.2 samples per period."""
+
+    def swell(between):
+        time = np.arange(0.0, 4.0 + 0.5 * between, between)
+        values = np.exp(-0.5 * ((time - 2.0) / 0.25) ** 2) * np.sin(24.0 * math.pi * time + 0.4)
+        return rf.GroundMotion.from_arrays((values, "m/s^2"), f"{between!r} s")
+
+    periods = ([0.0, 0.05, 1.0 / 12.0, 0.1, 0.2], "s")
+    names = ["pseudo_spectral_acceleration", "spectral_velocity", "absolute_spectral_acceleration"]
+    exact = response_spectrum(swell(0.0005), periods)
+    lines = response_spectrum(swell(step), periods)
+    fine = response_spectrum(swell(step), periods, interpolation="band-limited")
+    assert (lines.attrs["interpolation"], fine.attrs["interpolation"]) == ("linear", "band-limited")
+    for name in names:
+        np.testing.assert_allclose(fine[name], exact[name], rtol=0.01, atol=1e-6)
+    ratio = lines.pseudo_spectral_acceleration / exact.pseudo_spectral_acceleration
+    assert float(ratio[0, 2]) == pytest.approx(1.0 - lost, abs=0.005)
+    few = response_spectrum(swell(step), (["2"], "s"), interpolation="band-limited")
+    np.testing.assert_allclose(
+        few.spectral_displacement,
+        response_spectrum(swell(step), (["2"], "s")).spectral_displacement,
+        rtol=1e-12,
+    )
+    with pytest.raises(rf.ComponentError, match="interpolation must be 'band-limited'"):
+        response_spectrum(swell(step), periods, interpolation="cubic")
+
+
+def test_an_analytic_pulse_needs_no_refining():
+    pulse = rf.GroundMotion.sine_pulse("2 m/s^2", "3 Hz")
+    periods = (["0.05", "0.3"], "s")
+    one, other = (
+        response_spectrum(pulse, periods, interpolation=kind) for kind in ("linear", "band-limited")
+    )
+    np.testing.assert_array_equal(one.spectral_displacement, other.spectral_displacement)
+
+
 def test_fourier_transform_of_a_sine_pulse():
     amplitude, own, cycles = 2.0, 1.5, 3
     pulse = rf.GroundMotion.sine_pulse("2 m/s^2", "1.5 Hz", cycles=cycles)
