@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from rockframe.components import WinklerSoil as WinklerSoil
     from rockframe.errors import AssemblyError as AssemblyError
     from rockframe.errors import ComponentError as ComponentError
+    from rockframe.errors import FileError as FileError
     from rockframe.errors import ModelWarning as ModelWarning
     from rockframe.errors import RecordError as RecordError
     from rockframe.errors import RecordWarning as RecordWarning
@@ -49,6 +50,7 @@ if TYPE_CHECKING:
     from rockframe.measures import velocity_and_displacement as velocity_and_displacement
     from rockframe.motion import GroundMotion as GroundMotion
     from rockframe.motion import HorizontalPair as HorizontalPair
+    from rockframe.reports import report as report
     from rockframe.results.joining import concat as concat
     from rockframe.results.table import table as table
     from rockframe.simulation.certification import Certification as Certification
@@ -78,12 +80,6 @@ if TYPE_CHECKING:
     from rockframe.suites import select_for_target as select_for_target
     from rockframe.version import __version__ as __version__
 
-# Every scene needs these two. They are most of what has to be loaded: here, so that the
-# first simulation does not wait for them.
-for _library in ("pint", "xarray"):
-    import_module(_library)
-import_module(f"{__name__}.accessor")  # so that every dataset has it
-
 _HOMES = {
     "rockframe.components": (
         "Block",
@@ -99,6 +95,7 @@ _HOMES = {
     "rockframe.errors": (
         "AssemblyError",
         "ComponentError",
+        "FileError",
         "ModelWarning",
         "RecordError",
         "RecordWarning",
@@ -122,6 +119,7 @@ _HOMES = {
         "velocity_and_displacement",
     ),
     "rockframe.motion": ("GroundMotion", "HorizontalPair"),
+    "rockframe.reports": ("report",),
     "rockframe.results.joining": ("concat",),
     "rockframe.results.table": ("table",),
     "rockframe.simulation.certification": ("Certification",),
@@ -165,6 +163,7 @@ __all__ = [
     "Certification",
     "ComponentError",
     "CushionCap",
+    "FileError",
     "FrameEquivalent",
     "GroundMotion",
     "HorizontalPair",
@@ -213,6 +212,7 @@ __all__ = [
     "read_suite",
     "recommend",
     "register",
+    "report",
     "response_spectrum",
     "rocking_spectrum",
     "rotated_spectrum",
@@ -228,8 +228,8 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    # The rest is imported on its first use: a script that only reads records
-    # never waits for the integrator.
+    # Everything is imported on its first use: the help of the command line waits for no
+    # library, a script that only reads records never for the integrator.
     if name in _HOME_OF:
         value = getattr(import_module(_HOME_OF[name]), name)
     elif name in ("errors", "extension", "plot"):

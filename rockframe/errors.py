@@ -77,6 +77,30 @@ def _rebuild_record_error(path: str, found: str, expected: str, line: int | None
     return RecordError(path, found=found, expected=expected, line=line)
 
 
+class FileError(RockframeError, ValueError):
+    """A file that describes a scene or a study is not what it should be.
+
+    Parameters
+    ----------
+    path : str
+        File that was read.
+    faults : sequence of (int or None, str)
+        Every fault found, with its line, counted from 1, where it has one.
+    """
+
+    def __init__(self, path: str, faults: Sequence[tuple[int | None, str]]) -> None:
+        self.path = path
+        self.faults = tuple(faults)
+        lines = [
+            f"{path}: {words}" if line is None else f"{path}, line {line}: {words}"
+            for line, words in faults
+        ]
+        super().__init__("\n".join(lines))
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return (type(self), (self.path, self.faults))
+
+
 class SolverError(RockframeError, RuntimeError):
     """The integration cannot start or go on; the message gives the state."""
 

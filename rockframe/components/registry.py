@@ -35,6 +35,16 @@ def register(kind: "type[Component]") -> None:
     _KINDS[kind.__name__] = kind
 
 
+def kinds() -> Mapping[str, "type[Component]"]:
+    """Give all classes by their names.
+
+    Returns
+    -------
+    mapping
+    """
+    return _KINDS
+
+
 def component_from_dict(description: Mapping[str, float | str]) -> "Component":
     """Build any component from its :meth:`Component.to_dict`.
 

@@ -1,12 +1,15 @@
 """What a result says of its run, and the way back."""
 
 import json
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from rockframe.errors import RecordWarning, warn
+from rockframe.components import InitialState
+from rockframe.errors import RecordWarning, SchemaError, warn
 from rockframe.motion import GroundMotion
+from rockframe.solve.accuracy import Accuracy
 from rockframe.units import TIME, Unit
 
 
@@ -85,3 +88,40 @@ def _from_histories(dataset: xr.Dataset) -> tuple[GroundMotion | None, str]:
     if motion.sha256 != dataset.attrs["motion_sha256"]:
         return None, "its ground acceleration is not what the run had"
     return motion, ""
+
+
+def run_arguments(dataset: xr.Dataset) -> dict[str, Any]:
+    """Give the arguments of the run that a result came from, without its outputs.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        A result.
+
+    Returns
+    -------
+    dict
+        As :meth:`rockframe.System.simulate` takes them.
+
+    Raises
+    ------
+    SchemaError
+        The run began where another one ended, or the dataset does not describe a run.
+    """
+    try:
+        described = json.loads(dataset.attrs["run_json"])
+        initial, accuracy = described["initial"], Accuracy(**described["accuracy"])
+        if initial["type"] != InitialState.__name__:
+            msg = "the run began where another run ended, of which only the end is known"
+            raise SchemaError(msg)
+        return {
+            "duration": described["duration"],
+            "initial": InitialState.from_dict(initial),
+            "accuracy": accuracy,
+            "overturning": described["overturning"],
+        }
+    except (KeyError, TypeError, ValueError) as problem:
+        if isinstance(problem, SchemaError):
+            raise
+        msg = f"the dataset does not describe a run: {problem}"
+        raise SchemaError(msg) from problem

@@ -49,6 +49,9 @@ _KINDS: Final[dict[type, Kind]] = {
     GroundMotion: Kind("motion"),
 }
 
+SLOTS: Final = tuple(dict.fromkeys(kind.slot for kind in _KINDS.values()))
+"""All slots, in a fixed order."""
+
 
 def add_kind(kind: type[OwnBase]) -> None:
     """Make a user's own base known."""
@@ -62,8 +65,18 @@ def known_kind(of: type) -> type | None:
 
 def slot_of(part: object) -> str | None:
     """Give the slot that a part fills; None if it is no part."""
-    kind = known_kind(type(part))
+    return slot_of_kind(type(part))
+
+
+def slot_of_kind(of: type) -> str | None:
+    """Give the slot that parts of a class fill; None if they are no parts."""
+    kind = known_kind(of)
     return None if kind is None else _KINDS[kind].slot
+
+
+def usual_kind(slot: str) -> type:
+    """Give the class of parts that fills a slot unless another is named."""
+    return next(kind for kind, known in _KINDS.items() if known.slot == slot)
 
 
 def support_of(part: Component, load: Load) -> Support:

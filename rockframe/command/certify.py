@@ -1,0 +1,24 @@
+"""``rockframe certify``: how sure a verdict is."""
+
+import argparse
+from textwrap import fill
+
+from rockframe.command.given import check_folder, scene_from, simulated, written
+from rockframe.command.run import finished
+from rockframe.simulation.certification import Certification
+
+
+def execute(arguments: argparse.Namespace) -> int:
+    """Simulate, with all runs beside it, and say what they showed."""
+    check_folder(arguments.output)
+    given = {name: getattr(arguments, name) for name in ("nudge", "reach", "runs")}
+    wanted = Certification(**{name: value for name, value in given.items() if value is not None})
+    response = simulated(scene_from(arguments), certify=wanted)
+    print(f"Verdict: {response.attrs['verdict']}")
+    print(fill(f"Certificate: {response.attrs['certificate']}", 100))
+    sure = {"verdict_converged": "by finer means", "verdict_robust": "with nudged parameters"}
+    for name, words in sure.items():
+        print(f"  the same {words}: {'yes' if bool(response[name]) else 'no'}")
+    print(f"  runs beside it: {response.attrs['certificate_runs']}")
+    written(response, arguments.output)
+    return 0 if finished(response) else 1

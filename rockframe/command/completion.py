@@ -1,0 +1,126 @@
+"""Completion of commands, options and files by shells, written from what can be typed."""
+
+import argparse
+from typing import Final
+
+from rockframe.command.parser import COMMANDS, Argument, Command
+
+_BASH: Final = """\
+_rockframe() {
+    local word=${COMP_WORDS[COMP_CWORD]} command=${COMP_WORDS[1]} words=""
+    if [ "$COMP_CWORD" -eq 1 ]; then
+        words="@COMMANDS@ --help --version"
+    else
+        case $command in
+@CASES@
+        esac
+    fi
+    COMPREPLY=($(compgen -W "$words" -- "$word"))
+    if [ "$COMP_CWORD" -gt 1 ] && [ "${word#-}" = "$word" ]; then
+        COMPREPLY+=($(compgen -f -- "$word"))
+    fi
+}
+complete -o filenames -F _rockframe rockframe
+"""
+_ZSH: Final = """\
+_rockframe() {
+    local -a commands
+    commands=(
+@COMMANDS@
+    )
+    if (( CURRENT == 2 )); then
+        _describe command commands
+        return
+    fi
+    case ${words[2]} in
+@CASES@
+    esac
+}
+compdef _rockframe rockframe
+"""
+
+
+def execute(arguments: argparse.Namespace) -> int:
+    """Write the script for a shell."""
+    print(script(arguments.shell), end="")
+    return 0
+
+
+def script(shell: str) -> str:
+    """Write the script for a shell.
+
+    Parameters
+    ----------
+    shell : {"bash", "zsh", "fish"}
+        Which.
+
+    Returns
+    -------
+    str
+    """
+    return {"bash": _bash, "zsh": _zsh, "fish": _fish}[shell]()
+
+
+def _options(command: Command) -> list[tuple[Argument, str]]:
+    """Give the options of a command, each by its long name."""
+    return [(one, one.names[-1]) for one in command.arguments if one.names[0].startswith("-")]
+
+
+def _choices(command: Command) -> list[str]:
+    return [word for one in command.arguments for word in one.settings.get("choices", ())]
+
+
+def _bash() -> str:
+    cases = []
+    for command in COMMANDS:
+        words = [*_choices(command), *(name for _, name in _options(command)), "--help", "--debug"]
+        cases.append(f'            {command.name}) words="{" ".join(words)}" ;;')
+    names = " ".join(command.name for command in COMMANDS)
+    return _BASH.replace("@COMMANDS@", names).replace("@CASES@", "\n".join(cases))
+
+
+def _zsh() -> str:
+    cases = []
+    for command in COMMANDS:
+        words = [
+            f"'{name}[{_quoted(one)}]{_value(one)}'" for one, name in _options(command)
+        ]
+        choices = _choices(command)
+        places = f"'*:choice:({' '.join(choices)})'" if choices else "'*:file:_files'"
+        cases.append(f"        {command.name}) _arguments {' '.join([*words, places])} ;;")
+    names = "\n".join(f"        '{one.name}:{one.words}'" for one in COMMANDS)
+    return _ZSH.replace("@COMMANDS@", names).replace("@CASES@", "\n".join(cases))
+
+
+def _value(one: Argument) -> str:
+    if "action" in one.settings:
+        return ""
+    return ":file:_files" if one.of_files else ":value:"
+
+
+def _fish() -> str:
+    unseen = "not __fish_seen_subcommand_from " + " ".join(one.name for one in COMMANDS)
+    lines: list[str] = []
+    for command in COMMANDS:
+        lines.append(
+            f"complete -c rockframe -f -n '{unseen}' -a {command.name} -d '{command.words}'"
+        )
+    for command in COMMANDS:
+        seen = f"complete -c rockframe -n '__fish_seen_subcommand_from {command.name}'"
+        lines += [
+            f"{seen} -l {name.removeprefix('--')} -d '{_quoted(one)}'"
+            f"{'' if 'action' in one.settings else ' -r'}"
+            for one, name in _options(command)
+        ]
+        choices = _choices(command)
+        if choices:
+            lines.append(f"{seen} -f -a '{' '.join(choices)}'")
+    return "\n".join(lines) + "\n"
+
+
+def _quoted(one: Argument) -> str:
+    """Give the words of an option without the marks that shells read."""
+    words = str(one.settings.get("help", ""))
+    for mark in "'[]:":
+        words = words.replace(mark, "")
+    return words

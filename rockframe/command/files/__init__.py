@@ -1,0 +1,1 @@
+"""Files in TOML that describe scenes and studies."""

@@ -1,0 +1,315 @@
+"""A scene in a TOML file: tables for the parts, the system's options, the motion and the run."""
+
+import sys
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from importlib import import_module
+from importlib.util import module_from_spec, spec_from_file_location
+from inspect import getmembers, ismethod
+from pathlib import Path
+from typing import Any, Final
+
+from rockframe.command.files.calls import arguments_of, checked, made
+from rockframe.command.files.lines import Place
+from rockframe.command.files.motions import motion_of
+from rockframe.command.files.tables import TomlFile
+from rockframe.components import Component, InitialState
+from rockframe.components.registry import kinds
+from rockframe.errors import RockframeError, shown
+from rockframe.motion import GroundMotion
+from rockframe.simulation.certification import Certification
+from rockframe.simulation.system import System
+from rockframe.solve.accuracy import Accuracy
+from rockframe.system.slots import SLOTS, slot_of_kind, usual_kind
+
+TYPE: Final = "type"
+CONSTRUCTOR: Final = "constructor"
+MODULES: Final = "modules"
+OPTIONS: Final = "system"
+MOTION: Final = "motion"
+RUN: Final = "run"
+PART_SLOTS: Final = tuple(slot for slot in SLOTS if slot != MOTION)
+"""Tables of parts."""
+KEYS: Final = (MODULES, *PART_SLOTS, OPTIONS, MOTION, RUN)
+"""What a file of a scene may hold."""
+_OF_ALL: Final = ("from_dict", "declared")
+"""Class methods of all components, which are no way to describe one."""
+
+
+@dataclass(frozen=True)
+class Described:
+    """What a file describes.
+
+    Parameters
+    ----------
+    system : System
+        The parts, without the motion.
+    motion : GroundMotion or None
+        Of the ground.
+    run : dict
+        Further arguments of :meth:`rockframe.System.simulate`.
+    """
+
+    system: System
+    motion: GroundMotion | None
+    run: dict[str, Any] = field(default_factory=dict)
+
+
+def read_scene(path: str | Path) -> Described:
+    """Read the file of a scene.
+
+    Parameters
+    ----------
+    path : str or Path
+        Of the file.
+
+    Returns
+    -------
+    Described
+
+    Raises
+    ------
+    FileError
+        With every fault found.
+    """
+    file = TomlFile.read(path)
+    for name in file.values:
+        if name not in KEYS:
+            _unknown_table(file, name)
+    found = described(file)
+    file.check()
+    if found is None:  # without a fault there is a system
+        raise AssertionError
+    return found
+
+
+def described(file: TomlFile) -> Described | None:
+    """Build what the tables of a file describe.
+
+    Parameters
+    ----------
+    file : TomlFile
+        To which faults are added.
+
+    Returns
+    -------
+    Described or None
+        None where a fault was found.
+    """
+    _import_modules(file)
+    given = file.values
+    parts = [part_of(file, slot, given[slot]) for slot in PART_SLOTS if slot in given]
+    motion = motion_of(file, (MOTION,), given[MOTION]) if MOTION in given else None
+    run = _run_of(file, given[RUN]) if RUN in given else {}
+    options = file.table((OPTIONS,), given.get(OPTIONS, {}))
+    known = arguments_of(System.__init__, without=("parts",))
+    if options is None or not checked(file, (OPTIONS,), options, known):
+        return None
+    if not file.sound:
+        return None
+    system = made(file, (OPTIONS,), lambda **rest: System(*parts, **rest), options)
+    return None if system is None else Described(system, motion, run)
+
+
+def part_of(file: TomlFile, slot: str, given: object) -> Component | None:
+    """Build the part that a table describes.
+
+    Parameters
+    ----------
+    file : TomlFile
+        To which faults are added.
+    slot : str
+        Name of the table.
+    given : object
+        The table.
+
+    Returns
+    -------
+    Component or None
+        None where a fault was found.
+    """
+    where: Place = (slot,)
+    table = file.table(where, given)
+    if table is None:
+        return None
+    kind = _kind_of(file, slot, table.pop(TYPE, None))
+    if kind is None:
+        return None
+    constructor = table.pop(CONSTRUCTOR, None)
+    if constructor is None:
+        function: Callable[..., Component] = kind
+        declared = kind.declared()
+    else:
+        ways = constructors(kind)
+        if constructor not in ways:
+            known = ", ".join(ways) or "none but the usual one"
+            file.fault(
+                (*where, CONSTRUCTOR),
+                f"constructors of {kind.__name__} are {known}; got {shown(constructor)}",
+            )
+            return None
+        function, declared = ways[constructor], {}
+    known_keys = arguments_of(function)
+    unknown = [name for name in table if name not in known_keys]
+    if not checked(file, where, table, known_keys, declared):
+        _say_ways(file, where, kind, unknown)
+        return None
+    return made(file, where, function, table)
+
+
+def kinds_in(slot: str) -> dict[str, type[Component]]:
+    """Give the classes of parts that a table may describe, the usual one first.
+
+    Parameters
+    ----------
+    slot : str
+        Name of the table.
+
+    Returns
+    -------
+    dict
+        By their names.
+    """
+    usual = usual_kind(slot)
+    fitting = {name: kind for name, kind in kinds().items() if slot_of_kind(kind) == slot}
+    return {usual.__name__: fitting[usual.__name__], **fitting}
+
+
+def constructors(kind: type[Component]) -> dict[str, Callable[..., Component]]:
+    """Give the ways to build a component beside its own constructor, by their names.
+
+    Parameters
+    ----------
+    kind : type
+        The class.
+
+    Returns
+    -------
+    dict
+    """
+    return {
+        name: one
+        for name, one in getmembers(kind, ismethod)
+        if not name.startswith("_") and name not in _OF_ALL
+    }
+
+
+def run_keys() -> dict[str, bool]:
+    """Give the keys of the table of a run, and whether each is needed."""
+    return arguments_of(System.simulate, without=("motion",))
+
+
+def run_arguments(file: TomlFile, where: Place, table: dict[str, Any]) -> dict[str, Any]:
+    """Build the objects that tables inside a table of a run stand for.
+
+    Parameters
+    ----------
+    file : TomlFile
+        To which faults are added.
+    where : tuple
+        Place of the table.
+    table : dict
+        Of a run, or of a sweep.
+
+    Returns
+    -------
+    dict
+    """
+    found = dict(table)
+    for name, kind in _OBJECTS.items():
+        inner = found.get(name)
+        if not isinstance(inner, dict):
+            continue
+        here = (*where, name)
+        given = file.table(here, inner) or {}
+        declared = kind.declared() if issubclass(kind, Component) else {}
+        if checked(file, here, given, arguments_of(kind), declared):
+            found[name] = made(file, here, kind, given)
+    return found
+
+
+_OBJECTS: Final[Mapping[str, type]] = {
+    "initial": InitialState,
+    "accuracy": Accuracy,
+    "certify": Certification,
+}
+"""Classes of what a table inside that of a run describes."""
+
+
+def _run_of(file: TomlFile, given: object) -> dict[str, Any]:
+    table = file.table((RUN,), given)
+    if table is None or not checked(file, (RUN,), table, run_keys()):
+        return {}
+    return run_arguments(file, (RUN,), table)
+
+
+def _kind_of(file: TomlFile, slot: str, name: object) -> type[Component] | None:
+    known = kinds_in(slot)
+    if name is None:
+        return next(iter(known.values()))
+    if isinstance(name, str) and name in known:
+        return known[name]
+    of_own = (
+        f'; a class of your own is found once its file is named at the top, {MODULES} = ["mine.py"]'
+    )
+    file.fault((slot, TYPE), f"type must be {' or '.join(known)}, got {shown(name)}{of_own}")
+    return None
+
+
+def _say_ways(file: TomlFile, where: Place, kind: type[Component], unknown: list[str]) -> None:
+    """Say which other constructors take the keys that this one does not know."""
+    for name in unknown:
+        ways = [way for way, one in constructors(kind).items() if name in arguments_of(one)]
+        if ways:
+            file.fault(
+                (*where, name),
+                f"{name!r} goes with {CONSTRUCTOR} = {' or '.join(map(repr, ways))}".replace(
+                    "'", '"'
+                ),
+            )
+
+
+def _unknown_table(file: TomlFile, name: str) -> None:
+    kind = kinds().get(name)
+    slot = None if kind is None else slot_of_kind(kind)
+    if slot is None:
+        file.unknown((), name, KEYS)
+    else:
+        words = f'a {name} is written [{slot}] with type = "{name}"'
+        file.fault((name,), f"unknown key {name!r}; {words}")
+
+
+def _import_modules(file: TomlFile) -> None:
+    """Import the files in which users declare their own parts."""
+    given = file.values.get(MODULES, [])
+    if not isinstance(given, list):
+        file.fault((MODULES,), f'modules must be a list such as ["mine.py"], got {shown(given)}')
+        return
+    for name in given:  # pyright: ignore[reportUnknownVariableType]
+        try:
+            _import(file, str(name))  # pyright: ignore[reportUnknownArgumentType]
+        except RockframeError as problem:
+            file.fault((MODULES,), f"{name}: {problem}")
+        except Exception as problem:  # code of others: whatever it raises
+            words = f"{name} cannot be imported ({type(problem).__name__}: {problem})"
+            file.fault((MODULES,), words)
+
+
+def _import(file: TomlFile, name: str) -> None:
+    if not name.endswith(".py"):
+        import_module(name)
+        return
+    path = file.beside(name)
+    stem = path.stem
+    if stem in sys.modules:
+        return
+    spec = spec_from_file_location(stem, path)
+    if spec is None or spec.loader is None:
+        raise ImportError(name)
+    module = module_from_spec(spec)
+    sys.modules[stem] = module  # classes are told by the names of their modules
+    try:
+        spec.loader.exec_module(module)
+    except BaseException:
+        del sys.modules[stem]
+        raise

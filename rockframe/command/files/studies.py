@@ -1,0 +1,191 @@
+"""A study in a TOML file: a scene, motions, and axes or a table of cases."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from glob import glob
+from pathlib import Path
+from typing import Any, Final
+
+import pandas as pd
+
+from rockframe.command.files.calls import arguments_of, checked, made
+from rockframe.command.files.motions import motion_of
+from rockframe.command.files.scenes import KEYS as SCENE_KEYS
+from rockframe.command.files.scenes import Described, described, read_scene, run_arguments
+from rockframe.command.files.tables import TomlFile
+from rockframe.errors import FileError, RockframeError, shown
+from rockframe.motion import GroundMotion
+from rockframe.simulation.system import System
+from rockframe.studies import sweep
+from rockframe.suites import read_suite
+
+SCENE: Final = "scene"
+MOTIONS: Final = "motions"
+AXES: Final = "axes"
+CASES: Final = "cases"
+STORE: Final = "store"
+OUTPUT: Final = "output"
+SWEEP: Final = "sweep"
+KEYS: Final = (SCENE, MOTIONS, AXES, CASES, STORE, OUTPUT, SWEEP)
+"""What a file of a study may hold, beside the tables of its scene."""
+_NOT_OF_SWEEP: Final = (
+    "scene", "motions", "axes", "cases", "store", "executor", "progress",
+)  # fmt: skip
+_FROM_RUN: Final = ("duration", "free_vibration", "initial", "accuracy", "output_step",
+                    "overturning")  # fmt: skip
+"""Arguments of a run that its study takes over from the file of the scene."""
+
+Motions = Mapping[str, GroundMotion] | Sequence[GroundMotion] | GroundMotion | None
+
+
+@dataclass(frozen=True)
+class DescribedStudy:
+    """What the file of a study describes.
+
+    Parameters
+    ----------
+    system : System
+        The scene.
+    motions : object
+        As :func:`rockframe.sweep` takes them.
+    arguments : dict
+        Further arguments of it.
+    store, output : Path or None
+        Where the cases are kept, and the file of the results.
+    """
+
+    system: System
+    motions: Motions
+    arguments: dict[str, Any]
+    store: Path | None
+    output: Path | None
+
+
+def read_study(path: str | Path) -> DescribedStudy:
+    """Read the file of a study.
+
+    Parameters
+    ----------
+    path : str or Path
+        Of the file.
+
+    Returns
+    -------
+    DescribedStudy
+
+    Raises
+    ------
+    FileError
+        With every fault found.
+    """
+    file = TomlFile.read(path)
+    for name in file.values:
+        if name not in (*KEYS, *SCENE_KEYS):
+            file.unknown((), name, (*KEYS, *SCENE_KEYS))
+    scene = _scene_of(file)
+    motions = _motions_of(file)
+    arguments = _sweep_of(file) | _axes_of(file)
+    store, output = (_path_of(file, name) for name in (STORE, OUTPUT))
+    if AXES not in file.values and CASES not in file.values:
+        file.fault((), "a study needs [axes], such as scale = [0.5, 1.0, 1.5], or cases")
+    file.check()
+    if scene is None:  # without a fault there is a scene
+        raise AssertionError
+    taken = {name: value for name, value in scene.run.items() if name in _FROM_RUN}
+    used = scene.motion if motions is None else motions
+    return DescribedStudy(scene.system, used, taken | arguments, store, output)
+
+
+def sweep_keys() -> dict[str, bool]:
+    """Give the keys of the table of a sweep, and whether each is needed."""
+    return arguments_of(sweep, without=_NOT_OF_SWEEP)
+
+
+def _scene_of(file: TomlFile) -> Described | None:
+    name = file.values.get(SCENE)
+    if name is None:
+        return described(file)
+    inner = [key for key in file.values if key in SCENE_KEYS]
+    for key in inner:
+        file.fault((key,), f"[{key}] and scene = {shown(name)} are both given; one of them does")
+    if not isinstance(name, str):
+        file.fault((SCENE,), f"scene must be the path of a file, got {shown(name)}")
+        return None
+    try:
+        return read_scene(file.beside(name))
+    except FileError as problem:
+        file.fault((SCENE,), f"the scene is not sound\n{problem}")
+        return None
+
+
+def _motions_of(file: TomlFile) -> Motions:
+    """Read motions: a list of files, folders and patterns, or of tables."""
+    given = file.values.get(MOTIONS)
+    if given is None:
+        return None
+    where = (MOTIONS,)
+    items: list[Any] = given if isinstance(given, list) else [given]
+    if items and all(isinstance(item, dict) for item in items):
+        found = [motion_of(file, (MOTIONS, number), item) for number, item in enumerate(items)]
+        return [one for one in found if one is not None]
+    if not items or not all(isinstance(item, str) for item in items):
+        words = 'motions must be a list of files, folders or patterns such as ["records/*.AT2"]'
+        file.fault(where, f"{words}, or of tables [[motions]]; got {shown(given)}")
+        return None
+    paths: list[str] = []
+    for item in items:
+        path = str(file.beside(item))
+        matching = sorted(glob(path)) if any(mark in item for mark in "*?[") else [path]
+        if not matching:
+            file.fault(where, f"no file matches {item!r} in {str(file.path.parent)!r}")
+        paths += matching
+    if not file.sound:
+        return None
+    suite = made(file, where, lambda: read_suite(paths), {})
+    return None if suite is None else dict(suite.items())
+
+
+def _axes_of(file: TomlFile) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    if AXES in file.values:
+        axes = file.table((AXES,), file.values[AXES]) or {}
+        found[AXES] = {name: _axis(file, name, given) for name, given in axes.items()}
+    if CASES in file.values:
+        name = file.values[CASES]
+        try:
+            found[CASES] = pd.read_csv(file.beside(str(name)), comment="#")
+        except (OSError, ValueError) as problem:
+            file.fault((CASES,), f"{name}: the table cannot be read ({problem})")
+    return found
+
+
+def _axis(file: TomlFile, name: str, given: object) -> Any:
+    """Give the values of an axis: a list, or a table of values and their unit."""
+    if not isinstance(given, dict):
+        return given
+    where = (AXES, name)
+    table = file.table(where, given) or {}
+    if checked(file, where, table, {"values": True, "unit": True}):
+        return (table["values"], table["unit"])
+    return []
+
+
+def _sweep_of(file: TomlFile) -> dict[str, Any]:
+    table = file.table((SWEEP,), file.values.get(SWEEP, {}))
+    if table is None or not checked(file, (SWEEP,), table, sweep_keys()):
+        return {}
+    try:
+        return run_arguments(file, (SWEEP,), table)
+    except RockframeError as problem:
+        file.fault((SWEEP,), str(problem))
+        return {}
+
+
+def _path_of(file: TomlFile, name: str) -> Path | None:
+    given = file.values.get(name)
+    if given is None:
+        return None
+    if not isinstance(given, str) or not given:
+        file.fault((name,), f"{name} must be a path, got {shown(given)}")
+        return None
+    return file.beside(given)

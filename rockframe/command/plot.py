@@ -1,0 +1,45 @@
+"""``rockframe plot``: the figure of a result."""
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rockframe import plot
+from rockframe.command.given import check_folder, opened
+from rockframe.errors import ComponentError, SchemaError
+from rockframe.plot import drawn_by
+from rockframe.reports.sections import figure_of
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+def execute(arguments: argparse.Namespace) -> int:
+    """Draw what a file holds."""
+    check_folder(arguments.output)
+    dataset = opened(arguments.dataset)
+    function = drawn_by(dataset)
+    if function is None:
+        title = dataset.attrs.get("title", "without a title")
+        msg = f"{arguments.dataset}: nothing draws this dataset ({title})"
+        raise SchemaError(msg)
+    named = {} if arguments.title is None else {"title": arguments.title}
+    save(figure_of(getattr(plot, function)(dataset, **named)), arguments.output)
+    return 0
+
+
+def save(figure: "Figure", path: str | Path) -> None:
+    """Write a figure, and say so.
+
+    Raises
+    ------
+    ComponentError
+        The ending of the file names no format.
+    """
+    place = Path(path).expanduser()
+    try:
+        figure.savefig(place, dpi=150)
+    except ValueError as problem:
+        msg = f"{path}: {problem}"
+        raise ComponentError(msg) from problem
+    print(f"Figure: {path}")

@@ -1,0 +1,29 @@
+"""``rockframe run``: a scene under a motion."""
+
+import argparse
+
+import xarray as xr
+
+from rockframe.command.given import check_folder, scene_from, simulated, system_words, written
+from rockframe.results.variables.runs import RunStatus
+
+FINISHED = (RunStatus.COMPLETED, RunStatus.OVERTURNED, RunStatus.TOPPLED)
+
+
+def execute(arguments: argparse.Namespace) -> int:
+    """Simulate, and say what became of it."""
+    check_folder(arguments.output)
+    found = scene_from(arguments)
+    response = simulated(found)
+    print(f"Scene:   {system_words(found.system)} ({response.attrs['model']})")
+    print(f"Motion:  {response.attrs['motion']}")
+    print(f"Verdict: {response.attrs['verdict']}")
+    if "certificate" in response.attrs:
+        print(f"Certificate: {response.attrs['certificate']}")
+    written(response, arguments.output)
+    return 0 if finished(response) else 1
+
+
+def finished(response: xr.Dataset) -> bool:
+    """Whether a run came to its end."""
+    return int(response["status"]) in FINISHED

@@ -1,0 +1,49 @@
+"""The certificate of a run that has none, from what its dataset holds."""
+
+import warnings
+
+import xarray as xr
+
+from rockframe.errors import RockframeError, RockframeWarning
+from rockframe.results.variables.runs import CERTIFICATE
+from rockframe.simulation.provenance import run_arguments
+from rockframe.simulation.system import System
+
+
+def certified(dataset: xr.Dataset, system: System | None) -> tuple[xr.Dataset, str]:
+    """Give a result its certificate, by running it again with all runs beside it.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        A result.
+    system : System or None
+        That it came from, with the motion; None where it cannot be had.
+
+    Returns
+    -------
+    tuple of Dataset and str
+        With the certificate, where there is none yet and it can be made; and why not.
+    """
+    if "certificate" in dataset.attrs:
+        return dataset, ""
+    if system is None:
+        return dataset, "the dataset does not describe its system."
+    if system.motion is None and dataset.attrs.get("motion") != "none":
+        return dataset, (
+            "the dataset does not hold its motion, sample by sample; "
+            "simulate with certify=True, or with 'rockframe certify'."
+        )
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", RockframeWarning)  # they stand in the dataset
+            again = system.simulate(**run_arguments(dataset), outputs=None, certify=True)
+    except RockframeError as problem:
+        return dataset, f"{problem}."
+    if bool(again["overturned"]) != bool(dataset["overturned"]):
+        return dataset, "run again, it ends otherwise; another version or machine made it."
+    found = {
+        name: value for name, value in again.attrs.items() if str(name).startswith("certificate")
+    }
+    names = [row.name for row in CERTIFICATE if row.name in again]
+    return dataset.assign({name: again[name] for name in names}).assign_attrs(found), ""

@@ -1,0 +1,170 @@
+"""Pieces of an HTML page that needs no other file and makes no request."""
+
+import base64
+from collections.abc import Iterable, Sequence
+from html import escape
+from io import BytesIO
+from typing import TYPE_CHECKING, Final
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+LARGEST_DRAWING: Final = 1_500_000
+"""Size of a drawing by lines beyond which it is drawn by dots [bytes]."""
+_POLICY: Final = "default-src 'none'; img-src data:; style-src 'unsafe-inline'"
+STYLE: Final = """\
+:root { color-scheme: light dark; --ink: #1c2430; --soft: #5a6675; --paper: #ffffff;
+  --line: #d7dce2; --band: #f3f5f8; --good: #1b6b3a; --bad: #a3261f; --doubt: #8a5a00; }
+@media (prefers-color-scheme: dark) {
+  :root { --ink: #e4e8ee; --soft: #9aa6b5; --paper: #14181e; --line: #343c47; --band: #1d232b;
+    --good: #6fcf97; --bad: #ff8a80; --doubt: #f2c14e; } }
+* { box-sizing: border-box; }
+body { margin: 0 auto; padding: 1.5rem 1rem 4rem; max-width: 56rem; color: var(--ink);
+  background: var(--paper); font: 1rem/1.5 system-ui, sans-serif; overflow-wrap: break-word; }
+h1 { font-size: 1.7rem; line-height: 1.2; margin: 0 0 .3rem; }
+h2 { font-size: 1.2rem; margin: 2.2rem 0 .6rem; border-bottom: 1px solid var(--line);
+  padding-bottom: .2rem; }
+h3 { font-size: 1rem; margin: 1.2rem 0 .3rem; }
+p { margin: .5rem 0; }
+.soft, figcaption { color: var(--soft); font-size: .9rem; }
+.verdict { border-left: .4rem solid var(--soft); background: var(--band); padding: .6rem .9rem;
+  margin: 1rem 0; }
+.verdict strong { display: block; font-size: 1.15rem; }
+.good { border-color: var(--good); } .good strong { color: var(--good); }
+.bad { border-color: var(--bad); } .bad strong { color: var(--bad); }
+.doubt { border-color: var(--doubt); } .doubt strong { color: var(--doubt); }
+.scroll { overflow-x: auto; }
+table { border-collapse: collapse; width: 100%; font-size: .92rem; }
+th, td { text-align: left; vertical-align: top; padding: .28rem .6rem .28rem 0;
+  border-bottom: 1px solid var(--line); }
+td.value { white-space: nowrap; font-variant-numeric: tabular-nums; }
+figure { margin: 1rem 0; }
+figure img { width: 100%; height: auto; background: #ffffff; border: 1px solid var(--line);
+  border-radius: .3rem; }
+pre { overflow-x: auto; background: var(--band); padding: .7rem .9rem; font-size: .8rem;
+  line-height: 1.4; }
+dt { font-weight: 600; margin-top: .5rem; } dd { margin: 0; }
+code { overflow-wrap: anywhere; }
+@media (max-width: 30rem) { td.value { white-space: normal; } }
+@media print {
+  :root { --ink: #000000; --soft: #444444; --paper: #ffffff; --line: #bbbbbb; --band: #f4f4f4;
+    --good: #1b6b3a; --bad: #a3261f; --doubt: #8a5a00; }
+  body { max-width: none; padding: 0; font-size: 10pt; }
+  figure, tr, .verdict { break-inside: avoid; } h2, h3 { break-after: avoid; }
+  pre { white-space: pre-wrap; } details > summary { display: none; } }
+"""
+
+
+def page(title: str, body: Iterable[str]) -> str:
+    """Put a page together.
+
+    Parameters
+    ----------
+    title : str
+        Of the page.
+    body : iterable of str
+        Its pieces, in HTML.
+
+    Returns
+    -------
+    str
+    """
+    head = (
+        '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+        f'<meta http-equiv="Content-Security-Policy" content="{_POLICY}">\n'
+        f"<title>{escape(title)}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n"
+    )
+    return head + "\n".join(body) + "\n</body>\n</html>\n"
+
+
+def section(title: str, pieces: Iterable[str]) -> str:
+    """Give a section with its heading."""
+    return "\n".join([f"<section>\n<h2>{escape(title)}</h2>", *pieces, "</section>"])
+
+
+def subtitle(words: str) -> str:
+    """Give a heading inside a section."""
+    return f"<h3>{escape(words)}</h3>"
+
+
+def paragraph(words: str, *, kind: str = "") -> str:
+    """Give a paragraph, of a class of the style sheet."""
+    return f"<p{_class(kind)}>{escape(words)}</p>"
+
+
+def banner(title: str, words: str, kind: str) -> str:
+    """Give a verdict with its sentence; `kind` is good, bad or doubt."""
+    inner = f"<strong>{escape(title)}</strong>{escape(words)}"
+    return f'<div class="verdict {kind}">{inner}</div>'
+
+
+def rows(given: Iterable[Sequence[str]], *, head: Sequence[str] = ()) -> str:
+    """Give a table; the second column holds values."""
+    lines = ["<div class=\"scroll\"><table>"]
+    if head:
+        names = "".join(f"<th>{escape(name)}</th>" for name in head)
+        lines.append(f"<thead><tr>{names}</tr></thead>")
+    lines.append("<tbody>")
+    for row in given:
+        cells = "".join(
+            f"<td{_class('value' if column == 1 else '')}>{escape(cell)}</td>"
+            for column, cell in enumerate(row)
+        )
+        lines.append(f"<tr>{cells}</tr>")
+    lines.append("</tbody></table></div>")
+    return "\n".join(lines)
+
+
+def definitions(given: Iterable[tuple[str, str]]) -> str:
+    """Give a list of titles with words."""
+    inner = "\n".join(f"<dt>{escape(name)}</dt><dd>{escape(words)}</dd>" for name, words in given)
+    return f"<dl>\n{inner}\n</dl>"
+
+
+def items(given: Iterable[str]) -> str:
+    """Give a list."""
+    inner = "\n".join(f"<li>{escape(words)}</li>" for words in given)
+    return f"<ul>\n{inner}\n</ul>"
+
+
+def verbatim(text: str) -> str:
+    """Give text as it is set."""
+    return f"<pre>{escape(text)}</pre>"
+
+
+def picture(figure: "Figure", words: str) -> str:
+    """Give a figure with what it shows, its image inside the page.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+        The figure.
+    words : str
+        What it shows.
+
+    Returns
+    -------
+    str
+    """
+    data, kind = _drawn(figure, "svg"), "svg+xml"
+    if len(data) > LARGEST_DRAWING:
+        data, kind = _drawn(figure, "png"), "png"
+    source = f"data:image/{kind};base64,{base64.b64encode(data).decode()}"
+    caption = f"<figcaption>{escape(words)}</figcaption>"
+    return f'<figure><img src="{source}" alt="{escape(words)}">{caption}</figure>'
+
+
+def _drawn(figure: "Figure", kind: str) -> bytes:
+    import matplotlib as mpl
+
+    store = BytesIO()
+    # letters as outlines, so that no font is needed; the same bytes every time
+    with mpl.rc_context({"svg.fonttype": "path", "svg.hashsalt": "rockframe"}):
+        metadata = {"Date": None} if kind == "svg" else {}
+        figure.savefig(store, format=kind, dpi=160, metadata=metadata)
+    return store.getvalue()
+
+
+def _class(kind: str) -> str:
+    return f' class="{kind}"' if kind else ""

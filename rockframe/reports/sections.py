@@ -1,0 +1,180 @@
+"""The sections of a report on a run."""
+
+import json
+from collections.abc import Iterator
+from typing import Any, Final
+
+import xarray as xr
+
+from rockframe import plot
+from rockframe.components import Component
+from rockframe.errors import RockframeError
+from rockframe.measures import intensity_measures
+from rockframe.motion import GroundMotion
+from rockframe.reports import page
+from rockframe.reports.limits import GENERAL, limits_of
+from rockframe.reports.values import table_of
+from rockframe.results.variables.runs import CERTIFICATE, RunStatus
+from rockframe.simulation.run import NONE
+from rockframe.simulation.system import System
+
+_FINISHED: Final = (RunStatus.COMPLETED, RunStatus.OVERTURNED, RunStatus.TOPPLED)
+_CERTIFICATE: Final = [row.name for row in CERTIFICATE]
+_PROVENANCE: Final = (
+    # (attribute, what it is)
+    ("source", "computed by"),
+    ("history", "when"),
+    ("model", "model"),
+    ("restraint", "horizontal restraint"),
+    ("kinematics", "rotations"),
+    ("coupling", "coupling"),
+    ("accuracy", "accuracy"),
+    ("solver_method", "method"),
+    ("solver_rtol", "tolerance of a step"),
+    ("solver_steps", "steps"),
+    ("solver_rejected_steps", "steps made again"),
+    ("solver_end_time", "end of the run [s]"),
+    ("schema_version", "version of the schema"),
+    ("references", "equations"),
+)
+
+
+def verdict(dataset: xr.Dataset, reason: str) -> Iterator[str]:
+    """Say what became of the body, and how sure that is."""
+    finished = int(dataset["status"]) in _FINISHED
+    overturned = bool(dataset["overturned"])
+    title = ("Overturned" if overturned else "Did not overturn") if finished else "Not finished"
+    kind = ("bad" if overturned else "good") if finished else "doubt"
+    yield page.banner(title, str(dataset.attrs.get("verdict", "")), kind)
+    if "certificate" in dataset.attrs:
+        sure = all(bool(dataset[name]) for name in _CERTIFICATE[:2] if name in dataset)
+        words = str(dataset.attrs["certificate"])
+        title = "Certificate: the verdict is sure" if sure else "Certificate: the verdict is in doubt"
+        yield page.banner(title, words, "good" if sure else "doubt")
+    else:
+        yield page.banner("No certificate", reason or "none was asked for.", "doubt")
+    cautions = str(dataset.attrs.get("cautions", NONE))
+    if cautions != NONE:
+        yield page.banner("To be used with care", cautions, "doubt")
+
+
+def scene(dataset: xr.Dataset, system: System | None) -> Iterator[str]:
+    """Show the parts with their parameters, and the model."""
+    if system is not None:
+        yield from _drawing(system)
+        for part in system.parts.structural():
+            yield page.subtitle(type(part).__name__)
+            yield page.rows(_parameters(part))
+        options = {name: value for name, value in system.options.to_dict().items()}
+        yield page.subtitle("Options")
+        yield page.rows(options.items())
+    yield page.subtitle("Model")
+    yield page.verbatim(str(dataset.attrs.get("model_description", "not described")))
+
+
+def motion(dataset: xr.Dataset, found: GroundMotion | None) -> Iterator[str]:
+    """Show the motion, its measures and its figure."""
+    attributes = dataset.attrs
+    known = (
+        ("motion", "name"),
+        ("motion_history", "made of"),
+        ("motion_samples", "samples"),
+        ("motion_time_step", "time step [s]"),
+        ("motion_sha256", "digest (SHA-256)"),
+    )
+    yield page.rows(
+        (words, str(attributes[name])) for name, words in known if name in attributes
+    )
+    if found is None:
+        return
+    yield page.subtitle("Measures")
+    yield page.rows(table_of(intensity_measures(found)))
+    yield page.picture(
+        figure_of(plot.spectra(found)),
+        "Ground acceleration along time, its response spectra at 5 % damping and its Fourier "
+        "spectrum.",
+    )
+
+
+def results(dataset: xr.Dataset) -> Iterator[str]:
+    """Show the scalars of a run, and its figure."""
+    names = [str(name) for name in dataset.data_vars if str(name) not in _CERTIFICATE]
+    yield page.rows(table_of(dataset, names))
+    if any(name in dataset for name in _CERTIFICATE):
+        yield page.subtitle("Certificate")
+        yield page.rows(table_of(dataset, _CERTIFICATE))
+    if dataset.sizes.get("time", 0) > 1:
+        yield page.picture(
+            figure_of(plot.response(dataset)),
+            "From the top: ground acceleration; rotation over the overturning angle; vertical "
+            "displacement; and what bears.",
+        )
+    else:
+        yield page.paragraph("The run kept no histories to draw.", kind="soft")
+
+
+def limits(system: System | None) -> Iterator[str]:
+    """Say what the model leaves out."""
+    yield page.items(GENERAL)
+    parts = None if system is None else system.parts
+    yield page.definitions((one.title, one.words) for one in limits_of(parts))
+
+
+def provenance(dataset: xr.Dataset, file: str) -> Iterator[str]:
+    """Say where the numbers come from, so that they can be had again."""
+    attributes = dataset.attrs
+    told = [(words, str(attributes[name])) for name, words in _PROVENANCE if name in attributes]
+    yield page.rows([*([("file", file)] if file else []), *told])
+    for name, words in (("system_json", "System"), ("run_json", "Run")):
+        if name in attributes:
+            yield page.subtitle(f"{words}, as it can be built again")
+            yield page.verbatim(_indented(str(attributes[name])))
+
+
+def figure_of(drawn: Any) -> Any:
+    """Give the figure of what a function of `rockframe.plot` returned."""
+    while not hasattr(drawn, "savefig"):
+        drawn = drawn.figure if hasattr(drawn, "figure") else next(iter(drawn))
+    return drawn
+
+
+def _drawing(system: System) -> Iterator[str]:
+    """Draw the scene, where it can be drawn."""
+    draw = getattr(plot, "scene", None)
+    if draw is None:
+        return
+    try:
+        drawn = draw(system)
+    except RockframeError:  # a base of a user's own
+        return
+    yield page.picture(figure_of(drawn), "The scene, to scale.")
+
+
+def _parameters(part: Component) -> list[tuple[str, str, str]]:
+    """Give the parameters of a part as they were given, with what they are."""
+    declared = part.declared()
+    return [
+        (
+            name.replace("_", " "),
+            _value(value),
+            declared[name].words.split(" [")[0].rstrip(".") if name in declared else "",
+        )
+        for name, value in part.to_dict().items()
+        if name != "type"
+    ]
+
+
+def _value(given: object) -> str:
+    """Write a number with its unit, as far as six digits show it."""
+    number, blank, unit = str(given).partition(" ")
+    try:
+        return f"{float(number):.6g}{blank}{unit}"
+    except ValueError:
+        return str(given)
+
+
+def _indented(text: str) -> str:
+    try:
+        return json.dumps(json.loads(text), indent=1)
+    except ValueError:
+        return text

@@ -1,0 +1,61 @@
+"""Numbers of datasets in words."""
+
+import math
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from rockframe.units import Unit
+
+
+def value_of(variable: xr.DataArray) -> str:
+    """Write a scalar with its unit; flags and truth values as words.
+
+    Parameters
+    ----------
+    variable : DataArray
+        Without dimensions.
+
+    Returns
+    -------
+    str
+    """
+    value: Any = variable.item()
+    if "flag_values" in variable.attrs:
+        places = np.atleast_1d(variable.attrs["flag_values"]).tolist()
+        words = str(variable.attrs["flag_meanings"]).split()
+        return words[places.index(value)].replace("_", " ") if value in places else str(value)
+    if variable.dtype == bool:
+        return "yes" if value else "no"
+    if isinstance(value, str):
+        return value
+    if isinstance(value, float) and math.isnan(value):
+        return "none"
+    unit = str(variable.attrs.get("units", Unit.ONE))
+    number = f"{value:.4g}"
+    if unit == Unit.RADIAN:
+        return f"{number} rad ({math.degrees(value):.3g}°)"
+    return number if unit == Unit.ONE else f"{number} {unit}"
+
+
+def table_of(dataset: xr.Dataset, names: list[str] | None = None) -> list[tuple[str, str]]:
+    """Give the meaning and the value of scalars.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        With scalars.
+    names : list of str, optional
+        Which; all unless given.
+
+    Returns
+    -------
+    list of (str, str)
+    """
+    chosen = [str(name) for name in dataset.data_vars] if names is None else names
+    return [
+        (str(dataset[name].attrs.get("long_name", name)), value_of(dataset[name]))
+        for name in chosen
+        if name in dataset and not dataset[name].dims
+    ]

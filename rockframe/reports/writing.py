@@ -1,0 +1,127 @@
+"""``report``: a page on a run, to file or to print."""
+
+import warnings
+from html import escape
+from os import PathLike
+from pathlib import Path
+from typing import Final
+
+import xarray as xr
+
+from rockframe.arguments import checked_dataset
+from rockframe.errors import RecordWarning, SchemaError
+from rockframe.reports import page, sections
+from rockframe.reports.certifying import certified
+from rockframe.simulation.system import System
+
+_OWNER: Final = "report"
+
+
+def report(
+    response: xr.Dataset,
+    path: "str | PathLike[str]",
+    *,
+    title: str | None = None,
+    certify: bool = True,
+) -> Path:
+    """Write a page on a run: one HTML file that needs no other and makes no request.
+
+    Parameters
+    ----------
+    response : xarray.Dataset
+        The result of one run, also one read back from a file.
+    path : str or path
+        Of the file.
+    title : str, optional
+        Of the page; the model unless given.
+    certify : bool, optional
+        Whether a run without a certificate is certified first, where the dataset holds its
+        motion; that takes some hundred runs.
+
+    Returns
+    -------
+    Path
+        The file. It shows the verdict with its certificate, the scene, the motion and its
+        measures, all scalars, figures, limits of validity, and where the numbers come from.
+
+    Raises
+    ------
+    SchemaError
+        No dataset, or not the result of one run.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> import rockframe as rf
+    >>> system = rf.System(rf.Block(width="1 m", height="4 m", mass="10 t"))
+    >>> response = system.simulate(rf.GroundMotion.sine_pulse("-3 m/s^2", "2 Hz"))
+    >>> rf.report(response, Path(tempfile.mkdtemp()) / "report.html", certify=False).name
+    'report.html'
+    """
+    dataset = checked_dataset(response, owner=_OWNER)
+    _check(dataset)
+    system = _system_of(dataset)
+    reason = ""
+    if certify:
+        dataset, reason = certified(dataset, system)
+    model = str(dataset.attrs["model"])
+    heading = title or f"Rocking response, {model} model"
+    file = str(dataset.encoding.get("source", ""))
+    motion = None if system is None else system.motion
+    made = str(dataset.attrs.get("history", "")).splitlines()
+    body = [
+        f"<header>\n{_heading(heading, made)}\n</header>",
+        page.section("Verdict", sections.verdict(dataset, reason)),
+        page.section("Response", sections.results(dataset)),
+        page.section("Scene", sections.scene(dataset, system)),
+        page.section("Ground motion", sections.motion(dataset, motion)),
+        page.section("Limits of validity", sections.limits(system)),
+        page.section("Provenance", sections.provenance(dataset, Path(file).name)),
+    ]
+    place = Path(path).expanduser()
+    place.write_text(page.page(heading, body), encoding="utf-8")
+    return place
+
+
+def _heading(words: str, made: list[str]) -> str:
+    lines = [f"<h1>{escape(words)}</h1>"]
+    if made:
+        lines.append(page.paragraph(made[-1], kind="soft"))
+    return "\n".join(lines)
+
+
+def _check(dataset: xr.Dataset) -> None:
+    """Refuse what is not the result of one run.
+
+    Raises
+    ------
+    SchemaError
+        It lacks what every run has, or holds several runs.
+    """
+    needed = ("overturned", "status", "peak_rotation")
+    missing = [name for name in needed if name not in dataset]
+    if missing or "model" not in dataset.attrs:
+        title = dataset.attrs.get("title", "without a title")
+        msg = (
+            f"{_OWNER}: found a dataset ({title}) that is no result of a run; expected that of "
+            "system.simulate(motion)"
+        )
+        raise SchemaError(msg)
+    dims = [str(dim) for dim in dataset["overturned"].dims]
+    if dims:
+        msg = (
+            f"{_OWNER}: found several runs over {', '.join(dims)}; expected one: simulate it with "
+            "rf.case(runs, ...).simulate()"
+        )
+        raise SchemaError(msg)
+
+
+def _system_of(dataset: xr.Dataset) -> System | None:
+    """Give the system of a result with its motion; None where that cannot be had."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", RecordWarning)  # said in words on the page
+            return System.from_dataset(dataset)
+    except SchemaError:
+        return None
