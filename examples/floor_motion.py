@@ -9,6 +9,7 @@ case_on_floor_4.png (the case under it).
 """
 
 import argparse
+import sys
 from pathlib import Path
 
 import rockframe as rf
@@ -32,18 +33,27 @@ def advice(fallen: list[bool]) -> str:
     )
 
 
-def main() -> None:
-    """Let the same earthquake shake the case on every floor."""
+def main() -> int:
+    """Read the arguments, run, and tell in one line why it cannot be done."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("record", nargs="?", help="ground-motion file; a synthetic one if none")
     parser.add_argument("--period", type=float, default=0.9, help="of the building [s]")
     parser.add_argument("--folder", default=".", help="where the results are written")
     arguments = parser.parse_args()
-    folder = Path(arguments.folder)
-    folder.mkdir(parents=True, exist_ok=True)
+    try:
+        folder = Path(arguments.folder)
+        folder.mkdir(parents=True, exist_ok=True)
+        shake_floors(arguments.record, arguments.period, folder)
+    except (rf.RockframeError, OSError) as problem:
+        print(f"floor_motion: {' '.join(str(problem).split())}", file=sys.stderr)
+        return 1
+    return 0
 
-    if arguments.record:
-        ground = rf.GroundMotion.read(arguments.record)
+
+def shake_floors(record: str | None, period: float, folder: Path) -> None:
+    """Let the same earthquake shake the case on every floor."""
+    if record:
+        ground = rf.GroundMotion.read(record)
     else:
         ground = rf.GroundMotion.stochastic(7, "10 km", seed=3)
     case = rf.System(rf.Block(width="0.45 m", height="1.8 m", mass="250 kg"))
@@ -51,7 +61,7 @@ def main() -> None:
     print(f"A case 1.8 m high and 0.45 m deep, shaken by {ground.name}:")
     motions = [ground]
     motions += [
-        ground.through_storeys(storeys=STOREYS, floor=floor, period=f"{arguments.period!r} s")
+        ground.through_storeys(storeys=STOREYS, floor=floor, period=f"{period!r} s")
         for floor in range(1, STOREYS + 1)
     ]
     runs = [case.simulate(motion) for motion in motions]
@@ -69,4 +79,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -9,6 +9,7 @@ displacement and contact along time).
 """
 
 import argparse
+import sys
 from pathlib import Path
 
 import rockframe as rf
@@ -31,8 +32,8 @@ def building(shape_factor: float | None) -> rf.FrameEquivalent:
     )
 
 
-def main() -> None:
-    """Build the scene, simulate it in both ways, and show the results."""
+def main() -> int:
+    """Read the arguments, run, and tell in one line why it cannot be done."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("record", nargs="?", help="ground-motion file; a pulse if none")
     parser.add_argument(
@@ -42,9 +43,20 @@ def main() -> None:
     )
     parser.add_argument("--folder", default=".", help="where the results are written")
     arguments = parser.parse_args()
+    try:
+        folder = Path(arguments.folder)
+        folder.mkdir(parents=True, exist_ok=True)
+        simulate(arguments.record, arguments.shape_factor, folder)
+    except (rf.RockframeError, OSError) as problem:
+        print(f"six_storey_frame: {' '.join(str(problem).split())}", file=sys.stderr)
+        return 1
+    return 0
 
+
+def simulate(record: str | None, shape_factor: float | None, folder: Path) -> None:
+    """Build the scene, simulate it in both ways, and show the results."""
     parts = (
-        building(arguments.shape_factor),
+        building(shape_factor),
         rf.TwoSpringSupport(frequency_ratio=40, damping_ratio=0.10),
         rf.CushionCap(height="0.9 m", mass="36 t"),  # 4 m by 4 m of concrete
         rf.WinklerSoil(stiffness="9 MPa", damping_ratio=0.20),
@@ -54,8 +66,8 @@ def main() -> None:
     modes = coupled.frequencies()[["period", "damping_ratio"]]
     print(modes.to_dataframe().round(4).to_string(), end="\n\n")
 
-    if arguments.record:
-        motion = rf.GroundMotion.read(arguments.record)
+    if record:
+        motion = rf.GroundMotion.read(record)
     else:
         motion = rf.GroundMotion.sine_pulse("-3 m/s^2", "0.5 Hz")
     print(motion)
@@ -64,11 +76,10 @@ def main() -> None:
     in_series = rf.System(*parts, coupling="cascade").simulate(motion, free_vibration="20 s")
     print(f"cascade: {in_series.attrs['verdict']}")
 
-    folder = Path(arguments.folder)
     response.to_netcdf(folder / "six_storey_frame.nc")
     rf.plot.response(response).figure.savefig(folder / "six_storey_frame.png", dpi=150)
     print(f"Results: {folder / 'six_storey_frame.nc'}, figure: {folder / 'six_storey_frame.png'}")
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -10,6 +10,7 @@ suite.nc and runs.csv.
 
 import argparse
 import io
+import sys
 import zipfile
 from pathlib import Path
 
@@ -36,23 +37,32 @@ def made_up() -> bytes:
     return packed.getvalue()
 
 
-def main() -> None:
-    """Read a suite, choose among it, and let it shake a cabinet."""
+def main() -> int:
+    """Read the arguments, run, and tell in one line why it cannot be done."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("records", nargs="?", help="folder or archive; made up if none")
     parser.add_argument("--count", type=int, default=7, help="records to choose")
     parser.add_argument("--folder", default=".", help="where the results are written")
     arguments = parser.parse_args()
-    folder = Path(arguments.folder)
-    folder.mkdir(parents=True, exist_ok=True)
+    try:
+        folder = Path(arguments.folder)
+        folder.mkdir(parents=True, exist_ok=True)
+        choose(arguments.records, arguments.count, folder)
+    except (rf.RockframeError, OSError) as problem:
+        print(f"suite: {' '.join(str(problem).split())}", file=sys.stderr)
+        return 1
+    return 0
 
-    suite = rf.read_suite(arguments.records or made_up())
+
+def choose(records: str | None, count: int, folder: Path) -> None:
+    """Read a suite, choose among it, and let it shake a cabinet."""
+    suite = rf.read_suite(records or made_up())
     print(
         f"{len(suite)} motions, {len(suite.pairs)} of both components, {len(suite.unread)} not read"
     )
 
     target = rf.TargetSpectrum.eurocode_8("0.3 g_0", "B")
-    found = rf.select_for_target(suite, target, arguments.count, combination="RotD50")
+    found = rf.select_for_target(suite, target, count, combination="RotD50")
     print(f"Closest to {target.name}: misfit of the set {float(found.set_misfit):.3f}")
     for record in found["motion"].to_numpy():
         row = found.sel(motion=record)
@@ -76,4 +86,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -1,14 +1,50 @@
 """Arguments without a unit: one of a few words, a whole number, or a dataset."""
 
+from collections.abc import Callable
 from enum import StrEnum
+from functools import wraps
 from operator import index
-from typing import SupportsIndex, TypeVar, cast
+from typing import Any, SupportsIndex, TypeVar, cast
 
 import xarray as xr
 
 from rockframe.errors import ComponentError, SchemaError, shown
 
 Words = TypeVar("Words", bound=StrEnum)
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+def hinted(**hints: str) -> Callable[[Function], Function]:
+    """Say more of arguments that a function does not take, but that one may look for there.
+
+    Parameters
+    ----------
+    **hints : str
+        Where to give what was meant, by names of arguments that there are not.
+
+    Returns
+    -------
+    callable
+        A decorator; the function keeps its signature.
+
+    Raises
+    ------
+    TypeError
+        By the function, as ever, when such an argument is given.
+    """
+
+    def decorate(function: Function) -> Function:
+        @wraps(function)
+        def call(*given: Any, **named: Any) -> Any:
+            for name in named:
+                if name in hints:
+                    msg = f"{function.__qualname__}() takes no {name!r}: {hints[name]}"
+                    raise TypeError(msg)
+            return function(*given, **named)
+
+        return cast("Function", call)
+
+    return decorate
 
 
 def one_of_words(kind: type[Words], given: object, *, owner: str, name: str) -> Words:

@@ -21,7 +21,8 @@ if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
 
-QuantityLike: TypeAlias = str | pint.Quantity[Any]
+QuantityLike: TypeAlias = str | pint.Quantity[Any] | tuple[float, str]
+"""A number with its unit: ``"0.3 m"``, ``(0.3, "m")``, or a Quantity of pint."""
 RatioLike: TypeAlias = float | str | pint.Quantity[Any]
 
 
@@ -326,11 +327,15 @@ def _in_si(value: object, measure: Measure) -> float | None:
 def _parse(value: object, measure: Measure, *, owner: str, name: str) -> pint.Quantity[Any]:
     if isinstance(value, pint.Quantity):
         return value
+    value = _joined(value)
     needed = f"{owner}: {name} needs {measure.needed}"
     example = measure.example_of(name)
     if not isinstance(value, str):
         kind = "a bare number" if isinstance(value, Real) else f"a {type(value).__name__}"
-        msg = f"{needed}, got {shown(value)} ({kind} has no unit); {example}"
+        why = foreign_quantity(value) or f"{kind} has no unit"
+        if isinstance(value, tuple):
+            why = "one number and its unit are needed"
+        msg = f"{needed}, got {shown(value)} ({why}); {example}"
         raise UnitsError(msg)
     for pattern, words in _AMBIGUOUS:
         if re.search(pattern, value):
@@ -350,6 +355,39 @@ def _parse(value: object, measure: Measure, *, owner: str, name: str) -> pint.Qu
         raise UnitsError(msg) from problem
 
 
+def _joined(value: object) -> object:
+    """Write a number beside its unit, ``(0.3, "m")``, as one text; leave all else as it is."""
+    if not isinstance(value, tuple):
+        return value
+    pair: tuple[Any, ...] = value  # pyright: ignore[reportUnknownVariableType]
+    number, unit = pair if len(pair) == 2 else (None, None)
+    if isinstance(number, bool) or not isinstance(number, Real) or not isinstance(unit, str):
+        return pair
+    return f"{float(number)!r} {unit}"
+
+
+def foreign_quantity(value: object) -> str:
+    """Say how a quantity of another library is given; nothing of what is none.
+
+    Parameters
+    ----------
+    value : object
+        What the user gave.
+
+    Returns
+    -------
+    str
+    """
+    home = type(value).__module__.partition(".")[0]
+    unit = next((one for one in ("unit", "units") if hasattr(value, one)), None)
+    if unit is None or not hasattr(value, "value"):
+        return ""
+    return (
+        f"a {type(value).__name__} of {home}, and quantities are those of pint; give it as "
+        f"(q.value, str(q.{unit}))"
+    )
+
+
 def _check_kind(
     given: pint.Quantity[Any], value: object, measure: Measure, *, owner: str, name: str
 ) -> None:
@@ -364,7 +402,7 @@ def _check_kind(
     unit_needed = "" if measure.unit == Unit.ONE else f" in a unit such as {measure.unit}"
     msg = (
         f"{owner}: {name} needs {measure.name}{unit_needed}, got {shown(str(value))} ({unit})"
-        f"{_weight(given, str(value), measure) or _misread(str(value), measure)}; "
+        f"{_other_kind(given, str(value), measure) or _misread(str(value), measure)}; "
         f"{measure.example_of(name)}"
     )
     raise UnitsError(msg)
@@ -387,6 +425,38 @@ def _weight(given: Any, text: str, measure: Measure) -> str:
     except Exception:  # as in _check_kind
         return ""
     return f" (a force is no mass; divide it by g_0: {shown(f'{text}/g_0')})" if heavy else ""
+
+
+def _other_kind(given: Any, text: str, measure: Measure) -> str:
+    """Say how what is needed follows from a related quantity, where that was given."""
+    return _weight(given, text, measure) or _subgrade(given, measure) or _period(given, measure)
+
+
+def _subgrade(given: Any, measure: Measure) -> str:
+    """Say what takes the subgrade modulus, where it was given for the stiffness of a bed."""
+    if measure.unit != BED_STIFFNESS.unit or not _is_in(given, SUBGRADE_MODULUS.unit):
+        return ""
+    return (
+        " (a subgrade modulus; WinklerSoil.from_subgrade_modulus(modulus, depth=...) multiplies "
+        "it by the depth of the base)"
+    )
+
+
+def _period(given: Any, measure: Measure) -> str:
+    """Give the frequency of a period, where that was given."""
+    if measure.unit != FREQUENCY.unit or not _is_in(given, TIME.unit):
+        return ""
+    seconds = float(given.m_as(str(TIME.unit)))
+    if not seconds > 0.0:
+        return ""
+    return f" (a period; its frequency is {shown(f'{1.0 / seconds:.6g} {FREQUENCY.unit}')})"
+
+
+def _is_in(given: Any, unit: Unit) -> bool:
+    try:
+        return given.is_compatible_with(str(unit)) and getattr(given.magnitude, "ndim", 0) == 0
+    except Exception:  # as in _check_kind
+        return False
 
 
 def _misread(text: str, measure: Measure) -> str:

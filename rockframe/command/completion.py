@@ -82,9 +82,7 @@ def _bash() -> str:
 def _zsh() -> str:
     cases = []
     for command in COMMANDS:
-        words = [
-            f"'{name}[{_quoted(one)}]{_value(one)}'" for one, name in _options(command)
-        ]
+        words = [f"'{name}[{_quoted(one)}]{_value(one)}'" for one, name in _options(command)]
         choices = _choices(command)
         places = f"'*:choice:({' '.join(choices)})'" if choices else "'*:file:_files'"
         cases.append(f"        {command.name}) _arguments {' '.join([*words, places])} ;;")
@@ -100,11 +98,10 @@ def _value(one: Argument) -> str:
 
 def _fish() -> str:
     unseen = "not __fish_seen_subcommand_from " + " ".join(one.name for one in COMMANDS)
-    lines: list[str] = []
-    for command in COMMANDS:
-        lines.append(
-            f"complete -c rockframe -f -n '{unseen}' -a {command.name} -d '{command.words}'"
-        )
+    lines = [
+        f"complete -c rockframe -f -n '{unseen}' -a {command.name} -d '{command.words}'"
+        for command in COMMANDS
+    ]
     for command in COMMANDS:
         seen = f"complete -c rockframe -n '__fish_seen_subcommand_from {command.name}'"
         lines += [

@@ -92,6 +92,11 @@ def written(dataset: xr.Dataset, path: str | None) -> None:
         print(f"Results: {path}")
 
 
+def printed(values: Any) -> str:
+    """Set a table of pandas in columns, numbers with four digits."""
+    return values.to_string(float_format=lambda value: f"{value:.4g}")
+
+
 def system_words(system: System) -> str:
     """Name the parts of a system in a line."""
     return ", ".join(type(part).__name__ for part in system.parts.structural())

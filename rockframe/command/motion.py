@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Final
 
-from rockframe.command.given import check_folder, motion_from
+from rockframe.command.given import check_folder, motion_from, printed
 from rockframe.command.plot import save
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.measures import intensity_measures
@@ -40,7 +40,7 @@ def execute(arguments: argparse.Namespace) -> int:
             for head, value in values.loc[name].items():
                 print(f"  {str(head).replace('_', ' '):<52} {value:.4g}")
     else:
-        print(values.to_string(float_format=lambda value: f"{value:.4g}"))
+        print(printed(values))
     if arguments.csv is not None:
         values.to_csv(Path(arguments.csv).expanduser())
         print(f"Table: {arguments.csv}")

@@ -75,9 +75,7 @@ _SCENE: Final = _path("scene", metavar="scene.toml", help="the scene; 'template'
 _DATASET: Final = _path("dataset", metavar="out.nc", help="what 'run' or 'study' has written")
 _READING: Final = (
     _word("--component", metavar="NAME", help="component of a record that has several, such as NS"),
-    _word(
-        "--unit", help="unit of the samples, where the file does not say, such as g or cm/s^2"
-    ),
+    _word("--unit", help="unit of the samples, where the file does not say, such as g or cm/s^2"),
     _word("--time-step", metavar="TIME", help="of a column of samples without times: '0.01 s'"),
 )
 _RUNNING: Final = (
@@ -89,9 +87,7 @@ _RUNNING: Final = (
         metavar="LEVEL",
         help="fast, standard, reference, or a tolerance such as 1e-6",
     ),
-    _word(
-        "--free-vibration", metavar="TIME", help="still ground after the motion, such as '20 s'"
-    ),
+    _word("--free-vibration", metavar="TIME", help="still ground after the motion, such as '20 s'"),
     _word("--duration", metavar="TIME", help="length of the run, whatever that of the motion"),
 )
 
@@ -199,7 +195,9 @@ COMMANDS: Final = (
   rockframe study study.toml --csv runs.csv""",
         (
             _path("study", metavar="study.toml", help="the study; 'template study' writes one"),
-            _path("--store", metavar="FOLDER", help="keep what has been run here, and go on with it"),
+            _path(
+                "--store", metavar="FOLDER", help="keep what has been run here, and go on with it"
+            ),
             _path("-o", "--output", metavar="runs.nc", help="write all results to this file"),
             _path("--csv", metavar="x.csv", help="write a table with a row for each case"),
         ),

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe.command.files.studies import DescribedStudy, read_study
-from rockframe.command.given import check_folder, system_words, written
+from rockframe.command.given import check_folder, printed, system_words, written
 from rockframe.command.run import FINISHED
 from rockframe.errors import FileError, StudyError
 from rockframe.results.table import table
@@ -37,7 +37,7 @@ def execute(arguments: argparse.Namespace) -> int:
     values = table(runs)
     if len(values) <= _MOST_SHOWN:
         wanted = [head for head in values if str(head).split(" [")[0] in _SHOWN]
-        print(values[wanted].to_string(float_format=lambda value: f"{value:.4g}"))
+        print(printed(values[wanted]))
     if arguments.csv is not None:
         values.to_csv(Path(arguments.csv).expanduser())
         print(f"Table: {arguments.csv}")

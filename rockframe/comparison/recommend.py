@@ -72,6 +72,12 @@ def recommend(
             f"for {_plain(limit, 3)} % write {_plain(0.01 * limit, 3)}"
         )
         raise ComponentError(msg)
+    if not isinstance(dataset, xr.Dataset):
+        msg = (
+            f"{_OWNER}: found {shown(dataset)}; expected a comparison of models, "
+            "as rockframe.tradeoff(system, motion) gives it"
+        )
+        raise SchemaError(msg)
     needed = ("run_time", "verdict_agrees", "model", "accuracy")
     if error not in _ERRORS or any(name not in dataset for name in (error, *needed)):
         known = " or ".join(repr(name) for name in _ERRORS)

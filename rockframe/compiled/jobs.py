@@ -118,7 +118,12 @@ class Job:
         file = self.file
         if file is None:
             register_kernels()
-            _say_once(f"{_WAIT}; it is not kept, for want of a folder or of a file of its source")
+            places = " or ".join(map(str, store.folders()))
+            _say_once(
+                f"{_WAIT}, and again in every process: it cannot be kept, for nothing can be "
+                f"written to {places} (ROCKFRAME_CACHE_DIR names another folder), or its source "
+                "has no file"
+            )
             return self._compiled(keep=False)
         if self.is_stored:
             try:

@@ -42,7 +42,7 @@ def file_of(function: Callable[..., Any], text: str, classes: Iterable[type]) ->
     # machine code knows functions and classes by the names of their modules
     modules = sorted({function.__module__, *(kind.__module__ for kind in classes)})
     name = f"{function.__name__}_{digest(' '.join(modules).encode(), text.encode())}"
-    for folder in _folders():
+    for folder in folders():
         try:
             place = folder / f"code-{sources}"
             if place.is_dir():
@@ -109,7 +109,7 @@ def forget_code(file: Path) -> None:
         kept.unlink(missing_ok=True)
 
 
-def _folders() -> list[Path]:
+def folders() -> list[Path]:
     """Give the folders to write to, in this order."""
     given = os.environ.get("ROCKFRAME_CACHE_DIR")
     if given:

@@ -3,11 +3,13 @@
 from enum import StrEnum
 from typing import ClassVar, Literal, Self, TypeAlias
 
+from rockframe.arguments import hinted
 from rockframe.components.alternatives import OneOf
 from rockframe.components.base import Component
 from rockframe.components.damping import DampingRatio
 from rockframe.components.friction import Friction
 from rockframe.components.parameters import Choice, Parameter
+from rockframe.components.values import Quantity
 from rockframe.units import (
     BED_DAMPING,
     BED_STIFFNESS,
@@ -17,6 +19,7 @@ from rockframe.units import (
     SUBGRADE_MODULUS,
     QuantityLike,
     RatioLike,
+    quantity,
     to_si,
 )
 
@@ -81,6 +84,14 @@ class WinklerSoil(Component):
 
     friction = Friction(of="what stands on it")
 
+    _depth: float | None = None
+
+    @hinted(
+        subgrade_modulus="WinklerSoil.from_subgrade_modulus('20 MN/m^3', depth='4 m', ...) takes "
+        "it, with the depth of the base",
+        modulus="WinklerSoil.from_subgrade_modulus('20 MN/m^3', depth='4 m', ...) takes it, with "
+        "the depth of the base",
+    )
     def __init__(
         self,
         *,
@@ -132,10 +143,17 @@ class WinklerSoil(Component):
         owner = f"{cls.__name__}.from_subgrade_modulus"
         per_area = to_si(modulus, SUBGRADE_MODULUS, owner=owner, name="modulus", condition=POSITIVE)
         metres = to_si(depth, LENGTH, owner=owner, name="depth", condition=POSITIVE)
-        return cls(
+        soil = cls(
             stiffness=f"{per_area * metres!r} {BED_STIFFNESS.unit}",
             damping=damping,
             damping_ratio=damping_ratio,
             separation=separation,
             friction=friction,
         )
+        object.__setattr__(soil, "_depth", metres)
+        return soil
+
+    @property
+    def depth(self) -> Quantity | None:
+        """Depth of the base out of the plane, where the bed was built with it [m]."""
+        return None if self._depth is None else quantity(self._depth, LENGTH)

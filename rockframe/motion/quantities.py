@@ -10,7 +10,7 @@ import xarray as xr
 
 from rockframe.errors import ComponentError, UnitsError, shown
 from rockframe.motion.unit_names import RecordUnit, acceleration_unit
-from rockframe.units import ACCELERATION, TIME, Measure, to_si
+from rockframe.units import ACCELERATION, TIME, Measure, foreign_quantity, to_si
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     # pint.Quantity itself, in a form that a strict type checker can follow
     Quantity: TypeAlias = PlainQuantity[Any]
 
-QuantityLike: TypeAlias = "str | Quantity"
+QuantityLike: TypeAlias = "str | Quantity | tuple[float, str]"
 RatioLike: TypeAlias = "float | str | Quantity"
 ArrayLike: TypeAlias = "Quantity | xr.DataArray | tuple[Sequence[float] | npt.NDArray[Any], str]"
 
@@ -98,7 +98,8 @@ def accelerations_to_si(value: object, *, owner: str, name: str) -> Array:
     if isinstance(value, str):
         found = f"{shown(value)}, which is one value"
     else:
-        found = f"a {type(cast('object', value)).__name__} without a unit"
+        bare = f"a {type(cast('object', value)).__name__} without a unit"
+        found = foreign_quantity(value) or bare
     msg = (
         f"{owner}: {name} needs an array of accelerations with a unit such as "
         f"{ACCELERATION.unit}, got {found}; write for example {name}={_EXAMPLE}"

@@ -74,7 +74,7 @@ LIMITS: Final = (
     ),
     Limit(
         "Suction",
-        "Unless the option separation is \"pressure\", dashpots of the bed may pull at the base.",
+        'Unless the option separation is "pressure", dashpots of the bed may pull at the base.',
         lambda parts: parts.soil is not None,
     ),
     Limit(

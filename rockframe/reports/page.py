@@ -101,7 +101,7 @@ def banner(title: str, words: str, kind: str) -> str:
 
 def rows(given: Iterable[Sequence[str]], *, head: Sequence[str] = ()) -> str:
     """Give a table; the second column holds values."""
-    lines = ["<div class=\"scroll\"><table>"]
+    lines = ['<div class="scroll"><table>']
     if head:
         names = "".join(f"<th>{escape(name)}</th>" for name in head)
         lines.append(f"<thead><tr>{names}</tr></thead>")

@@ -8,12 +8,13 @@ import xarray as xr
 
 from rockframe import plot
 from rockframe.components import Component
+from rockframe.components.parameters import Declared
 from rockframe.errors import RockframeError
 from rockframe.measures import intensity_measures
 from rockframe.motion import GroundMotion
 from rockframe.reports import page
 from rockframe.reports.limits import GENERAL, limits_of
-from rockframe.reports.values import table_of
+from rockframe.reports.values import raised, table_of
 from rockframe.results.variables.runs import CERTIFICATE, RunStatus
 from rockframe.simulation.run import NONE
 from rockframe.simulation.system import System
@@ -49,7 +50,7 @@ def verdict(dataset: xr.Dataset, reason: str) -> Iterator[str]:
     if "certificate" in dataset.attrs:
         sure = all(bool(dataset[name]) for name in _CERTIFICATE[:2] if name in dataset)
         words = str(dataset.attrs["certificate"])
-        title = "Certificate: the verdict is sure" if sure else "Certificate: the verdict is in doubt"
+        title = f"Certificate: the verdict {'holds' if sure else 'is in doubt'}"
         yield page.banner(title, words, "good" if sure else "doubt")
     else:
         yield page.banner("No certificate", reason or "none was asked for.", "doubt")
@@ -65,9 +66,8 @@ def scene(dataset: xr.Dataset, system: System | None) -> Iterator[str]:
         for part in system.parts.structural():
             yield page.subtitle(type(part).__name__)
             yield page.rows(_parameters(part))
-        options = {name: value for name, value in system.options.to_dict().items()}
         yield page.subtitle("Options")
-        yield page.rows(options.items())
+        yield page.rows((name, _value(value)) for name, value in system.options.to_dict().items())
     yield page.subtitle("Model")
     yield page.verbatim(str(dataset.attrs.get("model_description", "not described")))
 
@@ -82,9 +82,7 @@ def motion(dataset: xr.Dataset, found: GroundMotion | None) -> Iterator[str]:
         ("motion_time_step", "time step [s]"),
         ("motion_sha256", "digest (SHA-256)"),
     )
-    yield page.rows(
-        (words, str(attributes[name])) for name, words in known if name in attributes
-    )
+    yield page.rows((words, str(attributes[name])) for name, words in known if name in attributes)
     if found is None:
         return
     yield page.subtitle("Measures")
@@ -98,11 +96,6 @@ def motion(dataset: xr.Dataset, found: GroundMotion | None) -> Iterator[str]:
 
 def results(dataset: xr.Dataset) -> Iterator[str]:
     """Show the scalars of a run, and its figure."""
-    names = [str(name) for name in dataset.data_vars if str(name) not in _CERTIFICATE]
-    yield page.rows(table_of(dataset, names))
-    if any(name in dataset for name in _CERTIFICATE):
-        yield page.subtitle("Certificate")
-        yield page.rows(table_of(dataset, _CERTIFICATE))
     if dataset.sizes.get("time", 0) > 1:
         yield page.picture(
             figure_of(plot.response(dataset)),
@@ -111,6 +104,11 @@ def results(dataset: xr.Dataset) -> Iterator[str]:
         )
     else:
         yield page.paragraph("The run kept no histories to draw.", kind="soft")
+    names = [str(name) for name in dataset.data_vars if str(name) not in _CERTIFICATE]
+    yield page.rows(table_of(dataset, names))
+    if any(name in dataset for name in _CERTIFICATE):
+        yield page.subtitle("Certificate")
+        yield page.rows(table_of(dataset, _CERTIFICATE))
 
 
 def limits(system: System | None) -> Iterator[str]:
@@ -157,18 +155,23 @@ def _parameters(part: Component) -> list[tuple[str, str, str]]:
         (
             name.replace("_", " "),
             _value(value),
-            declared[name].words.split(" [")[0].rstrip(".") if name in declared else "",
+            _meaning(declared[name]) if name in declared else "",
         )
         for name, value in part.to_dict().items()
         if name != "type"
     ]
 
 
+def _meaning(one: Declared[Any, Any]) -> str:
+    words = one.words.split(" [")[0].rstrip(".")
+    return words if one.condition is None else words.removesuffix(f"; {one.condition.words}")
+
+
 def _value(given: object) -> str:
     """Write a number with its unit, as far as six digits show it."""
     number, blank, unit = str(given).partition(" ")
     try:
-        return f"{float(number):.6g}{blank}{unit}"
+        return f"{float(number):.6g}{blank}{raised(unit)}"
     except ValueError:
         return str(given)
 

@@ -1,12 +1,17 @@
 """Numbers of datasets in words."""
 
 import math
-from typing import Any
+import re
+from typing import Any, Final
 
 import numpy as np
 import xarray as xr
 
 from rockframe.units import Unit
+
+_TRUTH: Final = {"true": "yes", "false": "no"}
+_POWER: Final = re.compile(r"\^(-?\d+)")
+_ABOVE: Final = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def value_of(variable: xr.DataArray) -> str:
@@ -25,18 +30,24 @@ def value_of(variable: xr.DataArray) -> str:
     if "flag_values" in variable.attrs:
         places = np.atleast_1d(variable.attrs["flag_values"]).tolist()
         words = str(variable.attrs["flag_meanings"]).split()
-        return words[places.index(value)].replace("_", " ") if value in places else str(value)
+        word = words[places.index(value)] if value in places else str(value)
+        return _TRUTH.get(word, word.replace("_", " "))
     if variable.dtype == bool:
-        return "yes" if value else "no"
+        return _TRUTH[str(value).lower()]
     if isinstance(value, str):
         return value
     if isinstance(value, float) and math.isnan(value):
         return "none"
     unit = str(variable.attrs.get("units", Unit.ONE))
-    number = f"{value:.4g}"
+    number = f"{value + 0.0:.4g}"  # no negative zero
     if unit == Unit.RADIAN:
         return f"{number} rad ({math.degrees(value):.3g}°)"
-    return number if unit == Unit.ONE else f"{number} {unit}"
+    return number if unit == Unit.ONE else f"{number} {raised(unit)}"
+
+
+def raised(unit: str) -> str:
+    """Write the powers of a unit above the line."""
+    return _POWER.sub(lambda power: power[1].translate(_ABOVE), unit)
 
 
 def table_of(dataset: xr.Dataset, names: list[str] | None = None) -> list[tuple[str, str]]:

@@ -3,6 +3,7 @@
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from os import PathLike
 from typing import Any, Final
 
 import xarray as xr
@@ -131,7 +132,9 @@ def plan_run(
     """
     faults: list[str] = []
     motion = system.parts.motion if motion is None else motion
-    _check_kind(motion, GroundMotion, "motion", faults)
+    given: object = motion
+    if given is not None and not isinstance(given, GroundMotion):
+        faults.append(f"motion must be a GroundMotion, got {shown(given)}{_motion_hint(given)}")
     if faults:
         raise AssemblyError(faults)
     arguments = read_arguments(
@@ -257,8 +260,22 @@ def fitted(
 def _initial(given: object, faults: list[str]) -> "InitialState | xr.Dataset":
     if given is None or isinstance(given, InitialState | xr.Dataset):
         return _REST if given is None else given
-    faults.append(f"initial must be an InitialState or the result of a run, got {shown(given)}")
+    hint = ""
+    if isinstance(given, str | tuple):
+        hint = f"; write InitialState(rotation={given!r}), if that is its rotation"
+    faults.append(
+        f"initial must be an InitialState or the result of a run, got {shown(given)}{hint}"
+    )
     return _REST
+
+
+def _motion_hint(given: object) -> str:
+    """Say how a motion is had from what was given, if that is known."""
+    if isinstance(given, str | PathLike):
+        return f"; read the file first: GroundMotion.read({str(given)!r})"  # pyright: ignore[reportUnknownArgumentType]
+    if hasattr(given, "shape") or isinstance(given, list):
+        return "; build one: GroundMotion.from_arrays((samples, 'm/s^2'), '0.01 s')"
+    return ""
 
 
 def _beginning(
@@ -278,11 +295,6 @@ def _beginning(
             f"{theta:.6g} rad"
         )
     return given
-
-
-def _check_kind(value: object, kind: type, name: str, faults: list[str]) -> None:
-    if value is not None and not isinstance(value, kind):
-        faults.append(f"{name} must be a {kind.__name__}, got {shown(value)}")
 
 
 def _length(arguments: Arguments, motion: GroundMotion | None, faults: list[str]) -> float:

@@ -7,13 +7,14 @@ from typing import TYPE_CHECKING, Any, Final, Self
 import pint
 import xarray as xr
 
-from rockframe.arguments import checked_dataset
+from rockframe.arguments import checked_dataset, hinted
 from rockframe.components import InitialState, component_from_dict
 from rockframe.errors import ModelWarning, SchemaError, warn
 from rockframe.motion import GroundMotion
 from rockframe.simulation.provenance import motion_from_dataset
 from rockframe.solve.accuracy import AccuracyLevel
 from rockframe.system.assembly import Assembly, assemble
+from rockframe.system.fitting import doubts
 from rockframe.system.options import (
     AccuracyLike,
     Coupling,
@@ -93,7 +94,7 @@ class System:
             parts, restraint=restraint, rotation=rotation, coupling=coupling, gravity=gravity,
             inclination=inclination,
         )  # fmt: skip
-        for caution in self.setting.cautions():
+        for caution in (*self.setting.cautions(), *doubts(self.parts)):
             warn(caution, ModelWarning)
 
     @property
@@ -190,6 +191,18 @@ class System:
         """
         return self._assembly.describe()
 
+    @hinted(
+        damping="dampers belong to the parts, such as TwoSpringSupport(damping_ratio=0.1) or "
+        "WinklerSoil(damping_ratio=0.2); a block on rigid ground loses energy in impacts, by "
+        "RigidGround(restitution=...)",
+        damping_ratio="it belongs to the parts, such as TwoSpringSupport(damping_ratio=0.1)",
+        dt="the steps of the integration are its own, as fine as accuracy asks for; output_step "
+        "is the spacing of the histories",
+        time_step="the steps of the integration are its own, as fine as accuracy asks for; "
+        "output_step is the spacing of the histories",
+        gravity="it is an option of System(..., gravity='9.81 m/s^2')",
+        scale="write simulate(motion.scaled(1.5))",
+    )
     def simulate(
         self,
         motion: GroundMotion | None = None,

@@ -8,6 +8,7 @@ from rockframe.system.own_base import OwnBase
 from rockframe.system.parts import Parts
 
 _ROUNDING = 1e-12
+_ROUNDING_OF_DEPTHS = 1e-9
 
 
 def misfits(parts: Parts) -> list[str]:
@@ -51,6 +52,33 @@ def misfits(parts: Parts) -> list[str]:
 
 def _named(part: Component | None) -> str:
     return f"a {type(part).__name__}"
+
+
+def doubts(parts: Parts) -> list[str]:
+    """Say which sizes of parts contradict one another, though they can be simulated.
+
+    Parameters
+    ----------
+    parts : Parts
+        Parts that make a scene.
+
+    Returns
+    -------
+    list of str
+    """
+    # of each the depth that it was built with, where that is known
+    depths = {
+        type(part).__name__: float(depth.m_as("m"))
+        for part in (parts.cap or parts.block, parts.soil)
+        if (depth := getattr(part, "depth", None)) is not None
+    }
+    if len(depths) < 2 or math.isclose(*depths.values(), rel_tol=_ROUNDING_OF_DEPTHS):
+        return []
+    (upper, above), (lower, below) = depths.items()
+    return [
+        f"the {lower} was built for a base of a depth of {below:.6g} m, but the {upper} on it is "
+        f"{above:.6g} m deep: its stiffness is the subgrade modulus times that depth"
+    ]
 
 
 def missizes(parts: Parts) -> list[str]:

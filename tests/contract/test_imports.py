@@ -33,6 +33,11 @@ def needed():
     return loaded("import pint, xarray")[0]
 
 
+HELPING = """
+from rockframe.command.main import main
+assert main(["run", "--help"]) == 0
+assert main(["completion", "zsh"]) == 0
+"""
 LOOKING_AROUND = "assert 'System' in dir(rockframe)\nrockframe.__version__"
 NAMING_ALL = """
 for name in rockframe.__all__:
@@ -64,10 +69,19 @@ def test_nothing_loads_more_than_it_needs(needed, tmp_path):
         "rf.plot",
     )
     assert not NEEDED_BY_FEW & needed
-    assert imported == needed
-    assert looked == needed
+    assert imported == looked == set()
     for after in others:
         assert not NEEDED_BY_FEW & after
+
+
+def test_help_and_completion_load_no_library():
+    done = subprocess.run(
+        [sys.executable, "-c", f"{HELPING}import sys; print('LOADED', *sys.modules)"],
+        capture_output=True, text=True, timeout=60,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    modules = set(done.stdout.split("LOADED")[1].split())
+    assert not {*HEAVY, "numpy", "scipy"} & modules
 
 
 def test_simulating_loads_a_compiler_only_to_compile_and_no_plot():

@@ -124,7 +124,7 @@ class TestEveryDimensionalArgument:
             one.__class__([one.magnitude], one.units),
             [good, good],
             np.array([1.0, 2.0]),
-            (1.0, "m"),
+            ([1.0, 2.0], "m"),
         ):
             message = refusal(maker, **{name: bad})
             assert f"{name} needs" in message

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Callable, Mapping
 from inspect import Parameter, signature
-from typing import Any, TypeVar, cast
+from typing import Any, TypeVar
 
 from rockframe.command.files.lines import Place
 from rockframe.command.files.tables import TomlFile, title_of
@@ -109,7 +109,7 @@ def made(
         for words in problem.faults:
             file.fault(_key_in(words, where, table), words)
     except StudyError as problem:
-        for words in cast("tuple[str, ...]", problem.faults):
+        for words in problem.faults:
             file.fault(_key_in(words, where, table), words)
     except (RockframeError, TypeError, ValueError) as problem:
         file.fault(_key_in(str(problem), where, table), str(problem))

@@ -33,7 +33,9 @@ modules = []      # files in which you declare parts of your own, such as ["mine
 _PARAMETERS: Final = re.compile(
     r"^Parameters\n-+\n(.*?)(?=^\w[\w ]*\n-{3,}|\Z)", re.DOTALL | re.MULTILINE
 )
-_ENTRY: Final = re.compile(r"^(\*{0,2}\w[\w, *]*?) : .*\n((?:[ ]{4}.*\n?|\n(?=[ ]{4}))+)", re.MULTILINE)
+_ENTRY: Final = re.compile(
+    r"^(\*{0,2}\w[\w, *]*?) : .*\n((?:[ ]{4}.*\n?|\n(?=[ ]{4}))+)", re.MULTILINE
+)
 
 
 def every_key() -> str:
@@ -69,7 +71,7 @@ def _of_part(slot: str, name: str, kind: type[Component]) -> Iterator[str]:
         keys = arguments_of(function)
         if not keys:
             continue
-        yield f'# or {CONSTRUCTOR} = "{way}": {_summary(function)}'
+        yield f'# or {CONSTRUCTOR} = "{way}": {_lowered(_summary(function))}'
         yield from _keys(", ".join(_marked(keys)))
 
 
@@ -85,7 +87,7 @@ def _of_component(
 
 def _of_parameter(name: str, one: Declared[Any, Any]) -> Iterator[str]:
     must = "must be given: " if one.default is REQUIRED else ""
-    yield from _commented(f"# {name} = {_example(one)}", f"{must}{one.words}")
+    yield from _commented(f"# {name} = {_example(one)}", f"{must}{_plain(one.words)}")
 
 
 def _example(one: Declared[Any, Any]) -> str:
@@ -138,7 +140,7 @@ def _of_study() -> Iterator[str]:
     yield "# A study has also, at the top:"
     for name, words in (
         ("scene", "path of the scene, unless its tables are in the file of the study"),
-        ("motions", 'list of files, folders, archives and patterns; or tables [[motions]]'),
+        ("motions", "list of files, folders, archives and patterns; or tables [[motions]]"),
         ("cases", "path of a table in CSV, with a row for each case and units in its heads"),
         ("store", "folder that keeps what has been run"),
         ("output", "file of the results"),
@@ -170,6 +172,10 @@ def _written(value: object) -> str:
     return f'"{value}"' if isinstance(value, str) else str(value)
 
 
+def _lowered(words: str) -> str:
+    return words[:1].lower() + words[1:]
+
+
 def _summary(documented: object) -> str:
     text = (getdoc(documented) or "").split("\n\n")[0].replace("\n", " ")
     return text.rstrip(".")
@@ -181,5 +187,10 @@ def _meanings(documented: object) -> dict[str, str]:
     found: dict[str, str] = {}
     for names, words in _ENTRY.findall(section[1] if section else ""):
         for name in names.split(","):
-            found[name.strip(" *")] = " ".join(words.split())
+            found[name.strip(" *")] = _plain(" ".join(words.split()))
     return found
+
+
+def _plain(words: str) -> str:
+    """Take the marks of reStructuredText away."""
+    return re.sub(r":\w+:`[~.]?([^`]*)`", r"\1", words).replace("``", "").replace("`", "")

@@ -88,7 +88,7 @@ def _names(nested: Any) -> Place:
 
 
 def _resolved(names: Place, arrays: dict[Place, int]) -> Place:
-    """Number the tables of arrays along a path: a header speaks of the last one so far."""
+    """Give a path with the numbers of tables in arrays: a header speaks of the last one so far."""
     place: Place = ()
     for name in names:
         place = (*place, name)

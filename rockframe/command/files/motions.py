@@ -89,7 +89,9 @@ def _operated(
     for number, one in enumerate(operations):  # pyright: ignore[reportUnknownArgumentType]
         here = (*where, number)
         if not isinstance(one, dict) or len(one) != 1:  # pyright: ignore[reportUnknownArgumentType]
-            file.fault(here, f"an operation is written {{ scaled = {{ factor = 1.5 }} }}; {shown(one)}")  # pyright: ignore[reportUnknownArgumentType]
+            file.fault(
+                here, f"an operation is written {{ scaled = {{ factor = 1.5 }} }}; {shown(one)}"
+            )  # pyright: ignore[reportUnknownArgumentType]
             return None
         ((name, given),) = one.items()  # pyright: ignore[reportUnknownVariableType]
         if found is None:
@@ -98,9 +100,7 @@ def _operated(
     return found
 
 
-def _done(
-    file: TomlFile, where: Place, motion: GroundMotion, given: object
-) -> GroundMotion | None:
+def _done(file: TomlFile, where: Place, motion: GroundMotion, given: object) -> GroundMotion | None:
     name = str(where[-1])
     if name not in OPERATIONS:
         file.unknown(where[:-1], name, OPERATIONS)

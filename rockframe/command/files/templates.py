@@ -6,7 +6,7 @@ _MOTION: Final = """\
 [motion]                         # or --motion record.AT2 on the command line
 constructor = "sine_pulse"       # or file = "record.AT2"
 amplitude = "{amplitude}"
-frequency = "1 Hz"
+frequency = "{frequency}"
 
 [run]
 free_vibration = "{free}"          # still ground after the motion
@@ -99,10 +99,10 @@ accuracy = "fast"
 """
 
 TEMPLATES: Final = {
-    "block": _BLOCK + _MOTION.format(amplitude="-4 m/s^2", free="5 s"),
-    "pads": _PADS + _MOTION.format(amplitude="-9.81 m/s^2", free="5 s"),
-    "soil": _SOIL + _MOTION.format(amplitude="-6 m/s^2", free="8 s"),
-    "stack": _STACK + _MOTION.format(amplitude="-4 m/s^2", free="9 s"),
+    "block": _BLOCK + _MOTION.format(amplitude="-5 m/s^2", frequency="2 Hz", free="5 s"),
+    "pads": _PADS + _MOTION.format(amplitude="-9.81 m/s^2", frequency="1 Hz", free="5 s"),
+    "soil": _SOIL + _MOTION.format(amplitude="-6 m/s^2", frequency="1 Hz", free="8 s"),
+    "stack": _STACK + _MOTION.format(amplitude="-4 m/s^2", frequency="1 Hz", free="9 s"),
     "study": _STUDY,
 }
 """Texts by what they describe."""

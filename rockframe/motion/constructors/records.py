@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from rockframe.errors import ComponentError, RecordWarning
+from rockframe.errors import ComponentError, RecordWarning, UnitsError
 from rockframe.motion.quantities import accelerations_to_si, argument_unit, declared_times
 from rockframe.motion.readers.components import component_names
 from rockframe.motion.readers.reading import read_record
@@ -114,7 +114,7 @@ def read(
 def from_arrays(
     kind: type[Made],
     acceleration: ArrayLike,
-    time_step: QuantityLike,
+    time_step: QuantityLike | None = None,
     vertical: ArrayLike | None = None,
     *,
     name: str | None = None,
@@ -128,7 +128,7 @@ def from_arrays(
         [m s^-2]. The times of a DataArray, or of a pandas Series as the sequence, must
         be those of `time_step`.
     time_step : str or Quantity
-        Time between samples [s].
+        Time between samples; it must be given [s].
     vertical : Quantity, (sequence, unit) or DataArray, shape (n,), optional
         Vertical acceleration, upwards [m s^-2].
     name : str, optional
@@ -147,6 +147,13 @@ def from_arrays(
         that are uneven or of another step.
     """
     owner = f"{kind.__name__}.from_arrays"
+    if time_step is None:
+        across = accelerations_to_si(acceleration, owner=owner, name="acceleration")
+        msg = (
+            f"{owner}: time_step needs {TIME_STEP.needed}, the time between the {across.size} "
+            f"samples, and none was given; {TIME_STEP.example_of('time_step')}"
+        )
+        raise UnitsError(msg)
     step = to_si(time_step, TIME_STEP, owner=owner, name="time_step", condition=POSITIVE)
     across = accelerations_to_si(acceleration, owner=owner, name="acceleration")
     upwards = None

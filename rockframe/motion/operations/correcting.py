@@ -30,9 +30,9 @@ class Baseline(StrEnum):
 
 def filtered(
     motion: Made,
-    *,
     low: QuantityLike | None = None,
     high: QuantityLike | None = None,
+    *,
     order: int = 4,
     causal: bool = False,
     keep_padding: bool = False,

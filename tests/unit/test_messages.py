@@ -1,0 +1,226 @@
+"""What is said to those who try what seems natural: which argument, and how it is written."""
+
+import gzip
+import logging
+import re
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import rockframe as rf
+from rockframe.compiled import COMPILED
+
+pytestmark = pytest.mark.unit
+
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+PULSE = rf.GroundMotion.sine_pulse("-3 m/s^2")
+
+
+class Quantity:
+    """A quantity as astropy has them."""
+
+    __module__ = "astropy.units.quantity"
+
+    def __init__(self, value, unit):
+        self.value, self.unit = value, unit
+
+
+def pads(**changed):
+    return rf.TwoSpringSupport(**{"frequency_ratio": 20, "damping_ratio": 0.1, **changed})
+
+
+def block(**changed):
+    return rf.Block(**{"width": "1 m", "height": "4 m", "mass": "5 t", **changed})
+
+
+def system():
+    return rf.System(block(), pads())
+
+
+ASKED = {
+    "a system where a comparison is needed": (
+        lambda: rf.recommend(system(), 0.1),
+        rf.SchemaError,
+        ["rockframe.tradeoff(system, motion)"],
+    ),
+    "a quantity of another library": (
+        lambda: block(width=Quantity(1.0, "m")),
+        rf.UnitsError,
+        ["width", "a Quantity of astropy", "(q.value, str(q.unit))"],
+    ),
+    "an array of another library": (
+        lambda: rf.GroundMotion.from_arrays(Quantity(np.zeros(5), "m/s2"), "0.01 s"),
+        rf.UnitsError,
+        ["acceleration", "a Quantity of astropy"],
+    ),
+    "a file for a motion": (
+        lambda: system().simulate("x.AT2"),
+        rf.AssemblyError,
+        ["GroundMotion.read('x.AT2')"],
+    ),
+    "a path for a motion": (
+        lambda: system().simulate(Path("x.AT2")),
+        rf.AssemblyError,
+        ["GroundMotion.read('x.AT2')"],
+    ),
+    "samples for a motion": (
+        lambda: system().simulate(np.zeros(5)),
+        rf.AssemblyError,
+        ["GroundMotion.from_arrays("],
+    ),
+    "an angle for a start": (
+        lambda: system().simulate(PULSE, initial="0.1 rad"),
+        rf.AssemblyError,
+        ["InitialState(rotation='0.1 rad')"],
+    ),
+    "a period for a frequency": (
+        lambda: rf.GroundMotion.sine_pulse(frequency="0.5 s"),
+        rf.UnitsError,
+        ["a period; its frequency is '2 Hz'"],
+    ),
+    "samples without a time step": (
+        lambda: rf.GroundMotion.from_arrays((np.zeros(5), "m/s^2")),
+        rf.UnitsError,
+        ["time_step needs a time with a unit", "time_step='0.01 s'"],
+    ),
+    "samples without anything": (
+        lambda: rf.GroundMotion.from_arrays(np.zeros(5)),
+        rf.UnitsError,
+        ["acceleration=(values, 'm/s^2')"],
+    ),
+    "damping of a run": (
+        lambda: system().simulate(PULSE, damping=0.05),
+        TypeError,
+        ["'damping'", "TwoSpringSupport(damping_ratio=0.1)"],
+    ),
+    "the time step of a run": (
+        lambda: system().simulate(PULSE, time_step="0.01 s"),
+        TypeError,
+        ["output_step", "accuracy"],
+    ),
+    "a subgrade modulus for a stiffness": (
+        lambda: rf.WinklerSoil(stiffness="20 MN/m^3", damping_ratio=0.2),
+        rf.UnitsError,
+        ["WinklerSoil.from_subgrade_modulus("],
+    ),
+    "a subgrade modulus by its name": (
+        lambda: rf.WinklerSoil(subgrade_modulus="20 MN/m^3", damping_ratio=0.2),
+        TypeError,
+        ["WinklerSoil.from_subgrade_modulus("],
+    ),
+    "an argument that nothing has": (
+        lambda: system().simulate(PULSE, colour="red"),
+        TypeError,
+        ["unexpected keyword argument 'colour'"],
+    ),
+}
+
+
+@pytest.mark.parametrize("asked", ASKED)
+def test_a_message_names_the_way(asked):
+    call, kind, words = ASKED[asked]
+    with pytest.raises(kind) as caught:
+        call()
+    for each in words:
+        assert each in str(caught.value)
+
+
+def test_archives_are_told_from_records(tmp_path):
+    with zipfile.ZipFile(tmp_path / "two.zip", "w") as archive:
+        for name in ("a.csv", "b.csv"):
+            archive.writestr(name, "time (s),acceleration (g)\n0,0\n0.01,0.1\n0.02,-0.1\n")
+    with pytest.raises(rf.RecordError, match=r"several files, a\.csv, b\.csv.*read_suite"):
+        rf.GroundMotion.read(tmp_path / "two.zip")
+    with zipfile.ZipFile(tmp_path / "one.zip", "w") as archive:
+        archive.writestr("a.csv", "time (s),acceleration (g)\n0,0\n0.01,0.1\n0.02,-0.1\n")
+    assert len(rf.GroundMotion.read(tmp_path / "one.zip")) == 3
+    (tmp_path / "some.gz").write_bytes(gzip.compress(b"\x00\x01binary"))
+    with pytest.raises(rf.RecordError) as caught:
+        rf.GroundMotion.read(tmp_path / "some.gz")
+    assert "some.gz/some" in str(caught.value)
+
+
+def test_corners_of_a_filter_go_without_their_names():
+    motion = rf.GroundMotion.stochastic(6, "10 km", seed=1)
+    assert motion.filtered("0.1 Hz", "25 Hz") == motion.filtered(low="0.1 Hz", high="25 Hz")
+    assert motion.filtered("0.1 Hz") != motion.filtered(high="0.1 Hz")
+
+
+def test_a_number_beside_its_unit_is_a_quantity():
+    assert block(width=(1, "m")) == block(width=(np.float32(1.0), "m")) == block()
+    assert rf.System(block(), gravity=(0.5, "g_0")) == rf.System(block(), gravity="0.5 g_0")
+    assert block(centre_of_mass=((2, "m"), (1, "cm"))) == block(centre_of_mass=("2 m", "1 cm"))
+    given, same = (motion.scaled(peak=peak) for motion, peak in
+                   ((PULSE, (0.3, "g_0")), (PULSE, "0.3 g_0")))  # fmt: skip
+    assert given == same
+    for bad in ((1, "kg"), (True, "m"), ("1", "m"), (1, 2), (1, "m", "m"), ([1, 2], "m")):
+        with pytest.raises(rf.UnitsError, match="width"):
+            block(width=bad)
+
+
+def test_depths_that_contradict_one_another_are_told():
+    def soil(depth, **given):
+        return rf.WinklerSoil.from_subgrade_modulus(
+            "20 MN/m^3", depth=depth, damping_ratio=0.2, **given
+        )
+
+    def frame(depth):
+        return rf.FrameEquivalent.from_members(
+            storeys=3, width="4 m", height="9 m", depth=depth, column_width="0.25 m",
+            beam_height="0.30 m", beam_width="0.25 m", density="2500 kg/m^3",
+        )  # fmt: skip
+
+    with pytest.warns(rf.ModelWarning, match="depth of 4 m, but the FrameEquivalent on it is 6 m"):
+        rf.System(frame("6 m"), soil("4 m"))
+    cap = rf.CushionCap(height="0.9 m", density="2500 kg/m^3", depth="5 m")
+    with pytest.warns(rf.ModelWarning, match="the CushionCap on it is 5 m deep"):
+        rf.System(frame("6 m"), cap, soil("4 m"))
+    rf.System(frame("4 m"), soil("4 m"))  # warnings are errors here
+    rf.System(frame("6 m"), cap, soil("5 m"))
+    rf.System(block(), soil("4 m"))  # of a block no depth is known
+    assert soil("4 m").depth.m_as("m") == pytest.approx(4.0)
+    assert rf.WinklerSoil(stiffness="80 MPa", damping_ratio=0.2).depth is None
+
+
+@pytest.mark.parametrize(
+    "name",
+    [path.stem for path in sorted(EXAMPLES.glob("*.py")) if '"record' in path.read_text()],
+)
+def test_an_example_without_its_file_says_so_in_a_line(name, tmp_path):
+    done = subprocess.run(
+        [sys.executable, EXAMPLES / f"{name}.py", "none.AT2", "--folder", tmp_path],
+        capture_output=True, text=True, timeout=120,
+    )  # fmt: skip
+    assert done.returncode == 1
+    assert re.fullmatch(rf"{name}: none\.AT2: .*\n", done.stderr)
+
+
+@pytest.mark.skipif(not COMPILED, reason="this run does without compilation")
+def test_a_folder_for_machine_code_that_cannot_be_written_is_named_once(
+    tmp_path, monkeypatch, caplog
+):
+    own = tmp_path / "own_entries.py"
+    own.write_text(
+        "from rockframe.compiled import Vector, entry\n\n"
+        "@entry\ndef add_one(values: Vector) -> None:\n    values[0] += 1.0\n\n"
+        "@entry\ndef add_two(values: Vector) -> None:\n    values[0] += 2.0\n"
+    )
+    taken = tmp_path / "a file"
+    taken.write_text("")
+    monkeypatch.setenv("ROCKFRAME_CACHE_DIR", str(taken / "code"))
+    monkeypatch.syspath_prepend(str(tmp_path))
+    values = np.zeros(1)
+    with caplog.at_level(logging.WARNING, logger="rockframe"):
+        import own_entries
+
+        own_entries.add_one(values)
+        own_entries.add_two(values)
+    assert values.tolist() == [3.0]
+    told = [one.getMessage() for one in caplog.records]
+    assert len(told) == 1
+    assert str(taken) in told[0]
+    assert "ROCKFRAME_CACHE_DIR" in told[0]
