@@ -1,4 +1,7 @@
-"""Tables that are read from the code when the manual is built: ``{code-table} <name>``."""
+"""Tables and texts that are read from the code when the manual is built.
+
+``{code-table} <name>`` and ``{code-text} <name>``.
+"""
 
 from collections.abc import Callable, Iterable
 
@@ -7,6 +10,7 @@ from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
 import rockframe as rf
+from rockframe.command.files.every_key import every_key
 from rockframe.dynamics.events import ContactState, EventKind
 from rockframe.results.variables.analyses import (
     DYNAMIC_ANALYSIS,
@@ -134,6 +138,9 @@ TABLES: dict[str, Callable[[], Rows]] = {
 }
 
 
+TEXTS: dict[str, Callable[[], str]] = {"every-key": every_key}
+
+
 class CodeTable(SphinxDirective):
     """A table of `TABLES`; the first row is the head, the first column literal."""
 
@@ -156,7 +163,19 @@ class CodeTable(SphinxDirective):
         return row
 
 
+class CodeText(SphinxDirective):
+    """A text of `TEXTS`, as it is."""
+
+    required_arguments = 1
+
+    def run(self) -> list[nodes.Node]:
+        """Build the block."""
+        text = TEXTS[self.arguments[0]]()
+        return [nodes.literal_block(text, text, language="toml")]
+
+
 def setup(app: Sphinx) -> dict[str, bool]:
-    """Register the directive."""
+    """Register the directives."""
     app.add_directive("code-table", CodeTable)
+    app.add_directive("code-text", CodeText)
     return {"parallel_read_safe": True}

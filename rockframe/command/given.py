@@ -7,9 +7,10 @@ from typing import Any
 import xarray as xr
 
 from rockframe.command.files.scenes import Described, read_scene
-from rockframe.errors import FileError
+from rockframe.errors import ComponentError, FileError, SolverError
 from rockframe.motion import GroundMotion
 from rockframe.simulation.system import System
+from rockframe.solve.accuracy import accuracy_of
 
 
 def motion_from(path: str, arguments: argparse.Namespace) -> GroundMotion:
@@ -115,6 +116,12 @@ def _run_options(arguments: argparse.Namespace) -> dict[str, Any]:
 
 def _accuracy(text: str) -> str | float:
     try:
-        return float(text)
+        given: str | float = float(text)
     except ValueError:
-        return text
+        given = text
+    try:
+        accuracy_of(given)
+    except SolverError as problem:
+        msg = f"--accuracy: {problem}"
+        raise ComponentError(msg) from problem
+    return given

@@ -69,7 +69,7 @@ def average_spectral_acceleration(
     >>> pulse = rf.GroundMotion.sine_pulse("1 m/s^2", "1 Hz", cycles=0.5)
     >>> found = average_spectral_acceleration(pulse, ["0.5 s", "1 s", "2 s"])
     >>> round(float(found.average_spectral_acceleration), 3)
-    1.257
+    1.273
     """
     seconds = checked_periods(_given(periods), owner=_OWNER)
     if not (seconds > 0.0).all():

@@ -86,7 +86,7 @@ def rotated_spectrum(
     >>> east = rf.GroundMotion.sine_pulse("4 m/s^2", "1 Hz")
     >>> spectrum = rotated_spectrum(rf.HorizontalPair(north, east), ["0 s", "1 s"])
     >>> spectrum.greatest_rotated_acceleration.values.round(2).tolist()
-    [[5.0, 13.45]]
+    [[5.0, 13.5]]
     """
     looked = _pairs(pair, owner=_SPECTRUM)
     seconds = checked_periods(periods, owner=_SPECTRUM)

@@ -179,7 +179,7 @@ class MotionSuite(Mapping[str, GroundMotion]):
         Examples
         --------
         >>> import rockframe as rf
-        >>> suite = MotionSuite([rf.GroundMotion.stochastic(m, "20 km") for m in (5, 6, 7)])
+        >>> suite = MotionSuite([rf.GroundMotion.stochastic(m, "20 km", seed=m) for m in (5, 6, 7)])
         >>> len(suite.select(magnitude=(6, None)))
         2
         """

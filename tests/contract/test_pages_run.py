@@ -1,6 +1,7 @@
 """The snippets of every page of the guide, and of the README, run as they stand.
 
-A block of text right after a snippet is what the snippet prints.
+A block of text right after a snippet is what the snippet prints. Blocks of TOML that begin with
+the name of a file in a comment are written to it, and commands in consoles are carried out.
 """
 
 import re
@@ -9,6 +10,7 @@ from pathlib import Path
 
 import pytest
 from records import record_path
+from typed import type_in
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = [
@@ -16,7 +18,8 @@ PAGES = [
     ROOT / "docs" / "index.md",
     *sorted((ROOT / "docs/guide").glob("*.md")),
 ]
-SNIPPET = re.compile(r"```python\n(.*?)```(?:\n+```text\n(.*?)```)?", re.DOTALL)
+SNIPPET = re.compile(r"```(python|console|toml)\n(.*?)```(?:\n+```text\n(.*?)```)?", re.DOTALL)
+FILE = re.compile(r"# (\S+\.toml)\n")
 RECORDS = {"record.AT2": "NIS090.AT2", "TCU128-N.AT2": "PEERSMD_CHICHI_TCU128-N.AT2"}
 
 
@@ -32,8 +35,16 @@ def test_snippets_run_from_first_to_last(page, tmp_path, monkeypatch, capsys):
             shutil.copy(record_path(source), tmp_path / name)
     monkeypatch.chdir(tmp_path)
     names: dict[str, object] = {}
-    for snippet, shown in snippets:
+    for language, snippet, shown in snippets:
         capsys.readouterr()
+        if language == "toml":
+            named = FILE.match(snippet)
+            if named:
+                Path(named[1]).write_text(snippet, encoding="utf-8")
+            continue
+        if language == "console":
+            type_in(snippet, capsys)
+            continue
         exec(snippet, names)  # noqa: S102
         if shown:
             assert lines(capsys.readouterr().out) == lines(shown)

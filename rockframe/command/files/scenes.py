@@ -15,11 +15,13 @@ from rockframe.command.files.motions import motion_of
 from rockframe.command.files.tables import TomlFile
 from rockframe.components import Component, InitialState
 from rockframe.components.registry import kinds
-from rockframe.errors import RockframeError, shown
+from rockframe.errors import AssemblyError, RockframeError, shown
 from rockframe.motion import GroundMotion
-from rockframe.simulation.certification import Certification
+from rockframe.simulation.certification import Certification, certification_of
+from rockframe.simulation.plan import read_arguments
 from rockframe.simulation.system import System
-from rockframe.solve.accuracy import Accuracy
+from rockframe.solve.accuracy import Accuracy, AccuracyLevel
+from rockframe.system.options import Overturning
 from rockframe.system.slots import SLOTS, slot_of_kind, usual_kind
 
 TYPE: Final = "type"
@@ -240,7 +242,25 @@ def _run_of(file: TomlFile, given: object) -> dict[str, Any]:
     table = file.table((RUN,), given)
     if table is None or not checked(file, (RUN,), table, run_keys()):
         return {}
-    return run_arguments(file, (RUN,), table)
+    arguments = run_arguments(file, (RUN,), table)
+    made(file, (RUN,), _read_arguments, arguments)
+    return arguments
+
+
+def _read_arguments(**given: Any) -> None:
+    """Read the arguments of a run before there is one, so that faults have their line.
+
+    Raises
+    ------
+    AssemblyError, UnitsError, ComponentError, SolverError
+        As :meth:`rockframe.System.simulate`.
+    """
+    usual = {"accuracy": AccuracyLevel.STANDARD, "outputs": (), "overturning": Overturning.STOP}
+    certification_of(given.pop("certify", False))
+    faults: list[str] = []
+    read_arguments(faults, **(usual | given))
+    if faults:
+        raise AssemblyError(faults)
 
 
 def _kind_of(file: TomlFile, slot: str, name: object) -> type[Component] | None:

@@ -131,6 +131,7 @@ def stochastic(
 
     Examples
     --------
+    >>> from rockframe import GroundMotion
     >>> motion = GroundMotion.stochastic(6.5, "15 km", seed=1)
     >>> motion.metadata["seed"]
     1

@@ -129,7 +129,7 @@ def through_storeys(
     >>> pulse = rf.GroundMotion.sine_pulse("1 m/s^2", "2 Hz")
     >>> roof = pulse.through_storeys(["0.5 s"], damping_ratio=0.05)
     >>> round(roof.peak_acceleration.m_as("m/s^2"), 3)
-    2.708
+    2.712
     """
     owner, si = f"{type(motion).__name__}.through_storeys", motion.si
     building = read_building(

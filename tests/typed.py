@@ -1,0 +1,46 @@
+"""Commands as pages show them, carried out in this process."""
+
+import shlex
+from pathlib import Path
+
+from rockframe.command.main import main
+
+PROMPT = "$ "
+LEFT_OUT = "..."
+
+
+def type_in(console, capsys):
+    """Carry out the commands of a console, and compare what they write with what it shows.
+
+    A line of three dots stands for any lines; what no line shows is not compared.
+    """
+    for shown in console.removeprefix(PROMPT).split(f"\n{PROMPT}"):
+        command, *expected = shown.strip("\n").splitlines()
+        words = shlex.split(command)
+        target = None
+        if ">" in words:
+            place = words.index(">")
+            target, words = words[place + 1], words[:place]
+        assert words.pop(0) == "rockframe"
+        main(words)
+        told = capsys.readouterr()
+        if target is not None:
+            Path(target).write_text(told.out, encoding="utf-8")
+        elif expected:
+            compare(expected, (told.out + told.err).splitlines(), command)
+
+
+def compare(expected, found, command):
+    """Compare lines, of which three dots stand for any."""
+    found = [line.rstrip() for line in found]
+    place = 0
+    skipping = False
+    for line in expected:
+        if line.strip() == LEFT_OUT:
+            skipping = True
+            continue
+        rest = found[place:]
+        assert line.rstrip() in (rest if skipping else rest[:1]), (command, line, found)
+        place += rest.index(line.rstrip()) + 1
+        skipping = False
+    assert skipping or place == len(found), (command, found[place:])

@@ -1,0 +1,239 @@
+"""The commands: what they print and write, and their exit codes."""
+
+import shutil
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import rockframe as rf
+from rockframe.command import parser
+from rockframe.command.completion import script
+from rockframe.command.files.templates import TEMPLATES
+from rockframe.command.main import main
+
+pytestmark = pytest.mark.unit
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path, monkeypatch):
+    """Stand in a folder with a scene and a record."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "scene.toml").write_text(TEMPLATES["block"])
+    rf.GroundMotion.sine_pulse("-4 m/s^2", "1 Hz").to_at2("record.AT2")
+    return tmp_path
+
+
+@pytest.fixture
+def typed(capsys):
+    """Carry out a command; give its exit code and what it wrote."""
+
+    def carry_out(*words):
+        code = main(list(words))
+        told = capsys.readouterr()
+        return code, told.out, told.err
+
+    return carry_out
+
+
+def test_a_run_from_the_template_to_the_report(typed, folder):
+    code, told, _ = typed("template")
+    assert (code, told) == (0, TEMPLATES["block"])
+    code, told, _ = typed("describe", "scene.toml")
+    assert code == 0
+    assert "Model: rigid ground" in told
+    code, told, _ = typed("run", "scene.toml", "-o", "out.nc")
+    assert code == 0
+    assert "Verdict: Did not overturn" in told
+    with xr.open_dataset("out.nc") as kept:
+        block = rf.Block(width="0.8 m", height="3.2 m", mass="5.5 t")
+        pulse = rf.GroundMotion.sine_pulse("-5 m/s^2", "2 Hz")
+        again = rf.System(block).simulate(pulse, free_vibration="5 s")
+        assert float(kept.peak_rotation) == float(again.peak_rotation)
+    code, told, _ = typed("plot", "out.nc", "-o", "out.png")
+    assert code == 0
+    assert (folder / "out.png").read_bytes().startswith(b"\x89PNG")
+    code, told, _ = typed("report", "out.nc", "--no-certificate", "--title", "A <tower>")
+    assert code == 0
+    assert "A &lt;tower&gt;" in (folder / "out.html").read_text()
+
+
+def test_options_take_the_place_of_what_the_scene_says(typed):
+    given = ["run", "scene.toml", "-o", "out.nc", "--free-vibration", "1 s", "--accuracy", "1e-6"]
+    code, *_ = typed(*given, "--motion", "record.AT2", "--scale", "0.5")
+    assert code == 0
+    with xr.open_dataset("out.nc") as kept:
+        assert float(abs(kept.ground_acceleration).max()) == pytest.approx(2.0, rel=1e-3)
+        assert float(kept.time[-1]) == pytest.approx(2.0, abs=0.02)
+        assert kept.attrs["solver_rtol"] == 1e-6
+    code, *_ = typed("run", "scene.toml", "-o", "out.nc", "--duration", "0.7 s")
+    assert code == 0
+    with xr.open_dataset("out.nc") as kept:
+        assert float(kept.time[-1]) == pytest.approx(0.7, abs=0.01)
+
+
+def test_a_certificate_is_told_and_kept(typed):
+    code, told, _ = typed("certify", "scene.toml", "--runs", "60", "-o", "sure.nc")
+    assert code == 0
+    assert "Certificate: The body stands" in told
+    with xr.open_dataset("sure.nc") as kept:
+        assert bool(kept.verdict_robust)
+
+
+def test_motions_are_listed_with_their_measures(typed, folder):
+    shutil.copy("record.AT2", "other.AT2")
+    code, told, _ = typed(
+        "motion", "record.AT2", "other.AT2", "--picture", "m.png", "--csv", "m.csv"
+    )
+    assert code == 0
+    assert "peak ground acceleration [m s^-2]" in told
+    assert {"m-1.png", "m-2.png"} <= {path.name for path in folder.iterdir()}
+    assert (folder / "m.csv").read_text().count("\n") == 3
+    code, *_ = typed("motion", "record.AT2", "--picture", "m.svg")
+    assert code == 0
+    assert (folder / "m.svg").exists()
+
+
+def test_a_study_goes_on_with_its_store(typed, folder):
+    (folder / "study.toml").write_text(TEMPLATES["study"].replace('accuracy = "fast"', "chunk = 5"))
+    code, told, _ = typed("study", "study.toml", "--csv", "runs.csv")
+    assert code == 0
+    assert "Of 12 cases" in told
+    assert (folder / "runs.csv").read_text().count("\n") == 13
+    kept = sorted((folder / "study").rglob("*"))
+    before = {path: path.stat().st_mtime_ns for path in kept if path.is_file()}
+    assert typed("study", "study.toml")[0] == 0
+    assert all(path.stat().st_mtime_ns == when for path, when in before.items())
+    with xr.open_dataset("study.nc") as runs:
+        assert dict(runs.overturned.sizes) == {"scale": 4, "width": 3, "motion": 1}
+        one = rf.case(runs, scale=2.0, width=0.7).simulate()
+        assert bool(one.overturned) == bool(runs.overturned.sel(scale=2.0, width=0.7).item())
+
+
+def test_a_table_of_cases_is_read(typed, folder):
+    (folder / "cases.csv").write_text("width [m],scale\n0.7,1\n0.8,2\n")
+    (folder / "study.toml").write_text('scene = "scene.toml"\ncases = "cases.csv"\n')
+    assert typed("study", "study.toml", "-o", "runs.nc")[0] == 0
+    with xr.open_dataset("runs.nc") as runs:
+        assert runs.sizes["case"] == 2
+        assert np.isfinite(runs.peak_rotation).all()
+
+
+WRONG = {
+    "nothing": ([], "usage: rockframe"),
+    "no command": (["fly"], "invalid choice: 'fly'"),
+    "no argument": (["run"], "scene.toml"),
+    "no scene": (["run", "none.toml"], "none.toml: there is no such file"),
+    "no record": (["run", "scene.toml", "-m", "none.AT2"], "none.AT2: found no such file"),
+    "no accuracy": (["run", "scene.toml", "--accuracy", "best"], "'fast', 'standard'"),
+    "no unit": (["run", "scene.toml", "--free-vibration", "3"], "free_vibration needs a time"),
+    "no folder": (["run", "scene.toml", "-o", "none/out.nc"], "there is no folder 'none'"),
+    "a folder": (["run", "scene.toml", "-o", "."], "this is a folder"),
+    "no dataset": (["plot", "scene.toml", "-o", "x.png"], "no netCDF file"),
+    "no result": (["report", "none.nc"], "none.nc: there is no such file"),
+    "no study": (["study", "scene.toml"], "a study needs [axes]"),
+    "a broken scene": (["describe", "broken.toml"], "broken.toml, line 2: "),
+}
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_what_is_wrong_is_told_without_a_traceback(name, typed, folder):
+    (folder / "broken.toml").write_text("[block]\nwidth = 3\n")
+    words, expected = WRONG[name]
+    code, out, err = typed(*words)
+    assert code == 2
+    assert expected in out + err
+    assert "Traceback" not in err
+
+
+def test_other_wrong_results_are_told(typed, folder):
+    rf.intensity_measures(rf.GroundMotion.sine_pulse()).to_netcdf("measures.nc")
+    code, _, err = typed("plot", "measures.nc", "-o", "x.png")
+    assert (code, "nothing draws" in err) == (2, True)
+    code, _, err = typed("report", "measures.nc")
+    assert (code, "no result of a run" in err) == (2, True)
+    typed("run", "scene.toml", "-o", "out.nc")
+    code, _, err = typed("plot", "out.nc", "-o", "x.xyz")
+    assert (code, "xyz" in err) == (2, True)
+
+
+def test_a_run_that_is_not_finished_has_its_exit_code(typed, folder):
+    text = TEMPLATES["block"].replace(
+        'accuracy = "standard"', "accuracy = { rtol = 1e-9, max_steps = 20 }"
+    )
+    (folder / "short.toml").write_text(text)
+    code, told, err = typed("run", "short.toml")
+    assert code == 1
+    assert "warning:" in err
+    assert "Verdict:" in told
+
+
+def test_a_traceback_is_shown_on_request(typed):
+    code, _, err = typed("run", "none.toml", "--debug")
+    assert code == 2
+    assert "Traceback" in err
+    assert "FileError" in err
+
+
+def test_help_teaches_by_examples(typed):
+    code, told, _ = typed("--help")
+    assert code == 0
+    for command in parser.COMMANDS:
+        assert command.name in told
+        code, one, _ = typed(command.name, "--help")
+        assert code == 0
+        assert "examples:" in one
+        assert "exit codes:" in one
+        built = parser.build_parser()
+        for line in command.examples.splitlines():
+            if line.startswith("  rockframe "):
+                typed_line = line.strip().split("  ")[0].split(" > ")[0].split(" | ")[0]
+                words = [word.strip("'") for word in typed_line.split()[1:]]
+                if "--title" not in words:
+                    built.parse_args(words)
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_completion_names_every_command_and_option(shell):
+    text = script(shell)
+    for command in parser.COMMANDS:
+        assert command.name in text
+        for argument in command.arguments:
+            for name in argument.names:
+                if name.startswith("--"):
+                    assert name.removeprefix("--") in text
+    if shutil.which(shell):
+        check = {"bash": ["-n"], "zsh": ["-n"], "fish": ["--no-execute"]}[shell]
+        subprocess.run([shell, *check], input=text, text=True, check=True)
+
+
+@pytest.mark.skipif(shutil.which("bash") is None, reason="there is no bash")
+def test_bash_completes(tmp_path):
+    (tmp_path / "done.sh").write_text(script("bash"))
+
+    def completed(*words):
+        quoted = " ".join(f"'{word}'" for word in words)
+        program = (
+            f"source done.sh; COMP_WORDS=({quoted}); COMP_CWORD={len(words) - 1}; _rockframe; "
+            'printf "%s\\n" "${COMPREPLY[@]}"'
+        )
+        done = subprocess.run(
+            [shutil.which("bash"), "-c", program],
+            capture_output=True, text=True, check=True, cwd=tmp_path,
+        )  # fmt: skip
+        return done.stdout.split()
+
+    assert completed("rockframe", "re") == ["report"]
+    assert completed("rockframe", "run", "--acc") == ["--accuracy"]
+    assert completed("rockframe", "run", "scene") == ["scene.toml"]
+    assert set(completed("rockframe", "completion", "")) >= {"bash", "zsh", "fish"}
+
+
+def test_it_runs_as_a_module():
+    done = subprocess.run(
+        [sys.executable, "-m", "rockframe", "--version"],
+        capture_output=True, text=True, check=True, timeout=60,
+    )  # fmt: skip
+    assert done.stdout.strip() == f"rockframe {rf.__version__}"

@@ -1,0 +1,282 @@
+"""Scenes and studies in TOML: what they build, and where their faults are."""
+
+import numpy as np
+import pytest
+
+import rockframe as rf
+from rockframe.command.files.every_key import every_key
+from rockframe.command.files.lines import lines_of
+from rockframe.command.files.scenes import PART_SLOTS, kinds_in, read_scene
+from rockframe.command.files.studies import read_study
+from rockframe.command.files.templates import TEMPLATES
+
+pytestmark = pytest.mark.unit
+
+BLOCK = '[block]\nwidth = "1 m"\nheight = "4 m"\nmass = "5 t"\n'
+OWN = """
+from rockframe.components import TwoSpringSupport
+
+class SoftPads(TwoSpringSupport):
+    pass
+"""
+
+
+@pytest.fixture
+def file(tmp_path):
+    def write(text, name="scene.toml"):
+        path = tmp_path / name
+        path.write_text(text, encoding="utf-8")
+        return path
+
+    return write
+
+
+def faults(read, path):
+    """Give what is wrong with a file, as pairs of a line and words."""
+    with pytest.raises(rf.FileError) as caught:
+        read(path)
+    for line, words in caught.value.faults:
+        at = "" if line is None else f", line {line}"
+        assert f"{path}{at}: {words}" in str(caught.value)
+    return dict(caught.value.faults)
+
+
+def test_lines_are_those_of_keys_and_tables():
+    text = """# a comment with [a.table] = "in it"
+top = 1
+"quoted key" = '''
+[no.header]
+not = "a key"
+'''
+
+[one]   # a comment
+first = [
+  "a", # ]
+  "b",
+]
+second.inner = { x = 1,
+  y = 2 }
+
+[[many]]
+x = 1
+[many.below]
+y = 2
+[[many]]
+x = "]["
+[ one . deeper ]
+z = 0
+"""
+    text = text.replace("x = 1,\n  y = 2 }", "x = 1, y = 2 }")  # TOML 1.0 has it on one line
+    assert lines_of(text) == {
+        ("top",): 2,
+        ("quoted key",): 3,
+        ("one",): 8,
+        ("one", "first"): 9,
+        ("one", "second"): 13,
+        ("one", "second", "inner"): 13,
+        ("many",): 15,
+        ("many", 0): 15,
+        ("many", 0, "x"): 16,
+        ("many", 0, "below"): 17,
+        ("many", 0, "below", "y"): 18,
+        ("many", 1): 19,
+        ("many", 1, "x"): 20,
+        ("one", "deeper"): 21,
+        ("one", "deeper", "z"): 22,
+    }
+
+
+def test_a_scene_is_what_its_classes_make_of_it(file):
+    (file(OWN, "soft.py"))
+    path = file(
+        """
+modules = ["soft.py"]
+[block]
+type = "FrameEquivalent"
+constructor = "from_members"
+storeys = 2
+width = "4 m"
+height = "6 m"
+column_width = "0.25 m"
+beam_height = "0.3 m"
+beam_width = "0.25 m"
+density = "2500 kg/m^3"
+[pads]
+type = "SoftPads"
+stiffness = "12 MN/m"
+damping_ratio = "5 %"
+[cap]
+height = "0.9 m"
+mass = "36 t"
+[soil]
+constructor = "from_subgrade_modulus"
+modulus = "20 MN/m^3"
+depth = "4 m"
+damping_ratio = 0.2
+[system]
+coupling = "cascade"
+gravity = "9.81 m/s^2"
+[motion]
+constructor = "sine_pulse"
+amplitude = "-3 m/s^2"
+frequency = "0.5 Hz"
+operations = [{ scaled = { factor = 1.5 } }, { resampled = { time_step = "0.01 s" } }]
+[run]
+free_vibration = "2 s"
+outputs = ["energy"]
+points = { roof = ["0 m", "6 m"] }
+[run.initial]
+rotation = "0.001 rad"
+[run.accuracy]
+rtol = 1e-6
+"""
+    )
+    found = read_scene(path)
+    frame = rf.FrameEquivalent.from_members(
+        storeys=2, width="4 m", height="6 m", column_width="0.25 m", beam_height="0.3 m",
+        beam_width="0.25 m", density="2500 kg/m^3",
+    )  # fmt: skip
+    pads = type(found.system.parts.pads)(stiffness="12 MN/m", damping_ratio=0.05)
+    assert issubclass(type(pads), rf.TwoSpringSupport)
+    cap = rf.CushionCap(height="0.9 m", mass="36 t")
+    soil = rf.WinklerSoil(stiffness="80 MPa", damping_ratio=0.2)
+    assert found.system == rf.System(
+        frame, pads, cap, soil, coupling="cascade", gravity="9.81 m/s^2"
+    )
+    pulse = rf.GroundMotion.sine_pulse("-3 m/s^2", "0.5 Hz").scaled(1.5).resampled("0.01 s")
+    assert found.motion == pulse
+    assert found.run["initial"] == rf.InitialState(rotation="0.001 rad")
+    assert found.run["accuracy"] == rf.Accuracy(rtol=1e-6)
+    assert found.run["outputs"] == ["energy"]
+
+
+def test_files_are_found_beside_the_scene(file, tmp_path, monkeypatch):
+    (tmp_path / "records").mkdir()
+    pulse = rf.GroundMotion.sine_pulse("-3 m/s^2")
+    for name in ("a", "b"):
+        pulse.to_at2(tmp_path / "records" / f"{name}.AT2")
+    path = file(
+        f'{BLOCK}[motion]\nfile = "records/a.AT2"\noperations = [{{scaled = {{factor = 2}}}}]'
+    )
+    monkeypatch.chdir("/")
+    motion = read_scene(path).motion
+    assert motion.peak_acceleration.m_as("m/s^2") == pytest.approx(6.0, rel=1e-3)
+    study = read_study(
+        file(
+            'scene = "scene.toml"\nmotions = ["records/*.AT2"]\nstore = "kept"\n'
+            '[axes]\nscale = [1, 2]\nwidth = { values = [1, 2], unit = "m" }\n'
+            '"System.gravity" = ["9 m/s^2"]\n[sweep]\naccuracy = "fast"\n',
+            "study.toml",
+        )
+    )
+    assert list(study.motions) == ["a", "b"]
+    assert study.store == tmp_path / "kept"
+    assert study.arguments["axes"] == {
+        "scale": [1, 2], "width": ([1, 2], "m"), "System.gravity": ["9 m/s^2"],
+    }  # fmt: skip
+    assert study.arguments["accuracy"] == "fast"
+
+
+SCENES = {
+    "no TOML": ("[block]\nwidth = 1 m\n", {2: "this is no TOML"}),
+    "no unit": (BLOCK.replace('"1 m"', "1.0"), {2: "width needs a length with a unit"}),
+    "another unit": (BLOCK.replace('"5 t"', '"5 m"'), {4: "mass needs a mass"}),
+    "out of range": (BLOCK.replace('"1 m"', '"-1 m"'), {2: "greater than zero"}),
+    "a slip": (BLOCK.replace("width", "widht"), {1: "lacks 'width'", 2: "was 'width' meant?"}),
+    "a missing key": (BLOCK.replace('mass = "5 t"', ""), {1: 'mass = "99 t"'}),
+    "an unknown table": (f"{BLOCK}[sol]\n", {5: "was 'soil' meant?"}),
+    "a table by its class": (f"{BLOCK}[WinklerSoil]\n", {5: 'written [soil] with type = "Winkler'}),
+    "no table": ("block = 3\n", {1: "must be a table"}),
+    "no part": ("[system]\n", {1: "no Block is given"}),
+    "parts that do not fit": (
+        f'{BLOCK}[cap]\nheight = "1 m"\nmass = "1 t"\n',
+        {None: "without a WinklerSoil"},
+    ),
+    "two ways": (
+        f'{BLOCK}[pads]\nfrequency_ratio = 20\nstiffness = "1 MN/m"\ndamping_ratio = 0.1\n',
+        {6: "frequency_ratio or stiffness"},
+    ),
+    "an unknown class": (f'{BLOCK}[soil]\ntype = "Mud"\n', {6: 'modules = ["mine.py"]'}),
+    "another constructor's key": (
+        '[soil]\nmodulus = "20 MN/m^3"\ndamping_ratio = 0.2\n' + BLOCK,
+        {2: 'constructor = "from_subgrade_modulus"', 1: "lacks 'stiffness'"},
+    ),
+    "no constructor": (BLOCK + 'constructor = "from_thin_air"\n', {5: "from_size"}),
+    "an option": (f'{BLOCK}[system]\nrestraint = "glue"\n', {6: "restraint must be one of"}),
+    "an option's unit": (f"{BLOCK}[system]\ngravity = 9.81\n", {6: "gravity needs"}),
+    "a run's key": (f'{BLOCK}[run]\ndamping = "1"\n', {6: "unknown key 'damping'"}),
+    "a run's time": (f'{BLOCK}[run]\nfree_vibration = "3"\n', {6: "free_vibration needs a time"}),
+    "an accuracy": (f'{BLOCK}[run]\naccuracy = "best"\n', {6: "'fast', 'standard'"}),
+    "an output": (f'{BLOCK}[run]\noutputs = ["energie"]\n', {6: "energie"}),
+    "a start": (f'{BLOCK}[run.initial]\nrotation = "3 m"\n', {6: "rotation needs an angle"}),
+    "no record": (f'{BLOCK}[motion]\nfile = "none.AT2"\n', {5: "no such file"}),
+    "no motion": (f'{BLOCK}[motion]\ncomponent = "NS"\n', {5: "lacks 'file'"}),
+    "a pulse": (
+        f'{BLOCK}[motion]\nconstructor = "sine_pulse"\nfrequency = "1 s"\n',
+        {7: "its frequency is '1 Hz'"},
+    ),
+    "no pulse": (f'{BLOCK}[motion]\nconstructor = "bang"\n', {6: "sine_pulse"}),
+    "an operation": (
+        f'{BLOCK}[motion]\nconstructor = "sine_pulse"\noperations = [{{ scale = {{}} }}]\n',
+        {7: "was 'scaled' meant?"},
+    ),
+    "its argument": (
+        f'{BLOCK}[[motion.operations]]\n[motion.operations.scaled]\nfactor = "x"\n'
+        '[motion]\nconstructor = "sine_pulse"\n',
+        {7: "factor"},
+    ),
+    "a module": (f'modules = ["none.py"]\n{BLOCK}', {1: "none.py cannot be imported"}),
+}
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_faults_of_scenes_have_their_line(name, file):
+    text, expected = SCENES[name]
+    found = faults(read_scene, file(text))
+    for line, words in expected.items():
+        said = found[line] if line in found else " ".join(found.values())
+        assert words in said, (line, found)
+        if line is not None:
+            assert line in found, found
+
+
+def test_all_faults_are_told_at_once(file):
+    text = BLOCK.replace('"1 m"', "1").replace('"5 t"', '"5 m"') + "[pads]\nstifness = 3\n"
+    assert set(faults(read_scene, file(text))) == {2, 4, 6}
+
+
+STUDIES = {
+    "nothing to vary": (BLOCK, "a study needs [axes]"),
+    "no scene": ('scene = "none.toml"\n[axes]\nscale = [1]\n', "none.toml"),
+    "two scenes": (f'scene = "scene.toml"\n{BLOCK}[axes]\nscale = [1]\n', "are both given"),
+    "no motions": (f'motions = ["none/*.AT2"]\n{BLOCK}[axes]\nscale = [1]\n', "no file matches"),
+    "a sweep's key": (f"{BLOCK}[axes]\nscale = [1]\n[sweep]\ncunk = 3\n", "was 'chunk' meant?"),
+    "no table": (f'cases = "none.csv"\n{BLOCK}', "none.csv"),
+}
+
+
+@pytest.mark.parametrize("name", STUDIES)
+def test_faults_of_studies_are_named(name, file):
+    text, words = STUDIES[name]
+    assert words in " ".join(faults(read_study, file(text)).values())
+
+
+def test_templates_are_sound(file):
+    for name, text in TEMPLATES.items():
+        if name == "study":
+            file(TEMPLATES["block"])
+            assert read_study(file(text, "study.toml")).arguments["axes"]["scale"]
+        else:
+            found = read_scene(file(text))
+            assert np.isfinite(found.motion.si.duration), name
+
+
+def test_every_key_that_can_be_written_is_told():
+    text = every_key()
+    for slot in PART_SLOTS:
+        assert f"\n[{slot}]" in text
+        for name, kind in kinds_in(slot).items():
+            assert f'type = "{name}"' in text
+            assert all(f"\n# {key} = " in text for key in kind.declared())
+    assert "``" not in text
+    assert max(map(len, text.splitlines())) < 125

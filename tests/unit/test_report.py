@@ -1,0 +1,99 @@
+"""Reports: what stands in them, and that they need no other file."""
+
+import re
+from html.parser import HTMLParser
+
+import pytest
+from pages import read
+
+import rockframe as rf
+from rockframe.reports.limits import LIMITS
+
+pytestmark = pytest.mark.unit
+
+
+class Page(HTMLParser):
+    """Tags, what they refer to, and all text."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.open, self.text, self.addresses, self.tags = [], "", [], set()
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.add(tag)
+        if tag not in ("meta", "img"):
+            self.open.append(tag)
+        self.addresses += [value for name, value in attrs if name in ("src", "href", "data")]
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        self.text += data if not self.open or self.open[-1] != "style" else ""
+
+
+@pytest.fixture(scope="module")
+def response():
+    system = rf.System(rf.Block(width="0.8 m", height="3.2 m", mass="5.5 t"))
+    pulse = rf.GroundMotion.sine_pulse("-5 m/s^2", "2 Hz")
+    return system.simulate(pulse, free_vibration="5 s")
+
+
+def test_a_report_has_all_and_asks_for_nothing(response, tmp_path):
+    path = rf.report(response, tmp_path / "r.html", title="Tower & bell")
+    text = path.read_text(encoding="utf-8")
+    page = Page(text)
+    assert page.open == []
+    assert page.addresses
+    assert all(one.startswith("data:image/") for one in page.addresses)
+    assert not {"script", "link", "iframe", "object"} & page.tags
+    assert not re.search(r"url\(|@import", text)
+    words = " ".join(page.text.split())
+    for said in (
+        "Tower & bell",
+        response.attrs["verdict"],
+        "Certificate: the verdict holds",
+        "The body stands also with",  # the run has no certificate: it is made for the report
+        "0.8 m",
+        "5500 kg",
+        "greatest absolute ground acceleration",
+        "5 m s⁻²",
+        "0.08213 rad (4.71°)",
+        "Sliding",
+        "Flight on rigid ground",
+        response.attrs["motion_sha256"],
+        f"rockframe {rf.__version__}",
+    ):
+        assert said in words, said
+    assert "springs of the bed" not in words  # there is no soil
+
+
+def test_what_cannot_be_had_is_said(response, tmp_path):
+    bare = rf.report(response, tmp_path / "bare.html", certify=False).read_text()
+    assert "No certificate" in bare
+    record = rf.GroundMotion.from_arrays(([0.0, 3.0, -3.0, 0.0] * 40, "m/s^2"), "0.01 s")
+    system = rf.System.from_dict({**rf.System.from_dataset(response).to_dict(), "motion": None})
+    short = system.simulate(record, outputs=None)
+    text = rf.report(short, tmp_path / "short.html").read_text()
+    assert "does not hold its motion" in text
+    assert "kept no histories" in text
+    unknown = response.assign_attrs(system_json="{}")
+    assert "does not describe its system" in rf.report(unknown, tmp_path / "u.html").read_text()
+
+
+def test_only_results_of_one_run_are_reported(response, tmp_path):
+    runs = rf.concat([response, response], "run")
+    for given, words in (
+        ("out.nc", "xr.open_dataset"),
+        (runs, "several runs over run"),
+        (response.drop_vars("overturned"), "no result of a run"),
+    ):
+        with pytest.raises(rf.SchemaError, match=words):
+            rf.report(given, tmp_path / "x.html")
+    assert not (tmp_path / "x.html").exists()
+
+
+def test_the_limits_are_those_of_the_manual():
+    left_out = read("theory/validity.md").split("## Left out")[1].split("\n## ")[0]
+    assert re.findall(r"^(\w.*)\n: ", left_out, re.MULTILINE) == [one.title for one in LIMITS]
