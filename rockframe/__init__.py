@@ -5,7 +5,10 @@ Assemble components into a :class:`System`, simulate it under a
 can hold.
 """
 
+import os
+import sys
 from importlib import import_module
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -79,6 +82,19 @@ if TYPE_CHECKING:
     from rockframe.suites import scale_to_target as scale_to_target
     from rockframe.suites import select_for_target as select_for_target
     from rockframe.version import __version__ as __version__
+
+
+def _is_command_line() -> bool:
+    """Whether this process is the command line, by its name or as ``python -m rockframe``."""
+    name = os.path.basename("".join(sys.argv[:1])).partition(".")[0]
+    return name == __name__ or ("-m", __name__) in pairwise(sys.orig_argv)
+
+
+# Every scene needs these two. They are most of what has to be loaded: here, so that the
+# first simulation does not wait for them. The help of the command line needs neither.
+if not _is_command_line():
+    for _library in ("pint", "xarray"):
+        import_module(_library)
 
 _HOMES = {
     "rockframe.components": (
@@ -228,8 +244,8 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    # Everything is imported on its first use: the help of the command line waits for no
-    # library, a script that only reads records never for the integrator.
+    # The rest is imported on its first use: a script that only reads records
+    # never waits for the integrator.
     if name in _HOME_OF:
         value = getattr(import_module(_HOME_OF[name]), name)
     elif name in ("errors", "extension", "plot"):

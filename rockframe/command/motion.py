@@ -11,7 +11,7 @@ from rockframe.constants import STANDARD_GRAVITY
 from rockframe.measures import intensity_measures
 from rockframe.motion import GroundMotion
 from rockframe.plot import motion as draw
-from rockframe.reports.sections import figure_of
+from rockframe.reports.figures import figure_of
 from rockframe.results.table import table
 from rockframe.suites import read_suite
 

@@ -8,7 +8,7 @@ from rockframe import plot
 from rockframe.command.given import check_folder, opened
 from rockframe.errors import ComponentError, SchemaError
 from rockframe.plot import drawn_by
-from rockframe.reports.sections import figure_of
+from rockframe.reports.figures import close, figure_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -42,4 +42,6 @@ def save(figure: "Figure", path: str | Path) -> None:
     except ValueError as problem:
         msg = f"{path}: {problem}"
         raise ComponentError(msg) from problem
+    finally:
+        close(figure)
     print(f"Figure: {path}")

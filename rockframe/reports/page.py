@@ -6,6 +6,8 @@ from html import escape
 from io import BytesIO
 from typing import TYPE_CHECKING, Final
 
+from rockframe.reports.figures import close
+
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
@@ -150,6 +152,7 @@ def picture(figure: "Figure", words: str) -> str:
     data, kind = _drawn(figure, "svg"), "svg+xml"
     if len(data) > LARGEST_DRAWING:
         data, kind = _drawn(figure, "png"), "png"
+    close(figure)
     source = f"data:image/{kind};base64,{base64.b64encode(data).decode()}"
     caption = f"<figcaption>{escape(words)}</figcaption>"
     return f'<figure><img src="{source}" alt="{escape(words)}">{caption}</figure>'

@@ -13,6 +13,7 @@ from rockframe.errors import RockframeError
 from rockframe.measures import intensity_measures
 from rockframe.motion import GroundMotion
 from rockframe.reports import page
+from rockframe.reports.figures import figure_of
 from rockframe.reports.limits import GENERAL, limits_of
 from rockframe.reports.values import raised, table_of
 from rockframe.results.variables.runs import CERTIFICATE, RunStatus
@@ -127,13 +128,6 @@ def provenance(dataset: xr.Dataset, file: str) -> Iterator[str]:
         if name in attributes:
             yield page.subtitle(f"{words}, as it can be built again")
             yield page.verbatim(_indented(str(attributes[name])))
-
-
-def figure_of(drawn: Any) -> Any:
-    """Give the figure of what a function of `rockframe.plot` returned."""
-    while not hasattr(drawn, "savefig"):
-        drawn = drawn.figure if hasattr(drawn, "figure") else next(iter(drawn))
-    return drawn
 
 
 def _drawing(system: System) -> Iterator[str]:

@@ -33,10 +33,12 @@ def needed():
     return loaded("import pint, xarray")[0]
 
 
-HELPING = """
+COMMAND_LINE = """
+import sys
+sys.argv = ["/somewhere/bin/rockframe", *{words}]
 from rockframe.command.main import main
-assert main(["run", "--help"]) == 0
-assert main(["completion", "zsh"]) == 0
+assert main() == 0
+print("LOADED", *sys.modules)
 """
 LOOKING_AROUND = "assert 'System' in dir(rockframe)\nrockframe.__version__"
 NAMING_ALL = """
@@ -69,19 +71,28 @@ def test_nothing_loads_more_than_it_needs(needed, tmp_path):
         "rf.plot",
     )
     assert not NEEDED_BY_FEW & needed
-    assert imported == looked == set()
+    assert imported == needed
+    assert looked == needed
     for after in others:
         assert not NEEDED_BY_FEW & after
 
 
-def test_help_and_completion_load_no_library():
+@pytest.mark.parametrize("words", [["run", "--help"], ["completion", "zsh"], ["--version"]])
+def test_help_and_completion_load_no_library(words):
     done = subprocess.run(
-        [sys.executable, "-c", f"{HELPING}import sys; print('LOADED', *sys.modules)"],
+        [sys.executable, "-c", COMMAND_LINE.format(words=words)],
         capture_output=True, text=True, timeout=60,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
-    modules = set(done.stdout.split("LOADED")[1].split())
-    assert not {*HEAVY, "numpy", "scipy"} & modules
+    assert not {*HEAVY, "numpy", "scipy"} & set(done.stdout.split("LOADED")[1].split())
+    done = subprocess.run(
+        [sys.executable, "-X", "importtime", "-m", "rockframe", *words],
+        capture_output=True, text=True, timeout=60,
+    )  # fmt: skip
+    assert done.returncode == 0
+    loaded_by_it = {line.rpartition("|")[2].strip() for line in done.stderr.splitlines()}
+    assert "argparse" in loaded_by_it
+    assert not {*HEAVY, "numpy", "scipy"} & loaded_by_it
 
 
 def test_simulating_loads_a_compiler_only_to_compile_and_no_plot():
