@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from rockframe import plot
 from rockframe.command.given import check_folder, opened
 from rockframe.errors import ComponentError, SchemaError
-from rockframe.plot import drawn_by
+from rockframe.plot._given import drawn_by
 from rockframe.reports.figures import close, figure_of
 
 if TYPE_CHECKING:
@@ -18,13 +18,13 @@ def execute(arguments: argparse.Namespace) -> int:
     """Draw what a file holds."""
     check_folder(arguments.output)
     dataset = opened(arguments.dataset)
-    function = drawn_by(dataset)
-    if function is None:
-        title = dataset.attrs.get("title", "without a title")
-        msg = f"{arguments.dataset}: nothing draws this dataset ({title})"
-        raise SchemaError(msg)
+    try:
+        function = getattr(plot, drawn_by(dataset))
+    except SchemaError as problem:
+        msg = f"{arguments.dataset}: {problem}"
+        raise SchemaError(msg) from problem
     named = {} if arguments.title is None else {"title": arguments.title}
-    save(figure_of(getattr(plot, function)(dataset, **named)), arguments.output)
+    save(figure_of(function(dataset, **named)), arguments.output)
     return 0
 
 

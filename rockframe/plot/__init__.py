@@ -4,7 +4,6 @@ from rockframe.plot._animation import Animation, animation
 from rockframe.plot._diagrams import energies, moment_rotation, phase
 from rockframe.plot._ensembles import ensemble, probability
 from rockframe.plot._fragility import fragility
-from rockframe.plot._given import drawn_by as drawn_by
 from rockframe.plot._motion import motion
 from rockframe.plot._overturning import (
     dynamic_analysis,

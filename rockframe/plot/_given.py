@@ -373,25 +373,3 @@ def overturning_angles(dataset: xr.Dataset) -> tuple[float, float]:
     least = dataset["overturning_angle"]
     left, right = (dataset.get(f"{side}_overturning_angle", least) for side in ("left", "right"))
     return float(left), float(right)
-
-
-def drawn_by(dataset: xr.Dataset) -> str | None:
-    """Name the function of `rf.plot` that draws a dataset.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        A result of a run or of a study.
-
-    Returns
-    -------
-    str or None
-        None where nothing draws it.
-    """
-    known = {
-        **_STUDIES,
-        "tradeoff": ("run_time", "verdict_agrees"),
-        "selection": ("scaled_spectral_acceleration", "target_spectral_acceleration"),
-        "response": ("rotation", "time", "overturned"),
-    }
-    return next((name for name, names in known.items() if _holds(dataset, names)), None)

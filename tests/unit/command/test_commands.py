@@ -151,7 +151,7 @@ def test_what_is_wrong_is_told_without_a_traceback(name, typed, folder):
 def test_other_wrong_results_are_told(typed, folder):
     rf.intensity_measures(rf.GroundMotion.sine_pulse()).to_netcdf("measures.nc")
     code, _, err = typed("plot", "measures.nc", "-o", "x.png")
-    assert (code, "nothing draws" in err) == (2, True)
+    assert (code, "no function of rf.plot draws" in err) == (2, True)
     code, _, err = typed("report", "measures.nc")
     assert (code, "no result of a run" in err) == (2, True)
     typed("run", "scene.toml", "-o", "out.nc")
