@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from rockframe import plot
 from rockframe.command.given import check_folder, opened
-from rockframe.errors import ComponentError, SchemaError
+from rockframe.errors import ComponentError
 from rockframe.plot._given import drawn_by
 from rockframe.reports.figures import close, figure_of
 
@@ -18,11 +18,7 @@ def execute(arguments: argparse.Namespace) -> int:
     """Draw what a file holds."""
     check_folder(arguments.output)
     dataset = opened(arguments.dataset)
-    try:
-        function = getattr(plot, drawn_by(dataset))
-    except SchemaError as problem:
-        msg = f"{arguments.dataset}: {problem}"
-        raise SchemaError(msg) from problem
+    function = getattr(plot, drawn_by(dataset))
     named = {} if arguments.title is None else {"title": arguments.title}
     save(figure_of(function(dataset, **named)), arguments.output)
     return 0
