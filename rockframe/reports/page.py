@@ -52,7 +52,8 @@ code { overflow-wrap: anywhere; }
   :root { --ink: #000000; --soft: #444444; --paper: #ffffff; --line: #bbbbbb; --band: #f4f4f4;
     --good: #1b6b3a; --bad: #a3261f; --doubt: #8a5a00; }
   body { max-width: none; padding: 0; font-size: 10pt; }
-  figure, tr, .verdict { break-inside: avoid; } h2, h3 { break-after: avoid; }
+  figure, tr, .verdict { break-inside: avoid; } h2, h3, dt { break-after: avoid; }
+  figure img { width: auto; max-width: 100%; max-height: 14.5cm; }
   pre { white-space: pre-wrap; } details > summary { display: none; } }
 """
 

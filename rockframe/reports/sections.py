@@ -68,7 +68,11 @@ def scene(dataset: xr.Dataset, system: System | None) -> Iterator[str]:
             yield page.subtitle(type(part).__name__)
             yield page.rows(_parameters(part))
         yield page.subtitle("Options")
-        yield page.rows((name, _value(value)) for name, value in system.options.to_dict().items())
+        yield page.rows(
+            (name, _value(value))
+            for name, value in system.options.to_dict().items()
+            if name != "coupling" or system.scene.coupling is not None
+        )
     yield page.subtitle("Model")
     yield page.verbatim(str(dataset.attrs.get("model_description", "not described")))
 

@@ -10,6 +10,8 @@ import xarray as xr
 from rockframe.units import Unit
 
 _TRUTH: Final = {"true": "yes", "false": "no"}
+_GAP: Final = re.compile(r", NaN if .*$")
+"""What a number says where there is none; here it is the word "none"."""
 _POWER: Final = re.compile(r"\^(-?\d+)")
 _ABOVE: Final = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
@@ -66,7 +68,7 @@ def table_of(dataset: xr.Dataset, names: list[str] | None = None) -> list[tuple[
     """
     chosen = [str(name) for name in dataset.data_vars] if names is None else names
     return [
-        (str(dataset[name].attrs.get("long_name", name)), value_of(dataset[name]))
+        (_GAP.sub("", str(dataset[name].attrs.get("long_name", name))), value_of(dataset[name]))
         for name in chosen
         if name in dataset and not dataset[name].dims
     ]
