@@ -2,6 +2,8 @@
 
 import json
 from collections.abc import Iterator
+from importlib.metadata import version
+from platform import python_version
 from typing import Any, Final
 
 import xarray as xr
@@ -19,7 +21,9 @@ from rockframe.reports.values import raised, table_of
 from rockframe.results.variables.runs import CERTIFICATE, RunStatus
 from rockframe.simulation.run import NONE
 from rockframe.simulation.system import System
+from rockframe.version import __version__
 
+_LIBRARIES: Final = ("numpy", "scipy", "xarray")
 _FINISHED: Final = (RunStatus.COMPLETED, RunStatus.OVERTURNED, RunStatus.TOPPLED)
 _CERTIFICATE: Final = [row.name for row in CERTIFICATE]
 _PROVENANCE: Final = (
@@ -127,7 +131,9 @@ def provenance(dataset: xr.Dataset, file: str) -> Iterator[str]:
     """Say where the numbers come from, so that they can be had again."""
     attributes = dataset.attrs
     told = [(words, str(attributes[name])) for name, words in _PROVENANCE if name in attributes]
-    yield page.rows([*([("file", file)] if file else []), *told])
+    versions = ", ".join(f"{name} {version(name)}" for name in _LIBRARIES)
+    here = f"rockframe {__version__}, Python {python_version()}, {versions}"
+    yield page.rows([*([("file", file)] if file else []), *told, ("page written by", here)])
     for name, words in (("system_json", "System"), ("run_json", "Run")):
         if name in attributes:
             yield page.subtitle(f"{words}, as it can be built again")
