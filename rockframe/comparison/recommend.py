@@ -72,12 +72,7 @@ def recommend(
             f"for {_plain(limit, 3)} % write {_plain(0.01 * limit, 3)}"
         )
         raise ComponentError(msg)
-    if not isinstance(dataset, xr.Dataset):
-        msg = (
-            f"{_OWNER}: found {shown(dataset)}; expected a comparison of models, "
-            "as rockframe.tradeoff(system, motion) gives it"
-        )
-        raise SchemaError(msg)
+    dataset = _checked(dataset)
     needed = ("run_time", "verdict_agrees", "model", "accuracy")
     if error not in _ERRORS or any(name not in dataset for name in (error, *needed)):
         known = " or ".join(repr(name) for name in _ERRORS)
@@ -106,6 +101,16 @@ def recommend(
     else:
         sentence = "No rung tried has the verdict of the scene itself."
     return Recommendation(model, accuracy, met, sentence)
+
+
+def _checked(given: object) -> xr.Dataset:
+    if isinstance(given, xr.Dataset):
+        return given
+    msg = (
+        f"{_OWNER}: found {shown(given)}; expected a comparison of models, "
+        "as rockframe.tradeoff(system, motion) gives it"
+    )
+    raise SchemaError(msg)
 
 
 def _share(value: float, digits: int) -> str:

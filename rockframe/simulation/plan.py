@@ -132,9 +132,7 @@ def plan_run(
     """
     faults: list[str] = []
     motion = system.parts.motion if motion is None else motion
-    given: object = motion
-    if given is not None and not isinstance(given, GroundMotion):
-        faults.append(f"motion must be a GroundMotion, got {shown(given)}{_motion_hint(given)}")
+    _check_motion(motion, faults)
     if faults:
         raise AssemblyError(faults)
     arguments = read_arguments(
@@ -267,6 +265,11 @@ def _initial(given: object, faults: list[str]) -> "InitialState | xr.Dataset":
         f"initial must be an InitialState or the result of a run, got {shown(given)}{hint}"
     )
     return _REST
+
+
+def _check_motion(given: object, faults: list[str]) -> None:
+    if given is not None and not isinstance(given, GroundMotion):
+        faults.append(f"motion must be a GroundMotion, got {shown(given)}{_motion_hint(given)}")
 
 
 def _motion_hint(given: object) -> str:

@@ -255,7 +255,11 @@ def _read_arguments(**given: Any) -> None:
     AssemblyError, UnitsError, ComponentError, SolverError
         As :meth:`rockframe.System.simulate`.
     """
-    usual = {"accuracy": AccuracyLevel.STANDARD, "outputs": (), "overturning": Overturning.STOP}
+    usual: dict[str, Any] = {
+        "accuracy": AccuracyLevel.STANDARD,
+        "outputs": (),
+        "overturning": Overturning.STOP,
+    }
     certification_of(given.pop("certify", False))
     faults: list[str] = []
     read_arguments(faults, **(usual | given))
