@@ -1,6 +1,5 @@
 """Settings of the manual: ``python -m sphinx -W --keep-going -b html docs docs/_build/html``."""
 
-import os
 import re
 import sys
 from collections import namedtuple
@@ -8,9 +7,8 @@ from pathlib import Path
 
 from rockframe.version import __version__
 
-# The kernels are documented as the plain Python that they are written in.
-os.environ["ROCKFRAME_COMPILE"] = "0"
-sys.path.insert(0, str(Path(__file__).parent / "_ext"))
+DOCS = Path(__file__).parent
+sys.path.insert(0, str(DOCS / "_ext"))
 
 project = "rockframe"
 author = "The rockframe developers"
@@ -21,13 +19,18 @@ extensions = [
     "myst_parser",
     "sphinx.ext.autodoc",
     "sphinx.ext.mathjax",
+    "sphinx-mathjax-offline",  # its files and fonts, copied into the site
     "numpydoc",
+    "sphinx_gallery.gen_gallery",
     "code_tables",
     "figures",
+    "plain_entries",
 ]
 exclude_patterns = ["_build", "_ext"]
 html_theme = "furo"
 html_title = f"rockframe {release}"
+html_static_path = ["_static"]
+html_css_files = ["manual.css"]
 
 myst_enable_extensions = ["amsmath", "deflist", "dollarmath"]
 myst_heading_anchors = 3
@@ -35,6 +38,26 @@ myst_heading_anchors = 3
 numfig = True  # equations are numbered by page: 2.3 is the third of page 2
 math_numfig = True
 math_eqref_format = "equation {number}"
+
+sphinx_gallery_conf = {
+    "examples_dirs": str(DOCS.parent / "examples" / "gallery"),
+    "gallery_dirs": "gallery",
+    "filename_pattern": r"\.py$",
+    "ignore_pattern": r"parametric_study\.py|worked_example\.py",  # what several scripts share
+    "subsection_order": [
+        str(DOCS.parent / "examples" / "gallery" / name)
+        for name in ("first", "paper", "mechanics", "motions", "studies", "structures")
+    ],
+    "within_subsection_order": "FileNameSortKey",
+    "abort_on_example_error": True,
+    "capture_repr": ("_repr_html_",),
+    "download_all_examples": False,
+    "matplotlib_animations": (True, "jshtml"),
+    "min_reported_time": 60,
+    "remove_config_comments": True,
+    "show_memory": False,
+    "write_computation_times": False,
+}
 
 autodoc_typehints = "none"
 autodoc_member_order = "bysource"
