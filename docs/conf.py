@@ -7,8 +7,7 @@ from pathlib import Path
 
 from rockframe.version import __version__
 
-DOCS = Path(__file__).parent
-sys.path.insert(0, str(DOCS / "_ext"))
+sys.path.insert(0, str(Path(__file__).parent / "_ext"))
 
 project = "rockframe"
 author = "The rockframe developers"
@@ -40,12 +39,12 @@ math_numfig = True
 math_eqref_format = "equation {number}"
 
 sphinx_gallery_conf = {
-    "examples_dirs": str(DOCS.parent / "examples" / "gallery"),
+    "examples_dirs": "../examples/gallery",
     "gallery_dirs": "gallery",
     "filename_pattern": r"\.py$",
-    "ignore_pattern": r"parametric_study\.py|worked_example\.py",  # what several scripts share
+    "ignore_pattern": r"/(parametric_study|worked_example|free_response|shaken)\.py$",  # shared
     "subsection_order": [
-        str(DOCS.parent / "examples" / "gallery" / name)
+        f"../examples/gallery/{name}"
         for name in ("first", "paper", "mechanics", "motions", "studies", "structures")
     ],
     "within_subsection_order": "FileNameSortKey",

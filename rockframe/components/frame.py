@@ -186,6 +186,16 @@ class FrameEquivalent(Block):
     def from_density(cls, **sizes: Any) -> Self:
         """Refuse: a frame does not fill its outline, so that its density gives no mass.
 
+        Parameters
+        ----------
+        **sizes : object
+            As of :meth:`Block.from_density`.
+
+        Returns
+        -------
+        FrameEquivalent
+            None, ever.
+
         Raises
         ------
         ComponentError

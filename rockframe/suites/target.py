@@ -359,7 +359,7 @@ class TargetSpectrum:
 
         Returns
         -------
-        ndarray
+        ndarray, shape (n,)
             [m s^-2]
 
         Raises
@@ -375,7 +375,25 @@ class TargetSpectrum:
         )
 
     def at_seconds(self, seconds: Array, *, owner: str) -> Array:
-        """Give the accelerations [m s^-2] at periods [s], or refuse these."""
+        """Give the accelerations at periods.
+
+        Parameters
+        ----------
+        seconds : ndarray, shape (n,)
+            Periods [s].
+        owner : str
+            Who asks, for messages.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            [m s^-2]
+
+        Raises
+        ------
+        ComponentError
+            Periods at which it is not known.
+        """
         low, high = self.limits
         if seconds.min() < low * (1.0 - _ROUNDING) or seconds.max() > high * (1.0 + _ROUNDING):
             msg = (
@@ -386,7 +404,18 @@ class TargetSpectrum:
         return self.shape(seconds)
 
     def deviations_at(self, seconds: Array) -> Array:
-        """Give the standard deviations of the logarithm [1], zero where none is told."""
+        """Give the standard deviations of the logarithm at periods.
+
+        Parameters
+        ----------
+        seconds : ndarray, shape (n,)
+            Periods [s].
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            Zero where none is told [1].
+        """
         return np.zeros(seconds.size) if self.deviation is None else self.deviation(seconds)
 
     def scaled(self, factor: "RatioLike") -> Self:

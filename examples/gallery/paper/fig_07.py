@@ -2,8 +2,8 @@
 Figure 7: R = 1 m, pads of frequency ratio 10
 =============================================
 
-Small blocks on soft pads: the more slender two overturn while the ground still shakes. Brown lines: the rotation at which a corner
-leaves its pad; crosses: the block overturns.
+Small blocks on soft pads: the more slender two overturn while the ground still shakes. Brown
+lines: the rotation at which a corner leaves its pad; crosses: the block overturns.
 """
 
 import parametric_study

@@ -2,8 +2,8 @@
 Figure 8: R = 1 m, pads of frequency ratio 20
 =============================================
 
-Small blocks on pads of medium stiffness. Brown lines: the rotation at which a corner
-leaves its pad; crosses: the block overturns.
+Small blocks on pads of medium stiffness. Brown lines: the rotation at which a corner leaves its
+pad; crosses: the block overturns.
 """
 
 import parametric_study

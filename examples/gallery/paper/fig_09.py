@@ -2,8 +2,8 @@
 Figure 9: R = 1 m, pads of frequency ratio 40
 =============================================
 
-Small blocks on stiff pads. The squat block bounces: it leaves both pads, which the paper asks to avoid. Brown lines: the rotation at which a corner
-leaves its pad; crosses: the block overturns.
+Small blocks on stiff pads. The squat block bounces: it leaves both pads, which the paper asks to
+avoid. Brown lines: the rotation at which a corner leaves its pad; crosses: the block overturns.
 """
 
 import parametric_study

@@ -2,8 +2,8 @@
 Figure 10: R = 5 m, pads of frequency ratio 10
 ==============================================
 
-Blocks of medium size on soft pads. Brown lines: the rotation at which a corner
-leaves its pad; crosses: the block overturns.
+Blocks of medium size on soft pads. Brown lines: the rotation at which a corner leaves its pad;
+crosses: the block overturns.
 """
 
 import parametric_study

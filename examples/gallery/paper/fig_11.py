@@ -15,8 +15,9 @@ parametric_study.tell(runs)
 parametric_study.draw(runs)
 
 # %%
-# The text adds that the block of H/B = 6 in this figure may overturn after the end of the pulse. On pads it does
-# so in its first swing, with every damping ratio; on rigid ground it does what the paper says.
+# The text adds that the block of H/B = 6 in this figure may overturn after the end of the pulse.
+# On pads it overturns in its first swing, with every damping ratio; on rigid ground it does what
+# the paper says.
 
 rigid = rf.System(
     rf.Block.from_size(radius="5 m", slenderness=6, mass="1 t"), gravity="9.81 m/s^2"

@@ -2,8 +2,8 @@
 Figure 13: R = 10 m, pads of frequency ratio 10
 ===============================================
 
-Large blocks on soft pads. Brown lines: the rotation at which a corner
-leaves its pad; crosses: the block overturns.
+Large blocks on soft pads. Brown lines: the rotation at which a corner leaves its pad; crosses: the
+block overturns.
 """
 
 import parametric_study

@@ -2,8 +2,8 @@
 Figure 14: R = 10 m, pads of frequency ratio 20
 ===============================================
 
-Large blocks on pads of medium stiffness. Brown lines: the rotation at which a corner
-leaves its pad; crosses: the block overturns.
+Large blocks on pads of medium stiffness. Brown lines: the rotation at which a corner leaves its
+pad; crosses: the block overturns.
 """
 
 import parametric_study

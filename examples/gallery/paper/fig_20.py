@@ -13,7 +13,9 @@ runs = free_response.released(6, seconds=20)
 # %%
 # What the text says, and the second peak of the rotation [rad]:
 
-print("The text: on soft pads (beta = 20) the maximum grows with k0; on stiffer ones it hardly does.")
+print(
+    "The text: on soft pads (beta = 20) the maximum grows with k0; on stiffer ones it hardly does."
+)
 print("Here: it grows with k0 on all pads, coupled; the cascade does not know k0.")
 print("beta   cascade   coupled, k0 = 3 MPa   12 MPa")
 for ratio in free_response.worked_example.FREQUENCY_RATIOS:

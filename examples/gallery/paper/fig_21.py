@@ -16,7 +16,9 @@ motion = worked_example.tcu128()
 spectrum = rf.response_spectrum(motion, (np.geomspace(0.05, 6.0, 80), "s")).squeeze()
 peak = spectrum.pseudo_spectral_acceleration.idxmax("period")
 print(f"Peak {motion.peak_acceleration.m_as('g_0'):.3f} g; largest spectral value", end=" ")
-print(f"{float(spectrum.pseudo_spectral_acceleration.max()) / 9.80665:.2f} g at {float(peak):.2f} s.")
+print(
+    f"{float(spectrum.pseudo_spectral_acceleration.max()) / 9.80665:.2f} g at {float(peak):.2f} s."
+)
 
 figure, (history, response) = plt.subplots(2, 1, figsize=(7.0, 5.0), layout="constrained")
 acceleration = motion.si.horizontal.samples / 9.80665

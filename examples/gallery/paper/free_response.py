@@ -17,9 +17,7 @@ NAMES = {"rotation": r"rotation $\alpha$ [rad]", "vertical_displacement": "verti
 def released(storeys: int, seconds: int) -> dict[tuple[int, str, int], xr.Dataset]:
     """Let a frame go, on three pads, by cascade and coupled on soft and on stiff soil."""
     return {
-        (ratio, coupling, soil): worked_example.scene(
-            storeys, ratio, coupling, soil=soil
-        ).simulate(
+        (ratio, coupling, soil): worked_example.scene(storeys, ratio, coupling, soil=soil).simulate(
             duration=f"{seconds} s",
             initial=rf.InitialState(rotation="0.1 rad"),
             output_step="0.02 s",

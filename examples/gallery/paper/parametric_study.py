@@ -52,7 +52,9 @@ def draw(runs: xr.Dataset) -> Figure:
         for colour, damping_ratio in zip(COLOURS, DAMPING_RATIOS, strict=True):
             run = runs.sel(slenderness=slenderness, damping_ratio=damping_ratio)
             for axes, name in zip(grid[:, column], ROWS, strict=True):
-                axes.plot(run.time, run[name], color=colour, lw=1.1, label=rf"$\xi={damping_ratio:.2f}$")
+                axes.plot(
+                    run.time, run[name], color=colour, lw=1.1, label=rf"$\xi={damping_ratio:.2f}$"
+                )
                 if run.overturned:
                     end = run[name].dropna("time")
                     axes.plot(end.time[-1], end[-1], "x", color=colour, ms=6)

@@ -27,9 +27,7 @@ def runs() -> dict[tuple[str, int, int], xr.Dataset]:
     }
 
 
-def tell(
-    found: dict[tuple[str, int, int], xr.Dataset], peak: Callable[[xr.Dataset], str]
-) -> None:
+def tell(found: dict[tuple[str, int, int], xr.Dataset], peak: Callable[[xr.Dataset], str]) -> None:
     """Print a peak of every run."""
     for way in WAYS:
         print(f"{way}:")
@@ -38,7 +36,9 @@ def tell(
             print(f"  {storeys} storeys, beta 20, 40, 60: " + ", ".join(cells))
 
 
-def draw(found: dict[tuple[str, int, int], xr.Dataset], name: str, factor: float, label: str) -> Figure:
+def draw(
+    found: dict[tuple[str, int, int], xr.Dataset], name: str, factor: float, label: str
+) -> Figure:
     """Draw a history of every run, a panel for each frame and way."""
     figure, grid = plt.subplots(2, 2, figsize=(9.0, 5.0), sharex=True, layout="constrained")
     for (way, storeys, ratio), run in found.items():

@@ -34,7 +34,9 @@ for name, (width, height, storeys, column, beam, wide, mu, chi) in ROWS.items():
         density="2500 kg/m^3",
     )
     found.append((mu, frame.shape_factor))
-    print(f"{name:<16} {mu:>11.3f} {chi:.3f} {frame.shape_factor:>20.3f} {frame.space_proportion:.3f}")
+    print(
+        f"{name:<16} {mu:>11.3f} {chi:.3f} {frame.shape_factor:>20.3f} {frame.space_proportion:.3f}"
+    )
 
 printed, members = np.array(found).T
 figure, axes = plt.subplots(figsize=(6.4, 3.4), layout="constrained")
@@ -45,5 +47,5 @@ axes.axvline(1.0, ls=":", color="0.4")
 axes.text(1.02, -0.75, "least of a hollow frame", va="center", color="0.35", fontsize="small")
 axes.set_yticks(place, ROWS)
 axes.set(xlabel=r"shape factor $\mu$", ylim=(len(ROWS) - 0.4, -1.1))
-axes.legend(frameon=False, loc="lower right")
+figure.legend(loc="outside lower center", ncols=2, frameon=False)
 plt.show()

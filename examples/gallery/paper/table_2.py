@@ -30,7 +30,9 @@ for axes, storeys in zip(grid, worked_example.STOREYS, strict=True):
     )
     printed = worked_example.frame(storeys)
     print(f"{storeys} storeys   mass      mu     chi")
-    print(f"  printed   {printed.mass.m_as('t'):.1f} t   {printed.shape_factor:.3f}  {CHI[storeys]}")
+    print(
+        f"  printed   {printed.mass.m_as('t'):.1f} t   {printed.shape_factor:.3f}  {CHI[storeys]}"
+    )
     print(
         f"  members   {members.mass.m_as('t'):.1f} t   {members.shape_factor:.3f}  "
         f"{members.space_proportion:.3f}"

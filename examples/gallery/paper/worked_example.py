@@ -59,6 +59,8 @@ def tcu128() -> rf.GroundMotion:
         return rf.GroundMotion.read(path).window("30 s", "60 s")
     print(f"{RECORD} is not in {path.parent} (set ROCKFRAME_RECORDS).")
     print("In its place: a synthetic motion of the same peak. The numbers are not those of TCU128.")
-    return rf.GroundMotion.stochastic(7.6, "20 km", seed=128).window("0 s", "30 s").scaled(
-        peak="0.17 g_0"
+    return (
+        rf.GroundMotion.stochastic(7.6, "20 km", seed=128)
+        .window("0 s", "30 s")
+        .scaled(peak="0.17 g_0")
     )

@@ -1,0 +1,98 @@
+"""Every public name says what it takes, what it gives and what it raises."""
+
+import inspect
+
+import pytest
+from numpydoc.docscrape import FunctionDoc
+
+import rockframe as rf
+
+CLASSES = [
+    name for name in rf.__all__ if inspect.isclass(getattr(rf, name))
+]
+FUNCTIONS = [name for name in rf.__all__ if inspect.isfunction(getattr(rf, name))]
+PLOTS = [name for name in rf.plot.__all__ if inspect.isfunction(getattr(rf.plot, name))]
+
+
+def public_functions():
+    """Give all public functions and methods by their names."""
+    for name in FUNCTIONS:
+        yield name, getattr(rf, name)
+    for name in PLOTS:
+        yield f"plot.{name}", getattr(rf.plot, name)
+    for name in CLASSES:
+        kind = getattr(rf, name)
+        for attribute in dir(kind):
+            value = inspect.getattr_static(kind, attribute)
+            value = getattr(value, "__func__", value)
+            ours = (getattr(value, "__module__", None) or "").startswith("rockframe")
+            if not attribute.startswith("_") and inspect.isfunction(value) and ours:
+                yield f"{name}.{attribute}", value
+
+
+ALL = dict(public_functions())
+
+
+def test_there_are_many():
+    assert len(ALL) > 80
+
+
+@pytest.mark.parametrize("name", sorted(rf.__all__))
+def test_every_public_name_is_documented(name):
+    value = getattr(rf, name)
+    if name != "__version__":
+        assert inspect.getdoc(value)
+
+
+def test_parameters_are_described():
+    missing = []
+    for name, function in ALL.items():
+        described = {
+            word.strip().lstrip("*")
+            for one in FunctionDoc(function)["Parameters"]
+            for word in one.name.split(",")
+        }
+        taken = list(inspect.signature(function).parameters.values())
+        own = [one.name for one in taken[inherits(function) :] if one.name != "self"]
+        missing += [f"{name}({one})" for one in own if one not in described]
+    assert missing == []
+
+
+def inherits(function):
+    """Tell how many first arguments are the object or the class."""
+    first = next(iter(inspect.signature(function).parameters), "")
+    return int(first in ("self", "cls", "kind", "motion", "made"))
+
+
+def test_what_is_given_back_is_described():
+    missing = [
+        name
+        for name, function in ALL.items()
+        if inspect.signature(function).return_annotation
+        not in (None, "None", inspect.Signature.empty)
+        and not FunctionDoc(function)["Returns"]
+    ]
+    assert missing == []
+
+
+def test_arrays_tell_their_shape():
+    """Of what is an array, of arguments and results; datasets tell their dimensions."""
+    missing = [
+        f"{name}: {one.name} : {one.type}"
+        for name, function in ALL.items()
+        for part in ("Parameters", "Returns")
+        for one in FunctionDoc(function)[part]
+        if "ndarray" in one.type and "shape" not in one.type
+    ]
+    assert missing == []
+
+
+def test_errors_are_told_where_units_are_checked():
+    """Whoever takes a quantity refuses one of another kind."""
+    missing = [
+        name
+        for name, function in ALL.items()
+        if any("Quantity" in one.type for one in FunctionDoc(function)["Parameters"])
+        and not FunctionDoc(function)["Raises"]
+    ]
+    assert missing == []

@@ -1,0 +1,115 @@
+"""The manual as it was built: nothing comes from elsewhere, and search finds what people look for.
+
+The folder is ``docs/_build/html``, or what the environment variable ``ROCKFRAME_SITE`` names.
+"""
+
+import json
+import os
+import re
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+from sphinx.search.en import SearchEnglish
+
+ROOT = Path(__file__).resolve().parents[2]
+SITE = Path(os.environ.get("ROCKFRAME_SITE", ROOT / "docs" / "_build" / "html"))
+ELSEWHERE = re.compile(r"^(?:[a-z]+:)?//", re.IGNORECASE)
+LOADED_BY = {"src", "srcset", "poster", "data"}
+LOADING_LINKS = {"stylesheet", "icon", "preload", "modulepreload", "prefetch", "manifest"}
+
+pytestmark = pytest.mark.skipif(
+    not (SITE / "index.html").is_file(), reason=f"the manual has not been built in {SITE}"
+)
+
+
+class Loaded(HTMLParser):
+    """What a page loads by itself when it is opened."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.addresses = []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        given = {name: value or "" for name, value in attrs}
+        if tag == "link":
+            kinds = set(given.get("rel", "").lower().split())
+            wanted = {"href"} if kinds & LOADING_LINKS else set()
+        else:
+            wanted = LOADED_BY
+        self.addresses += [given[name] for name in wanted if name in given]
+        self.addresses += urls_in_css(given.get("style", ""))
+
+
+def urls_in_css(text):
+    found = re.findall(r"url\(\s*['\"]?([^'\")]+)", text)
+    return found + re.findall(r"@import\s+['\"]([^'\"]+)", text)
+
+
+def pages():
+    return sorted(SITE.rglob("*.html"))
+
+
+def test_no_request_leaves_the_site():
+    for page in pages():
+        for address in Loaded(page.read_text(encoding="utf-8")).addresses:
+            assert not ELSEWHERE.match(address), f"{page.relative_to(SITE)} loads {address}"
+    for sheet in SITE.rglob("*.css"):
+        for address in urls_in_css(sheet.read_text(encoding="utf-8")):
+            assert not ELSEWHERE.match(address), f"{sheet.relative_to(SITE)} loads {address}"
+
+
+def test_what_pages_load_is_there():
+    for page in pages():
+        for address in Loaded(page.read_text(encoding="utf-8")).addresses:
+            if address and not address.startswith(("data:", "#")):
+                file = page.parent / re.split(r"[?#]", address)[0]
+                assert file.exists(), f"{page.relative_to(SITE)} loads {address}"
+
+
+def test_formulas_are_drawn_by_files_of_the_site():
+    page = (SITE / "theory" / "two_pads.html").read_text(encoding="utf-8")
+    (script,) = re.findall(r'src="([^"]*mathjax[^"]*)"', page)
+    folder = (SITE / "theory" / script).resolve().parent
+    assert list(folder.rglob("*.woff"))
+    assert 'class="eqno"' in page
+    assert 'href="#equation-eq-pad-force"' in page
+
+
+@pytest.fixture(scope="module")
+def index():
+    text = (SITE / "searchindex.js").read_text(encoding="utf-8")
+    return json.loads(text.removeprefix("Search.setIndex(").removesuffix(")"))
+
+
+@pytest.mark.parametrize(
+    ("word", "page"),
+    [
+        ("statue", "recipes/statue"),
+        ("notebook", "recipes/threads_and_clusters"),
+        ("csv", "recipes/csv_and_pandas"),
+        ("fragility", "guide/fragility"),
+        ("animation", "recipes/faq"),
+    ],
+)
+def test_search_finds(index, word, page):
+    stem = SearchEnglish({}).stem(word)
+    names = index["docnames"]
+    found = set()
+    for table in ("terms", "titleterms"):
+        places = index[table].get(stem, [])
+        found |= {names[place] for place in (places if isinstance(places, list) else [places])}
+    assert page in found
+
+
+def test_the_gallery_has_a_picture_of_every_script():
+    scripts = [
+        path
+        for path in (ROOT / "examples" / "gallery").glob("*/*.py")
+        if path.read_text(encoding="utf-8").startswith('"""\n')
+    ]
+    assert len(scripts) >= 30
+    for path in scripts:
+        page = SITE / "gallery" / path.parent.name / f"{path.stem}.html"
+        assert f"sphx_glr_{path.stem}_001.png" in page.read_text(encoding="utf-8"), path.name
