@@ -26,6 +26,8 @@ from sphinx.errors import ExtensionError
 from stochastic_figure import stochastic_motions
 from study_figures import size_and_pulse
 
+import rockframe as rf
+
 INK = "#1f3a5f"
 
 
@@ -76,6 +78,17 @@ def _line(
     axes.text(*((start + end) / 2 + shift), text, color=INK)
 
 
+def front_page(path: Path) -> None:
+    """Animate the block of the first page on its pads."""
+    pads = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.10)
+    block = rf.Block(width="4.85 m", height="19.4 m", mass="600 t")
+    system = rf.System(block, pads)
+    run = system.simulate(rf.GroundMotion.sine_pulse(), free_vibration="5 s")
+    moving = rf.plot.animation(run, speed=1.25, frames_per_second=10.0, title=" ")
+    moving.save(path, dpi=70)
+    pyplot.close(moving.figure)
+
+
 FIGURES = (
     response_with_events,
     compared_runs,
@@ -117,6 +130,7 @@ def setup(app: Sphinx) -> dict[str, bool]:
 
 
 if __name__ == "__main__":
+    front_page(Path(sys.argv[1]) / "front_page.gif")
     write_card(Path(sys.argv[1]))
     for figure in FIGURES:
         # a function of rf.plot gives axes, which know their figure

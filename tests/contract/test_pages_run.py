@@ -1,4 +1,4 @@
-"""The snippets of every page of the guide and of the recipes, and of the README, run as they stand.
+"""The snippets of the guide, the recipes and the README run as they stand.
 
 A block of text right after a snippet is what the snippet prints. Blocks of TOML that begin with
 the name of a file in a comment are written to it, and commands in consoles are carried out.
@@ -17,7 +17,11 @@ PAGES = [
     ROOT / "README.md",
     ROOT / "docs" / "index.md",
     *sorted((ROOT / "docs/guide").glob("*.md")),
-    *sorted((ROOT / "docs/recipes").glob("*.md")),
+    *[
+        page
+        for page in sorted((ROOT / "docs/recipes").glob("*.md"))
+        if "```python" in page.read_text()
+    ],
 ]
 SNIPPET = re.compile(r"```(python|console|toml)\n(.*?)```(?:\n+```text\n(.*?)```)?", re.DOTALL)
 FILE = re.compile(r"# (\S+\.toml)\n")

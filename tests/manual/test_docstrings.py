@@ -3,13 +3,12 @@
 import inspect
 
 import pytest
-from numpydoc.docscrape import FunctionDoc
 
 import rockframe as rf
 
-CLASSES = [
-    name for name in rf.__all__ if inspect.isclass(getattr(rf, name))
-]
+FunctionDoc = pytest.importorskip("numpydoc.docscrape").FunctionDoc
+
+CLASSES = [name for name in rf.__all__ if inspect.isclass(getattr(rf, name))]
 FUNCTIONS = [name for name in rf.__all__ if inspect.isfunction(getattr(rf, name))]
 PLOTS = [name for name in rf.plot.__all__ if inspect.isfunction(getattr(rf.plot, name))]
 
