@@ -42,7 +42,7 @@ sphinx_gallery_conf = {
     "examples_dirs": "../examples/gallery",
     "gallery_dirs": "gallery",
     "filename_pattern": r"\.py$",
-    "ignore_pattern": r"/(parametric_study|worked_example|free_response|shaken)\.py$",  # shared
+    "ignore_pattern": r"^(parametric_study|worked_example|free_response|shaken)\.py$",  # shared
     "subsection_order": [
         f"../examples/gallery/{name}"
         for name in ("first", "paper", "mechanics", "motions", "studies", "structures")
