@@ -86,10 +86,10 @@ def index():
     ("word", "page"),
     [
         ("statue", "recipes/statue"),
-        ("notebook", "recipes/threads_and_clusters"),
+        ("notebook", "guide/notebooks"),
         ("csv", "recipes/csv_and_pandas"),
         ("fragility", "guide/fragility"),
-        ("animation", "recipes/faq"),
+        ("animation", "guide/plots"),
     ],
 )
 def test_search_finds(index, word, page):

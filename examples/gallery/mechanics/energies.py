@@ -13,7 +13,7 @@ system = rf.System(
     rf.Block(width="0.8 m", height="4 m", mass="5 t"),
     rf.TwoSpringSupport(frequency_ratio=25, damping_ratio=0.10),
 )
-motion = rf.GroundMotion.sine_pulse("2.6 m/s^2", "1 Hz")
+motion = rf.GroundMotion.sine_pulse("2.6 m/s^2", "1.6 Hz")
 run = system.simulate(motion, free_vibration="6 s", outputs="energy")
 print(f"Out of balance: {float(run.energy_residual):.1e} of the largest energy.")
 
@@ -21,6 +21,6 @@ figure, axes = plt.subplots(figsize=(7.0, 4.0), layout="constrained")
 for name in run.data_vars:
     if name.endswith("_energy") and run[name].dims == ("time",):
         axes.plot(run.time, run[name] / 1e3, lw=1.2, label=name.replace("_", " "))
-axes.set(xlabel="time [s]", ylabel="energy [kJ]", xlim=(0.0, 7.0))
-axes.legend(frameon=False, fontsize="small", ncols=2)
+axes.set(xlabel="time [s]", ylabel="energy [kJ]", xlim=(0.0, float(run.time[-1])))
+figure.legend(loc="outside lower center", fontsize="small", ncols=4, frameon=False)
 plt.show()

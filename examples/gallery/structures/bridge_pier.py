@@ -32,7 +32,7 @@ for name, base in bases.items():
     system = rf.System(pier, base)
     runs = [
         system.simulate(
-            rf.GroundMotion.type_b_pulse("1 m/s", "1.5 s").scaled(peak=f"{peak} m/s^2"),
+            rf.GroundMotion.type_a_pulse("1 m/s", "1.5 s").scaled(peak=f"{peak} m/s^2"),
             free_vibration="3 s",
             outputs=("base_shear",),
         )
