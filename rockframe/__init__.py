@@ -95,6 +95,7 @@ def _is_command_line() -> bool:
 if not _is_command_line():
     for _library in ("pint", "xarray"):
         import_module(_library)
+    import_module(f"{__name__}.accessor")  # so that every dataset has it
 
 _HOMES = {
     "rockframe.components": (
