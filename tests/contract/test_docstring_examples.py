@@ -4,6 +4,7 @@ import doctest
 import importlib
 import pkgutil
 
+import pint
 import pytest
 
 import rockframe
@@ -17,6 +18,15 @@ MODULES = [
     for found in pkgutil.walk_packages(rockframe.__path__, "rockframe.")
     if not found.name.endswith("__main__")
 ]
+
+
+@pytest.fixture(autouse=True)
+def registry():
+    """Give examples the registry that users have: other libraries put theirs in its place."""
+    before = pint.get_application_registry().get()
+    pint.set_application_registry(pint.UnitRegistry())
+    yield
+    pint.set_application_registry(before)
 
 
 def examples_in(name):
