@@ -52,7 +52,9 @@ def test_the_default_length_of_free_vibration():
 def test_the_museum_case(monkeypatch, tmp_path, capsys):
     script = DOCS.parent / "examples" / "floor_motion.py"
     monkeypatch.setattr(sys, "argv", [str(script), "--folder", str(tmp_path)])
-    runpy.run_path(str(script), run_name="__main__")
+    with pytest.raises(SystemExit) as left:
+        runpy.run_path(str(script), run_name="__main__")
+    assert left.value.code == 0
     lines = capsys.readouterr().out.splitlines()
     fates = ["Overturned" in line for line in lines if line.startswith("  on ")]
     assert fates == [False, False, False, True, True, True, True]
