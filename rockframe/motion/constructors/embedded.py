@@ -49,7 +49,8 @@ def example(
 
     Examples
     --------
-    >>> motion = GroundMotion.example("loma-prieta")
+    >>> import rockframe as rf
+    >>> motion = rf.GroundMotion.example("loma-prieta")
     >>> motion.peak_acceleration.to("g_0").round(3)
     <Quantity(0.106, 'standard_gravity')>
     """

@@ -65,7 +65,8 @@ def velocity_pulse(
 
     Examples
     --------
-    >>> motion = GroundMotion.mavroeidis_papageorgiou_pulse("80 cm/s", "0.5 Hz", 2.2, "0 deg")
+    >>> import rockframe as rf
+    >>> motion = rf.GroundMotion.mavroeidis_papageorgiou_pulse("80 cm/s", "0.5 Hz", 2.2, "0 deg")
     >>> print(motion.velocity_pulse())
     velocity pulse of 2.26 s about 1.997 s, indicator 1: pulse-like
     """
