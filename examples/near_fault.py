@@ -9,6 +9,7 @@ it. Writes near_fault.png (velocities of the motion, the pulse and the rest).
 """
 
 import argparse
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -27,19 +28,28 @@ def with_a_pulse() -> rf.GroundMotion:
     return rf.GroundMotion.from_arrays((together, "m/s^2"), step, name="Loma Prieta and a pulse")
 
 
-def main() -> None:
-    """Find the pulse, and let each part of the motion shake the block."""
+def main() -> int:
+    """Read the arguments, run, and tell in one line why it cannot be done."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("record", nargs="?", help="ground-motion file; made up if none")
     parser.add_argument("--component", help="component of the record, such as N or 090")
     parser.add_argument("--folder", default=".", help="where the figure is written")
     arguments = parser.parse_args()
-    folder = Path(arguments.folder)
-    folder.mkdir(parents=True, exist_ok=True)
+    try:
+        folder = Path(arguments.folder)
+        folder.mkdir(parents=True, exist_ok=True)
+        motion = with_a_pulse()
+        if arguments.record:
+            motion = rf.GroundMotion.read(arguments.record, component=arguments.component)
+        shake_by_parts(motion, folder)
+    except (rf.RockframeError, OSError) as problem:
+        print(f"near_fault: {' '.join(str(problem).split())}", file=sys.stderr)
+        return 1
+    return 0
 
-    motion = with_a_pulse()
-    if arguments.record:
-        motion = rf.GroundMotion.read(arguments.record, component=arguments.component)
+
+def shake_by_parts(motion: rf.GroundMotion, folder: Path) -> None:
+    """Find the pulse, and let each part of the motion shake the block."""
     pulse = motion.velocity_pulse()
     print(f"{motion.name}: {pulse}")
 
@@ -56,4 +66,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe.arguments import one_of_words
-from rockframe.errors import ComponentError, shown
+from rockframe.errors import ComponentError, RecordWarning, shown, warn
 from rockframe.measures.labels import build_over
 from rockframe.measures.several import looked_at
 from rockframe.motion.operations.timing import Interpolation
@@ -27,7 +27,11 @@ if TYPE_CHECKING:
 SAMPLES_PER_PERIOD: Final = 25
 """Samples of the shortest period of a band-limited motion: lines between them lower it by 0.5 %."""
 
+COARSE: Final = 10
+"""Samples per period below which straight lines lower an ordinate by more than 3 %."""
+
 _PERIODS_PER_DECADE: Final = 100
+_ROUNDING: Final = 1e-9
 _OWNER: Final = "response_spectrum"
 
 
@@ -76,6 +80,12 @@ def response_spectrum(
         need too many steps, a damping ratio is out of range or given twice, or another
         `interpolation`.
 
+    Warns
+    -----
+    RecordWarning
+        Periods asked for are shorter than ten time steps of a record, and its samples are
+        joined by straight lines.
+
     Notes
     -----
     The recurrence of Nigam and Jennings (1969), exact for a motion of straight lines, and
@@ -97,6 +107,8 @@ def response_spectrum(
     between = one_of_words(Interpolation, interpolation, owner=_OWNER, name="interpolation")
     if between is Interpolation.BAND_LIMITED:
         looked = replace(looked, things=[_refined(one, seconds) for one in looked.things])
+    elif periods is not None:
+        _say_coarse(looked.things, seconds)
     for signal in looked.things:
         check_cost(signal, seconds, owner=_OWNER)
     values = looked.together(looked.each(lambda signal: _spectra(signal, seconds, ratios)))
@@ -109,6 +121,21 @@ def response_spectrum(
         source="recurrence of Nigam and Jennings",
     )
     return looked.labelled(dataset)
+
+
+def _say_coarse(signals: "Iterable[Signal]", seconds: Array) -> None:
+    """Warn of records that are too coarse for the shortest of the periods asked for."""
+    shortest = float(seconds[seconds > 0.0].min(initial=np.inf))
+    steps = [one.time_step for one in signals if not one.analytic]
+    coarse = [step for step in steps if shortest < COARSE * step * (1.0 - _ROUNDING)]
+    if coarse:
+        which = f"{len(coarse)} of {len(steps)} records are" if len(steps) > 1 else "the record is"
+        msg = (
+            f"{_OWNER}: {which} sampled every {max(coarse):.4g} s, which is coarse for periods "
+            f"from {shortest:.4g} s: straight lines between samples lower ordinates by 3 % at ten "
+            "samples per period and 13 % at five; interpolation='band-limited' refines records"
+        )
+        warn(msg, RecordWarning)
 
 
 def oscillator_axes(ratios: Array, seconds: Array) -> dict[str, tuple[Array, str]]:

@@ -135,6 +135,8 @@ def drawn_by(given: xr.Dataset) -> str:
     for function, names in _KNOWN.items():
         if _holds(given, names):
             return function
+    if "peak_relative_rotation" in given and given["peak_relative_rotation"].ndim > 0:
+        return "sweep"
     for names, what, way in _DRAWN_BY:
         if _holds(given, names):
             msg = f"no function of rf.plot draws a Dataset with {what}; {way}"

@@ -395,7 +395,9 @@ def markers(axes):
 
 def test_small_errors_of_models_share_a_band(measured):
     error = np.add.outer([0.3, 0.1, 0.05, 0.0], [1e-3, 1e-7, 1e-10, 0.0])
-    figure = rf.plot.tradeoff(measured.assign(history_error=(("model", "accuracy"), error)))
+    compared = measured.assign(history_error=(("model", "accuracy"), error))
+    figure = rf.plot.tradeoff(compared).figure
+    figure.canvas.draw()
     right = figure.axes[1]
     spots = markers(right)
     assert len(spots) == 16

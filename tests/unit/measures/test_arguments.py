@@ -1,10 +1,13 @@
 """What the functions take, and what they refuse."""
 
+import warnings
+
 import numpy as np
 import pint
 import pytest
 
 import rockframe as rf
+from rockframe.errors import RecordWarning
 from rockframe.measures import (
     fourier_spectrum,
     intensity_measures,
@@ -150,3 +153,20 @@ def test_fourier_resolution():
             fourier_spectrum(PULSE, resolution=given)
     with pytest.raises(rf.ComponentError, match="too many samples"):
         fourier_spectrum(PULSE, resolution="1e-300 Hz")
+
+
+def test_records_too_coarse_for_the_periods_asked_for_are_told_of():
+    samples = np.sin(0.3 * np.arange(200))
+    record, fine = (
+        rf.GroundMotion.from_arrays((samples, "m/s^2"), step) for step in ("0.02 s", "0.005 s")
+    )
+    with pytest.warns(RecordWarning, match=r"the record is sampled every 0\.02 s"):
+        response_spectrum(record, ["0 s", "0.15 s", "1 s"])
+    with pytest.warns(RecordWarning, match=r"1 of 2 records are .* periods from 0\.15 s"):
+        response_spectrum({"coarse": record, "fine": fine}, ["0.15 s"])
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        response_spectrum(record, ["0 s", "0.2 s", "1 s"])
+        response_spectrum(record, ["0.05 s"], interpolation="band-limited")
+        response_spectrum(rf.GroundMotion.sine_pulse(), ["0.01 s"])
+        response_spectrum(record)  # of periods that nobody asked for the manual tells

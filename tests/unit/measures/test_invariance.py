@@ -11,6 +11,10 @@ from rockframe.measures import (
     velocity_and_displacement,
 )
 
+pytestmark = pytest.mark.filterwarnings(
+    "ignore:.*is coarse for periods:rockframe.errors.RecordWarning"
+)
+
 BLOCK = rf.Block(width="1 m", height="4 m", mass="1 t")
 PERIODS = (np.geomspace(0.02, 5.0, 30), "s")
 STEP = 0.02
