@@ -10,7 +10,7 @@ import xarray as xr
 from rockframe.arguments import one_of_words
 from rockframe.errors import ComponentError, RecordWarning, shown, warn
 from rockframe.measures.labels import build_over
-from rockframe.measures.several import looked_at
+from rockframe.measures.several import Looked, looked_at
 from rockframe.motion.operations.timing import Interpolation
 from rockframe.motion.processing.sampling import band_limited
 from rockframe.signals import Signal
@@ -105,10 +105,37 @@ def response_spectrum(
     seconds = checked_periods(periods, owner=_OWNER)
     ratios = checked_ratios(damping_ratios, owner=_OWNER)
     between = one_of_words(Interpolation, interpolation, owner=_OWNER, name="interpolation")
+    if between is Interpolation.LINEAR and periods is not None:
+        _say_coarse(looked.things, seconds)
+    return spectra_of(looked, seconds, ratios, between)
+
+
+def spectra_of(
+    looked: Looked[Signal],
+    seconds: Array,
+    ratios: Array,
+    between: Interpolation = Interpolation.LINEAR,
+) -> xr.Dataset:
+    """Compute the response spectra of what is looked at, at checked periods.
+
+    Parameters
+    ----------
+    looked : Looked
+        One component of a motion, or of several.
+    seconds : ndarray, shape (k,)
+        Periods [s].
+    ratios : ndarray, shape (r,)
+        Damping ratios [1].
+    between : Interpolation
+        What a record is between its samples.
+
+    Returns
+    -------
+    xarray.Dataset
+        As of :func:`response_spectrum`.
+    """
     if between is Interpolation.BAND_LIMITED:
         looked = replace(looked, things=[_refined(one, seconds) for one in looked.things])
-    elif periods is not None:
-        _say_coarse(looked.things, seconds)
     for signal in looked.things:
         check_cost(signal, seconds, owner=_OWNER)
     values = looked.together(looked.each(lambda signal: _spectra(signal, seconds, ratios)))

@@ -9,8 +9,9 @@ import numpy as np
 
 from rockframe.arguments import one_of_words
 from rockframe.errors import ComponentError, shown
-from rockframe.measures import response_spectrum, rotated_spectrum
-from rockframe.measures.response import checked_periods
+from rockframe.measures import rotated_spectrum
+from rockframe.measures.response import checked_periods, spectra_of
+from rockframe.measures.several import looked_at
 from rockframe.signals.arrays import Array
 from rockframe.suites.suite import MotionSuite
 from rockframe.suites.target import TargetSpectrum
@@ -187,7 +188,10 @@ def _spectra(
 ) -> tuple[list[str], Array, list[str]]:
     with_unit = (seconds, str(PERIOD.unit))
     if kind is Combination.EACH:
-        found = response_spectrum(suite, with_unit, damping_ratio)["pseudo_spectral_acceleration"]
+        looked = looked_at(suite, "horizontal", owner=owner)
+        found = spectra_of(looked, seconds, np.array([damping_ratio]))[
+            "pseudo_spectral_acceleration"
+        ]
         motions = list(suite.values())
         labels = list(suite)
     else:
