@@ -63,7 +63,7 @@ def tradeoff(dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None = 
     models = [str(name) for name in dataset["model"].to_numpy()]
     on = sheet(
         ax, "tradeoff", ("integration", "model and integration"),
-        (9.6, max(3.4, 2.4 + 0.4 * len(models))),
+        (11.0, max(3.4, 2.4 + 0.4 * len(models))),
         lambda figure: figure.subplots(1, 2),
     )  # fmt: skip
     axes = on.panels
@@ -94,8 +94,8 @@ def tradeoff(dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None = 
         yticks=range(len(models)),
         yticklabels=models,
         ylim=(-0.7, len(models) - 0.3),
-        xlabel=_ERROR.format(" "),
-        title="model and integration: left is better",
+        xlabel=_ERROR.format("\n"),
+        title="with that of the model: left is better",
     )
     _mark_below(axes[1], dataset["history_error"].to_numpy())
     keys = _keys(dataset, models)
@@ -132,6 +132,7 @@ def _mark_below(axes: "Axes", errors: Any) -> None:
         return
     axes.axvspan(left, _TOLD_APART, color=GREY, alpha=0.12, zorder=0)
     ticks = [tick for tick in axes.get_xticks() if _TOLD_APART <= tick <= right]
+    ticks = ticks[::2]  # all would run into one another
     names = [f"$10^{{{round(np.log10(tick))}}}$" for tick in ticks]
     axes.set_xticks([_BELOW, *ticks], ["below", *names])
 
