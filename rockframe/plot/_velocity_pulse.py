@@ -1,19 +1,16 @@
 """The velocity of a motion, of the pulse in it, and of what the pulse leaves."""
 
-from typing import TYPE_CHECKING, Any, Final, cast
+from typing import TYPE_CHECKING, Final, cast
 
 import numpy as np
 
 from rockframe.errors import ComponentError, shown
 from rockframe.plot._axes import grid
-from rockframe.plot._title import set_title
+from rockframe.plot._panels import Panels, sheet
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from matplotlib.axes import Axes
-
     from rockframe.motion import GroundMotion, VelocityPulse
+    from rockframe.plot._panels import AxesLike
 
 _MOTION: Final = "#999999"
 _PULSE: Final = "#cc6677"
@@ -23,9 +20,9 @@ _RESIDUAL: Final = "#222255"
 def velocity_pulse(
     pulse: "VelocityPulse[GroundMotion]",
     *,
-    ax: "Sequence[Axes] | None" = None,
+    ax: "AxesLike" = None,
     title: str | None = None,
-) -> "tuple[Axes, Axes]":
+) -> Panels:
     """Draw the velocity of a motion with its pulse, and the residual velocity below.
 
     Parameters
@@ -39,7 +36,7 @@ def velocity_pulse(
 
     Returns
     -------
-    tuple of two matplotlib.axes.Axes
+    Panels
         Time is that of the motion, the still ground before it is at negative times.
 
     Raises
@@ -56,7 +53,12 @@ def velocity_pulse(
             f"got {shown(pulse)}"
         )
         raise ComponentError(msg)
-    above, below = _two_axes(ax, title or f"{pulse.extracted.name}: {pulse}")
+    on = sheet(
+        ax, "velocity_pulse", ("the motion", "the residual motion"), (8.0, 4.6),
+        lambda figure: figure.subplots(2, 1, sharex=True, sharey=True),
+    )  # fmt: skip
+    on.entitle(f"{pulse.extracted.name}: {pulse}", title)
+    above, below = on.panels
     extracted, residual = (
         velocity_and_displacement(motion) for motion in (pulse.extracted, pulse.residual)
     )
@@ -75,21 +77,4 @@ def velocity_pulse(
         axes.legend(loc="upper right", fontsize="small", frameon=False)
         grid(axes)
     below.set_xlabel("time [s]")
-    return above, below
-
-
-def _two_axes(given: Any, title: str) -> "tuple[Axes, Axes]":
-    if given is None:
-        from matplotlib.figure import Figure
-
-        figure = Figure(figsize=(8.0, 4.6), layout="constrained")
-        above, below = figure.subplots(2, 1, sharex=True, sharey=True)
-        set_title(figure, title)
-        return above, below
-    from matplotlib.axes import Axes
-
-    axes = tuple(np.ravel(given))
-    if len(axes) != 2 or not all(isinstance(one, Axes) for one in axes):
-        msg = f"rf.plot.velocity_pulse: ax needs two Axes, got {shown(given)}"
-        raise ComponentError(msg)
-    return axes[0], axes[1]
+    return on.panels

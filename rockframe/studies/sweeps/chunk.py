@@ -131,7 +131,8 @@ class _Telling:
         """Note whether the verdict of a case is another one than at first."""
         if isinstance(again, Failed):
             return
-        changed = again.summary.overturned is not first.overturned
+        verdict = again.summary.overturned
+        changed = verdict is not None and verdict is not first.overturned
         self._put_scalars(again.case, {REPEATED: 1.0, VERDICT_CHANGED: float(changed)})
 
     def _put_scalars(self, case: int, values: Mapping[str, float]) -> None:

@@ -213,7 +213,7 @@ def test_the_figure_shows_the_three_velocities():
     figure = mpl.figure.Figure()
     given = figure.subplots(2, 1)
     assert rf.plot.velocity_pulse(found, ax=given) == tuple(given)
-    with pytest.raises(ComponentError, match="needs two Axes"):
+    with pytest.raises(ComponentError, match=r"ax must be 2 Axes, .* got 1 Axes"):
         rf.plot.velocity_pulse(found, ax=[given[0]])
     with pytest.raises(ComponentError, match="needs a VelocityPulse"):
         rf.plot.velocity_pulse(motion)
