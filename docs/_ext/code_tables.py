@@ -29,6 +29,7 @@ from rockframe.results.variables.requests import (
     FORCE_SCALARS,
     IMPULSES,
     OTHERS,
+    POINT_PEAKS,
     POINTS,
     REACTIONS,
 )
@@ -106,7 +107,7 @@ TABLES: dict[str, Callable[[], Rows]] = {
     "reactions": lambda: _variables(REACTIONS),
     "others": lambda: _variables(OTHERS),
     "impulses": lambda: _variables(IMPULSES),
-    "points": lambda: _variables(POINTS),
+    "points": lambda: _variables((*POINTS, *POINT_PEAKS)),
     "force-scalars": lambda: _variables(FORCE_SCALARS),
     "events": lambda: _variables(EVENTS_AND_SCALARS, EVENT),
     "scalars": lambda: _variables(EVENTS_AND_SCALARS, ()),

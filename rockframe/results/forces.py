@@ -165,11 +165,12 @@ class EventStates:
         }
 
 
-def friction_words(scalars: Mapping[str, float]) -> str:
+def friction_words(scalars: Mapping[str, Generic | float]) -> str:
     """Say in a sentence what friction a run needed; nothing without its forces."""
     if "peak_friction_demand" not in scalars:
         return ""
-    most, when = scalars["peak_friction_demand"], scalars["peak_friction_demand_time"]
+    most = float(scalars["peak_friction_demand"])
+    when = float(scalars["peak_friction_demand_time"])
     if math.isfinite(most):
         return f" Friction needed: {most:.3g}."
     return f" Friction needed: more than any, where the base holds without pressing ({when:.4g} s)."

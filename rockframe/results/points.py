@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rockframe.results.forces import BodyNumbers
+from rockframe.results.forces import BodyNumbers, EventStates
 from rockframe.results.outcome import Array, Generic
 
 
@@ -54,6 +54,15 @@ def carried(
     return up * sine - right * rise, -right * sine - up * rise
 
 
+def point_labels(points: Sequence[Point]) -> dict[str, Generic]:
+    """Give names and places of points, by their names in the schema."""
+    return {
+        "point": np.array([point.name for point in points]),
+        "point_x": np.array([point.x for point in points]),
+        "point_y": np.array([point.y for point in points]),
+    }
+
+
 def point_histories(
     points: Sequence[Point], values: Mapping[str, Generic], body: BodyNumbers
 ) -> dict[str, Generic]:
@@ -71,7 +80,7 @@ def point_histories(
     Returns
     -------
     dict of str to ndarray
-        Shape (points, samples), and (points,) for names and places.
+        Shape (points, samples), by their names in the schema.
     """
     rotation, rate = values["rotation"], values["angular_velocity"]
     angular = values["angular_acceleration"]
@@ -90,11 +99,39 @@ def point_histories(
     a_x = values["absolute_horizontal_acceleration"]
     a_y = values["absolute_vertical_acceleration"]
     return {
-        "point": np.array([point.name for point in points]),
-        "point_x": np.array([point.x for point in points]),
-        "point_y": np.array([point.y for point in points]),
         "point_horizontal_displacement": x + across,
         "point_vertical_displacement": y + above,
         "point_horizontal_acceleration": a_x + across_rate * angular + across_bend * square,
         "point_vertical_acceleration": a_y + up_rate * angular + up_bend * square,
+    }
+
+
+def point_peaks(
+    points: Sequence[Point],
+    values: Mapping[str, Generic],
+    events: EventStates,
+    body: BodyNumbers,
+) -> dict[str, Generic]:
+    """Give peaks of displacements and absolute accelerations of points, over samples and events.
+
+    Parameters
+    ----------
+    points : sequence of Point
+        Of the body.
+    values : mapping of str to ndarray
+        As for :func:`point_histories`, up to overturning.
+    events : EventStates
+        Up to overturning, too.
+    body : BodyNumbers
+        The body.
+
+    Returns
+    -------
+    dict of str to ndarray, shape (points,)
+        By their names in the schema.
+    """
+    sides = [point_histories(points, side, body) for side in (values, events.before, events.after)]
+    return {
+        f"peak_{name}": np.abs(np.concatenate([side[name] for side in sides], axis=1)).max(axis=1)
+        for name in sides[0]
     }

@@ -20,6 +20,7 @@ from rockframe.results.variables.requests import (
     FORCE_SCALARS,
     IMPULSES,
     OTHERS,
+    POINT_PEAKS,
     POINTS,
     REACTIONS,
 )
@@ -41,6 +42,7 @@ _TABLES: Final = (
     OTHERS,
     IMPULSES,
     POINTS,
+    POINT_PEAKS,
     EVENTS_AND_SCALARS,
     FORCE_SCALARS,
     CERTIFICATE,

@@ -22,7 +22,7 @@ from rockframe.results.outcome import (
     ground_histories,
     relative_histories,
 )
-from rockframe.results.points import point_histories
+from rockframe.results.points import point_histories, point_labels, point_peaks
 from rockframe.results.schema import ON_REQUEST
 from rockframe.results.slope import felt_ground, without_gravity
 from rockframe.signals.arrays import Array
@@ -41,14 +41,17 @@ class Answers:
     ----------
     values : dict of str to ndarray
         By their names in the schema.
-    scalars : dict of str to float
-        Peaks of forces, and what is left at the end.
+    scalars : dict of str to float or ndarray
+        Peaks of forces, what is left at the end, and peaks at points, shape (points,).
+    points : dict of str to ndarray, shape (points,)
+        Names and places of points.
     slips : list of str
         Where a base has too little friction.
     """
 
     values: dict[str, Generic]
-    scalars: dict[str, float]
+    scalars: dict[str, Generic | float]
+    points: dict[str, Generic]
     slips: list[str]
 
 
@@ -63,7 +66,7 @@ def ground_at(motion: GroundMotion | None, time: Array) -> Array:
 def answers_of(
     system: Assembly, plan: Plan, model: ContactModel, run: Trajectory, scales: Scales
 ) -> Answers:
-    """Give the histories of a run, with what is asked for beyond them.
+    """Give what the samples of a run tell: histories, if they are kept, peaks and points.
 
     Parameters
     ----------
@@ -98,8 +101,13 @@ def answers_of(
         stands = run.time <= run.overturning_time
         upright = {name: each[stands] for name, each in values.items()}
         events_upright = events.until(run.overturning_time)
-    told = force_scalars(upright, events_upright, body) | residuals(values, body)
+    told: dict[str, Generic | float] = {
+        **force_scalars(upright, events_upright, body), **residuals(values, body)
+    }  # fmt: skip
+    places: dict[str, Generic] = {}
     if plan.points:
+        told |= point_peaks(plan.points, upright, events_upright, body)
+        places = point_labels(plan.points)
         values |= point_histories(plan.points, values, body)
     shown = run.events.kind != SILENT
     impulses = {name: each[shown] for name, each in events.impulses(body.mass).items()}
@@ -109,7 +117,8 @@ def answers_of(
         for name, each in values.items()
         if name not in ON_REQUEST or name in plan.requested
     }
-    return Answers(kept | asked, told, [*slips(system, upright, events_upright)])
+    shown_later = kept | asked if plan.histories else {}
+    return Answers(shown_later, told, places, [*slips(system, upright, events_upright)])
 
 
 def _body_of(system: Assembly) -> BodyNumbers:

@@ -7,6 +7,7 @@ from rockframe.errors import RockframeError, shown
 from rockframe.results.forces import OF_SOIL_FRICTION
 from rockframe.results.points import Point
 from rockframe.results.schema import GROUPS, ON_REQUEST, SCHEMA
+from rockframe.results.variables.requests import POINT_TIME
 from rockframe.results.variables.variable import TIME
 from rockframe.system.assembly import Assembly
 from rockframe.units import LENGTH, to_si
@@ -14,12 +15,21 @@ from rockframe.units import LENGTH, to_si
 EXAMPLE: Final = 'points={"roof": ("0 m", "18 m")}'
 
 
-def names_of(outputs: object, faults: list[str]) -> tuple[str, ...]:
+def listed(outputs: object) -> list[object]:
+    """Give what the argument ``outputs`` names, one by one."""
+    if outputs is None:
+        return []
+    if isinstance(outputs, Iterable) and not isinstance(outputs, str):
+        return list(cast("Iterable[object]", outputs))
+    return [outputs]
+
+
+def names_of(outputs: object, points: object, faults: list[str]) -> tuple[str, ...]:
     """Read the argument ``outputs``: names of variables and of groups; note what is unknown.
 
     Parameters
     ----------
-    outputs : object
+    outputs, points : object
         As given by the user.
     faults : list of str
         To which what is wrong is added.
@@ -29,17 +39,14 @@ def names_of(outputs: object, faults: list[str]) -> tuple[str, ...]:
     tuple of str
         Names that are given on request only, in the order of the schema.
     """
-    if outputs is None:
-        return ()
-    if isinstance(outputs, Iterable) and not isinstance(outputs, str):
-        names = list(cast("Iterable[object]", outputs))
-    else:
-        names = [outputs]
     wanted: set[str] = set()
-    for name in names:
-        if isinstance(name, str) and name in GROUPS:
+    for name in listed(outputs):
+        if isinstance(name, str) and _has_dimensions(name, POINT_TIME):
+            if not points:
+                faults.append(f"{name!r} is of points, and there are none; give {EXAMPLE}")
+        elif isinstance(name, str) and name in GROUPS:
             wanted.update(GROUPS[name])
-        elif isinstance(name, str) and (name in ON_REQUEST or _is_history(name)):
+        elif isinstance(name, str) and (name in ON_REQUEST or _has_dimensions(name, TIME)):
             wanted.add(name)
         else:
             known = ", ".join(repr(other) for other in (*GROUPS, *ON_REQUEST))
@@ -49,8 +56,8 @@ def names_of(outputs: object, faults: list[str]) -> tuple[str, ...]:
     return tuple(name for name in ON_REQUEST if name in wanted)
 
 
-def _is_history(name: str) -> bool:
-    return name in SCHEMA and SCHEMA[name].dims == TIME
+def _has_dimensions(name: str, dims: tuple[str, ...]) -> bool:
+    return name in SCHEMA and SCHEMA[name].dims == dims
 
 
 NEEDED: Final = {

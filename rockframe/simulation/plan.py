@@ -1,7 +1,7 @@
 """The arguments of a run, checked against the system and one another."""
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from os import PathLike
 from typing import Any, Final
@@ -17,7 +17,13 @@ from rockframe.simulation.asked import lacking, names_of, points_of
 from rockframe.simulation.beginning import Beginning, continuation_of
 from rockframe.solve.accuracy import Accuracy, accuracy_of
 from rockframe.system.assembly import Assembly
-from rockframe.system.options import AccuracyLike, Overturning, OverturningLike, read_option
+from rockframe.system.options import (
+    AccuracyLike,
+    Overturning,
+    OverturningLike,
+    PointsLike,
+    read_option,
+)
 from rockframe.units import LENGTH, POSITIVE, TIME, TIME_STEP, QuantityLike, to_si
 
 MOST_SAMPLES = 1e8
@@ -60,7 +66,11 @@ class Arguments:
 
 @dataclass(frozen=True)
 class Plan:
-    """A run's arguments, checked and in SI units."""
+    """A run's arguments, checked and in SI units.
+
+    There are samples where `output_step` is given: for the histories, if they are kept, and
+    for the peaks at points.
+    """
 
     motion: GroundMotion | None
     duration: float
@@ -68,6 +78,7 @@ class Plan:
     accuracy: Accuracy
     accuracy_name: str
     output_step: float | None
+    histories: bool
     requested: tuple[str, ...]
     points: tuple[Point, ...]
     stop_at_overturning: bool
@@ -85,7 +96,7 @@ class Plan:
                 "initial": self.initial.to_dict(),
                 "accuracy": vars(self.accuracy),
                 "output_step": _time(self.output_step),
-                "outputs": list(self.requested),
+                "outputs": list(self.requested) if self.histories else None,
                 "points": _places(self.points),
                 "overturning": _course(self.stop_at_overturning),
             }
@@ -116,7 +127,7 @@ def plan_run(
     accuracy: AccuracyLike,
     output_step: QuantityLike | None,
     outputs: Sequence[str] | None,
-    points: Mapping[str, tuple[QuantityLike, QuantityLike]] | None = None,
+    points: PointsLike | None = None,
     overturning: OverturningLike,
 ) -> Plan:
     """Check the arguments of a run against the system and one another.
@@ -161,7 +172,7 @@ def read_arguments(
     accuracy: AccuracyLike,
     output_step: QuantityLike | None = None,
     outputs: Sequence[str] | None,
-    points: Mapping[str, tuple[QuantityLike, QuantityLike]] | None = None,
+    points: PointsLike | None = None,
     overturning: OverturningLike,
 ) -> Arguments:
     """Read the arguments of a run, as far as that needs neither system nor motion.
@@ -202,7 +213,7 @@ def read_arguments(
         accuracy_name=str(accuracy) if isinstance(accuracy, str) else "own",
         output_step=step,
         histories=outputs is not None,
-        requested=names_of(outputs, faults),
+        requested=names_of(outputs, points, faults),
         points=points_of(points, faults),
         stop_at_overturning=course is Overturning.STOP,
     )
@@ -232,14 +243,14 @@ def fitted(
     beginning = _beginning(system, arguments.initial, faults)
     length = _length(arguments, motion, faults)
     step = None
-    if arguments.histories:
+    if arguments.histories or arguments.points:
         step = arguments.output_step
         if step is None:
             step = STILL_GROUND_OUTPUT_STEP if motion is None else motion.si.time_step
         if length / step > MOST_SAMPLES:
             faults.append(
                 f"the histories would have {length / step:.3g} samples ({length:.6g} s in steps of "
-                f"{step:.6g} s); give a longer output_step, or outputs=None"
+                f"{step:.6g} s); give a longer output_step, or outputs=None without points"
             )
     faults += lacking(system, arguments.requested)
     return Plan(
@@ -249,6 +260,7 @@ def fitted(
         accuracy=arguments.accuracy,
         accuracy_name=arguments.accuracy_name,
         output_step=step,
+        histories=arguments.histories,
         requested=arguments.requested,
         points=arguments.points,
         stop_at_overturning=arguments.stop_at_overturning,

@@ -68,7 +68,8 @@ class Response:
     scales: Scales
     trajectory: Trajectory
     histories: dict[str, Generic]
-    forces: dict[str, float]  # scalars, of runs with histories
+    sampled: dict[str, Generic | float]  # what samples tell beside histories
+    points: dict[str, Generic]
     slips: list[str]
 
     @cached_property
@@ -77,9 +78,9 @@ class Response:
         return event_columns(self.system.model, self.trajectory)
 
     @cached_property
-    def scalars(self) -> dict[str, float | int | bool]:
-        """All scalars, by their names in the schema."""
-        return scalars(self.trajectory, self.scales) | self.forces
+    def scalars(self) -> dict[str, Generic | float | int | bool]:
+        """All scalars, and peaks at points, by their names in the schema."""
+        return {**scalars(self.trajectory, self.scales), **self.sampled}
 
     def beside(self) -> Beside:
         """Tell what a certificate asks of the run."""
@@ -122,7 +123,7 @@ def run(system: Assembly, plan: Plan, certification: Certification | None = None
     attributes = _attributes(system, plan, summary, response.scales)
     attributes |= end_attributes(summary.ending)
     if summary.status.finished:
-        attributes["verdict"] = f"{attributes['verdict']}{friction_words(response.forces)}"
+        attributes["verdict"] = f"{attributes['verdict']}{friction_words(response.sampled)}"
     cautions = response.cautions()
     for kind, text in cautions:
         warn(text, kind)
@@ -133,7 +134,10 @@ def run(system: Assembly, plan: Plan, certification: Certification | None = None
         found = certify(system, plan, response.beside(), certification, beside)
         certificate = found.values()
         attributes |= found.attributes(certification)
-    values = {**response.events, **response.histories, **response.scalars, **certificate}
+    values = {
+        **response.events, **response.histories, **response.points, **response.scalars,
+        **certificate,
+    }  # fmt: skip
     return build_dataset(values, attributes)
 
 
@@ -207,18 +211,20 @@ def respond(system: Assembly, plan: Plan) -> Response:
         stop_at_overturning=plan.stop_at_overturning, with_work=bool(plan.energies),
     )  # fmt: skip
     histories: dict[str, Generic] = {}
-    told: dict[str, float] = {}
+    told: dict[str, Generic | float] = {}
+    points: dict[str, Generic] = {}
     slips: list[str] = []
     if plan.output_step is not None:
         answers = answers_of(system, plan, model, trajectory, scales)
-        histories, told, slips = answers.values, answers.scalars, answers.slips
+        histories, told = answers.values, answers.scalars
+        points, slips = answers.points, answers.slips
     if plan.energies:
         energies = energy_histories(model, trajectory)
         if not scales.slope.level:
             swayed = histories["horizontal_displacement"]
             energies = energies_on_slope(energies, model, trajectory, swayed, scales.slope)
         histories = histories | {name: energies[name] for name in plan.energies}
-    return Response(system, plan, scales, trajectory, histories, told, slips)
+    return Response(system, plan, scales, trajectory, histories, told, points, slips)
 
 
 def _attributes(

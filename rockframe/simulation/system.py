@@ -22,6 +22,7 @@ from rockframe.system.options import (
     Options,
     Overturning,
     OverturningLike,
+    PointsLike,
     Restraint,
     RestraintLike,
     Rotation,
@@ -213,7 +214,7 @@ class System:
         accuracy: AccuracyLike = AccuracyLevel.STANDARD,
         output_step: QuantityLike | None = None,
         outputs: Sequence[str] | None = (),
-        points: Mapping[str, tuple[QuantityLike, QuantityLike]] | None = None,
+        points: PointsLike | None = None,
         overturning: OverturningLike = Overturning.STOP,
         certify: "bool | Certification" = False,
     ) -> xr.Dataset:
@@ -243,7 +244,8 @@ class System:
         points : mapping of str to (str or Quantity, str or Quantity), optional
             Points of the body, by names of your own: how far to the right of the middle
             of its base and how high above it they are at rest. Their displacements and
-            absolute accelerations are given over ``point`` and ``time`` [m].
+            absolute accelerations are given over ``point`` and ``time``, and peaks of these
+            over ``point``, also where `outputs` is None [m].
         overturning : {"stop", "continue"}
             Whether the run ends when the rotation reaches the overturning
             angle, or goes on until the block lies flat.

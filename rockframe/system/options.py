@@ -1,6 +1,7 @@
 """Options of systems and runs, and the words for them."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Final, Literal, TypeAlias, TypeVar
@@ -9,7 +10,7 @@ from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import RockframeError, shown
 from rockframe.signals.slope import Slope
 from rockframe.solve.accuracy import Accuracy, AccuracyLevel
-from rockframe.units import ACCELERATION, ANGLE, POSITIVE, Condition, Measure, to_si
+from rockframe.units import ACCELERATION, ANGLE, POSITIVE, Condition, Measure, QuantityLike, to_si
 
 
 class Restraint(StrEnum):
@@ -49,6 +50,8 @@ AccuracyLike: TypeAlias = (
     Accuracy | AccuracyLevel | Literal["fast", "standard", "reference"] | float
 )
 SweepAccuracyLike: TypeAlias = AccuracyLike | Literal["screen"]
+PointsLike: TypeAlias = Mapping[str, tuple[QuantityLike, QuantityLike]]
+"""Points of the body: to the right of the middle of its base, and above it."""
 
 
 @dataclass(frozen=True)

@@ -136,6 +136,19 @@ POINTS: Final = (
 )
 """Of points that are named."""
 
+POINT_PEAKS: Final = tuple(
+    Variable(
+        f"peak_{row.name}",
+        POINT,
+        row.unit,
+        f"largest {'' if 'absolute' in row.long_name else 'absolute '}"
+        f"{row.long_name.split(',')[0]} at samples and events, up to overturning",
+    )
+    for row in POINTS
+    if row.dims == POINT_TIME
+)
+"""Of points, in runs with samples."""
+
 FORCE_SCALARS: Final = (
     Variable("peak_friction_demand", (), Unit.ONE, "largest friction demand at samples and events"),
     Variable("peak_friction_demand_time", (), Unit.SECOND, "time of the largest friction demand"),

@@ -302,5 +302,5 @@ def _options(described: dict[str, Any]) -> dict[str, Any]:
     options = {name: value for name, value in described.items() if value is not None}
     options["initial"] = InitialState.from_dict(options["initial"])
     options["accuracy"] = Accuracy(**options["accuracy"])
-    options.pop("points", None)
+    options["points"] = options.get("points") or None
     return options

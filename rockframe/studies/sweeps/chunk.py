@@ -9,6 +9,7 @@ import numpy as np
 from rockframe.errors import RockframeError
 from rockframe.results.outcome import Generic, scalars
 from rockframe.results.schema import SCHEMA
+from rockframe.results.variables.requests import POINT_TIME
 from rockframe.results.variables.runs import RunStatus
 from rockframe.results.variables.studies import REPEATED, VERDICT_CHANGED
 from rockframe.results.variables.variable import TIME
@@ -32,9 +33,9 @@ class Rows:
     ----------
     status : ndarray of int8, shape (cases,)
         How each run ended, or why there is none.
-    scalars : dict of str to ndarray of float64, shape (cases,)
+    scalars : dict of str to ndarray of float64, shape (cases,) or (cases, points)
         By their names in the schema; NaN where a case has no result.
-    histories : dict of str to ndarray of float64, shape (cases, times)
+    histories : dict of str to ndarray of float64, shape (cases, times) or (cases, points, times)
         The same; NaN beyond a run's end too.
     message : ndarray of int32, shape (cases,)
         Places in `texts`.
@@ -135,10 +136,10 @@ class _Telling:
         changed = verdict is not None and verdict is not first.overturned
         self._put_scalars(again.case, {REPEATED: 1.0, VERDICT_CHANGED: float(changed)})
 
-    def _put_scalars(self, case: int, values: Mapping[str, float]) -> None:
+    def _put_scalars(self, case: int, values: Mapping[str, Generic | float]) -> None:
         for name, value in values.items():
             if name != _STATUS:
-                self._of(self._scalars, name, ())[case] = value
+                self._of(self._scalars, name, np.shape(value))[case] = value
 
     def _put_histories(self, case: int, values: dict[str, Generic], kept: Histories) -> None:
         time = values[TIME[0]]
@@ -147,9 +148,10 @@ class _Telling:
         count -= int(time[count - 1] != (count - 1) * kept.step)
         names = values if kept.names is None else kept.names
         for name in names:
-            if name != TIME[0] and name in values and SCHEMA[name].dims == TIME:
-                row = self._of(self._histories, name, (kept.count,))[case]
-                row[:count] = values[name][:count]
+            if name != TIME[0] and name in values and SCHEMA[name].dims in (TIME, POINT_TIME):
+                shape = (*values[name].shape[:-1], kept.count)
+                row = self._of(self._histories, name, shape)[case]
+                row[..., :count] = values[name][..., :count]
 
     def _refuse(self, case: int, problem: Exception) -> None:
         """Note why a case has no run."""

@@ -11,7 +11,9 @@ import xarray as xr
 from rockframe.errors import ModelWarning, SolverWarning, warn
 from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import Generic
+from rockframe.results.points import Point, point_labels
 from rockframe.results.schema import SCHEMA
+from rockframe.results.variables.requests import POINT_PEAKS
 from rockframe.results.variables.runs import EVENTS_AND_SCALARS, RunStatus
 from rockframe.results.variables.studies import CASE, MESSAGE, MOTION, REPEATED, VERDICT_CHANGED
 from rockframe.results.variables.variable import TIME
@@ -50,6 +52,8 @@ class Labels:
         Names.
     histories : Histories or None
         What is kept beside scalars.
+    points : tuple of Point
+        At which there are peaks, and histories if they are kept.
     attributes : mapping
         Of the dataset.
     """
@@ -57,6 +61,7 @@ class Labels:
     grid: Grid
     motions: tuple[str, ...]
     histories: Histories | None
+    points: tuple[Point, ...]
     attributes: Mapping[str, str | float | int]
 
 
@@ -82,7 +87,7 @@ def labels_of(study: Study) -> Labels:
         attributes["system_json"] = scene.assembly.json
     else:
         attributes["function"] = str(scene.to_dict()["function"])
-    return Labels(study.grid, tuple(study.motions), study.histories, attributes)
+    return Labels(study.grid, tuple(study.motions), study.histories, arguments.points, attributes)
 
 
 def every_axis(grid: Grid) -> tuple[Axis, ...]:
@@ -108,7 +113,11 @@ def labelled(labels: Labels, found: Iterable[tuple[range, Rows]]) -> xr.Dataset:
     grid = labels.grid
     rows = _joined(grid.count, found)
     always = ALWAYS + (SCREENED if labels.attributes["accuracy"] == SCREEN else ())
-    scalars = dict.fromkeys(always, np.full(grid.count, np.nan)) | rows.scalars
+    scalars = dict.fromkeys(always, np.full(grid.count, np.nan))
+    if labels.points:
+        gaps = np.full((grid.count, len(labels.points)), np.nan)
+        scalars |= {row.name: gaps for row in POINT_PEAKS}
+    scalars |= rows.scalars
     # what cannot be counted before it has run stays a flag, also where nothing has
     values = {name: grid.arranged(scalars[name]) for name in SCHEMA if name in scalars}
     values |= {
@@ -123,6 +132,8 @@ def labelled(labels: Labels, found: Iterable[tuple[range, Rows]]) -> xr.Dataset:
         around[CASE] = np.arange(grid.sizes[CASE])
     if labels.histories is not None:
         around[TIME[0]] = labels.histories.times
+    if labels.points:
+        around |= point_labels(labels.points)
     attributes = {"verdict": _verdict(rows), **labels.attributes}
     dataset = build_dataset(around, attributes, title=_TITLE).assign(runs.data_vars)
     if rows.histories:

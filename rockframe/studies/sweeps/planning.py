@@ -9,20 +9,21 @@ import xarray as xr
 from rockframe.errors import RockframeError, StudyError, shown
 from rockframe.motion import GroundMotion
 from rockframe.results.outcome import Generic
-from rockframe.results.schema import GROUPS, SCHEMA
 from rockframe.results.variables.requests import (
     ACCELERATIONS,
     FORCE_SCALARS,
     OTHERS,
-    POINT,
+    POINT_PEAKS,
+    POINTS,
     REACTIONS,
 )
 from rockframe.results.variables.runs import ENERGY_HISTORIES, EVENTS_AND_SCALARS, HISTORIES
 from rockframe.results.variables.studies import MOTION, SWEEP
 from rockframe.results.variables.variable import EVENT, TIME
-from rockframe.simulation.plan import STILL_GROUND_OUTPUT_STEP, Arguments, read_arguments
+from rockframe.simulation.plan import Arguments, read_arguments
 from rockframe.studies.sweeps.axes import OWNER, Axis, Changes
 from rockframe.studies.sweeps.grid import MOST_CASES, Grid
+from rockframe.studies.sweeps.kept import kept_histories, too_many_peaks
 from rockframe.studies.sweeps.motions import (
     NO_MOTION,
     OF_THE_SCENE,
@@ -31,9 +32,8 @@ from rockframe.studies.sweeps.motions import (
 )
 from rockframe.studies.sweeps.scenes import FunctionScene, Scene, own_motion, scene_of
 from rockframe.studies.sweeps.screening import FIRST, SCREEN
-from rockframe.studies.sweeps.study import Histories as Kept
-from rockframe.studies.sweeps.study import Study, length_of
-from rockframe.system.options import OverturningLike, SweepAccuracyLike
+from rockframe.studies.sweeps.study import Study
+from rockframe.system.options import OverturningLike, PointsLike, SweepAccuracyLike
 from rockframe.units import PERIOD, POSITIVE, QuantityLike, to_si
 
 Read = TypeVar("Read")
@@ -42,14 +42,12 @@ _RESULTS: Final = frozenset(
     row.name
     for table in (
         HISTORIES, ENERGY_HISTORIES, ACCELERATIONS, REACTIONS, OTHERS, EVENTS_AND_SCALARS,
-        FORCE_SCALARS,
+        FORCE_SCALARS, POINTS, POINT_PEAKS,
     )
     for row in table
 )  # fmt: skip
-_TAKEN: Final = _RESULTS | {*TIME, *EVENT, *POINT, *(row.name for row in SWEEP)}
+_TAKEN: Final = _RESULTS | {*TIME, *EVENT, *(row.name for row in SWEEP)}
 """Names that are not left for axes."""
-MOST_VALUES: Final = 1e9
-"""Values of histories beyond which a sweep is refused: eight gigabytes."""
 
 
 def plan_study(
@@ -65,6 +63,7 @@ def plan_study(
     accuracy: SweepAccuracyLike,
     output_step: QuantityLike | None,
     outputs: Sequence[str] | None,
+    points: PointsLike | None,
     overturning: OverturningLike,
 ) -> Study:
     """Check the arguments of a sweep.
@@ -72,7 +71,7 @@ def plan_study(
     Parameters
     ----------
     scene, motions, axes, cases, period, duration, free_vibration, initial, accuracy,
-    output_step, outputs, overturning
+    output_step, outputs, points, overturning
         As for :func:`rockframe.sweep`.
 
     Returns
@@ -111,6 +110,7 @@ def plan_study(
             accuracy=FIRST if accuracy == SCREEN else accuracy,
             output_step=output_step,
             outputs=outputs,
+            points=points,
             overturning=overturning,
         ),
         None,
@@ -138,7 +138,8 @@ def plan_study(
     if not 0 < grid.count <= MOST_CASES:
         faults.append(f"there are {grid.count} cases; expected 1 to {MOST_CASES}")
     faults += _without_length(made, given, arguments)
-    kept = tried(lambda: _histories(made, given, arguments, outputs, grid.count), None)
+    faults += too_many_peaks(len(arguments.points), grid.count)
+    kept = tried(lambda: kept_histories(made, given, arguments, outputs, grid.count), None)
     if faults:
         raise StudyError(*faults)
     return Study(made, grid, given, arguments, seconds, kept, screened=accuracy == SCREEN)
@@ -257,48 +258,3 @@ def _without_length(
     if none and arguments.duration is None and not isinstance(scene, FunctionScene):
         return ["nothing to simulate: give motions, or a duration for a still ground"]
     return []
-
-
-def _histories(
-    scene: Scene,
-    motions: Mapping[str, GroundMotion | None],
-    arguments: Arguments,
-    outputs: Sequence[str] | None,
-    count: int,
-) -> Kept | None:
-    """Find the times that the histories of all cases have."""
-    if not arguments.histories:
-        return None
-    named = [outputs] if isinstance(outputs, str) else list(outputs or ())
-    names = tuple(dict.fromkeys(one for name in named for one in GROUPS.get(name, (name,))))
-    wrong = [name for name in names if SCHEMA[name].dims != TIME]
-    if wrong:
-        msg = f"outputs: {', '.join(wrong)} are no histories, which a sweep could keep"
-        raise StudyError(msg)
-    own = isinstance(scene, FunctionScene) and None in motions.values()
-    if own and (arguments.duration is None or arguments.output_step is None):
-        msg = "histories of motions that the function makes need a duration and an output_step"
-        raise StudyError(msg)
-    step = arguments.output_step
-    if step is None:
-        steps = {
-            STILL_GROUND_OUTPUT_STEP if motion is None else motion.si.time_step
-            for motion in motions.values()
-        }
-        if len(steps) > 1:
-            msg = (
-                "the motions have different time steps, so that their histories have no common "
-                "times; give an output_step"
-            )
-            raise StudyError(msg)
-        (step,) = steps
-    longest = max(length_of(arguments, motion) for motion in motions.values())
-    kept = Kept(names or None, step, 1 + int(longest / step * (1.0 + 1e-12)))
-    several = len(names) or len(HISTORIES)
-    if several * float(kept.count) * count > MOST_VALUES:
-        msg = (
-            f"{several} histories of {kept.count} times in {count} cases are more than "
-            f"{MOST_VALUES:.0e} values; name fewer outputs, or give a longer output_step"
-        )
-        raise StudyError(msg)
-    return kept

@@ -20,6 +20,7 @@ from rockframe.errors import StudyError
 from rockframe.motion import GroundMotion
 from rockframe.results.dataset import dated
 from rockframe.results.outcome import Generic
+from rockframe.results.points import Point
 from rockframe.studies.sweeps.arrays_file import read_arrays, write_arrays, write_whole
 from rockframe.studies.sweeps.axes import Axis
 from rockframe.studies.sweeps.chunk import Rows
@@ -29,7 +30,7 @@ from rockframe.studies.sweeps.labelling import Labels, labels_of
 from rockframe.studies.sweeps.study import Histories, Study
 from rockframe.version import __version__
 
-FORMAT: Final = 1
+FORMAT: Final = 2
 _STUDY: Final = "study.json"
 _LABELS: Final = "labels.arrays"
 _LEFT_OVER: Final = 3600.0
@@ -197,7 +198,8 @@ class Store:
         if kept is not None:
             names = None if kept["names"] is None else tuple(kept["names"])
             histories = Histories(names, kept["step"], kept["count"])
-        return Labels(grid, tuple(described["motions"]), histories, described["attributes"])
+        points = tuple(Point(**one) for one in described["points"])
+        return Labels(grid, tuple(described["motions"]), histories, points, described["attributes"])
 
     def motions(self) -> dict[str, GroundMotion | None]:
         """Read the motions of the study."""
@@ -226,6 +228,7 @@ def _make(path: Path, study: Study, chunk: int) -> None:
     described: dict[str, Any] = {
         "attributes": dict(labels.attributes),
         "histories": None if labels.histories is None else vars(labels.histories),
+        "points": [vars(one) for one in labels.points],
         "motions": {},
     }
     for kind, axes in (("axes", labels.grid.axes), ("columns", labels.grid.columns)):

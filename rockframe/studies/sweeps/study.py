@@ -147,11 +147,12 @@ class Study:
 
     @property
     def side_by_side(self) -> bool:
-        """Whether cases run in lanes: with steps of fixed length, without histories, and many.
+        """Whether cases run in lanes: with steps of fixed length, without samples, and many.
 
         Their numbers are the same either way.
         """
-        fits = self.histories is None and go_in_lanes(self.arguments.accuracy)
+        sampled = self.histories is not None or bool(self.arguments.points)
+        fits = not sampled and go_in_lanes(self.arguments.accuracy)
         return fits and self.grid.count >= FEWEST_IN_LANES
 
     def to_dict(self) -> dict[str, Any]:

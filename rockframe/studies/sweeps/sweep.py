@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from rockframe.components import InitialState
     from rockframe.motion import GroundMotion
     from rockframe.simulation.system import System
-    from rockframe.system.options import OverturningLike, SweepAccuracyLike
+    from rockframe.system.options import OverturningLike, PointsLike, SweepAccuracyLike
     from rockframe.units import QuantityLike
 
 _LARGEST_CHUNK: Final = 1_000_000
@@ -46,6 +46,7 @@ def sweep(
     accuracy: "SweepAccuracyLike" = AccuracyLevel.STANDARD,
     output_step: "QuantityLike | None" = None,
     outputs: Sequence[str] | None = None,
+    points: "PointsLike | None" = None,
     overturning: "OverturningLike" = Overturning.STOP,
     store: "str | PathLike[str] | None" = None,
     executor: Executor | None = None,
@@ -81,7 +82,11 @@ def sweep(
         Spacing of the histories; the time step of the motions unless given [s].
     outputs : sequence of str, optional
         Histories that are kept: names and groups, or, of an empty sequence, those that every
-        run has. None keeps none.
+        run has, those of points among them. None keeps none.
+    points : mapping of str to (str or Quantity, str or Quantity), optional
+        Points of the body, as for :meth:`rockframe.System.simulate`. Peaks of their
+        displacements and absolute accelerations are given over ``point``, and their histories
+        as far as `outputs` keeps them [m].
     store : str or path, optional
         A folder in which what has been run is kept. The same call goes on with what it
         finds there.
@@ -156,6 +161,7 @@ def sweep(
         accuracy=accuracy,
         output_step=output_step,
         outputs=outputs,
+        points=points,
         overturning=overturning,
     )
     size = (

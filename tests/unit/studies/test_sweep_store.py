@@ -177,7 +177,7 @@ def test_other_versions_and_damaged_files_are_refused_with_a_reason(copied):
             keep.replace('"rockframe_version": "', '"rockframe_version": "9.'),
             "found a study of rockframe 9",
         ),
-        (keep.replace('"format": 1', '"format": 2'), r"\(format 2\)"),
+        (keep.replace('"format": 2', '"format": 3'), r"\(format 3\)"),
         (keep[:300], "study.json: damaged"),
         (keep.replace('"cases":', '"kases":'), "entries are missing"),
         ("", "study.json: damaged"),
