@@ -5,7 +5,7 @@ import time
 import warnings
 from collections.abc import Sequence
 from dataclasses import fields, replace
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import TYPE_CHECKING, Final, TypeAlias, Unpack
 
 import numpy as np
 import xarray as xr
@@ -20,17 +20,17 @@ from rockframe.comparison.errors import (
 from rockframe.comparison.models import check_system, model_ladder
 from rockframe.errors import ComponentError, ModelWarning, SolverWarning, shown
 from rockframe.results.dataset import build_dataset
+from rockframe.shared_arguments import takes
 from rockframe.simulation.plan import Plan, plan_run
 from rockframe.simulation.provenance import motion_attributes
 from rockframe.simulation.run import outcome, run
+from rockframe.simulation.run_arguments import ComparedArguments
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import Accuracy, AccuracyLevel, accuracy_of
 
 if TYPE_CHECKING:
-    from rockframe.components import InitialState
     from rockframe.motion import GroundMotion
     from rockframe.system.options import AccuracyLike
-    from rockframe.units import QuantityLike
 
 TIGHT: Final = 1e-12
 BENCHMARK: Final = Accuracy(rtol=TIGHT)
@@ -45,6 +45,7 @@ _OWNER: Final = "tradeoff"
 _MOST_REPEATS: Final = 1000
 
 
+@takes(ComparedArguments)
 def tradeoff(
     system: System,
     motion: "GroundMotion | None" = None,
@@ -52,10 +53,7 @@ def tradeoff(
     models: Sequence[str] | str | None = None,
     accuracies: "Sequence[AccuracyLike] | AccuracyLike" = tuple(AccuracyLevel),
     repeats: int = 5,
-    duration: "QuantityLike | None" = None,
-    free_vibration: "QuantityLike | None" = None,
-    initial: "InitialState | None" = None,
-    output_step: "QuantityLike | None" = None,
+    **asked: Unpack[ComparedArguments],
 ) -> xr.Dataset:
     """Measure what each model and each accuracy costs, and how far off it is.
 
@@ -71,8 +69,6 @@ def tradeoff(
         Levels, tolerances (``rtol``), or own settings.
     repeats : int, optional
         How often each run is timed.
-    duration, free_vibration, initial, output_step : optional
-        As for :meth:`rockframe.System.simulate`; histories are compared at the output times.
 
     Returns
     -------
@@ -95,7 +91,7 @@ def tradeoff(
     Notes
     -----
     Every rung is run once before it is timed. Times are wall times of this machine, now:
-    compare them with one another only.
+    compare them with one another only. Histories are compared at the output times.
     """
     check_system(system, _OWNER)
     repeats = whole_number(repeats, owner=_OWNER, name="repeats", lowest=1, highest=_MOST_REPEATS)
@@ -109,13 +105,8 @@ def tradeoff(
         return plan_run(
             scene.assembly,
             record,
-            duration=duration,
-            free_vibration=free_vibration,
-            initial=initial,
             accuracy=accuracy,
-            output_step=output_step,
-            outputs=(),
-            overturning="stop",
+            **asked,
         )
 
     with warnings.catch_warnings():

@@ -4,7 +4,7 @@ import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from os import PathLike
-from typing import Any, Final
+from typing import Any, Final, Unpack
 
 import xarray as xr
 
@@ -15,16 +15,11 @@ from rockframe.results.points import Point
 from rockframe.results.schema import ENERGIES
 from rockframe.simulation.asked import lacking, names_of, points_of
 from rockframe.simulation.beginning import Beginning, continuation_of
-from rockframe.solve.accuracy import Accuracy, accuracy_of
+from rockframe.simulation.run_arguments import LengthArguments, RunArguments
+from rockframe.solve.accuracy import Accuracy, AccuracyLevel, accuracy_of
 from rockframe.system.assembly import Assembly
-from rockframe.system.options import (
-    AccuracyLike,
-    Overturning,
-    OverturningLike,
-    PointsLike,
-    read_option,
-)
-from rockframe.units import LENGTH, POSITIVE, TIME, TIME_STEP, QuantityLike, to_si
+from rockframe.system.options import Overturning, read_option
+from rockframe.units import LENGTH, POSITIVE, TIME, TIME_STEP, to_si
 
 MOST_SAMPLES = 1e8
 """Samples of the histories beyond which a run is refused: some ten gigabytes."""
@@ -120,17 +115,18 @@ def _course(stops: bool) -> str:
 def plan_run(
     system: Assembly,
     motion: GroundMotion | None,
-    *,
-    duration: QuantityLike | None,
-    free_vibration: QuantityLike | None,
-    initial: "InitialState | xr.Dataset | None",
-    accuracy: AccuracyLike,
-    output_step: QuantityLike | None,
-    outputs: Sequence[str] | None,
-    points: PointsLike | None = None,
-    overturning: OverturningLike,
+    **asked: Unpack[RunArguments],
 ) -> Plan:
     """Check the arguments of a run against the system and one another.
+
+    Parameters
+    ----------
+    system : Assembly
+        The checked scene.
+    motion : GroundMotion or None
+        The one among the parts unless given.
+    **asked
+        As for :meth:`rockframe.System.simulate`.
 
     Returns
     -------
@@ -146,42 +142,21 @@ def plan_run(
     _check_motion(motion, faults)
     if faults:
         raise AssemblyError(faults)
-    arguments = read_arguments(
-        faults,
-        duration=duration,
-        free_vibration=free_vibration,
-        initial=initial,
-        accuracy=accuracy,
-        output_step=output_step,
-        outputs=outputs,
-        points=points,
-        overturning=overturning,
-    )
+    arguments = read_arguments(faults, **asked)
     plan = fitted(arguments, system, motion, faults)
     if faults:
         raise AssemblyError(faults)
     return plan
 
 
-def read_arguments(
-    faults: list[str],
-    *,
-    duration: QuantityLike | None = None,
-    free_vibration: QuantityLike | None = None,
-    initial: "InitialState | xr.Dataset | None" = None,
-    accuracy: AccuracyLike,
-    output_step: QuantityLike | None = None,
-    outputs: Sequence[str] | None,
-    points: PointsLike | None = None,
-    overturning: OverturningLike,
-) -> Arguments:
+def read_arguments(faults: list[str], **asked: Unpack[RunArguments]) -> Arguments:
     """Read the arguments of a run, as far as that needs neither system nor motion.
 
     Parameters
     ----------
     faults : list of str
         To which what is wrong is added.
-    duration, free_vibration, initial, accuracy, output_step, outputs, points, overturning
+    **asked
         As for :meth:`rockframe.System.simulate`.
 
     Returns
@@ -193,22 +168,29 @@ def read_arguments(
     UnitsError, ComponentError, SolverError
         An argument cannot be read.
     """
-    if duration is not None and free_vibration is not None:
-        faults.append("give duration or free_vibration, not both: each fixes the run's length")
-    times = {"duration": duration, "free_vibration": free_vibration}
+    lengths = {name: asked.get(name) for name in LengthArguments.__annotations__}
     read = {
         name: to_si(given, TIME, owner=_OWNER, name=name, condition=POSITIVE)
-        for name, given in times.items()
+        for name, given in lengths.items()
         if given is not None
     }
+    if len(read) > 1:
+        faults.append(f"give {' or '.join(read)}, not both: each fixes the run's length")
+    output_step, outputs, points = (
+        asked.get("output_step"),
+        asked.get("outputs", ()),
+        asked.get("points"),
+    )
     step = None
     if output_step is not None:
         step = to_si(output_step, TIME_STEP, owner=_OWNER, name="output_step", condition=POSITIVE)
-    course = read_option(Overturning, overturning, "overturning", faults)
+    accuracy = asked.get("accuracy", AccuracyLevel.STANDARD)
+    verdict = asked.get("overturning", Overturning.STOP)
+    course = read_option(Overturning, verdict, "overturning", faults)
     return Arguments(
         duration=read.get("duration"),
         free_vibration=read.get("free_vibration"),
-        initial=_initial(initial, faults),
+        initial=_initial(asked.get("initial"), faults),
         accuracy=accuracy_of(accuracy),
         accuracy_name=str(accuracy) if isinstance(accuracy, str) else "own",
         output_step=step,

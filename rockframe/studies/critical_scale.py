@@ -1,9 +1,10 @@
 """How much of a motion it takes to overturn a block."""
 
+import itertools
 import math
 from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, Unpack
 
 import numpy as np
 import xarray as xr
@@ -14,24 +15,24 @@ from rockframe.components import InitialState
 from rockframe.errors import ComponentError, SolverWarning, warn
 from rockframe.results.dataset import build_dataset
 from rockframe.results.variables.studies import Outcome
+from rockframe.shared_arguments import takes
 from rockframe.signals.polynomials import turning_points
 from rockframe.simulation.beside import Beside
 from rockframe.simulation.plan import Plan, plan_run
 from rockframe.simulation.provenance import motion_attributes
 from rockframe.simulation.run import beside, run
-from rockframe.solve.accuracy import AccuracyLevel
+from rockframe.simulation.run_arguments import ScaleArguments
 from rockframe.solve.layout import Status
 from rockframe.studies.flip_words import least_overturning, sentence, unfinished
-from rockframe.studies.flips import Followed, follow
+from rockframe.studies.flips import Followed, Look, follow
 from rockframe.studies.scaled_intensity import ScaledIntensity
-from rockframe.system.options import Overturning
+from rockframe.studies.sweeps.progress import Progress, bar_of
 from rockframe.system.rigid_ground import RigidGroundSetting
 from rockframe.units import POSITIVE, Condition, to_ratio
 
 if TYPE_CHECKING:
     from rockframe.motion import GroundMotion
     from rockframe.simulation.system import System
-    from rockframe.system.options import AccuracyLike, OverturningLike
     from rockframe.units import QuantityLike, RatioLike
 
 _OWNER: Final = "critical_scale"
@@ -42,6 +43,7 @@ _OUTCOMES: Final = {
 }  # fmt: skip
 
 
+@takes(ScaleArguments)
 def critical_scale(
     system: "System",
     motion: "GroundMotion | None" = None,
@@ -53,11 +55,8 @@ def critical_scale(
     intensity: str | None = None,
     period: "QuantityLike | None" = None,
     damping_ratio: "RatioLike" = 0.05,
-    duration: "QuantityLike | None" = None,
-    free_vibration: "QuantityLike | None" = None,
-    initial: "InitialState | xr.Dataset | None" = None,
-    accuracy: "AccuracyLike" = AccuracyLevel.STANDARD,
-    overturning: "OverturningLike" = Overturning.STOP,
+    progress: bool | None = None,
+    **asked: Unpack[ScaleArguments],
 ) -> xr.Dataset:
     """Find the least factor of a ground motion that overturns a block, and every flip above.
 
@@ -84,12 +83,9 @@ def critical_scale(
         Of the oscillator of a spectral value [s].
     damping_ratio : float, optional
         Of that oscillator, or of the spectra behind a measure [1].
-    duration, free_vibration, initial, accuracy : optional
-        As for :meth:`rockframe.System.simulate`.
-    overturning : {"stop", "continue"}
-        What is called overturning: that the rotation reaches the overturning angle, or that
-        the block lies flat by the end of the run, for it may come back from beyond the
-        angle while the ground moves.
+    progress : bool, optional
+        Whether a bar counts the runs (needs tqdm); where it can be seen unless given. Its
+        total grows beyond `scales` with what is looked into.
 
     Returns
     -------
@@ -152,13 +148,8 @@ def critical_scale(
     plan = plan_run(
         system.assembly,
         motion,
-        duration=duration,
-        free_vibration=free_vibration,
-        initial=initial,
-        accuracy=accuracy,
-        output_step=None,
         outputs=None,
-        overturning=overturning,
+        **asked,
     )
     measure = None
     if intensity is not None:
@@ -177,7 +168,8 @@ def critical_scale(
         return replace(plan, motion=motion.scaled(scale))
 
     look = _look(system, plan_at, stop=plan.stop_at_overturning)
-    found = follow(look, row, most=most, width=share)
+    with bar_of(progress, owner=_OWNER, unit="run") as bar:
+        found = follow(_counted(look, bar, len(row)), row, most=most, width=share)
     critical = least_overturning(found.shown)
     attributes = {
         "verdict": sentence(found, width=share),
@@ -199,9 +191,7 @@ def critical_scale(
     return dataset.assign_attrs(intensity=measure.name)
 
 
-def _look(
-    system: "System", plan_at: Callable[[float], Plan], *, stop: bool
-) -> Callable[[float], Beside]:
+def _look(system: "System", plan_at: Callable[[float], Plan], *, stop: bool) -> Look:
     """Give what makes the run at a scale."""
 
     def look(scale: float) -> Beside:
@@ -209,6 +199,24 @@ def _look(
         return shown if stop else _lying(shown)
 
     return look
+
+
+def _counted(look: Look, bar: Progress, first: int) -> Look:
+    """Let a bar count the runs: those that come first, and as many more as there will be."""
+    bar.expect(first)
+    looks = itertools.count()
+
+    def counted(scale: float) -> Beside:
+        number = next(looks)
+        if number == first:
+            bar.name("more scales")
+        if number >= first:
+            bar.expect(1)
+        shown = look(scale)
+        bar.update(1)
+        return shown
+
+    return counted
 
 
 def _lying(shown: Beside) -> Beside:

@@ -1,9 +1,7 @@
 """Incremental dynamic analysis: motions that are scaled until limit states are exceeded."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from concurrent.futures import Executor
-from os import PathLike
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final, Unpack
 
 import numpy as np
 import xarray as xr
@@ -12,19 +10,17 @@ from rockframe.comparison.models import check_system
 from rockframe.errors import StudyError
 from rockframe.results.dataset import build_dataset
 from rockframe.results.variables.studies import MOTION
-from rockframe.solve.accuracy import AccuracyLevel
+from rockframe.shared_arguments import takes
 from rockframe.studies.brackets import least_exceeding, padded
 from rockframe.studies.intensities import Intensity, intensity_in
 from rockframe.studies.limit_states import LimitState, exceeds, interrupted, limit_states
-from rockframe.studies.lines import SCALE, VERDICT, Lines, read_scales, read_store, read_width
+from rockframe.studies.lines import SCALE, VERDICT, Lines, read_scales, read_width
+from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.studies.sweeps.motions import motions_of
-from rockframe.system.options import Overturning
 
 if TYPE_CHECKING:
-    from rockframe.components import InitialState
     from rockframe.motion import GroundMotion
     from rockframe.simulation.system import System
-    from rockframe.system.options import OverturningLike, SweepAccuracyLike
     from rockframe.units import QuantityLike, RatioLike
 
 _OWNER: Final = "incremental_dynamic_analysis"
@@ -32,6 +28,7 @@ _MOST_SCALES: Final = 100_000
 _SCALES: Final = tuple(0.1 * k for k in range(1, 41))
 
 
+@takes(SweepArguments)
 def incremental_dynamic_analysis(
     system: "System",
     motions: "GroundMotion | Mapping[str, GroundMotion] | Sequence[GroundMotion] | None" = None,
@@ -41,15 +38,7 @@ def incremental_dynamic_analysis(
     intensity: str | None = None,
     period: "QuantityLike | None" = None,
     width: "RatioLike" = 1e-3,
-    duration: "QuantityLike | None" = None,
-    free_vibration: "QuantityLike | None" = None,
-    initial: "InitialState | None" = None,
-    accuracy: "SweepAccuracyLike" = AccuracyLevel.STANDARD,
-    overturning: "OverturningLike" = Overturning.STOP,
-    store: "str | PathLike[str] | None" = None,
-    executor: Executor | None = None,
-    chunk: int | None = None,
-    progress: bool | None = None,
+    **run: Unpack[SweepArguments],
 ) -> xr.Dataset:
     """Scale motions, and find all scales between which limit states begin or cease to be exceeded.
 
@@ -72,15 +61,6 @@ def incremental_dynamic_analysis(
         Of the oscillator of a spectral intensity [s].
     width : float, optional
         Width of a bracket, over its upper scale [1].
-    duration, free_vibration, initial, accuracy : optional
-        As for :meth:`rockframe.System.simulate`.
-    overturning : {"stop", "continue"}
-        As for :func:`rockframe.critical_scale`.
-    store : str or path, optional
-        A folder in which what has been run is kept; the same call goes on with what it finds
-        there.
-    executor, chunk, progress : optional
-        As for :func:`rockframe.sweep`.
 
     Returns
     -------
@@ -130,23 +110,12 @@ def incremental_dynamic_analysis(
     if given is None:
         msg = f"{_OWNER}: there is no motion to scale; give one"
         raise StudyError(msg)
-    means: dict[str, Any] = {
-        "duration": duration,
-        "free_vibration": free_vibration,
-        "initial": initial,
-        "accuracy": accuracy,
-        "overturning": overturning,
-        "executor": executor,
-        "chunk": chunk,
-        "progress": progress,
-    }
-    lines = Lines(system, motions_of(given), {}, means, read_store(store, owner=_OWNER))
-    scan = lines.scan(scales)
+    lines = Lines(system, motions_of(given), {}, run, _OWNER)
 
     def verdicts(runs: xr.Dataset) -> xr.DataArray:
         return xr.concat([exceeds(runs, state) for state in states], VERDICT)
 
-    brackets = lines.follow(scan, verdicts, width=share)
+    scan, brackets = lines.followed(scales, verdicts, width=share)
     below, above, _, after = padded(brackets, (len(states), scan.sizes[MOTION]))
     shown = verdicts(scan).transpose(VERDICT, MOTION, SCALE).to_numpy()
     capacity = least_exceeding(scales, shown, above, after)

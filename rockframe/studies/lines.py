@@ -15,9 +15,12 @@ from rockframe.results.outcome import Array, Generic
 from rockframe.results.variables.studies import CASE, MOTION
 from rockframe.studies.brackets import Bracket, brackets_of, narrowed
 from rockframe.studies.limit_states import interrupted
+from rockframe.studies.sweeps.arguments import ExecutionArguments, SweepArguments
 from rockframe.studies.sweeps.axes import numbers_of
 from rockframe.studies.sweeps.motions import TARGETS
-from rockframe.studies.sweeps.sweep import sweep
+from rockframe.studies.sweeps.planning import plan_study
+from rockframe.studies.sweeps.progress import Progress, bar_of
+from rockframe.studies.sweeps.running import run_study
 from rockframe.units import Condition, Unit, to_ratio
 
 if TYPE_CHECKING:
@@ -45,37 +48,29 @@ class Lines:
     columns : mapping of str to (ndarray, str)
         Further values, and their unit, for each row of a table; one row without values if
         there are none.
-    means : mapping
-        Further arguments of :func:`rockframe.sweep`.
-    store : Path or None
-        The folder in which the scan and the rounds have a folder each.
+    run : SweepArguments
+        How all of it is run. The scan and each round have a folder of their own in its store.
+    owner : str
+        Function that asks for it.
     """
 
     scene: "System | Callable[..., System]"
     motions: Mapping[str, GroundMotion]
     columns: Mapping[str, tuple[Array, str]]
-    means: Mapping[str, Any]
-    store: Path | None = None
+    run: SweepArguments
+    owner: str
 
-    def scan(self, scales: Array) -> xr.Dataset:
-        """Run all rows and motions at all scales."""
-        heads = {head(name, unit): values for name, (values, unit) in self.columns.items()}
-        return sweep(
-            self.scene,
-            self.motions,
-            axes={SCALE: scales},
-            cases=heads or None,
-            store=self._folder(_SCAN),
-            **self.means,
-        )
+    def followed(
+        self, scales: Array, verdicts: Verdicts, *, width: float
+    ) -> tuple[xr.Dataset, list[Bracket]]:
+        """Run all rows and motions at all scales, and narrow every change of a verdict.
 
-    def follow(self, scan: xr.Dataset, verdicts: Verdicts, *, width: float) -> list[Bracket]:
-        """Narrow every change of a verdict between two scales of the scan.
+        One bar counts the cases of the scan and of all rounds.
 
         Parameters
         ----------
-        scan : xarray.Dataset
-            Of :meth:`scan`.
+        scales : ndarray, shape (scales,)
+            Of the scan, rising.
         verdicts : callable
             Gives the verdicts of a sweep.
         width : float
@@ -83,12 +78,36 @@ class Lines:
 
         Returns
         -------
+        xarray.Dataset
+            The scan.
         list of Bracket
             The number of a line is that of its row, times that of motions, plus that of its
             motion.
         """
-        names = list(self.motions)
-        order = (VERDICT, *([CASE] if self.columns else []), MOTION, SCALE)
+        store = read_store(self.run.get("store"), owner=self.owner)
+        with bar_of(self.run.get("progress"), owner=self.owner) as bar:
+            runner = _Runner(self, store, bar)
+            scan = runner.scan(scales)
+            return scan, runner.narrowed(scan, verdicts, width)
+
+
+@dataclass(frozen=True, eq=False)
+class _Runner:
+    """Makes the sweeps of an analysis, one after the other."""
+
+    lines: Lines
+    store: Path | None
+    bar: Progress
+
+    def scan(self, scales: Array) -> xr.Dataset:
+        """Run all rows and motions at all scales."""
+        heads = self._heads(slice(None))
+        return self._sweep(_SCAN, heads or None, {SCALE: scales})
+
+    def narrowed(self, scan: xr.Dataset, verdicts: Verdicts, width: float) -> list[Bracket]:
+        """Narrow every change of a verdict between two scales of the scan."""
+        names = list(self.lines.motions)
+        order = (VERDICT, *([CASE] if self.lines.columns else []), MOTION, SCALE)
         shown = verdicts(scan).transpose(*order).to_numpy()
         shown = shown.reshape(len(shown), -1, shown.shape[-1])
         found = brackets_of(scan[SCALE].to_numpy(), shown)
@@ -97,16 +116,8 @@ class Lines:
 
         def middles(number: int, lines: Generic, scales: Array) -> xr.Dataset:
             rows, motions = np.divmod(lines, len(names))
-            heads = {
-                head(name, unit): values[rows] for name, (values, unit) in self.columns.items()
-            }
-            return sweep(
-                self.scene,
-                self.motions,
-                cases={**heads, SCALE: scales, MOTION: [names[k] for k in motions]},
-                store=self._folder(f"round {number:02d}"),
-                **self.means,
-            )
+            cases = {**self._heads(rows), SCALE: scales, MOTION: [names[k] for k in motions]}
+            return self._sweep(f"round {number:02d}", cases, {})
 
         def seen(runs: xr.Dataset) -> Array:
             return verdicts(runs).transpose(VERDICT, CASE).to_numpy()
@@ -117,8 +128,18 @@ class Lines:
             warn(f"while brackets were narrowed: {said[0]}", ModelWarning)
         return narrow
 
-    def _folder(self, name: str) -> Path | None:
-        return None if self.store is None else self.store / name
+    def _heads(self, rows: Any) -> dict[str, Any]:
+        columns = self.lines.columns.items()
+        return {head(name, unit): values[rows] for name, (values, unit) in columns}
+
+    def _sweep(self, part: str, cases: Any, axes: Mapping[str, Any]) -> xr.Dataset:
+        asked: dict[str, Any] = {**self.lines.run}
+        means: Any = {name: asked.pop(name, None) for name in ExecutionArguments.__annotations__}
+        del means["progress"]
+        means["store"] = None if self.store is None else self.store / part
+        study = plan_study(self.lines.scene, self.lines.motions, axes, cases, **asked)
+        self.bar.name(part)
+        return run_study(study, self.bar, **means)
 
 
 def read_scales(given: object, *, owner: str, most: int) -> Array:

@@ -2,9 +2,7 @@
 
 import math
 from collections.abc import Callable
-from concurrent.futures import Executor
-from os import PathLike
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, Unpack
 
 import numpy as np
 import xarray as xr
@@ -17,26 +15,26 @@ from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import Array
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.studies import MOTION
-from rockframe.solve.accuracy import AccuracyLevel
+from rockframe.shared_arguments import takes
 from rockframe.studies.brackets import padded
 from rockframe.studies.limit_states import overturns
-from rockframe.studies.lines import SCALE, VERDICT, Lines, read_store, read_width
+from rockframe.studies.lines import SCALE, VERDICT, Lines, read_width
+from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.studies.sweeps.axes import numbers_of
 from rockframe.system.options import Overturning
 from rockframe.system.rigid_ground import RigidGroundSetting
 from rockframe.units import ACCELERATION, FREQUENCY, quantity
 
 if TYPE_CHECKING:
-    from rockframe.components import InitialState
     from rockframe.simulation.system import System
-    from rockframe.system.options import OverturningLike, SweepAccuracyLike
-    from rockframe.units import QuantityLike, RatioLike
+    from rockframe.units import RatioLike
 
 _OWNER: Final = "overturning_map"
 _STANDS: Final = -1.0
 _MOST_IMPACTS: Final = 1000
 
 
+@takes(SweepArguments, overturning=Overturning.CONTINUE)
 def overturning_map(
     system: "System",
     pulse: "GroundMotion | Callable[..., GroundMotion]",
@@ -45,15 +43,7 @@ def overturning_map(
     frequency: Any,
     impacts: int = 3,
     width: "RatioLike" = 1e-3,
-    duration: "QuantityLike | None" = None,
-    free_vibration: "QuantityLike | None" = None,
-    initial: "InitialState | None" = None,
-    accuracy: "SweepAccuracyLike" = AccuracyLevel.STANDARD,
-    overturning: "OverturningLike" = Overturning.CONTINUE,
-    store: "str | PathLike[str] | None" = None,
-    executor: Executor | None = None,
-    chunk: int | None = None,
-    progress: bool | None = None,
+    **run: Unpack[SweepArguments],
 ) -> xr.Dataset:
     """Run pulses of all amplitudes and frequencies, and find the boundaries of overturning.
 
@@ -73,15 +63,6 @@ def overturning_map(
         Number of impacts from which on the ways to overturn are no longer told apart.
     width : float, optional
         Width of the brackets about boundaries, over their upper end [1].
-    duration, free_vibration, initial, accuracy : optional
-        As for :meth:`rockframe.System.simulate`.
-    overturning : {"continue", "stop"}
-        As for :func:`rockframe.critical_scale`.
-    store : str or path, optional
-        A folder in which what has been run is kept; the same call goes on with what it finds
-        there.
-    executor, chunk, progress : optional
-        As for :func:`rockframe.sweep`.
 
     Returns
     -------
@@ -129,25 +110,16 @@ def overturning_map(
     told = whole_number(impacts, owner=_OWNER, name="impacts", lowest=1, highest=_MOST_IMPACTS)
     share = read_width(width, owner=_OWNER)
     motions = {f"{one!r} {FREQUENCY.unit}": _made(pulse, one) for one in frequencies.tolist()}
-    means: dict[str, Any] = {
-        "duration": duration,
-        "free_vibration": free_vibration,
-        "initial": initial,
-        "accuracy": accuracy,
-        "overturning": overturning,
-        "executor": executor,
-        "chunk": chunk,
-        "progress": progress,
-    }
-    lines = Lines(system, motions, {}, means, read_store(store, owner=_OWNER))
-    scan = lines.scan(levels)
+    lines = Lines(system, motions, {}, run, _OWNER)
 
     def ways(runs: xr.Dataset) -> xr.DataArray:
         verdict = overturns(runs)
         counted = runs["impact_count"].clip(max=told).astype(float)
         return xr.where(verdict == 0.0, _STANDS, counted).where(verdict.notnull())
 
-    brackets = lines.follow(scan, lambda runs: ways(runs).expand_dims(VERDICT), width=share)
+    scan, brackets = lines.followed(
+        levels, lambda runs: ways(runs).expand_dims(VERDICT), width=share
+    )
     below, above, before, after = (one[0] for one in padded(brackets, (1, len(motions))))
     counted = ways(scan)
     of_cases = build_dataset(

@@ -1,9 +1,7 @@
 """How probable overturning is where parameters and motions are spread."""
 
 from collections.abc import Mapping, Sequence
-from concurrent.futures import Executor
-from os import PathLike
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, Unpack
 
 import numpy as np
 import xarray as xr
@@ -12,30 +10,29 @@ from rockframe.arguments import one_of_words, whole_number
 from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import Generic
 from rockframe.results.variables.studies import MOTION
-from rockframe.solve.accuracy import AccuracyLevel
+from rockframe.shared_arguments import takes
 from rockframe.studies.confidence import clopper_pearson, read_level
 from rockframe.studies.limit_states import overturns
 from rockframe.studies.lines import head
 from rockframe.studies.ranking import ranked
 from rockframe.studies.spread import Sampling, drawn, read_spread
+from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.studies.sweeps.motions import motions_of
 from rockframe.studies.sweeps.scenes import own_motion, scene_of
 from rockframe.studies.sweeps.sweep import sweep
-from rockframe.system.options import Overturning
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from rockframe.components import InitialState
     from rockframe.motion import GroundMotion
     from rockframe.simulation.system import System
-    from rockframe.system.options import OverturningLike, SweepAccuracyLike
-    from rockframe.units import QuantityLike, RatioLike
+    from rockframe.units import RatioLike
 
 _OWNER: Final = "probability_of_overturning"
 _MOST_CASES: Final = 1_000_000_000
 
 
+@takes(SweepArguments)
 def probability_of_overturning(
     system: "System | Callable[..., System]",
     motions: "GroundMotion | Mapping[str, GroundMotion] | Sequence[GroundMotion] | None" = None,
@@ -45,15 +42,7 @@ def probability_of_overturning(
     sampling: str = Sampling.LATIN,
     seed: int = 0,
     confidence: "RatioLike" = 0.95,
-    duration: "QuantityLike | None" = None,
-    free_vibration: "QuantityLike | None" = None,
-    initial: "InitialState | None" = None,
-    accuracy: "SweepAccuracyLike" = AccuracyLevel.STANDARD,
-    overturning: "OverturningLike" = Overturning.STOP,
-    store: "str | PathLike[str] | None" = None,
-    executor: Executor | None = None,
-    chunk: int | None = None,
-    progress: bool | None = None,
+    **run: Unpack[SweepArguments],
 ) -> xr.Dataset:
     """Draw parameters and motions, and count how many cases overturn.
 
@@ -78,12 +67,6 @@ def probability_of_overturning(
         Of the random numbers: the same one draws the same cases.
     confidence : float, optional
         Of the bounds [1].
-    duration, free_vibration, initial, accuracy : optional
-        As for :meth:`rockframe.System.simulate`.
-    overturning : {"stop", "continue"}
-        As for :func:`rockframe.critical_scale`.
-    store, executor, chunk, progress : optional
-        As for :func:`rockframe.sweep`.
 
     Returns
     -------
@@ -146,15 +129,7 @@ def probability_of_overturning(
         system,
         named,
         cases=table,
-        duration=duration,
-        free_vibration=free_vibration,
-        initial=initial,
-        accuracy=accuracy,
-        overturning=overturning,
-        store=store,
-        executor=executor,
-        chunk=chunk,
-        progress=progress,
+        **run,
     )
     found = _counted(runs, [one.name for one in spreads], several=several > 1, level=level)
     return found.assign_attrs(

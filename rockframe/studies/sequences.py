@@ -2,11 +2,9 @@
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from concurrent.futures import Executor
 from dataclasses import replace
 from itertools import accumulate
-from os import PathLike
-from typing import TYPE_CHECKING, Any, Final, cast
+from typing import TYPE_CHECKING, Any, Final, Unpack, cast
 
 import numpy as np
 import xarray as xr
@@ -17,18 +15,16 @@ from rockframe.motion import GroundMotion
 from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import Array
 from rockframe.results.variables.studies import MOTION
+from rockframe.shared_arguments import takes
 from rockframe.signals import Motion, Signal
 from rockframe.signals.signal import COEFFICIENTS
-from rockframe.solve.accuracy import AccuracyLevel
 from rockframe.studies.limit_states import overturns
+from rockframe.studies.sweeps.arguments import SequenceArguments
 from rockframe.studies.sweeps.sweep import sweep
-from rockframe.system.options import Overturning
 from rockframe.units import NOT_NEGATIVE, TIME, to_si
 
 if TYPE_CHECKING:
-    from rockframe.components import InitialState
     from rockframe.simulation.system import System
-    from rockframe.system.options import OverturningLike, SweepAccuracyLike
     from rockframe.units import QuantityLike
 
 _OWNER: Final = "earthquake_sequences"
@@ -37,18 +33,13 @@ _SAME_STEP: Final = 1e-9
 NUMBER: Final = "earthquake"
 
 
+@takes(SequenceArguments)
 def earthquake_sequences(
     system: "System",
     sequences: "Mapping[str, Sequence[GroundMotion]] | Sequence[Sequence[GroundMotion]]",
     *,
     pause: "QuantityLike" = "20 s",
-    initial: "InitialState | None" = None,
-    accuracy: "SweepAccuracyLike" = AccuracyLevel.STANDARD,
-    overturning: "OverturningLike" = Overturning.STOP,
-    store: "str | PathLike[str] | None" = None,
-    executor: Executor | None = None,
-    chunk: int | None = None,
-    progress: bool | None = None,
+    **run: Unpack[SequenceArguments],
 ) -> xr.Dataset:
     """Run earthquakes one after the other, each from where the one before has left the system.
 
@@ -60,10 +51,6 @@ def earthquake_sequences(
         Earthquakes in their order, such as a main shock and its aftershocks; of one time step.
     pause : str or Quantity, optional
         Still ground after each of them [s].
-    initial, accuracy, overturning : optional
-        As for :meth:`rockframe.System.simulate`.
-    store, executor, chunk, progress : optional
-        As for :func:`rockframe.sweep`.
 
     Returns
     -------
@@ -109,13 +96,7 @@ def earthquake_sequences(
     runs = sweep(
         system,
         motions,
-        initial=initial,
-        accuracy=accuracy,
-        overturning=overturning,
-        store=store,
-        executor=executor,
-        chunk=chunk,
-        progress=progress,
+        **run,
     )
     places = [
         (row, number) for row, each in enumerate(joined.values()) for number in range(len(each))

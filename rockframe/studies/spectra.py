@@ -1,9 +1,7 @@
 """Spectra of rocking and of overturning: motions and blocks of all sizes."""
 
 from collections.abc import Mapping, Sequence
-from concurrent.futures import Executor
-from os import PathLike
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, Unpack
 
 import numpy as np
 import xarray as xr
@@ -13,20 +11,18 @@ from rockframe.errors import StudyError
 from rockframe.motion import GroundMotion
 from rockframe.results.dataset import build_dataset
 from rockframe.results.variables.studies import CASE, MOTION
-from rockframe.solve.accuracy import AccuracyLevel
+from rockframe.shared_arguments import takes
 from rockframe.studies.block_sizes import BlockSizes
 from rockframe.studies.brackets import least_exceeding, padded
 from rockframe.studies.intensities import POWERS, Intensity, motions_in, of_motions
 from rockframe.studies.limit_states import overturns
-from rockframe.studies.lines import SCALE, VERDICT, Lines, head, read_scales, read_store, read_width
+from rockframe.studies.lines import SCALE, VERDICT, Lines, head, read_scales, read_width
+from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.studies.sweeps.motions import motions_of
 from rockframe.studies.sweeps.sweep import sweep
-from rockframe.system.options import Overturning
 
 if TYPE_CHECKING:
-    from rockframe.components import InitialState
     from rockframe.simulation.system import System
-    from rockframe.system.options import OverturningLike, SweepAccuracyLike
     from rockframe.units import QuantityLike, RatioLike
 
     Motions = GroundMotion | Mapping[str, GroundMotion] | Sequence[GroundMotion]
@@ -36,21 +32,14 @@ _OVERTURNING: Final = "overturning_spectrum"
 _MOST_SCALES: Final = 100_000
 
 
+@takes(SweepArguments)
 def rocking_spectrum(
     system: "System",
     motions: "Motions | None" = None,
     *,
     periods: Any,
     slenderness: Any = None,
-    duration: "QuantityLike | None" = None,
-    free_vibration: "QuantityLike | None" = None,
-    initial: "InitialState | None" = None,
-    accuracy: "SweepAccuracyLike" = AccuracyLevel.STANDARD,
-    overturning: "OverturningLike" = Overturning.STOP,
-    store: "str | PathLike[str] | None" = None,
-    executor: Executor | None = None,
-    chunk: int | None = None,
-    progress: bool | None = None,
+    **run: Unpack[SweepArguments],
 ) -> xr.Dataset:
     """Run blocks of all sizes under motions: what a response spectrum is to oscillators.
 
@@ -65,10 +54,6 @@ def rocking_spectrum(
         2 pi over the frequency parameter p of the block: ``([2, 4, 8], "s")`` [s].
     slenderness : values, optional
         Height over width; that of the block unless given [1].
-    duration, free_vibration, initial, accuracy, overturning : optional
-        As for :meth:`rockframe.System.simulate`.
-    store, executor, chunk, progress : optional
-        As for :func:`rockframe.sweep`.
 
     Returns
     -------
@@ -106,19 +91,12 @@ def rocking_spectrum(
         system,
         _given(motions, system, _ROCKING),
         cases=heads,
-        duration=duration,
-        free_vibration=free_vibration,
-        initial=initial,
-        accuracy=accuracy,
-        overturning=overturning,
-        store=store,
-        executor=executor,
-        chunk=chunk,
-        progress=progress,
+        **run,
     )
     return sizes.arranged(runs).assign_attrs(title="Rocking spectrum")
 
 
+@takes(SweepArguments)
 def overturning_spectrum(
     system: "System",
     motions: "Motions | None" = None,
@@ -129,15 +107,7 @@ def overturning_spectrum(
     intensity: str = "PGA",
     period: "QuantityLike | None" = None,
     width: "RatioLike" = 1e-3,
-    duration: "QuantityLike | None" = None,
-    free_vibration: "QuantityLike | None" = None,
-    initial: "InitialState | None" = None,
-    accuracy: "SweepAccuracyLike" = AccuracyLevel.STANDARD,
-    overturning: "OverturningLike" = Overturning.STOP,
-    store: "str | PathLike[str] | None" = None,
-    executor: Executor | None = None,
-    chunk: int | None = None,
-    progress: bool | None = None,
+    **run: Unpack[SweepArguments],
 ) -> xr.Dataset:
     """Find the least intensity of motions that overturns blocks of all sizes.
 
@@ -153,15 +123,6 @@ def overturning_spectrum(
         Of the oscillator of a spectral intensity [s].
     width : float, optional
         Width of a bracket, over its upper scale [1].
-    duration, free_vibration, initial, accuracy : optional
-        As for :meth:`rockframe.System.simulate`.
-    overturning : {"stop", "continue"}
-        As for :func:`rockframe.critical_scale`.
-    store : str or path, optional
-        A folder in which what has been run is kept; the same call goes on with what it finds
-        there.
-    executor, chunk, progress : optional
-        As for :func:`rockframe.sweep`.
 
     Returns
     -------
@@ -200,19 +161,10 @@ def overturning_spectrum(
     share = read_width(width, owner=_OVERTURNING)
     measure = Intensity.read(intensity, period, owner=_OVERTURNING)
     named = motions_of(_given(motions, system, _OVERTURNING))
-    means: dict[str, Any] = {
-        "duration": duration,
-        "free_vibration": free_vibration,
-        "initial": initial,
-        "accuracy": accuracy,
-        "overturning": overturning,
-        "executor": executor,
-        "chunk": chunk,
-        "progress": progress,
-    }
-    lines = Lines(system, named, sizes.columns, means, read_store(store, owner=_OVERTURNING))
-    scan = lines.scan(scales)
-    brackets = lines.follow(scan, lambda runs: overturns(runs).expand_dims(VERDICT), width=share)
+    lines = Lines(system, named, sizes.columns, run, _OVERTURNING)
+    scan, brackets = lines.followed(
+        scales, lambda runs: overturns(runs).expand_dims(VERDICT), width=share
+    )
     shape = (scan.sizes[CASE], scan.sizes[MOTION])
     below, above, _, after = (
         one[0].reshape(*shape, -1) for one in padded(brackets, (1, shape[0] * shape[1]))

@@ -1,6 +1,6 @@
 """From the arguments of a sweep to the study that they describe; all faults are told at once."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Final, TypeVar, cast
 
 import numpy as np
@@ -33,7 +33,6 @@ from rockframe.studies.sweeps.motions import (
 from rockframe.studies.sweeps.scenes import FunctionScene, Scene, own_motion, scene_of
 from rockframe.studies.sweeps.screening import FIRST, SCREEN
 from rockframe.studies.sweeps.study import Study
-from rockframe.system.options import OverturningLike, PointsLike, SweepAccuracyLike
 from rockframe.units import PERIOD, POSITIVE, QuantityLike, to_si
 
 Read = TypeVar("Read")
@@ -56,23 +55,17 @@ def plan_study(
     axes: Mapping[str, object],
     cases: object,
     *,
-    period: QuantityLike | None,
-    duration: QuantityLike | None,
-    free_vibration: QuantityLike | None,
-    initial: object,
-    accuracy: SweepAccuracyLike,
-    output_step: QuantityLike | None,
-    outputs: Sequence[str] | None,
-    points: PointsLike | None,
-    overturning: OverturningLike,
+    period: QuantityLike | None = None,
+    **asked: Any,
 ) -> Study:
     """Check the arguments of a sweep.
 
     Parameters
     ----------
-    scene, motions, axes, cases, period, duration, free_vibration, initial, accuracy,
-    output_step, outputs, points, overturning
+    scene, motions, axes, cases, period
         As for :func:`rockframe.sweep`.
+    **asked
+        What every run is asked for, as there.
 
     Returns
     -------
@@ -95,26 +88,17 @@ def plan_study(
         return otherwise
 
     made = scene_of(scene)  # without it nothing else can be checked
-    if isinstance(initial, xr.Dataset):
+    if isinstance(asked.get("initial"), xr.Dataset):
         faults.append(
             "initial cannot be the end of another run, whose system is one only; "
             "give an InitialState"
         )
-        initial = None
-    arguments = tried(
-        lambda: read_arguments(
-            faults,
-            duration=duration,
-            free_vibration=free_vibration,
-            initial=cast("Any", initial),
-            accuracy=FIRST if accuracy == SCREEN else accuracy,
-            output_step=output_step,
-            outputs=outputs,
-            points=points,
-            overturning=overturning,
-        ),
-        None,
-    )
+        del asked["initial"]
+    screened = asked.get("accuracy") == SCREEN
+    if screened:
+        asked["accuracy"] = FIRST
+    outputs = asked.setdefault("outputs", None)
+    arguments = tried(lambda: read_arguments(faults, **asked), None)
     none: dict[str, GroundMotion | None] = {NO_MOTION: None}
     given = tried(lambda: _motions(motions, made), none)
     of_case: Generic | None = None
@@ -142,7 +126,7 @@ def plan_study(
     kept = tried(lambda: kept_histories(made, given, arguments, outputs, grid.count), None)
     if faults:
         raise StudyError(*faults)
-    return Study(made, grid, given, arguments, seconds, kept, screened=accuracy == SCREEN)
+    return Study(made, grid, given, arguments, seconds, kept, screened=screened)
 
 
 def _motions(given: object, scene: Scene) -> dict[str, GroundMotion | None]:

@@ -1,47 +1,101 @@
-"""How far a sweep has come, by tqdm where that is installed."""
+"""How far sweeps have come, by tqdm where that is installed."""
 
 import sys
+from collections.abc import Generator
+from contextlib import contextmanager
 from typing import Any, Final, Protocol
 
 from rockframe.errors import ComponentError, shown
-from rockframe.studies.sweeps.axes import OWNER
 
 _DELAY: Final = 1.0
 """What takes no longer shows no bar, unless one is asked for [s]."""
+_GROWS: Final = "total grows"
+"""What is said where more cases are to come than are known by now."""
 
 
 class Progress(Protocol):
-    """A bar."""
+    """A bar over the cases of one sweep, or of several that follow one another."""
 
-    def update(self, n: int) -> Any:
-        """Add cases that are done."""
+    def name(self, part: str) -> None:
+        """Say which part of the whole comes next; how many there will be is not known."""
         ...
 
-    def close(self) -> Any:
-        """Show it no longer as going on."""
+    def expect(self, count: int, done: int = 0) -> None:
+        """Add cases to the total, of which some were done before."""
+        ...
+
+    def update(self, count: int) -> None:
+        """Add cases that are done."""
         ...
 
 
 class _Silent:
-    def update(self, n: int) -> None:
+    def name(self, part: str) -> None:
         """Show nothing."""
+
+    def expect(self, count: int, done: int = 0) -> None:
+        """Show nothing."""
+
+    def update(self, count: int) -> None:
+        """Show nothing."""
+
+
+class _Bar:
+    """A bar of tqdm, begun when the first cases are known."""
+
+    def __init__(self, kind: Any, owner: str, unit: str, delay: float) -> None:
+        self._kind = kind
+        self._owner = self._words = owner
+        self._unit, self._delay = unit, delay
+        self._bar: Any = None
+
+    def name(self, part: str) -> None:
+        """Say which part comes next, and that the total grows."""
+        self._words = f"{self._owner}, {part} ({_GROWS})"
+        if self._bar is not None:
+            self._bar.set_description_str(self._words, refresh=False)
+
+    def expect(self, count: int, done: int = 0) -> None:
+        """Begin the bar, or let its total grow."""
+        if self._bar is None:
+            self._bar = self._kind(
+                total=count, initial=done, unit=self._unit, desc=self._words, delay=self._delay
+            )
+            return
+        self._bar.total += count
+        # what was there before does not count for the rate
+        self._bar.initial += done
+        self._bar.n += done
+        widgets = getattr(self._bar, "container", None)
+        if widgets is not None:  # in notebooks the total is that of a widget too
+            widgets.children[1].max = self._bar.total
+
+    def update(self, count: int) -> None:
+        """Add cases that are done."""
+        self._bar.update(count)
 
     def close(self) -> None:
-        """Show nothing."""
+        """Show the whole, which grows no longer."""
+        if self._bar is not None:
+            self._bar.set_description_str(self._owner, refresh=False)
+            self._bar.close()
 
 
-def progress_of(given: object, *, total: int, done: int) -> Progress:
-    """Give the bar of a sweep.
+@contextmanager
+def bar_of(given: object, *, owner: str, unit: str = "case") -> Generator[Progress]:
+    """Show a bar while something is done.
 
     Parameters
     ----------
     given : bool or None
         Whether there is one; where it can be seen and tqdm is installed if None.
-    total, done : int
-        Cases; those that were there before.
+    owner : str
+        Function that it stands for.
+    unit : str
+        What it counts.
 
-    Returns
-    -------
+    Yields
+    ------
     Progress
 
     Raises
@@ -49,8 +103,17 @@ def progress_of(given: object, *, total: int, done: int) -> Progress:
     ComponentError
         Neither True, False nor None; or True, and tqdm is not installed.
     """
+    bar = _made(given, owner, unit)
+    try:
+        yield bar
+    finally:
+        if isinstance(bar, _Bar):
+            bar.close()
+
+
+def _made(given: object, owner: str, unit: str) -> _Bar | _Silent:
     if given is not None and not isinstance(given, bool):
-        msg = f"{OWNER}: progress must be True, False or None, got {shown(given)}"
+        msg = f"{owner}: progress must be True, False or None, got {shown(given)}"
         raise ComponentError(msg)
     if given is False:
         return _Silent()
@@ -59,11 +122,10 @@ def progress_of(given: object, *, total: int, done: int) -> Progress:
     except ImportError as problem:
         if given is None:
             return _Silent()
-        msg = f"{OWNER}: progress=True needs tqdm (pip install 'rockframe[progress]')"
+        msg = f"{owner}: progress=True needs tqdm (pip install 'rockframe[progress]')"
         raise ComponentError(msg) from problem
-    bar: Any = auto.tqdm
-    in_a_notebook = any("notebook" in kind.__module__ for kind in bar.__mro__)
+    kind: Any = auto.tqdm
+    in_a_notebook = any("notebook" in one.__module__ for one in kind.__mro__)
     if given is None and not (in_a_notebook or sys.stderr.isatty()):
         return _Silent()
-    delay = _DELAY if given is None else 0.0
-    return bar(total=total, initial=done, unit="case", desc=OWNER, delay=delay)
+    return _Bar(kind, owner, unit, _DELAY if given is None else 0.0)

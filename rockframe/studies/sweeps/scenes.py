@@ -4,7 +4,6 @@ import hashlib
 import inspect
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
-from difflib import get_close_matches
 from enum import StrEnum
 from typing import Any, Final, Protocol, TypeAlias
 
@@ -14,7 +13,9 @@ from rockframe.components.parameters import Choice, Declared, Text
 from rockframe.errors import ModelWarning, StudyError, shown, warn
 from rockframe.motion import GroundMotion
 from rockframe.results.outcome import Generic
+from rockframe.shared_arguments import meant
 from rockframe.simulation.system import System
+from rockframe.studies.sweeps.arguments import OF_A_SWEEP
 from rockframe.studies.sweeps.axes import (
     OWNER,
     Axis,
@@ -167,10 +168,9 @@ class SystemScene:
             )
         known = [*TARGETS, *_OPTIONS, *STARTS]
         known += [one for part in self._parts().values() for one in part.declared()]
-        near = get_close_matches(parameter, known, n=3)
-        meant = f"; was {' or '.join(map(repr, near))} meant?" if near else "."
         listed = ", ".join(dict.fromkeys(known))
-        return f"axis {name!r} names no parameter{meant} There are {listed}"
+        question = meant(parameter, [*known, *OF_A_SWEEP])
+        return f"axis {name!r} names no parameter{question} There are {listed}"
 
 
 @dataclass(frozen=True)
@@ -202,7 +202,9 @@ class FunctionScene:
         try:
             self._signature().bind(**given)
         except TypeError as problem:
-            return [f"the axes do not fit the arguments of {self.name}: {problem}"]
+            unknown = [name for name in given if name not in self._signature().parameters]
+            question = meant(unknown[0], OF_A_SWEEP).removesuffix(".") if unknown else ""
+            return [f"the axes do not fit the arguments of {self.name}: {problem}{question}"]
         return []
 
     def assembled(self, values: Values) -> Assembly:

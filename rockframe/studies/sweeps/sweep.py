@@ -3,24 +3,19 @@
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
 from os import PathLike
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any
 
 import xarray as xr
 
-from rockframe.arguments import whole_number
-from rockframe.errors import SolverWarning, StudyError, shown, warn
+from rockframe.errors import StudyError
+from rockframe.shared_arguments import documented_by
 from rockframe.solve.accuracy import AccuracyLevel
+from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.studies.sweeps.axes import OWNER
-from rockframe.studies.sweeps.case import remember
-from rockframe.studies.sweeps.chunk import Rows
-from rockframe.studies.sweeps.execution import Chunk, carry_out, worker_count
-from rockframe.studies.sweeps.grid import chunks_of
-from rockframe.studies.sweeps.labelling import labelled, labels_of, say_what_is_missing
 from rockframe.studies.sweeps.planning import plan_study
-from rockframe.studies.sweeps.progress import progress_of
-from rockframe.studies.sweeps.store import Store, begin_with
-from rockframe.studies.sweeps.study import Study
+from rockframe.studies.sweeps.progress import bar_of
+from rockframe.studies.sweeps.running import folder_of, opened, run_study
+from rockframe.studies.sweeps.store import Store
 from rockframe.system.options import Overturning
 
 if TYPE_CHECKING:
@@ -30,9 +25,8 @@ if TYPE_CHECKING:
     from rockframe.system.options import OverturningLike, PointsLike, SweepAccuracyLike
     from rockframe.units import QuantityLike
 
-_LARGEST_CHUNK: Final = 1_000_000
 
-
+@documented_by(SweepArguments)
 def sweep(
     scene: "System | Callable[..., System]",
     motions: "GroundMotion | Mapping[str, GroundMotion] | Sequence[GroundMotion] | None" = None,
@@ -73,11 +67,6 @@ def sweep(
         number.
     period : str or Quantity, optional
         Of the oscillator of ``pseudo_spectral_acceleration`` [s].
-    duration, free_vibration, initial, overturning : optional
-        As for :meth:`rockframe.System.simulate`; `initial` cannot be a dataset.
-    accuracy : {"fast", "standard", "reference", "screen"}, float or Accuracy
-        As for :meth:`rockframe.System.simulate`; or ``"screen"``: all cases at ``"fast"``, and
-        those near a flip of their verdict again at ``"standard"``, :eq:`eq-screened`.
     output_step : str or Quantity, optional
         Spacing of the histories; the time step of the motions unless given [s].
     outputs : sequence of str, optional
@@ -87,16 +76,9 @@ def sweep(
         Points of the body, as for :meth:`rockframe.System.simulate`. Peaks of their
         displacements and absolute accelerations are given over ``point``, and their histories
         as far as `outputs` keeps them [m].
-    store : str or path, optional
-        A folder in which what has been run is kept. The same call goes on with what it
-        finds there.
-    executor : concurrent.futures.Executor, optional
-        Runs the cases; threads, one for each processor, unless given.
-    chunk : int, optional
-        Cases that are handed out, and kept, together; what takes about a second unless
-        given. A `store` keeps to what it was begun with.
-    progress : bool, optional
-        Whether a bar shows how far it is (needs tqdm); where it can be seen unless given.
+    overturning : {"stop", "continue"}, optional
+        Whether a run ends when the rotation reaches the overturning angle, or goes on until
+        the block lies flat.
     **more_axes : values
         Axes, by the name of a parameter of one part (``frequency_ratio``) or of an option of
         the system (``gravity``), by an argument of the function, by where runs start
@@ -164,20 +146,8 @@ def sweep(
         points=points,
         overturning=overturning,
     )
-    size = (
-        study.chunk_size(worker_count())
-        if chunk is None
-        else whole_number(chunk, owner=OWNER, name="chunk", lowest=1, highest=_LARGEST_CHUNK)
-    )
-    remember(study)
-    if store is None:
-        dataset, whole = _in_memory(study, size, executor, progress)
-    else:
-        dataset, whole = _kept(study, _folder(store), size, executor, progress)
-    if not whole:
-        warn(f"{OWNER}: interrupted; {dataset.attrs['verdict']}", SolverWarning)
-    say_what_is_missing(dataset)
-    return dataset
+    with bar_of(progress, owner=OWNER) as bar:
+        return run_study(study, bar, store=store, executor=executor, chunk=chunk)
 
 
 def open_study(path: "str | PathLike[str]") -> xr.Dataset:
@@ -198,66 +168,4 @@ def open_study(path: "str | PathLike[str]") -> xr.Dataset:
     StudyError
         There is no study, it is damaged, or another version of rockframe wrote it.
     """
-    return _opened(Store.at(_folder(path)))
-
-
-def _in_memory(
-    study: Study, size: int, executor: Executor | None, progress: bool | None
-) -> tuple[xr.Dataset, bool]:
-    chunks = [Chunk(k, cases) for k, cases in enumerate(chunks_of(study.grid.count, size))]
-    found: list[tuple[range, Rows]] = []
-    bar = progress_of(progress, total=study.grid.count, done=0)
-
-    def take(one: Chunk, rows: Rows) -> None:
-        found.append((one.cases, rows))
-        bar.update(len(one.cases))
-
-    try:
-        whole = carry_out(chunks, lambda one: study.job(one.cases), take, executor)
-    finally:
-        bar.close()
-    return labelled(labels_of(study), found), whole
-
-
-def _kept(
-    study: Study, folder: Path, size: int, executor: Executor | None, progress: bool | None
-) -> tuple[xr.Dataset, bool]:
-    kept = Store.of_study(folder, study, size)
-    every = kept.chunks()
-    missing = [one for one in every if not kept.has(one)]
-    some = len(missing) < len(every)
-    if some:  # before hours of work
-        for _ in kept.found():
-            pass
-    done = study.grid.count - sum(len(one.cases) for one in missing)
-    bar = progress_of(progress, total=study.grid.count, done=done)
-
-    def still_missing() -> Any:
-        for one in begin_with(missing) if some else missing:
-            if kept.has(one):  # another process has run it meanwhile
-                bar.update(len(one.cases))
-            else:
-                yield one
-
-    def take(one: Chunk, rows: Rows) -> None:
-        kept.put(one, rows)
-        bar.update(len(one.cases))
-
-    try:
-        whole = carry_out(still_missing(), lambda one: study.job(one.cases), take, executor)
-    finally:
-        bar.close()
-    return _opened(kept), whole
-
-
-def _opened(kept: Store) -> xr.Dataset:
-    dataset = labelled(kept.labels(), kept.found())
-    dataset.attrs["history"] = kept.history
-    return dataset
-
-
-def _folder(path: object) -> Path:
-    if isinstance(path, str | PathLike):
-        return Path(path)  # pyright: ignore[reportUnknownArgumentType]
-    msg = f"store must be the path of a folder, got {shown(path)}"
-    raise StudyError(msg)
+    return opened(Store.at(folder_of(path)))

@@ -1,0 +1,163 @@
+"""Arguments that several functions take: declared once, documented and refused alike for all."""
+
+import inspect
+import re
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from difflib import get_close_matches
+from functools import wraps
+from textwrap import fill
+from typing import Any, Final, TypeVar, cast, get_type_hints
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+_WIDTH: Final = 92
+_INDENT: Final = "    "
+_PARAMETERS: Final = re.compile(
+    r"(?<=^Parameters\n----------\n).*?(?=^\S[^\n]*\n---|\Z)", re.M | re.S
+)
+_ROW: Final = re.compile(r"^(?=\S)", re.M)
+
+
+@dataclass(frozen=True)
+class Argument:
+    """What is said of an argument, beside its type: the metadata of ``Annotated``.
+
+    Parameters
+    ----------
+    default : object
+        Its value unless given.
+    kind : str
+        Its type, as the manual has it.
+    words : str
+        What it is, with its unit.
+    """
+
+    default: object
+    kind: str
+    words: str
+
+
+def declared_in(kind: type) -> dict[str, Argument]:
+    """Give the arguments of a typed dictionary, by their names.
+
+    Parameters
+    ----------
+    kind : type of TypedDict
+        Whose values are ``Annotated`` by an :class:`Argument`.
+
+    Returns
+    -------
+    dict of str to Argument
+    """
+    hints = get_type_hints(kind, include_extras=True)
+    return {name: hint.__metadata__[0] for name, hint in hints.items()}
+
+
+def documented_by(kind: type) -> Callable[[Function], Function]:
+    """Complete the docstring of a function that takes shared arguments by name.
+
+    Parameters
+    ----------
+    kind : type of TypedDict
+        Their declarations. A row that the docstring has stays.
+
+    Returns
+    -------
+    callable
+        A decorator.
+    """
+
+    def decorate(function: Function) -> Function:
+        names = inspect.signature(function).parameters
+        function.__doc__ = _completed(function.__doc__ or "", names, declared_in(kind))
+        return function
+
+    return decorate
+
+
+def takes(kind: type, **otherwise: object) -> Callable[[Function], Function]:
+    """Let a function take shared arguments, which it has as ``**run: Unpack[kind]``.
+
+    Parameters
+    ----------
+    kind : type of TypedDict
+        Their declarations.
+    **otherwise
+        Defaults of this function that are not those of the declarations.
+
+    Returns
+    -------
+    callable
+        A decorator. The function's signature and docstring list every argument.
+
+    Raises
+    ------
+    TypeError
+        By the function, when another argument is given; it names similar ones.
+    """
+    declared = declared_in(kind)
+
+    def decorate(function: Function) -> Function:
+        own = inspect.signature(function)
+        first = [one for one in own.parameters.values() if one.kind is not one.VAR_KEYWORD]
+        shared = [
+            inspect.Parameter(
+                name, inspect.Parameter.KEYWORD_ONLY, default=otherwise.get(name, one.default)
+            )
+            for name, one in declared.items()
+        ]
+        whole = own.replace(parameters=[*first, *shared])
+
+        @wraps(function)
+        def call(*given: Any, **named: Any) -> Any:
+            for name in named:
+                if name not in whole.parameters:
+                    raise TypeError(_unknown(function.__qualname__, name, whole.parameters))
+            return function(*given, **{**otherwise, **named})
+
+        cast("Any", call).__signature__ = whole
+        call.__doc__ = _completed(function.__doc__ or "", whole.parameters, declared)
+        return cast("Function", call)
+
+    return decorate
+
+
+def _unknown(function: str, name: str, known: Iterable[str]) -> str:
+    names = list(known)
+    return f"{function}() takes no {name!r}{meant(name, names)} It takes {', '.join(names)}"
+
+
+def meant(name: str, known: Iterable[str]) -> str:
+    """Ask whether a similar name was meant, at the end of a sentence; or end it."""
+    near = get_close_matches(name, list(known), n=3)
+    return f"; was {' or '.join(map(repr, near))} meant?" if near else "."
+
+
+def _completed(text: str, names: Iterable[str], declared: Mapping[str, Argument]) -> str:
+    """Insert rows for declared arguments into the section on parameters."""
+    clean = inspect.cleandoc(text)
+    section = _PARAMETERS.search(clean)
+    if section is None:  # also where Python has left docstrings out
+        return text
+    rows = {
+        name.strip().lstrip("*"): row.rstrip()
+        for row in _ROW.split(section[0])
+        if row.strip()
+        for name in row.split(" :")[0].split("\n")[0].split(",")
+    }
+    ordered = dict.fromkeys(
+        rows[name] if name in rows else _row(name, declared[name])
+        for name in names
+        if name in rows or name in declared
+    )
+    before, after = clean[: section.start()], clean[section.end() :]
+    return before + "\n".join(ordered) + f"\n\n{after}".rstrip() + "\n"
+
+
+def _row(name: str, one: Argument) -> str:
+    words = fill(
+        one.words, _WIDTH, initial_indent=_INDENT, subsequent_indent=_INDENT,
+        break_long_words=False, break_on_hyphens=False,
+    )  # fmt: skip
+    return f"{name} : {one.kind}\n{words}"

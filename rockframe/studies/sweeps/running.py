@@ -1,0 +1,130 @@
+"""A planned sweep, from its chunks to the labelled dataset, in memory or in a folder."""
+
+from concurrent.futures import Executor
+from os import PathLike
+from pathlib import Path
+from typing import Any, Final
+
+import xarray as xr
+
+from rockframe.arguments import whole_number
+from rockframe.errors import SolverWarning, StudyError, shown, warn
+from rockframe.studies.sweeps.axes import OWNER
+from rockframe.studies.sweeps.case import remember
+from rockframe.studies.sweeps.chunk import Rows
+from rockframe.studies.sweeps.execution import Chunk, carry_out, worker_count
+from rockframe.studies.sweeps.grid import chunks_of
+from rockframe.studies.sweeps.labelling import labelled, labels_of, say_what_is_missing
+from rockframe.studies.sweeps.progress import Progress
+from rockframe.studies.sweeps.store import Store, begin_with
+from rockframe.studies.sweeps.study import Study
+
+_LARGEST_CHUNK: Final = 1_000_000
+
+
+def run_study(
+    study: Study,
+    bar: Progress,
+    *,
+    store: "str | PathLike[str] | None" = None,
+    executor: Executor | None = None,
+    chunk: int | None = None,
+) -> xr.Dataset:
+    """Run the cases of a study that are not kept yet, and label all of them.
+
+    Parameters
+    ----------
+    study : Study
+        As planned.
+    bar : Progress
+        Is told of the cases.
+    store, executor, chunk : optional
+        As for :func:`rockframe.sweep`.
+
+    Returns
+    -------
+    xarray.Dataset
+
+    Raises
+    ------
+    StudyError, ComponentError
+        As for :func:`rockframe.sweep`.
+    """
+    size = (
+        study.chunk_size(worker_count())
+        if chunk is None
+        else whole_number(chunk, owner=OWNER, name="chunk", lowest=1, highest=_LARGEST_CHUNK)
+    )
+    remember(study)
+    if store is None:
+        dataset, whole = _in_memory(study, size, executor, bar)
+    else:
+        dataset, whole = _kept(study, folder_of(store), size, executor, bar)
+    if not whole:
+        warn(f"{OWNER}: interrupted; {dataset.attrs['verdict']}", SolverWarning)
+    say_what_is_missing(dataset)
+    return dataset
+
+
+def _in_memory(
+    study: Study, size: int, executor: Executor | None, bar: Progress
+) -> tuple[xr.Dataset, bool]:
+    chunks = [Chunk(k, cases) for k, cases in enumerate(chunks_of(study.grid.count, size))]
+    found: list[tuple[range, Rows]] = []
+    bar.expect(study.grid.count)
+
+    def take(one: Chunk, rows: Rows) -> None:
+        found.append((one.cases, rows))
+        bar.update(len(one.cases))
+
+    whole = carry_out(chunks, lambda one: study.job(one.cases), take, executor)
+    return labelled(labels_of(study), found), whole
+
+
+def _kept(
+    study: Study, folder: Path, size: int, executor: Executor | None, bar: Progress
+) -> tuple[xr.Dataset, bool]:
+    kept = Store.of_study(folder, study, size)
+    every = kept.chunks()
+    missing = [one for one in every if not kept.has(one)]
+    some = len(missing) < len(every)
+    if some:  # before hours of work
+        for _ in kept.found():
+            pass
+    done = study.grid.count - sum(len(one.cases) for one in missing)
+    bar.expect(study.grid.count, done)
+
+    def still_missing() -> Any:
+        for one in begin_with(missing) if some else missing:
+            if kept.has(one):  # another process has run it meanwhile
+                bar.update(len(one.cases))
+            else:
+                yield one
+
+    def take(one: Chunk, rows: Rows) -> None:
+        kept.put(one, rows)
+        bar.update(len(one.cases))
+
+    whole = carry_out(still_missing(), lambda one: study.job(one.cases), take, executor)
+    return opened(kept), whole
+
+
+def opened(kept: Store) -> xr.Dataset:
+    """Give what a folder holds as a dataset."""
+    dataset = labelled(kept.labels(), kept.found())
+    dataset.attrs["history"] = kept.history
+    return dataset
+
+
+def folder_of(path: object) -> Path:
+    """Read the argument ``store``.
+
+    Raises
+    ------
+    StudyError
+        No path.
+    """
+    if isinstance(path, str | PathLike):
+        return Path(path)  # pyright: ignore[reportUnknownArgumentType]
+    msg = f"store must be the path of a folder, got {shown(path)}"
+    raise StudyError(msg)

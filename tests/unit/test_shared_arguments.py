@@ -1,0 +1,157 @@
+"""Arguments that several functions take: in signatures, docstrings and refusals."""
+
+import inspect
+import pickle
+from typing import Annotated, TypedDict, Unpack, get_type_hints
+
+import pytest
+
+import rockframe as rf
+from rockframe.shared_arguments import Argument, declared_in, documented_by, takes
+from rockframe.simulation.run_arguments import ComparedArguments, RunArguments, ScaleArguments
+from rockframe.studies.sweeps.arguments import OF_A_SWEEP, SequenceArguments, SweepArguments
+
+SYSTEM = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
+PULSE = rf.GroundMotion.half_sine_pulse("1 m/s^2", "0.5 s")
+
+LENGTH = ["duration", "free_vibration"]
+COURSE = ["initial", "accuracy", "overturning"]
+EXECUTION = ["store", "executor", "chunk", "progress"]
+TAKEN = {
+    rf.rocking_spectrum: (SweepArguments, [*LENGTH, *COURSE, *EXECUTION]),
+    rf.overturning_spectrum: (SweepArguments, [*LENGTH, *COURSE, *EXECUTION]),
+    rf.incremental_dynamic_analysis: (SweepArguments, [*LENGTH, *COURSE, *EXECUTION]),
+    rf.overturning_map: (SweepArguments, [*LENGTH, *COURSE, *EXECUTION]),
+    rf.probability_of_overturning: (SweepArguments, [*LENGTH, *COURSE, *EXECUTION]),
+    rf.earthquake_sequences: (SequenceArguments, [*COURSE, *EXECUTION]),
+    rf.critical_scale: (ScaleArguments, [*LENGTH, *COURSE]),
+    rf.tradeoff: (ComparedArguments, [*LENGTH, "initial", "output_step"]),
+}
+DEFAULTS = {"accuracy": "standard", "overturning": "stop"}
+
+
+class Some(TypedDict, total=False):
+    depth: Annotated[float, Argument(2.0, "float, optional", "How deep it is [m].")]
+    colour: Annotated[str | None, Argument(None, "str, optional", "Of the rock.")]
+
+
+@takes(Some, colour="grey")
+def pit(width: float, *, roof: bool = False, **more: Unpack[Some]) -> dict[str, object]:
+    """Dig.
+
+    Parameters
+    ----------
+    width : float
+        How wide [m].
+    roof : bool, optional
+        Whether there is one.
+
+    Returns
+    -------
+    dict
+    """
+    return {"width": width, "roof": roof, **more}
+
+
+def test_a_function_lists_all_that_it_takes():
+    assert str(inspect.signature(pit)) == (
+        "(width: float, *, roof: bool = False, depth=2.0, colour='grey') -> dict[str, object]"
+    )
+    assert inspect.getdoc(pit) == (
+        "Dig.\n\nParameters\n----------\n"
+        "width : float\n    How wide [m].\n"
+        "roof : bool, optional\n    Whether there is one.\n"
+        "depth : float, optional\n    How deep it is [m].\n"
+        "colour : str, optional\n    Of the rock.\n"
+        "\nReturns\n-------\ndict"
+    )
+    assert pit(1.0) == {"width": 1.0, "roof": False, "colour": "grey"}
+    assert pit(1.0, colour=None, depth=3.0)["colour"] is None
+    with pytest.raises(
+        TypeError, match=r"^pit\(\) takes no 'dept'; was 'depth' meant\? It takes w"
+    ):
+        pit(1.0, dept=3.0)
+    with pytest.raises(TypeError, match=r"takes no 'x'\. It takes width, roof, depth, colour$"):
+        pit(1.0, x=3.0)
+    with pytest.raises(TypeError, match="missing 1 required positional argument: 'width'"):
+        pit()
+
+
+def test_rows_that_a_docstring_has_stay_and_all_follow_the_signature():
+    def dug(depth=2.0, colour=None, *others):
+        """Dig.
+
+        Parameters
+        ----------
+        colour : str
+            Its own words.
+        *others
+            More.
+        """
+
+    text = inspect.getdoc(documented_by(Some)(dug))
+    rows = text.split("----------\n")[1].splitlines()
+    assert rows[::2] == ["depth : float, optional", "colour : str", "*others"]
+    assert rows[3] == "    Its own words."
+
+    def bare(depth=2.0):
+        pass
+
+    assert documented_by(Some)(bare).__doc__ == ""
+
+
+@pytest.mark.parametrize("function", TAKEN, ids=lambda one: one.__name__)
+def test_each_analysis_has_the_names_and_defaults_that_it_had(function):
+    kind, names = TAKEN[function]
+    declared = declared_in(kind)
+    assert list(declared) == names
+    own = inspect.signature(function).parameters
+    assert not any(one.kind is one.VAR_KEYWORD for one in own.values())
+    for name in names:
+        usual = DEFAULTS.get(name)
+        if function is rf.overturning_map and name == "overturning":
+            usual = "continue"
+        assert own[name].kind is inspect.Parameter.KEYWORD_ONLY
+        assert own[name].default == usual
+        assert f"\n{name} : " in inspect.getdoc(function)
+        assert declared[name].words[-1] in ".]"
+    with pytest.raises(TypeError, match=rf"{function.__name__}\(\) takes no 'acuracies'"):
+        function(SYSTEM, acuracies="fast")
+    assert pickle.loads(pickle.dumps(function)) is function  # noqa: S301
+
+
+def test_sweep_and_simulate_have_what_is_declared():
+    """Both write their arguments out: one takes any further name, the other any outputs."""
+    of_sweep = inspect.signature(rf.sweep).parameters
+    for name, one in declared_in(SweepArguments).items():
+        assert of_sweep[name].default == one.default
+    assert set(OF_A_SWEEP) < set(of_sweep)
+    of_run = inspect.signature(rf.System.simulate).parameters
+    assert set(get_type_hints(RunArguments)) == set(of_run) - {"self", "motion", "certify"}
+    assert all(of_run[name].default == DEFAULTS.get(name) for name in (*LENGTH, *COURSE))
+
+
+def test_a_misspelt_argument_of_a_sweep_is_no_axis():
+    with pytest.raises(rf.StudyError, match="'acuracy' names no parameter; was 'accuracy' meant"):
+        rf.sweep(SYSTEM, PULSE, acuracy=["fast"])
+    with pytest.raises(rf.StudyError, match="argument 'duraton'; was 'duration' meant"):
+        rf.sweep(lambda width: SYSTEM, PULSE, width=[1.0], duraton="3 s")
+
+
+def test_values_are_checked_in_one_place():
+    for wrong, words in (
+        ({"duration": "3 kg"}, "duration needs a time in a unit such as s"),
+        ({"overturning": "halt"}, "overturning"),
+        ({"accuracy": "exact"}, "accuracy"),
+    ):
+        for function, given in (
+            (rf.rocking_spectrum, {"periods": ([2.0], "s")}),
+            (rf.overturning_spectrum, {"periods": ([2.0], "s"), "scale": [1.0, 2.0]}),
+            (rf.sweep, {"scale": [1.0]}),
+        ):
+            with pytest.raises(rf.StudyError, match=words):
+                function(SYSTEM, PULSE, **given, **wrong)
+    with pytest.raises(rf.StudyError, match="duration or free_vibration, not both"):
+        rf.rocking_spectrum(
+            SYSTEM, PULSE, periods=([2.0], "s"), duration="3 s", free_vibration="1 s"
+        )
