@@ -20,6 +20,8 @@ from rockframe.results.outcome import Generic
 
 _HEAD: Final = b"rockframe arrays 1 "
 _DIGEST: Final = 64
+_BLOCK: Final = 4096
+"""What file systems usually give out at once [bytes]."""
 
 
 def write_arrays(path: Path, described: Mapping[str, Any], arrays: Mapping[str, Generic]) -> None:
@@ -118,6 +120,23 @@ def write_whole(path: Path, content: bytes, *, replace: bool = True) -> bool:
             part.replace(path)
             return True
         return _linked(part, path)
+    finally:
+        with suppress(OSError):
+            part.unlink(missing_ok=True)
+
+
+def try_to_write(folder: Path) -> None:
+    """Write a block into a folder, and take it away again.
+
+    Raises
+    ------
+    OSError
+        Nothing can be written there.
+    """
+    part = folder / f".{os.getpid()}.{os.urandom(4).hex()}.part"
+    try:
+        with part.open("xb") as file:
+            file.write(bytes(_BLOCK))
     finally:
         with suppress(OSError):
             part.unlink(missing_ok=True)

@@ -88,6 +88,8 @@ def _kept(
     every = kept.chunks()
     missing = [one for one in every if not kept.has(one)]
     some = len(missing) < len(every)
+    if missing:
+        kept.check()
     if some:  # before hours of work
         for _ in kept.found():
             pass

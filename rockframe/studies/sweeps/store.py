@@ -21,7 +21,12 @@ from rockframe.motion import GroundMotion
 from rockframe.results.dataset import dated
 from rockframe.results.outcome import Generic
 from rockframe.results.points import Point
-from rockframe.studies.sweeps.arrays_file import read_arrays, write_arrays, write_whole
+from rockframe.studies.sweeps.arrays_file import (
+    read_arrays,
+    try_to_write,
+    write_arrays,
+    write_whole,
+)
 from rockframe.studies.sweeps.axes import Axis
 from rockframe.studies.sweeps.chunk import Rows
 from rockframe.studies.sweeps.execution import Chunk
@@ -92,8 +97,7 @@ class Store:
                 _make(path, study, chunk)
             _remove_left_over(path)
         except OSError as problem:
-            msg = f"the study cannot be kept in {path}: {problem}"
-            raise StudyError(msg) from problem
+            raise _cannot_be_kept(path, problem) from problem
         kept = _read_head(path)
         if kept["study_sha256"] != study.digest:
             raise StudyError(_difference(path, kept["study"], study.to_dict()))
@@ -146,6 +150,19 @@ class Store:
                 "whole, and the same call goes on from there"
             )
             raise StudyError(msg) from problem
+
+    def check(self) -> None:
+        """Try whether anything can be kept, before hours of work.
+
+        Raises
+        ------
+        StudyError
+            The folder is read-only, or full.
+        """
+        try:
+            try_to_write(self.folder)
+        except OSError as problem:
+            raise _cannot_be_kept(self.folder, problem) from problem
 
     def get(self, chunk: Chunk) -> Rows:
         """Read what a chunk showed.
@@ -218,6 +235,10 @@ class Store:
             "first_case": chunk.cases.start,
             "last_case": chunk.cases.stop - 1,
         }
+
+
+def _cannot_be_kept(path: Path, problem: OSError) -> StudyError:
+    return StudyError(f"the study cannot be kept in {path}: {problem}")
 
 
 def _make(path: Path, study: Study, chunk: int) -> None:

@@ -1,15 +1,11 @@
-"""The folder in which a sweep is kept: killed, resumed, damaged, another's, full, shared."""
+"""The folder in which a sweep is kept: what it holds, when it is resumed, damaged or another's."""
 
-import ctypes
 import os
-import random
-import subprocess
-import sys
 import time
-from pathlib import Path
 
 import numpy as np
 import pytest
+from kept_sweep import BLOCK, PULSE, RECORD, SCALES, as_bytes, files, the_sweep
 
 import rockframe as rf
 from rockframe.errors import SolverWarning, StudyError
@@ -19,54 +15,11 @@ from rockframe.studies.sweeps.arrays_file import read_arrays, write_arrays, writ
 
 pytestmark = pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning")
 
-BLOCK = rf.Block(width="0.8 m", height="3.6 m", mass="4 t")
-SYSTEM = rf.System(BLOCK, rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1))
-RECORD = rf.GroundMotion.from_arrays(
-    (2.0 * np.random.default_rng(3).normal(size=400), "m/s^2"), "0.01 s", name="noise"
-)
-PULSE = rf.GroundMotion.sine_pulse("2 m/s^2", "1 Hz")
-SCALES = np.linspace(0.1, 3.0, 60)
-CHILD = """
-import sys, numpy as np
-sys.path.insert(0, {tests!r})
-from unit.studies.test_sweep_store import the_sweep
-the_sweep(sys.argv[1])
-print("done")
-"""
-TESTS = str(Path(__file__).resolve().parents[2])
-
-
-def the_sweep(store=None, **changes):
-    options = {"chunk": 3, "accuracy": "reference", "outputs": ["rotation"], **changes}
-    return rf.sweep(
-        SYSTEM, {"noise": RECORD, "pulse": PULSE}, scale=options.pop("scale", SCALES),
-        height=["0.4 m", "3.6 m"], output_step="0.02 s", store=store, **options,
-    )  # fmt: skip
-
 
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory):
     folder = tmp_path_factory.mktemp("whole") / "study"
     return folder, the_sweep(folder)
-
-
-def files(folder):
-    """Give the bytes of all files but that with the date."""
-    return {path.name: path.read_bytes() for path in folder.glob("*.arrays")}
-
-
-def child(folder):
-    return subprocess.Popen(
-        [sys.executable, "-W", "ignore", "-c", CHILD.format(tests=TESTS), str(folder)],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    )
-
-
-def as_bytes(dataset):
-    return {name: one.values.tolist() if one.dtype.kind in "OU" else one.values.tobytes()
-            for name, one in dataset.variables.items()}  # fmt: skip
 
 
 def test_what_is_kept_is_what_is_given(whole):
@@ -80,42 +33,6 @@ def test_what_is_kept_is_what_is_given(whole):
     assert the_sweep(folder, chunk=1000).identical(runs)  # it keeps to its chunks
     assert time.perf_counter() - begun < 5.0
     assert files(folder) == before
-    assert not list(folder.glob(".*"))
-
-
-def test_killed_at_any_moment_it_goes_on_to_the_same_end(whole, tmp_path):
-    folder, lost = tmp_path / "study", 0
-    rng = random.Random(5)
-    for _ in range(4):
-        running = child(folder)
-        kept = len(list(folder.glob("chunk-*")))
-        while running.poll() is None and len(list(folder.glob("chunk-*"))) <= kept:
-            time.sleep(0.005)
-        time.sleep(rng.uniform(0.0, 0.15))
-        running.kill()
-        running.communicate()
-        part = rf.open_study(folder)
-        done = part.status != RunStatus.NOT_RUN
-        assert part.status.size == 240
-        lost += int(done.sum()) < 240
-        rotation = part.rotation.where(done) if "rotation" in part else None
-        whole_rotation = whole[1].rotation.where(done)
-        if rotation is not None:
-            np.testing.assert_array_equal(rotation, whole_rotation)
-    assert lost > 0
-    runs = the_sweep(folder)
-    assert as_bytes(runs) == as_bytes(whole[1])
-    assert files(folder) == files(whole[0])
-
-
-def test_two_processes_may_work_on_one_study(whole, tmp_path):
-    folder = tmp_path / "study"
-    both = [child(folder), child(folder)]
-    for one in both:
-        out, err = one.communicate(timeout=300)
-        assert out.strip() == "done", err
-    assert files(folder) == files(whole[0])
-    assert as_bytes(rf.open_study(folder)) == as_bytes(whole[1])
     assert not list(folder.glob(".*"))
 
 
@@ -238,30 +155,6 @@ def test_where_nothing_can_be_written_it_says_so_at_once(tmp_path):
     finally:
         if user == 0:
             os.seteuid(user)
-
-
-@pytest.fixture
-def small_disk(tmp_path):
-    """A disk of 64 kB, where one may be mounted."""
-    place = tmp_path / "disk"
-    place.mkdir()
-    libc = ctypes.CDLL(None, use_errno=True)
-    if not hasattr(libc, "mount") or libc.mount(b"none", bytes(place), b"tmpfs", 0, b"size=64k"):
-        pytest.skip("no file system can be mounted here")
-    yield place
-    libc.umount2(bytes(place), 2)
-
-
-def test_a_full_disk_keeps_what_was_written(small_disk, whole):
-    with pytest.raises(StudyError, match=r"cannot be written.*No space left.*whole"):
-        the_sweep(small_disk / "study")
-    part = rf.open_study(small_disk / "study")
-    done = int((part.status != RunStatus.NOT_RUN).sum())
-    assert 0 < done < part.status.size
-    assert not list((small_disk / "study").glob(".*"))
-    np.testing.assert_array_equal(
-        part.peak_rotation, whole[1].peak_rotation.where(part.status != RunStatus.NOT_RUN)
-    )
 
 
 def test_a_write_that_fails_halfway_leaves_nothing(tmp_path, monkeypatch):

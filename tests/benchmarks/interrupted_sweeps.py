@@ -1,0 +1,75 @@
+"""A stored sweep that is killed at random moments, and what is there when it is resumed.
+
+Usage: python tests/benchmarks/interrupted_sweeps.py [kills] [seed]
+
+Each time a process that runs a sweep of 240 cases into a new folder is killed (SIGKILL) a moment
+after it has written some number of files, both drawn, or at any time after its start; then the same
+sweep is run there again. Prints for each kill when it came, what had been kept by then, and whether
+all files and the dataset are, to the last byte, those of a sweep that was never interrupted. Exits
+with 1 if one is not.
+"""
+
+import random
+import sys
+import tempfile
+import time
+import warnings
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from kept_sweep import CASES, as_bytes, child, files, the_sweep
+
+import rockframe as rf
+from rockframe.errors import StudyError
+from rockframe.results.variables.runs import RunStatus
+
+
+def main() -> int:
+    """Kill, resume and compare."""
+    kills = int(sys.argv[1]) if len(sys.argv) > 1 else 20
+    rng = random.Random(int(sys.argv[2]) if len(sys.argv) > 2 else 1)
+    warnings.simplefilter("ignore")
+    same = 0
+    with tempfile.TemporaryDirectory() as place:
+        first = Path(place) / "whole"
+        begun = time.perf_counter()
+        child(first).communicate()
+        took = time.perf_counter() - begun
+        whole, numbers = files(first), as_bytes(rf.open_study(first))
+        print(f"uninterrupted: {took:.1f} s")
+        for number in range(1, kills + 1):
+            folder = Path(place) / f"study {number}"
+            # every fifth at any moment from the start of the process, the others while it writes
+            after = rng.randrange(len(whole)) if number % 5 else -1
+            delay = rng.uniform(0.0, 0.1 if number % 5 else 0.8 * took)
+            running = child(folder)
+            while running.poll() is None and len(list(folder.glob("*.arrays"))) <= after:
+                time.sleep(0.002)
+            time.sleep(delay)
+            running.kill()
+            running.communicate()
+            kept, parts = told(folder)
+            found = as_bytes(the_sweep(folder))
+            good = files(folder) == whole and found == numbers
+            same += good
+            print(
+                f"{number:3d}: killed {delay:.3f} s after {after + 1} files; {kept}, "
+                f"{parts} half-written files; "
+                f"resumed: {'identical' if good else 'ANOTHER'}",
+                flush=True,
+            )
+    print(f"{same} of {kills} identical to the uninterrupted sweep")
+    return int(same < kills)
+
+
+def told(folder) -> tuple[str, int]:
+    """Say what a killed sweep has left."""
+    try:
+        done = int((rf.open_study(folder).status != RunStatus.NOT_RUN).sum())
+    except StudyError:
+        return "no study yet", len(list(folder.glob(".*")))
+    return f"{done} of {CASES} cases kept", len(list(folder.glob(".*")))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,181 @@
+"""A sweep in a folder: processes killed, disks full or read-only, and folders that are shared."""
+
+import ctypes
+import os
+import random
+import signal
+import time
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+from pathlib import Path
+
+import numpy as np
+import pytest
+from kept_sweep import BLOCK, CASES, PULSE, SYSTEM, as_bytes, child, files, the_sweep
+
+import rockframe as rf
+from rockframe.errors import StudyError
+from rockframe.results.variables.runs import RunStatus
+
+pytestmark = pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning")
+
+HEIGHTS = ([3.0 + 0.05 * k for k in range(12)], "m")
+MARK = "ROCKFRAME_TEST_MARK"
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("whole") / "study"
+    return folder, the_sweep(folder)
+
+
+def is_part_of(part, whole):
+    """Whether what is there is what it should be; give the number of cases that are there."""
+    done = part.status != RunStatus.NOT_RUN
+    assert part.status.size == CASES
+    for name in ("peak_rotation", "rotation"):
+        if name in part:
+            np.testing.assert_array_equal(part[name].where(done), whole[name].where(done))
+    return int(done.sum())
+
+
+def test_killed_at_any_moment_it_goes_on_to_the_same_end(whole, tmp_path):
+    folder, lost = tmp_path / "study", 0
+    rng = random.Random(5)
+    for _ in range(3):
+        running = child(folder)
+        kept = len(list(folder.glob("chunk-*")))
+        while running.poll() is None and len(list(folder.glob("chunk-*"))) <= kept:
+            time.sleep(0.005)
+        time.sleep(rng.uniform(0.0, 0.15))
+        running.kill()
+        running.communicate()
+        lost += is_part_of(rf.open_study(folder), whole[1]) < CASES
+    assert lost > 0
+    runs = the_sweep(folder)
+    assert as_bytes(runs) == as_bytes(whole[1])
+    assert files(folder) == files(whole[0])
+
+
+def test_two_processes_may_work_on_one_study(whole, tmp_path):
+    folder = tmp_path / "study"
+    both = [child(folder), child(folder)]
+    for one in both:
+        out, err = one.communicate(timeout=300)
+        assert out.strip() == "done", err
+    assert files(folder) == files(whole[0])
+    assert as_bytes(rf.open_study(folder)) == as_bytes(whole[1])
+    assert not list(folder.glob(".*"))
+
+
+def test_one_of_two_may_be_killed(whole, tmp_path):
+    folder = tmp_path / "study"
+    lost, going_on = child(folder), child(folder)
+    while lost.poll() is None and not list(folder.glob("chunk-*")):
+        time.sleep(0.005)
+    lost.kill()
+    lost.communicate()
+    out, err = going_on.communicate(timeout=300)
+    assert out.strip() == "done", err
+    assert files(folder) == files(whole[0])
+    assert as_bytes(rf.open_study(folder)) == as_bytes(whole[1])
+
+
+def dying(height):
+    """Give a scene; the first process that makes the eighth one is killed meanwhile."""
+    mark = Path(os.environ[MARK])
+    if height.m_as("m") > HEIGHTS[0][7] - 0.01 and not mark.exists():
+        mark.touch()
+        os.kill(os.getpid(), signal.SIGKILL)
+    return rf.System(BLOCK.replace(height=height))
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="signals as of Unix")
+def test_a_worker_that_is_killed_is_told_of_and_loses_chunks_in_flight_only(tmp_path, monkeypatch):
+    monkeypatch.setenv(MARK, str(tmp_path / "mark"))
+    folder = tmp_path / "study"
+    arguments = {"height": HEIGHTS, "chunk": 1, "progress": False}
+    with (
+        ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool,
+        pytest.raises(StudyError, match=r"could not run a chunk: BrokenProcessPool.*have died"),
+    ):
+        rf.sweep(dying, PULSE, executor=pool, store=folder, **arguments)
+    assert 0 < (rf.open_study(folder).status != RunStatus.NOT_RUN).sum() < 12
+    found = rf.sweep(dying, PULSE, store=folder, **arguments)
+    assert as_bytes(found) == as_bytes(rf.sweep(dying, PULSE, **arguments))
+
+
+class Disk:
+    """A file system in memory, of some size."""
+
+    READ_ONLY, REMOUNT, DETACH = 1, 32, 2  # <sys/mount.h>
+
+    def __init__(self, place):
+        self.place = place
+        self.libc = ctypes.CDLL(None, use_errno=True)
+
+    def mount(self, size, flags=0):
+        if not hasattr(self.libc, "mount"):
+            return False
+        place, words = bytes(self.place), f"size={size}".encode()
+        return self.libc.mount(b"none", place, b"tmpfs", flags, words) == 0
+
+    def leave(self):
+        self.libc.umount2(bytes(self.place), self.DETACH)
+
+
+@pytest.fixture
+def disk(tmp_path):
+    """A disk of 64 kB, where one may be mounted."""
+    place = tmp_path / "disk"
+    place.mkdir()
+    found = Disk(place)
+    if not found.mount("64k"):
+        pytest.skip("no file system can be mounted here")
+    yield found
+    found.leave()
+
+
+def test_a_full_disk_keeps_what_was_written(disk, whole):
+    folder = disk.place / "study"
+    with pytest.raises(StudyError, match=r"cannot be written.*No space left.*whole"):
+        the_sweep(folder)
+    assert 0 < is_part_of(rf.open_study(folder), whole[1]) < CASES
+    assert not list(folder.glob(".*"))
+    assert disk.mount("10m", Disk.REMOUNT)  # room again: the same call goes on
+    assert as_bytes(the_sweep(folder)) == as_bytes(whole[1])
+    assert files(folder) == files(whole[0])
+
+
+def test_files_that_may_not_grow_are_told_of_like_a_full_disk(whole, tmp_path):
+    pytest.importorskip("resource", reason="limits as of Unix")
+    folder = tmp_path / "study"
+    the_sweep(folder)
+    for chunk in folder.glob("chunk-00001*"):
+        chunk.unlink()
+    there = is_part_of(rf.open_study(folder), whole[1])
+    assert there == CASES - 30
+    limit = "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (200, -1))"
+    _, said = child(folder, limit).communicate(timeout=300)
+    assert "cannot be kept in" in said
+    assert "File too large" in said
+    assert is_part_of(rf.open_study(folder), whole[1]) == there
+    assert as_bytes(the_sweep(folder)) == as_bytes(whole[1])
+
+
+def test_a_folder_that_has_become_read_only_can_be_read(disk, whole):
+    folder = disk.place / "study"
+    assert disk.mount("10m", Disk.REMOUNT)
+    the_sweep(folder)
+    flags = Disk.REMOUNT | Disk.READ_ONLY
+    assert disk.mount("10m", flags)
+    assert rf.open_study(folder).identical(the_sweep(folder))  # nothing to run, nothing to write
+    assert disk.mount("10m", Disk.REMOUNT)
+    (folder / "chunk-000007.arrays").unlink()
+    assert disk.mount("10m", flags)
+    asked = []
+    with pytest.raises(StudyError, match=r"cannot be kept in .*Read-only file system"):
+        the_sweep(folder, executor=asked)  # before anything runs
+    with pytest.raises(StudyError, match=r"cannot be kept in .*Read-only file system"):
+        rf.sweep(SYSTEM, PULSE, scale=[1.0], store=disk.place / "another")
+    assert is_part_of(rf.open_study(folder), whole[1]) == CASES - 3
