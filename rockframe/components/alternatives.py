@@ -2,8 +2,15 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 
 from rockframe.errors import ComponentError
+
+
+@lru_cache
+def _displaced(ways: tuple[tuple[str, ...], ...], named: frozenset[str]) -> frozenset[str]:
+    left = [way for way in ways if not named.intersection(way)]
+    return frozenset(name for way in left for name in way) if len(left) < len(ways) else frozenset()
 
 
 @dataclass(frozen=True, init=False)
@@ -60,7 +67,7 @@ class OneOf:
                 msg = f"{owner}: {' and '.join(way)} go together; {found}"
                 raise ComponentError(msg)
 
-    def displaced(self, changes: Mapping[str, object]) -> set[str]:
+    def displaced(self, changes: Mapping[str, object]) -> frozenset[str]:
         """Name the parameters that are given no longer where others are given instead.
 
         Parameters
@@ -70,8 +77,7 @@ class OneOf:
 
         Returns
         -------
-        set of str
+        frozenset of str
         """
-        named = {name for name, value in changes.items() if value is not None}
-        left = [way for way in self.ways if not named.intersection(way)]
-        return {name for way in left for name in way} if len(left) < len(self.ways) else set()
+        named = frozenset(name for name, value in changes.items() if value is not None)
+        return _displaced(self.ways, named)

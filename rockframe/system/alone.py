@@ -103,8 +103,8 @@ class AloneSetting:
         from rockframe.dynamics.alone_model import alone
 
         load = self.support.load
-        mass = load.body.mass
-        model = alone(self.model, load.law(mass), self.support.own_law, mass, self.rest_rotation)
+        own, base = load.own_law, self.support.own_law
+        model = alone(self.model, own, base, load.body.mass, self.rest_rotation)
         return replace(model, rotation_limits=self.overturning_angles)
 
     @property
@@ -128,7 +128,7 @@ class AloneSetting:
         from rockframe.dynamics.on_base import OnBase
         from rockframe.dynamics.rest import rest_rotation
 
-        part = OnBase(load.law(load.body.mass), self.support.own_law.law)
+        part = OnBase(load.own_law, self.support.own_law.law)
         found = rest_rotation(part, self.slope.along_gravity)
         if math.isnan(found):
             raise AssemblyError([self._falling_words()])
@@ -171,7 +171,7 @@ class AloneSetting:
         load = self.support.load
         body = load.body
         mass = np.diag([body.mass, body.base_inertia])
-        part = OnBase(load.law(body.mass), self.support.own_law.law)
+        part = OnBase(load.own_law, self.support.own_law.law)
         linear = linear_alone(part, self.rest_rotation, self.slope.along_gravity)
         names = ("vertical_displacement", "rotation")
         return SmallMotion(names, mass, mass @ linear.damping, mass @ linear.stiffness)
@@ -199,7 +199,7 @@ class AloneSetting:
         from rockframe.dynamics.on_base import OnBase
         from rockframe.dynamics.protocol import Start
 
-        body, law = self.support.load.law(self.body.mass), self.support.own_law.law
+        body, law = self.support.load.own_law, self.support.own_law.law
         own = law.read(np.zeros(law.variables()), 0)
         _, mode = starting_state(OnBase(body, law), Start(rotation), own)
         return body.reach(body.pin(mode.pivot), body.attitude(rotation)).rate

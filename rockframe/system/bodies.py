@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 from rockframe.components.block_numbers import BlockSI, greatest_restitutions
@@ -31,7 +32,7 @@ class Body:
         """From there to the right end, b - e_c [m]."""
         return self.half_width - self.eccentricity
 
-    @property
+    @cached_property
     def overturning_angles(self) -> "OverturningAngles":
         """Rotations at which the centre of mass stands above an end of the base."""
         return OverturningAngles(
@@ -53,7 +54,7 @@ class Body:
         mu = self.shape_factor
         return math.sqrt(mu / (1.0 + mu) * gravity / self.radius)
 
-    @property
+    @cached_property
     def maximum_restitution(self) -> Restitutions:
         """eps_max of impacts on either end, Eq. (4) or :eq:`eq-eccentric-impact`."""
         return Restitutions(*greatest_restitutions(self))

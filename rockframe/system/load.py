@@ -1,15 +1,21 @@
 """What stands on a base: a body, and how it is held."""
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from functools import cached_property, lru_cache
+from typing import TYPE_CHECKING, Final
 
+from rockframe.components.block_numbers import BlockSI
 from rockframe.signals.slope import Slope
-from rockframe.system.bodies import Body, OverturningAngles
+from rockframe.system.bodies import Body, OverturningAngles, body_of
 from rockframe.system.options import Options
 from rockframe.system.restraints import restraint_code
 
 if TYPE_CHECKING:
     from rockframe.dynamics.body import Body as BodyLaw
+
+
+_KEPT: Final = 64
+"""Blocks whose loads are kept at hand, for sweeps that change the base under them."""
 
 
 @dataclass(frozen=True)
@@ -32,7 +38,7 @@ class Load:
         """Acceleration of gravity [m s^-2]."""
         return self.options.gravity
 
-    @property
+    @cached_property
     def slope(self) -> Slope:
         """The base line in its gravity."""
         return self.options.slope
@@ -42,10 +48,15 @@ class Load:
         """Weight of the body, as far as it presses on the base [N]."""
         return self.body.mass * self.slope.normal_gravity
 
-    @property
+    @cached_property
     def overturning_angles(self) -> OverturningAngles:
         """Rotations at which the centre of mass stands above an end of the base."""
         return self.body.overturning_angles.on_slope(self.slope, small=self.options.small)
+
+    @cached_property
+    def own_law(self) -> "BodyLaw":
+        """The body as the equations take it, per unit of its own mass."""
+        return self.law(self.body.mass)
 
     def law(self, mass: float) -> "BodyLaw":
         """Give the body as the equations take it, per unit of some mass [kg]."""
@@ -60,3 +71,21 @@ class Load:
             small_rotation=self.options.small,
             gravity=self.slope.normal_gravity,
         )
+
+
+@lru_cache(maxsize=_KEPT)
+def load_of(block: BlockSI, options: Options) -> Load:
+    """Give a block as a load; the same one for all scenes that differ in their bases alone.
+
+    Parameters
+    ----------
+    block : BlockSI
+        The block.
+    options : Options
+        Of its system.
+
+    Returns
+    -------
+    Load
+    """
+    return Load(body_of(block), options)

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 from rockframe.errors import AssemblyError
 from rockframe.system.alone import AloneSetting
-from rockframe.system.bodies import Cap, body_of, cap_under, one_body
-from rockframe.system.load import Load
+from rockframe.system.bodies import Cap, cap_under, one_body
+from rockframe.system.load import Load, load_of
 from rockframe.system.options import Coupling, Options
 from rockframe.system.parts import Parts
 from rockframe.system.rigid_ground import rigid_ground_setting
@@ -42,11 +42,11 @@ class Scene:
 
 
 def _on_pads(parts: Parts, options: Options) -> AloneSetting:
-    return AloneSetting(support_of(parts.base("pads"), Load(body_of(parts.the_block), options)))
+    return AloneSetting(support_of(parts.base("pads"), load_of(parts.the_block, options)))
 
 
 def _on_soil(parts: Parts, options: Options) -> AloneSetting:
-    return AloneSetting(support_of(parts.base("soil"), Load(body_of(parts.the_block), options)))
+    return AloneSetting(support_of(parts.base("soil"), load_of(parts.the_block, options)))
 
 
 def _with_cap(parts: Parts, options: Options) -> AloneSetting:

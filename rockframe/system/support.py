@@ -148,7 +148,7 @@ class Support(ABC):
     def own_law(self) -> "BaseNumbers":
         """The base as the equations of its body alone take it, per unit mass of that."""
         mass = self.load.body.mass
-        return self.law(self.load.law(mass), mass, mass)
+        return self.law(self.load.own_law, mass, mass)
 
     @property
     def rocking_stiffness(self) -> float:

@@ -117,7 +117,7 @@ class _Telling:
             self._clear(case)
             return
         told = scalars(run.summary, run.scales) if response is None else response.scalars
-        self._put_scalars(case, told)
+        self._put_scalars(case, {name: told[name] for name in told if name != _STATUS})
         if self._kept is not None and response is not None:
             self._put_histories(case, response.histories, self._kept)
 
@@ -137,9 +137,11 @@ class _Telling:
         self._put_scalars(again.case, {REPEATED: 1.0, VERDICT_CHANGED: float(changed)})
 
     def _put_scalars(self, case: int, values: Mapping[str, Generic | float]) -> None:
+        columns = self._scalars
         for name, value in values.items():
-            if name != _STATUS:
-                self._of(self._scalars, name, np.shape(value))[case] = value
+            if name not in columns:
+                self._of(columns, name, np.shape(value))
+            columns[name][case] = value
 
     def _put_histories(self, case: int, values: dict[str, Generic], kept: Histories) -> None:
         time = values[TIME[0]]

@@ -145,7 +145,9 @@ class SystemScene:
             for axis, value in values.items()
             if axis.changes is Changes.OPTION
         }
-        found = joined(replace(parts, **changed, motion=None), replace(options, **other))
+        # options that no axis changes stay the same object, by which loads are shared
+        options = replace(options, **other) if other else options
+        found = joined(replace(parts, **changed, motion=None), options)
         for caution in found.setting.cautions():
             warn(caution, ModelWarning)
         return found
