@@ -22,7 +22,7 @@ from rockframe.identification.swings import swings_of
 from rockframe.identification.unknowns import Circumstance, Trials
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import AccuracyLevel, accuracy_of
-from rockframe.system.angles import angle_words
+from rockframe.system.words import angle_words
 from rockframe.units import Condition, to_ratio
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from rockframe.results.outcome import Array, Generic
 from rockframe.signals.slope import Slope
 from rockframe.solve.observe import memory_at_outputs
 from rockframe.solve.trajectory import Trajectory
-from rockframe.system.angles import angle_words
+from rockframe.system.words import angle_words
 from rockframe.units import ANGLE
 
 OF_WHAT_IT_STANDS_ON = ("cap_acceleration",)

@@ -1,70 +1,45 @@
 """The scene of one body on a base that gives way: its numbers, its words and its model."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rockframe.errors import AssemblyError
-from rockframe.signals.slope import Slope
-from rockframe.system.angles import angle_words
-from rockframe.system.bodies import Body, OverturningAngles, leaning_cautions
 from rockframe.system.restraints import restraint_words
+from rockframe.system.setting import Setting
 from rockframe.system.small_motion import SmallMotion
 from rockframe.system.statics import Statics, contact_of, sine_cosine_rise
 from rockframe.system.support import Support
-from rockframe.system.words import Words
+from rockframe.system.words import Words, angle_words
 
 if TYPE_CHECKING:
+    from rockframe.dynamics.on_base import OnBase
     from rockframe.dynamics.protocol import ContactModel
 
 
 @dataclass(frozen=True)
-class AloneSetting:
+class AloneSetting(Setting):
     """A body on a base.
 
     Parameters
     ----------
+    load : Load
+        The body, with the options of its system.
     support : Support
-        The base, with the body on it.
+        The base under it.
     cap_offset : float, optional
         Height of a cap's centre above that of the body, where a cap is part of the body [m].
     """
 
     support: Support
-    cap_offset: float | None = None
 
     @property
     def model(self) -> str:
         """Name of the model."""
         return self.support.model
-
-    @property
-    def gravity(self) -> float:
-        """Acceleration of gravity [m s^-2]."""
-        return self.support.load.gravity
-
-    @property
-    def body(self) -> Body:
-        """The body on the base."""
-        return self.support.load.body
-
-    @property
-    def slope(self) -> Slope:
-        """The base line in its gravity."""
-        return self.support.load.slope
-
-    @property
-    def overturning_angles(self) -> OverturningAngles:
-        """Rotations at which the centre of mass stands above an end of the base [rad]."""
-        return self.support.load.overturning_angles
-
-    @property
-    def overturning_angle(self) -> float:
-        """Theta, of the body about the end of its base, on the side that falls first [rad]."""
-        return self.overturning_angles.least
 
     @property
     def uplift_angle(self) -> float:
@@ -77,11 +52,8 @@ class AloneSetting:
         return self.support.settlement
 
     def cautions(self) -> list[str]:
-        """Give the warnings of the base."""
-        leaning = leaning_cautions(
-            self.body, self.rest_rotation, self.overturning_angles, self.slope
-        )
-        return [*self.support.cautions(), *leaning]
+        """Give the warnings of the base, and of a body that leans far."""
+        return [*self.support.cautions(), *super().cautions()]
 
     def start_faults(self, rotation: float, has_vertical_start: bool) -> list[str]:
         """Give the faults that the base finds in an initial state."""
@@ -89,23 +61,26 @@ class AloneSetting:
 
     def words(self) -> Words:
         """Tell the base, and what the body on it lacks."""
-        base, options = self.support.words(), self.support.load.options
+        base = self.support.words()
         return Words(
             equations=base.equations,
-            restraint=restraint_words(options.restraint, options.rotation, base.end),
+            restraint=restraint_words(self.options, base.end),
             uplift=[base.uplift],
             numbers=base.numbers,
             left_out=["sliding", f"elasticity of the {base.body}", *base.left_out],
         )
 
-    def compile(self) -> "ContactModel":
-        """Give the equations, ready for the integrator."""
+    def _contact_model(self) -> "ContactModel":
         from rockframe.dynamics.alone_model import alone
 
-        load = self.support.load
-        own, base = load.own_law, self.support.own_law
-        model = alone(self.model, own, base, load.body.mass, self.rest_rotation)
-        return replace(model, rotation_limits=self.overturning_angles)
+        body, base = self.load.own_law, self.support.own_law
+        return alone(self.model, body, base, self.body.mass, self.rest_rotation)
+
+    def _part(self) -> "OnBase":
+        """Give body and base as the equations take them, per unit mass."""
+        from rockframe.dynamics.on_base import OnBase
+
+        return OnBase(self.load.own_law, self.support.own_law.law)
 
     @property
     def rest_rotation(self) -> float:
@@ -122,14 +97,11 @@ class AloneSetting:
 
     @cached_property
     def _leaning(self) -> float:
-        load = self.support.load
-        if load.body.eccentricity == 0.0 and self.slope.level:
+        if not self.leans:
             return 0.0
-        from rockframe.dynamics.on_base import OnBase
         from rockframe.dynamics.rest import rest_rotation
 
-        part = OnBase(load.own_law, self.support.own_law.law)
-        found = rest_rotation(part, self.slope.along_gravity)
+        found = rest_rotation(self._part(), self.slope.along_gravity)
         if math.isnan(found):
             raise AssemblyError([self._falling_words()])
         return found
@@ -151,40 +123,26 @@ class AloneSetting:
 
     def small_motion(self) -> SmallMotion:
         """Give the equations of small motion in full contact, to first order."""
-        body, law = self.support.load.body, self.support.own_law
-        if body.eccentricity != 0.0 or not self.slope.level:
-            return self._leaning_motion()
-        springs = body.mass * np.diag([law.vertical_stiffness, law.rotational_stiffness])
-        raising = self.support.load.weight * body.centre_height
-        return SmallMotion(
-            ("vertical_displacement", "rotation"),
-            np.diag([body.mass, body.base_inertia]),
-            law.damping_time * springs,
-            springs - np.diag([0.0, raising]),
-        )
-
-    def _leaning_motion(self) -> SmallMotion:
-        """Give the equations of small motion about a rest that is not upright."""
-        from rockframe.dynamics.linear import linear_alone
-        from rockframe.dynamics.on_base import OnBase
-
-        load = self.support.load
-        body = load.body
+        body, law = self.body, self.support.own_law
         mass = np.diag([body.mass, body.base_inertia])
-        part = OnBase(load.own_law, self.support.own_law.law)
-        linear = linear_alone(part, self.rest_rotation, self.slope.along_gravity)
-        names = ("vertical_displacement", "rotation")
-        return SmallMotion(names, mass, mass @ linear.damping, mass @ linear.stiffness)
+        springs = body.mass * np.diag([law.vertical_stiffness, law.rotational_stiffness])
+        damping = law.damping_time * springs
+        stiffness = springs - np.diag([0.0, self.load.weight * body.centre_height])
+        if self.leans:
+            from rockframe.dynamics.linear import linear_alone
+
+            linear = linear_alone(self._part(), self.rest_rotation, self.slope.along_gravity)
+            damping, stiffness = mass @ linear.damping, mass @ linear.stiffness
+        return SmallMotion(("vertical_displacement", "rotation"), mass, damping, stiffness)
 
     def statics(self, rotation: float) -> Statics:
         """Give the vertical equilibrium at a rotation, :eq:`eq-incline-held`."""
-        load = self.support.load
-        height, beside = load.body.centre_height, load.body.eccentricity
-        sine, cosine, rise = sine_cosine_rise(height, load.options.rotation, rotation)
-        held = self.support.held(sine, cosine, load.weight)
-        against = load.weight * (height * sine + beside * cosine)
+        height, beside, weight = self.body.centre_height, self.body.eccentricity, self.load.weight
+        sine, cosine, rise = sine_cosine_rise(height, self.options.rotation, rotation)
+        held = self.support.held(sine, cosine, weight)
+        against = weight * (height * sine + beside * cosine)
         if not self.slope.level:
-            against -= load.body.mass * self.slope.along_gravity * self._reach(rotation)
+            against -= self.load.thrust * self._reach(rotation)
         return Statics(
             vertical_displacement=held.rise - rise - beside * sine,
             base_moment=held.moment,
@@ -196,12 +154,12 @@ class AloneSetting:
     def _reach(self, rotation: float) -> float:
         """Give how the centre of mass moves along the base about the held point [m]."""
         from rockframe.dynamics.alone_model import starting_state
-        from rockframe.dynamics.on_base import OnBase
         from rockframe.dynamics.protocol import Start
 
-        body, law = self.support.load.own_law, self.support.own_law.law
+        part = self._part()
+        body, law = part.body, part.base
         own = law.read(np.zeros(law.variables()), 0)
-        _, mode = starting_state(OnBase(body, law), Start(rotation), own)
+        _, mode = starting_state(part, Start(rotation), own)
         return body.reach(body.pin(mode.pivot), body.attitude(rotation)).rate
 
     def upright(self) -> dict[str, float]:

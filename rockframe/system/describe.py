@@ -4,9 +4,9 @@ import math
 import re
 from textwrap import wrap
 
-from rockframe.system.angles import angle_words
 from rockframe.system.parts import Parts
 from rockframe.system.setting import Setting
+from rockframe.system.words import angle_words
 
 _WIDTH = 100
 

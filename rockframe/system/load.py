@@ -48,6 +48,11 @@ class Load:
         """Weight of the body, as far as it presses on the base [N]."""
         return self.body.mass * self.slope.normal_gravity
 
+    @property
+    def thrust(self) -> float:
+        """Force along the base that keeps the body at rest from sliding [N]."""
+        return self.body.mass * self.slope.along_gravity
+
     @cached_property
     def overturning_angles(self) -> OverturningAngles:
         """Rotations at which the centre of mass stands above an end of the base."""

@@ -43,24 +43,6 @@ class PadSupport(Support):
         """Delta = mg/2k [m]."""
         return 0.5 * self.load.weight / self.stiffness
 
-    @property
-    def uplift_angle(self) -> float:
-        """Rotation at which a corner lifts, Eq. (16); NaN if the pads are too soft [rad]."""
-        ratio = self.settlement / self.load.body.half_width
-        if self.load.options.small:
-            return ratio
-        return math.asin(ratio) if ratio <= 1.0 else math.nan
-
-    @property
-    def vertical_frequency(self) -> float:
-        """omega_v = sqrt(2k/m), Eq. (7a) [rad s^-1]."""
-        return math.sqrt(2.0 * self.stiffness / self.load.body.mass)
-
-    @property
-    def vertical_damping_ratio(self) -> float:
-        """Xi = c/(m omega_v), Eq. (7b) [1]."""
-        return self.damping / (self.load.body.mass * self.vertical_frequency)
-
     def cautions(self) -> list[str]:
         """Give warnings about restitution and stability."""
         found = restitution_cautions(self.restitution, self.load.body.maximum_restitution)

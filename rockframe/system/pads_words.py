@@ -1,11 +1,9 @@
 """Two pads in words."""
 
-import math
 from typing import TYPE_CHECKING
 
-from rockframe.system.angles import uplift_words
 from rockframe.system.support import BaseWords
-from rockframe.system.vibrations import vibration_words
+from rockframe.system.words import uplift_words
 
 if TYPE_CHECKING:
     from rockframe.system.pads import PadSupport
@@ -42,22 +40,12 @@ def pads_words(pads: "PadSupport") -> BaseWords:
 
 
 def _numbers(pads: "PadSupport") -> list[tuple[str, str]]:
-    body = pads.load.body
-    omega = body.frequency_at(pads.load.gravity)
-    vertical = pads.vertical_frequency
-    rows = [
+    omega = pads.load.body.frequency_at(pads.load.gravity)
+    return [
         ("rocking frequency omega, Eq. (6)", f"{omega:.6g} rad/s"),
-        ("frequency ratio beta, Eq. (8)", f"{vertical / omega:.6g}"),
+        ("frequency ratio beta, Eq. (8)", f"{pads.vertical_frequency / omega:.6g}"),
         ("pad stiffness k, damping c", f"{pads.stiffness:.6g} N/m, {pads.damping:.6g} N s/m"),
         ("settlement delta", f"{pads.settlement:.6g} m"),
-        (
-            "vertical vibration",
-            vibration_words("omega_v", vertical, pads.vertical_damping_ratio),
-        ),
+        *pads.vibrations("vertical vibration", "rocking vibration in full contact"),
+        ("restitution eps", pads.restitution.words()),
     ]
-    if pads.rocking_stiffness > 0.0:
-        rate = math.sqrt(pads.rocking_stiffness / body.base_inertia)
-        ratio = pads.damping * body.half_width**2 / (body.base_inertia * rate)
-        rows.append(("rocking vibration in full contact", vibration_words("omega_r", rate, ratio)))
-    rows.append(("restitution eps", pads.restitution.words()))
-    return rows

@@ -1,6 +1,6 @@
 """The restraint rules in words and in the codes of the equations."""
 
-from rockframe.system.options import Restraint, Rotation
+from rockframe.system.options import Options, Restraint
 
 _WORDS = {
     Restraint.CONTACT_STATE: (
@@ -14,11 +14,11 @@ _WORDS = {
 }
 
 
-def restraint_words(restraint: Restraint, rotation: Rotation, end: str = "corner") -> str:
+def restraint_words(options: Options, end: str = "corner") -> str:
     """Say which point of the base is held horizontally."""
-    if rotation is Rotation.SMALL:
+    if options.small:
         return "the middle of the base (at small rotation the rules coincide)"
-    return _WORDS[restraint].format(end=end, ends=f"{end}s")
+    return _WORDS[options.restraint].format(end=end, ends=f"{end}s")
 
 
 def restraint_code(restraint: Restraint) -> int:

@@ -1,21 +1,18 @@
 """The scene of a block on rigid ground: its numbers and its model."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rockframe.components.block_numbers import BlockSI
 from rockframe.errors import AssemblyError
-from rockframe.signals.slope import Slope
-from rockframe.system.angles import angle_words
-from rockframe.system.bodies import Body, OverturningAngles, body_of
 from rockframe.system.impact import Restitutions, resolve_restitution, restitution_cautions
-from rockframe.system.options import Options, Rotation
+from rockframe.system.load import load_of
+from rockframe.system.options import Options
 from rockframe.system.parts import Parts
 from rockframe.system.rigid_ground_words import rigid_ground_words
-from rockframe.system.small_motion import SmallMotion
+from rockframe.system.setting import Setting
 from rockframe.system.statics import Statics
-from rockframe.system.words import Words
+from rockframe.system.words import Words, angle_words
 
 if TYPE_CHECKING:
     from rockframe.dynamics.protocol import ContactModel
@@ -25,18 +22,18 @@ _REACTIONS = ("left_reaction", "right_reaction")
 
 
 @dataclass(frozen=True)
-class RigidGroundSetting:
-    """Numbers of a block on rigid ground, in SI units."""
+class RigidGroundSetting(Setting):
+    """A block on rigid ground.
 
-    block: BlockSI
+    Parameters
+    ----------
+    load : Load
+        The block, with the options of its system.
+    restitution : Restitutions
+        eps of its corners [1].
+    """
+
     restitution: Restitutions
-    rotation: Rotation
-    slope: Slope
-
-    @property
-    def gravity(self) -> float:
-        """Acceleration of gravity [m s^-2]."""
-        return self.slope.gravity
 
     @property
     def model(self) -> str:
@@ -44,40 +41,9 @@ class RigidGroundSetting:
         return "rigid ground"
 
     @property
-    def body(self) -> Body:
-        """The block."""
-        return body_of(self.block)
-
-    @property
-    def overturning_angles(self) -> OverturningAngles:
-        """Rotations at which the centre of mass stands above a corner [rad]."""
-        small = self.rotation is Rotation.SMALL
-        return self.body.overturning_angles.on_slope(self.slope, small=small)
-
-    @property
-    def overturning_angle(self) -> float:
-        """Theta, of the side that falls first [rad]."""
-        return self.overturning_angles.least
-
-    @property
-    def rest_rotation(self) -> float:
-        """Zero: the whole base bears [rad]."""
-        return 0.0
-
-    @property
     def uplift_angle(self) -> float:
         """Zero: any rotation lifts a corner [rad]."""
         return 0.0
-
-    @property
-    def cap_offset(self) -> float | None:
-        """None: there is no cap [m]."""
-        return None
-
-    @property
-    def settlement(self) -> float | None:
-        """None: the ground does not give way."""
-        return None
 
     @property
     def uplift_acceleration(self) -> float:
@@ -108,7 +74,7 @@ class RigidGroundSetting:
     def tangents(self) -> tuple[float, float]:
         """Tan theta of the left and of the right corner; theta for small rotation."""
         left, right = self.body.overturning_angles
-        if self.rotation is Rotation.SMALL:
+        if self.options.small:
             return left, right
         return math.tan(left), math.tan(right)
 
@@ -129,11 +95,10 @@ class RigidGroundSetting:
         """Tell the block on rigid ground."""
         return rigid_ground_words(self)
 
-    def compile(self) -> "ContactModel":
-        """Give the equations, ready for the integrator."""
+    def _contact_model(self) -> "ContactModel":
         from rockframe.dynamics.rigid_ground import corner_of, rigid_ground
 
-        body, small = self.body, self.rotation is Rotation.SMALL
+        body, small = self.body, self.options.small
         left, right = (
             corner_of(
                 distance=distance,
@@ -144,21 +109,16 @@ class RigidGroundSetting:
             )
             for distance, restitution in zip((body.left, body.right), self.restitution, strict=True)
         )
-        model = rigid_ground(
+        return rigid_ground(
             left, right, mass=body.mass, small_rotation=small, gravity=self.slope.normal_gravity
         )
-        return replace(model, rotation_limits=self.overturning_angles)
-
-    def small_motion(self) -> SmallMotion | None:
-        """Give None: a rigid base leaves no small motion; the period depends on the amplitude."""
-        return None
 
     def statics(self, rotation: float) -> Statics:
         """Give the equilibrium at a rotation: the bearing corner carries the weight."""
-        body = self.body
+        body, weight, thrust = self.body, self.load.weight, self.load.thrust
         if rotation == 0.0:
             # the moments of weight and reactions about the middle of the base
-            moment = self.weight * body.eccentricity - self.thrust * body.centre_height
+            moment = weight * body.eccentricity - thrust * body.centre_height
             return Statics(
                 0.0, moment, 0.0, "full", dict(zip(_REACTIONS, self.shares, strict=True))
             )
@@ -166,7 +126,7 @@ class RigidGroundSetting:
         theta, lean = body.overturning_angles.on_side_of(rotation), abs(rotation)
         beside = side * body.eccentricity
         radius = math.hypot(body.half_width - beside, body.centre_height)
-        if self.rotation is Rotation.SMALL:
+        if self.options.small:
             rise, restoring = radius * lean * (theta - 0.5 * lean), theta - lean
             weight_arm, thrust_arm = radius * lean + beside, radius
         else:
@@ -174,39 +134,29 @@ class RigidGroundSetting:
             restoring = math.sin(theta - lean)
             weight_arm = body.centre_height * math.sin(lean) + beside * math.cos(lean)
             thrust_arm = radius * math.cos(theta - lean)
-        moment = side * self.weight * radius * restoring
-        reactions = (0.0, self.weight) if side > 0.0 else (self.weight, 0.0)
+        moment = side * weight * radius * restoring
+        reactions = (0.0, weight) if side > 0.0 else (weight, 0.0)
         return Statics(
             vertical_displacement=rise,
-            base_moment=moment + side * self.weight * weight_arm,
-            restoring_moment=moment + self.thrust * thrust_arm,
+            base_moment=moment + side * weight * weight_arm,
+            restoring_moment=moment + thrust * thrust_arm,
             contact_state="right" if side > 0.0 else "left",
             reactions=dict(zip(_REACTIONS, reactions, strict=True)),
         )
 
-    @property
-    def weight(self) -> float:
-        """Weight of the block, as far as it presses on the ground [N]."""
-        return self.block.mass * self.slope.normal_gravity
-
-    @property
-    def thrust(self) -> float:
-        """Force of the ground along the base that keeps the block from sliding [N]."""
-        return self.block.mass * self.slope.along_gravity
-
     def equilibrium(self) -> dict[str, float]:
         """Give the reactions at rest and the moment at uplift, by their names in the schema."""
-        uplift = self.weight * self.body.half_width
+        uplift = self.load.weight * self.body.half_width
         shares = zip(_REACTIONS, self.shares, strict=True)
         return {"uplift_moment": uplift} | {f"static_{name}": force for name, force in shares}
 
     @property
     def shares(self) -> tuple[float, float]:
         """Reactions of the left and of the right corner at rest [N]."""
-        left, right = self.tangents
-        tilt = 0.5 * self.weight * (left - right) / (left + right)
-        shift = tilt - self.thrust / (left + right)
-        return 0.5 * self.weight - shift, 0.5 * self.weight + shift
+        (left, right), half = self.tangents, 0.5 * self.load.weight
+        tilt = half * (left - right) / (left + right)
+        shift = tilt - self.load.thrust / (left + right)
+        return half - shift, half + shift
 
 
 def rigid_ground_setting(parts: Parts, options: Options) -> RigidGroundSetting:
@@ -217,10 +167,9 @@ def rigid_ground_setting(parts: Parts, options: Options) -> RigidGroundSetting:
     AssemblyError
         The ground is so inclined that the block falls by its own weight.
     """
-    block = parts.the_block
+    load = load_of(parts.the_block, options)
     given = parts.ground.si.restitution if parts.ground is not None else None
-    restitution = resolve_restitution(given, body_of(block).maximum_restitution)
-    setting = RigidGroundSetting(block, restitution, options.rotation, options.slope)
+    setting = RigidGroundSetting(load, resolve_restitution(given, load.body.maximum_restitution))
     _refuse_fall(setting)
     return setting
 

@@ -3,7 +3,6 @@
 import math
 from typing import TYPE_CHECKING
 
-from rockframe.system.options import Rotation
 from rockframe.system.words import Words
 
 if TYPE_CHECKING:
@@ -24,7 +23,7 @@ def rigid_ground_words(scene: "RigidGroundSetting") -> Words:
     """
     lean = "theta s - a" if scene.slope.level else "theta s + i - a"
     rocking = f"a'' = -omega^2 [(1 + yg''/g) sin({lean}) + (xg''/g) cos({lean})]"
-    if scene.rotation is Rotation.SMALL:
+    if scene.options.small:
         rocking = "small rotation: a'' = -omega^2 [(1 + yg''/g) (theta s - a) + xg''/g]"
         if not scene.slope.level:
             rocking += ", with gravity g cos(i) in the place of g, and xg'' with g sin(i)"

@@ -5,14 +5,14 @@ from dataclasses import dataclass
 
 from rockframe.errors import AssemblyError
 from rockframe.system.alone import AloneSetting
-from rockframe.system.bodies import Cap, cap_under, one_body
+from rockframe.system.bodies import cap_under, one_body
 from rockframe.system.load import Load, load_of
 from rockframe.system.options import Coupling, Options
 from rockframe.system.parts import Parts
 from rockframe.system.rigid_ground import rigid_ground_setting
 from rockframe.system.setting import Setting
 from rockframe.system.slots import support_of
-from rockframe.system.stacked import CascadeSetting, CoupledSetting
+from rockframe.system.stacked import CascadeSetting, CoupledSetting, StackedSetting
 
 
 @dataclass(frozen=True)
@@ -41,20 +41,22 @@ class Scene:
         return self.signature == parts.signature and self.coupling in (None, coupling)
 
 
-def _on_pads(parts: Parts, options: Options) -> AloneSetting:
-    return AloneSetting(support_of(parts.base("pads"), load_of(parts.the_block, options)))
+def _alone(slot: str) -> Callable[[Parts, Options], AloneSetting]:
+    """Put a block on the base in a slot."""
 
+    def make(parts: Parts, options: Options) -> AloneSetting:
+        load = load_of(parts.the_block, options)
+        return AloneSetting(load, support_of(parts.base(slot), load))
 
-def _on_soil(parts: Parts, options: Options) -> AloneSetting:
-    return AloneSetting(support_of(parts.base("soil"), load_of(parts.the_block, options)))
+    return make
 
 
 def _with_cap(parts: Parts, options: Options) -> AloneSetting:
     """Put block and cap as one body on the soil."""
     cap = cap_under(parts.the_block, parts.the_cap)
-    body = one_body(parts.the_block, cap)
-    support = support_of(parts.base("soil"), Load(body, options))
-    return AloneSetting(support, cap.half_height - body.centre_height)
+    load = Load(one_body(parts.the_block, cap), options)
+    offset = cap.half_height - load.body.centre_height
+    return AloneSetting(load, support_of(parts.base("soil"), load), cap_offset=offset)
 
 
 def _refuse_twins(parts: Parts, upper: AloneSetting, lower: AloneSetting) -> None:
@@ -67,18 +69,16 @@ def _refuse_twins(parts: Parts, upper: AloneSetting, lower: AloneSetting) -> Non
         raise AssemblyError([fault])
 
 
-def _stack(parts: Parts, options: Options) -> tuple[AloneSetting, AloneSetting, Cap, Options]:
-    upper, lower = _on_pads(parts, options), _with_cap(parts, options)
-    _refuse_twins(parts, upper, lower)
-    return upper, lower, cap_under(parts.the_block, parts.the_cap), options
+def _stacked(kind: type[StackedSetting]) -> Callable[[Parts, Options], StackedSetting]:
+    """Put a block on pads on a cap on soil."""
 
+    def make(parts: Parts, options: Options) -> StackedSetting:
+        upper, lower = _alone("pads")(parts, options), _with_cap(parts, options)
+        _refuse_twins(parts, upper, lower)
+        cap = cap_under(parts.the_block, parts.the_cap)
+        return kind(upper.load, upper, lower, cap, cap_offset=lower.cap_offset)
 
-def _coupled(parts: Parts, options: Options) -> CoupledSetting:
-    return CoupledSetting(*_stack(parts, options))
-
-
-def _cascade(parts: Parts, options: Options) -> CascadeSetting:
-    return CascadeSetting(*_stack(parts, options))
+    return make
 
 
 _STACK = frozenset({"block", "pads", "cap", "soil"})
@@ -89,8 +89,8 @@ SCENES: tuple[Scene, ...] = (
         frozenset({"block"}),
         rigid_ground_setting,
     ),
-    Scene("Block + TwoSpringSupport", frozenset({"block", "pads"}), _on_pads),
-    Scene("Block + WinklerSoil", frozenset({"block", "soil"}), _on_soil),
+    Scene("Block + TwoSpringSupport", frozenset({"block", "pads"}), _alone("pads")),
+    Scene("Block + WinklerSoil", frozenset({"block", "soil"}), _alone("soil")),
     Scene(
         "Block + CushionCap + WinklerSoil (block and cap as one body)",
         frozenset({"block", "cap", "soil"}),
@@ -99,13 +99,13 @@ SCENES: tuple[Scene, ...] = (
     Scene(
         "Block + TwoSpringSupport + CushionCap + WinklerSoil, coupling='coupled'",
         _STACK,
-        _coupled,
+        _stacked(CoupledSetting),
         Coupling.COUPLED,
     ),
     Scene(
         "Block + TwoSpringSupport + CushionCap + WinklerSoil, coupling='cascade'",
         _STACK,
-        _cascade,
+        _stacked(CascadeSetting),
         Coupling.CASCADE,
     ),
 )

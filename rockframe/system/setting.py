@@ -1,9 +1,13 @@
 """What a scene is: its numbers in SI units, its words, and its model."""
 
-from typing import TYPE_CHECKING, Protocol
+from abc import ABC, abstractmethod
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 from rockframe.signals.slope import Slope
-from rockframe.system.bodies import Body, OverturningAngles
+from rockframe.system.bodies import Body, OverturningAngles, leaning_cautions
+from rockframe.system.load import Load
+from rockframe.system.options import Options
 from rockframe.system.small_motion import SmallMotion
 from rockframe.system.statics import Statics
 from rockframe.system.words import Words
@@ -12,91 +16,104 @@ if TYPE_CHECKING:
     from rockframe.dynamics.protocol import ContactModel
 
 
-class Numbers(Protocol):
-    """A scene's numbers in SI units, and what follows from them at rest."""
+@dataclass(frozen=True)
+class Setting(ABC):
+    """A scene: numbers in SI units, words, and the model that they lead to.
 
-    @property
-    def gravity(self) -> float:
-        """Acceleration of gravity [m s^-2]."""
-        ...
+    Parameters
+    ----------
+    load : Load
+        The body that the response is of, with the options of its system.
+    cap_offset : float, optional
+        Height of a cap's centre above that of the body, where a cap is part of the body [m].
+    """
 
-    @property
-    def slope(self) -> Slope:
-        """The base line in its gravity."""
-        ...
-
-    @property
-    def overturning_angles(self) -> OverturningAngles:
-        """Rotations of unstable equilibrium to either side, relative to the base line [rad]."""
-        ...
-
-    @property
-    def overturning_angle(self) -> float:
-        """Theta, the lesser of both [rad]."""
-        ...
-
-    @property
-    def rest_rotation(self) -> float:
-        """Rotation at rest, of a body that is not symmetric [rad]."""
-        ...
-
-    @property
-    def uplift_angle(self) -> float:
-        """Rotation at which contact is first lost; NaN if never [rad]."""
-        ...
-
-    @property
-    def settlement(self) -> float | None:
-        """Settlement under the weight, where the base gives way [m]."""
-        ...
-
-    @property
-    def cap_offset(self) -> float | None:
-        """Height of a cap's centre above that of a body of which it is a part [m]."""
-        ...
+    load: Load
+    cap_offset: float | None = field(default=None, kw_only=True)
 
     @property
     def body(self) -> Body:
         """The body that the response is of."""
-        ...
-
-    def small_motion(self) -> SmallMotion | None:
-        """Give the linear equations of small motion about rest, if there are any."""
-        ...
-
-    def statics(self, rotation: float) -> Statics:
-        """Give the quasi-static state at a rotation."""
-        ...
-
-    def equilibrium(self) -> dict[str, float]:
-        """Give settlements and reactions at rest, by their names in the schema."""
-        ...
-
-
-class Telling(Protocol):
-    """A scene in words."""
+        return self.load.body
 
     @property
+    def options(self) -> Options:
+        """Of the system."""
+        return self.load.options
+
+    @property
+    def gravity(self) -> float:
+        """Acceleration of gravity [m s^-2]."""
+        return self.options.gravity
+
+    @property
+    def slope(self) -> Slope:
+        """The base line in its gravity."""
+        return self.options.slope
+
+    @property
+    def leans(self) -> bool:
+        """Whether the body is not symmetric, or stands on a slope."""
+        return self.body.eccentricity != 0.0 or not self.slope.level
+
+    @property
+    def overturning_angles(self) -> OverturningAngles:
+        """Rotations of unstable equilibrium to either side, relative to the base line [rad]."""
+        return self.load.overturning_angles
+
+    @property
+    def overturning_angle(self) -> float:
+        """Theta, the lesser of both [rad]."""
+        return self.overturning_angles.least
+
+    @property
+    @abstractmethod
     def model(self) -> str:
         """Name of the model."""
-        ...
 
+    @property
+    def rest_rotation(self) -> float:
+        """Rotation at rest, of a body that leans on a base that gives way [rad]."""
+        return 0.0
+
+    @property
+    @abstractmethod
+    def uplift_angle(self) -> float:
+        """Rotation at which contact is first lost; NaN if never [rad]."""
+
+    @property
+    def settlement(self) -> float | None:
+        """Settlement under the weight, where the base gives way [m]."""
+        return None
+
+    def small_motion(self) -> SmallMotion | None:
+        """Give the linear equations of small motion about rest; a rigid base leaves none."""
+        return None
+
+    @abstractmethod
+    def statics(self, rotation: float) -> Statics:
+        """Give the quasi-static state at a rotation [rad]."""
+
+    @abstractmethod
+    def equilibrium(self) -> dict[str, float]:
+        """Give settlements and reactions at rest, by their names in the schema."""
+
+    @abstractmethod
     def words(self) -> Words:
         """Tell equations, restraint, uplift angles, numbers, and what is left out."""
-        ...
+
+    @abstractmethod
+    def start_faults(self, rotation: float, has_vertical_start: bool) -> list[str]:
+        """Give faults of an initial state."""
 
     def cautions(self) -> list[str]:
         """Give warnings about values near or beyond the model's validity."""
-        ...
+        return leaning_cautions(self.body, self.rest_rotation, self.overturning_angles, self.slope)
 
-    def start_faults(self, rotation: float, has_vertical_start: bool) -> list[str]:
-        """Give faults of an initial state."""
-        ...
-
-
-class Setting(Numbers, Telling, Protocol):
-    """A scene: numbers, words, and the model that they lead to."""
+    @abstractmethod
+    def _contact_model(self) -> "ContactModel":
+        """Give the equations, with limits of the rotation as of a level base."""
 
     def compile(self) -> "ContactModel":
         """Give the equations, ready for the integrator."""
-        ...
+        return replace(self._contact_model(), rotation_limits=self.overturning_angles)

@@ -43,14 +43,6 @@ class BedSupport(Support):
         """Delta = mg/(2 b k0) [m]."""
         return 0.5 * self.load.weight / (self.load.body.half_width * self.stiffness)
 
-    @property
-    def uplift_angle(self) -> float:
-        """Rotation at which an end lifts; NaN if the soil is too soft [rad]."""
-        ratio = self.settlement / self.load.body.half_width
-        if self.load.options.small:
-            return ratio
-        return math.asin(ratio) if ratio <= 1.0 else math.nan
-
     def cautions(self) -> list[str]:
         """Give warnings about stability."""
         if self.rocking_stiffness > 0.0:

@@ -1,12 +1,10 @@
 """A bed of soil in words."""
 
-import math
 from typing import TYPE_CHECKING
 
 from rockframe.components.soil import Separation
-from rockframe.system.angles import uplift_words
 from rockframe.system.support import BaseWords
-from rockframe.system.vibrations import vibration_words
+from rockframe.system.words import uplift_words
 
 if TYPE_CHECKING:
     from rockframe.system.soil import BedSupport
@@ -58,16 +56,9 @@ def soil_words(bed: "BedSupport") -> BaseWords:
 
 def _numbers(bed: "BedSupport") -> list[tuple[str, str]]:
     body = bed.load.body
-    vertical = math.sqrt(2.0 * body.half_width * bed.stiffness / body.mass)
-    ratio = body.half_width * bed.damping / (body.mass * vertical)
-    rows = [
+    return [
         ("mass on the soil", f"{body.mass:.6g} kg, centre {body.centre_height:.6g} m above it"),
         ("soil stiffness k0, damping c0", f"{bed.stiffness:.6g} Pa, {bed.damping:.6g} Pa s"),
         ("settlement delta", f"{bed.settlement:.6g} m"),
-        ("vertical vibration, Eq. (18a)", vibration_words("omega_v", vertical, ratio)),
+        *bed.vibrations("vertical vibration, Eq. (18a)", "rocking in full contact, Eq. (18b)"),
     ]
-    if bed.rocking_stiffness > 0.0:
-        rate = math.sqrt(bed.rocking_stiffness / body.base_inertia)
-        ratio = bed.damping * body.half_width**3 / (3.0 * body.base_inertia * rate)
-        rows.append(("rocking in full contact, Eq. (18b)", vibration_words("omega_r", rate, ratio)))
-    return rows

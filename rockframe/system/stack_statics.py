@@ -70,12 +70,11 @@ def _tilt_under(stack: "StackedSetting", rotation: float) -> float:
     def lack(tilt: float) -> float:
         return math.copysign(1.0, rotation) * _balance(stack, tilt, rotation).lack
 
-    leans = stack.body.eccentricity != 0.0 or not stack.slope.level
-    if rotation == 0.0 and not leans:
+    if rotation == 0.0 and not stack.leans:
         return 0.0
     # a far held block leaves the cap a second, larger tilt, which is not stable
     steps = np.linspace(0.0, rotation, STEPS + 1).tolist()
-    if leans:  # even under an upright block
+    if stack.leans:  # even under an upright block
         reach = max(abs(rotation), LEAN * abs(stack.cap_lean))
         side = math.copysign(1.0, rotation)
         around = np.linspace(-side * reach, side * reach, 2 * STEPS + 1).tolist()
@@ -92,8 +91,7 @@ def _tilt_under(stack: "StackedSetting", rotation: float) -> float:
 
 def _balance(stack: "StackedSetting", tilt: float, rotation: float) -> _Balance:
     upper, cap, options = stack.upper.support, stack.cap, stack.options
-    block, weight = upper.load.body, upper.load.weight
-    along = block.mass * stack.slope.along_gravity
+    block, weight, along = stack.body, stack.load.weight, stack.load.thrust
     h, beside = block.centre_height, block.eccentricity
     frame_sine, frame_cosine = math.sin(tilt), math.cos(tilt)
     # the block on the cap, under the weight along the cap's normal
@@ -110,10 +108,9 @@ def _balance(stack: "StackedSetting", tilt: float, rotation: float) -> _Balance:
     # the cap: thrust along it, its own weight on the soil
     thrust = along * frame_cosine - weight * frame_sine
     sine, cosine, cap_rise = sine_cosine_rise(cap.half_height, options.rotation, tilt)
-    all_weight = stack.lower.support.load.weight
+    all_weight, all_along = stack.lower.load.weight, stack.lower.load.thrust
     under = stack.lower.support.held(sine, cosine, all_weight)
     soil = all_weight * cap.half_height * sine - under.moment
-    all_along = stack.lower.body.mass * stack.slope.along_gravity
     if all_along != 0.0:
         foot = _pin(stack, cap, under, tilt)
         soil -= all_along * (cap.half_height * cosine + (0.0 if options.small else foot * sine))

@@ -1,19 +1,18 @@
 """The scenes of a block on pads on a cap on soil, by cascade and coupled."""
 
 import math
-from abc import ABC, abstractmethod
-from dataclasses import dataclass, replace
+from abc import abstractmethod
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rockframe.errors import AssemblyError
-from rockframe.signals.slope import Slope
 from rockframe.system.alone import AloneSetting
-from rockframe.system.bodies import Body, Cap, OverturningAngles, leaning_cautions
-from rockframe.system.options import Options
+from rockframe.system.bodies import Cap
 from rockframe.system.restraints import restraint_words
+from rockframe.system.setting import Setting
 from rockframe.system.small_motion import SmallMotion
 from rockframe.system.stack_statics import stack_statics
 from rockframe.system.statics import Statics
@@ -32,64 +31,26 @@ paper's example by up to 3e-3 of their peak, page "Coupled" of the manual."""
 
 
 @dataclass(frozen=True)
-class StackedSetting(ABC):
-    """Numbers of a block on pads on a cap on soil, in SI units.
+class StackedSetting(Setting):
+    """A block on pads on a cap on soil.
 
     Parameters
     ----------
+    load : Load
+        The block, with the options of its system.
     upper : AloneSetting
         The block on its pads.
     lower : AloneSetting
         Block and cap as one body on the soil.
     cap : Cap
         The cap.
-    options : Options
-        Of the system.
+    cap_offset : float, optional
+        Height of the cap's centre above that of cap and block as one body [m].
     """
 
     upper: AloneSetting
     lower: AloneSetting
     cap: Cap
-    options: Options
-
-    @property
-    @abstractmethod
-    def model(self) -> str:
-        """Name of the model."""
-
-    @abstractmethod
-    def compile(self) -> "ContactModel":
-        """Give the equations, ready for the integrator."""
-
-    @property
-    def gravity(self) -> float:
-        """Acceleration of gravity [m s^-2]."""
-        return self.options.gravity
-
-    @property
-    def body(self) -> Body:
-        """The block."""
-        return self.upper.body
-
-    @property
-    def slope(self) -> Slope:
-        """The base line of the cap in its gravity."""
-        return self.options.slope
-
-    @property
-    def overturning_angles(self) -> OverturningAngles:
-        """Rotations at which the block's centre of mass stands above an end of its base [rad]."""
-        return self.upper.overturning_angles
-
-    @property
-    def overturning_angle(self) -> float:
-        """Theta of the block [rad]."""
-        return self.upper.overturning_angle
-
-    @property
-    @abstractmethod
-    def rest_rotation(self) -> float:
-        """Rotation of the block at rest [rad]."""
 
     @property
     @abstractmethod
@@ -106,18 +67,10 @@ class StackedSetting(ABC):
         """Rotation on the cap at which a corner lifts, Eq. (16) [rad]."""
         return self.upper.uplift_angle
 
-    @property
-    def cap_offset(self) -> float | None:
-        """Height of the cap's centre above that of cap and block as one body [m]."""
-        return self.lower.cap_offset
-
     def cautions(self) -> list[str]:
-        """Give the warnings of block and soil."""
-        supports = self.upper.support, self.lower.support
-        found = [text for support in supports for text in support.cautions()]
-        return found + leaning_cautions(
-            self.body, self.rest_rotation, self.overturning_angles, self.slope
-        )
+        """Give the warnings of pads and soil, and of a block that leans far."""
+        bases = self.upper.support.cautions(), self.lower.support.cautions()
+        return [*bases[0], *bases[1], *super().cautions()]
 
     def start_faults(self, rotation: float, has_vertical_start: bool) -> list[str]:
         """Give the faults that the block's base finds in an initial state."""
@@ -127,7 +80,7 @@ class StackedSetting(ABC):
         """Tell the block on its pads, and both on the soil."""
         cap, pads, soil = self.cap, self.upper.support.words(), self.lower.support.words()
         size = f"{2.0 * cap.half_width:.6g} m by {2.0 * cap.half_height:.6g} m"
-        rule = restraint_words(self.options.restraint, self.options.rotation)
+        rule = restraint_words(self.options)
         return Words(
             equations=self.equations(pads, soil),
             restraint=f"of the block on the cap and of the cap on the soil alike; {rule}",
@@ -157,7 +110,7 @@ class StackedSetting(ABC):
 
         stack = self.bodies()
         mass, damping, stiffness = small_motion_matrices(stack)
-        if self.body.eccentricity != 0.0 or not self.slope.level:
+        if self.leans:
             from rockframe.dynamics.coupled.model import system_of
             from rockframe.dynamics.linear import linear_stack
 
@@ -168,7 +121,7 @@ class StackedSetting(ABC):
         to_own = np.eye(4)
         to_own[2, 0] = to_own[3, 1] = -1.0  # r = y - Y, psi = alpha - phi
         turned = [to_own.T @ matrix @ to_own for matrix in (mass, damping, stiffness)]
-        return SmallMotion(names, *(self.upper.support.load.body.mass * each for each in turned))
+        return SmallMotion(names, *(self.body.mass * each for each in turned))
 
     @cached_property
     def rest(self) -> "StackRest":
@@ -196,9 +149,7 @@ class StackedSetting(ABC):
         soil = self.lower.upright()
         soil["soil_uplift_moment"] = soil.pop("uplift_moment")
         found = {**self.upper.upright(), **soil}
-        if self.body.eccentricity != 0.0 or not self.slope.level:
-            found |= self._reactions_at_rest()
-        return found
+        return found | self._reactions_at_rest() if self.leans else found
 
     def _reactions_at_rest(self) -> dict[str, float]:
         """Give what both bases show at rest, by their names in the schema."""
@@ -217,11 +168,11 @@ class StackedSetting(ABC):
         from rockframe.dynamics.coupled.stack import Stack
 
         upper, lower, cap = self.upper.support, self.lower.support, self.cap
-        mass = upper.load.body.mass
+        mass = self.body.mass
         least = LEAST_CAP_SHARE * mass
         light = cap.mass < least
         cap_mass = least if light else cap.mass
-        block = upper.load.law(mass)
+        block = self.load.law(mass)
         plate = block._replace(
             height=cap.half_height,
             left=cap.half_width,
@@ -249,7 +200,7 @@ class CoupledSetting(StackedSetting):
     def cautions(self) -> list[str]:
         """Give the warnings of block and soil, and of a cap that is too light."""
         found = super().cautions()
-        if self.cap.mass < LEAST_CAP_SHARE * self.upper.support.load.body.mass:
+        if self.cap.mass < LEAST_CAP_SHARE * self.body.mass:
             found.append(
                 f"the cap's mass, {self.cap.mass:.4g} kg, is less than {LEAST_CAP_SHARE:g} of the "
                 "building's; the coupled equations are solved with that share of it"
@@ -268,12 +219,10 @@ class CoupledSetting(StackedSetting):
             ("cap: flight", "no soil force; block and cap fall together or apart"),
         ]  # fmt: skip
 
-    def compile(self) -> "ContactModel":
-        """Give the equations, ready for the integrator."""
+    def _contact_model(self) -> "ContactModel":
         from rockframe.dynamics.coupled.model import coupled
 
-        model = coupled(self.bodies(), self.body.mass, self.rest)
-        return replace(model, rotation_limits=self.overturning_angles)
+        return coupled(self.bodies(), self.body.mass, self.rest)
 
     @property
     def cap_lean(self) -> float:
@@ -310,8 +259,7 @@ class CascadeSetting(StackedSetting):
             "the cap's inclination, for the block",
         ]
 
-    def compile(self) -> "ContactModel":
-        """Give the equations of both stages, ready for the integrator."""
+    def _contact_model(self) -> "ContactModel":
         from rockframe.dynamics.cascade.model import cascade
 
         body = self.lower.body

@@ -4,6 +4,7 @@ The numbers of a base follow from its component and from the body on it; its wor
 and its law is what the equations take.
 """
 
+import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -11,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from rockframe.system.load import Load
 from rockframe.system.statics import sine_cosine_rise
+from rockframe.system.words import vibration_words
 
 if TYPE_CHECKING:
     from rockframe.dynamics.base_numbers import BaseNumbers
@@ -92,9 +94,15 @@ class Support(ABC):
         """Delta, settlement under the weight [m]."""
 
     @property
-    @abstractmethod
     def uplift_angle(self) -> float:
-        """Rotation at which contact is first lost; NaN if it never is [rad]."""
+        """Rotation at which contact is first lost; NaN if it never is [rad].
+
+        Unless overridden, that at which an end has risen by the settlement.
+        """
+        ratio = self.settlement / self.load.body.half_width
+        if self.load.options.small:
+            return ratio
+        return math.asin(ratio) if ratio <= 1.0 else math.nan
 
     @abstractmethod
     def law(self, body: "BodyLaw", mass: float, load_mass: float) -> "BaseNumbers":
@@ -156,3 +164,19 @@ class Support(ABC):
         body = self.load.body
         raising = self.load.weight * body.centre_height
         return body.mass * self.own_law.rotational_stiffness - raising
+
+    @property
+    def vertical_frequency(self) -> float:
+        """omega_v, of vertical vibration in full contact, Eqs. (7a) and (18a) [rad s^-1]."""
+        return math.sqrt(self.own_law.vertical_stiffness)
+
+    def vibrations(self, vertical: str, rocking: str) -> list[tuple[str, str]]:
+        """Tell vertical vibration, and rocking where the base holds the body, by these titles."""
+        law, body, rate = self.own_law, self.load.body, self.vertical_frequency
+        rows = [(vertical, vibration_words("omega_v", rate, 0.5 * law.damping_time * rate))]
+        if self.rocking_stiffness > 0.0:
+            rate = math.sqrt(self.rocking_stiffness / body.base_inertia)
+            damping = law.damping_time * law.rotational_stiffness * body.mass
+            ratio = 0.5 * damping / (body.base_inertia * rate)
+            rows.append((rocking, vibration_words("omega_r", rate, ratio)))
+        return rows

@@ -1,5 +1,6 @@
-"""A scene in words."""
+"""A scene in words, and how its numbers are written."""
 
+import math
 from dataclasses import dataclass
 
 
@@ -26,3 +27,23 @@ class Words:
     uplift: list[tuple[str, str]]
     numbers: list[tuple[str, str]]
     left_out: list[str]
+
+
+def angle_words(radians: float) -> str:
+    """Write an angle in radians and degrees."""
+    return f"{radians:.6g} rad ({math.degrees(radians):.4g} deg)"
+
+
+def uplift_words(radians: float) -> str:
+    """Write the angle at which contact is first lost; NaN if it never is."""
+    if math.isnan(radians):
+        return "never: the base stays in contact up to overturning"
+    return angle_words(radians)
+
+
+def vibration_words(symbol: str, frequency: float, damping_ratio: float) -> str:
+    """Write a frequency, its period and its damping ratio."""
+    return (
+        f"{symbol} = {frequency:.6g} rad/s (period {2.0 * math.pi / frequency:.6g} s), "
+        f"damping ratio {damping_ratio:.6g}"
+    )
