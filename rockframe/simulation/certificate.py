@@ -2,7 +2,7 @@
 
 import math
 import warnings
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -45,46 +45,6 @@ NONE: Final = Certificate(
 """Of a run without a verdict."""
 
 
-@dataclass(frozen=True)
-class Evidence:
-    """All runs beside a run.
-
-    Parameters
-    ----------
-    base : Beside
-        The run itself.
-    finer : list of (str, Beside)
-        Runs by finer means, with these in words.
-    nudged : list of (str, Scan)
-        Runs with a parameter changed, with its name.
-    scaled : Scan
-        Runs with a scaled motion or start.
-    """
-
-    base: Beside
-    finer: list[tuple[str, Beside]]
-    nudged: list[tuple[str, Scan]]
-    scaled: Scan
-
-    @property
-    def runs(self) -> int:
-        """Number of runs."""
-        nudged = sum(len(found.tried) for _, found in self.nudged)
-        return len(self.finer) + nudged + len(self.scaled.tried)
-
-    @property
-    def peak_error(self) -> float:
-        """Estimate of the error of the peak rotation [rad]."""
-        return SAFETY * largest([distance(other, self.base) for _, other in self.finer])
-
-    @property
-    def peak_sensitivity(self) -> float:
-        """Largest difference of the peak rotation that a nudge makes [rad]."""
-        return largest(
-            [distance(other, self.base) for _, one in self.nudged for other in one.tried.values()]
-        )
-
-
 def certify(
     system: Assembly, plan: Plan, base: Beside, wanted: Certification, run: Run
 ) -> Certificate:
@@ -117,10 +77,10 @@ def certify(
             (words, run(system, other)) for words, other in finer_plans(system, bare, base.step)
         ]
         nudged = _nudged(system, bare, base, wanted, run)
-        spent = len(finer) + sum(len(found.tried) for _, found in nudged)
+        nearby = [shown for _, found in nudged for shown in found.tried.values()]
+        spent = len(finer) + len(nearby)
         most = max(wanted.runs - spent, wanted.runs // 4)
         along = _scaled(system, bare, base, wanted, run, most)
-    evidence = Evidence(base, finer, nudged, along)
     margin = along.margin if along.tried else math.nan
     followed = all(found.flip is None and found.followed for _, found in nudged)
     certificate = Certificate(
@@ -128,9 +88,9 @@ def certify(
         robust=followed and not margin < wanted.nudge,
         margin=margin,
         flip=math.nan if along.flip is None else 1.0 + along.flip,
-        peak_error=evidence.peak_error,
-        peak_sensitivity=evidence.peak_sensitivity,
-        runs=evidence.runs,
+        peak_error=SAFETY * _farthest(base, [other for _, other in finer]),
+        peak_sensitivity=_farthest(base, nearby),
+        runs=spent + len(along.tried),
         resolution=RESOLUTION,
         sentence="",
     )
@@ -146,20 +106,14 @@ def _nudged(
     fewest, most = PER_PARAMETER
     share = int(FOR_PARAMETERS * wanted.runs) // max(len(every), 1)
     row = [share * wanted.nudge for share in INSIDE]
+    count = min(max(share, fewest), most)
 
     def along(scene_at: SceneAt) -> Scan:
         def look(change: float) -> Beside | None:
             scene = scene_at(change)
             return None if scene is None else _run_beside(scene, plan, run)
 
-        return scan(
-            look,
-            base,
-            row,
-            most=min(max(share, fewest), most),
-            resolution=NUDGE_RESOLUTION,
-            close_in=False,
-        )
+        return scan(look, base, row, most=count, resolution=NUDGE_RESOLUTION, close_in=False)
 
     return [(words, along(scene_at)) for words, scene_at in every]
 
@@ -197,11 +151,7 @@ def settles(base: Beside, finer: Beside) -> bool:
     return all(SAFETY * abs(a - b) < a for a, b in pairs)
 
 
-def distance(other: Beside, base: Beside) -> float:
-    """Give the difference of two peaks; NaN if a run was cut off before its own."""
-    return math.nan if other.overturned is None else abs(other.peak - base.peak)
-
-
-def largest(values: list[float]) -> float:
-    """Give the largest value, NaN if one is NaN, 0 of none."""
-    return float(np.max(values, initial=0.0))
+def _farthest(base: Beside, others: list[Beside]) -> float:
+    """Give the largest difference of peak rotations; NaN if a run was cut off before its own."""
+    apart = [math.nan if one.overturned is None else abs(one.peak - base.peak) for one in others]
+    return float(np.max(apart, initial=0.0))

@@ -5,13 +5,9 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import Final
 
-import numpy as np
-
 from rockframe.errors import RockframeError
 from rockframe.motion import GroundMotion
-from rockframe.motion.processing.sampling import refined
-from rockframe.signals import Signal
-from rockframe.signals.signal import COEFFICIENTS
+from rockframe.motion.processing.sampling import divided
 from rockframe.simulation.plan import Plan
 from rockframe.solve.accuracy import LEVELS, Accuracy, AccuracyLevel
 from rockframe.solve.integrate import STILL_INTERVAL
@@ -122,25 +118,4 @@ def cut(motion: GroundMotion, parts: int) -> GroundMotion:
     GroundMotion
         Straight lines stay straight lines, polynomials the same polynomials.
     """
-    return GroundMotion(motion.si.each(lambda signal: _cut(signal, parts)), name=motion.name)
-
-
-def _cut(signal: Signal, parts: int) -> Signal:
-    step, samples = signal.time_step / parts, signal.samples
-    if signal.polynomials is None:
-        return replace(signal, time_step=step, samples=refined(signal, step))
-    share = np.arange(parts) / parts
-    # in the part from u0 on, u = u0 + v/parts: the binomial theorem gives the powers of v
-    shifted = np.zeros((parts, COEFFICIENTS, COEFFICIENTS))
-    for power in range(COEFFICIENTS):
-        for k in range(power + 1):
-            shifted[:, k, power] = math.comb(power, k) * share ** (power - k) / parts**k
-    finer = np.einsum("pkj,ij->ipk", shifted, signal.polynomials)
-    values = finer[:, :, 0].copy()
-    values[:, 0] = samples[:-1]
-    return replace(
-        signal,
-        time_step=step,
-        samples=np.append(values.ravel(), samples[-1]),
-        polynomials=finer.reshape(-1, COEFFICIENTS),
-    )
+    return GroundMotion(motion.si.each(lambda one: divided(one, parts)), name=motion.name)

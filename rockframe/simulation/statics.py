@@ -32,7 +32,7 @@ def equilibrium(system: Assembly) -> xr.Dataset:
 
 def _sides(setting: Setting) -> dict[str, float]:
     """Give what a body that is not symmetric, or stands on a slope, has beyond others."""
-    if setting.body.eccentricity == 0.0 and setting.slope.level:
+    if not setting.leans:
         return {}
     left, right = setting.overturning_angles
     return {

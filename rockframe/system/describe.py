@@ -47,7 +47,7 @@ def describe(setting: Setting, parts: Parts) -> str:
 
 def _overturning(setting: Setting) -> list[tuple[str, str]]:
     body, slope, title = setting.body, setting.slope, "overturning angle theta, Eq. (1)"
-    if body.eccentricity == 0.0 and slope.level:
+    if not setting.leans:
         return [(title, angle_words(setting.overturning_angle))]
     left, right = setting.overturning_angles
     rows = [(title, f"to the left {angle_words(left)}, to the right {angle_words(right)}")]
