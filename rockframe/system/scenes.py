@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 from rockframe.errors import AssemblyError
 from rockframe.system.alone import AloneSetting
@@ -41,14 +42,10 @@ class Scene:
         return self.signature == parts.signature and self.coupling in (None, coupling)
 
 
-def _alone(slot: str) -> Callable[[Parts, Options], AloneSetting]:
+def _alone(slot: str, parts: Parts, options: Options) -> AloneSetting:
     """Put a block on the base in a slot."""
-
-    def make(parts: Parts, options: Options) -> AloneSetting:
-        load = load_of(parts.the_block, options)
-        return AloneSetting(load, support_of(parts.base(slot), load))
-
-    return make
+    load = load_of(parts.the_block, options)
+    return AloneSetting(load, support_of(parts.base(slot), load))
 
 
 def _with_cap(parts: Parts, options: Options) -> AloneSetting:
@@ -69,16 +66,12 @@ def _refuse_twins(parts: Parts, upper: AloneSetting, lower: AloneSetting) -> Non
         raise AssemblyError([fault])
 
 
-def _stacked(kind: type[StackedSetting]) -> Callable[[Parts, Options], StackedSetting]:
+def _stacked(kind: type[StackedSetting], parts: Parts, options: Options) -> StackedSetting:
     """Put a block on pads on a cap on soil."""
-
-    def make(parts: Parts, options: Options) -> StackedSetting:
-        upper, lower = _alone("pads")(parts, options), _with_cap(parts, options)
-        _refuse_twins(parts, upper, lower)
-        cap = cap_under(parts.the_block, parts.the_cap)
-        return kind(upper.load, upper, lower, cap, cap_offset=lower.cap_offset)
-
-    return make
+    upper, lower = _alone("pads", parts, options), _with_cap(parts, options)
+    _refuse_twins(parts, upper, lower)
+    cap = cap_under(parts.the_block, parts.the_cap)
+    return kind(upper.load, upper, lower, cap, cap_offset=lower.cap_offset)
 
 
 _STACK = frozenset({"block", "pads", "cap", "soil"})
@@ -89,8 +82,8 @@ SCENES: tuple[Scene, ...] = (
         frozenset({"block"}),
         rigid_ground_setting,
     ),
-    Scene("Block + TwoSpringSupport", frozenset({"block", "pads"}), _alone("pads")),
-    Scene("Block + WinklerSoil", frozenset({"block", "soil"}), _alone("soil")),
+    Scene("Block + TwoSpringSupport", frozenset({"block", "pads"}), partial(_alone, "pads")),
+    Scene("Block + WinklerSoil", frozenset({"block", "soil"}), partial(_alone, "soil")),
     Scene(
         "Block + CushionCap + WinklerSoil (block and cap as one body)",
         frozenset({"block", "cap", "soil"}),
@@ -99,13 +92,13 @@ SCENES: tuple[Scene, ...] = (
     Scene(
         "Block + TwoSpringSupport + CushionCap + WinklerSoil, coupling='coupled'",
         _STACK,
-        _stacked(CoupledSetting),
+        partial(_stacked, CoupledSetting),
         Coupling.COUPLED,
     ),
     Scene(
         "Block + TwoSpringSupport + CushionCap + WinklerSoil, coupling='cascade'",
         _STACK,
-        _stacked(CascadeSetting),
+        partial(_stacked, CascadeSetting),
         Coupling.CASCADE,
     ),
 )
