@@ -366,6 +366,24 @@ def test_other_units_are_converted(maker, name, text, attribute, expected):
     assert getattr(maker(**{name: text}).si, attribute) == pytest.approx(expected, rel=4e-16)
 
 
+@pytest.mark.parametrize("unit", ["cm", "centimeter", "cm * m/m"])
+def test_a_number_of_few_digits_stays_one(unit):
+    """The product of the floats 70 and 0.01 is 0.7000000000000001."""
+    for given in (f"70 {unit}", (70.0, unit), pint.Quantity(70, unit), pint.Quantity(70.0, unit)):
+        assert make_block(width=given) == make_block(width="0.7 m")
+    assert "width='0.7 m'" in repr(make_block(width=f"70 {unit}"))
+    held = rf.System(make_block()).moment_rotation(([70.0, 7.0], "mrad"))
+    assert held.angle.values.tolist() == [0.07, 0.007]
+
+
+@pytest.mark.parametrize(
+    ("text", "words"), [("1e306 km", "must be finite"), ("nan cm", "finite"), ("-inf cm", "finite")]
+)
+def test_numbers_beyond_all_bounds_are_refused_in_any_unit(text, words):
+    with pytest.raises(rf.ComponentError, match=words):
+        make_block(width=text)
+
+
 @pytest.mark.parametrize(
     ("text", "expected"),
     [

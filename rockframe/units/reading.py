@@ -7,15 +7,23 @@ does no harm.
 
 import math
 import re
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass, replace
-from enum import StrEnum
+from collections.abc import Iterable
+from fractions import Fraction
 from numbers import Real
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import pint
 
 from rockframe.errors import ComponentError, UnitsError, shown
+from rockframe.units.hints import (
+    AMBIGUOUS,
+    NUMBER_AND_UNIT,
+    foreign_quantity,
+    misread,
+    other_kind,
+    without_unit,
+)
+from rockframe.units.kinds import Condition, Measure, Unit
 
 if TYPE_CHECKING:
     import numpy as np
@@ -25,114 +33,13 @@ QuantityLike: TypeAlias = str | pint.Quantity[Any] | tuple[float, str]
 """A number with its unit: ``"0.3 m"``, ``(0.3, "m")``, or a Quantity of pint."""
 RatioLike: TypeAlias = float | str | pint.Quantity[Any]
 
-
-class Unit(StrEnum):
-    """Every unit string of rockframe, in a spelling that pint and UDUNITS both parse."""
-
-    ONE = "1"
-    METRE = "m"
-    CUBIC_METRE = "m^3"
-    SECOND = "s"
-    KILOGRAM = "kg"
-    RADIAN = "rad"
-    HERTZ = "Hz"
-    METRE_PER_SECOND = "m s^-1"
-    METRE_PER_SECOND_SQUARED = "m s^-2"
-    RADIAN_PER_SECOND = "rad s^-1"
-    RADIAN_PER_SECOND_SQUARED = "rad s^-2"
-    KILOGRAM_METRE_SQUARED = "kg m^2"
-    KILOGRAM_PER_CUBIC_METRE = "kg m^-3"
-    NEWTON = "N"
-    NEWTON_METRE = "N m"
-    NEWTON_SECOND = "N s"
-    NEWTON_PER_METRE = "N m^-1"
-    NEWTON_SECOND_PER_METRE = "N s m^-1"
-    JOULE = "J"
-    PASCAL = "Pa"
-    PASCAL_SECOND = "Pa s"
-    PASCAL_PER_METRE = "Pa m^-1"
-
-
-@dataclass(frozen=True)
-class Measure:
-    """A kind of physical quantity that an argument can ask for."""
-
-    name: str
-    unit: Unit
-    example: str
-
-    def like(self, example: str) -> "Measure":
-        """Give the same kind with an example that fits other arguments."""
-        return replace(self, example=example)
-
-    @property
-    def needed(self) -> str:
-        """The kind, and that it needs a unit, in words."""
-        return self.name if self.unit == Unit.ONE else f"{self.name} with a unit"
-
-    def example_of(self, argument: str) -> str:
-        """Show how an argument is written."""
-        written = self.example if self.unit == Unit.ONE else repr(self.example)
-        return f"write for example {argument}={written}"
-
-
-LENGTH: Final = Measure("a length", Unit.METRE, "4 m")
-MASS: Final = Measure("a mass", Unit.KILOGRAM, "99 t")
-DENSITY: Final = Measure("a density", Unit.KILOGRAM_PER_CUBIC_METRE, "2500 kg/m^3")
-INERTIA: Final = Measure("a moment of inertia", Unit.KILOGRAM_METRE_SQUARED, "1.2e6 kg*m^2")
-THICKNESS: Final = LENGTH.like("0.3 m")
-TIME: Final = Measure("a time", Unit.SECOND, "20 s")
-TIME_STEP: Final = TIME.like("0.01 s")
-PERIOD: Final = TIME.like("0.5 s")
-ANGLE: Final = Measure("an angle", Unit.RADIAN, "0.1 rad")
-ANGULAR_VELOCITY: Final = Measure("an angular velocity", Unit.RADIAN_PER_SECOND, "0.2 rad/s")
-VELOCITY: Final = Measure("a velocity", Unit.METRE_PER_SECOND, "0.1 m/s")
-ACCELERATION: Final = Measure("an acceleration", Unit.METRE_PER_SECOND_SQUARED, "9.81 m/s^2")
-FREQUENCY: Final = Measure("a cyclic frequency", Unit.HERTZ, "1 Hz")
-FORCE: Final = Measure("a force", Unit.NEWTON, "100 kN")
-STIFFNESS: Final = Measure("a stiffness", Unit.NEWTON_PER_METRE, "12 MN/m")
-DAMPING: Final = Measure("a damping coefficient", Unit.NEWTON_SECOND_PER_METRE, "80 kN*s/m")
-BED_STIFFNESS: Final = Measure("a stiffness per length of base", Unit.PASCAL, "9 MPa")
-BED_DAMPING: Final = Measure("a damping per length of base", Unit.PASCAL_SECOND, "400 kN*s/m^2")
-SUBGRADE_MODULUS: Final = Measure("a subgrade modulus", Unit.PASCAL_PER_METRE, "20 MN/m^3")
-
-_HEAVY: Final = (Unit.KILOGRAM, Unit.KILOGRAM_PER_CUBIC_METRE, Unit.KILOGRAM_METRE_SQUARED)
-_MISREAD_UNITS: Final = (
-    # (pattern, unit it is meant for or None for any, what is wrong)
-    (
-        r"(?<![A-Za-z_])g(?![A-Za-z_0])",
-        Unit.METRE_PER_SECOND_SQUARED,
-        "'g' is the gram; the acceleration of gravity is written 'g_0'",
-    ),
-    (
-        r"(?<![A-Za-z_])(?:G|[Gg]_?[0n])(?![A-Za-z_0-9])",
-        Unit.METRE_PER_SECOND_SQUARED,
-        "the acceleration of gravity is written 'g_0'",
-    ),
-    (
-        r"(?<![A-Za-z_])gal\b",
-        Unit.METRE_PER_SECOND_SQUARED,
-        "'gal' is the gallon; the galileo (cm/s^2) is written 'Gal'",
-    ),
-    (r"\bnp\.", None, "a NumPy number was written with its type; write float(...) of it"),
-    (r"[A-Za-z]\d", None, "powers need '^', as in 'm/s^2'"),
-)
-_AMBIGUOUS: Final = (
-    # read without complaint by pint, but rarely as the writer meant it
-    (r",", "a decimal point is written '.'; pint would drop the comma"),
-    (r"\d\s+[\d.]", "a number is written without blanks; pint would multiply its parts"),
-    (
-        r"\b(?:k|M|G|kilo|mega|giga)?tons?\b",
-        "'ton' is the US short ton of 907 kg; the tonne is written 't'",
-    ),
-)
-_NUMBER: Final = r"[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|nan\b|inf(?:inity)?\b)"
-_NUMBER_AND_UNIT: Final = re.compile(rf"\s*(?P<number>{_NUMBER})\s*(?P<unit>.*)", re.DOTALL)
 _NO_UNIT: Final = re.compile(
     # a second number, or a power of a number or of a power: no unit has them, and
     # pint would compute even 9**9**9
     r"^\^|(?:^|[\s/(*])[\d.]|\^[-+]?(?:\d{3}|\d+\^)|[A-Za-z]\d"
 )
+_LONGEST_FACTOR: Final = 12
+"""Letters of a unit's size that is a number of few digits, such as 0.45359237 kg or 1e-06 m."""
 _POWER: Final = re.compile(r"\s*(?:\*\*|\^)\s*")
 
 
@@ -192,7 +99,7 @@ def to_si(
         return _check_value(number, value, condition, owner=owner, name=name)
     given = _parse(value, measure, owner=owner, name=name)
     _check_kind(given, value, measure, owner=owner, name=name)
-    magnitude = given.m_as(str(measure.unit))
+    magnitude = _converted(given, measure)
     if not isinstance(magnitude, Real) and getattr(magnitude, "ndim", 1) != 0:
         msg = (
             f"{owner}: {name} needs {measure.name}, one value only, got {shown(value)}; "
@@ -236,11 +143,33 @@ def to_si_values(value: object, measure: Measure, *, owner: str, name: str) -> l
             factor = to_si(f"1 {items[1]}", measure, owner=owner, name=name)
             numbers = items[0] if isinstance(items[0], Iterable) else [items[0]]
             return [
-                _check_value(float(number) * factor, number, None, owner=owner, name=name)
+                _check_value(_product(float(number), factor), number, None, owner=owner, name=name)
                 for number in numbers
             ]
         return [to_si(item, measure, owner=owner, name=name) for item in items]
     return [to_si(value, measure, owner=owner, name=name)]
+
+
+def _converted(given: Any, measure: Measure) -> Any:
+    """Convert a magnitude, as long as it is one number, as it is written."""
+    unit, number = str(measure.unit), given.magnitude
+    if not isinstance(number, int | float):
+        return given.m_as(unit)
+    return _product(float(number), float(type(given)(1.0, given.units).m_as(unit)))
+
+
+def _product(number: float, factor: float) -> float:
+    """Multiply a number by the size of its unit as both are written: 70 cm are 0.7 m.
+
+    The product of the floats is 0.7000000000000001 m.
+    """
+    written = repr(factor)
+    if not math.isfinite(number) or len(written) > _LONGEST_FACTOR:
+        return number * factor
+    try:
+        return float(Fraction(repr(number)) * Fraction(written))
+    except OverflowError:
+        return math.copysign(math.inf, number)
 
 
 def _each(given: Any) -> Iterable[Any]:
@@ -295,30 +224,11 @@ def to_ratio(
     return _check_value(float(number), value, condition, owner=owner, name=name)
 
 
-@dataclass(frozen=True)
-class Condition:
-    """A range that a value must lie in, with the words for it."""
-
-    words: str
-    holds: Callable[[float], bool]
-    hint: Callable[[str], str] = lambda _: ""
-    """What may have been meant by a value outside it, as it was written."""
-    bounds: tuple[float, float] = (-math.inf, math.inf)
-    """Numbers between which the range lies, for searches inside it."""
-
-
-POSITIVE: Final = Condition("greater than zero", lambda value: value > 0.0, bounds=(0.0, math.inf))
-NOT_NEGATIVE: Final = Condition("zero or more", lambda value: value >= 0.0, bounds=(0.0, math.inf))
-UNIT_INTERVAL: Final = Condition(
-    "above 0 and at most 1", lambda value: 0.0 < value <= 1.0, bounds=(0.0, 1.0)
-)
-
-
 def _in_si(value: object, measure: Measure) -> float | None:
     """Read a value that is in the SI unit already: most are, and need no conversion."""
     if not isinstance(value, str) or not value.endswith(measure.unit):
         return None
-    parts = _NUMBER_AND_UNIT.fullmatch(value)
+    parts = NUMBER_AND_UNIT.fullmatch(value)
     if parts is None or parts["unit"] != measure.unit:
         return None
     return float(parts["number"])
@@ -332,25 +242,25 @@ def _parse(value: object, measure: Measure, *, owner: str, name: str) -> pint.Qu
     example = measure.example_of(name)
     if not isinstance(value, str):
         kind = "a bare number" if isinstance(value, Real) else f"a {type(value).__name__}"
-        why = foreign_quantity(value) or f"{kind} has no unit"
+        why = foreign_quantity(value) or f"{kind} has no unit{without_unit(measure)}"
         if isinstance(value, tuple):
             why = "one number and its unit are needed"
         msg = f"{needed}, got {shown(value)} ({why}); {example}"
         raise UnitsError(msg)
-    for pattern, words in _AMBIGUOUS:
+    for pattern, words in AMBIGUOUS:
         if re.search(pattern, value):
             msg = f"{needed}, got {shown(value)} ({words}); {example}"
             raise UnitsError(msg)
-    parts = _NUMBER_AND_UNIT.fullmatch(value)
+    parts = NUMBER_AND_UNIT.fullmatch(value)
     if parts is None or _NO_UNIT.search(_POWER.sub("^", parts["unit"])):
-        hint = _misread(value, measure)
+        hint = misread(value, measure)
         wanted = "a number" if measure.unit == Unit.ONE else "one number and a unit"
         msg = f"{needed}, got {shown(value)}, which is not {wanted}{hint}; {example}"
         raise UnitsError(msg)
     try:
         return pint.get_application_registry().Quantity(value)
     except Exception as problem:  # pint's parser raises many unrelated types
-        hint = _misread(value, measure)
+        hint = misread(value, measure)
         msg = f"{needed}, got {shown(value)}, whose unit cannot be read{hint}; {example}"
         raise UnitsError(msg) from problem
 
@@ -364,28 +274,6 @@ def _joined(value: object) -> object:
     if isinstance(number, bool) or not isinstance(number, Real) or not isinstance(unit, str):
         return pair
     return f"{float(number)!r} {unit}"
-
-
-def foreign_quantity(value: object) -> str:
-    """Say how a quantity of another library is given; nothing of what is none.
-
-    Parameters
-    ----------
-    value : object
-        What the user gave.
-
-    Returns
-    -------
-    str
-    """
-    home = type(value).__module__.partition(".")[0]
-    unit = next((one for one in ("unit", "units") if hasattr(value, one)), None)
-    if unit is None or not hasattr(value, "value"):
-        return ""
-    return (
-        f"a {type(value).__name__} of {home}, and quantities are those of pint; give it as "
-        f"(q.value, str(q.{unit}))"
-    )
 
 
 def _check_kind(
@@ -402,7 +290,7 @@ def _check_kind(
     unit_needed = "" if measure.unit == Unit.ONE else f" in a unit such as {measure.unit}"
     msg = (
         f"{owner}: {name} needs {measure.name}{unit_needed}, got {shown(str(value))} ({unit})"
-        f"{_other_kind(given, str(value), measure) or _misread(str(value), measure)}; "
+        f"{other_kind(given, str(value), measure) or misread(str(value), measure)}; "
         f"{measure.example_of(name)}"
     )
     raise UnitsError(msg)
@@ -414,60 +302,6 @@ def _roots(given: Any) -> dict[str, float]:
     # Of one unit, not of the value: a huge one would overflow.
     one: Any = type(given)(1.0, given.units)
     return {unit: float(power) for unit, power in one.to_root_units().unit_items()}
-
-
-def _weight(given: Any, text: str, measure: Measure) -> str:
-    """Say how a mass follows from a weight, where one was given for a mass."""
-    if measure.unit not in _HEAVY:
-        return ""
-    try:
-        heavy = given.is_compatible_with(f"{measure.unit} m s^-2")
-    except Exception:  # as in _check_kind
-        return ""
-    return f" (a force is no mass; divide it by g_0: {shown(f'{text}/g_0')})" if heavy else ""
-
-
-def _other_kind(given: Any, text: str, measure: Measure) -> str:
-    """Say how what is needed follows from a related quantity, where that was given."""
-    return _weight(given, text, measure) or _subgrade(given, measure) or _period(given, measure)
-
-
-def _subgrade(given: Any, measure: Measure) -> str:
-    """Say what takes the subgrade modulus, where it was given for the stiffness of a bed."""
-    if measure.unit != BED_STIFFNESS.unit or not _is_in(given, SUBGRADE_MODULUS.unit):
-        return ""
-    return (
-        " (a subgrade modulus; WinklerSoil.from_subgrade_modulus(modulus, depth=...) multiplies "
-        "it by the depth of the base)"
-    )
-
-
-def _period(given: Any, measure: Measure) -> str:
-    """Give the frequency of a period, where that was given."""
-    if measure.unit != FREQUENCY.unit or not _is_in(given, TIME.unit):
-        return ""
-    seconds = float(given.m_as(str(TIME.unit)))
-    if not seconds > 0.0:
-        return ""
-    return f" (a period; its frequency is {shown(f'{1.0 / seconds:.6g} {FREQUENCY.unit}')})"
-
-
-def _is_in(given: Any, unit: Unit) -> bool:
-    try:
-        return given.is_compatible_with(str(unit)) and getattr(given.magnitude, "ndim", 0) == 0
-    except Exception:  # as in _check_kind
-        return False
-
-
-def _misread(text: str, measure: Measure) -> str:
-    parts = _NUMBER_AND_UNIT.fullmatch(text)
-    text = text if parts is None else parts["unit"]
-    for pattern, meant, words in _MISREAD_UNITS:
-        if meant in (None, measure.unit) and re.search(pattern, text):
-            return f" ({words})"
-    if measure is FREQUENCY:
-        return " (a cyclic frequency in Hz is the angular one in rad/s divided by 2 pi)"
-    return ""
 
 
 def _check_value(

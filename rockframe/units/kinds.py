@@ -1,0 +1,97 @@
+"""Units, and kinds of quantities that arguments ask for."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from typing import Final
+
+
+class Unit(StrEnum):
+    """Every unit string of rockframe, in a spelling that pint and UDUNITS both parse."""
+
+    ONE = "1"
+    METRE = "m"
+    CUBIC_METRE = "m^3"
+    SECOND = "s"
+    KILOGRAM = "kg"
+    RADIAN = "rad"
+    HERTZ = "Hz"
+    METRE_PER_SECOND = "m s^-1"
+    METRE_PER_SECOND_SQUARED = "m s^-2"
+    RADIAN_PER_SECOND = "rad s^-1"
+    RADIAN_PER_SECOND_SQUARED = "rad s^-2"
+    KILOGRAM_METRE_SQUARED = "kg m^2"
+    KILOGRAM_PER_CUBIC_METRE = "kg m^-3"
+    NEWTON = "N"
+    NEWTON_METRE = "N m"
+    NEWTON_SECOND = "N s"
+    NEWTON_PER_METRE = "N m^-1"
+    NEWTON_SECOND_PER_METRE = "N s m^-1"
+    JOULE = "J"
+    PASCAL = "Pa"
+    PASCAL_SECOND = "Pa s"
+    PASCAL_PER_METRE = "Pa m^-1"
+
+
+@dataclass(frozen=True)
+class Measure:
+    """A kind of physical quantity that an argument can ask for."""
+
+    name: str
+    unit: Unit
+    example: str
+
+    def like(self, example: str) -> "Measure":
+        """Give the same kind with an example that fits other arguments."""
+        return replace(self, example=example)
+
+    @property
+    def needed(self) -> str:
+        """The kind, and that it needs a unit, in words."""
+        return self.name if self.unit == Unit.ONE else f"{self.name} with a unit"
+
+    def example_of(self, argument: str) -> str:
+        """Show how an argument is written."""
+        written = self.example if self.unit == Unit.ONE else repr(self.example)
+        return f"write for example {argument}={written}"
+
+
+LENGTH: Final = Measure("a length", Unit.METRE, "4 m")
+MASS: Final = Measure("a mass", Unit.KILOGRAM, "99 t")
+DENSITY: Final = Measure("a density", Unit.KILOGRAM_PER_CUBIC_METRE, "2500 kg/m^3")
+INERTIA: Final = Measure("a moment of inertia", Unit.KILOGRAM_METRE_SQUARED, "1.2e6 kg*m^2")
+THICKNESS: Final = LENGTH.like("0.3 m")
+TIME: Final = Measure("a time", Unit.SECOND, "20 s")
+TIME_STEP: Final = TIME.like("0.01 s")
+PERIOD: Final = TIME.like("0.5 s")
+ANGLE: Final = Measure("an angle", Unit.RADIAN, "0.1 rad")
+ANGULAR_VELOCITY: Final = Measure("an angular velocity", Unit.RADIAN_PER_SECOND, "0.2 rad/s")
+VELOCITY: Final = Measure("a velocity", Unit.METRE_PER_SECOND, "0.1 m/s")
+ACCELERATION: Final = Measure("an acceleration", Unit.METRE_PER_SECOND_SQUARED, "9.81 m/s^2")
+FREQUENCY: Final = Measure("a cyclic frequency", Unit.HERTZ, "1 Hz")
+FORCE: Final = Measure("a force", Unit.NEWTON, "100 kN")
+STIFFNESS: Final = Measure("a stiffness", Unit.NEWTON_PER_METRE, "12 MN/m")
+DAMPING: Final = Measure("a damping coefficient", Unit.NEWTON_SECOND_PER_METRE, "80 kN*s/m")
+BED_STIFFNESS: Final = Measure("a stiffness per length of base", Unit.PASCAL, "9 MPa")
+BED_DAMPING: Final = Measure("a damping per length of base", Unit.PASCAL_SECOND, "400 kN*s/m^2")
+SUBGRADE_MODULUS: Final = Measure("a subgrade modulus", Unit.PASCAL_PER_METRE, "20 MN/m^3")
+
+
+@dataclass(frozen=True)
+class Condition:
+    """A range that a value must lie in, with the words for it."""
+
+    words: str
+    holds: Callable[[float], bool]
+    hint: Callable[[str], str] = lambda _: ""
+    """What may have been meant by a value outside it, as it was written."""
+    bounds: tuple[float, float] = (-math.inf, math.inf)
+    """Numbers between which the range lies, for searches inside it."""
+
+
+POSITIVE: Final = Condition("greater than zero", lambda value: value > 0.0, bounds=(0.0, math.inf))
+NOT_NEGATIVE: Final = Condition("zero or more", lambda value: value >= 0.0, bounds=(0.0, math.inf))
+UNIT_INTERVAL: Final = Condition(
+    "above 0 and at most 1", lambda value: 0.0 < value <= 1.0, bounds=(0.0, 1.0)
+)
