@@ -1,6 +1,6 @@
 """Arguments without a unit: one of a few words, a whole number, or a dataset."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from enum import StrEnum
 from functools import wraps
 from operator import index
@@ -42,9 +42,15 @@ def hinted(**hints: str) -> Callable[[Function], Function]:
                     raise TypeError(msg)
             return function(*given, **named)
 
+        call.hints = hints  # type: ignore[attr-defined]
         return cast("Function", call)
 
     return decorate
+
+
+def hints_of(function: Callable[..., Any]) -> Mapping[str, str]:
+    """Give the hints of a function that is :func:`hinted`; none of any other."""
+    return getattr(function, "hints", {})
 
 
 def one_of_words(kind: type[Words], given: object, *, owner: str, name: str) -> Words:

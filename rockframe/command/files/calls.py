@@ -41,6 +41,7 @@ def checked(
     table: Mapping[str, Any],
     known: Mapping[str, bool],
     declared: Mapping[str, Declared[Any, Any]] | None = None,
+    hints: Mapping[str, str] | None = None,
 ) -> bool:
     """Note keys that mean nothing, keys that are missing, and values that cannot be read.
 
@@ -56,6 +57,8 @@ def checked(
         Keys it may hold, and whether it must.
     declared : mapping, optional
         Parameters of a component by their names.
+    hints : mapping, optional
+        Where to give what was meant, by keys that mean nothing here.
 
     Returns
     -------
@@ -66,7 +69,7 @@ def checked(
     declared = declared or {}
     for name in table:
         if name not in known:
-            file.unknown(where, name, known)
+            file.unknown(where, name, known, (hints or {}).get(name, ""))
             sound = False
     for name, required in known.items():
         if required and name not in table:

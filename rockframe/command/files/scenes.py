@@ -9,6 +9,7 @@ from inspect import getmembers, ismethod
 from pathlib import Path
 from typing import Any, Final
 
+from rockframe.arguments import hints_of
 from rockframe.command.files.calls import arguments_of, checked, made
 from rockframe.command.files.lines import Place
 from rockframe.command.files.motions import motion_of
@@ -105,7 +106,8 @@ def described(file: TomlFile) -> Described | None:
     run = _run_of(file, given[RUN]) if RUN in given else {}
     options = file.table((OPTIONS,), given.get(OPTIONS, {}))
     known = arguments_of(System.__init__, without=("parts",))
-    if options is None or not checked(file, (OPTIONS,), options, known):
+    hints = hints_of(System.simulate)  # of what belongs to the parts or to the run
+    if options is None or not checked(file, (OPTIONS,), options, known, hints=hints):
         return None
     if not file.sound:
         return None
@@ -153,7 +155,7 @@ def part_of(file: TomlFile, slot: str, given: object) -> Component | None:
         function, declared = ways[constructor], {}
     known_keys = arguments_of(function)
     unknown = [name for name in table if name not in known_keys]
-    if not checked(file, where, table, known_keys, declared):
+    if not checked(file, where, table, known_keys, declared, hints_of(kind.__init__)):
         _say_ways(file, where, kind, unknown)
         return None
     return made(file, where, function, table)
@@ -240,7 +242,8 @@ _OBJECTS: Final[Mapping[str, type]] = {
 
 def _run_of(file: TomlFile, given: object) -> dict[str, Any]:
     table = file.table((RUN,), given)
-    if table is None or not checked(file, (RUN,), table, run_keys()):
+    hints = hints_of(System.simulate)
+    if table is None or not checked(file, (RUN,), table, run_keys(), hints=hints):
         return {}
     arguments = run_arguments(file, (RUN,), table)
     made(file, (RUN,), _read_arguments, arguments)

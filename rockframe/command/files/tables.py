@@ -106,9 +106,12 @@ class TomlFile:
         )
         return None
 
-    def unknown(self, where: Place, name: str, known: Iterable[str]) -> None:
+    def unknown(self, where: Place, name: str, known: Iterable[str], hint: str = "") -> None:
         """Note a key that means nothing, and which one may have been meant."""
         known = list(known)
+        if hint:
+            self.fault((*where, name), f"unknown key {name!r}: {hint}")
+            return
         near = get_close_matches(name.casefold(), known, n=1, cutoff=0.6)
         meant = f"; was {near[0]!r} meant?" if near else ";"
         inside = f"[{title_of(where)}] takes" if where else "there are"

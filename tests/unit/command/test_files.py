@@ -205,6 +205,12 @@ SCENES = {
     "an option": (f'{BLOCK}[system]\nrestraint = "glue"\n', {6: "restraint must be one of"}),
     "an option's unit": (f"{BLOCK}[system]\ngravity = 9.81\n", {6: "gravity needs"}),
     "a run's key": (f'{BLOCK}[run]\ndamping = "1"\n', {6: "unknown key 'damping'"}),
+    "a run's damping": (
+        f"{BLOCK}[pads]\nfrequency_ratio = 20\ndamping = 0.1\n[run]\ndamping = 0.1\n",
+        {7: "damping_ratio", 9: "dampers belong to the parts"},
+    ),
+    "a run's step": (f'{BLOCK}[run]\ndt = "5 ms"\n', {6: "output_step is the spacing"}),
+    "a system's damping": (f"{BLOCK}[system]\ndamping = 0.1\n", {6: "belong to the parts"}),
     "a run's time": (f'{BLOCK}[run]\nfree_vibration = "3"\n', {6: "free_vibration needs a time"}),
     "an accuracy": (f'{BLOCK}[run]\naccuracy = "best"\n', {6: "'fast', 'standard'"}),
     "an output": (f'{BLOCK}[run]\noutputs = ["energie"]\n', {6: "energie"}),
