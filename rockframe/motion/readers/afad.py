@@ -17,20 +17,15 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Final
 
-from rockframe.motion.readers.checks import (
-    check_asked_time_step,
-    check_time_step,
-    choose_unit,
-)
+from rockframe.motion.readers.checks import choose_unit
 from rockframe.motion.readers.components import Component, choose_component
 from rockframe.motion.readers.declared import settle_count
-from rockframe.motion.readers.keys import Keys, kept, needed, needed_count, read_keys
+from rockframe.motion.readers.keys import Keys, kept, needed_count, needed_step, read_keys
 from rockframe.motion.readers.numbers import (
     NUMBER,
     ends_inside_number,
     free_format,
     last_fields,
-    number,
 )
 from rockframe.motion.readers.orientation import UNKNOWN, orientation_of
 from rockframe.motion.readers.source import Metadata, Record, Request, Source, shown
@@ -82,10 +77,7 @@ def read(source: Source, request: Request) -> Record:
         Not such a file, no sampling interval, columns or unit, or cut short.
     """
     header = read_keys(source.top(_LONGEST_HEADER))
-    interval, step_line = needed(source, header, _STEP)
-    time_step = number(interval, source, step_line)
-    check_time_step(source, time_step, step_line)
-    check_asked_time_step(source, request, time_step, step_line)
+    time_step = needed_step(source, request, header, _STEP)
     declared, count_line = needed_count(source, header, _COUNT)
     names, first = _columns(source)
     peaks, unit_name, peaks_line = _peaks(header)

@@ -13,19 +13,14 @@ from __future__ import annotations
 import re
 from typing import Final
 
-from rockframe.motion.readers.checks import (
-    check_asked_time_step,
-    check_time_step,
-    choose_unit,
-)
+from rockframe.motion.readers.checks import choose_unit
 from rockframe.motion.readers.components import Component, choose_component
 from rockframe.motion.readers.declared import settle_count
-from rockframe.motion.readers.keys import Keys, kept, needed, needed_count
+from rockframe.motion.readers.keys import Keys, kept, needed_count, needed_step
 from rockframe.motion.readers.numbers import (
     ends_inside_number,
     free_format,
     last_fields,
-    number,
 )
 from rockframe.motion.readers.orientation import orientation_of
 from rockframe.motion.readers.source import Metadata, Record, Request, Source, shown
@@ -85,10 +80,7 @@ def read(source: Source, request: Request) -> Record:
     if kind and kind.casefold().removeprefix("un").removeprefix("processed ") != "acceleration":
         found = f"DATA_TYPE {shown(kind)}"
         raise source.refuse(found=found, expected="an acceleration", line=kind_line)
-    interval, line = needed(source, header, "SAMPLING_INTERVAL_S")
-    time_step = number(interval, source, line)
-    check_time_step(source, time_step, line)
-    check_asked_time_step(source, request, time_step, line)
+    time_step = needed_step(source, request, header, "SAMPLING_INTERVAL_S")
     unit_name, unit_line = header.get("UNITS", ("", 0))
     unit, as_read, warnings = choose_unit(source, request, unit_name or None, unit_line or None)
     declared, count_line = needed_count(source, header, "NDATA")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, TypeAlias
 
+from rockframe.motion.readers.checks import check_asked_time_step, check_time_step
 from rockframe.motion.readers.fixed import whole
 from rockframe.motion.readers.numbers import number
 from rockframe.motion.readers.source import shown
@@ -11,7 +12,7 @@ from rockframe.motion.readers.source import shown
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from rockframe.motion.readers.source import Metadata, Source
+    from rockframe.motion.readers.source import Metadata, Request, Source
 
 Keys: TypeAlias = "dict[str, tuple[str, int]]"
 """Value and line, from 1, of each key."""
@@ -87,6 +88,15 @@ def needed_rate(source: Source, keys: Keys, key: str) -> tuple[float, int]:
         found = f"a sampling rate of {rate!r} Hz"
         raise source.refuse(found=found, expected="one above zero", line=line)
     return rate, line
+
+
+def needed_step(source: Source, request: Request, keys: Keys, key: str) -> float:
+    """Give a time step that must be there, and be that which the caller asked for [s]."""
+    text, line = needed(source, keys, key)
+    time_step = number(text, source, line)
+    check_time_step(source, time_step, line)
+    check_asked_time_step(source, request, time_step, line)
+    return time_step
 
 
 def kept(keys: Keys, names: Mapping[str, str]) -> Metadata:

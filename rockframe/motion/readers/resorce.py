@@ -16,15 +16,10 @@ from __future__ import annotations
 import re
 from typing import Final
 
-from rockframe.motion.readers.checks import (
-    check_asked_time_step,
-    check_time_step,
-    choose_unit,
-)
+from rockframe.motion.readers.checks import choose_unit
 from rockframe.motion.readers.components import Component, choose_component
 from rockframe.motion.readers.fixed import fixed_width
-from rockframe.motion.readers.keys import kept, needed, needed_count, read_keys
-from rockframe.motion.readers.numbers import number
+from rockframe.motion.readers.keys import kept, needed_count, needed_step, read_keys
 from rockframe.motion.readers.orientation import orientation_of
 from rockframe.motion.readers.source import Metadata, Record, Request, Source, shown
 from rockframe.motion.readers.stated import compare_peak, surplus
@@ -71,10 +66,7 @@ def read(source: Source, request: Request) -> Record:
         Not such a file, not an acceleration, no time increment, or cut short.
     """
     header = read_keys(source.top(_LONGEST_HEADER))
-    increment, step_line = needed(source, header, _STEP)
-    time_step = number(increment, source, step_line)
-    check_time_step(source, time_step, step_line)
-    check_asked_time_step(source, request, time_step, step_line)
+    time_step = needed_step(source, request, header, _STEP)
     count, _ = needed_count(source, header, _COUNT)
     unit_name, line = _series(source)
     unit, as_read, warnings = choose_unit(source, request, unit_name, line)
