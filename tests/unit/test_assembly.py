@@ -393,6 +393,26 @@ class TestDescription:
         states = re.findall(r"^  (full|left|right|flight|impact) ", text, re.MULTILINE)
         assert states == ["full", "left", "right", "flight", "impact"]
 
+    @pytest.mark.parametrize("base", [pads, soil])
+    def test_rocking_damps_by_both_sides_of_an_eccentric_base(self, base):
+        """Springs and dashpots have the same levers, about the foot of the centre of mass."""
+        part, e = base(), 0.1
+        eccentric = block(centre_of_mass=("4 m", f"{e} m"))
+        support = rf.System(eccentric, part).setting.support
+        b, inertia = 1.0, eccentric.si.inertia + 5e4 * 4.0**2
+        left, right = b + e, b - e
+        if base is pads:
+            springs = support.stiffness * (left**2 + right**2)
+            dashpots = support.damping * (left**2 + right**2)
+        else:
+            springs = support.stiffness * (left**3 + right**3) / 3.0
+            dashpots = support.damping * (left**3 + right**3) / 3.0
+        rate = math.sqrt((springs - 5e4 * 9.80665 * 4.0) / inertia)
+        text = rf.System(eccentric, part).describe()
+        ratio = dashpots / (2.0 * inertia * rate)
+        told = re.search(r"omega_r = (\S+) rad/s .*?damping ratio (\S+)", text, re.DOTALL)
+        assert told.groups() == (f"{rate:.6g}", f"{ratio:.6g}")
+
     def test_of_rigid_ground(self):
         text = rf.System(block()).describe()
         for word in (
