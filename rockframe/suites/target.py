@@ -1,25 +1,23 @@
-"""Spectra that are aimed at: tables, and the shapes of codes."""
+"""Spectra that are aimed at: tables, spectra of motions, and those of codes."""
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from enum import StrEnum
 from typing import TYPE_CHECKING, Any, Final, Self
 
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import checked_dataset, one_of_words, whole_number
+from rockframe.arguments import checked_dataset
 from rockframe.errors import ComponentError, SchemaError
 from rockframe.signals.arrays import Array
 from rockframe.signals.spectra import DAMPING_RATIO
+from rockframe.suites.codes import GroundType, Shape, asce_7, eurocode_8
 from rockframe.units import (
     ACCELERATION,
     PERIOD,
     POSITIVE,
     Condition,
     to_ratio,
-    to_si,
     to_si_values,
 )
 
@@ -29,39 +27,8 @@ if TYPE_CHECKING:
     from rockframe.motion.quantities import ArrayLike, QuantityLike, RatioLike
 
 _DEVIATION: Final = Condition("from 0 to 3", lambda value: 0.0 <= value <= 3.0)
-_HEIGHT: Final = 2.5
-_LEAST_CORRECTION: Final = 0.55
 _USUAL: Final = 0.05
 _ROUNDING: Final = 1e-9
-
-
-class GroundType(StrEnum):
-    """Ground types of Eurocode 8."""
-
-    A = "A"
-    B = "B"
-    C = "C"
-    D = "D"
-    E = "E"
-
-
-_EUROCODE: Final = {
-    # EN 1998-1:2004, Tables 3.2 and 3.3: S, T_B, T_C, T_D [1, s]
-    1: {
-        GroundType.A: (1.0, 0.15, 0.4, 2.0),
-        GroundType.B: (1.2, 0.15, 0.5, 2.0),
-        GroundType.C: (1.15, 0.20, 0.6, 2.0),
-        GroundType.D: (1.35, 0.20, 0.8, 2.0),
-        GroundType.E: (1.4, 0.15, 0.5, 2.0),
-    },
-    2: {
-        GroundType.A: (1.0, 0.05, 0.25, 1.2),
-        GroundType.B: (1.35, 0.05, 0.25, 1.2),
-        GroundType.C: (1.5, 0.10, 0.25, 1.2),
-        GroundType.D: (1.8, 0.10, 0.30, 1.2),
-        GroundType.E: (1.6, 0.05, 0.25, 1.2),
-    },
-}
 
 
 @dataclass(frozen=True)
@@ -85,8 +52,8 @@ class TargetSpectrum:
     """
 
     name: str
-    shape: Callable[[Array], Array] = field(repr=False)
-    deviation: Callable[[Array], Array] | None = field(default=None, repr=False)
+    shape: Shape = field(repr=False)
+    deviation: Shape | None = field(default=None, repr=False)
     damping_ratio: float = _USUAL
     limits: tuple[float, float] = (0.0, math.inf)
 
@@ -253,39 +220,10 @@ class TargetSpectrum:
         >>> (target.at(["0 s", "0.3 s", "1 s"]) / 9.80665).round(3).tolist()
         [0.24, 0.6, 0.3]
         """
-        owner = f"{cls.__name__}.eurocode_8"
-        peak = to_si(
-            ground_acceleration,
-            ACCELERATION,
-            owner=owner,
-            name="ground_acceleration",
-            condition=POSITIVE,
-        )
-        kind = one_of_words(GroundType, ground_type, owner=owner, name="ground_type")
-        number = whole_number(spectrum_type, owner=owner, name="spectrum_type", lowest=1, highest=2)
-        soil, *corners = _EUROCODE[number][kind]
-        if soil_factor is not None:
-            soil = to_ratio(soil_factor, owner=owner, name="soil_factor", condition=POSITIVE)
-        if corner_periods is not None:
-            corners = to_si_values(corner_periods, PERIOD, owner=owner, name="corner_periods")
-        if len(corners) != 3 or not 0.0 < corners[0] < corners[1] < corners[2]:
-            msg = f"{owner}: corner_periods must be T_B, T_C and T_D, increasing"
-            raise ComponentError(msg)
-        damping = to_ratio(
-            damping_ratio, owner=owner, name="damping_ratio", condition=DAMPING_RATIO
-        )
-        correction = max(math.sqrt(10.0 / (5.0 + 100.0 * damping)), _LEAST_CORRECTION)
-
-        def shape(at: Array) -> Array:
-            """Compute :eq:`eq-eurocode-8`."""
-            first, second, third = corners
-            plateau = _HEIGHT * correction
-            longer = np.maximum(at, second)
-            rising = 1.0 + np.minimum(at, first) / first * (plateau - 1.0)
-            falling = plateau * second / longer * np.minimum(1.0, third / longer)
-            return peak * soil * np.where(at < first, rising, falling)
-
-        words = f"Eurocode 8, type {number}, ground {kind}, {peak:.4g} m/s^2"
+        words, shape, damping = eurocode_8(
+            ground_acceleration, ground_type, spectrum_type, soil_factor, corner_periods,
+            damping_ratio, owner=f"{cls.__name__}.eurocode_8",
+        )  # fmt: skip
         return cls(words, shape, None, damping)
 
     @classmethod
@@ -325,29 +263,12 @@ class TargetSpectrum:
         >>> (target.at(["0 s", "0.5 s", "2 s", "10 s"]) / 9.80665).round(3).tolist()
         [0.4, 1.0, 0.3, 0.048]
         """
-        owner = f"{cls.__name__}.asce_7"
-        named = {
-            "short_period_acceleration": short_period_acceleration,
-            "one_second_acceleration": one_second_acceleration,
-        }
-        short, one = (
-            to_si(value, ACCELERATION, owner=owner, name=name, condition=POSITIVE)
-            for name, value in named.items()
-        )
-        last = to_si(long_period, PERIOD, owner=owner, name="long_period", condition=POSITIVE)
-        corner = one / short  # s: the second of S_D1 divides out
-        if last <= corner:
-            msg = f"{owner}: long_period must exceed S_D1/S_DS, {corner:.4g} s"
-            raise ComponentError(msg)
-
-        def shape(at: Array) -> Array:
-            """Compute :eq:`eq-asce-7`."""
-            longer = np.maximum(at, corner)
-            rising = short * (0.4 + 0.6 * at / (0.2 * corner))
-            falling = one / longer * np.minimum(1.0, last / longer)
-            return np.where(at < 0.2 * corner, rising, falling)
-
-        return cls(f"ASCE 7, S_DS {short:.4g} m/s^2, S_D1 {one:.4g} m/s^2", shape)
+        return cls(
+            *asce_7(
+                short_period_acceleration, one_second_acceleration, long_period,
+                owner=f"{cls.__name__}.asce_7",
+            )
+        )  # fmt: skip
 
     def at(self, periods: "ArrayLike | Iterable[QuantityLike]") -> Array:
         """Give the accelerations at periods.
@@ -466,7 +387,7 @@ class TargetSpectrum:
         return replace(self, deviation=lambda at: np.full(at.size, value))
 
 
-def _interpolated(seconds: Array, values: Array) -> Callable[[Array], Array]:
+def _interpolated(seconds: Array, values: Array) -> Shape:
     logarithms = np.log(seconds)
 
     def at(places: Array) -> Any:
