@@ -49,7 +49,7 @@ class Setting(ABC):
     @property
     def slope(self) -> Slope:
         """The base line in its gravity."""
-        return self.options.slope
+        return self.load.slope
 
     @property
     def leans(self) -> bool:
