@@ -47,7 +47,8 @@ def building_modes(masses: Array, stiffnesses: Array, floor: int) -> tuple[Array
     Returns
     -------
     periods, participations : ndarray, shape (n,)
-        From the longest period down [s]; at the floor [1].
+        From the longest period down [s]; at the floor [1]. The period of a mode is NaN where its
+        square frequency is not above the rounding of the largest one.
     """
     from scipy import linalg as module
 
@@ -57,5 +58,7 @@ def building_modes(masses: Array, stiffnesses: Array, floor: int) -> tuple[Array
         np.diag(stiffnesses + above) - np.diag(above[:-1], 1) - np.diag(above[:-1], -1)
     )  # fmt: skip
     squares, shapes = linalg.eigh(stiffness, np.diag(masses))
+    rounding = squares.size * np.finfo(np.float64).eps * squares.max()
+    periods = 2.0 * np.pi / np.sqrt(np.where(squares > rounding, squares, np.nan))
     # shapes are of unit modal mass
-    return 2.0 * np.pi / np.sqrt(squares), (masses @ shapes) * shapes[floor - 1]
+    return periods, (masses @ shapes) * shapes[floor - 1]
