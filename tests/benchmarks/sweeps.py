@@ -3,10 +3,13 @@
 Usage: python tests/benchmarks/sweeps.py [record]
 
 Prints milliseconds of processor time per case on one processor, the least of several rounds, and
-the ratios; then cases per second of a sweep on all processors. The record is a file; without one
-the motion has the length of El Centro and is drawn from a model.
+the ratios; then cases per second of a sweep on all processors; then, of 10 000 cases, which share
+of the processor time is spent outside the compiled loops (planning, building scenes, labels), and
+how much faster two threads are than one. The record is a file; without one the motion has the
+length of El Centro and is drawn from a model.
 """
 
+import os
 import sys
 import time
 from concurrent.futures import ThreadPoolExecutor
@@ -14,7 +17,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 
 import rockframe as rf
-from rockframe.studies.sweeps import study
+from rockframe.studies.sweeps import side_by_side, study
 
 CASES, ROUNDS, MANY = 600, 5, 10_000
 BLOCK = rf.Block.from_size(radius="5 m", slenderness=4, mass="50 t")
@@ -45,6 +48,11 @@ def main() -> None:
     for accuracy in ("fast", "standard"):
         rates = [rate(motion, axes, accuracy) for _ in range(3)]
         print(f"{accuracy}: {max(rates):.0f} cases a second on all processors")
+    grids = {"grid": axes, "damping ratio": {"damping_ratio": np.linspace(0.05, 0.5, MANY)}}
+    for name, axes in grids.items():
+        print(f"fast, {name}: {share(motion, axes):.0%} of the processor time outside the lanes")
+        print(f"fast, {name}: {gain(motion, axes):.2f} times as fast with two threads as with one")
+    print(f"load of the machine meanwhile: {os.getloadavg()[0]:.1f} on {os.cpu_count()} processors")
 
 
 def costs(motion, axes, accuracy) -> dict[str, float]:
@@ -79,6 +87,43 @@ def rate(motion, axes, accuracy) -> float:
     begun = time.perf_counter()
     rf.sweep(SYSTEM, motion, axes=axes, accuracy=accuracy, progress=False)
     return MANY / (time.perf_counter() - begun)
+
+
+def share(motion, axes) -> float:
+    """Give the share of a sweep's processor time that is not spent in compiled loops."""
+    inside = [0.0]
+    loops = side_by_side.integrate_lanes
+
+    def timed(*given):
+        begun = time.thread_time()
+        try:
+            return loops(*given)
+        finally:
+            inside[0] += time.thread_time() - begun
+
+    side_by_side.integrate_lanes = timed
+    try:
+        whole = _once(lambda: _swept(motion, axes, threads=1))
+    finally:
+        side_by_side.integrate_lanes = loops
+    return 1.0 - inside[0] / whole
+
+
+def gain(motion, axes) -> float:
+    """Give how much faster two threads are than one, by the least wall times of rounds in turns."""
+    times = {1: [], 2: []}
+    for _ in range(ROUNDS):
+        for threads, taken in times.items():
+            begun = time.perf_counter()
+            _swept(motion, axes, threads)
+            taken.append(time.perf_counter() - begun)
+    return min(times[1]) / min(times[2])
+
+
+def _swept(motion, axes, threads) -> None:
+    study.FEWEST_IN_LANES = 1
+    with ThreadPoolExecutor(threads) as pool:
+        rf.sweep(SYSTEM, motion, axes=axes, accuracy="fast", executor=pool, progress=False)
 
 
 def _once(work) -> float:
