@@ -8,12 +8,14 @@ import xarray as xr
 
 import rockframe as rf
 from rockframe.errors import AssemblyError, SolverWarning, StudyError
+from rockframe.studies.sweeps import kept
 
 BLOCK = rf.Block(width="0.8 m", height="3.6 m", mass="4 t")
 ON_PADS = rf.System(BLOCK, rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1))
 ON_GROUND = rf.System(BLOCK, rf.RigidGround())
 PULSE = rf.GroundMotion.sine_pulse("2 m/s^2", "1 Hz")
-MOTIONS = {"pulse": PULSE, "shaking": rf.GroundMotion.stochastic(6.0, "10 km", seed=4)}
+SHAKING = rf.GroundMotion.stochastic(6.0, "10 km", seed=4).window("0 s", "8 s")
+MOTIONS = {"pulse": PULSE, "shaking": SHAKING}
 POINTS = {"roof": ("0 m", "3.6 m"), "shelf": ("20 cm", "1 m"), "toe": ("0.4 m", "0 m")}
 PEAKS = [
     f"peak_point_{name}"
@@ -142,11 +144,15 @@ def test_what_points_cannot_be_is_told_at_once():
         ON_PADS.simulate(PULSE, outputs=["point_vertical_acceleration"])
     with pytest.raises(StudyError, match="axis 'point' has the name of a result"):
         rf.sweep(lambda point: ON_PADS, PULSE, point=[1.0])
-    many = {f"point {k}": ("0 m", f"{k} mm") for k in range(3000)}
-    with pytest.raises(StudyError, match="are more than 1e"):
-        rf.sweep(
-            ON_PADS, PULSE, scale=np.linspace(0.1, 2, 5000), points=many,
-            outputs=["point_vertical_acceleration"],
-        )  # fmt: skip
-    with pytest.raises(StudyError, match="peaks at 3000 points of 100000 cases are more than 1e"):
-        rf.sweep(ON_PADS, PULSE, scale=np.linspace(0.1, 2, 100_000), points=many)
+
+
+def test_more_values_than_memory_has_are_refused(monkeypatch):
+    monkeypatch.setattr(kept, "MOST_VALUES", 1e4)
+    arguments = {"scale": SCALES, "points": POINTS, "free_vibration": "1 s"}
+    names = ["point_vertical_acceleration", "rotation"]
+    with pytest.raises(StudyError, match=r"histories of 4001 times in 3 cases are more than 1e"):
+        rf.sweep(ON_PADS, PULSE, **arguments, outputs=names, output_step="0.5 ms")
+    rf.sweep(ON_PADS, PULSE, **arguments, outputs=["rotation"])
+    monkeypatch.setattr(kept, "MOST_VALUES", 30)
+    with pytest.raises(StudyError, match="the peaks at 3 points of 3 cases are more than 3e"):
+        rf.sweep(ON_PADS, PULSE, **arguments)
