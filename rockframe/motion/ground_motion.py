@@ -19,6 +19,7 @@ from rockframe.motion.constructors import (
 from rockframe.motion.operations import (
     combining,
     correcting,
+    matching,
     pulses,
     scaling,
     storeys,
@@ -120,6 +121,7 @@ class GroundMotion(MotionValue):
     window = timing.window
     resampled = timing.resampled
     scaled = scaling.scaled
+    matched = matching.matched
     filtered = correcting.filtered
     baseline_corrected = correcting.baseline_corrected
     with_vertical = combining.with_vertical

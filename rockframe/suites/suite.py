@@ -21,6 +21,7 @@ from rockframe.results.joining import MOTION
 from rockframe.results.table import table as table_of
 from rockframe.suites.choosing import check_column, chosen, order
 from rockframe.suites.columns import known_columns, other_columns
+from rockframe.suites.matching import matched
 from rockframe.suites.records import pairs_of
 from rockframe.suites.stored import motions_in, suite_dataset
 
@@ -418,6 +419,8 @@ class MotionSuite(Mapping[str, GroundMotion]):
         from rockframe.suites.selection import select_for_target
 
         return self.scaled_to(select_for_target(self, target, count, **arguments))
+
+    matched = matched
 
     # keeping --------------------------------------------------------------------------------
 

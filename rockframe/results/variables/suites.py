@@ -40,6 +40,18 @@ RECORDS: Final = (
         Unit.ONE,
         "root mean square of the logarithm of scaled spectrum over target",
     ),
+    Variable(
+        "largest_spectral_misfit",
+        (),
+        Unit.ONE,
+        "greatest distance of the matched spectrum from the target, over the target",
+    ),
+    Variable(
+        "mean_spectral_misfit",
+        (),
+        Unit.ONE,
+        "mean distance of the matched spectrum from the target, over the target",
+    ),
 )
 """Of a motion in a suite; in datasets over ``motion``."""
 

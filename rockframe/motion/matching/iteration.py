@@ -1,0 +1,216 @@
+"""Adjustments one after the other, until the spectrum of a motion is the target's."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+
+from rockframe.motion.matching.adjustment import adjustment_of
+from rockframe.motion.matching.oscillators import Oscillators, Peaks
+from rockframe.signals import Signal
+from rockframe.signals.spectra import pseudo_spectra, spectral_peaks
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from rockframe.signals.arrays import Array
+
+_SPACING: Final = 0.5
+"""Relative distance of matched periods over the damping ratio: a fourth of a resonance's width."""
+
+_CLOSEST: Final = 0.0125
+_WIDEST: Final = 0.05
+"""Between these the relative distance of matched periods is kept [1]."""
+
+_BETWEEN: Final = 4
+"""Periods at which the spectrum is checked for one at which it is matched."""
+
+_PASS: Final = 0.45
+"""Decades of periods that are brought in together."""
+
+_STEPS_OF_A_PASS: Final = 15
+_STEPS_OF_THE_LAST: Final = 40
+"""Adjustments after which a pass is given up."""
+
+_ROUNDS: Final = 4
+"""Times that periods between the matched ones are brought in."""
+
+_AIM: Final = 0.6
+"""Share of the tolerance that is aimed at where periods are matched [1]."""
+
+_BROUGHT_IN: Final = 0.8
+"""Share of the tolerance above which a period between is matched too [1]."""
+
+_REGULARISATION: Final = (1e-4, 1e-2, 1e3)
+"""Least value, the first one, and the one at which a pass is given up [1]."""
+
+_STEP_LENGTHS: Final = (1.0, 0.5, 0.25)
+_TRIALS: Final = 5
+_POWER: Final = 4.0
+
+
+class Goal(NamedTuple):
+    """What a motion is matched to.
+
+    Parameters
+    ----------
+    spectrum : callable
+        Pseudo-accelerations [m s^-2] at periods [s].
+    shortest, longest : float
+        Periods between which it is to be reached [s].
+    damping_ratio : float
+        Of the oscillators [1].
+    tolerance : float
+        Greatest misfit that is aimed at, over the target [1].
+    """
+
+    spectrum: Callable[[Array], Array]
+    shortest: float
+    longest: float
+    damping_ratio: float
+    tolerance: float
+
+    @property
+    def matched(self) -> Array:
+        """The periods at which wavelets are added, shape (k,) [s]."""
+        spacing = min(max(_SPACING * self.damping_ratio, _CLOSEST), _WIDEST)
+        count = math.ceil(math.log(self.longest / self.shortest) / math.log1p(spacing)) + 1
+        return np.geomspace(self.shortest, self.longest, max(count, 2))
+
+    @property
+    def checked(self) -> Array:
+        """The periods at which the spectrum is checked, shape (c,) [s]."""
+        count = _BETWEEN * (self.matched.size - 1) + 1
+        return np.geomspace(self.shortest, self.longest, count)
+
+    def ratios(self, signal: Signal) -> Array:
+        """Give the spectrum over the target where it is checked, shape (c,) [1]."""
+        periods = self.checked
+        displacement = spectral_peaks(signal, periods, self.damping_ratio)[:, 0]
+        return pseudo_spectra(signal, periods, displacement)[1] / self.spectrum(periods)
+
+
+class Matched(NamedTuple):
+    """A motion whose spectrum is the target's, or as close to it as was reached.
+
+    Parameters
+    ----------
+    signal : Signal
+        The motion.
+    scale_factor : float
+        By which it was multiplied before wavelets were added [1].
+    ratios : ndarray, shape (c,)
+        Its spectrum over the target, where it was checked [1].
+    steps : int
+        Adjustments that were made.
+    """
+
+    signal: Signal
+    scale_factor: float
+    ratios: Array
+    steps: int
+
+    @property
+    def misfit(self) -> float:
+        """The greatest misfit over the target [1]."""
+        return float(np.abs(self.ratios - 1.0).max())
+
+
+def match(signal: Signal, goal: Goal) -> Matched:
+    """Scale a motion, and add wavelets until its spectrum is the target's.
+
+    Parameters
+    ----------
+    signal : Signal
+        The motion, which moves, joined by straight lines.
+    goal : Goal
+        What it is matched to.
+
+    Returns
+    -------
+    Matched
+        The best that was reached; the motion itself where that is within the tolerance.
+    """
+    best = Matched(signal, 1.0, goal.ratios(signal), 0)
+    if best.misfit <= goal.tolerance:
+        return best
+    factor = math.exp(-float(np.log(best.ratios).mean()))
+    best = _checked(goal, signal, factor * signal.samples, factor, 0)
+    periods = goal.matched
+    run = _Run(signal.time_step, best.signal.samples, goal, periods)
+    passes = max(1, math.ceil(math.log10(goal.longest / goal.shortest) / _PASS))
+    for upto in np.geomspace(goal.shortest, goal.longest, passes + 1)[1:-1]:
+        run.improve(periods <= upto, _STEPS_OF_A_PASS)
+    for _ in range(_ROUNDS):
+        if best.misfit <= goal.tolerance:
+            break
+        run.improve(np.ones(periods.size, dtype=bool), _STEPS_OF_THE_LAST)
+        now = _checked(goal, signal, run.samples, factor, run.steps)
+        best = min(best, now, key=lambda one: one.misfit)
+        off = np.abs(now.ratios - 1.0) > _BROUGHT_IN * goal.tolerance
+        periods = np.union1d(periods, goal.checked[off])
+        run = _Run(signal.time_step, run.samples, goal, periods, run.steps)
+    return best
+
+
+def _checked(goal: Goal, signal: Signal, samples: Array, factor: float, steps: int) -> Matched:
+    made = Signal(signal.time_step, samples, name=signal.name)
+    return Matched(made, factor, goal.ratios(made), steps)
+
+
+class _Run:
+    """A motion on its way, and the oscillators that it is matched by."""
+
+    def __init__(
+        self, time_step: float, samples: Array, goal: Goal, periods: Array, steps: int = 0
+    ) -> None:
+        self.samples = samples
+        self.steps = steps
+        self._aim = _AIM * goal.tolerance
+        self._targets = goal.spectrum(periods)
+        self._oscillators = Oscillators(periods, goal.damping_ratio, time_step)
+        self._histories = self._oscillators.histories(samples)
+        self._peaks = self._oscillators.peaks(samples, self._histories)
+
+    def improve(self, chosen: NDArray[np.bool_], most: int) -> None:
+        """Make adjustments for some oscillators until they are on the target."""
+        least, regularisation, hopeless = _REGULARISATION
+        for _ in range(most):
+            if self._ratios(self._peaks, chosen).max() <= self._aim:
+                return
+            regularisation, shortened = self._step(chosen, regularisation)
+            if regularisation > hopeless:
+                return
+            if not shortened:
+                regularisation = max(0.5 * regularisation, least)
+
+    def _step(self, chosen: NDArray[np.bool_], regularisation: float) -> tuple[float, bool]:
+        """Make the first adjustment that lessens the misfit; tell how it was regularised."""
+        count = self.samples.size
+        made = adjustment_of(self._oscillators, self._peaks.of(chosen), self._targets, count)
+        before = self._size(self._peaks, chosen)
+        for _ in range(_TRIALS):
+            added = made.wavelets @ made.amplitudes(regularisation)
+            response = self._oscillators.histories(added)
+            for length in _STEP_LENGTHS:
+                samples = self.samples + length * added
+                histories = self._histories + length * response
+                peaks = self._oscillators.peaks(samples, histories)
+                if self._size(peaks, chosen) < before:
+                    self.samples, self._histories, self._peaks = samples, histories, peaks
+                    self.steps += 1
+                    return regularisation, length < 1.0
+            regularisation *= 5.0
+        return math.inf, True
+
+    def _ratios(self, peaks: Peaks, chosen: NDArray[np.bool_]) -> Array:
+        return np.abs(peaks.spectrum[chosen] / self._targets[chosen] - 1.0)
+
+    def _size(self, peaks: Peaks, chosen: NDArray[np.bool_]) -> float:
+        """Give the mean fourth power of the logarithms of the spectrum over the target."""
+        logarithms = np.log(peaks.spectrum[chosen] / self._targets[chosen])
+        return float((np.abs(logarithms) ** _POWER).mean())

@@ -1,0 +1,219 @@
+"""Oscillators that are followed in time: when they peak, and what every sample adds to a peak."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockframe.motion.processing.floors import interval_matrix
+from rockframe.signals.arrays import Array
+from rockframe.signals.oscillator import turning_value
+
+_RIVAL: Final = 0.75
+"""Share of the greatest peak from which on others may come to exceed it [1]."""
+
+_MOST_PEAKS: Final = 3
+"""Peaks of an oscillator that are looked at."""
+
+
+class Peaks(NamedTuple):
+    """The greatest peaks of oscillators.
+
+    Parameters
+    ----------
+    oscillators : ndarray of int, shape (m,)
+        Which oscillator peaks.
+    values : ndarray, shape (m,)
+        Pseudo-acceleration, with its sign [m s^-2].
+    times : ndarray, shape (m,)
+        From the first sample [s].
+    greatest : ndarray of bool, shape (m,)
+        Whether it is the greatest of its oscillator.
+    """
+
+    oscillators: NDArray[np.intp]
+    values: Array
+    times: Array
+    greatest: NDArray[np.bool_]
+
+    @property
+    def spectrum(self) -> Array:
+        """The greatest pseudo-acceleration of each oscillator, shape (k,) [m s^-2]."""
+        return np.abs(self.values[self.greatest])
+
+    def of(self, chosen: NDArray[np.bool_]) -> Peaks:
+        """Keep the peaks of some oscillators, shape (k,)."""
+        kept = chosen[self.oscillators]
+        return Peaks(
+            self.oscillators[kept], self.values[kept], self.times[kept], self.greatest[kept]
+        )
+
+
+class Oscillators:
+    """Linear oscillators on ground that moves along straight lines from sample to sample.
+
+    Parameters
+    ----------
+    periods : ndarray, shape (k,)
+        Undamped periods, above zero [s].
+    damping_ratio : float
+        Damping ratio, below one [1].
+    time_step : float
+        Time between samples [s].
+    """
+
+    def __init__(self, periods: Array, damping_ratio: float, time_step: float) -> None:
+        self.periods = periods
+        self.damping_ratio = damping_ratio
+        self.time_step = time_step
+        self._intervals = np.array(
+            [interval_matrix(time_step, period, damping_ratio, 2) for period in periods.tolist()]
+        )
+        # as response spectra do: the free vibration in a period after the motion
+        self._after = math.ceil(float(periods.max()) / time_step) + 2
+
+    def histories(self, samples: Array) -> Array:
+        """Follow all oscillators from rest, through the motion and after it.
+
+        Parameters
+        ----------
+        samples : ndarray, shape (n,)
+            Acceleration of the ground [m s^-2].
+
+        Returns
+        -------
+        ndarray, shape (k, n + f)
+            Relative displacements times the squared frequencies: pseudo-accelerations, with
+            their signs [m s^-2].
+        """
+        from scipy import signal as module
+
+        signal: Any = module
+        start, rise = self._lines(samples)
+        found = np.zeros((len(self._intervals), start.size + 1))
+        for row, (interval, period) in enumerate(
+            zip(self._intervals.tolist(), self.periods.tolist(), strict=True)
+        ):
+            (uu, uv, up, uq), (vu, vv, vp, vq) = interval
+            # Cayley and Hamilton: the displacement alone obeys an equation of second order
+            driven = up * start + uq * rise
+            driven[1:] += (uv * vp - vv * up) * start[:-1] + (uv * vq - vv * uq) * rise[:-1]
+            history = signal.lfilter([1.0], [1.0, -(uu + vv), uu * vv - uv * vu], driven)
+            found[row, 1:] = (2.0 * math.pi / period) ** 2 * history
+        return found
+
+    def peaks(self, samples: Array, histories: Array) -> Peaks:
+        """Find the greatest peaks of all oscillators, between the samples too.
+
+        Parameters
+        ----------
+        samples : ndarray, shape (n,)
+            Acceleration of the ground [m s^-2].
+        histories : ndarray, shape (k, n + f)
+            As of :meth:`histories` [m s^-2].
+
+        Returns
+        -------
+        Peaks
+            Up to three of each oscillator, the greatest first.
+        """
+        size = np.abs(histories)
+        top = size.max(axis=1, keepdims=True)
+        inner = size[:, 1:-2]
+        turns = (inner >= size[:, :-3]) & (inner > size[:, 2:-1]) & (inner >= _RIVAL * top)
+        lost = np.flatnonzero(~turns.any(axis=1))  # still moving away when last seen
+        turns[lost, np.clip(size[lost].argmax(axis=1) - 1, 0, turns.shape[1] - 1)] = True
+        which, places = np.nonzero(turns)
+        values, times = self._turns(samples, histories, which, places + 1)
+        order = np.lexsort((-np.abs(values), which))
+        first = np.searchsorted(which, np.arange(len(histories)))
+        rank = np.arange(which.size) - first[which]
+        kept = order[rank < _MOST_PEAKS]
+        return Peaks(which[kept], values[kept], times[kept], (rank == 0)[rank < _MOST_PEAKS])
+
+    def influences(self, peaks: Peaks, count: int) -> Array:
+        """Compute what every sample adds to the peaks, :eq:`eq-sample-influence`.
+
+        Parameters
+        ----------
+        peaks : Peaks
+            Oscillators and times.
+        count : int
+            Samples of the motion.
+
+        Returns
+        -------
+        ndarray, shape (m, n)
+            Pseudo-acceleration at the time of the peak for a unit of each sample, but the first
+            and the last; these are zero [1].
+        """
+        found = np.zeros((peaks.values.size, count))
+        for place, period in enumerate(self.periods.tolist()):
+            rows = np.flatnonzero(peaks.oscillators == place)
+            if rows.size:
+                found[rows] = self._influences_of(period, peaks.times[rows], count)
+        found[:, [0, -1]] = 0.0
+        return found
+
+    def _influences_of(self, period: float, times: Array, count: int) -> Array:
+        step, damping = self.time_step, self.damping_ratio
+        frequency = 2.0 * math.pi / period
+        damped = frequency * math.sqrt(1.0 - damping**2)
+        root = complex(-damping * frequency, damped)
+        # displacement under ground whose acceleration rises with slope one, but for its line
+        swing = 1j / (root**2 * damped)
+        whole = np.floor(times / step).astype(int)
+        decays = np.exp(root * step * np.arange(whole.max() + 1))
+        kink = swing * 4.0 * np.sinh(0.5 * root * step) ** 2 / step * frequency**2
+
+        def under_a_ramp(since: Array) -> Array:
+            after = np.maximum(since, 0.0)
+            line = 2.0 * damping / frequency - after
+            return line + frequency**2 * np.real(swing * np.exp(root * after))
+
+        found = np.zeros((times.size, count))
+        for row, (knot, time) in enumerate(zip(whole.tolist(), times.tolist(), strict=True)):
+            early = min(knot, count)  # samples whose hats are over before the peak
+            offset = np.exp(root * (time - knot * step))
+            found[row, :early] = np.real(kink * offset * decays[knot : knot - early : -1])
+            ramps = under_a_ramp(time - (knot + np.arange(-1, 3)) * step)
+            for place, hat in enumerate(np.diff(ramps, 2).tolist(), start=knot):
+                if place < count:
+                    found[row, place] = hat / step
+        return found
+
+    def _lines(self, samples: Array) -> tuple[Array, Array]:
+        """Give where the lines between the samples start and how they rise, and still ground."""
+        still = np.zeros(self._after)
+        return np.append(samples[:-1], still), np.append(np.diff(samples), still)
+
+    def _turns(
+        self,
+        samples: Array,
+        histories: Array,
+        which: NDArray[np.intp],
+        knots: NDArray[np.intp],
+    ) -> tuple[Array, Array]:
+        """Find values and times of the extrema next to some knots of some oscillators."""
+        start, rise = self._lines(samples)
+        (uu, uv, up, uq), _ = self._intervals[which].transpose(1, 2, 0)
+        kappa = 2.0 * math.pi * self.time_step / self.periods[which]
+        square = (kappa / self.time_step) ** 2
+
+        def slope(at: NDArray[np.intp]) -> Array:
+            driven = square * (up * start[at] + uq * rise[at])
+            return kappa / uv * (histories[which, at + 1] - uu * histories[which, at] - driven)
+
+        rows = np.where(slope(knots) * histories[which, knots] > 0.0, knots, knots - 1)
+        value, end_value = histories[which, rows], histories[which, rows + 1]
+        first, last = slope(rows), slope(rows + 1)
+        drag, stiffness = 2.0 * self.damping_ratio * kappa, kappa**2
+        bend = -drag * first - stiffness * (value + start[rows])
+        end_bend = -drag * last - stiffness * (end_value + start[rows] + rise[rows])
+        values: Any = turning_value(value, first, bend, end_value, last, end_bend)
+        change = first - last
+        inside = np.divide(first, change, out=np.zeros_like(first), where=change != 0.0)
+        return values, (rows + np.clip(inside, 0.0, 1.0)) * self.time_step

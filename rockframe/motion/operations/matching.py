@@ -1,0 +1,246 @@
+"""Changing a ground motion until its response spectrum is that of a target."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, Final, Protocol, runtime_checkable
+
+import numpy as np
+
+from rockframe.arguments import hinted
+from rockframe.errors import ComponentError, RecordWarning, shown, warn
+from rockframe.motion.matching.iteration import Goal, Matched, match
+from rockframe.motion.operations.following import following, lost_pieces
+from rockframe.signals.spectra import check_cost
+from rockframe.units import PERIOD, Condition, to_ratio, to_si_values
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rockframe.motion.quantities import QuantityLike, RatioLike
+    from rockframe.motion.value import Made
+    from rockframe.signals import Signal
+    from rockframe.signals.arrays import Array
+
+USUAL_PERIODS: Final = ("0.1 s", "2 s")
+USUAL_TOLERANCE: Final = 0.05
+"""Between which periods, and how closely, a motion is matched unless told otherwise."""
+
+_TOLERANCE: Final = Condition("from 0.01 to 0.5", lambda value: 0.01 <= value <= 0.5)
+_DAMPING: Final = Condition("from 0.01 to 0.5", lambda value: 0.01 <= value <= 0.5)
+"""Spectra of less damping need too many wavelets; with more there is no resonance to use."""
+
+_LEAST_STEPS: Final = 4
+"""Time steps in the shortest period: a wavelet of fewer samples is not one."""
+
+_FEW_STEPS: Final = 10
+"""Time steps in a period below which straight lines lower an ordinate by more than 3 %."""
+
+_LEAST_PERIODS: Final = 3
+"""Longest periods in the motion: there must be room for a wavelet."""
+
+_MOST_NUMBERS: Final = 5_000_000
+"""Samples times periods beyond which matching would take minutes and gigabytes."""
+
+_ROUNDING: Final = 1e-9
+_EXAMPLE: Final = "rf.TargetSpectrum.eurocode_8('0.2 g_0', 'B')"
+
+
+@runtime_checkable
+class Target(Protocol):
+    """What a motion can be matched to, such as a :class:`rockframe.TargetSpectrum`."""
+
+    @property
+    def name(self) -> str:
+        """For titles and messages."""
+        ...
+
+    @property
+    def damping_ratio(self) -> float:
+        """Of the oscillators [1]."""
+        ...
+
+    def at_seconds(self, seconds: Array, *, owner: str) -> Array:
+        """Give the pseudo-spectral accelerations [m s^-2] at periods [s]."""
+        ...
+
+
+@hinted(damping_ratio="the target has one")
+def matched(
+    motion: Made,
+    target: Target,
+    *,
+    periods: Sequence[QuantityLike] = USUAL_PERIODS,
+    tolerance: RatioLike = USUAL_TOLERANCE,
+) -> Made:
+    """Match the response spectrum to a target by wavelets added in time.
+
+    Parameters
+    ----------
+    target : TargetSpectrum
+        What is aimed at; its damping ratio, from 0.01 to 0.5, is that of the oscillators.
+    periods : sequence of two str or Quantity, optional
+        Shortest and longest period of the range in which the spectrum is to be the target's.
+        The shortest is four time steps or more, the longest no more than a third of the
+        motion's length [s].
+    tolerance : float, optional
+        Greatest distance of the pseudo-spectral acceleration from the target, over the target,
+        anywhere in the range; from 0.01 to 0.5 [1].
+
+    Returns
+    -------
+    GroundMotion
+        Of the same length. The horizontal component is scaled and then changed, the vertical
+        one is neither. The metadata tell what was reached: ``largest_spectral_misfit`` and
+        ``mean_spectral_misfit`` over the target, ``spectral_misfit``
+        (:eq:`eq-spectral-misfit`), ``scale_factor``, ``matching_steps``, and ``target_reached``,
+        1 or 0. A motion that is within the tolerance already is not changed.
+
+    Raises
+    ------
+    UnitsError
+        Periods without a unit, or with one of another kind; a tolerance that is no ratio.
+    ComponentError
+        Not a target, or one that is unknown or not above zero somewhere in the range; a damping
+        ratio, range or tolerance out of bounds; still ground; a motion that is too short, or
+        so long that it would take minutes.
+
+    Warns
+    -----
+    RecordWarning
+        The tolerance is not reached: the best motion that was found is returned. Or the
+        shortest period is less than ten time steps.
+
+    Notes
+    -----
+    After Al Atik and Abrahamson (2010): improved tapered cosine wavelets, which leave velocity
+    and displacement at the end as they are, at the times when the oscillators peak. Groups of
+    periods come in from the shortest to the longest.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> record = rf.GroundMotion.example("loma-prieta").window("5 s", "20 s")
+    >>> target = rf.TargetSpectrum.eurocode_8("0.1 g_0", "B")
+    >>> matched = record.matched(target, periods=("0.2 s", "0.5 s"))
+    >>> matched.metadata["largest_spectral_misfit"] <= 0.05
+    True
+    """
+    owner, si = f"{type(motion).__name__}.matched", motion.si
+    goal = _goal(target, periods, tolerance, owner)
+    _check_motion(motion, si.horizontal, goal, owner)
+    found = match(si.horizontal, goal)
+    reached = found.misfit <= goal.tolerance
+    words = _words(target, goal, found)
+    about = {**_about(motion, target, found), "target_reached": int(reached)}
+    if not reached:
+        worst = float(goal.checked[np.abs(found.ratios - 1.0).argmax()])
+        msg = (
+            f"{owner}: {motion.name!r} is {100.0 * found.misfit:.3g} % from {target.name!r} at "
+            f"{worst:.3g} s, and {100.0 * float(np.abs(found.ratios - 1.0).mean()):.2g} % on the "
+            f"average; {100.0 * goal.tolerance:.3g} % was not reached in {found.steps} steps. "
+            "Another record, a narrower range of periods or a wider tolerance may help"
+        )
+        warn(msg, RecordWarning)
+    if found.signal is si.horizontal:
+        return type(motion)(
+            si,
+            name=motion.name,
+            metadata={**motion.metadata, **about},
+            history=(*motion.history, words),
+            recipe=motion.recipe,
+        )
+    across = replace(si, horizontal=found.signal)
+    return following(motion, across, words, *lost_pieces(si), metadata=about)
+
+
+def _goal(target: object, periods: object, tolerance: RatioLike, owner: str) -> Goal:
+    if not isinstance(target, Target):
+        msg = f"{owner}: target needs a TargetSpectrum, got {shown(target)}; write {_EXAMPLE}"
+        raise ComponentError(msg)
+    seconds = to_si_values(periods, PERIOD, owner=owner, name="periods")
+    if len(seconds) != 2 or not 0.0 < seconds[0] < seconds[1] < math.inf:
+        msg = (
+            f"{owner}: periods must be the shortest and the longest, above zero and increasing, "
+            f"for example ('0.1 s', '2 s'), got {shown(periods)}"
+        )
+        raise ComponentError(msg)
+    damping = to_ratio(
+        target.damping_ratio, owner=owner, name="target.damping_ratio", condition=_DAMPING
+    )
+    within = to_ratio(tolerance, owner=owner, name="tolerance", condition=_TOLERANCE)
+    shortest, longest = seconds
+    goal = Goal(lambda at: target.at_seconds(at, owner=owner), shortest, longest, damping, within)
+    wanted = goal.spectrum(goal.checked)
+    if not (np.isfinite(wanted).all() and (wanted > 0.0).all()):
+        worst = float(goal.checked[int(np.argmin(np.where(wanted > 0.0, wanted, -math.inf)))])
+        msg = f"{owner}: {target.name!r} must be above zero, which it is not at {worst:.4g} s"
+        raise ComponentError(msg)
+    return goal
+
+
+def _check_motion(motion: Any, signal: Signal, goal: Goal, owner: str) -> None:
+    if not np.any(signal.pieces):
+        msg = f"{owner}: {motion.name!r} stands still; nothing brings it to a target"
+        raise ComponentError(msg)
+    step, shortest, longest = signal.time_step, goal.shortest, goal.longest
+    if shortest < _LEAST_STEPS * step * (1.0 - _ROUNDING):
+        msg = (
+            f"{owner}: the shortest period, {shortest:.4g} s, must be {_LEAST_STEPS} time steps or "
+            f"more, {_LEAST_STEPS * step:.4g} s; resample the motion, for example "
+            f"resampled('{step / math.ceil(_FEW_STEPS * step / shortest):.4g} s')"
+        )
+        raise ComponentError(msg)
+    if signal.duration < _LEAST_PERIODS * longest:
+        msg = (
+            f"{owner}: the longest period, {longest:.4g} s, must be {_LEAST_PERIODS} times in the "
+            f"motion, which is {signal.duration:.4g} s long"
+        )
+        raise ComponentError(msg)
+    check_cost(signal, goal.checked, owner=owner)
+    numbers = goal.matched.size * signal.samples.size
+    if numbers > _MOST_NUMBERS:
+        msg = (
+            f"{owner}: {signal.samples.size} samples at {goal.matched.size} periods are too many; "
+            f"expected at most {_MOST_NUMBERS // goal.matched.size} samples: cut the strong part "
+            "out with window(), or resample it"
+        )
+        raise ComponentError(msg)
+    if shortest < _FEW_STEPS * step * (1.0 - _ROUNDING):
+        msg = (
+            f"{owner}: {motion.name!r} is sampled every {step:.4g} s, which is coarse for periods "
+            f"from {shortest:.4g} s: its spectrum is that of straight lines between the samples; "
+            f"resampled('{step / math.ceil(_FEW_STEPS * step / shortest):.4g} s') refines it"
+        )
+        warn(msg, RecordWarning)
+
+
+def _about(motion: Any, target: Target, found: Matched) -> dict[str, str | float | int]:
+    before = motion.metadata.get("scale_factor")
+    factor = found.scale_factor * (before if isinstance(before, int | float) else 1.0)
+    return {
+        "target_spectrum": target.name,
+        "scale_factor": factor,
+        "spectral_misfit": float(np.sqrt((np.log(found.ratios) ** 2).mean())),
+        "largest_spectral_misfit": found.misfit,
+        "mean_spectral_misfit": float(np.abs(found.ratios - 1.0).mean()),
+        "matching_steps": found.steps,
+    }
+
+
+def _words(target: Target, goal: Goal, found: Matched) -> str:
+    where = (
+        f"{target.name}, damping ratio {goal.damping_ratio:.6g}, from {goal.shortest:.6g} s to "
+        f"{goal.longest:.6g} s"
+    )
+    close = (
+        f"the spectrum is within {100.0 * found.misfit:.3g} % of the target, "
+        f"{100.0 * float(np.abs(found.ratios - 1.0).mean()):.2g} % on the average"
+    )
+    if found.steps == 0 and found.scale_factor == 1.0:
+        return f"not changed to match {where}: {close}"
+    return (
+        f"scaled by {found.scale_factor!r} and matched to {where}, in {found.steps} steps with "
+        f"tapered cosine wavelets (Al Atik and Abrahamson 2010): {close}"
+    )

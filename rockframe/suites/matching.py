@@ -1,0 +1,53 @@
+"""Matching all motions of a suite to a target spectrum."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from rockframe.errors import RecordWarning, heard, warn
+
+if TYPE_CHECKING:
+    from rockframe.motion import GroundMotion
+    from rockframe.motion.operations.matching import Target
+    from rockframe.suites.suite import MotionSuite
+
+    Suite = TypeVar("Suite", bound=MotionSuite)
+
+
+def matched(suite: Suite, target: Target, **arguments: Any) -> Suite:
+    """Match the spectrum of each motion to a target, by wavelets added in time.
+
+    Parameters
+    ----------
+    target : TargetSpectrum
+        What is aimed at.
+    **arguments
+        As for :meth:`GroundMotion.matched`: `periods` [s], `tolerance` [1].
+
+    Returns
+    -------
+    MotionSuite
+        Without vertical components, unless :meth:`with_verticals` has set them beside their
+        motions, which leaves them as they are. `table` tells ``largest_spectral_misfit``,
+        ``mean_spectral_misfit``, ``spectral_misfit`` and ``scale_factor`` [1] of each motion.
+
+    Raises
+    ------
+    UnitsError, ComponentError
+        As for :meth:`GroundMotion.matched`.
+
+    Warns
+    -----
+    RecordWarning
+        What :meth:`GroundMotion.matched` warns of, for all motions together.
+    """
+    motions: dict[str, GroundMotion] = {}
+    said: list[str] = []
+    for label, motion in suite.items():
+        with heard() as texts:
+            motions[label] = motion.matched(target, **arguments)
+        said += [f"{label!r}: {text}" for text in texts]
+    if said:
+        msg = f"{type(suite).__name__}.matched: of {len(motions)} motions\n" + "\n".join(said)
+        warn(msg, RecordWarning)
+    return type(suite)(motions, unread=suite.unread, remarks=suite.remarks)
