@@ -191,7 +191,8 @@ class _Run:
     def _step(self, chosen: NDArray[np.bool_], regularisation: float) -> tuple[float, bool]:
         """Make the first adjustment that lessens the misfit; tell how it was regularised."""
         count = self.samples.size
-        made = adjustment_of(self._oscillators, self._peaks.of(chosen), self._targets, count)
+        looked_at = self._peaks.looked_at(chosen, self._targets)
+        made = adjustment_of(self._oscillators, looked_at, self._targets, count)
         before = self._size(self._peaks, chosen)
         for _ in range(_TRIALS):
             added = made.wavelets @ made.amplitudes(regularisation)

@@ -15,8 +15,11 @@ from rockframe.signals.oscillator import turning_value
 _RIVAL: Final = 0.75
 """Share of the greatest peak from which on others may come to exceed it [1]."""
 
-_MOST_PEAKS: Final = 3
-"""Peaks of an oscillator that are looked at."""
+_FEW: Final = 3
+"""Peaks of an oscillator that are looked at in any case."""
+
+_MOST: Final = 10
+"""Peaks of an oscillator that are looked at if they exceed its target."""
 
 
 class Peaks(NamedTuple):
@@ -30,26 +33,42 @@ class Peaks(NamedTuple):
         Pseudo-acceleration, with its sign [m s^-2].
     times : ndarray, shape (m,)
         From the first sample [s].
-    greatest : ndarray of bool, shape (m,)
-        Whether it is the greatest of its oscillator.
+    ranks : ndarray of int, shape (m,)
+        Zero of the greatest of its oscillator, one of the next.
     """
 
     oscillators: NDArray[np.intp]
     values: Array
     times: Array
-    greatest: NDArray[np.bool_]
+    ranks: NDArray[np.intp]
+
+    @property
+    def greatest(self) -> NDArray[np.bool_]:
+        """Whether it is the greatest of its oscillator, shape (m,)."""
+        return self.ranks == 0
 
     @property
     def spectrum(self) -> Array:
         """The greatest pseudo-acceleration of each oscillator, shape (k,) [m s^-2]."""
         return np.abs(self.values[self.greatest])
 
-    def of(self, chosen: NDArray[np.bool_]) -> Peaks:
-        """Keep the peaks of some oscillators, shape (k,)."""
-        kept = chosen[self.oscillators]
-        return Peaks(
-            self.oscillators[kept], self.values[kept], self.times[kept], self.greatest[kept]
-        )
+    def looked_at(self, chosen: NDArray[np.bool_], targets: Array) -> Peaks:
+        """Keep the greatest peaks of some oscillators, and those that exceed the target.
+
+        Parameters
+        ----------
+        chosen : ndarray of bool, shape (k,)
+            Which oscillators.
+        targets : ndarray, shape (k,)
+            Of all oscillators [m s^-2].
+
+        Returns
+        -------
+        Peaks
+        """
+        exceeding = np.abs(self.values) > targets[self.oscillators]
+        kept = chosen[self.oscillators] & (exceeding | (self.ranks < _FEW))
+        return Peaks(self.oscillators[kept], self.values[kept], self.times[kept], self.ranks[kept])
 
 
 class Oscillators:
@@ -118,7 +137,7 @@ class Oscillators:
         Returns
         -------
         Peaks
-            Up to three of each oscillator, the greatest first.
+            Up to ten of each oscillator, the greatest first.
         """
         size = np.abs(histories)
         top = size.max(axis=1, keepdims=True)
@@ -131,8 +150,9 @@ class Oscillators:
         order = np.lexsort((-np.abs(values), which))
         first = np.searchsorted(which, np.arange(len(histories)))
         rank = np.arange(which.size) - first[which]
-        kept = order[rank < _MOST_PEAKS]
-        return Peaks(which[kept], values[kept], times[kept], (rank == 0)[rank < _MOST_PEAKS])
+        few = rank < _MOST
+        kept = order[few]
+        return Peaks(which[kept], values[kept], times[kept], rank[few])
 
     def influences(self, peaks: Peaks, count: int) -> Array:
         """Compute what every sample adds to the peaks, :eq:`eq-sample-influence`.

@@ -1,0 +1,196 @@
+"""Spectral matching in time: its wavelets and its matrix by closed forms and other integrators."""
+
+import numpy as np
+import pytest
+from scipy import integrate, signal
+
+import rockframe as rf
+from rockframe.motion.matching.adjustment import adjustment_of
+from rockframe.motion.matching.oscillators import Oscillators, Peaks
+from rockframe.motion.matching.wavelets import lead_of, wavelet_at, width_of
+from rockframe.signals.spectra import spectral_peaks
+
+STEP = 0.01
+COUNT = 3001
+LENGTH = (COUNT - 1) * STEP
+PERIODS = np.geomspace(0.1, 2.0, 12)
+
+
+def exact_history(samples, step, period, damping, parts=1):
+    """Pseudo-acceleration under straight lines between samples, by SciPy's first-order hold."""
+    frequency = 2.0 * np.pi / period
+    fine = np.interp(
+        np.arange((samples.size - 1) * parts + 1) / parts, np.arange(samples.size), samples
+    )
+    still = np.zeros(round(period * parts / step) + 1)
+    matrices = (
+        np.array([[0.0, 1.0], [-(frequency**2), -2.0 * damping * frequency]]),
+        np.array([[0.0], [-1.0]]),
+        np.array([[frequency**2, 0.0]]),
+        np.zeros((1, 1)),
+    )
+    *discrete, _ = signal.cont2discrete(matrices, step / parts, "foh")
+    numerator, denominator = signal.ss2tf(*discrete)
+    return signal.lfilter(numerator[0], denominator, np.concatenate([fine, still]))
+
+
+def pseudo_spectrum(samples, step, periods, damping):
+    parts = int(np.ceil(50.0 * step / periods.min()))
+    return np.array(
+        [np.abs(exact_history(samples, step, one, damping, parts)).max() for one in periods]
+    )
+
+
+@pytest.mark.parametrize("period", [0.1, 0.5, 2.0])
+@pytest.mark.parametrize("damping", [0.01, 0.05, 0.3])
+def test_a_wavelet_in_the_open_is_the_tapered_cosine_without_its_mean(period, damping):
+    """A Gaussian takes the integral of the cosine away; both are known in closed form."""
+    share = np.sqrt(1.0 - damping**2)
+    frequency = 2.0 * np.pi / period * share
+    lead = np.arctan(share / damping) / frequency
+    assert lead_of(period, damping) == pytest.approx(lead, rel=1e-12)
+    width = 1.178 * period**0.93
+    assert width_of(period) == pytest.approx(width, rel=1e-12)
+    mean = np.exp(-((frequency * width) ** 2) / 4.0)
+
+    def continuous(time):
+        place = time - 15.0 + lead
+        return (np.cos(frequency * place) - mean) * np.exp(-((place / width) ** 2))
+
+    one = wavelet_at(15.0, period, damping, time_step=STEP, count=COUNT)
+    times = np.arange(COUNT)[one.samples] * STEP
+    np.testing.assert_allclose(one.values, continuous(times), atol=2e-7)
+    ends = 15.0 - lead + 8.0 * width * np.array([-1.0, 1.0])
+    nodes = np.linspace(*ends, 40_001)
+    for weight in (1.0, nodes[-1] - nodes):  # final velocity, final displacement
+        found = integrate.simpson(weight * continuous(nodes), x=nodes)
+        assert abs(found) < 1e-12 * nodes[-1]
+
+
+@pytest.mark.parametrize("peak_time", [0.0, 0.3, 2.0, 15.0, 29.5, 31.0])
+@pytest.mark.parametrize("period", [0.05, 0.7, 3.0, 10.0])
+def test_no_wavelet_moves_the_ground_for_good(peak_time, period):
+    """Straight lines through the samples: their integrals are known exactly."""
+    one = wavelet_at(peak_time, period, 0.05, time_step=STEP, count=COUNT)
+    samples = np.zeros(COUNT)
+    samples[one.samples] = one.values
+    assert samples[0] == samples[-1] == 0.0
+    assert 0.5 < np.abs(samples).max() < 2.5
+    acceleration = integrate.cumulative_trapezoid(samples, dx=STEP, initial=0.0)
+    assert abs(acceleration[-1]) < 1e-12
+    # the displacement of a hat at time t is its area times what is left of the motion
+    assert abs(((LENGTH - np.arange(COUNT) * STEP) * samples).sum() * STEP) < 1e-10
+    path = rf.GroundMotion.from_arrays((samples, "m/s^2"), f"{STEP} s")
+    moved = rf.velocity_and_displacement(path)
+    assert abs(moved.ground_velocity[-1]) < 1e-12
+    assert abs(moved.ground_displacement[-1]) < 1e-10
+
+
+def noise(seed=3):
+    """Give noise that is resolved by its samples, as records are."""
+    white = np.random.default_rng(seed).normal(size=COUNT)
+    return 2.0 * np.convolve(white, np.hanning(9) / 2.0, "same") * np.hanning(COUNT)
+
+
+@pytest.mark.parametrize("damping", [0.01, 0.05, 0.5])
+def test_peaks_are_those_of_the_response_spectrum(damping):
+    samples = noise()
+    oscillators = Oscillators(PERIODS, damping, STEP)
+    histories = oscillators.histories(samples)
+    for place, period in enumerate(PERIODS):
+        exact = exact_history(samples, STEP, period, damping)
+        assert np.abs(histories[place, : exact.size] - exact).max() < 1e-8 * np.abs(exact).max()
+    peaks = oscillators.peaks(samples, histories)
+    made = rf.GroundMotion.from_arrays((samples, "m/s^2"), f"{STEP} s").si.horizontal
+    displacement = spectral_peaks(made, PERIODS, damping)[:, 0]
+    np.testing.assert_allclose(
+        peaks.spectrum, (2.0 * np.pi / PERIODS) ** 2 * displacement, rtol=1e-4
+    )
+    # largest first, each where its history is close to that value
+    assert (np.diff(peaks.oscillators) >= 0).all()
+    for place in range(0, PERIODS.size, 3):
+        exact = exact_history(samples, STEP, PERIODS[place], damping, parts=50)
+        own = peaks.oscillators == place
+        for value, time in zip(peaks.values[own], peaks.times[own], strict=True):
+            assert exact[round(50 * time / STEP)] == pytest.approx(value, rel=3e-3)
+
+
+def test_a_motion_that_stops_in_full_swing_peaks_after_its_end():
+    samples = np.sin(2.0 * np.pi * np.arange(400) * STEP / 2.0)[:60]
+    oscillators = Oscillators(np.array([3.0]), 0.05, STEP)
+    peaks = oscillators.peaks(samples, oscillators.histories(samples))
+    assert peaks.times[0] > 0.6
+    made = rf.GroundMotion.from_arrays((samples, "m/s^2"), f"{STEP} s").si.horizontal
+    expected = spectral_peaks(made, oscillators.periods, 0.05)[0, 0] * (2.0 * np.pi / 3.0) ** 2
+    assert peaks.spectrum[0] == pytest.approx(expected, rel=1e-6)
+
+
+@pytest.mark.parametrize("damping", [0.01, 0.05, 0.4])
+def test_the_influence_of_a_sample_is_the_response_to_its_hat(damping):
+    """Of every sample at once: a motion's response is the sum over its samples."""
+    samples = noise(4)
+    oscillators = Oscillators(PERIODS, damping, STEP)
+    times = (np.linspace(200, 3100, PERIODS.size).round() + 0.37) * STEP
+    which = np.arange(PERIODS.size)
+    peaks = Peaks(which, np.ones(PERIODS.size), times, np.zeros(PERIODS.size, dtype=int))
+    influences = oscillators.influences(peaks, COUNT)
+    parts = 100
+    for place, (period, time) in enumerate(zip(PERIODS, times, strict=True)):
+        history = exact_history(samples, STEP, period, damping, parts)
+        at = round(time * parts / STEP)
+        if at >= history.size:
+            continue
+        scale = np.abs(history).max()
+        assert abs(influences[place] @ samples - history[at]) < 1e-7 * scale
+
+
+def test_the_matrix_is_the_change_of_the_response_per_wavelet():
+    """By finite differences, with SciPy's integrator, at the times of the peaks."""
+    samples, damping, parts = noise(5), 0.05, 50
+    oscillators = Oscillators(PERIODS, damping, STEP)
+    peaks = oscillators.peaks(samples, oscillators.histories(samples))
+    targets = np.full(PERIODS.size, 3.0)
+    made = adjustment_of(oscillators, peaks, targets, COUNT)
+    assert made.effects.shape == (peaks.values.size, peaks.values.size)
+    small = 1e-3
+    for column in range(0, peaks.values.size, 9):
+        changed = samples + small * made.wavelets[:, column]
+        for row in range(0, peaks.values.size, 6):
+            period = PERIODS[peaks.oscillators[row]]
+            at = np.rint(peaks.times[row] * parts / STEP).astype(int)
+            before, after = (
+                exact_history(one, STEP, period, damping, parts)[at] for one in (samples, changed)
+            )
+            slope = np.sign(peaks.values[row]) * (after - before) / small / 3.0
+            assert made.effects[row, column] == pytest.approx(slope, abs=2e-3)
+
+
+def test_amplitudes_bring_the_peaks_where_they_are_to_be():
+    """Linear theory is exact as long as the times do not change: one oscillator, one wavelet."""
+    samples = noise(6)
+    oscillators = Oscillators(np.array([0.5]), 0.05, STEP)
+    histories = oscillators.histories(samples)
+    peaks = oscillators.peaks(samples, histories)
+    target = np.array([1.01 * peaks.spectrum[0]])
+    alone = Peaks(*(values[:1] for values in peaks))
+    made = adjustment_of(oscillators, alone, target, COUNT)
+    changed = samples + made.wavelets @ made.amplitudes(1e-12)
+    at = np.interp(
+        peaks.times[0] / STEP,
+        np.arange(histories.shape[1]),
+        oscillators.histories(changed)[0] - histories[0],
+    )
+    assert np.sign(peaks.values[0]) * at == pytest.approx(0.01 * peaks.spectrum[0], rel=2e-3)
+
+
+def test_rivals_are_held_down():
+    """Two peaks of one oscillator: the greatest goes to the target, the other not beyond it."""
+    samples = noise(7)
+    oscillators = Oscillators(np.array([0.5]), 0.05, STEP)
+    peaks = oscillators.peaks(samples, oscillators.histories(samples))
+    assert peaks.values.size > 1
+    made = adjustment_of(oscillators, peaks, np.array([0.9 * peaks.spectrum[0]]), COUNT)
+    found = made.amplitudes(1e-8)
+    left = made.missing - made.effects @ found
+    assert abs(left[0]) < 1e-3
+    assert (left > -0.006).all()

@@ -1,0 +1,233 @@
+"""Motions matched to a target spectrum: what is reached, what stays, what is told."""
+
+import warnings
+
+import numpy as np
+import pytest
+from records import record_path
+from scipy import signal
+
+import rockframe as rf
+from rockframe.errors import ComponentError, RecordWarning, UnitsError
+from rockframe.signals.path import ground_path
+from rockframe.signals.polynomials import knots_of
+
+EUROCODE = rf.TargetSpectrum.eurocode_8("0.3 g_0", "B")
+ASCE = rf.TargetSpectrum.asce_7("1 g_0", "0.6 g_0")
+RANGE = ("0.2 s", "0.6 s")
+
+
+def example():
+    return rf.GroundMotion.example("loma-prieta").window("5 s", "20 s", taper="0.5 s")
+
+
+@pytest.fixture(scope="module")
+def quickly_matched():
+    return example().matched(EUROCODE, periods=RANGE)
+
+
+def spectrum_over_target(motion, target, periods):
+    """By SciPy's first-order hold on the straight lines between samples, not by rockframe."""
+    samples, step = motion.si.horizontal.samples, motion.si.time_step
+    parts = int(np.ceil(50.0 * step / periods.min()))
+    fine = np.interp(
+        np.arange((samples.size - 1) * parts + 1) / parts, np.arange(samples.size), samples
+    )
+    found = np.empty(periods.size)
+    for place, period in enumerate(periods):
+        frequency = 2.0 * np.pi / period
+        drag = 2.0 * target.damping_ratio * frequency
+        matrices = (
+            np.array([[0.0, 1.0], [-(frequency**2), -drag]]),
+            np.array([[0.0], [-1.0]]),
+            np.array([[frequency**2, 0.0]]),
+            np.zeros((1, 1)),
+        )
+        *discrete, _ = signal.cont2discrete(matrices, step / parts, "foh")
+        numerator, denominator = signal.ss2tf(*discrete)
+        still = np.zeros(round(period * parts / step) + 1)
+        history = signal.lfilter(numerator[0], denominator, np.concatenate([fine, still]))
+        found[place] = np.abs(history).max()
+    return found / target.at((periods, "s"))
+
+
+def paths(motion):
+    return [knots_of(path) for path in ground_path(motion.si.horizontal)]
+
+
+FULL = [
+    ("loma-prieta", EUROCODE, ("0.1 s", "2 s")),
+    ("waipukurau", ASCE, ("0.2 s", "2 s")),
+    ("NIS090.AT2", EUROCODE, ("0.1 s", "2 s")),
+    ("PEERSMD_IMPVALL_IELC180.AT2", ASCE, ("0.1 s", "2 s")),
+    ("RSN763_LOMAP_GIL067.AT2", EUROCODE, ("0.2 s", "1 s")),
+]
+
+
+@pytest.mark.parametrize(("name", "target", "periods"), FULL, ids=lambda one: str(one)[:20])
+def test_records_reach_the_spectra_of_codes_and_stay_themselves(name, target, periods):
+    motion = (
+        rf.GroundMotion.read(record_path(name)) if "." in name else rf.GroundMotion.example(name)
+    )
+    matched = motion.matched(target, periods=periods)
+    low, high = (float(one.split()[0]) for one in periods)
+    checked = np.geomspace(low, high, 601)  # none but the ends are periods of the matching
+    ratios = spectrum_over_target(matched, target, checked)
+    assert np.abs(ratios - 1.0).max() < 0.051
+    about = matched.metadata
+    assert about["target_reached"] == 1
+    assert np.abs(ratios - 1.0).max() == pytest.approx(about["largest_spectral_misfit"], abs=0.002)
+    assert np.abs(ratios - 1.0).mean() == pytest.approx(about["mean_spectral_misfit"], abs=5e-4)
+    before = motion.scaled(about["scale_factor"])
+    assert len(matched) == len(motion)
+    build_ups = [np.cumsum(one.si.horizontal.samples**2) for one in (before, matched)]
+    assert np.corrcoef(*build_ups)[0, 1] > 0.97
+    for old, new in zip(paths(before), paths(matched), strict=True):  # velocity, displacement
+        assert abs(new[-1] - old[-1]) < 1e-9 * np.abs(old).max()
+        assert 0.5 < np.abs(new).max() / np.abs(old).max() < 2.0
+
+
+def test_another_library_sees_the_same_spectrum(quickly_matched):
+    pytest.importorskip("eqsig")
+    from eqsig import sdof
+
+    fine = quickly_matched.resampled("0.001 s", interpolation="linear").si.horizontal
+    periods = np.geomspace(0.2, 0.6, 97)
+    displacement = sdof.nigam_and_jennings_response(fine.samples, fine.time_step, periods, 0.05)[0]
+    found = (2.0 * np.pi / periods) ** 2 * np.abs(displacement).max(axis=1)
+    assert np.abs(found / EUROCODE.at((periods, "s")) - 1.0).max() < 0.051
+
+
+def test_it_is_told_what_was_done(quickly_matched):
+    about, said = quickly_matched.metadata, quickly_matched.history[-1]
+    assert about["target_spectrum"] == EUROCODE.name
+    assert about["matching_steps"] > 0
+    assert "tapered cosine wavelets" in said
+    assert "from 0.2 s to 0.6 s" in said
+    assert quickly_matched.name == example().name
+    assert quickly_matched.to_dict()["constructor"] is None
+    twice = example().scaled(2.0)
+    again = type(twice)(twice.si, metadata={"scale_factor": 2.0}).matched(EUROCODE, periods=RANGE)
+    assert again.metadata["scale_factor"] == pytest.approx(about["scale_factor"], rel=1e-9)
+
+
+def test_it_comes_back_from_where_it_is_kept(quickly_matched):
+    assert rf.GroundMotion.from_dataset(quickly_matched.to_dataset()) == quickly_matched
+    assert rf.GroundMotion.from_dict(quickly_matched.to_dict(samples=True)) == quickly_matched
+    suite = rf.MotionSuite({"one": quickly_matched})
+    assert rf.MotionSuite.from_dataset(suite.to_dataset())["one"].sha256 == quickly_matched.sha256
+    system = rf.System(rf.Block(width="1 m", height="3 m", mass="1 t"))
+    response = system.simulate(quickly_matched)
+    rebuilt = rf.System.from_dataset(response).motion
+    assert rebuilt is not None
+    assert rebuilt.sha256 == quickly_matched.sha256
+
+
+def test_a_motion_that_has_the_spectrum_is_not_changed(quickly_matched):
+    again = quickly_matched.matched(EUROCODE, periods=RANGE)
+    assert again.sha256 == quickly_matched.sha256
+    assert again.history[-1].startswith("not changed to match")
+    periods = np.geomspace(0.2, 0.6, 200)
+    own = rf.TargetSpectrum.from_spectrum(rf.response_spectrum(example(), (periods, "s")))
+    same = example().matched(own, periods=RANGE)
+    assert same.sha256 == example().sha256
+    assert same.metadata["matching_steps"] == 0
+    assert same.metadata["scale_factor"] == 1.0
+    pulse = rf.GroundMotion.stochastic(6, "20 km", seed=1)
+    own = rf.TargetSpectrum.from_spectrum(rf.response_spectrum(pulse, (periods, "s")))
+    kept = pulse.matched(own, periods=RANGE)
+    assert rf.GroundMotion.from_dict(kept.to_dict()).sha256 == pulse.sha256
+
+
+def test_the_vertical_component_is_left_as_it_is():
+    up = rf.GroundMotion.stochastic(6, "20 km", seed=2).resampled("0.005 s")
+    both = example().with_vertical(up)
+    matched = both.matched(EUROCODE, periods=("0.3 s", "0.5 s"))
+    assert matched.si.vertical is both.si.vertical
+    assert not np.array_equal(matched.si.horizontal.samples, both.si.horizontal.samples)
+
+
+def test_between_the_samples_of_a_pulse_lines_take_the_place_of_its_polynomials():
+    pulse = rf.GroundMotion.ricker_wavelet("3 m/s^2", "0.5 s")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RecordWarning)
+        matched = pulse.matched(EUROCODE, periods=("0.3 s", "0.5 s"))
+    assert not matched.si.analytic
+    assert "replaced by straight lines" in matched.history[-1]
+
+
+def test_what_cannot_be_reached_is_told():
+    """A spectrum with a jump: no oscillator of 5 % damping follows it."""
+    jump = rf.TargetSpectrum.from_table(
+        (["0.1 s", "0.4 s", "0.401 s", "1 s"]), ([9, 9, 1, 1], "m/s^2")
+    )
+    with pytest.warns(RecordWarning, match=r"5 % was not reached in \d+ steps") as said:
+        matched = example().matched(jump, periods=RANGE)
+    assert "from 'table' at 0.4" in str(said[0].message)
+    assert matched.metadata["target_reached"] == 0
+    assert matched.metadata["largest_spectral_misfit"] > 0.05
+    periods = np.geomspace(0.2, 0.6, 301)
+    misfit, before = (
+        np.abs(spectrum_over_target(one, jump, periods) - 1.0).max()
+        for one in (matched, example().scaled(matched.metadata["scale_factor"]))
+    )
+    assert misfit < before
+    assert misfit == pytest.approx(matched.metadata["largest_spectral_misfit"], rel=0.02)
+
+
+def test_a_coarse_record_is_warned_of():
+    coarse = example().resampled("0.02 s")
+    with pytest.warns(
+        RecordWarning, match=r"coarse for periods from 0.15 s.*resampled\('0.01 s'\)"
+    ):
+        coarse.matched(EUROCODE, periods=("0.15 s", "0.3 s"))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error", "words"),
+    [
+        ({"target": 3}, ComponentError, "target needs a TargetSpectrum, got 3"),
+        ({"target": example()}, ComponentError, "target needs a TargetSpectrum"),
+        ({"periods": ("0.1 s",)}, ComponentError, "the shortest and the longest"),
+        ({"periods": ("2 s", "1 s")}, ComponentError, "the shortest and the longest"),
+        ({"periods": ("0 s", "1 s")}, ComponentError, "the shortest and the longest"),
+        ({"periods": [0.1, 1.0]}, UnitsError, "needs a time with a unit"),
+        ({"periods": ("1 m", "2 m")}, UnitsError, "needs a time"),
+        ({"periods": ("0.01 s", "1 s")}, ComponentError, "must be 4 time steps or more, 0.02 s"),
+        ({"periods": ("0.1 s", "9 s")}, ComponentError, "which is 15 s long"),
+        ({"tolerance": 0}, ComponentError, "tolerance must be from 0.01 to 0.5"),
+        ({"tolerance": "5 m"}, UnitsError, "tolerance"),
+        ({"damping_ratio": 0.05}, TypeError, "the target has one"),
+        (
+            {"target": rf.TargetSpectrum.eurocode_8("1 m/s^2", damping_ratio=0.6)},
+            ComponentError,
+            "damping_ratio must be from 0.01 to 0.5",
+        ),
+        (
+            {"target": rf.TargetSpectrum.from_table((["0.3 s", "1 s"]), ([1, 1], "m/s^2"))},
+            ComponentError,
+            "is known from 0.3 s to 1 s",
+        ),
+        (
+            {"target": rf.TargetSpectrum("dips", lambda at: np.maximum(at - 0.3, 0.0))},
+            ComponentError,
+            "'dips' must be above zero, which it is not at 0.2 s",
+        ),
+    ],
+)  # fmt: skip
+def test_nonsense_is_refused(arguments, error, words):
+    with pytest.raises(error, match=words):
+        example().matched(**{"target": EUROCODE, "periods": RANGE, **arguments})
+
+
+def test_still_ground_is_refused():
+    still = rf.GroundMotion.from_arrays((np.zeros(2000), "m/s^2"), "0.01 s", name="calm")
+    with pytest.raises(ComponentError, match="'calm' stands still"):
+        still.matched(EUROCODE)
+
+
+def test_a_motion_of_hours_is_refused():
+    samples = np.random.default_rng(1).normal(size=200_000)
+    long = rf.GroundMotion.from_arrays((samples, "m/s^2"), "0.01 s")
+    with pytest.raises(ComponentError, match="are too many; expected at most"):
+        long.matched(EUROCODE)
