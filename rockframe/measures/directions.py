@@ -11,9 +11,15 @@ from rockframe.arguments import whole_number
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError, shown
 from rockframe.measures.labels import build_over
-from rockframe.measures.response import checked_periods, checked_ratios, oscillator_axes
+from rockframe.measures.response import (
+    checked_periods,
+    checked_ratios,
+    oscillator_axes,
+    shortest_of,
+)
 from rockframe.measures.several import Looked, check_some
 from rockframe.motion.pair import HorizontalPair
+from rockframe.motion.processing.coarseness import say_coarse
 from rockframe.results.dataset import build_dataset
 from rockframe.signals.accumulation import arias_history
 from rockframe.signals.arrays import Array
@@ -74,6 +80,11 @@ def rotated_spectrum(
         No pair, an odd number of directions, or periods and damping ratios as for
         :func:`rockframe.response_spectrum`.
 
+    Warns
+    -----
+    RecordWarning
+        Periods asked for are shorter than ten time steps of a record.
+
     Notes
     -----
     As exact as :func:`rockframe.response_spectrum`: in the direction of a component it gives
@@ -101,6 +112,9 @@ def rotated_spectrum(
         raise ComponentError(msg)
     for one in looked.things:
         check_cost(one.signals[0], seconds, owner=_SPECTRUM)
+    if periods is not None:
+        both = [one.signals[0] for one in looked.things]
+        say_coarse(both, shortest_of(seconds), owner=_SPECTRUM)
     vectors = unit_vectors(count)
     upwards = all(one.vertical is not None for one in looked.things)
 

@@ -8,10 +8,11 @@ import numpy as np
 import xarray as xr
 
 from rockframe.arguments import one_of_words
-from rockframe.errors import ComponentError, RecordWarning, shown, warn
+from rockframe.errors import ComponentError, shown
 from rockframe.measures.labels import build_over
 from rockframe.measures.several import Looked, looked_at
 from rockframe.motion.operations.timing import Interpolation
+from rockframe.motion.processing.coarseness import say_coarse
 from rockframe.motion.processing.sampling import band_limited
 from rockframe.signals import Signal
 from rockframe.signals.arrays import Array
@@ -27,12 +28,9 @@ if TYPE_CHECKING:
 SAMPLES_PER_PERIOD: Final = 25
 """Samples of the shortest period of a band-limited motion: lines between them lower it by 0.5 %."""
 
-COARSE: Final = 10
-"""Samples per period below which straight lines lower an ordinate by more than 3 %."""
-
 _PERIODS_PER_DECADE: Final = 100
-_ROUNDING: Final = 1e-9
 _OWNER: Final = "response_spectrum"
+_REMEDY: Final = "interpolation='band-limited' refines records"
 
 
 def response_spectrum(
@@ -106,7 +104,7 @@ def response_spectrum(
     ratios = checked_ratios(damping_ratios, owner=_OWNER)
     between = one_of_words(Interpolation, interpolation, owner=_OWNER, name="interpolation")
     if between is Interpolation.LINEAR and periods is not None:
-        _say_coarse(looked.things, seconds)
+        say_coarse(looked.things, shortest_of(seconds), owner=_OWNER, remedy=_REMEDY)
     return spectra_of(looked, seconds, ratios, between)
 
 
@@ -150,19 +148,9 @@ def spectra_of(
     return looked.labelled(dataset)
 
 
-def _say_coarse(signals: "Iterable[Signal]", seconds: Array) -> None:
-    """Warn of records that are too coarse for the shortest of the periods asked for."""
-    shortest = float(seconds[seconds > 0.0].min(initial=np.inf))
-    steps = [one.time_step for one in signals if not one.analytic]
-    coarse = [step for step in steps if shortest < COARSE * step * (1.0 - _ROUNDING)]
-    if coarse:
-        which = f"{len(coarse)} of {len(steps)} records are" if len(steps) > 1 else "the record is"
-        msg = (
-            f"{_OWNER}: {which} sampled every {max(coarse):.4g} s, which is coarse for periods "
-            f"from {shortest:.4g} s: straight lines between samples lower ordinates by 3 % at ten "
-            "samples per period and 13 % at five; interpolation='band-limited' refines records"
-        )
-        warn(msg, RecordWarning)
+def shortest_of(seconds: Array) -> float:
+    """Give the shortest period above zero; infinity where there is none [s]."""
+    return float(seconds[seconds > 0.0].min(initial=np.inf))
 
 
 def oscillator_axes(ratios: Array, seconds: Array) -> dict[str, tuple[Array, str]]:

@@ -10,8 +10,9 @@ import numpy as np
 from rockframe.arguments import one_of_words
 from rockframe.errors import ComponentError, shown
 from rockframe.measures import rotated_spectrum
-from rockframe.measures.response import checked_periods, spectra_of
+from rockframe.measures.response import checked_periods, shortest_of, spectra_of
 from rockframe.measures.several import looked_at
+from rockframe.motion.processing.coarseness import say_coarse
 from rockframe.signals.arrays import Array
 from rockframe.suites.suite import MotionSuite
 from rockframe.suites.target import TargetSpectrum
@@ -136,6 +137,10 @@ def candidates_of(
     seconds = _usual(target) if periods is None else checked_periods(periods, owner=owner)
     fixed = seconds if conditioned_on is None else checked_periods(conditioned_on, owner=owner)
     every = np.unique(np.concatenate([seconds, fixed]))
+    if periods is not None or conditioned_on is not None:
+        asked = fixed if periods is None else every
+        signals = [motion.si.horizontal for motion in suite.values()]
+        say_coarse(signals, shortest_of(asked), owner=owner)
     goal = np.log(target.at_seconds(every, owner=owner))
     labels, spectra, events = _spectra(suite, kind, every, target.damping_ratio, owner)
     still = [label for label, row in zip(labels, spectra, strict=True) if not (row > 0.0).all()]

@@ -74,6 +74,11 @@ def scale_to_target(
         Not a suite or not a target; periods at which the target is not known; a motion without
         acceleration; no pairs to combine; an argument out of range.
 
+    Warns
+    -----
+    RecordWarning
+        Periods asked for are shorter than ten time steps of a record.
+
     Examples
     --------
     >>> import rockframe as rf

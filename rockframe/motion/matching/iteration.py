@@ -26,31 +26,44 @@ _CLOSEST: Final = 0.0125
 _WIDEST: Final = 0.05
 """Between these the relative distance of matched periods is kept [1]."""
 
-_BETWEEN: Final = 4
+_BETWEEN: Final = 8
 """Periods at which the spectrum is checked for one at which it is matched."""
 
 _PASS: Final = 0.45
 """Decades of periods that are brought in together."""
 
-_STEPS_OF_A_PASS: Final = 15
-_STEPS_OF_THE_LAST: Final = 40
-"""Adjustments after which a pass is given up."""
+_STEPS_OF_A_PASS: Final = 10
+"""Adjustments after which the next periods are brought in, whatever was reached."""
 
-_ROUNDS: Final = 4
-"""Times that periods between the matched ones are brought in."""
+_STEPS_BETWEEN_CHECKS: Final = 6
+_CHECKS: Final = 12
+"""Adjustments from one check of the whole spectrum to the next, and checks before giving up."""
 
 _AIM: Final = 0.6
 """Share of the tolerance that is aimed at where periods are matched [1]."""
 
+_MARGIN: Final = 0.95
+"""Share of the tolerance that is aimed at where the spectrum is checked: it has cusps [1]."""
+
 _BROUGHT_IN: Final = 0.8
 """Share of the tolerance above which a period between is matched too [1]."""
 
-_REGULARISATION: Final = (1e-4, 1e-2, 1e3)
-"""Least value, the first one, and the one at which a pass is given up [1]."""
+_FIRST_REGULARISATION: Final = 1e-2
+_LEAST_REGULARISATION: Final = 1e-5
+"""At the first adjustment of a pass, and the least [1]."""
+
+_STRONGER: Final = 5.0
+_EASIER: Final = 0.3
+"""Factors of the regularisation after an adjustment that failed, and after a full one [1]."""
 
 _STEP_LENGTHS: Final = (1.0, 0.5, 0.25)
-_TRIALS: Final = 5
+"""Shares of an adjustment that are tried."""
+
+_TRIALS: Final = 4
+"""Regularisations that are tried before a pass is given up."""
+
 _POWER: Final = 4.0
+"""Of the misfits in the measure that every adjustment lessens: large ones count most."""
 
 
 class Goal(NamedTuple):
@@ -145,15 +158,20 @@ def match(signal: Signal, goal: Goal) -> Matched:
     passes = max(1, math.ceil(math.log10(goal.longest / goal.shortest) / _PASS))
     for upto in np.geomspace(goal.shortest, goal.longest, passes + 1)[1:-1]:
         run.improve(periods <= upto, _STEPS_OF_A_PASS)
-    for _ in range(_ROUNDS):
-        if best.misfit <= goal.tolerance:
-            break
-        run.improve(np.ones(periods.size, dtype=bool), _STEPS_OF_THE_LAST)
+        run.begin_again()
+    for _ in range(_CHECKS):
+        done = run.improve(np.ones(periods.size, dtype=bool), _STEPS_BETWEEN_CHECKS)
         now = _checked(goal, signal, run.samples, factor, run.steps)
         best = min(best, now, key=lambda one: one.misfit)
-        off = np.abs(now.ratios - 1.0) > _BROUGHT_IN * goal.tolerance
-        periods = np.union1d(periods, goal.checked[off])
-        run = _Run(signal.time_step, run.samples, goal, periods, run.steps)
+        if best.misfit <= _MARGIN * goal.tolerance:
+            break
+        if done:
+            off = np.abs(now.ratios - 1.0) > _BROUGHT_IN * goal.tolerance
+            more = np.union1d(periods, goal.checked[off])
+            if more.size == periods.size:
+                break
+            periods = more
+            run = _Run(signal.time_step, run.samples, goal, periods, run.steps)
     return best
 
 
@@ -170,32 +188,34 @@ class _Run:
     ) -> None:
         self.samples = samples
         self.steps = steps
+        self._regularisation = _FIRST_REGULARISATION
         self._aim = _AIM * goal.tolerance
         self._targets = goal.spectrum(periods)
         self._oscillators = Oscillators(periods, goal.damping_ratio, time_step)
         self._histories = self._oscillators.histories(samples)
         self._peaks = self._oscillators.peaks(samples, self._histories)
 
-    def improve(self, chosen: NDArray[np.bool_], most: int) -> None:
-        """Make adjustments for some oscillators until they are on the target."""
-        least, regularisation, hopeless = _REGULARISATION
+    def begin_again(self) -> None:
+        """Forget how strongly the last adjustment was regularised."""
+        self._regularisation = _FIRST_REGULARISATION
+
+    def improve(self, chosen: NDArray[np.bool_], most: int) -> bool:
+        """Make adjustments for some oscillators; tell whether more of them would not help."""
         for _ in range(most):
             if self._ratios(self._peaks, chosen).max() <= self._aim:
-                return
-            regularisation, shortened = self._step(chosen, regularisation)
-            if regularisation > hopeless:
-                return
-            if not shortened:
-                regularisation = max(0.5 * regularisation, least)
+                return True
+            if not self._step(chosen):
+                return True
+        return False
 
-    def _step(self, chosen: NDArray[np.bool_], regularisation: float) -> tuple[float, bool]:
-        """Make the first adjustment that lessens the misfit; tell how it was regularised."""
+    def _step(self, chosen: NDArray[np.bool_]) -> bool:
+        """Make the first adjustment that lessens the misfit; tell whether there was one."""
         count = self.samples.size
         looked_at = self._peaks.looked_at(chosen, self._targets)
         made = adjustment_of(self._oscillators, looked_at, self._targets, count)
         before = self._size(self._peaks, chosen)
         for _ in range(_TRIALS):
-            added = made.wavelets @ made.amplitudes(regularisation)
+            added = made.wavelets @ made.amplitudes(self._regularisation)
             response = self._oscillators.histories(added)
             for length in _STEP_LENGTHS:
                 samples = self.samples + length * added
@@ -204,9 +224,12 @@ class _Run:
                 if self._size(peaks, chosen) < before:
                     self.samples, self._histories, self._peaks = samples, histories, peaks
                     self.steps += 1
-                    return regularisation, length < 1.0
-            regularisation *= 5.0
-        return math.inf, True
+                    if length == 1.0:
+                        easier = _EASIER * self._regularisation
+                        self._regularisation = max(easier, _LEAST_REGULARISATION)
+                    return True
+            self._regularisation *= _STRONGER
+        return False
 
     def _ratios(self, peaks: Peaks, chosen: NDArray[np.bool_]) -> Array:
         return np.abs(peaks.spectrum[chosen] / self._targets[chosen] - 1.0)

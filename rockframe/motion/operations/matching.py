@@ -12,6 +12,7 @@ from rockframe.arguments import hinted
 from rockframe.errors import ComponentError, RecordWarning, shown, warn
 from rockframe.motion.matching.iteration import Goal, Matched, match
 from rockframe.motion.operations.following import following, lost_pieces
+from rockframe.motion.processing.coarseness import finer, say_coarse
 from rockframe.signals.spectra import check_cost
 from rockframe.units import PERIOD, Condition, to_ratio, to_si_values
 
@@ -33,9 +34,6 @@ _DAMPING: Final = Condition("from 0.01 to 0.5", lambda value: 0.01 <= value <= 0
 
 _LEAST_STEPS: Final = 4
 """Time steps in the shortest period: a wavelet of fewer samples is not one."""
-
-_FEW_STEPS: Final = 10
-"""Time steps in a period below which straight lines lower an ordinate by more than 3 %."""
 
 _LEAST_PERIODS: Final = 3
 """Longest periods in the motion: there must be room for a wavelet."""
@@ -189,7 +187,7 @@ def _check_motion(motion: Any, signal: Signal, goal: Goal, owner: str) -> None:
         msg = (
             f"{owner}: the shortest period, {shortest:.4g} s, must be {_LEAST_STEPS} time steps or "
             f"more, {_LEAST_STEPS * step:.4g} s; resample the motion, for example "
-            f"resampled('{step / math.ceil(_FEW_STEPS * step / shortest):.4g} s')"
+            f"resampled('{finer(step, shortest):.4g} s')"
         )
         raise ComponentError(msg)
     if signal.duration < _LEAST_PERIODS * longest:
@@ -207,13 +205,7 @@ def _check_motion(motion: Any, signal: Signal, goal: Goal, owner: str) -> None:
             "out with window(), or resample it"
         )
         raise ComponentError(msg)
-    if shortest < _FEW_STEPS * step * (1.0 - _ROUNDING):
-        msg = (
-            f"{owner}: {motion.name!r} is sampled every {step:.4g} s, which is coarse for periods "
-            f"from {shortest:.4g} s: its spectrum is that of straight lines between the samples; "
-            f"resampled('{step / math.ceil(_FEW_STEPS * step / shortest):.4g} s') refines it"
-        )
-        warn(msg, RecordWarning)
+    say_coarse([replace(signal, polynomials=None)], shortest, owner=owner)
 
 
 def _about(motion: Any, target: Target, found: Matched) -> dict[str, str | float | int]:

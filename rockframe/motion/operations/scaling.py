@@ -9,6 +9,7 @@ import numpy as np
 
 from rockframe.errors import ComponentError
 from rockframe.motion.operations.following import following
+from rockframe.motion.processing.coarseness import say_coarse
 from rockframe.motion.readers.components import SENSE
 from rockframe.motion.readers.orientation import DOWNWARDS, UPWARDS
 from rockframe.signals.path import ground_path
@@ -72,6 +73,11 @@ def scaled(
         None or several given, `period` or `damping_ratio` without
         `spectral_acceleration` or the other way round, a value out of range, or a motion
         without any acceleration, which nothing can scale to a target.
+
+    Warns
+    -----
+    RecordWarning
+        `period` is shorter than ten time steps of a record.
     """
     owner = f"{type(motion).__name__}.scaled"
     targets = {
@@ -159,6 +165,7 @@ def _spectral(
     )
     periods = np.array([seconds])
     check_cost(across, periods, owner=owner)
+    say_coarse([across], seconds, owner=owner)
     displacement = spectral_peaks(across, periods, damping)[:, 0]
     words = (
         f"a pseudo-spectral acceleration of {wanted:.9g} {ACCELERATION.unit} at "

@@ -73,10 +73,11 @@ def test_records_reach_the_spectra_of_codes_and_stay_themselves(name, target, pe
     low, high = (float(one.split()[0]) for one in periods)
     checked = np.geomspace(low, high, 601)  # none but the ends are periods of the matching
     ratios = spectrum_over_target(matched, target, checked)
-    assert np.abs(ratios - 1.0).max() < 0.051
+    assert np.abs(ratios - 1.0).max() < 0.0505
     about = matched.metadata
     assert about["target_reached"] == 1
-    assert np.abs(ratios - 1.0).max() == pytest.approx(about["largest_spectral_misfit"], abs=0.002)
+    stated = about["largest_spectral_misfit"]  # at more periods
+    assert stated - 0.008 < np.abs(ratios - 1.0).max() < stated + 0.001
     assert np.abs(ratios - 1.0).mean() == pytest.approx(about["mean_spectral_misfit"], abs=5e-4)
     before = motion.scaled(about["scale_factor"])
     assert len(matched) == len(motion)
@@ -84,7 +85,7 @@ def test_records_reach_the_spectra_of_codes_and_stay_themselves(name, target, pe
     assert np.corrcoef(*build_ups)[0, 1] > 0.97
     for old, new in zip(paths(before), paths(matched), strict=True):  # velocity, displacement
         assert abs(new[-1] - old[-1]) < 1e-9 * np.abs(old).max()
-        assert 0.5 < np.abs(new).max() / np.abs(old).max() < 2.0
+        assert 1 / 3 < np.abs(new).max() / np.abs(old).max() < 3.0
 
 
 def test_another_library_sees_the_same_spectrum(quickly_matched):
@@ -95,7 +96,7 @@ def test_another_library_sees_the_same_spectrum(quickly_matched):
     periods = np.geomspace(0.2, 0.6, 97)
     displacement = sdof.nigam_and_jennings_response(fine.samples, fine.time_step, periods, 0.05)[0]
     found = (2.0 * np.pi / periods) ** 2 * np.abs(displacement).max(axis=1)
-    assert np.abs(found / EUROCODE.at((periods, "s")) - 1.0).max() < 0.051
+    assert np.abs(found / EUROCODE.at((periods, "s")) - 1.0).max() < 0.0505
 
 
 def test_it_is_told_what_was_done(quickly_matched):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import rockframe as rf
-from rockframe.errors import ComponentError, UnitsError
+from rockframe.errors import ComponentError, RecordWarning, UnitsError
 
 NOISE = np.random.default_rng(7).normal(size=600)
 
@@ -81,3 +81,10 @@ def test_still_ground_reaches_no_target(target):
     still = rf.GroundMotion.from_arrays((np.zeros(9), "m/s^2"), "0.01 s")
     with pytest.raises(ComponentError, match="no horizontal acceleration"):
         still.scaled(**target)
+
+
+def test_a_period_too_short_for_the_record_is_warned_of():
+    with pytest.warns(
+        RecordWarning, match=r"coarse for periods from 0.06 s.*resampled\('0.005 s'\)"
+    ):
+        record().scaled(spectral_acceleration="1 m/s^2", period="0.06 s")

@@ -36,7 +36,9 @@ def test_all_motions_have_the_spectrum_of_the_target():
     assert table["target_reached"].tolist() == [1, 1]
     kept = matched.to_dataset()
     assert kept["largest_spectral_misfit"].attrs["units"] == "1"
-    assert rf.MotionSuite.from_dataset(kept) == matched
+    back = rf.MotionSuite.from_dataset(kept)
+    assert [back[label].sha256 for label in back] == [one.sha256 for one in matched.values()]
+    assert back["motion 1"].metadata == matched["motion 1"].metadata
     axes = rf.plot.suite(matched, target=TARGET)
     assert "target" in axes.get_legend_handles_labels()[1]
 
