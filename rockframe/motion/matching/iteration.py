@@ -39,6 +39,10 @@ _STEPS_BETWEEN_CHECKS: Final = 6
 _CHECKS: Final = 12
 """Adjustments from one check of the whole spectrum to the next, and checks before giving up."""
 
+_PATIENCE: Final = 3
+_GAIN: Final = 0.95
+"""Checks in a row that do not lessen the greatest misfit by this factor before giving up."""
+
 _AIM: Final = 0.6
 """Share of the tolerance that is aimed at where periods are matched [1]."""
 
@@ -159,11 +163,16 @@ def match(signal: Signal, goal: Goal) -> Matched:
     for upto in np.geomspace(goal.shortest, goal.longest, passes + 1)[1:-1]:
         run.improve(periods <= upto, _STEPS_OF_A_PASS)
         run.begin_again()
+    waited, before = 0, math.inf
     for _ in range(_CHECKS):
         done = run.improve(np.ones(periods.size, dtype=bool), _STEPS_BETWEEN_CHECKS)
         now = _checked(goal, signal, run.samples, factor, run.steps)
         best = min(best, now, key=lambda one: one.misfit)
-        if best.misfit <= _MARGIN * goal.tolerance:
+        if best.misfit < _GAIN * before:
+            waited, before = 0, best.misfit
+        else:
+            waited += 1
+        if best.misfit <= _MARGIN * goal.tolerance or waited >= _PATIENCE:
             break
         if done:
             off = np.abs(now.ratios - 1.0) > _BROUGHT_IN * goal.tolerance

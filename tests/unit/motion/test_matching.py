@@ -29,12 +29,12 @@ def quickly_matched():
 def spectrum_over_target(motion, target, periods):
     """By SciPy's first-order hold on the straight lines between samples, not by rockframe."""
     samples, step = motion.si.horizontal.samples, motion.si.time_step
-    parts = int(np.ceil(50.0 * step / periods.min()))
-    fine = np.interp(
-        np.arange((samples.size - 1) * parts + 1) / parts, np.arange(samples.size), samples
-    )
     found = np.empty(periods.size)
     for place, period in enumerate(periods):
+        parts = int(np.ceil(60.0 * step / period))  # peaks are seen to 0.14 %
+        fine = np.interp(
+            np.arange((samples.size - 1) * parts + 1) / parts, np.arange(samples.size), samples
+        )
         frequency = 2.0 * np.pi / period
         drag = 2.0 * target.damping_ratio * frequency
         matrices = (
@@ -76,8 +76,8 @@ def test_records_reach_the_spectra_of_codes_and_stay_themselves(name, target, pe
     assert np.abs(ratios - 1.0).max() < 0.0505
     about = matched.metadata
     assert about["target_reached"] == 1
-    stated = about["largest_spectral_misfit"]  # at more periods
-    assert stated - 0.008 < np.abs(ratios - 1.0).max() < stated + 0.001
+    stated = about["largest_spectral_misfit"]
+    assert stated - 0.008 < np.abs(ratios - 1.0).max() < stated + 0.004  # cusps between both
     assert np.abs(ratios - 1.0).mean() == pytest.approx(about["mean_spectral_misfit"], abs=5e-4)
     before = motion.scaled(about["scale_factor"])
     assert len(matched) == len(motion)
