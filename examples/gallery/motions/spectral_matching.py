@@ -12,14 +12,14 @@ import numpy as np
 
 import rockframe as rf
 
-record = rf.GroundMotion.example("loma-prieta").resampled("0.01 s")
+record = rf.GroundMotion.example("loma-prieta").resampled("0.02 s")
 target = rf.TargetSpectrum.eurocode_8("0.3 g_0", "B")
-matched = record.matched(target, periods=("0.1 s", "2 s"))
+matched = record.matched(target, periods=("0.2 s", "2 s"))
 about = matched.metadata
 scaled = record.scaled(about["scale_factor"])
 print(matched.history[-1])
 
-periods = (np.geomspace(0.1, 3.0, 200), "s")
+periods = (np.geomspace(0.2, 3.0, 150), "s")
 figure, panels = plt.subplot_mosaic(
     [["spectrum", "acceleration"], ["spectrum", "velocity"], ["spectrum", "displacement"]],
     figsize=(9.2, 5.0),
@@ -44,11 +44,11 @@ for label, motion, colour in (("scaled", scaled, "0.55"), ("matched", matched, "
         panels[name].set_ylabel(f"{name} [{unit}]")
 wanted = target.at(periods) / 9.80665
 panels["spectrum"].plot(periods[0], wanted, color="C3", linewidth=1.8, label="Eurocode 8")
-panels["spectrum"].axvspan(0.1, 2.0, color="0.93", zorder=-1, label="matched range")
-ticks = [0.1, 0.2, 0.5, 1.0, 2.0, 3.0]
+panels["spectrum"].axvspan(0.2, 2.0, color="0.92", zorder=-1, label="matched range")
+ticks = [0.2, 0.5, 1.0, 2.0, 3.0]
 panels["spectrum"].set(
     xscale="log",
-    xlim=(0.1, 3.0),
+    xlim=(0.2, 3.0),
     ylim=(0.0, None),
     xlabel="period [s]",
     ylabel="pseudo-spectral acceleration [g], damping 5 %",
