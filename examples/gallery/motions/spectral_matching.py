@@ -4,7 +4,7 @@ A motion matched to the spectrum of a code
 
 Scaling keeps the peaks and troughs of a spectrum; wavelets added at the right times fill them
 (:doc:`/theory/spectral_matching`). What becomes of the motion: the accelerations keep their
-build-up, and the ground comes to rest where it did.
+build-up, and the ground comes to rest where it did. Grey: the periods that were matched.
 """
 
 import matplotlib.pyplot as plt
@@ -44,7 +44,7 @@ for label, motion, colour in (("scaled", scaled, "0.55"), ("matched", matched, "
         panels[name].set_ylabel(f"{name} [{unit}]")
 wanted = target.at(periods) / 9.80665
 panels["spectrum"].plot(periods[0], wanted, color="C3", linewidth=1.8, label="Eurocode 8")
-panels["spectrum"].axvspan(0.2, 2.0, color="0.92", zorder=-1, label="matched range")
+panels["spectrum"].axvspan(0.2, 2.0, color="0.92", zorder=-1)
 ticks = [0.2, 0.5, 1.0, 2.0, 3.0]
 panels["spectrum"].set(
     xscale="log",
