@@ -49,29 +49,30 @@ OUTPUT_STEP: Final = 5
 CHATTER_TIME: Final = 6
 CONTROLS: Final = 7
 
-# clock: real progress
+# clock: real progress; what a step changes stands first
 INTO_INTERVAL: Final = 0
 NEXT_STEP: Final = 1
 FLIGHT_TIME: Final = 2
-FIRST_UPLIFT: Final = 3
-PEAK_LEFT: Final = 4
-OVERTURNING_TIME: Final = 5
-OVERTURNING_SIDE: Final = 6
-DISSIPATED: Final = 7
-SUPPLIED: Final = 8
-RESIDUAL: Final = 9
-LARGEST_TERM: Final = 10
-START_ENERGY: Final = 11
-EVENT_TIME: Final = 12
-GROUND_X: Final = 13
-GROUND_Y: Final = 14
-TIME: Final = 15
-LARGEST_MOVED: Final = 16
-STEP: Final = 17
-ASKED: Final = 18
-EXCESS: Final = 19
-NEXT_OUTPUT: Final = 20
-PEAK_RIGHT: Final = 21
+PEAK_LEFT: Final = 3
+PEAK_RIGHT: Final = 4
+DISSIPATED: Final = 5
+SUPPLIED: Final = 6
+LARGEST_MOVED: Final = 7
+GROUND_X: Final = 8
+GROUND_Y: Final = 9
+OF_STEPS: Final = 10
+FIRST_UPLIFT: Final = 10
+OVERTURNING_TIME: Final = 11
+OVERTURNING_SIDE: Final = 12
+RESIDUAL: Final = 13
+LARGEST_TERM: Final = 14
+START_ENERGY: Final = 15
+EVENT_TIME: Final = 16
+TIME: Final = 17
+STEP: Final = 18
+ASKED: Final = 19
+EXCESS: Final = 20
+NEXT_OUTPUT: Final = 21
 CLOCK: Final = 22
 
 # counters: integer progress and switches

@@ -35,7 +35,8 @@ FIRST_Y: Final = 6
 COUNT_Y: Final = 7
 KIND: Final = 8  # which of the tables of longest steps
 STATUS: Final = 9
-WHOLES: Final = 10
+TAKEN: Final = 10  # all bits where the last step is taken, none where not
+WHOLES: Final = 11
 
 CLOCK: Final = 0
 COUNTERS: Final = CLOCK + at.CLOCK
@@ -59,6 +60,7 @@ class Places(NamedTuple):
     end: int  # of both
     stage: int
     works: int
+    clock: int  # at the end of a step, as far as steps change it
     numbers: int  # of the system; behind them memory and tolerances, which only rows have
 
 
@@ -72,5 +74,5 @@ def places_of(system: System) -> Places:
     new, end = state + half, state + 2 * half
     return Places(
         state, state + width, state + width + slope, new, new + width, new + width + slope, end,
-        end, end + width, end + width + 2,
+        end, end + width, end + width + 2, end + width + 2 + at.OF_STEPS,
     )  # fmt: skip

@@ -101,50 +101,50 @@ def is_quiet(system: System, room: Vector, lane: int) -> bool:
 
 
 @inlined
-def take_end(system: System, room: Vector, lane: int, quiet: bool) -> None:
-    """Make the end of a quiet step the start of the next one."""
-    there = places_of(system)
-    start, end = lane_of(room, there.state, lane), lane_of(room, there.new, lane)
-    for i in range(there.new - there.state):
-        start[i] = end[i] if quiet else start[i]
-
-
-@inlined
-def accept(system: System, room: Vector, lane: int, quiet: bool) -> None:
-    """Take the end of a quiet step for what is reached; leave everything else as it is."""
+def account_for(system: System, room: Vector, lane: int) -> None:
+    """Write what a step changes in the account of its run, should it be taken."""
     there = places_of(system)
     own, whole = lane_of(room, fields.OWN, lane), as_integers(room)
     clock, controls = lane_of(room, fields.CLOCK, lane), lane_of(room, fields.CONTROLS, lane)
-    counters = lane_of(whole, fields.COUNTERS, lane)
-    start, end, works = (
+    start, end, works, new = (
         lane_of(room, there.state, lane), lane_of(room, there.new, lane),
-        lane_of(room, there.works, lane),
+        lane_of(room, there.works, lane), lane_of(room, there.clock, lane),
     )  # fmt: skip
     limits, h, size = lane_of(room, fields.LIMITS, lane), own[fields.STEP], system.coordinates()
     r0 = r1 = 0.0
     for i in range(size):
         r0 += limits[WEIGHTS + i] * start[i]
         r1 += limits[WEIGHTS + i] * end[i]
-    left = max(clock[at.PEAK_LEFT], max(-r0, -r1))
-    right = max(clock[at.PEAK_RIGHT], max(r0, r1))
-    following = rest_of(clock[at.ASKED], h, SHORTEST * controls[at.DURATION], controls)
-    flown = clock[at.FLIGHT_TIME] + h
+    flight, flies = clock[at.FLIGHT_TIME], lane_of(whole, fields.OWN_WHOLE, lane)[fields.FLIES]
     supplied = clock[at.SUPPLIED] + works[1]
-    flies = lane_of(whole, fields.OWN_WHOLE, lane)[fields.FLIES] == 1
-    clock[at.PEAK_LEFT] = left if quiet else clock[at.PEAK_LEFT]
-    clock[at.PEAK_RIGHT] = right if quiet else clock[at.PEAK_RIGHT]
-    clock[at.NEXT_STEP] = following if quiet else clock[at.NEXT_STEP]
-    into = clock[at.INTO_INTERVAL] + h
-    clock[at.INTO_INTERVAL] = into if quiet else clock[at.INTO_INTERVAL]
-    clock[at.FLIGHT_TIME] = flown if quiet & flies else clock[at.FLIGHT_TIME]
-    dissipated = clock[at.DISSIPATED] + works[0]
-    clock[at.DISSIPATED] = dissipated if quiet else clock[at.DISSIPATED]
-    clock[at.SUPPLIED] = supplied if quiet else clock[at.SUPPLIED]
-    moved = max(clock[at.LARGEST_MOVED], abs(supplied))
-    clock[at.LARGEST_MOVED] = moved if quiet else clock[at.LARGEST_MOVED]
-    clock[at.GROUND_X] = own[fields.END_X] if quiet else clock[at.GROUND_X]
-    clock[at.GROUND_Y] = own[fields.END_Y] if quiet else clock[at.GROUND_Y]
-    counters[at.STEPS] += 1 if quiet else 0
+    new[at.INTO_INTERVAL] = clock[at.INTO_INTERVAL] + h
+    new[at.NEXT_STEP] = rest_of(clock[at.ASKED], h, SHORTEST * controls[at.DURATION], controls)
+    new[at.FLIGHT_TIME] = flight + h if flies == 1 else flight
+    new[at.PEAK_LEFT] = max(clock[at.PEAK_LEFT], max(-r0, -r1))
+    new[at.PEAK_RIGHT] = max(clock[at.PEAK_RIGHT], max(r0, r1))
+    new[at.DISSIPATED] = clock[at.DISSIPATED] + works[0]
+    new[at.SUPPLIED] = supplied
+    new[at.LARGEST_MOVED] = max(clock[at.LARGEST_MOVED], abs(supplied))
+    new[at.GROUND_X] = own[fields.END_X]
+    new[at.GROUND_Y] = own[fields.END_Y]
+
+
+@inlined
+def take_step_if_quiet(system: System, room: Vector, lane: int) -> None:
+    """Make the end of a step the start of the next one where it is taken.
+
+    Bit by bit: numbers that are written under a condition take their time on processors
+    without registers for conditions.
+    """
+    there, whole = places_of(system), as_integers(room)
+    taken = lane_of(whole, fields.OWN_WHOLE, lane)[fields.TAKEN]
+    start, end = lane_of(whole, there.state, lane), lane_of(whole, there.new, lane)
+    clock, new = lane_of(whole, fields.CLOCK, lane), lane_of(whole, there.clock, lane)
+    for i in range(there.new - there.state):
+        start[i] = (end[i] & taken) | (start[i] & ~taken)
+    for i in range(at.OF_STEPS):
+        clock[i] = (new[i] & taken) | (clock[i] & ~taken)
+    lane_of(whole, fields.COUNTERS, lane)[at.STEPS] -= taken
 
 
 @inlined
@@ -182,12 +182,14 @@ def step_lanes(
     some = 0
     for lane in range(lanes):
         system = system_of(lane_of(room, there.numbers, lane))
-        quiet = is_quiet(system, room, lane)
         own = lane_of(as_integers(room), fields.OWN_WHOLE, lane)
-        quiet = quiet & (own[fields.ASKS] == 0)
-        accept(system, room, lane, quiet)
-        take_end(system, room, lane, quiet)
+        quiet = is_quiet(system, room, lane) & (own[fields.ASKS] == 0)
         asks = 0 if quiet else own[fields.BUSY]
+        own[fields.TAKEN] = -1 if quiet else 0
         own[fields.ASKS] = asks
         some |= asks
+    for lane in range(lanes):
+        system = system_of(lane_of(room, there.numbers, lane))
+        account_for(system, room, lane)
+        take_step_if_quiet(system, room, lane)
     return some
