@@ -5,7 +5,7 @@ from typing import Any, Final, NamedTuple
 from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics.base import Guards
 from rockframe.dynamics.bodies import DEGREES, ROTATION, VERTICAL, InState
-from rockframe.dynamics.on_base import IDLE, Mode, OnBase, Response
+from rockframe.dynamics.on_base import IDLE, SLIDES, Mode, OnBase, Response
 from rockframe.dynamics.protocol import HELD_PLACE, Energies, Ground, Slope
 from rockframe.dynamics.switching import lift_by_slip, switch_part
 
@@ -64,11 +64,9 @@ class Alone(InState, OnePart):
         return self.part.mode_of(mode).slides
 
     @inlined
-    def guards_held(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
-        """Give all guards of a mode in which nothing slides, and their rates."""
-        standing, body = self.part.mode_of(mode), self.state_of(0, state)
-        own = self.own_in(state)
-        return self.part.guards_with(standing, body, own, slope[VERTICAL], slope[ROTATION], IDLE)
+    def without_sliding(self, mode: int) -> int:
+        """Give a mode without its sliding."""
+        return mode & ~SLIDES
 
     @inlined
     def guards_in(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:

@@ -175,11 +175,12 @@ class Pads(NamedTuple):
         """Give the three guards of a corner and their rates; idle ones are 1."""
         corner, settlement = corner_contact(contact, left), self.settlement_of(left)
         level, speed = corner_level(line, left), corner_speed(line, left)
-        gap, gap_rate = (level - settlement) / self.rest, speed / self.rest
+        per_rest, per_weight = 1.0 / self.rest, 1.0 / self.gravity
+        gap, gap_rate = (level - settlement) * per_rest, speed * per_rest
         leave, leave_rate = -gap, -gap_rate
         again, again_rate, reverse, reverse_rate = 1.0, 0.0, 1.0, 0.0
-        reaction = self.reaction(left, line) / self.gravity
-        change = -(self.stiffness * speed + self.damping * acceleration) / self.gravity
+        reaction = self.reaction(left, line) * per_weight
+        change = -(self.stiffness * speed + self.damping * acceleration) * per_weight
         if corner == TOUCHING:
             leave, leave_rate = reaction, change
         elif corner == ENGAGING:  # until it is pressed, only its height can take it off again
@@ -190,8 +191,8 @@ class Pads(NamedTuple):
             again, again_rate = -reaction, -change
         else:  # after its separation the pad must have let go before
             again, again_rate = reaction, change
-            scale = self.rest * math.sqrt(2.0 * self.stiffness)
-            reverse, reverse_rate = speed / scale, acceleration / scale
+            scale = 1.0 / (self.rest * math.sqrt(2.0 * self.stiffness))
+            reverse, reverse_rate = scale * speed, scale * acceleration
         return Guards((leave, again, reverse), (leave_rate, again_rate, reverse_rate))
 
     @kernel

@@ -96,11 +96,11 @@ class System(Protocol):
         ...
 
     def some_end_slides(self, mode: int) -> bool:
-        """Whether an end slides in a mode, so that its guards are those of :meth:`guards_in`."""
+        """Whether an end slides in a mode."""
         ...
 
-    def guards_held(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
-        """Give the same as :meth:`guards_in` in a mode in which nothing slides."""
+    def without_sliding(self, mode: int) -> int:
+        """Give a mode without its sliding, so that what only that needs is not compiled."""
         ...
 
     def switch(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:

@@ -55,5 +55,5 @@ def pivot_guard(
     if pivot == PIVOT_CENTRE:  # upright and at rest: whichever corner it leans to
         departure = angular_velocity if angular_velocity != 0.0 else angular_acceleration
         return -abs(rotation) / scale, -abs(departure) / scale
-    side = 1.0 if pivot == PIVOT_RIGHT else -1.0
-    return side * rotation / scale, side * angular_velocity / scale
+    side = (1.0 if pivot == PIVOT_RIGHT else -1.0) / scale
+    return side * rotation, side * angular_velocity

@@ -125,9 +125,9 @@ class RigidGround(NamedTuple):
         return False
 
     @inlined
-    def guards_held(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
-        """Give all guards."""
-        return self.guards_in(mode, state, slope, ground)
+    def without_sliding(self, mode: int) -> int:
+        """Give the mode itself."""
+        return mode
 
     @inlined
     def guards_in(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:

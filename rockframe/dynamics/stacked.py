@@ -18,7 +18,7 @@ from rockframe.dynamics.events import (
     SOIL_PIVOT_CHANGE,
     SOIL_SEPARATION,
 )
-from rockframe.dynamics.on_base import IDLE, Mode, OnBase, SlidingGuards
+from rockframe.dynamics.on_base import SLIDES, Mode, OnBase, SlidingGuards
 from rockframe.dynamics.protocol import BODY_COLUMNS, LAST_EVENT, Column, Ground, Slope
 
 UPPER: Final = 0
@@ -132,9 +132,10 @@ class Stacked(InState):
         return modes.upper.slides or modes.lower.slides
 
     @inlined
-    def guards_held(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
-        """Give the guards of both bodies in a mode in which nothing slides, and their rates."""
-        return self.guards_of_both(self.modes_in(mode), state, slope, IDLE, IDLE)
+    def without_sliding(self, mode: int) -> int:
+        """Give a mode without the sliding of either body."""
+        count = self.upper.modes()
+        return (mode % count & ~SLIDES) + count * (mode // count & ~SLIDES)
 
     @inlined
     def guards_of_both(

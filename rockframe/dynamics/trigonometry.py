@@ -43,10 +43,11 @@ def quarter_sine_cosine(x: float) -> tuple[float, float]:
 @inlined
 def sine_cosine(angle: float) -> tuple[float, float]:
     """Give sine and cosine of an angle [rad]."""
-    if abs(angle) <= QUARTER_TURN:
-        return quarter_sine_cosine(angle)
-    turns = (angle * PER_HALF_TURN + TO_WHOLE) - TO_WHOLE
-    half = (0.5 * turns + TO_WHOLE) - TO_WHOLE
-    sign = 1.0 - 2.0 * abs(turns - 2.0 * half)
-    sine, cosine = quarter_sine_cosine((angle - turns * HALF_TURN) - turns * REST_OF_HALF_TURN)
+    sign, rest = 1.0, angle
+    if abs(angle) > QUARTER_TURN:
+        turns = (angle * PER_HALF_TURN + TO_WHOLE) - TO_WHOLE
+        half = (0.5 * turns + TO_WHOLE) - TO_WHOLE
+        sign = 1.0 - 2.0 * abs(turns - 2.0 * half)
+        rest = (angle - turns * HALF_TURN) - turns * REST_OF_HALF_TURN
+    sine, cosine = quarter_sine_cosine(rest)
     return sign * sine, sign * cosine

@@ -14,7 +14,7 @@ from rockframe.solve import layout as at
 from rockframe.solve.fixed_step import fixed_step
 from rockframe.solve.guards import WEIGHTS, may_fall, write_guards
 from rockframe.solve.lanes import fields
-from rockframe.solve.lanes.fields import places_of
+from rockframe.solve.lanes.fields import Places, places_of
 from rockframe.solve.march import SHORTEST, fit_step
 from rockframe.solve.schemes import rest_of
 from rockframe.solve.workspace import TERMS
@@ -44,6 +44,12 @@ def evaluate_ground(
     lanes: int, room: Vector, degree: int, first: int, middle: int, end: int
 ) -> None:
     """Evaluate the polynomials of one direction in the middle and at the end of the step."""
+    if degree == 1:  # of records; at places that are known when this is compiled
+        for lane in range(lanes):
+            own, ground = lane_of(room, fields.OWN, lane), lane_of(room, fields.GROUND, lane)
+            own[middle] = ground[first + 1] * own[fields.PLACE_MIDDLE] + ground[first]
+            own[end] = ground[first + 1] * own[fields.PLACE_END] + ground[first]
+        return
     for lane in range(lanes):
         own, ground = lane_of(room, fields.OWN, lane), lane_of(room, fields.GROUND, lane)
         own[middle] = own[end] = ground[first + degree]
@@ -60,7 +66,7 @@ def take_step(system: System, room: Vector, lane: int) -> bool:
     """Take one lane to the end of its step; give whether that ended in numbers."""
     there = places_of(system)
     own, whole = lane_of(room, fields.OWN, lane), as_integers(room)
-    mode = lane_of(whole, fields.COUNTERS, lane)[at.MODE]
+    mode = system.without_sliding(lane_of(whole, fields.COUNTERS, lane)[at.MODE])
     count = lane_of(whole, fields.OWN_WHOLE, lane)[fields.ACTIVE]
     return fixed_step(
         system, mode, count, own[fields.STEP],
@@ -83,7 +89,7 @@ def is_quiet(system: System, room: Vector, lane: int) -> bool:
     after, h, size = lane_of(room, there.after, lane), own[fields.STEP], system.coordinates()
     mode = counters[at.MODE]
     ground = Ground(own[fields.END_X], own[fields.END_Y])
-    found = system.guards_held(mode, new, lane_of(room, there.last, lane), ground)
+    found = system.guards_in(system.without_sliding(mode), new, lane_of(room, there.last, lane), ground)
     write_guards(system, found, new, limits, after)
     falls = may_fall(system, h, lane_of(room, there.before, lane), after)
     r0 = v0 = r1 = v1 = 0.0
@@ -127,6 +133,17 @@ def account_for(system: System, room: Vector, lane: int) -> None:
     new[at.LARGEST_MOVED] = max(clock[at.LARGEST_MOVED], abs(supplied))
     new[at.GROUND_X] = own[fields.END_X]
     new[at.GROUND_Y] = own[fields.END_Y]
+
+
+@inlined
+def take_steps(lanes: int, room: Vector, there: Places) -> None:
+    """Make the end of a step the start of the next one, in all lanes."""
+    for i in range(lanes * (there.new - there.state)):
+        room[lanes * there.state + i] = room[lanes * there.new + i]
+    for i in range(lanes * at.OF_STEPS):
+        room[lanes * fields.CLOCK + i] = room[lanes * there.clock + i]
+    for lane in range(lanes):
+        lane_of(as_integers(room), fields.COUNTERS, lane)[at.STEPS] += 1
 
 
 @inlined
@@ -189,7 +206,10 @@ def step_lanes(
         own[fields.ASKS] = asks
         some |= asks
     for lane in range(lanes):
-        system = system_of(lane_of(room, there.numbers, lane))
-        account_for(system, room, lane)
-        take_step_if_quiet(system, room, lane)
+        account_for(system_of(lane_of(room, there.numbers, lane)), room, lane)
+    if some == 0:
+        take_steps(lanes, room, there)
+        return 0
+    for lane in range(lanes):
+        take_step_if_quiet(system_of(lane_of(room, there.numbers, lane)), room, lane)
     return some
