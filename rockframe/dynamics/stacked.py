@@ -19,7 +19,7 @@ from rockframe.dynamics.events import (
     SOIL_SEPARATION,
 )
 from rockframe.dynamics.on_base import SLIDES, Mode, OnBase, SlidingGuards
-from rockframe.dynamics.protocol import BODY_COLUMNS, LAST_EVENT, Column, Ground, Slope
+from rockframe.dynamics.protocol import BODY_COLUMNS, LAST_EVENT, Column, Slope
 
 UPPER: Final = 0
 LOWER: Final = 1

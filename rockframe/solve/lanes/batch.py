@@ -25,7 +25,8 @@ from rockframe.solve.driver import run_on
 from rockframe.solve.equations import Equations
 from rockframe.solve.guards import WEIGHTS
 from rockframe.solve.lanes import fields
-from rockframe.solve.march import SHORTEST, jumps, length_of
+from rockframe.solve.lanes.stepping import ALL_QUIET, SOME_WAIT, is_at_end
+from rockframe.solve.march import jumps, length_of
 from rockframe.solve.workspace import (
     TERMS,
     EventTable,
@@ -48,8 +49,6 @@ class Shape(NamedTuple):
     number_count: int  # of these
     memory: int  # number of memory's elements
     mode_count: int
-    degree_x: int
-    degree_y: int  # or NO_VERTICAL
 
 
 class Batch(NamedTuple):
@@ -247,24 +246,18 @@ def continue_alone(batch: Batch, lane: int) -> None:
     start_next_run(batch, lane)
 
 
-@inlined
-def is_at_end_of_interval(batch: Batch, lane: int) -> bool:
-    """Whether a lane has a run, and has come to the end of an interval."""
-    room = batch.room
-    own, clock = lane_of(room, fields.OWN, lane), lane_of(room, fields.CLOCK, lane)
-    shortest = SHORTEST * lane_of(room, fields.CONTROLS, lane)[at.DURATION]
-    busy = lane_of(as_integers(room), fields.OWN_WHOLE, lane)[fields.BUSY] == 1
-    return busy and own[fields.LENGTH] - clock[at.INTO_INTERVAL] <= shortest
-
-
 @kernel
-def enter_intervals(batch: Batch) -> int:
-    """Take all lanes into an interval; give how many have a run."""
+def see_to_lanes(batch: Batch) -> int:
+    """Continue what asks, and take all lanes into an interval; give how many have a run."""
     busy = 0
     for lane in range(LANES):
-        while is_at_end_of_interval(batch, lane) and enter_interval(batch, lane):
+        own = lane_of(as_integers(batch.room), fields.OWN_WHOLE, lane)
+        if own[fields.ASKS] == 1:
+            own[fields.ASKS] = 0
             continue_alone(batch, lane)
-        busy += lane_of(as_integers(batch.room), fields.OWN_WHOLE, lane)[fields.BUSY]
+        while is_at_end(batch.room, lane) and enter_interval(batch, lane):
+            continue_alone(batch, lane)
+        busy += own[fields.BUSY]
     return busy
 
 
@@ -279,12 +272,10 @@ def advance_batch(batch: Batch, steps: Bound) -> None:
     steps : Bound
         :func:`rockframe.solve.lanes.stepping.step_lanes` for the class of their systems.
     """
-    room, shape = batch.room, batch.shape
     for lane in range(LANES):
         start_next_run(batch, lane)
-    while enter_intervals(batch) > 0:
-        if steps.call(LANES, room, shape.degree_x, shape.degree_y, batch.equations.numbers) == 0:
-            continue
-        for lane in range(LANES):
-            if lane_of(as_integers(room), fields.OWN_WHOLE, lane)[fields.ASKS] == 1:
-                continue_alone(batch, lane)
+    found = SOME_WAIT
+    while found == ALL_QUIET or see_to_lanes(batch) > 0:
+        found = steps.call(
+            LANES, batch.room, batch.pieces.x, batch.pieces.y, batch.equations.numbers
+        )

@@ -36,7 +36,8 @@ COUNT_Y: Final = 7
 KIND: Final = 8  # which of the tables of longest steps
 STATUS: Final = 9
 TAKEN: Final = 10  # all bits where the last step is taken, none where not
-WHOLES: Final = 11
+ENTERS: Final = 11  # whether the lane comes to its next interval
+WHOLES: Final = 12
 
 CLOCK: Final = 0
 COUNTERS: Final = CLOCK + at.CLOCK

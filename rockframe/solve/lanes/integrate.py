@@ -19,7 +19,7 @@ from rockframe.solve.integrate import EVENT_ROOM, pieces_of
 from rockframe.solve.lanes import fields
 from rockframe.solve.lanes.batch import Batch, Shape, advance_batch
 from rockframe.solve.lanes.fields import Places, places_of
-from rockframe.solve.lanes.stepping import NO_VERTICAL, step_lanes
+from rockframe.solve.lanes.stepping import step_lanes
 from rockframe.solve.workspace import EventTable, Output, Pieces, Workspace, make_workspace
 
 ROOM: Final = 4_000_000
@@ -170,8 +170,7 @@ class _Rows:
         shape = Shape(
             rows=len(rows), width=rows.shape[1], state=there.state, half=there.new - there.state,
             numbers=there.numbers, number_count=self._count, memory=self._memory,
-            mode_count=len(model.active), degree_x=x.shape[1] - 1,
-            degree_y=y.shape[1] - 1 if len(y) else NO_VERTICAL,
+            mode_count=len(model.active),
         )  # fmt: skip
         batch = Batch(
             shape, rows.reshape(-1), np.zeros((there.numbers + self._count) * LANES),

@@ -7,20 +7,102 @@ taken: the lane asks for the driver of single runs.
 """
 
 from collections.abc import Callable
+from typing import Final
 
-from rockframe.compiled import Vector, as_integers, inlined, lane_of, widest_registers
+from rockframe.compiled import (
+    ReadOnlyMatrix,
+    Vector,
+    as_integers,
+    inlined,
+    lane_of,
+    widest_registers,
+)
 from rockframe.dynamics.protocol import Ground, System
 from rockframe.solve import layout as at
 from rockframe.solve.fixed_step import fixed_step
 from rockframe.solve.guards import WEIGHTS, may_fall, write_guards
 from rockframe.solve.lanes import fields
 from rockframe.solve.lanes.fields import Places, places_of
-from rockframe.solve.march import SHORTEST, fit_step
+from rockframe.solve.march import SHORTEST, fit_step, jumps
 from rockframe.solve.schemes import rest_of
 from rockframe.solve.workspace import TERMS
 
-NO_VERTICAL = -1
-"""Degree of a vertical motion that no lane has."""
+# what a call of step_lanes has found
+ALL_QUIET: Final = 0
+SOME_ASK: Final = 1  # the step of some lane is for the driver of single runs
+SOME_WAIT: Final = 2  # some lane is at an end that is not just that of an interval; no step is made
+
+
+@inlined
+def comes_to_next(room: Vector, lane: int) -> bool:
+    """Whether a lane is at the end of an interval, and behind it lies another like it."""
+    whole, controls = as_integers(room), lane_of(room, fields.CONTROLS, lane)
+    own, numbers = lane_of(room, fields.OWN, lane), lane_of(whole, fields.OWN_WHOLE, lane)
+    index, length = lane_of(whole, fields.COUNTERS, lane)[at.INTERVAL], own[fields.LENGTH]
+    x, y = numbers[fields.COUNT_X], numbers[fields.COUNT_Y]
+    goes_on = index * controls[at.TIME_STEP] + length < controls[at.DURATION]
+    moves = (index + 1 < x) & ((index + 1 < y) | (y == 0))
+    return is_at_end(room, lane) & goes_on & moves
+
+
+@inlined
+def is_at_end(room: Vector, lane: int) -> bool:
+    """Whether a lane has a run, and has come to the end of an interval."""
+    own, clock = lane_of(room, fields.OWN, lane), lane_of(room, fields.CLOCK, lane)
+    shortest = SHORTEST * lane_of(room, fields.CONTROLS, lane)[at.DURATION]
+    busy = lane_of(as_integers(room), fields.OWN_WHOLE, lane)[fields.BUSY] == 1
+    return busy & (own[fields.LENGTH] - clock[at.INTO_INTERVAL] <= shortest)
+
+
+@inlined
+def load_next(
+    room: Vector, lane: int, pieces: ReadOnlyMatrix, count: int, row: int, first: int
+) -> None:
+    """Write the polynomial of a lane's next interval, in a direction in which it moves."""
+    own = lane_of(as_integers(room), fields.OWN_WHOLE, lane)
+    index = lane_of(as_integers(room), fields.COUNTERS, lane)[at.INTERVAL] + 1
+    ground = lane_of(room, fields.GROUND, lane)
+    if own[fields.ENTERS] == 1 and index < own[count]:
+        for j in range(pieces.shape[1]):
+            ground[first + j] = pieces[own[row] + index, j]
+
+
+@inlined
+def enter_next(room: Vector, lane: int) -> int:
+    """Take a lane to its next interval, unless the ground jumps; give whether it has to wait."""
+    whole = as_integers(room)
+    clock, controls = lane_of(room, fields.CLOCK, lane), lane_of(room, fields.CONTROLS, lane)
+    own, numbers = lane_of(room, fields.OWN, lane), lane_of(whole, fields.OWN_WHOLE, lane)
+    counters, ground = lane_of(whole, fields.COUNTERS, lane), lane_of(room, fields.GROUND, lane)
+    waits = is_at_end(room, lane)
+    leaps = jumps(ground[0], clock[at.GROUND_X]) | jumps(ground[TERMS], clock[at.GROUND_Y])
+    enters = (numbers[fields.ENTERS] == 1) & (not leaps)
+    index, into, length = counters[at.INTERVAL], clock[at.INTO_INTERVAL], own[fields.LENGTH]
+    rest = controls[at.DURATION] - (index + 1) * controls[at.TIME_STEP]
+    following = min(controls[at.TIME_STEP], rest)
+    counters[at.INTERVAL] = index + 1 if enters else index
+    clock[at.INTO_INTERVAL] = 0.0 if enters else into
+    own[fields.LENGTH] = following if enters else length
+    return 1 if waits & (not enters) else 0
+
+
+@inlined
+def enter_intervals(
+    lanes: int, room: Vector, pieces_x: ReadOnlyMatrix, pieces_y: ReadOnlyMatrix
+) -> int:
+    """Take all lanes that are at the end of an interval to the next; give whether some wait."""
+    for lane in range(lanes):
+        own = lane_of(as_integers(room), fields.OWN_WHOLE, lane)
+        own[fields.ENTERS] = 1 if comes_to_next(room, lane) else 0
+    for lane in range(lanes):
+        load_next(room, lane, pieces_x, fields.COUNT_X, fields.FIRST_X, 0)
+    if len(pieces_y) > 0:
+        for lane in range(lanes):
+            load_next(room, lane, pieces_y, fields.COUNT_Y, fields.FIRST_Y, TERMS)
+    some = 0
+    for lane in range(lanes):
+        some |= enter_next(room, lane)
+    return some
 
 
 @inlined
@@ -89,7 +171,8 @@ def is_quiet(system: System, room: Vector, lane: int) -> bool:
     after, h, size = lane_of(room, there.after, lane), own[fields.STEP], system.coordinates()
     mode = counters[at.MODE]
     ground = Ground(own[fields.END_X], own[fields.END_Y])
-    found = system.guards_in(system.without_sliding(mode), new, lane_of(room, there.last, lane), ground)
+    held = system.without_sliding(mode)
+    found = system.guards_in(held, new, lane_of(room, there.last, lane), ground)
     write_guards(system, found, new, limits, after)
     falls = may_fall(system, h, lane_of(room, there.before, lane), after)
     r0 = v0 = r1 = v1 = 0.0
@@ -166,9 +249,10 @@ def take_step_if_quiet(system: System, room: Vector, lane: int) -> None:
 
 @inlined
 def step_lanes(
-    system_of: Callable[[Vector], System], lanes: int, room: Vector, degree_x: int, degree_y: int
-) -> int:
-    """Make a step in all lanes.
+    system_of: Callable[[Vector], System], lanes: int, room: Vector, pieces_x: ReadOnlyMatrix,
+    pieces_y: ReadOnlyMatrix,
+) -> int:  # fmt: skip
+    """Take all lanes that are at the end of an interval to the next, and make a step in all.
 
     Parameters
     ----------
@@ -178,19 +262,22 @@ def step_lanes(
         How many there are; loops of a length that is known are written out, not vectorised.
     room : ndarray
         All lanes, laid out in :mod:`rockframe.solve.lanes.fields`.
-    degree_x, degree_y : int
-        Highest degree of the ground's polynomials; `NO_VERTICAL` where all are still.
+    pieces_x, pieces_y : ndarray
+        The ground's polynomials of all motions.
 
     Returns
     -------
     int
-        Whether some lane asks for the driver of single runs.
+        `ALL_QUIET`, `SOME_ASK` or `SOME_WAIT`.
     """
     widest_registers()
+    if enter_intervals(lanes, room, pieces_x, pieces_y) == 1:
+        return SOME_WAIT
+    degree_x, degree_y = pieces_x.shape[1] - 1, pieces_y.shape[1] - 1
     there = places_of(system_of(lane_of(room, 0, 0)))
     choose_step(lanes, room)
     evaluate_ground(lanes, room, degree_x, 0, fields.MIDDLE_X, fields.END_X)
-    if degree_y != NO_VERTICAL:
+    if len(pieces_y) > 0:
         evaluate_ground(lanes, room, degree_y, TERMS, fields.MIDDLE_Y, fields.END_Y)
     for lane in range(lanes):
         system = system_of(lane_of(room, there.numbers, lane))
@@ -209,7 +296,7 @@ def step_lanes(
         account_for(system_of(lane_of(room, there.numbers, lane)), room, lane)
     if some == 0:
         take_steps(lanes, room, there)
-        return 0
+        return ALL_QUIET
     for lane in range(lanes):
         take_step_if_quiet(system_of(lane_of(room, there.numbers, lane)), room, lane)
-    return some
+    return SOME_ASK
