@@ -19,6 +19,7 @@ from rockframe.solve.equations import Equations, energies_at, slope_at
 from rockframe.solve.ground import ground_in
 from rockframe.solve.guards import LEFT_LIMIT, RIGHT_LIMIT, WEIGHTS
 from rockframe.solve.hermite import extremum, interpolate
+from rockframe.solve.peaks import rotation_in_step
 from rockframe.solve.workspace import (
     EventTable,
     Output,
@@ -144,26 +145,19 @@ def store_outputs(
 @inlined
 def follow_peak(equations: Equations, count: int, h: float, clock: Vector, w: Workspace) -> None:
     """Raise the peaks of the rotation to both sides by what the step holds, to its inside."""
-    size = equations.coordinate_count
-    r0 = v0 = r1 = v1 = 0.0
-    for i in range(size):
-        r0 += w.limits[WEIGHTS + i] * w.state[i]
-        v0 += w.limits[WEIGHTS + i] * w.state[size + i]
-        r1 += w.limits[WEIGHTS + i] * w.new[i]
-        v1 += w.limits[WEIGHTS + i] * w.new[size + i]
-    clock[at.PEAK_LEFT] = max(clock[at.PEAK_LEFT], -r0, -r1)
-    clock[at.PEAK_RIGHT] = max(clock[at.PEAK_RIGHT], r0, r1)
-    ahead = 0.5 * h * max(abs(v0), abs(v1))
-    if v0 > 0.0:
-        rises = max(r0, r1) + ahead > clock[at.PEAK_RIGHT]
-    else:
-        rises = max(-r0, -r1) + ahead > clock[at.PEAK_LEFT]
-    if v0 * v1 < 0.0 and rises:
+    rotation = rotation_in_step(equations.coordinate_count, w.limits, w.state, w.new)
+    peaks = rotation.may_peak(h, clock[at.PEAK_LEFT], clock[at.PEAK_RIGHT])
+    clock[at.PEAK_LEFT] = max(clock[at.PEAK_LEFT], rotation.largest_left())
+    clock[at.PEAK_RIGHT] = max(clock[at.PEAK_RIGHT], rotation.largest_right())
+    if peaks:
         a0 = a1 = 0.0
         for i in range(count):
             a0 += w.limits[WEIGHTS + i] * w.first[i]
             a1 += w.limits[WEIGHTS + i] * w.last[i]
-        top = extremum(r0, h * v0, h * h * a0, r1, h * v1, h * h * a1)
+        top = extremum(
+            rotation.start, h * rotation.start_rate, h * h * a0,
+            rotation.end, h * rotation.end_rate, h * h * a1,
+        )  # fmt: skip
         clock[at.PEAK_LEFT] = max(clock[at.PEAK_LEFT], -top)
         clock[at.PEAK_RIGHT] = max(clock[at.PEAK_RIGHT], top)
 

@@ -15,8 +15,8 @@ SEARCHING: Final = 100
 """Most guards evaluated in that search; halving alone takes 44."""
 GUESSING: Final = 5
 """Corrections of the guess with which it begins."""
-SHARE_OF_RISE: Final = 1e-4
-"""Share of what a guard would rise from zero up to its root, below which it is zero there."""
+CONVERGED: Final = 1e-7
+"""Correction, as a share of the step, whose square is rounding: the last one of Newton's method."""
 
 
 @kernel
@@ -148,17 +148,15 @@ def _first_root(
     to land.
     """
     guards = len(tables.tolerance)
-    noise, start = tables.tolerance[which], w.before[which]
-    c1, rise = span.h * w.before[guards + which], w.after[which] - start
-    bend = span.h * w.after[guards + which] - c1
-    c2, c3 = 3.0 * (rise - c1) - bend, bend - 2.0 * (rise - c1)
-    if start > noise:
+    start, c1 = w.before[which], span.h * w.before[guards + which]
+    rise, bend = w.after[which] - start - c1, span.h * w.after[guards + which] - c1
+    c2, c3 = 3.0 * rise - bend, bend - 2.0 * rise
+    if start > tables.tolerance[which]:
         place = _root_of_cubic(start, c1, c2, c3, end)
     elif c1 > 0.0:
         place = _root_of_cubic(c1, c2, c3, 0.0, end)
-        noise = min(noise, SHARE_OF_RISE * c1 * place)
     else:
-        place, noise = 0.5 * end, 0.0
+        place = 0.5 * end
     low, high, last = 0.0, end, math.inf
     for _ in range(SEARCHING):
         g = _guard_inside(equations, which, place, mode, count, span, tables, w)
@@ -166,10 +164,14 @@ def _first_root(
             low = place
         else:
             high = place
-        if abs(g) <= noise or high - low <= ROOT_TOLERANCE:
+        rate, trial = span.h * w.inside[guards + which], 0.5 * (low + high)
+        if rate < 0.0 and abs(g) < 0.5 * last:
+            corrected = place - g / rate
+            if low <= corrected <= high:
+                trial = corrected
+                if abs(trial - place) <= CONVERGED:
+                    return trial
+        if high - low <= ROOT_TOLERANCE:
             break
-        rate = span.h * w.inside[guards + which]
-        trial = place - g / rate if rate < 0.0 and abs(g) < 0.5 * last else high
-        last = abs(g)
-        place = trial if low < trial < high else 0.5 * (low + high)
+        place, last = trial, abs(g)
     return place

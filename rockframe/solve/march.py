@@ -10,7 +10,8 @@ from rockframe.compiled import Integers, ReadOnlyMatrix, Vector, inlined, kernel
 from rockframe.dynamics.protocol import POWERS, System
 from rockframe.solve import layout as at
 from rockframe.solve.ground import ground_in, load_interval
-from rockframe.solve.guards import WEIGHTS, guards_at, may_fall
+from rockframe.solve.guards import guards_at, may_fall
+from rockframe.solve.peaks import rotation_in_step
 from rockframe.solve.schemes import FixedSteps, StepsByTolerance
 from rockframe.solve.step_control import next_step
 from rockframe.solve.workspace import TERMS, Span
@@ -149,18 +150,8 @@ def march(
                 result = TOO_SMALL
                 break
             continue
-        r0 = v0 = r1 = v1 = 0.0
-        for i in range(size):
-            r0 += limits[WEIGHTS + i] * state[i]
-            v0 += limits[WEIGHTS + i] * state[size + i]
-            r1 += limits[WEIGHTS + i] * new[i]
-            v1 += limits[WEIGHTS + i] * new[size + i]
-        left, right = max(-r0, -r1), max(r0, r1)
-        ahead = 0.5 * h * max(abs(v0), abs(v1))
-        rises = right + ahead > clock[at.PEAK_RIGHT] if v0 > 0.0 else (
-            left + ahead > clock[at.PEAK_LEFT]
-        )  # fmt: skip
-        peaks = v0 * v1 < 0.0 and rises
+        rotation = rotation_in_step(size, limits, state, new)
+        peaks = rotation.may_peak(h, clock[at.PEAK_LEFT], clock[at.PEAK_RIGHT])
         found = may_fall(system, h, before, after)
         if found or peaks or begin + tau + h >= clock[at.NEXT_OUTPUT]:
             clock[at.STEP], clock[at.ASKED], clock[at.EXCESS] = h, asked, excess
@@ -168,8 +159,8 @@ def march(
             break
         h_next = scheme.step_after(h, asked, h_next, excess, shortest, controls)
         tau += h
-        clock[at.PEAK_LEFT] = max(clock[at.PEAK_LEFT], left)
-        clock[at.PEAK_RIGHT] = max(clock[at.PEAK_RIGHT], right)
+        clock[at.PEAK_LEFT] = max(clock[at.PEAK_LEFT], rotation.largest_left())
+        clock[at.PEAK_RIGHT] = max(clock[at.PEAK_RIGHT], rotation.largest_right())
         if flies == 1:
             clock[at.FLIGHT_TIME] += h
         scheme.keep_sizes(system, new, reference)

@@ -25,7 +25,8 @@ from rockframe.solve.driver import run_on
 from rockframe.solve.equations import Equations
 from rockframe.solve.guards import WEIGHTS
 from rockframe.solve.lanes import fields
-from rockframe.solve.lanes.stepping import ALL_QUIET, SOME_WAIT, is_at_end
+from rockframe.solve.lanes.intervals import is_at_end
+from rockframe.solve.lanes.stepping import ALL_QUIET, SOME_WAIT
 from rockframe.solve.march import jumps, length_of
 from rockframe.solve.workspace import (
     TERMS,

@@ -20,10 +20,12 @@ from rockframe.compiled import (
 from rockframe.dynamics.protocol import Ground, System
 from rockframe.solve import layout as at
 from rockframe.solve.fixed_step import fixed_step
-from rockframe.solve.guards import WEIGHTS, may_fall, write_guards
+from rockframe.solve.guards import may_fall, write_guards
 from rockframe.solve.lanes import fields
 from rockframe.solve.lanes.fields import Places, places_of
-from rockframe.solve.march import SHORTEST, fit_step, jumps
+from rockframe.solve.lanes.intervals import enter_intervals
+from rockframe.solve.march import SHORTEST, fit_step
+from rockframe.solve.peaks import rotation_in_step
 from rockframe.solve.schemes import rest_of
 from rockframe.solve.workspace import TERMS
 
@@ -31,78 +33,6 @@ from rockframe.solve.workspace import TERMS
 ALL_QUIET: Final = 0
 SOME_ASK: Final = 1  # the step of some lane is for the driver of single runs
 SOME_WAIT: Final = 2  # some lane is at an end that is not just that of an interval; no step is made
-
-
-@inlined
-def comes_to_next(room: Vector, lane: int) -> bool:
-    """Whether a lane is at the end of an interval, and behind it lies another like it."""
-    whole, controls = as_integers(room), lane_of(room, fields.CONTROLS, lane)
-    own, numbers = lane_of(room, fields.OWN, lane), lane_of(whole, fields.OWN_WHOLE, lane)
-    index, length = lane_of(whole, fields.COUNTERS, lane)[at.INTERVAL], own[fields.LENGTH]
-    x, y = numbers[fields.COUNT_X], numbers[fields.COUNT_Y]
-    goes_on = index * controls[at.TIME_STEP] + length < controls[at.DURATION]
-    moves = (index + 1 < x) & ((index + 1 < y) | (y == 0))
-    return is_at_end(room, lane) & goes_on & moves
-
-
-@inlined
-def is_at_end(room: Vector, lane: int) -> bool:
-    """Whether a lane has a run, and has come to the end of an interval."""
-    own, clock = lane_of(room, fields.OWN, lane), lane_of(room, fields.CLOCK, lane)
-    shortest = SHORTEST * lane_of(room, fields.CONTROLS, lane)[at.DURATION]
-    busy = lane_of(as_integers(room), fields.OWN_WHOLE, lane)[fields.BUSY] == 1
-    return busy & (own[fields.LENGTH] - clock[at.INTO_INTERVAL] <= shortest)
-
-
-@inlined
-def load_next(
-    room: Vector, lane: int, pieces: ReadOnlyMatrix, count: int, row: int, first: int
-) -> None:
-    """Write the polynomial of a lane's next interval, in a direction in which it moves."""
-    own = lane_of(as_integers(room), fields.OWN_WHOLE, lane)
-    index = lane_of(as_integers(room), fields.COUNTERS, lane)[at.INTERVAL] + 1
-    ground = lane_of(room, fields.GROUND, lane)
-    if own[fields.ENTERS] == 1 and index < own[count]:
-        for j in range(pieces.shape[1]):
-            ground[first + j] = pieces[own[row] + index, j]
-
-
-@inlined
-def enter_next(room: Vector, lane: int) -> int:
-    """Take a lane to its next interval, unless the ground jumps; give whether it has to wait."""
-    whole = as_integers(room)
-    clock, controls = lane_of(room, fields.CLOCK, lane), lane_of(room, fields.CONTROLS, lane)
-    own, numbers = lane_of(room, fields.OWN, lane), lane_of(whole, fields.OWN_WHOLE, lane)
-    counters, ground = lane_of(whole, fields.COUNTERS, lane), lane_of(room, fields.GROUND, lane)
-    waits = is_at_end(room, lane)
-    leaps = jumps(ground[0], clock[at.GROUND_X]) | jumps(ground[TERMS], clock[at.GROUND_Y])
-    enters = (numbers[fields.ENTERS] == 1) & (not leaps)
-    index, into, length = counters[at.INTERVAL], clock[at.INTO_INTERVAL], own[fields.LENGTH]
-    rest = controls[at.DURATION] - (index + 1) * controls[at.TIME_STEP]
-    following = min(controls[at.TIME_STEP], rest)
-    counters[at.INTERVAL] = index + 1 if enters else index
-    clock[at.INTO_INTERVAL] = 0.0 if enters else into
-    own[fields.LENGTH] = following if enters else length
-    return 1 if waits & (not enters) else 0
-
-
-@inlined
-def enter_intervals(
-    lanes: int, room: Vector, pieces_x: ReadOnlyMatrix, pieces_y: ReadOnlyMatrix
-) -> int:
-    """Take all lanes that are at the end of an interval to the next; give whether some wait."""
-    for lane in range(lanes):
-        own = lane_of(as_integers(room), fields.OWN_WHOLE, lane)
-        own[fields.ENTERS] = 1 if comes_to_next(room, lane) else 0
-    for lane in range(lanes):
-        load_next(room, lane, pieces_x, fields.COUNT_X, fields.FIRST_X, 0)
-    if len(pieces_y) > 0:
-        for lane in range(lanes):
-            load_next(room, lane, pieces_y, fields.COUNT_Y, fields.FIRST_Y, TERMS)
-    some = 0
-    for lane in range(lanes):
-        some |= enter_next(room, lane)
-    return some
 
 
 @inlined
@@ -175,18 +105,10 @@ def is_quiet(system: System, room: Vector, lane: int) -> bool:
     found = system.guards_in(held, new, lane_of(room, there.last, lane), ground)
     write_guards(system, found, new, limits, after)
     falls = may_fall(system, h, lane_of(room, there.before, lane), after)
-    r0 = v0 = r1 = v1 = 0.0
-    for i in range(size):
-        r0 += limits[WEIGHTS + i] * state[i]
-        v0 += limits[WEIGHTS + i] * state[size + i]
-        r1 += limits[WEIGHTS + i] * new[i]
-        v1 += limits[WEIGHTS + i] * new[size + i]
-    ahead = 0.5 * h * max(abs(v0), abs(v1))
-    rises_right = max(r0, r1) + ahead > clock[at.PEAK_RIGHT]
-    rises_left = max(-r0, -r1) + ahead > clock[at.PEAK_LEFT]
-    rises = rises_right if v0 > 0.0 else rises_left
+    rotation = rotation_in_step(size, limits, state, new)
+    peaks = rotation.may_peak(h, clock[at.PEAK_LEFT], clock[at.PEAK_RIGHT])
     spent = counters[at.STEPS] + counters[at.REJECTED] >= counters[at.MAX_STEPS]
-    return not (falls | ((v0 * v1 < 0.0) & rises) | spent | system.some_end_slides(mode))
+    return not (falls | peaks | spent | system.some_end_slides(mode))
 
 
 @inlined
@@ -200,17 +122,14 @@ def account_for(system: System, room: Vector, lane: int) -> None:
         lane_of(room, there.works, lane), lane_of(room, there.clock, lane),
     )  # fmt: skip
     limits, h, size = lane_of(room, fields.LIMITS, lane), own[fields.STEP], system.coordinates()
-    r0 = r1 = 0.0
-    for i in range(size):
-        r0 += limits[WEIGHTS + i] * start[i]
-        r1 += limits[WEIGHTS + i] * end[i]
+    rotation = rotation_in_step(size, limits, start, end)
     flight, flies = clock[at.FLIGHT_TIME], lane_of(whole, fields.OWN_WHOLE, lane)[fields.FLIES]
     supplied = clock[at.SUPPLIED] + works[1]
     new[at.INTO_INTERVAL] = clock[at.INTO_INTERVAL] + h
     new[at.NEXT_STEP] = rest_of(clock[at.ASKED], h, SHORTEST * controls[at.DURATION], controls)
     new[at.FLIGHT_TIME] = flight + h if flies == 1 else flight
-    new[at.PEAK_LEFT] = max(clock[at.PEAK_LEFT], max(-r0, -r1))
-    new[at.PEAK_RIGHT] = max(clock[at.PEAK_RIGHT], max(r0, r1))
+    new[at.PEAK_LEFT] = max(clock[at.PEAK_LEFT], rotation.largest_left())
+    new[at.PEAK_RIGHT] = max(clock[at.PEAK_RIGHT], rotation.largest_right())
     new[at.DISSIPATED] = clock[at.DISSIPATED] + works[0]
     new[at.SUPPLIED] = supplied
     new[at.LARGEST_MOVED] = max(clock[at.LARGEST_MOVED], abs(supplied))
