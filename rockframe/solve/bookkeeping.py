@@ -19,7 +19,7 @@ from rockframe.solve.equations import Equations, energies_at, slope_at
 from rockframe.solve.ground import ground_in
 from rockframe.solve.guards import LEFT_LIMIT, RIGHT_LIMIT, WEIGHTS
 from rockframe.solve.hermite import extremum, interpolate
-from rockframe.solve.peaks import rotation_in_step
+from rockframe.solve.peaks import RotationInStep
 from rockframe.solve.workspace import (
     EventTable,
     Output,
@@ -145,7 +145,14 @@ def store_outputs(
 @inlined
 def follow_peak(equations: Equations, count: int, h: float, clock: Vector, w: Workspace) -> None:
     """Raise the peaks of the rotation to both sides by what the step holds, to its inside."""
-    rotation = rotation_in_step(equations.coordinate_count, w.limits, w.state, w.new)
+    size = equations.coordinate_count
+    r0 = v0 = r1 = v1 = 0.0
+    for i in range(size):
+        r0 += w.limits[WEIGHTS + i] * w.state[i]
+        v0 += w.limits[WEIGHTS + i] * w.state[size + i]
+        r1 += w.limits[WEIGHTS + i] * w.new[i]
+        v1 += w.limits[WEIGHTS + i] * w.new[size + i]
+    rotation = RotationInStep(r0, v0, r1, v1)
     peaks = rotation.may_peak(h, clock[at.PEAK_LEFT], clock[at.PEAK_RIGHT])
     clock[at.PEAK_LEFT] = max(clock[at.PEAK_LEFT], rotation.largest_left())
     clock[at.PEAK_RIGHT] = max(clock[at.PEAK_RIGHT], rotation.largest_right())

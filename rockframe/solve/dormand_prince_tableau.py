@@ -15,18 +15,21 @@ STAGES: Final = 7
 NODES: Final = table([0.0, 1 / 5, 3 / 10, 4 / 5, 8 / 9, 1.0, 1.0])
 """Share of the step at which each stage stands."""
 
+# weights of the stages before, by which each is made; the last makes the step
+STAGE_1: Final = (1 / 5,)
+STAGE_2: Final = (3 / 40, 9 / 40)
+STAGE_3: Final = (44 / 45, -56 / 15, 32 / 9)
+STAGE_4: Final = (19372 / 6561, -25360 / 2187, 64448 / 6561, -212 / 729)
+STAGE_5: Final = (9017 / 3168, -355 / 33, 46732 / 5247, 49 / 176, -5103 / 18656)
+STAGE_6: Final = (35 / 384, 0.0, 500 / 1113, 125 / 192, -2187 / 6784, 11 / 84)
+
 STAGE_WEIGHTS: Final = table(
     [
-        [0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-        [1 / 5, 0.0, 0.0, 0.0, 0.0, 0.0],
-        [3 / 40, 9 / 40, 0.0, 0.0, 0.0, 0.0],
-        [44 / 45, -56 / 15, 32 / 9, 0.0, 0.0, 0.0],
-        [19372 / 6561, -25360 / 2187, 64448 / 6561, -212 / 729, 0.0, 0.0],
-        [9017 / 3168, -355 / 33, 46732 / 5247, 49 / 176, -5103 / 18656, 0.0],
-        [35 / 384, 0.0, 500 / 1113, 125 / 192, -2187 / 6784, 11 / 84],
+        (*row, *(0.0 for _ in range(6 - len(row))))
+        for row in ((), STAGE_1, STAGE_2, STAGE_3, STAGE_4, STAGE_5, STAGE_6)
     ]
 )
-"""Weights of the stages before, by which each is made; the last row makes the step."""
+"""The same, a row for each stage."""
 
 WEIGHTS: Final = table([*(STAGE_WEIGHTS[6, j] for j in range(6)), 0.0])
 """Weights of the fifth order."""

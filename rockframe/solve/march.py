@@ -150,7 +150,7 @@ def march(
                 result = TOO_SMALL
                 break
             continue
-        rotation = rotation_in_step(size, limits, state, new)
+        rotation = rotation_in_step(system, limits, state, new)
         peaks = rotation.may_peak(h, clock[at.PEAK_LEFT], clock[at.PEAK_RIGHT])
         found = may_fall(system, h, before, after)
         if found or peaks or begin + tau + h >= clock[at.NEXT_OUTPUT]:

@@ -28,17 +28,14 @@ def excess_error(
     `imbalance` is the error of the works over the largest energy.
     """
     size, floor = system.coordinates(), controls[at.FLOOR]
-    if not math.isfinite(imbalance):
-        return math.inf
-    largest = abs(imbalance)
+    largest, total = abs(imbalance), imbalance
     for i in range(2 * size + system.variables()):
         # what does not move has no error
-        if i < count or size <= i < size + count or i >= 2 * size:
-            if not math.isfinite(works[ERRORS + i]):
-                return math.inf
-            allowed = max(abs(new[i]), floor * reference[i])
-            largest = max(largest, abs(works[ERRORS + i]) / allowed)
-    return largest / controls[at.RTOL]
+        moves = (i < count) | ((size <= i) & (i < size + count)) | (i >= 2 * size)
+        error = abs(works[ERRORS + i]) if moves else 0.0
+        largest = max(largest, error / max(abs(new[i]), floor * reference[i]))
+        total += error
+    return largest / controls[at.RTOL] if math.isfinite(total) else math.inf
 
 
 @kernel

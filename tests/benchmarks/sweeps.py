@@ -71,9 +71,7 @@ def costs(motion, axes, accuracy) -> dict[str, float]:
         with ThreadPoolExecutor(1) as one:
             rf.sweep(SYSTEM, motion, axes=axes, **options, executor=one, progress=False)
 
-    ways = {"loop": loop, "sweep": lambda: swept(10**9)}
-    if accuracy == "fast":
-        ways["in lanes"] = lambda: swept(1)
+    ways = {"loop": loop, "sweep": lambda: swept(10**9), "in lanes": lambda: swept(1)}
     for work in ways.values():
         work()
     rounds = [[_once(work) for work in ways.values()] for _ in range(ROUNDS)]

@@ -32,15 +32,18 @@ def model_on(*parts):
     return rf.System(block, *parts).assembly.model
 
 
+@pytest.mark.parametrize("fixed", [True, False])
 @pytest.mark.parametrize("base", BASES)
-def test_all_lanes_share_their_instructions(base):
+def test_all_lanes_share_their_instructions(base, fixed):
     from rockframe.compiled.jobs import Job
     from rockframe.compiled.registration import register_kernels
-    from rockframe.solve.lanes.stepping import step_lanes
+    from rockframe.solve.lanes.fixed_steps import step_lanes
+    from rockframe.solve.lanes.steps_by_tolerance import step_lanes_by_tolerance
 
     structure = structure_of(model_on(*BASES[base]).system)
     register_kernels()
-    code = Job(step_lanes, structure, bound=True, in_lanes=True)._compiled(keep=False)
+    step = step_lanes if fixed else step_lanes_by_tolerance
+    code = Job(step, structure, bound=True, in_lanes=True)._compiled(keep=False)
     text = code._library.get_asm_str()
     if "xmm" not in text:
         pytest.skip("not the instructions of an x86 processor")

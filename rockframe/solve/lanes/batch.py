@@ -26,7 +26,6 @@ from rockframe.solve.equations import Equations
 from rockframe.solve.guards import WEIGHTS
 from rockframe.solve.lanes import fields
 from rockframe.solve.lanes.intervals import is_at_end
-from rockframe.solve.lanes.stepping import ALL_QUIET, SOME_WAIT
 from rockframe.solve.march import jumps, length_of
 from rockframe.solve.workspace import (
     TERMS,
@@ -167,7 +166,8 @@ def run_alone(batch: Batch, row: Vector) -> int:
         stretch(row, state + width + slope, guards),
         stretch(row, new, width), stretch(row, new + width, slope),
         stretch(row, new + width + slope, guards),
-        w.stages, w.works, w.reference, stretch(row, fields.LIMITS, WEIGHTS + size), w.scratch,
+        w.stages, w.works, stretch(row, state - width, width),
+        stretch(row, fields.LIMITS, WEIGHTS + size), w.scratch,
         w.scratch_rates, w.inside, w.powers, w.ground, w.energy_room,
     )  # fmt: skip
     bound = Equations(
@@ -271,12 +271,12 @@ def advance_batch(batch: Batch, steps: Bound) -> None:
     batch : Batch
         The runs; their rows are changed in place.
     steps : Bound
-        :func:`rockframe.solve.lanes.stepping.step_lanes` for the class of their systems.
+        A step in all lanes, for the class of their systems.
     """
     for lane in range(LANES):
         start_next_run(batch, lane)
-    found = SOME_WAIT
-    while found == ALL_QUIET or see_to_lanes(batch) > 0:
+    found = fields.SOME_WAIT
+    while found == fields.ALL_QUIET or see_to_lanes(batch) > 0:
         found = steps.call(
             LANES, batch.room, batch.pieces.x, batch.pieces.y, batch.equations.numbers
         )

@@ -9,20 +9,20 @@ from typing import Final, NamedTuple
 from rockframe.compiled import inlined
 from rockframe.dynamics.protocol import POWERS, System
 from rockframe.solve import layout as at
+from rockframe.solve.dormand_prince_tableau import STAGES
 from rockframe.solve.guards import WEIGHTS
-from rockframe.solve.workspace import TERMS
+from rockframe.solve.workspace import ERRORS, TERMS
 
 # what lanes need beside the clock, controls and counters of a run
 LENGTH: Final = 0  # of the interval
 LONGEST: Final = 1  # stable step in the mode
 STEP: Final = 2  # length of the step
-PLACE_MIDDLE: Final = 3  # of the step's middle in the interval, from 0 to 1
-PLACE_END: Final = 4
-MIDDLE_X: Final = 5  # ground acceleration there
-MIDDLE_Y: Final = 6
-END_X: Final = 7
-END_Y: Final = 8
-REALS: Final = 9
+PLACE: Final = 3  # in the interval, from 0 to 1, at which the ground is evaluated
+MIDDLE_X: Final = 4  # ground acceleration in the middle of a step of fixed length
+MIDDLE_Y: Final = 5
+NOW_X: Final = 6  # at a stage; at last at the end of the step
+NOW_Y: Final = 7
+REALS: Final = 8
 
 # the same in whole numbers
 BUSY: Final = 0  # whether the lane has a run
@@ -37,7 +37,13 @@ KIND: Final = 8  # which of the tables of longest steps
 STATUS: Final = 9
 TAKEN: Final = 10  # all bits where the last step is taken, none where not
 ENTERS: Final = 11  # whether the lane comes to its next interval
-WHOLES: Final = 12
+REFUSED: Final = 12  # whether the error of the last step was too large
+WHOLES: Final = 13
+
+# what a step in all lanes has found
+ALL_QUIET: Final = 0
+SOME_ASK: Final = 1  # the step of some lane is for the driver of single runs
+SOME_WAIT: Final = 2  # some lane is at an end that is not just that of an interval; no step is made
 
 CLOCK: Final = 0
 COUNTERS: Final = CLOCK + at.CLOCK
@@ -52,6 +58,7 @@ LIMITS: Final = GROUND + 2 * TERMS
 class Places(NamedTuple):
     """Places of fields that depend on the size of a system."""
 
+    reference: int  # largest size so far of each variable
     state: int  # at the start of a step; both ends of a step stand together
     first: int
     before: int
@@ -59,7 +66,7 @@ class Places(NamedTuple):
     last: int
     after: int
     end: int  # of both
-    stage: int
+    stages: int
     works: int
     clock: int  # at the end of a step, as far as steps change it
     numbers: int  # of the system; behind them memory and tolerances, which only rows have
@@ -70,10 +77,13 @@ def places_of(system: System) -> Places:
     """Give where the fields of a system are."""
     size, variables, guards = system.coordinates(), system.variables(), system.guards() + 1
     width, slope = 2 * size + variables, size + variables + POWERS
-    state = LIMITS + WEIGHTS + size
+    reference = LIMITS + WEIGHTS + size
+    state = reference + width
     half = width + slope + 2 * guards
-    new, end = state + half, state + 2 * half
+    new, stages = state + half, state + 2 * half
+    works = stages + STAGES * (size + slope)
+    clock = works + ERRORS + width
     return Places(
-        state, state + width, state + width + slope, new, new + width, new + width + slope, end,
-        end, end + width, end + width + 2, end + width + 2 + at.OF_STEPS,
+        reference, state, state + width, state + width + slope, new, new + width,
+        new + width + slope, stages, stages, works, clock, clock + at.OF_STEPS,
     )  # fmt: skip

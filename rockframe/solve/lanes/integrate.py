@@ -7,19 +7,19 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from rockframe.compiled import COMPILED, LANES, Matrix, bound_in_lanes, numbers_in
+from rockframe.compiled import LANES, Matrix, bound_in_lanes, numbers_in
 from rockframe.compiled.bound import structure_of
 from rockframe.dynamics.protocol import ContactModel
 from rockframe.signals import Motion
 from rockframe.solve import layout as at
-from rockframe.solve.accuracy import Accuracy
 from rockframe.solve.beginning import Begun
 from rockframe.solve.equations import Equations, equations_of
 from rockframe.solve.integrate import EVENT_ROOM, pieces_of
 from rockframe.solve.lanes import fields
 from rockframe.solve.lanes.batch import Batch, Shape, advance_batch
 from rockframe.solve.lanes.fields import Places, places_of
-from rockframe.solve.lanes.stepping import step_lanes
+from rockframe.solve.lanes.fixed_steps import step_lanes
+from rockframe.solve.lanes.steps_by_tolerance import step_lanes_by_tolerance
 from rockframe.solve.workspace import EventTable, Output, Pieces, Workspace, make_workspace
 
 ROOM: Final = 4_000_000
@@ -37,7 +37,7 @@ class LaneRun:
     model : ContactModel
         The equations.
     begun : Begun
-        Where it starts, with steps of fixed length and no outputs.
+        Where it starts, without outputs; all runs with steps of fixed length, or none.
     """
 
     model: ContactModel
@@ -60,11 +60,6 @@ class Outcomes:
     clock: Matrix
     counters: Whole
     status: Whole
-
-
-def go_in_lanes(accuracy: Accuracy) -> bool:
-    """Whether runs can be made side by side: compiled, with steps of fixed length."""
-    return COMPILED and accuracy.substeps is not None
 
 
 def kind_of(model: ContactModel) -> Any:
@@ -130,8 +125,9 @@ class _Rows:
         model, first = runs[0].model, runs[0].begun
         self._model = model
         self._places = there = places_of(model.system)
-        self._equations = equations_of(model.system, fixed_steps=True)
-        self._steps = bound_in_lanes(step_lanes, model.system)
+        fixed = first.substeps > 0
+        self._equations = equations_of(model.system, fixed_steps=fixed)
+        self._steps = bound_in_lanes(step_lanes if fixed else step_lanes_by_tolerance, model.system)
         self._count = len(self._equations.numbers)
         self._memory = len(first.memory)
         width = there.numbers + self._count + self._memory + len(first.tolerance)
@@ -146,7 +142,8 @@ class _Rows:
         row[fields.CLOCK : fields.CLOCK + at.CLOCK] = begun.clock
         whole[fields.COUNTERS : fields.COUNTERS + at.COUNTERS] = begun.counters
         row[fields.CONTROLS : fields.CONTROLS + at.CONTROLS] = begun.controls
-        row[fields.LIMITS : there.state] = begun.limits
+        row[fields.LIMITS : there.reference] = begun.limits
+        row[there.reference : there.state] = begun.reference
         row[there.state : there.first] = begun.state
         behind = there.numbers + self._count
         row[there.numbers : behind] = numbers_in(run.model.system)
@@ -191,7 +188,9 @@ def _scratch(
         np.empty((EVENT_ROOM, 1 + 2 * width + memory)), np.empty((EVENT_ROOM, 3), dtype=np.int64)
     )
     none = np.zeros(width)
-    workspace = make_workspace(equations, none, none.copy(), np.zeros(there.state - fields.LIMITS))
+    workspace = make_workspace(
+        equations, none, none.copy(), np.zeros(there.reference - fields.LIMITS)
+    )
     return output, events, workspace
 
 

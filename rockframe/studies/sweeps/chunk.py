@@ -18,7 +18,7 @@ from rockframe.studies.sweeps.cases_of_job import CasesOfJob
 from rockframe.studies.sweeps.runs import Failed, each_run
 from rockframe.studies.sweeps.screening import Look, in_doubt, look_at, repeated
 from rockframe.studies.sweeps.side_by_side import Finished
-from rockframe.studies.sweeps.study import Histories, Job
+from rockframe.studies.sweeps.study import FEWEST_IN_LANES, Histories, Job
 
 NO_TEXT: Final = 0
 """Place of the text that says nothing, in the texts of a chunk."""
@@ -78,7 +78,8 @@ def run_chunk(job: Job, stopped: Callable[[], bool] = lambda: False) -> Rows | N
     if job.screened and not stopped():
         doubtful = in_doubt(cases, looks, stopped)
         told.screen(looks, doubtful)
-        for run in each_run(cases.changed(repeated), doubtful, stopped):
+        many = len(doubtful) >= FEWEST_IN_LANES  # for few nothing need be compiled
+        for run in each_run(cases.changed(repeated), doubtful, stopped, side_by_side=many):
             told.put(run)
             told.compare(looks[run.case], run)
     return None if stopped() else told.rows()

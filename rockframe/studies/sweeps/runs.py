@@ -25,7 +25,11 @@ class Failed:
 
 
 def each_run(
-    cases: CasesOfJob, which: Sequence[int], stopped: Callable[[], bool]
+    cases: CasesOfJob,
+    which: Sequence[int],
+    stopped: Callable[[], bool],
+    *,
+    side_by_side: bool = True,
 ) -> Iterator[Finished | Failed]:
     """Run cases.
 
@@ -37,6 +41,8 @@ def each_run(
         Those to run.
     stopped : callable
         Whether to leave off; asked between cases.
+    side_by_side : bool
+        Whether they may run in lanes, where the job allows it.
 
     Yields
     ------
@@ -44,9 +50,10 @@ def each_run(
         In any order; not all where it was left off.
     """
     alone = set(which)
-    for finished in run_side_by_side(cases, which, stopped):
-        alone.discard(finished.case)
-        yield finished
+    if side_by_side:
+        for finished in run_side_by_side(cases, which, stopped):
+            alone.discard(finished.case)
+            yield finished
     for case in sorted(alone):
         if stopped():
             return

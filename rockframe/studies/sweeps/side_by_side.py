@@ -14,7 +14,7 @@ from rockframe.simulation.beginning import start_of
 from rockframe.simulation.run import Response, nothing_to_say, scales_of
 from rockframe.solve.beginning import begun
 from rockframe.solve.integrate import STILL_INTERVAL
-from rockframe.solve.lanes.integrate import LaneRun, go_in_lanes, integrate_lanes, kind_of
+from rockframe.solve.lanes.integrate import LaneRun, integrate_lanes, kind_of
 from rockframe.solve.layout import Status
 from rockframe.solve.trajectory import Summary, told_by
 from rockframe.studies.sweeps.cases_of_job import CasesOfJob
@@ -147,8 +147,6 @@ def _take_up(
 def _prepared(cases: CasesOfJob, case: int, vertical: bool) -> _Scene | None:
     """Prepare a scene for lanes; None if its runs need a closer look."""
     system, said, plan = cases.planned(case)
-    if not go_in_lanes(plan.accuracy):
-        return None
     if not system.options.slope.level or (vertical and system.setting.settlement is None):
         return None  # the ground is another one for each scene; or a block may leave it
     interval = STILL_INTERVAL if plan.motion is None else plan.motion.si.time_step

@@ -12,7 +12,6 @@ from rockframe.compiled import COMPILED
 from rockframe.motion import GroundMotion
 from rockframe.results.outcome import Generic
 from rockframe.simulation.plan import STILL_GROUND_OUTPUT_STEP, Arguments
-from rockframe.solve.lanes.integrate import go_in_lanes
 from rockframe.studies.sweeps.axes import Axis
 from rockframe.studies.sweeps.grid import Grid
 from rockframe.studies.sweeps.scenes import Scene
@@ -147,13 +146,12 @@ class Study:
 
     @property
     def side_by_side(self) -> bool:
-        """Whether cases run in lanes: with steps of fixed length, without samples, and many.
+        """Whether cases run in lanes: compiled, without samples, and many.
 
         Their numbers are the same either way.
         """
         sampled = self.histories is not None or bool(self.arguments.points)
-        fits = not sampled and go_in_lanes(self.arguments.accuracy)
-        return fits and self.grid.count >= FEWEST_IN_LANES
+        return COMPILED and not sampled and self.grid.count >= FEWEST_IN_LANES
 
     def to_dict(self) -> dict[str, Any]:
         """Tell all that the results depend on, long rows of numbers by their digests."""

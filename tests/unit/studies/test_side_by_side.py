@@ -46,12 +46,12 @@ def on(*parts, **options):
     return scene
 
 
-def both(monkeypatch, *arguments, **options):
+def both(monkeypatch, *arguments, accuracy="fast", **options):
     """Run a sweep in lanes, and again alone."""
     found = []
     for fewest in (1, 10**9):
         monkeypatch.setattr(study, "FEWEST_IN_LANES", fewest)
-        found.append(rf.sweep(*arguments, accuracy="fast", **options))
+        found.append(rf.sweep(*arguments, accuracy=accuracy, **options))
     lanes, alone = found
     assert lanes.attrs["driver"].startswith("cases side by side")
     assert alone.attrs["driver"] == "each case alone"
@@ -78,9 +78,38 @@ def assert_same_bits(lanes, alone):
     ids=lambda given: "-".join(str(one).split("(")[0] for one in given) or "none",
 )
 def test_lanes_give_what_single_runs_give(monkeypatch, parts, options):
+    check_scene(monkeypatch, "fast", parts, options)
+
+
+@pytest.mark.parametrize(
+    ("parts", "options"),
+    [
+        ((), {}),
+        ((PADS,), {}),
+        ((PADS,), {"restraint": "leading-corner"}),
+        ((PADS,), {"rotation": "small"}),
+        ((SOIL,), {}),
+    ],
+    ids=lambda given: "-".join(str(one).split("(")[0] for one in given) or "none",
+)
+@pytest.mark.parametrize("rtol", [1e-4, 2e-8])
+def test_lanes_step_by_tolerance_as_single_runs_do(monkeypatch, parts, options, rtol):
+    check_scene(monkeypatch, rf.Accuracy(rtol=rtol), parts, options)
+
+
+def test_lanes_give_up_as_single_runs_do(monkeypatch):
+    system = rf.System(BLOCK, PADS)
+    few = rf.Accuracy(rtol=1e-6, max_steps=700)
+    lanes, alone = both(monkeypatch, system, MOTIONS[:3], accuracy=few, scale=[0.2, 0.9, 1.6])
+    assert_same_bits(lanes, alone)
+    assert (alone.status == 3).any()
+    assert (alone.step_count <= 700).all()
+
+
+def check_scene(monkeypatch, accuracy, parts, options):
     lanes, alone = both(
         monkeypatch, on(*parts, **options), MOTIONS, axes=SLENDER, scale=[0.3, 0.8, 1.5],
-        free_vibration="0.7 s",
+        free_vibration="0.7 s", accuracy=accuracy,
     )  # fmt: skip
     assert_same_bits(lanes, alone)
     ran = alone.peak_rotation.notnull()
@@ -143,8 +172,7 @@ def test_neighbours_chunks_and_executors_change_nothing(monkeypatch, chunk):
     assert_same_bits(other.isel(scale=slice(None, None, -1), damping_ratio=[1, 0]), whole)
 
 
-def test_small_sweeps_and_other_levels_run_alone():
-    system = rf.System(BLOCK, PADS)
-    few = rf.sweep(system, MOTIONS[0], scale=[0.5, 1.0], accuracy="fast")
-    finer = rf.sweep(system, MOTIONS[3], scale=np.linspace(0.1, 0.2, study.FEWEST_IN_LANES))
-    assert few.attrs["driver"] == finer.attrs["driver"] == "each case alone"
+@pytest.mark.parametrize("accuracy", ["fast", "standard"])
+def test_small_sweeps_run_alone(accuracy):
+    few = rf.sweep(rf.System(BLOCK, PADS), MOTIONS[0], scale=[0.5, 1.0], accuracy=accuracy)
+    assert few.attrs["driver"] == "each case alone"

@@ -1,0 +1,274 @@
+"""One step of the Dormand-Prince pair in all lanes at once.
+
+The loops over lanes hold nothing but arithmetic on one array, so that they are compiled to
+instructions for several lanes at once. A lane does what :func:`rockframe.solve.march.march`
+does in a quiet step, in the same order, to the last bit. A step that is not quiet is not
+taken: the lane asks for the driver of single runs.
+"""
+
+from collections.abc import Callable
+
+from rockframe.compiled import (
+    ReadOnlyMatrix,
+    Vector,
+    as_integers,
+    inlined,
+    kernel,
+    lane_of,
+    put,
+    widest_registers,
+)
+from rockframe.dynamics.protocol import POWERS, Ground, System
+from rockframe.solve import layout as at
+from rockframe.solve.dormand_prince import (
+    begin_stages,
+    end_works,
+    errors_of_places,
+    errors_of_rates,
+    stage_places,
+    stage_rates,
+)
+from rockframe.solve.dormand_prince_tableau import (
+    NODES,
+    STAGE_1,
+    STAGE_2,
+    STAGE_3,
+    STAGE_4,
+    STAGE_5,
+    STAGE_6,
+    STAGES,
+)
+from rockframe.solve.lanes import fields
+from rockframe.solve.lanes.fields import Places, places_of
+from rockframe.solve.lanes.ground import evaluate_ground
+from rockframe.solve.lanes.intervals import enter_intervals
+from rockframe.solve.lanes.taking import (
+    account_for,
+    is_quiet,
+    is_spent,
+    take_step_if_quiet,
+    take_steps,
+)
+from rockframe.solve.march import SHORTEST, fit_step
+from rockframe.solve.schemes import adapted
+from rockframe.solve.step_control import excess_error, next_step
+
+
+@inlined
+def begin_step(system: System, room: Vector, lane: int) -> None:
+    """Choose the length of a lane's step, and write its first stage."""
+    there, own = places_of(system), lane_of(room, fields.OWN, lane)
+    clock, controls = lane_of(room, fields.CLOCK, lane), lane_of(room, fields.CONTROLS, lane)
+    remaining = own[fields.LENGTH] - clock[at.INTO_INTERVAL]
+    asked = fit_step(min(clock[at.NEXT_STEP], controls[at.MAX_STEP]), remaining)
+    clock[at.ASKED] = asked
+    own[fields.STEP] = asked
+    begin_stages(
+        system, lane_of(room, there.state, lane), lane_of(room, there.first, lane),
+        lane_of(room, there.stages, lane),
+    )  # fmt: skip
+
+
+@inlined
+def write_places(system: System, room: Vector, lane: int, weights: tuple[float, ...]) -> None:
+    """Write the coordinates of a lane's stage."""
+    there = places_of(system)
+    stage_places(
+        system, lane_of(as_integers(room), fields.OWN_WHOLE, lane)[fields.ACTIVE],
+        lane_of(room, fields.OWN, lane)[fields.STEP], weights, lane_of(room, there.state, lane),
+        lane_of(room, there.stages, lane), lane_of(room, there.new, lane),
+    )  # fmt: skip
+
+
+@inlined
+def write_rates(system: System, room: Vector, lane: int, weights: tuple[float, ...]) -> None:
+    """Write the velocities and variables of a lane's stage."""
+    there = places_of(system)
+    stage_rates(
+        system, lane_of(as_integers(room), fields.OWN_WHOLE, lane)[fields.ACTIVE],
+        lane_of(room, fields.OWN, lane)[fields.STEP], weights, lane_of(room, there.state, lane),
+        lane_of(room, there.stages, lane), lane_of(room, there.new, lane),
+    )  # fmt: skip
+
+
+@inlined
+def evaluate_stage(system: System, room: Vector, lane: int) -> None:
+    """Write the slope of a lane's stage."""
+    there, own = places_of(system), lane_of(room, fields.OWN, lane)
+    mode = lane_of(as_integers(room), fields.COUNTERS, lane)[at.MODE]
+    found = system.accelerate(
+        system.without_sliding(mode), lane_of(room, there.new, lane),
+        Ground(own[fields.NOW_X], own[fields.NOW_Y]),
+    )  # fmt: skip
+    put(found, 0, lane_of(room, there.last, lane))
+
+
+@kernel
+def evaluate_stages(
+    system_of: Callable[[Vector], System], lanes: int, room: Vector, pieces_x: ReadOnlyMatrix,
+    pieces_y: ReadOnlyMatrix, s: int,
+) -> None:  # fmt: skip
+    """Write the slopes of a stage in all lanes: the equations, which are compiled once."""
+    there = places_of(system_of(lane_of(room, 0, 0)))
+    system = system_of(lane_of(room, there.numbers, 0))
+    slope = system.coordinates() + system.variables() + POWERS
+    stage = there.stages + STAGES * system.coordinates() + s * slope
+    evaluate_ground(lanes, room, pieces_x, pieces_y, NODES[s], fields.NOW_X, fields.NOW_Y)
+    for lane in range(lanes):
+        evaluate_stage(system_of(lane_of(room, there.numbers, lane)), room, lane)
+    for i in range(lanes * slope):
+        room[lanes * stage + i] = room[lanes * there.last + i]
+
+
+@inlined
+def make_stage(
+    system_of: Callable[[Vector], System], lanes: int, room: Vector, pieces_x: ReadOnlyMatrix,
+    pieces_y: ReadOnlyMatrix, weights: tuple[float, ...],
+) -> None:  # fmt: skip
+    """Make the stage of some weights in all lanes."""
+    there = places_of(system_of(lane_of(room, 0, 0)))
+    for lane in range(lanes):
+        write_places(system_of(lane_of(room, there.numbers, lane)), room, lane, weights)
+    for lane in range(lanes):
+        write_rates(system_of(lane_of(room, there.numbers, lane)), room, lane, weights)
+    evaluate_stages(system_of, lanes, room, pieces_x, pieces_y, len(weights))
+
+
+@inlined
+def write_errors_of_places(system: System, room: Vector, lane: int) -> None:
+    """Write the errors of a lane's coordinates."""
+    there, h = places_of(system), lane_of(room, fields.OWN, lane)[fields.STEP]
+    stages, works = lane_of(room, there.stages, lane), lane_of(room, there.works, lane)
+    errors_of_places(system, h, stages, works)
+
+
+@inlined
+def write_errors_of_rates(system: System, room: Vector, lane: int) -> None:
+    """Write the errors of a lane's velocities and variables."""
+    there, h = places_of(system), lane_of(room, fields.OWN, lane)[fields.STEP]
+    stages, works = lane_of(room, there.stages, lane), lane_of(room, there.works, lane)
+    errors_of_rates(system, h, stages, works)
+
+
+@inlined
+def end_step(system: System, room: Vector, lane: int) -> None:
+    """Write the works of a lane's step, and its largest error over the error allowed."""
+    there, own = places_of(system), lane_of(room, fields.OWN, lane)
+    clock, works = lane_of(room, fields.CLOCK, lane), lane_of(room, there.works, lane)
+    end_works(
+        system, own[fields.STEP], lane_of(room, there.stages, lane),
+        lane_of(room, there.last, lane), works,
+    )  # fmt: skip
+    scale = max(clock[at.LARGEST_TERM], clock[at.DISSIPATED], abs(clock[at.SUPPLIED]))
+    clock[at.EXCESS] = excess_error(
+        system, lane_of(as_integers(room), fields.OWN_WHOLE, lane)[fields.ACTIVE],
+        works[2] / scale, lane_of(room, there.new, lane), works,
+        lane_of(room, there.reference, lane), lane_of(room, fields.CONTROLS, lane),
+    )  # fmt: skip
+
+
+@inlined
+def judge(room: Vector, lane: int) -> int:
+    """Tell whether a lane's step is taken, refused or for the driver; give 0 if it is taken."""
+    own = lane_of(as_integers(room), fields.OWN_WHOLE, lane)
+    accepted = lane_of(room, fields.CLOCK, lane)[at.EXCESS] <= 1.0
+    spent, busy = is_spent(room, lane), own[fields.BUSY]
+    taken = (own[fields.TAKEN] != 0) & accepted & (not spent)
+    refused = (not accepted) & (not spent)
+    own[fields.TAKEN] = -1 if taken else 0
+    own[fields.REFUSED] = busy if refused else 0
+    own[fields.ASKS] = 0 if taken | refused else busy
+    return 0 if taken else busy
+
+
+@inlined
+def keep_sizes(system: System, room: Vector, lane: int) -> None:
+    """Raise the largest size so far of each variable, where the step is taken."""
+    there = places_of(system)
+    taken = lane_of(as_integers(room), fields.OWN_WHOLE, lane)[fields.TAKEN] != 0
+    new, reference = lane_of(room, there.new, lane), lane_of(room, there.reference, lane)
+    for i in range(2 * system.coordinates() + system.variables()):
+        size = abs(new[i])
+        reference[i] = max(reference[i], size if taken else 0.0)
+
+
+@inlined
+def choose_next(room: Vector, lane: int, there: Places) -> int:
+    """Choose a lane's next step after one that is taken or refused; give whether it asks."""
+    clock, controls = lane_of(room, fields.CLOCK, lane), lane_of(room, fields.CONTROLS, lane)
+    whole = lane_of(as_integers(room), fields.OWN_WHOLE, lane)
+    h, excess = lane_of(room, fields.OWN, lane)[fields.STEP], clock[at.EXCESS]
+    if whole[fields.REFUSED] == 1:
+        h_next = next_step(h, h, excess)
+        if h_next <= SHORTEST * controls[at.DURATION]:
+            whole[fields.ASKS] = 1
+            return 1
+        clock[at.NEXT_STEP] = h_next
+        lane_of(as_integers(room), fields.COUNTERS, lane)[at.REJECTED] += 1
+    elif whole[fields.TAKEN] != 0:
+        new = lane_of(room, there.clock, lane)
+        new[at.NEXT_STEP] = adapted(h, clock[at.NEXT_STEP], excess, controls)
+    return int(whole[fields.ASKS])
+
+
+@inlined
+def step_lanes_by_tolerance(
+    system_of: Callable[[Vector], System], lanes: int, room: Vector, pieces_x: ReadOnlyMatrix,
+    pieces_y: ReadOnlyMatrix,
+) -> int:  # fmt: skip
+    """Take all lanes that are at the end of an interval to the next, and try a step in all.
+
+    Parameters
+    ----------
+    system_of : callable
+        Gives the system of the numbers of a lane.
+    lanes : int
+        How many there are; loops of a length that is known are written out, not vectorised.
+    room : ndarray
+        All lanes, laid out in :mod:`rockframe.solve.lanes.fields`.
+    pieces_x, pieces_y : ndarray
+        The ground's polynomials of all motions.
+
+    Returns
+    -------
+    int
+        `ALL_QUIET`, `SOME_ASK` or `SOME_WAIT` of :mod:`rockframe.solve.lanes.fields`.
+    """
+    widest_registers()
+    if enter_intervals(lanes, room, pieces_x, pieces_y) == 1:
+        return fields.SOME_WAIT
+    there = places_of(system_of(lane_of(room, 0, 0)))
+    for lane in range(lanes):
+        begin_step(system_of(lane_of(room, there.numbers, lane)), room, lane)
+    make_stage(system_of, lanes, room, pieces_x, pieces_y, STAGE_1)
+    make_stage(system_of, lanes, room, pieces_x, pieces_y, STAGE_2)
+    make_stage(system_of, lanes, room, pieces_x, pieces_y, STAGE_3)
+    make_stage(system_of, lanes, room, pieces_x, pieces_y, STAGE_4)
+    make_stage(system_of, lanes, room, pieces_x, pieces_y, STAGE_5)
+    make_stage(system_of, lanes, room, pieces_x, pieces_y, STAGE_6)
+    for lane in range(lanes):
+        write_errors_of_places(system_of(lane_of(room, there.numbers, lane)), room, lane)
+    for lane in range(lanes):
+        write_errors_of_rates(system_of(lane_of(room, there.numbers, lane)), room, lane)
+    for lane in range(lanes):
+        end_step(system_of(lane_of(room, there.numbers, lane)), room, lane)
+    for lane in range(lanes):
+        quiet = is_quiet(system_of(lane_of(room, there.numbers, lane)), room, lane)
+        own = lane_of(as_integers(room), fields.OWN_WHOLE, lane)
+        own[fields.TAKEN] = -1 if quiet else 0
+    others = 0
+    for lane in range(lanes):
+        others |= judge(room, lane)
+    for lane in range(lanes):
+        system = system_of(lane_of(room, there.numbers, lane))
+        account_for(system, room, lane)
+        keep_sizes(system, room, lane)
+    some = 0
+    for lane in range(lanes):
+        some |= choose_next(room, lane, there)
+    if others == 0:
+        take_steps(lanes, room, there)
+        return fields.ALL_QUIET
+    for lane in range(lanes):
+        take_step_if_quiet(system_of(lane_of(room, there.numbers, lane)), room, lane)
+    return fields.SOME_ASK if some == 1 else fields.ALL_QUIET
