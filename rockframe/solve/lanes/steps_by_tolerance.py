@@ -46,6 +46,7 @@ from rockframe.solve.lanes.taking import (
     account_for,
     is_quiet,
     is_spent,
+    slides,
     take_step_if_quiet,
     take_steps,
 )
@@ -169,12 +170,15 @@ def end_step(system: System, room: Vector, lane: int) -> None:
 
 @inlined
 def judge(room: Vector, lane: int) -> int:
-    """Tell whether a lane's step is taken, refused or for the driver; give 0 if it is taken."""
+    """Tell whether a lane's step is taken, refused or for the driver; give 0 if it is taken.
+
+    What slides is for the driver, whatever the error: lanes have not moved it as it moves.
+    """
     own = lane_of(as_integers(room), fields.OWN_WHOLE, lane)
     accepted = lane_of(room, fields.CLOCK, lane)[at.EXCESS] <= 1.0
-    spent, busy = is_spent(room, lane), own[fields.BUSY]
-    taken = (own[fields.TAKEN] != 0) & accepted & (not spent)
-    refused = (not accepted) & (not spent)
+    busy, for_driver = own[fields.BUSY], is_spent(room, lane) | (own[fields.ASKS] == 1)
+    taken = (own[fields.TAKEN] != 0) & accepted & (not for_driver)
+    refused = (not accepted) & (not for_driver)
     own[fields.TAKEN] = -1 if taken else 0
     own[fields.REFUSED] = busy if refused else 0
     own[fields.ASKS] = 0 if taken | refused else busy
@@ -253,9 +257,10 @@ def step_lanes_by_tolerance(
     for lane in range(lanes):
         end_step(system_of(lane_of(room, there.numbers, lane)), room, lane)
     for lane in range(lanes):
-        quiet = is_quiet(system_of(lane_of(room, there.numbers, lane)), room, lane)
+        system = system_of(lane_of(room, there.numbers, lane))
         own = lane_of(as_integers(room), fields.OWN_WHOLE, lane)
-        own[fields.TAKEN] = -1 if quiet else 0
+        own[fields.TAKEN] = -1 if is_quiet(system, room, lane) else 0
+        own[fields.ASKS] = 1 if slides(system, room, lane) else 0
     others = 0
     for lane in range(lanes):
         others |= judge(room, lane)

@@ -10,6 +10,12 @@ from rockframe.solve.peaks import rotation_in_step
 
 
 @inlined
+def slides(system: System, room: Vector, lane: int) -> bool:
+    """Whether an end slides in a lane."""
+    return system.some_end_slides(lane_of(as_integers(room), fields.COUNTERS, lane)[at.MODE])
+
+
+@inlined
 def is_quiet(system: System, room: Vector, lane: int) -> bool:
     """Whether nothing happens in a lane's step but motion; its guards are written."""
     there = places_of(system)
@@ -18,15 +24,14 @@ def is_quiet(system: System, room: Vector, lane: int) -> bool:
     state, new = lane_of(room, there.state, lane), lane_of(room, there.new, lane)
     limits = lane_of(room, fields.LIMITS, lane)
     after, h = lane_of(room, there.after, lane), own[fields.STEP]
-    mode = counters[at.MODE]
     ground = Ground(own[fields.NOW_X], own[fields.NOW_Y])
-    held = system.without_sliding(mode)
+    held = system.without_sliding(counters[at.MODE])
     found = system.guards_in(held, new, lane_of(room, there.last, lane), ground)
     write_guards(system, found, new, limits, after)
     falls = may_fall(system, h, lane_of(room, there.before, lane), after)
     rotation = rotation_in_step(system, limits, state, new)
     peaks = rotation.may_peak(h, clock[at.PEAK_LEFT], clock[at.PEAK_RIGHT])
-    return not (falls | peaks | system.some_end_slides(mode))
+    return not (falls | peaks | slides(system, room, lane))
 
 
 @inlined
