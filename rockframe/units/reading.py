@@ -153,6 +153,8 @@ def to_si_values(value: object, measure: Measure, *, owner: str, name: str) -> l
 def _converted(given: Any, measure: Measure) -> Any:
     """Convert a magnitude, as long as it is one number, as it is written."""
     unit, number = str(measure.unit), given.magnitude
+    if getattr(number, "ndim", None) == 0:  # registries that others set make arrays of numbers
+        number = number.item()
     if not isinstance(number, int | float):
         return given.m_as(unit)
     return _product(float(number), float(type(given)(1.0, given.units).m_as(unit)))

@@ -369,7 +369,8 @@ def test_other_units_are_converted(maker, name, text, attribute, expected):
 @pytest.mark.parametrize("unit", ["cm", "centimeter", "cm * m/m"])
 def test_a_number_of_few_digits_stays_one(unit):
     """The product of the floats 70 and 0.01 is 0.7000000000000001."""
-    for given in (f"70 {unit}", (70.0, unit), pint.Quantity(70, unit), pint.Quantity(70.0, unit)):
+    numbers = 70, 70.0, np.float64(70.0), np.array(70.0)  # some registries make arrays of numbers
+    for given in (f"70 {unit}", (70.0, unit), *(pint.Quantity(one, unit) for one in numbers)):
         assert make_block(width=given) == make_block(width="0.7 m")
     assert "width='0.7 m'" in repr(make_block(width=f"70 {unit}"))
     held = rf.System(make_block()).moment_rotation(([70.0, 7.0], "mrad"))
