@@ -119,7 +119,8 @@ def runge_kutta_step(
     slope = size + system.variables() + POWERS
     begin_stages(system, state, first, stages)
     for s in range(1, STAGES):
-        weights = STAGE_WEIGHTS[s, :s]
+        before = s * (s - 1) // 2
+        weights = STAGE_WEIGHTS[before : before + s]
         stage_places(system, count, span.h, weights, state, stages, new)
         stage_rates(system, count, span.h, weights, state, stages, new)
         found = system.accelerate(mode, new, ground_in(NODES[s], span, ground))

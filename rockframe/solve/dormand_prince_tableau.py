@@ -23,15 +23,10 @@ STAGE_4: Final = (19372 / 6561, -25360 / 2187, 64448 / 6561, -212 / 729)
 STAGE_5: Final = (9017 / 3168, -355 / 33, 46732 / 5247, 49 / 176, -5103 / 18656)
 STAGE_6: Final = (35 / 384, 0.0, 500 / 1113, 125 / 192, -2187 / 6784, 11 / 84)
 
-STAGE_WEIGHTS: Final = table(
-    [
-        (*row, *(0.0 for _ in range(6 - len(row))))
-        for row in ((), STAGE_1, STAGE_2, STAGE_3, STAGE_4, STAGE_5, STAGE_6)
-    ]
-)
-"""The same, a row for each stage."""
+STAGE_WEIGHTS: Final = table([*STAGE_1, *STAGE_2, *STAGE_3, *STAGE_4, *STAGE_5, *STAGE_6])
+"""The same, one after the other: those of stage s, which has s stages before, from s(s-1)/2 on."""
 
-WEIGHTS: Final = table([*(STAGE_WEIGHTS[6, j] for j in range(6)), 0.0])
+WEIGHTS: Final = table([*STAGE_6, 0.0])
 """Weights of the fifth order."""
 
 ERROR_WEIGHTS: Final = table(

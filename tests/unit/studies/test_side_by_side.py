@@ -103,7 +103,6 @@ def test_lanes_give_up_as_single_runs_do(monkeypatch):
     lanes, alone = both(monkeypatch, system, MOTIONS[:3], accuracy=few, scale=[0.2, 0.9, 1.6])
     assert_same_bits(lanes, alone)
     assert (alone.status == 3).any()
-    assert (alone.step_count <= 700).all()
 
 
 def check_scene(monkeypatch, accuracy, parts, options):
