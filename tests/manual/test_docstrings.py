@@ -60,7 +60,7 @@ def test_parameters_are_described():
 def inherits(function):
     """Tell how many first arguments are the object or the class."""
     first = next(iter(inspect.signature(function).parameters), "")
-    return int(first in ("self", "cls", "kind", "motion", "made"))
+    return int(first in ("self", "cls", "kind", "motion", "made", "suite"))
 
 
 def test_what_is_given_back_is_described():
