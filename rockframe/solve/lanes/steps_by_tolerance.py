@@ -220,24 +220,7 @@ def step_lanes_by_tolerance(
     system_of: Callable[[Vector], System], lanes: int, room: Vector, pieces_x: ReadOnlyMatrix,
     pieces_y: ReadOnlyMatrix,
 ) -> int:  # fmt: skip
-    """Take all lanes that are at the end of an interval to the next, and try a step in all.
-
-    Parameters
-    ----------
-    system_of : callable
-        Gives the system of the numbers of a lane.
-    lanes : int
-        How many there are; loops of a length that is known are written out, not vectorised.
-    room : ndarray
-        All lanes, laid out in :mod:`rockframe.solve.lanes.fields`.
-    pieces_x, pieces_y : ndarray
-        The ground's polynomials of all motions.
-
-    Returns
-    -------
-    int
-        `ALL_QUIET`, `SOME_ASK` or `SOME_WAIT` of :mod:`rockframe.solve.lanes.fields`.
-    """
+    """Try a step in all lanes, see :func:`rockframe.solve.lanes.fixed_steps.step_lanes`."""
     widest_registers()
     if enter_intervals(lanes, room, pieces_x, pieces_y) == 1:
         return fields.SOME_WAIT
