@@ -184,8 +184,9 @@ def after_separation(
     """Give the mode after an end has left, and re-pin.
 
     An end that its base would press at once in flight slides, :eq:`eq-leaving-into-flight`.
-    One that the re-pinning of its own separation leaves pressed waits until it is let go; one
-    whose rise it would end altogether stays held, but is not pressed.
+    One that the re-pinning of its own separation leaves pressed waits until it is let go. One
+    whose rise it would end altogether would be held again at the same instant, without end: it
+    stays held where its base presses, but is not pressed; else it rises, and the held point stays.
     """
     was, now = system.part_mode(mode, k), system.part_mode(new, k)
     repins = not has_same_hold(part, was, now)
@@ -194,26 +195,27 @@ def after_separation(
     )  # fmt: skip
     if repins:
         repin(system, part, k, mode, new, state, memory)
+    flies = part.flies(now.contact)
     line = part.body.base_line_at(system.state_of(k, state))
     own = part.base.read(state, system.own_place(k))
-    if not part.base.presses(now.contact, left, line, own):
-        return new
-    if part.flies(now.contact):
-        if not part.base.touches(was.contact, not left):
-            acceleration = system.end_acceleration(k, left, new, state, ground)
-            if part.base.will_press(left, line, acceleration, own):
-                contact = part.base.held(now.contact, left)
-                return system.with_part(new, k, Mode(contact, was.pivot, True))
-    elif repins:
-        speed, noise = end_speed(part, left, system.state_of(k, state))
-        if speed <= noise:  # let go, it would be held again at the same instant, without end
-            system.blend_velocities(before, 0.0, state)
-            memory[REPINNING_LOSS], memory[HELD_PLACE + k] = lost, place
-            memory[LAST_EVENT] = SILENT
-            speed = following_speed(system, part, k, left, state)
-            set_end_speed(system, part, k, left, speed, 1.0, state)
-            contact = part.base.unpressed(was.contact, left)
-            return system.with_part(mode, k, Mode(contact, was.pivot, was.slides))
+    presses = part.base.presses(now.contact, left, line, own)
+    speed, noise = end_speed(part, left, system.state_of(k, state))
+    if repins and not flies and speed <= noise:
+        system.blend_velocities(before, 0.0, state)
+        memory[REPINNING_LOSS], memory[HELD_PLACE + k] = lost, place
+        if not presses:
+            return system.with_part(new, k, Mode(now.contact, was.pivot, was.slides))
+        memory[LAST_EVENT] = SILENT
+        speed = following_speed(system, part, k, left, state)
+        set_end_speed(system, part, k, left, speed, 1.0, state)
+        contact = part.base.unpressed(was.contact, left)
+        return system.with_part(mode, k, Mode(contact, was.pivot, was.slides))
+    if presses and flies and not part.base.touches(was.contact, not left):
+        acceleration = system.end_acceleration(k, left, new, state, ground)
+        if part.base.will_press(left, line, acceleration, own):
+            contact = part.base.held(now.contact, left)
+            return system.with_part(new, k, Mode(contact, was.pivot, True))
+    elif presses and repins and not flies:
         waits = part.base.waiting(now.contact, left)
         return system.with_part(new, k, Mode(waits, now.pivot, False))
     return new

@@ -48,7 +48,11 @@ from rockframe.solve.workspace import (
 )
 
 POLISHING: Final = 4
-"""Corrections of an event's time on the Runge-Kutta solution itself."""
+"""Corrections of an event's time on the Runge-Kutta solution itself, if they become small."""
+MOST_POLISHING: Final = 60
+"""Corrections if they do not; halving alone takes 50."""
+SMALL: Final = 1e-6
+"""Share of the step below which a correction is small."""
 ROUNDING: Final = 1e-15
 """Share of the time so far below which such a correction is rounding."""
 FIXED_STEPS: Final = 0.0
@@ -110,8 +114,9 @@ def step_to_event(
     """Repeat a step up to the first crossing of a guard; give its length and the guard, or -1.
 
     The place is found on the dense solution, and corrected (Newton) on the Runge-Kutta solution
-    itself. The correction of a guard that rises from zero and falls again is kept from its first
-    root, the start, by bisection.
+    itself, kept by bisection between lengths at which the guard is positive and negative: of a
+    step that is long beside a damped vibration the one tells little of the other. So is the
+    guard that rises from zero and falls again from its first root, the start.
     """
     count, span = int(tables.active[mode]), span_of(whole, progress)
     crossed, place = earliest_crossing(equations, mode, count, span, tables, w)
@@ -122,25 +127,28 @@ def step_to_event(
     now += progress.clock[at.INTO_INTERVAL]
     h, rates = place * whole, equations.guard_count + 1
     tolerance, low, high = tables.tolerance[crossed], 0.0, whole
-    rises = h > 0.0 and w.before[crossed] <= tolerance and w.before[rates + crossed] > 0.0
-    for correction in range(1 + POLISHING):
+    begins_at_zero = w.before[crossed] <= tolerance
+    rises = h > 0.0 and begins_at_zero and w.before[rates + crossed] > 0.0
+    has_root = w.after[crossed] < 0.0 and not begins_at_zero
+    for correction in range(1 + MOST_POLISHING):
         if h > 0.0:
             march(equations, mode, h, tables, pieces, progress, w)
         else:
             stand_still(w)
-        fall = w.after[rates + crossed]
-        settled = abs(w.after[crossed]) <= tolerance
-        if (fall >= 0.0 and not rises) or settled or correction == POLISHING:
+        guard, fall = w.after[crossed], w.after[rates + crossed]
+        ends = fall >= 0.0 and not (rises or has_root)
+        if ends or abs(guard) <= tolerance or correction == MOST_POLISHING:
             break
-        if w.after[crossed] > 0.0:
+        if guard > 0.0:
             low = h
         else:
             high = h
-        moved = h - w.after[crossed] / fall if fall < 0.0 else low
-        if rises and not low < moved < high:
+        moved = h - guard / fall if fall < 0.0 else low
+        if (rises or has_root) and not low < moved < high:
             moved = 0.5 * (low + high)
         moved = min(max(moved, 0.0), whole)
-        if abs(moved - h) <= ROUNDING * (now + h):
+        change = abs(moved - h)
+        if change <= ROUNDING * (now + h) or (correction >= POLISHING and change <= SMALL * whole):
             break
         h = moved
     return h, crossed
