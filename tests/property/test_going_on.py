@@ -3,6 +3,7 @@
 import json
 import math
 import warnings
+from functools import cache
 
 import numpy as np
 import pytest
@@ -40,13 +41,18 @@ def record():
 
 
 MOTION = record()
-WHOLE = {name: system.simulate(MOTION, accuracy="reference") for name, system in SCENES.items()}
+
+
+@cache
+def whole_of(name):
+    """Run a scene without a stop: once, and not before a test asks."""
+    return SCENES[name].simulate(MOTION, accuracy="reference")
 
 
 @pytest.mark.parametrize("name", SCENES)
 @pytest.mark.parametrize("at", [0.01, 1.37, 3.0, 5.55])
 def test_a_record_split_in_two_gives_the_same_response(name, at):
-    system, whole = SCENES[name], WHOLE[name]
+    system, whole = SCENES[name], whole_of(name)
     assert not bool(whole.overturned)
     first = system.simulate(MOTION.window(end=f"{at} s"), accuracy="reference")
     second = system.simulate(MOTION.window(f"{at} s"), initial=first, accuracy="reference")
@@ -109,12 +115,12 @@ def test_runs_that_cannot_be_continued():
     with pytest.raises(AssemblyError, match="holds no end of a run"):
         system.simulate(MOTION, initial=MOTION.to_dataset())
     for name in ("end_state", "system_json"):
-        part = WHOLE["pads"].copy()
+        part = whole_of("pads").copy()
         del part.attrs[name]
         with pytest.raises(AssemblyError, match="holds no end of a run"):
             system.simulate(MOTION, initial=part)
     with pytest.raises(AssemblyError, match="end of a run of another system"):
-        system.simulate(MOTION, initial=WHOLE["soil"])
+        system.simulate(MOTION, initial=whole_of("soil"))
     fallen = system.simulate(MOTION.scaled(20.0))
     assert bool(fallen.overturned)
     with pytest.raises(AssemblyError, match="end of a run that overturned"):
@@ -132,4 +138,4 @@ def test_units_do_not_matter():
             rf.TwoSpringSupport(frequency_ratio=20, damping_ratio="10 %"),
         )
     run = other.simulate(MOTION, accuracy="reference")
-    assert run.rotation.values == pytest.approx(WHOLE["pads"].rotation.values, abs=1e-9)
+    assert run.rotation.values == pytest.approx(whole_of("pads").rotation.values, abs=1e-9)

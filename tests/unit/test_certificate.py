@@ -4,6 +4,7 @@ import math
 import re
 import warnings
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -43,17 +44,15 @@ def falls(scale, system=SYSTEM):
     return bool(run.overturned)
 
 
-def boundary(low=1.0, high=8.0):
-    """Find a scale at which the verdict changes."""
+@cache
+def edge(low=1.0, high=8.0):
+    """Find the scale at which the verdict changes."""
     assert falls(high)
     assert not falls(low)
     for _ in range(40):
         middle = 0.5 * (low + high)
         low, high = (low, middle) if falls(middle) else (middle, high)
     return 0.5 * (low + high)
-
-
-EDGE = boundary()
 
 
 def test_a_run_without_a_certificate_has_none():
@@ -83,7 +82,7 @@ def test_the_run_itself_is_the_same():
 @pytest.mark.parametrize("side", [-1.0, 1.0])
 def test_the_margin_is_the_distance_to_the_boundary(off, side):
     """Up to the resolution: the bisection of an interval of a geometric row."""
-    scale = EDGE / (1.0 + side * off)
+    scale = edge() / (1.0 + side * off)
     run = certified(PULSE.scaled(scale))
     assert bool(run.overturned) == (side < 0.0)
     found, flip = float(run.verdict_margin), float(run.verdict_flip_scale)
@@ -96,7 +95,7 @@ def test_the_margin_is_the_distance_to_the_boundary(off, side):
 
 @pytest.mark.parametrize("side", [-1.0, 1.0])
 def test_near_the_boundary_it_says_so(side):
-    run = certified(PULSE.scaled(EDGE * (1.0 - side * 1e-4)))
+    run = certified(PULSE.scaled(edge() * (1.0 - side * 1e-4)))
     assert bool(run.overturned) == (side < 0.0)
     assert not bool(run.verdict_robust)
     assert float(run.verdict_margin) < 1.1e-3
@@ -331,7 +330,7 @@ def test_no_scale_within_reach():
 def test_a_run_that_was_cut_off_has_no_certificate():
     limit = rf.Accuracy(rtol=1e-8, max_steps=60)
     with pytest.warns(rf.SolverWarning, match="Not finished: stopped at"):
-        run = certified(PULSE.scaled(3.0 * EDGE), accuracy=limit)
+        run = certified(PULSE.scaled(3.0 * edge()), accuracy=limit)
     assert run.attrs["certificate"] == "No certificate: the run was not finished."
     assert run.attrs["certificate_runs"] == 0
     assert not run.verdict_converged
@@ -436,7 +435,7 @@ def test_at_rest_nothing_can_be_scaled():
 
 
 def test_a_run_that_goes_on_is_compared_with_runs_that_go_on():
-    strong = PULSE.scaled(3.0 * EDGE)
+    strong = PULSE.scaled(3.0 * edge())
     run = certified(strong, overturning="continue")
     assert bool(run.overturned)
     assert float(run.peak_rotation) == pytest.approx(0.5 * math.pi)
