@@ -9,6 +9,8 @@ from pathlib import Path
 import pytest
 
 os.environ.setdefault("MPLBACKEND", "agg")
+# each worker has a core: threads of linear algebra would only wait for one another
+os.environ.setdefault("OMP_NUM_THREADS", "1")
 _ROOT = Path(__file__).parent
 
 
