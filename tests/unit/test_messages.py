@@ -3,7 +3,7 @@
 import gzip
 import logging
 import re
-import subprocess
+import runpy
 import sys
 import zipfile
 from pathlib import Path
@@ -190,13 +190,13 @@ def test_depths_that_contradict_one_another_are_told():
     "name",
     [path.stem for path in sorted(EXAMPLES.glob("*.py")) if '"record' in path.read_text()],
 )
-def test_an_example_without_its_file_says_so_in_a_line(name, tmp_path):
-    done = subprocess.run(
-        [sys.executable, EXAMPLES / f"{name}.py", "none.AT2", "--folder", tmp_path],
-        capture_output=True, text=True, timeout=120,
-    )  # fmt: skip
-    assert done.returncode == 1
-    assert re.fullmatch(rf"{name}: none\.AT2: .*\n", done.stderr)
+def test_an_example_without_its_file_says_so_in_a_line(name, tmp_path, monkeypatch, capsys):
+    file = str(EXAMPLES / f"{name}.py")
+    monkeypatch.setattr(sys, "argv", [file, "none.AT2", "--folder", str(tmp_path)])
+    with pytest.raises(SystemExit) as left:
+        runpy.run_path(file, run_name="__main__")
+    assert left.value.code == 1
+    assert re.fullmatch(rf"{name}: none\.AT2: .*\n", capsys.readouterr().err)
 
 
 @pytest.mark.skipif(not COMPILED, reason="this run does without compilation")
