@@ -46,7 +46,7 @@ class AgeingPads(NamedTuple):
 
     @kernel
     def states(self):
-        return 4
+        return 3
 
     @kernel
     def variables(self):
