@@ -2,7 +2,8 @@
 
 import math
 import warnings
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -10,11 +11,11 @@ import numpy as np
 from rockframe.errors import ModelWarning, RockframeError, SolverError
 from rockframe.simulation.beside import Beside, Run
 from rockframe.simulation.certificate_words import sentence
-from rockframe.simulation.certification import Certificate, Certification
+from rockframe.simulation.certification import Certification
 from rockframe.simulation.finer import finer_plans
 from rockframe.simulation.nudging import SceneAt, parameters, scaled, scales
 from rockframe.simulation.plan import Plan
-from rockframe.simulation.scan import Scan, scan
+from rockframe.simulation.scan import NOT_TRIED, Scan, scan
 from rockframe.solve.accuracy import FEWEST
 from rockframe.system.assembly import Assembly
 
@@ -31,18 +32,111 @@ PER_PARAMETER: Final = (4, 14)
 FOR_PARAMETERS: Final = 0.6
 """Share of all runs that may go to parameters."""
 
-NONE: Final = Certificate(
-    converged=False,
-    robust=False,
-    margin=math.nan,
-    flip=math.nan,
-    peak_error=math.nan,
-    peak_sensitivity=math.nan,
-    runs=0,
-    resolution=RESOLUTION,
-    sentence="No certificate: the run was not finished.",
-)
-"""Of a run without a verdict."""
+
+@dataclass(frozen=True)
+class Certificate:
+    """A run, and what the runs beside it showed; none where it was not finished.
+
+    Parameters
+    ----------
+    wanted : Certification
+        What was to be tried.
+    plan : Plan
+        The run's arguments.
+    base : Beside
+        What the run showed.
+    finer : sequence of (str, Beside)
+        Runs by finer means, with these in words.
+    nudged : sequence of (str, Scan)
+        Runs with a parameter changed, with its name in words.
+    along : Scan
+        Runs with a scaled motion or start.
+    """
+
+    wanted: Certification
+    plan: Plan
+    base: Beside
+    finer: Sequence[tuple[str, Beside]] = ()
+    nudged: Sequence[tuple[str, Scan]] = ()
+    along: Scan = NOT_TRIED
+
+    @property
+    def finished(self) -> bool:
+        """Whether the run has a verdict."""
+        return self.base.overturned is not None
+
+    @property
+    def converged(self) -> bool:
+        """Whether the verdict is that of every run by finer means, by more than they differ."""
+        return self.finished and all(settles(self.base, other) for _, other in self.finer)
+
+    @property
+    def robust(self) -> bool:
+        """Whether no change of a parameter or the scale up to the nudge has another verdict.
+
+        Nor is one to be feared between the changes that were tried.
+        """
+        followed = all(found.flip is None and found.followed for _, found in self.nudged)
+        return self.finished and followed and not self.margin < self.wanted.nudge
+
+    @property
+    def margin(self) -> float:
+        """Largest change of scale up to which no other verdict was found; NaN if none was tried."""
+        return self.along.margin if self.along.tried else math.nan
+
+    @property
+    def flip(self) -> float:
+        """Scale nearest to one that was found to change the verdict; NaN if none."""
+        return math.nan if self.along.flip is None else 1.0 + self.along.flip
+
+    @property
+    def peak_error(self) -> float:
+        """Largest difference from the peak by finer means, times a safety factor [rad]."""
+        return SAFETY * self._farthest([other for _, other in self.finer])
+
+    @property
+    def peak_sensitivity(self) -> float:
+        """Largest difference from the peak with a nudged parameter [rad]."""
+        return self._farthest([shown for _, found in self.nudged for shown in found.tried.values()])
+
+    def _farthest(self, others: list[Beside]) -> float:
+        """Give the largest difference of peaks; NaN if a run was cut off before its own."""
+        apart = [
+            math.nan if one.overturned is None else abs(one.peak - self.base.peak)
+            for one in (self.base, *others)
+        ]
+        return float(np.max(apart))
+
+    @property
+    def runs(self) -> int:
+        """Number of runs beside."""
+        return len(self.finer) + _number_of_runs(self.nudged) + len(self.along.tried)
+
+    @property
+    def sentence(self) -> str:
+        """All this in words."""
+        return sentence(self)
+
+    def values(self) -> dict[str, float | bool]:
+        """Give the scalars by their names in the schema."""
+        return {
+            "verdict_converged": self.converged,
+            "verdict_robust": self.robust,
+            "verdict_margin": self.margin,
+            "verdict_flip_scale": self.flip,
+            "peak_error_estimate": self.peak_error,
+            "peak_sensitivity": self.peak_sensitivity,
+        }
+
+    def attributes(self) -> dict[str, str | float | int]:
+        """Give what a dataset says of the certificate."""
+        return {
+            "certificate": self.sentence,
+            "certificate_nudge": self.wanted.nudge,
+            "certificate_reach": self.wanted.reach,
+            "certificate_resolution": RESOLUTION,
+            "certificate_runs": self.runs,
+        }
 
 
 def certify(
@@ -68,7 +162,7 @@ def certify(
     Certificate
     """
     if base.overturned is None:
-        return NONE
+        return Certificate(wanted, plan, base)
     bare = replace(plan, output_step=None, requested=(), points=())
     with warnings.catch_warnings():
         # the run itself has given them
@@ -77,25 +171,9 @@ def certify(
             (words, run(system, other)) for words, other in finer_plans(system, bare, base.step)
         ]
         nudged = _nudged(system, bare, base, wanted, run)
-        nearby = [shown for _, found in nudged for shown in found.tried.values()]
-        spent = len(finer) + len(nearby)
-        most = max(wanted.runs - spent, wanted.runs // 4)
+        most = max(wanted.runs - len(finer) - _number_of_runs(nudged), wanted.runs // 4)
         along = _scaled(system, bare, base, wanted, run, most)
-    margin = along.margin if along.tried else math.nan
-    followed = all(found.flip is None and found.followed for _, found in nudged)
-    certificate = Certificate(
-        converged=all(settles(base, other) for _, other in finer),
-        robust=followed and not margin < wanted.nudge,
-        margin=margin,
-        flip=math.nan if along.flip is None else 1.0 + along.flip,
-        peak_error=SAFETY * _farthest(base, [other for _, other in finer]),
-        peak_sensitivity=_farthest(base, nearby),
-        runs=spent + len(along.tried),
-        resolution=RESOLUTION,
-        sentence="",
-    )
-    text = sentence(certificate, base, finer, nudged, along, wanted, plan)
-    return replace(certificate, sentence=text)
+    return Certificate(wanted, plan, base, finer, nudged, along)
 
 
 def _nudged(
@@ -151,7 +229,5 @@ def settles(base: Beside, finer: Beside) -> bool:
     return all(SAFETY * abs(a - b) < a for a, b in pairs)
 
 
-def _farthest(base: Beside, others: list[Beside]) -> float:
-    """Give the largest difference of peak rotations; NaN if a run was cut off before its own."""
-    apart = [math.nan if one.overturned is None else abs(one.peak - base.peak) for one in others]
-    return float(np.max(apart, initial=0.0))
+def _number_of_runs(nudged: Sequence[tuple[str, Scan]]) -> int:
+    return sum(len(found.tried) for _, found in nudged)

@@ -1,4 +1,4 @@
-"""What a certificate tries, and what it found."""
+"""What a certificate tries."""
 
 from dataclasses import dataclass
 from typing import Final
@@ -74,65 +74,3 @@ def certification_of(given: object) -> Certification | None:
         return given
     msg = f"simulate: certify must be True, False or a Certification(...), got {shown(given)}"
     raise ComponentError(msg)
-
-
-@dataclass(frozen=True)
-class Certificate:
-    """What the runs beside a run showed.
-
-    Parameters
-    ----------
-    converged : bool
-        Whether the verdict is that of every run by finer means, by more than they differ.
-    robust : bool
-        Whether no run with a parameter or the motion's scale changed by up to the nudge
-        has another verdict, and none is to be feared between them.
-    margin : float
-        Largest change of scale up to which no other verdict was found; NaN if there is
-        nothing to scale [1].
-    flip : float
-        Scale nearest to one that was found to change the verdict; NaN if none [1].
-    peak_error : float
-        Largest difference of the peak rotation from that of a run by finer means, times a
-        safety factor [rad].
-    peak_sensitivity : float
-        Largest difference from that of a run with a nudged parameter [rad].
-    runs : int
-        Number of runs beside.
-    resolution : float
-        Length of an interval of scales that is not looked into, over its distance from
-        one [1].
-    sentence : str
-        All this in words.
-    """
-
-    converged: bool
-    robust: bool
-    margin: float
-    flip: float
-    peak_error: float
-    peak_sensitivity: float
-    runs: int
-    resolution: float
-    sentence: str
-
-    def values(self) -> dict[str, float | bool]:
-        """Give the scalars by their names in the schema."""
-        return {
-            "verdict_converged": self.converged,
-            "verdict_robust": self.robust,
-            "verdict_margin": self.margin,
-            "verdict_flip_scale": self.flip,
-            "peak_error_estimate": self.peak_error,
-            "peak_sensitivity": self.peak_sensitivity,
-        }
-
-    def attributes(self, wanted: Certification) -> dict[str, str | float | int]:
-        """Give what a dataset says of the certificate."""
-        return {
-            "certificate": self.sentence,
-            "certificate_nudge": wanted.nudge,
-            "certificate_reach": wanted.reach,
-            "certificate_resolution": self.resolution,
-            "certificate_runs": self.runs,
-        }

@@ -1,6 +1,5 @@
 """Changes of a run's inputs: one parameter of its scene, or the scale of what drives it."""
 
-import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Final
@@ -96,8 +95,3 @@ def scaled(plan: Plan, scale: float, limits: OverturningAngles) -> Plan | None:
     if abs(rotation) >= limits.on_side_of(rotation):
         return None
     return replace(plan, initial=start)
-
-
-def share(change: float) -> str:
-    """Write a relative change as a percentage."""
-    return f"{100.0 * change:.3g} %" if not math.isnan(change) else "nothing"

@@ -133,7 +133,7 @@ def run(system: Assembly, plan: Plan, certification: Certification | None = None
     if certification is not None:
         found = certify(system, plan, response.beside(), certification, beside)
         certificate = found.values()
-        attributes |= found.attributes(certification)
+        attributes |= found.attributes()
     values = {
         **response.events, **response.histories, **response.points, **response.scalars,
         **certificate,

@@ -5,6 +5,7 @@ clearances of the runs, which go to zero where the verdict changes: if they coul
 the slopes seen hereabouts, the interval is halved.
 """
 
+import math
 from bisect import insort
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
@@ -62,6 +63,10 @@ class Scan:
     def within(self, reach: float) -> int:
         """Give the number of changes tried up to a reach."""
         return sum(abs(change) <= reach for change in self.tried)
+
+
+NOT_TRIED: Final = Scan(math.nan, None, None, followed=False, tried={})
+"""What is found without a run."""
 
 
 @dataclass
