@@ -13,37 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockframe.results.outcome import Array, Generic
+from rockframe.system.load import Load
 
 Values = Mapping[str, Generic]
-
-
-@dataclass(frozen=True)
-class BodyNumbers:
-    """The body that histories are of, in SI units.
-
-    Parameters
-    ----------
-    mass : float
-        m [kg].
-    inertia : float
-        I_O about the centre of mass [kg m^2].
-    centre_height, eccentricity : float
-        h and e_c, of the centre of mass above the base and to the right of its middle [m].
-    small_rotation : bool
-        Whether the kinematics are expanded in the rotation.
-    """
-
-    mass: float
-    inertia: float
-    centre_height: float
-    eccentricity: float
-    small_rotation: bool
-
-    def sine_cosine(self, rotation: Array) -> tuple[Array, Array]:
-        """Give the sine and cosine of rotations, or their small-rotation forms."""
-        if self.small_rotation:
-            return rotation, np.ones_like(rotation)
-        return np.sin(rotation), np.cos(rotation)
 
 
 STACKED: Final = "rotation_on_cap"
@@ -54,7 +26,14 @@ NO_FORCE: Final = 1e-9
 """Force per mass, or change of velocity, that is rounding [m s^-2], [m s^-1]."""
 
 
-def force_histories(values: Values, ground: Array, body: BodyNumbers) -> dict[str, Generic]:
+def sine_cosine(rotation: Array, *, small: bool) -> tuple[Array, Array]:
+    """Give the sine and cosine of rotations, or their small-rotation forms."""
+    if small:
+        return rotation, np.ones_like(rotation)
+    return np.sin(rotation), np.cos(rotation)
+
+
+def force_histories(values: Values, ground: Array, load: Load) -> dict[str, Generic]:
     """Give absolute accelerations, the moment of the base, and the friction demand.
 
     Parameters
@@ -63,7 +42,7 @@ def force_histories(values: Values, ground: Array, body: BodyNumbers) -> dict[st
         Histories of a model, by their names in the schema.
     ground : ndarray, shape (samples, 2)
         Ground acceleration at the same times.
-    body : BodyNumbers
+    load : Load
         The body that they are of.
 
     Returns
@@ -73,9 +52,10 @@ def force_histories(values: Values, ground: Array, body: BodyNumbers) -> dict[st
     """
     thrust, press = values["horizontal_reaction"], values["vertical_reaction"]
     rotation = values.get(STACKED, values["rotation"])
-    sine, cosine = body.sine_cosine(rotation)
+    body, small = load.body, load.options.small
+    sine, cosine = sine_cosine(rotation, small=small)
     beside, lift = body.eccentricity * cosine, body.eccentricity * sine
-    if body.small_rotation:  # widths to first order
+    if small:  # widths to first order
         lift = np.zeros_like(rotation)
     weight_arm = body.centre_height * sine + beside
     thrust_arm = body.centre_height * cosine - lift
@@ -176,7 +156,7 @@ def friction_words(scalars: Mapping[str, Generic | float]) -> str:
     return f" Friction needed: more than any, where the base holds without pressing ({when:.4g} s)."
 
 
-def force_scalars(values: Values, events: EventStates, body: BodyNumbers) -> dict[str, float]:
+def force_scalars(values: Values, events: EventStates, mass: float) -> dict[str, float]:
     """Give peaks of forces over samples and events.
 
     Parameters
@@ -185,8 +165,8 @@ def force_scalars(values: Values, events: EventStates, body: BodyNumbers) -> dic
         Histories with those of :func:`force_histories`, up to overturning.
     events : EventStates
         Up to overturning, too.
-    body : BodyNumbers
-        The body.
+    mass : float
+        Of the body [kg].
 
     Returns
     -------
@@ -195,9 +175,9 @@ def force_scalars(values: Values, events: EventStates, body: BodyNumbers) -> dic
     """
     demand = events.with_samples(values, "friction_demand")
     most = int(np.argmax(demand))
-    impulses = events.impulses(body.mass)
+    impulses = events.impulses(mass)
     struck = friction_demand(
-        impulses["event_horizontal_impulse"], impulses["event_vertical_impulse"], body.mass
+        impulses["event_horizontal_impulse"], impulses["event_vertical_impulse"], mass
     )[events.is_impact]
     return {
         "peak_friction_demand": float(demand[most]),
@@ -207,10 +187,11 @@ def force_scalars(values: Values, events: EventStates, body: BodyNumbers) -> dic
     }
 
 
-def residuals(values: Values, body: BodyNumbers) -> dict[str, float]:
+def residuals(values: Values, load: Load) -> dict[str, float]:
     """Give what is left at the end of a run, by its names in the schema."""
     rotation = float(values["rotation"][-1])
-    sines, _ = body.sine_cosine(np.array([0.5 * rotation, rotation]))
+    body = load.body
+    sines, _ = sine_cosine(np.array([0.5 * rotation, rotation]), small=load.options.small)
     half, whole = float(sines[0]), float(sines[1])
     sunk = -float(values["vertical_displacement"][-1]) - body.eccentricity * whole
     return {

@@ -2,13 +2,11 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any, Final, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rockframe.constants import STANDARD_GRAVITY
 from rockframe.dynamics.events import SILENT
 from rockframe.dynamics.protocol import (
     IMPACT_LOSS,
@@ -17,50 +15,15 @@ from rockframe.dynamics.protocol import (
     ContactModel,
 )
 from rockframe.results.variables.runs import Direction
-from rockframe.signals.slope import Slope
 from rockframe.solve.layout import Status
 from rockframe.solve.observe import energies_of, memory_at_outputs
 from rockframe.solve.trajectory import Summary, Trajectory
 from rockframe.system.bodies import OverturningAngles
+from rockframe.system.setting import Setting
 
 Array = NDArray[np.float64]
 Generic = NDArray[Any]
 Values = Mapping[str, "Generic | float | int | bool"]
-LEVEL: Final = Slope(0.0, STANDARD_GRAVITY)
-"""A base line that does not rise."""
-
-
-@dataclass(frozen=True)
-class Scales:
-    """What a response is made relative to, in SI units.
-
-    `cap_offset` is the height of a cap's centre above that of the body of which the
-    cap is a part; None where there is no such cap. `eccentricity` is how far that body's centre
-    of mass is to the right of the middle of its base, and `slope` how that rises.
-    """
-
-    overturning_angles: OverturningAngles
-    uplift_angle: float
-    settlement: float | None
-    cap_offset: float | None = None
-    eccentricity: float = 0.0
-    small_rotation: bool = False
-    pads_on_cap: bool = False
-    slope: Slope = LEVEL
-
-    @property
-    def symmetric(self) -> bool:
-        """Whether both sides are alike."""
-        return self.eccentricity == 0.0 and self.slope.level
-
-    def peak(self, run: Summary) -> "Peak":
-        """Give the rotation of a run that came closest to overturning."""
-        left, right = self.overturning_angles
-        return max(
-            Peak(run.peak_right / right, run.peak_right, Direction.RIGHT),
-            Peak(run.peak_left / left, run.peak_left, Direction.LEFT),
-            key=lambda peak: peak.share,
-        )
 
 
 class Peak(NamedTuple):
@@ -71,6 +34,15 @@ class Peak(NamedTuple):
     side: Direction
 
 
+def peak_of(run: Summary, angles: OverturningAngles) -> Peak:
+    """Give the rotation of a run that came closest to overturning."""
+    return max(
+        Peak(run.peak_right / angles.right, run.peak_right, Direction.RIGHT),
+        Peak(run.peak_left / angles.left, run.peak_left, Direction.LEFT),
+        key=lambda peak: peak.share,
+    )
+
+
 def contact_histories(model: ContactModel, run: Trajectory) -> dict[str, Generic]:
     """Give the contact states at the output times, by their names in the schema."""
     values: dict[str, Generic] = {"contact_state": model.contact[run.mode].astype(np.int8)}
@@ -79,15 +51,15 @@ def contact_histories(model: ContactModel, run: Trajectory) -> dict[str, Generic
     return values
 
 
-def relative_histories(values: Mapping[str, Generic], scales: Scales) -> dict[str, Generic]:
+def relative_histories(values: Mapping[str, Generic], setting: Setting) -> dict[str, Generic]:
     """Give rotation and vertical displacement over their scales."""
-    left, right = scales.overturning_angles
+    left, right = setting.overturning_angles
     rotation = values["rotation"]
     limit = np.where(rotation < 0.0, left, right) if left != right else left
     relative: dict[str, Generic] = {"relative_rotation": rotation / limit}
-    if scales.settlement is not None:
+    if setting.settlement is not None:
         relative["relative_vertical_displacement"] = (
-            values["vertical_displacement"] / scales.settlement
+            values["vertical_displacement"] / setting.settlement
         )
     return relative
 
@@ -100,17 +72,17 @@ def ground_histories(ground: Array, *, has_vertical_motion: bool) -> dict[str, G
     return values
 
 
-def cap_histories(values: Mapping[str, Generic], scales: Scales) -> dict[str, Generic]:
+def cap_histories(values: Mapping[str, Generic], setting: Setting) -> dict[str, Generic]:
     """Give the motion of a cap that is a part of the body, :eq:`eq-carried`."""
-    offset, rotation = scales.cap_offset, values["rotation"]
+    offset, rotation = setting.cap_offset, values["rotation"]
     if offset is None:
         return {}
-    if scales.small_rotation:
+    if setting.options.small:
         sine, versine = rotation, 0.5 * rotation**2
     else:
         sine, versine = np.sin(rotation), 2.0 * np.sin(0.5 * rotation) ** 2
-    rate, beside = values["angular_velocity"], scales.eccentricity
-    cosine = 1.0 if scales.small_rotation else np.cos(rotation)
+    rate, beside = values["angular_velocity"], setting.body.eccentricity
+    cosine = 1.0 if setting.options.small else np.cos(rotation)
     return {
         "cap_rotation": rotation.copy(),
         "cap_angular_velocity": rate.copy(),
@@ -163,11 +135,11 @@ def event_columns(model: ContactModel, run: Trajectory) -> dict[str, Generic]:
     }
 
 
-def scalars(run: Summary, scales: Scales) -> dict[str, float | int | bool]:
+def scalars(run: Summary, setting: Setting) -> dict[str, float | int | bool]:
     """Give the scalars of a run by their names in the schema."""
-    angles = scales.overturning_angles
+    angles = setting.overturning_angles
     sides: dict[str, float] = {}
-    if not scales.symmetric:
+    if setting.leans:
         sides = {
             "left_overturning_angle": angles.left,
             "right_overturning_angle": angles.right,
@@ -179,7 +151,7 @@ def scalars(run: Summary, scales: Scales) -> dict[str, float | int | bool]:
         "overturning_time": run.overturning_time,
         "overturning_direction": run.overturning_direction,
         "peak_rotation": run.peak_rotation,
-        "peak_relative_rotation": scales.peak(run).share,
+        "peak_relative_rotation": peak_of(run, angles).share,
         "first_uplift_time": run.first_uplift_time,
         "impact_count": run.impact_count,
         "flight_time": run.flight_time,
@@ -187,7 +159,7 @@ def scalars(run: Summary, scales: Scales) -> dict[str, float | int | bool]:
         "energy_residual": run.energy_residual,
         "status": int(run.status),
         "overturning_angle": angles.least,
-        "uplift_angle": scales.uplift_angle,
+        "uplift_angle": setting.uplift_angle,
     }
 
 
@@ -198,15 +170,15 @@ _ENDINGS = {
 }
 
 
-def verdict(run: Summary, scales: Scales) -> str:
+def verdict(run: Summary, setting: Setting) -> str:
     """Say in one sentence what became of the block."""
     impacts = f"{run.impact_count} impact{'' if run.impact_count == 1 else 's'}"
-    nearest = scales.peak(run)
+    nearest = peak_of(run, setting.overturning_angles)
     peak = (
         f"peak rotation {nearest.rotation:.4g} rad, "
         f"{100.0 * nearest.share:.3g} % of the overturning angle"
     )
-    if not scales.symmetric:
+    if setting.leans:
         peak += f" to the {nearest.side.name.lower()}"
     if run.overturned:
         side = Direction(run.overturning_direction).name.lower()
@@ -218,7 +190,7 @@ def verdict(run: Summary, scales: Scales) -> str:
     else:
         text = f"Did not overturn: {peak}; {impacts}"
     if not run.overturned and math.isnan(run.first_uplift_time):
-        text += ", no uplift from the pads" if scales.pads_on_cap else ", no uplift"
+        text += ", no uplift from the pads" if setting.stacked else ", no uplift"
     if run.flight_time > 0.0:
         text += f", {run.flight_time:.3g} s in flight"
     if run.overturned and not run.status.finished:

@@ -5,8 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rockframe.results.forces import BodyNumbers, EventStates
+from rockframe.results.forces import EventStates, sine_cosine
 from rockframe.results.outcome import Array, Generic
+from rockframe.system.load import Load
 
 
 @dataclass(frozen=True)
@@ -64,7 +65,7 @@ def point_labels(points: Sequence[Point]) -> dict[str, Generic]:
 
 
 def point_histories(
-    points: Sequence[Point], values: Mapping[str, Generic], body: BodyNumbers
+    points: Sequence[Point], values: Mapping[str, Generic], load: Load
 ) -> dict[str, Generic]:
     """Give displacements and absolute accelerations of points.
 
@@ -74,7 +75,7 @@ def point_histories(
         Of the body.
     values : mapping of str to ndarray
         Histories of the body with absolute accelerations, by their names in the schema.
-    body : BodyNumbers
+    load : Load
         The body.
 
     Returns
@@ -84,16 +85,17 @@ def point_histories(
     """
     rotation, rate = values["rotation"], values["angular_velocity"]
     angular = values["angular_acceleration"]
+    body, small = load.body, load.options.small
     right = np.array([point.x for point in points])[:, None] - body.eccentricity
     up = np.array([point.y for point in points])[:, None] - body.centre_height
-    sine, cosine = body.sine_cosine(rotation)
+    sine, cosine = sine_cosine(rotation, small=small)
     # derivatives of the place about the centre of mass by the rotation
     across_rate, up_rate = up * cosine - right * sine, -right * cosine - up * sine
     across_bend, up_bend = -right * cosine - up * sine, right * sine - up * cosine
-    if body.small_rotation:  # heights to second order, widths to first
+    if small:  # heights to second order, widths to first
         across_rate, up_rate = up + 0.0 * rotation, -right - up * rotation
         across_bend, up_bend = np.zeros_like(up_rate), -up + 0.0 * rotation
-    across, above = carried(right, up, rotation, small_rotation=body.small_rotation)
+    across, above = carried(right, up, rotation, small_rotation=small)
     square = rate * rate
     x, y = values["horizontal_displacement"], values["vertical_displacement"]
     a_x = values["absolute_horizontal_acceleration"]
@@ -110,7 +112,7 @@ def point_peaks(
     points: Sequence[Point],
     values: Mapping[str, Generic],
     events: EventStates,
-    body: BodyNumbers,
+    load: Load,
 ) -> dict[str, Generic]:
     """Give peaks of displacements and absolute accelerations of points, over samples and events.
 
@@ -122,7 +124,7 @@ def point_peaks(
         As for :func:`point_histories`, up to overturning.
     events : EventStates
         Up to overturning, too.
-    body : BodyNumbers
+    load : Load
         The body.
 
     Returns
@@ -130,7 +132,7 @@ def point_peaks(
     dict of str to ndarray, shape (points,)
         By their names in the schema.
     """
-    sides = [point_histories(points, side, body) for side in (values, events.before, events.after)]
+    sides = [point_histories(points, side, load) for side in (values, events.before, events.after)]
     return {
         f"peak_{name}": np.abs(np.concatenate([side[name] for side in sides], axis=1)).max(axis=1)
         for name in sides[0]

@@ -5,10 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from rockframe.dynamics.events import IMPACT, SILENT
-from rockframe.dynamics.protocol import ContactModel
 from rockframe.motion import GroundMotion
 from rockframe.results.forces import (
-    BodyNumbers,
     EventStates,
     force_histories,
     force_scalars,
@@ -16,7 +14,6 @@ from rockframe.results.forces import (
 )
 from rockframe.results.outcome import (
     Generic,
-    Scales,
     cap_histories,
     contact_histories,
     ground_histories,
@@ -63,9 +60,7 @@ def ground_at(motion: GroundMotion | None, time: Array) -> Array:
     return np.column_stack(found or [still, still])
 
 
-def answers_of(
-    system: Assembly, plan: Plan, model: ContactModel, run: Trajectory, scales: Scales
-) -> Answers:
+def answers_of(system: Assembly, plan: Plan, run: Trajectory) -> Answers:
     """Give what the samples of a run tell: histories, if they are kept, peaks and points.
 
     Parameters
@@ -74,24 +69,19 @@ def answers_of(
         The checked scene.
     plan : Plan
         The checked arguments.
-    model : ContactModel
-        The scene's equations.
     run : Trajectory
         The run.
-    scales : Scales
-        What the response is made relative to.
 
     Returns
     -------
     Answers
     """
-    body, count = _body_of(system), len(run.time)
-    shown_at, ground = _everything_of(system, plan, model, run, body)
+    setting, load, count = system.setting, system.setting.load, len(run.time)
+    shown_at, ground = _everything_of(system, plan, run)
     values = {name: each[:count] for name, each in shown_at.items()}
-    values |= contact_histories(model, run)
-    if model.soil_contact is None:
-        values |= cap_histories(values, scales)
-    values |= relative_histories(values, scales)
+    values |= contact_histories(system.model, run)
+    values |= cap_histories(values, setting)
+    values |= relative_histories(values, setting)
     vertical = plan.motion is not None and plan.motion.si.vertical is not None
     values |= ground_histories(ground[:count], has_vertical_motion=vertical)
     values["time"] = run.time
@@ -102,15 +92,15 @@ def answers_of(
         upright = {name: each[stands] for name, each in values.items()}
         events_upright = events.until(run.overturning_time)
     told: dict[str, Generic | float] = {
-        **force_scalars(upright, events_upright, body), **residuals(values, body)
+        **force_scalars(upright, events_upright, load.body.mass), **residuals(values, load)
     }  # fmt: skip
     places: dict[str, Generic] = {}
     if plan.points:
-        told |= point_peaks(plan.points, upright, events_upright, body)
+        told |= point_peaks(plan.points, upright, events_upright, load)
         places = point_labels(plan.points)
-        values |= point_histories(plan.points, values, body)
+        values |= point_histories(plan.points, values, load)
     shown = run.events.kind != SILENT
-    impulses = {name: each[shown] for name, each in events.impulses(body.mass).items()}
+    impulses = {name: each[shown] for name, each in events.impulses(load.body.mass).items()}
     asked = {name: each for name, each in impulses.items() if name in plan.requested}
     kept = {
         name: each
@@ -121,15 +111,8 @@ def answers_of(
     return Answers(shown_later, told, places, [*slips(system, upright, events_upright)])
 
 
-def _body_of(system: Assembly) -> BodyNumbers:
-    body = system.setting.body
-    return BodyNumbers(
-        body.mass, body.inertia, body.centre_height, body.eccentricity, system.options.small
-    )
-
-
 def _everything_of(
-    system: Assembly, plan: Plan, model: ContactModel, run: Trajectory, body: BodyNumbers
+    system: Assembly, plan: Plan, run: Trajectory
 ) -> tuple[dict[str, Generic], Array]:
     """Give what the model shows at the samples, then before and then after all events.
 
@@ -143,7 +126,7 @@ def _everything_of(
     moved, felt = felt_ground(ground, slope)
     shown: dict[str, Generic] = dict(
         observe_states(
-            model,
+            system.model,
             np.concatenate([run.mode.astype(np.int64), events.mode_before, events.mode_after]),
             np.concatenate([run.state, events.state_before, events.state_after]),
             memory,
@@ -152,7 +135,7 @@ def _everything_of(
         )
     )
     shown = without_gravity(shown, slope)
-    return shown | force_histories(shown, moved, body), ground
+    return shown | force_histories(shown, moved, system.setting.load), ground
 
 
 def _events_in(shown_at: dict[str, Generic], run: Trajectory) -> EventStates:

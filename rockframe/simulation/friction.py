@@ -51,11 +51,10 @@ def slips(system: Assembly, values: Mapping[str, Generic], events: EventStates) 
 def _frictions(system: Assembly) -> Iterator[tuple[str, float, str]]:
     """Give the coefficients of friction that were given, and which demand each must bear."""
     parts = system.parts
-    stacked = system.scene.coupling is not None
     under = (
         (parts.ground, _BLOCK),
         (parts.pads, _BLOCK),
-        (parts.soil, _CAP if stacked else _BLOCK),
+        (parts.soil, _CAP if system.setting.stacked else _BLOCK),
     )
     for part, name in under:
         friction = None if part is None else getattr(part.si, "friction", None)

@@ -15,9 +15,9 @@ from rockframe.results.dataset import build_dataset
 from rockframe.results.forces import friction_words
 from rockframe.results.outcome import (
     Generic,
-    Scales,
     energy_histories,
     event_columns,
+    peak_of,
     scalars,
     verdict,
 )
@@ -35,6 +35,7 @@ from rockframe.simulation.provenance import motion_attributes
 from rockframe.solve.integrate import STILL_INTERVAL, integrate
 from rockframe.solve.trajectory import Summary, Trajectory
 from rockframe.system.assembly import Assembly
+from rockframe.system.setting import Setting
 
 ADAPTIVE = "Dormand-Prince 5(4) from sample to sample, with event location"
 FIXED = "Nystrom method of order 3 in fixed sub-steps from sample to sample, with event location"
@@ -65,7 +66,6 @@ class Response:
 
     system: Assembly
     plan: Plan
-    scales: Scales
     trajectory: Trajectory
     histories: dict[str, Generic]
     sampled: dict[str, Generic | float]  # what samples tell beside histories
@@ -80,11 +80,11 @@ class Response:
     @cached_property
     def scalars(self) -> dict[str, Generic | float | int | bool]:
         """All scalars, and peaks at points, by their names in the schema."""
-        return {**scalars(self.trajectory, self.scales), **self.sampled}
+        return {**scalars(self.trajectory, self.system.setting), **self.sampled}
 
     def beside(self) -> Beside:
         """Tell what a certificate asks of the run."""
-        share = self.scales.peak(self.trajectory).share
+        share = peak_of(self.trajectory, self.system.setting.overturning_angles).share
         return what_showed(self.trajectory, self.events, share, self.plan.duration)
 
     def cautions(self) -> list[Caution]:
@@ -94,7 +94,7 @@ class Response:
             self.system, plan, summary, self.beside, lambda other: beside(self.system, other)
         )
         return [
-            *_unfinished(summary, self.scales),
+            *_unfinished(summary, self.system.setting),
             *([] if audit is None else [(SolverWarning, audit)]),
             *_lost_weight(self.system, plan.motion),
             *_pulling(self.system, self.histories, summary.overturning_time),
@@ -120,7 +120,7 @@ def run(system: Assembly, plan: Plan, certification: Certification | None = None
     """
     response = respond(system, plan)
     summary = response.trajectory
-    attributes = _attributes(system, plan, summary, response.scales)
+    attributes = _attributes(system, plan, summary)
     attributes |= end_attributes(summary.ending)
     if summary.status.finished:
         attributes["verdict"] = f"{attributes['verdict']}{friction_words(response.sampled)}"
@@ -175,21 +175,6 @@ def beside(system: Assembly, plan: Plan) -> Beside:
     return respond(system, plan).beside()
 
 
-def scales_of(system: Assembly) -> Scales:
-    """Give what the responses of a system are made relative to."""
-    setting = system.setting
-    return Scales(
-        setting.overturning_angles,
-        setting.uplift_angle,
-        setting.settlement,
-        setting.cap_offset,
-        setting.body.eccentricity,
-        small_rotation=system.options.small,
-        pads_on_cap=system.scene.coupling is not None,
-        slope=setting.slope,
-    )
-
-
 def respond(system: Assembly, plan: Plan) -> Response:
     """Integrate as planned.
 
@@ -204,7 +189,7 @@ def respond(system: Assembly, plan: Plan) -> Response:
     -------
     Response
     """
-    model, scales = system.model, scales_of(system)
+    model, slope = system.model, system.options.slope
     trajectory = integrate(
         model, start_of(plan.initial), felt_motion(system, plan), plan.accuracy,
         duration=plan.duration, output_step=plan.output_step,
@@ -215,24 +200,22 @@ def respond(system: Assembly, plan: Plan) -> Response:
     points: dict[str, Generic] = {}
     slips: list[str] = []
     if plan.output_step is not None:
-        answers = answers_of(system, plan, model, trajectory, scales)
+        answers = answers_of(system, plan, trajectory)
         histories, told = answers.values, answers.scalars
         points, slips = answers.points, answers.slips
     if plan.energies:
         energies = energy_histories(model, trajectory)
-        if not scales.slope.level:
+        if not slope.level:
             swayed = histories["horizontal_displacement"]
-            energies = energies_on_slope(energies, model, trajectory, swayed, scales.slope)
+            energies = energies_on_slope(energies, model, trajectory, swayed, slope)
         histories = histories | {name: energies[name] for name in plan.energies}
-    return Response(system, plan, scales, trajectory, histories, told, points, slips)
+    return Response(system, plan, trajectory, histories, told, points, slips)
 
 
-def _attributes(
-    system: Assembly, plan: Plan, summary: Summary, scales: Scales
-) -> dict[str, str | float | int]:
+def _attributes(system: Assembly, plan: Plan, summary: Summary) -> dict[str, str | float | int]:
     coupling = {"coupling": str(system.options.coupling)} if system.scene.coupling else {}
     return {
-        "verdict": verdict(summary, scales),
+        "verdict": verdict(summary, system.setting),
         "overturned": int(bool(summary.overturned)),
         "overturning_time": summary.overturning_time,
         "overturning_direction": Direction(summary.overturning_direction).name.lower(),
@@ -260,9 +243,9 @@ def nothing_to_say(system: Assembly, summary: Summary) -> bool:
     return summary.status.finished and summary.energy_residual <= doubtful(system)
 
 
-def _unfinished(summary: Summary, scales: Scales) -> Iterator[Caution]:
+def _unfinished(summary: Summary, setting: Setting) -> Iterator[Caution]:
     if not summary.status.finished:
-        yield SolverWarning, verdict(summary, scales)
+        yield SolverWarning, verdict(summary, setting)
 
 
 def _lost_weight(system: Assembly, motion: GroundMotion | None) -> Iterator[Caution]:

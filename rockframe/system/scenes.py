@@ -71,7 +71,7 @@ def _stacked(kind: type[StackedSetting], parts: Parts, options: Options) -> Stac
     upper, lower = _alone("pads", parts, options), _with_cap(parts, options)
     _refuse_twins(parts, upper, lower)
     cap = cap_under(parts.the_block, parts.the_cap)
-    return kind(upper.load, upper, lower, cap, cap_offset=lower.cap_offset)
+    return kind(upper.load, upper, lower, cap)
 
 
 _STACK = frozenset({"block", "pads", "cap", "soil"})

@@ -2,7 +2,7 @@
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 from rockframe.signals.slope import Slope
 from rockframe.system.bodies import Body, OverturningAngles, leaning_cautions
@@ -30,6 +30,8 @@ class Setting(ABC):
 
     load: Load
     cap_offset: float | None = field(default=None, kw_only=True)
+    stacked: ClassVar[bool] = False
+    """Whether the body stands on pads on a cap on soil."""
 
     @property
     def body(self) -> Body:

@@ -4,7 +4,7 @@ import math
 from abc import abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -44,13 +44,12 @@ class StackedSetting(Setting):
         Block and cap as one body on the soil.
     cap : Cap
         The cap.
-    cap_offset : float, optional
-        Height of the cap's centre above that of cap and block as one body [m].
     """
 
     upper: AloneSetting
     lower: AloneSetting
     cap: Cap
+    stacked: ClassVar[bool] = True
 
     @property
     @abstractmethod

@@ -4,6 +4,7 @@ import math
 import re
 from dataclasses import replace
 from inspect import signature
+from types import SimpleNamespace
 
 import cf_xarray  # noqa: F401
 import numpy as np
@@ -23,7 +24,7 @@ from contract.scenes import (
 )
 
 import rockframe as rf
-from rockframe.results.outcome import Scales, verdict
+from rockframe.results.outcome import verdict
 from rockframe.results.schema import ENERGIES, SCHEMA
 from rockframe.solve.accuracy import accuracy_of
 from rockframe.solve.layout import Status
@@ -564,14 +565,13 @@ def test_a_verdict_in_words(found, pads_on_cap, words):
         substeps=0,
         energy_residual=0.0,
     )
-    scales = Scales(OverturningAngles(0.2, 0.2), 0.01, None, pads_on_cap=pads_on_cap)
-    assert verdict(replace(summary, **found), scales) == words
+    angles = OverturningAngles(0.2, 0.2)
+    setting = SimpleNamespace(overturning_angles=angles, leans=False, stacked=pads_on_cap)
+    assert verdict(replace(summary, **found), setting) == words
     if not summary.overturned and summary.status.finished and not found:
-        to_sides = replace(
-            scales, overturning_angles=OverturningAngles(0.2, 0.025), eccentricity=0.1
-        )
+        setting.overturning_angles, setting.leans = OverturningAngles(0.2, 0.025), True
         assert "peak rotation 0.005 rad, 20 % of the overturning angle to the right;" in verdict(
-            summary, to_sides
+            summary, setting
         )
 
 

@@ -117,7 +117,7 @@ class _Telling:
         if run.summary.overturned is None:
             self._clear(case)
             return
-        told = scalars(run.summary, run.scales) if response is None else response.scalars
+        told = scalars(run.summary, run.system.setting) if response is None else response.scalars
         self._put_scalars(case, {name: told[name] for name in told if name != _STATUS})
         if self._kept is not None and response is not None:
             self._put_histories(case, response.histories, self._kept)

@@ -60,6 +60,6 @@ def each_run(
         try:
             system, said, plan = cases.planned(case)
             response = respond(system, plan)
-            yield Finished(case, system, response.trajectory, response.scales, said, response)
+            yield Finished(case, system, response.trajectory, said, response)
         except Exception as problem:  # whatever it is, it is this case's alone
             yield Failed(case, problem)

@@ -5,6 +5,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Final
 
+from rockframe.results.outcome import peak_of
 from rockframe.simulation.certificate import SAFETY
 from rockframe.simulation.plan import Plan
 from rockframe.solve.accuracy import LEVELS, Accuracy, AccuracyLevel
@@ -63,7 +64,7 @@ def look_at(cases: CasesOfJob, run: Finished) -> Look:
     time = summary.overturning_time
     return Look(
         summary.overturned,
-        run.scales.peak(summary).share,
+        peak_of(summary, setting.overturning_angles).share,
         summary.impact_count,
         time,
         length_of(cases.job.arguments, cases.unscaled(run.case)) - time,

@@ -8,10 +8,9 @@ from typing import Any, Final
 import numpy as np
 
 from rockframe.compiled import COMPILED
-from rockframe.results.outcome import Scales
 from rockframe.signals import Motion
 from rockframe.simulation.beginning import start_of
-from rockframe.simulation.run import Response, nothing_to_say, scales_of
+from rockframe.simulation.run import Response, nothing_to_say
 from rockframe.solve.beginning import begun
 from rockframe.solve.integrate import STILL_INTERVAL
 from rockframe.solve.lanes.integrate import LaneRun, integrate_lanes, kind_of
@@ -36,8 +35,6 @@ class Finished:
         Its scene.
     summary : Summary
         What became of it.
-    scales : Scales
-        What that is made relative to.
     said : list of str
         What was warned of when its scene was assembled.
     response : Response or None
@@ -47,7 +44,6 @@ class Finished:
     case: int
     system: Assembly
     summary: Summary
-    scales: Scales
     said: list[str]
     response: Response | None = None
 
@@ -58,7 +54,6 @@ class _Scene:
 
     system: Assembly
     said: list[str]
-    scales: Scales
     run: LaneRun
     kind: Any
 
@@ -155,7 +150,7 @@ def _prepared(cases: CasesOfJob, case: int, vertical: bool) -> _Scene | None:
         duration=plan.duration, output_step=None, stop_at_overturning=plan.stop_at_overturning,
     )  # fmt: skip
     run = LaneRun(system.model, begin)
-    return _Scene(system, said, scales_of(system), run, kind_of(system.model))
+    return _Scene(system, said, run, kind_of(system.model))
 
 
 def _run(group: _Group) -> Iterator[Finished]:
@@ -171,4 +166,4 @@ def _run(group: _Group) -> Iterator[Finished]:
             **told_by(found.clock[k], found.counters[k]),
         )
         if nothing_to_say(scene.system, summary):
-            yield Finished(case, scene.system, summary, scene.scales, scene.said)
+            yield Finished(case, scene.system, summary, scene.said)
