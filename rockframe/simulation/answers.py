@@ -1,6 +1,6 @@
 """Histories, forces and points of a run, as far as they are asked for."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -16,12 +16,13 @@ from rockframe.results.outcome import (
     Generic,
     cap_histories,
     contact_histories,
+    energy_histories,
     ground_histories,
     relative_histories,
 )
 from rockframe.results.points import point_histories, point_labels, point_peaks
 from rockframe.results.schema import ON_REQUEST
-from rockframe.results.slope import felt_ground, without_gravity
+from rockframe.results.slope import energies_on_slope, felt_ground, without_gravity
 from rockframe.signals.arrays import Array
 from rockframe.simulation.friction import slips
 from rockframe.simulation.plan import Plan
@@ -32,7 +33,7 @@ from rockframe.system.assembly import Assembly
 
 @dataclass(frozen=True)
 class Answers:
-    """What histories tell.
+    """What samples tell; nothing of a run without.
 
     Parameters
     ----------
@@ -46,10 +47,10 @@ class Answers:
         Where a base has too little friction.
     """
 
-    values: dict[str, Generic]
-    scalars: dict[str, Generic | float]
-    points: dict[str, Generic]
-    slips: list[str]
+    values: dict[str, Generic] = field(default_factory=dict[str, Generic])
+    scalars: dict[str, Generic | float] = field(default_factory=dict[str, Generic | float])
+    points: dict[str, Generic] = field(default_factory=dict[str, Generic])
+    slips: list[str] = field(default_factory=list[str])
 
 
 def ground_at(motion: GroundMotion | None, time: Array) -> Array:
@@ -107,8 +108,22 @@ def answers_of(system: Assembly, plan: Plan, run: Trajectory) -> Answers:
         for name, each in values.items()
         if name not in ON_REQUEST or name in plan.requested
     }
-    shown_later = kept | asked if plan.histories else {}
+    shown_later = kept | asked | _energies(system, plan, run, values) if plan.histories else {}
     return Answers(shown_later, told, places, [*slips(system, upright, events_upright)])
+
+
+def _energies(
+    system: Assembly, plan: Plan, run: Trajectory, values: dict[str, Generic]
+) -> dict[str, Generic]:
+    """Give the energies that are asked for."""
+    if not plan.energies:
+        return {}
+    found, slope = energy_histories(system.model, run), system.options.slope
+    if not slope.level:
+        found = energies_on_slope(
+            found, system.model, run, values["horizontal_displacement"], slope
+        )
+    return {name: found[name] for name in plan.energies}
 
 
 def _everything_of(

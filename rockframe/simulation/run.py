@@ -15,16 +15,15 @@ from rockframe.results.dataset import build_dataset
 from rockframe.results.forces import friction_words
 from rockframe.results.outcome import (
     Generic,
-    energy_histories,
     event_columns,
     peak_of,
     scalars,
     verdict,
 )
-from rockframe.results.slope import energies_on_slope, felt_ground, slope_attributes
+from rockframe.results.slope import felt_ground, slope_attributes
 from rockframe.results.variables.runs import Direction
 from rockframe.signals import Motion
-from rockframe.simulation.answers import answers_of, ground_at
+from rockframe.simulation.answers import Answers, answers_of, ground_at
 from rockframe.simulation.audit import doubtful, unbalanced
 from rockframe.simulation.beginning import end_attributes, start_of
 from rockframe.simulation.beside import Beside, what_showed
@@ -62,15 +61,12 @@ def felt_motion(system: Assembly, plan: Plan) -> Motion | None:
 
 @dataclass(frozen=True)
 class Response:
-    """A run before it is labelled: what became of it, and its histories, if it keeps any."""
+    """A run before it is labelled: what became of it, and what its samples tell."""
 
     system: Assembly
     plan: Plan
     trajectory: Trajectory
-    histories: dict[str, Generic]
-    sampled: dict[str, Generic | float]  # what samples tell beside histories
-    points: dict[str, Generic]
-    slips: list[str]
+    answers: Answers
 
     @cached_property
     def events(self) -> dict[str, Generic]:
@@ -80,7 +76,7 @@ class Response:
     @cached_property
     def scalars(self) -> dict[str, Generic | float | int | bool]:
         """All scalars, and peaks at points, by their names in the schema."""
-        return {**scalars(self.trajectory, self.system.setting), **self.sampled}
+        return {**scalars(self.trajectory, self.system.setting), **self.answers.scalars}
 
     def beside(self) -> Beside:
         """Tell what a certificate asks of the run."""
@@ -97,8 +93,8 @@ class Response:
             *_unfinished(summary, self.system.setting),
             *([] if audit is None else [(SolverWarning, audit)]),
             *_lost_weight(self.system, plan.motion),
-            *_pulling(self.system, self.histories, summary.overturning_time),
-            *((ModelWarning, text) for text in self.slips),
+            *_pulling(self.system, self.answers.values, summary.overturning_time),
+            *((ModelWarning, text) for text in self.answers.slips),
         ]
 
 
@@ -123,7 +119,7 @@ def run(system: Assembly, plan: Plan, certification: Certification | None = None
     attributes = _attributes(system, plan, summary)
     attributes |= end_attributes(summary.ending)
     if summary.status.finished:
-        attributes["verdict"] = f"{attributes['verdict']}{friction_words(response.sampled)}"
+        attributes["verdict"] = f"{attributes['verdict']}{friction_words(response.answers.scalars)}"
     cautions = response.cautions()
     for kind, text in cautions:
         warn(text, kind)
@@ -135,8 +131,8 @@ def run(system: Assembly, plan: Plan, certification: Certification | None = None
         certificate = found.values()
         attributes |= found.attributes()
     values = {
-        **response.events, **response.histories, **response.points, **response.scalars,
-        **certificate,
+        **response.events, **response.answers.values, **response.answers.points,
+        **response.scalars, **certificate,
     }  # fmt: skip
     return build_dataset(values, attributes)
 
@@ -189,27 +185,14 @@ def respond(system: Assembly, plan: Plan) -> Response:
     -------
     Response
     """
-    model, slope = system.model, system.options.slope
     trajectory = integrate(
-        model, start_of(plan.initial), felt_motion(system, plan), plan.accuracy,
+        system.model, start_of(plan.initial), felt_motion(system, plan), plan.accuracy,
         duration=plan.duration, output_step=plan.output_step,
         stop_at_overturning=plan.stop_at_overturning, with_work=bool(plan.energies),
     )  # fmt: skip
-    histories: dict[str, Generic] = {}
-    told: dict[str, Generic | float] = {}
-    points: dict[str, Generic] = {}
-    slips: list[str] = []
-    if plan.output_step is not None:
-        answers = answers_of(system, plan, trajectory)
-        histories, told = answers.values, answers.scalars
-        points, slips = answers.points, answers.slips
-    if plan.energies:
-        energies = energy_histories(model, trajectory)
-        if not slope.level:
-            swayed = histories["horizontal_displacement"]
-            energies = energies_on_slope(energies, model, trajectory, swayed, slope)
-        histories = histories | {name: energies[name] for name in plan.energies}
-    return Response(system, plan, trajectory, histories, told, points, slips)
+    sampled = plan.output_step is not None
+    answers = answers_of(system, plan, trajectory) if sampled else Answers()
+    return Response(system, plan, trajectory, answers)
 
 
 def _attributes(system: Assembly, plan: Plan, summary: Summary) -> dict[str, str | float | int]:

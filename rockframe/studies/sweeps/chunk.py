@@ -120,7 +120,7 @@ class _Telling:
         told = scalars(run.summary, run.system.setting) if response is None else response.scalars
         self._put_scalars(case, {name: told[name] for name in told if name != _STATUS})
         if self._kept is not None and response is not None:
-            self._put_histories(case, response.histories, self._kept)
+            self._put_histories(case, response.answers.values, self._kept)
 
     def screen(self, every: Iterable[int], doubtful: Iterable[int]) -> None:
         """Note which cases were screened, and whose verdict was in doubt."""
