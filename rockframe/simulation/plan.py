@@ -1,7 +1,6 @@
 """The arguments of a run, checked against the system and one another."""
 
 import json
-from collections.abc import Sequence
 from dataclasses import dataclass
 from os import PathLike
 from typing import Any, Final, Unpack
@@ -29,13 +28,10 @@ _REST: Final = InitialState()
 _OWNER: Final = "simulate"
 
 
-@dataclass(frozen=True)
-class Arguments:
-    """What a run is asked for, whatever its system and motion; numbers in SI units."""
+@dataclass(frozen=True, kw_only=True)
+class _Asked:
+    """What is asked of a run beside its length and its start; numbers in SI units."""
 
-    duration: float | None
-    free_vibration: float | None
-    initial: "InitialState | xr.Dataset"
     accuracy: Accuracy
     accuracy_name: str
     output_step: float | None
@@ -44,23 +40,42 @@ class Arguments:
     points: tuple[Point, ...]
     stop_at_overturning: bool
 
-    def to_dict(self) -> dict[str, Any]:
-        """Give them as :meth:`rockframe.System.simulate` takes them, fit for JSON."""
-        initial = None if isinstance(self.initial, xr.Dataset) else self.initial.to_dict()
+    def _described(self) -> dict[str, Any]:
+        """Give it as :meth:`rockframe.System.simulate` takes it, fit for JSON."""
         return {
-            "duration": _time(self.duration),
-            "free_vibration": _time(self.free_vibration),
-            "initial": initial,
             "accuracy": vars(self.accuracy),
             "output_step": _time(self.output_step),
             "outputs": list(self.requested) if self.histories else None,
-            "points": _places(self.points),
-            "overturning": _course(self.stop_at_overturning),
+            "points": {
+                point.name: [f"{each!r} {LENGTH.unit}" for each in (point.x, point.y)]
+                for point in self.points
+            },
+            "overturning": str(
+                Overturning.STOP if self.stop_at_overturning else Overturning.CONTINUE
+            ),
         }
 
 
-@dataclass(frozen=True)
-class Plan:
+@dataclass(frozen=True, kw_only=True)
+class Arguments(_Asked):
+    """What a run is asked for, whatever its system and motion; numbers in SI units."""
+
+    duration: float | None
+    free_vibration: float | None
+    initial: "InitialState | xr.Dataset"
+
+    def to_dict(self) -> dict[str, Any]:
+        """Give them as :meth:`rockframe.System.simulate` takes them, fit for JSON."""
+        return {
+            "duration": _time(self.duration),
+            "free_vibration": _time(self.free_vibration),
+            "initial": None if isinstance(self.initial, xr.Dataset) else self.initial.to_dict(),
+            **self._described(),
+        }
+
+
+@dataclass(frozen=True, kw_only=True)
+class Plan(_Asked):
     """A run's arguments, checked and in SI units.
 
     There are samples where `output_step` is given: for the histories, if they are kept, and
@@ -70,13 +85,6 @@ class Plan:
     motion: GroundMotion | None
     duration: float
     initial: Beginning
-    accuracy: Accuracy
-    accuracy_name: str
-    output_step: float | None
-    histories: bool
-    requested: tuple[str, ...]
-    points: tuple[Point, ...]
-    stop_at_overturning: bool
 
     @property
     def energies(self) -> tuple[str, ...]:
@@ -85,31 +93,12 @@ class Plan:
 
     def to_json(self) -> str:
         """Give the plan as JSON, without the motion."""
-        return json.dumps(
-            {
-                "duration": _time(self.duration),
-                "initial": self.initial.to_dict(),
-                "accuracy": vars(self.accuracy),
-                "output_step": _time(self.output_step),
-                "outputs": list(self.requested) if self.histories else None,
-                "points": _places(self.points),
-                "overturning": _course(self.stop_at_overturning),
-            }
-        )
+        described = {"duration": _time(self.duration), "initial": self.initial.to_dict()}
+        return json.dumps({**described, **self._described()})
 
 
 def _time(value: float | None) -> str | None:
     return None if value is None else f"{value!r} {TIME.unit}"
-
-
-def _places(points: Sequence[Point]) -> dict[str, list[str]]:
-    return {
-        point.name: [f"{each!r} {LENGTH.unit}" for each in (point.x, point.y)] for point in points
-    }
-
-
-def _course(stops: bool) -> str:
-    return str(Overturning.STOP if stops else Overturning.CONTINUE)
 
 
 def plan_run(
@@ -235,18 +224,9 @@ def fitted(
                 f"{step:.6g} s); give a longer output_step, or outputs=None without points"
             )
     faults += lacking(system, arguments.requested)
-    return Plan(
-        motion=motion,
-        duration=length,
-        initial=beginning,
-        accuracy=arguments.accuracy,
-        accuracy_name=arguments.accuracy_name,
-        output_step=step,
-        histories=arguments.histories,
-        requested=arguments.requested,
-        points=arguments.points,
-        stop_at_overturning=arguments.stop_at_overturning,
-    )
+    asked = {name: getattr(arguments, name) for name in _Asked.__annotations__}
+    asked["output_step"] = step
+    return Plan(motion=motion, duration=length, initial=beginning, **asked)
 
 
 def _initial(given: object, faults: list[str]) -> "InitialState | xr.Dataset":
