@@ -8,8 +8,61 @@ from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError
 
 
+class Shape(Protocol):
+    """A body with a straight base, by what its angles, radii and restitutions follow from."""
+
+    @property
+    def shape_factor(self) -> float:
+        """Mu."""
+        ...
+
+    @property
+    def half_width(self) -> float:
+        """Of the base, b [m]."""
+        ...
+
+    @property
+    def centre_height(self) -> float:
+        """H [m]."""
+        ...
+
+    @property
+    def eccentricity(self) -> float:
+        """e_c [m]."""
+        ...
+
+    @property
+    def radius(self) -> float:
+        """R0 [m]."""
+        ...
+
+
+class Standing:
+    """What follows from where the centre of mass of a body is above its base."""
+
+    @property
+    def left(self: Shape) -> float:
+        """From the foot of the centre of mass to the left end of the base, b + e_c [m]."""
+        return self.half_width + self.eccentricity
+
+    @property
+    def right(self: Shape) -> float:
+        """From there to the right end, b - e_c [m]."""
+        return self.half_width - self.eccentricity
+
+    @property
+    def radius(self: Shape) -> float:
+        """R0, from an end of the base to the centre of mass, were that above the middle [m]."""
+        return math.hypot(self.half_width, self.centre_height)
+
+    def frequency_at(self: Shape, gravity: float) -> float:
+        """Angular frequency omega of Eq. (6) under a given gravity [rad s^-1]."""
+        mu = self.shape_factor
+        return math.sqrt(mu / (1.0 + mu) * gravity / self.radius)
+
+
 @dataclass(frozen=True)
-class BlockSI:
+class BlockSI(Standing):
     """Geometry and mass of a block in SI units, :eq:`eq-eccentric-body`.
 
     The centre of mass stands `centre_height` above the base and `eccentricity` to the right of
@@ -34,21 +87,6 @@ class BlockSI:
         return 0.5 * self.height
 
     @property
-    def left(self) -> float:
-        """From the foot of the centre of mass to the left end of the base, b + e_c [m]."""
-        return self.half_width + self.eccentricity
-
-    @property
-    def right(self) -> float:
-        """From there to the right end, b - e_c [m]."""
-        return self.half_width - self.eccentricity
-
-    @property
-    def radius(self) -> float:
-        """R0, from a corner to the centre of mass, were that above the middle [m]."""
-        return math.hypot(self.half_width, self.centre_height)
-
-    @property
     def overturning_angle(self) -> float:
         """Overturning angle theta = arctan(b/h) [rad], Eq. (1); the lesser of both sides."""
         return math.atan2(min(self.left, self.right), self.centre_height)
@@ -57,11 +95,6 @@ class BlockSI:
     def inertia(self) -> float:
         """I_O about the centre of mass [kg m^2]."""
         return self.mass * self.radius * self.radius / self.shape_factor
-
-    def frequency_at(self, gravity: float) -> float:
-        """Angular frequency omega of Eq. (6) under a given gravity [rad s^-1]."""
-        mu = self.shape_factor
-        return math.sqrt(mu / (1.0 + mu) * gravity / self.radius)
 
     @property
     def frequency(self) -> float:
@@ -72,30 +105,6 @@ class BlockSI:
     def maximum_restitution(self) -> float:
         """eps_max = (1 + mu cos 2 theta)/(1 + mu), Eq. (4); the lesser of both directions."""
         return min(greatest_restitutions(self))
-
-
-class Shape(Protocol):
-    """What the restitution of a body follows from."""
-
-    @property
-    def shape_factor(self) -> float:
-        """Mu."""
-        ...
-
-    @property
-    def half_width(self) -> float:
-        """Of the base, b [m]."""
-        ...
-
-    @property
-    def centre_height(self) -> float:
-        """H [m]."""
-        ...
-
-    @property
-    def eccentricity(self) -> float:
-        """e_c [m]."""
-        ...
 
 
 def greatest_restitutions(body: Shape) -> tuple[float, float]:

@@ -5,14 +5,14 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
-from rockframe.components.block_numbers import BlockSI, greatest_restitutions
+from rockframe.components.block_numbers import BlockSI, Standing, greatest_restitutions
 from rockframe.components.cap import CushionCapSI
 from rockframe.signals.slope import Slope
 from rockframe.system.impact import Restitutions
 
 
 @dataclass(frozen=True)
-class Body:
+class Body(Standing):
     """A rigid body with a straight base, in SI units."""
 
     half_width: float  # of the base, b
@@ -21,16 +21,6 @@ class Body:
     inertia: float  # about the centre of mass
     shape_factor: float  # mu
     eccentricity: float = 0.0  # of the centre of mass to the right of the middle, e_c
-
-    @property
-    def left(self) -> float:
-        """From the foot of the centre of mass to the left end of the base, b + e_c [m]."""
-        return self.half_width + self.eccentricity
-
-    @property
-    def right(self) -> float:
-        """From there to the right end, b - e_c [m]."""
-        return self.half_width - self.eccentricity
 
     @cached_property
     def overturning_angles(self) -> "OverturningAngles":
@@ -43,16 +33,6 @@ class Body:
     def least_friction(self) -> float:
         """b/h: with less, the base slides before an end of it lifts, on the lesser side [1]."""
         return min(self.left, self.right) / self.centre_height
-
-    @property
-    def radius(self) -> float:
-        """R0, from an end of the base to the centre of mass, were that above the middle [m]."""
-        return math.hypot(self.half_width, self.centre_height)
-
-    def frequency_at(self, gravity: float) -> float:
-        """Angular frequency omega of Eq. (6) under a given gravity [rad s^-1]."""
-        mu = self.shape_factor
-        return math.sqrt(mu / (1.0 + mu) * gravity / self.radius)
 
     @cached_property
     def maximum_restitution(self) -> Restitutions:
