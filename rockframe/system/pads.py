@@ -1,4 +1,4 @@
-"""Two pads under a block: their numbers and their equations."""
+"""Two pads under a block: their numbers, their equations and their words."""
 
 import math
 from dataclasses import dataclass
@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 from rockframe.components import TwoSpringSupport
 from rockframe.system.impact import Restitutions, resolve_restitution, restitution_cautions
 from rockframe.system.load import Load
-from rockframe.system.pads_words import pads_words
 from rockframe.system.support import BaseWords, Held, Support
+from rockframe.system.words import uplift_words
 
 if TYPE_CHECKING:
     from rockframe.dynamics.base_numbers import BaseNumbers
@@ -53,10 +53,6 @@ class PadSupport(Support):
             )
         return found
 
-    def words(self) -> BaseWords:
-        """Tell the pads in words."""
-        return pads_words(self)
-
     def law(self, body: "BodyLaw", mass: float, load_mass: float) -> "BaseNumbers":
         """Give the pads as the equations take them."""
         from rockframe.dynamics.base_numbers import pads_under
@@ -94,6 +90,36 @@ class PadSupport(Support):
             "static_left_reaction": half,
             "static_right_reaction": half,
         }
+
+    def words(self) -> BaseWords:
+        """Tell the pads in words."""
+        return BaseWords(
+            law="pad forces as in Eqs. (12) and (15)",
+            equations=[
+                ("full", "Eq. (12), corrected: 2 zeta sin(a)/(beta omega) in (12a); sin(2a)/2, "
+                 "beta^2 omega^4/g and 2 zeta/(beta omega) in (12b)"),
+                ("left", "Eq. (15), upper signs, corrected: [cos(theta) - cos(theta + a) + ...] in "
+                 "(15a); the sign of the bearing corner and omega^4 in (15b)"),
+                ("right", "Eq. (15), lower signs, with the same corrections"),
+                ("flight", "free fall and constant rotation rate (left out by the paper)"),
+                ("impact", f"a landing corner keeps {self.restitution.words()} of its speed, "
+                 "Eqs. (2)-(4) with the corner inertia for the printed I_O"),
+            ],
+            uplift=("uplift angle, Eq. (16)", uplift_words(self.uplift_angle)),
+            numbers=self._numbers(),
+            left_out=["tension in the pads"],
+        )  # fmt: skip
+
+    def _numbers(self) -> list[tuple[str, str]]:
+        omega = self.load.body.frequency_at(self.load.gravity)
+        return [
+            ("rocking frequency omega, Eq. (6)", f"{omega:.6g} rad/s"),
+            ("frequency ratio beta, Eq. (8)", f"{self.vertical_frequency / omega:.6g}"),
+            ("pad stiffness k, damping c", f"{self.stiffness:.6g} N/m, {self.damping:.6g} N s/m"),
+            ("settlement delta", f"{self.settlement:.6g} m"),
+            *self.vibrations("vertical vibration", "rocking vibration in full contact"),
+            ("restitution eps", self.restitution.words()),
+        ]
 
 
 def pads_under(pads: TwoSpringSupport, load: Load) -> PadSupport:

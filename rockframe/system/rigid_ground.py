@@ -1,4 +1,4 @@
-"""The scene of a block on rigid ground: its numbers and its model."""
+"""The scene of a block on rigid ground: its numbers, its words and its model."""
 
 import math
 from dataclasses import dataclass
@@ -9,7 +9,6 @@ from rockframe.system.impact import Restitutions, resolve_restitution, restituti
 from rockframe.system.load import load_of
 from rockframe.system.options import Options
 from rockframe.system.parts import Parts
-from rockframe.system.rigid_ground_words import rigid_ground_words
 from rockframe.system.setting import Setting
 from rockframe.system.statics import Statics
 from rockframe.system.words import Words, angle_words
@@ -91,10 +90,6 @@ class RigidGroundSetting(Setting):
             ]
         return []
 
-    def words(self) -> Words:
-        """Tell the block on rigid ground."""
-        return rigid_ground_words(self)
-
     def _contact_model(self) -> "ContactModel":
         from rockframe.dynamics.rigid_ground import corner_of, rigid_ground
 
@@ -157,6 +152,64 @@ class RigidGroundSetting(Setting):
         tilt = half * (left - right) / (left + right)
         shift = tilt - self.load.thrust / (left + right)
         return half - shift, half + shift
+
+    def words(self) -> Words:
+        """Tell the block on rigid ground."""
+        lean = "theta s - a" if self.slope.level else "theta s + i - a"
+        rocking = f"a'' = -omega^2 [(1 + yg''/g) sin({lean}) + (xg''/g) cos({lean})]"
+        if self.options.small:
+            rocking = "small rotation: a'' = -omega^2 [(1 + yg''/g) (theta s - a) + xg''/g]"
+            if not self.slope.level:
+                rocking += ", with gravity g cos(i) in the place of g, and xg'' with g sin(i)"
+        return Words(
+            equations=[
+                ("full", self._start_words()),
+                ("left, right", f"{rocking}, s = sgn(a) (Housner; Eq. (6) for omega)"),
+                ("impact", f"a' after = {self.restitution.words()} a' before, at a = 0 "
+                 "(Eq. (4) is the greatest value)"),
+            ],
+            restraint="the bearing corner does not slide (the restraint options make no "
+            "difference)",
+            uplift=[("uplift angle", "0 rad: any rotation lifts a corner")],
+            numbers=[
+                ("rocking frequency omega, Eq. (6)", self._frequency_words()),
+                ("restitution eps", self.restitution.words()),
+            ],
+            left_out=[
+                "sliding",
+                "elasticity of block and ground",
+                "flight (a vertical ground acceleration beyond gravity would need it)",
+            ],
+        )  # fmt: skip
+
+    def _start_words(self) -> str:
+        """Say when rocking starts."""
+        if self.slope.level:
+            return (
+                "at rest until |xg''| exceeds (g + yg'') tan(theta), "
+                f"{self.uplift_acceleration:.4g} m s^-2 without vertical motion"
+            )
+        to_right, to_left = self.uplift_accelerations
+        return (
+            "at rest until the resultant of gravity and ground acceleration passes beside a "
+            f"corner: without vertical motion at xg'' above {to_right:.4g} m s^-2 to the right, "
+            f"or above {to_left:.4g} m s^-2 to the left"
+        )
+
+    def _frequency_words(self) -> str:
+        """Write the frequency of rocking about each corner; one number where they are equal."""
+        body = self.body
+        left, right = (
+            math.sqrt(
+                self.gravity
+                * math.hypot(distance, body.centre_height)
+                / body.gyration_square_about(distance)
+            )
+            for distance in (body.left, body.right)
+        )
+        if left == right:
+            return f"{left:.6g} rad/s"
+        return f"about the left corner {left:.6g} rad/s, about the right one {right:.6g} rad/s"
 
 
 def rigid_ground_setting(parts: Parts, options: Options) -> RigidGroundSetting:

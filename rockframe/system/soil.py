@@ -1,4 +1,4 @@
-"""A bed of soil under a body: its numbers and its equations."""
+"""A bed of soil under a body: its numbers, its equations and its words."""
 
 import math
 from dataclasses import dataclass
@@ -7,12 +7,17 @@ from typing import TYPE_CHECKING
 from rockframe.components import WinklerSoil
 from rockframe.components.soil import Separation
 from rockframe.system.load import Load
-from rockframe.system.soil_words import soil_words
 from rockframe.system.support import BaseWords, Held, Support
+from rockframe.system.words import uplift_words
 
 if TYPE_CHECKING:
     from rockframe.dynamics.base_numbers import BaseNumbers
     from rockframe.dynamics.body import Body as BodyLaw
+
+_SEPARATION = {
+    Separation.DISPLACEMENT: "above the level of the unloaded bed",
+    Separation.PRESSURE: "above the level of the unloaded bed, and where the dashpots would pull",
+}
 
 
 @dataclass(frozen=True)
@@ -51,10 +56,6 @@ class BedSupport(Support):
             "the soil is too soft to hold the body upright: (2/3) k0 b^3 is below m g h, so "
             "that the smallest disturbance overturns it"
         ]
-
-    def words(self) -> BaseWords:
-        """Tell the bed in words."""
-        return soil_words(self)
 
     def law(self, body: "BodyLaw", mass: float, load_mass: float) -> "BaseNumbers":
         """Give the bed as the equations take it."""
@@ -98,6 +99,43 @@ class BedSupport(Support):
     def at_rest(self) -> dict[str, float]:
         """Give settlement and reaction, by their names in the schema."""
         return {"soil_settlement": self.settlement, "static_soil_reaction": self.load.weight}
+
+    def words(self) -> BaseWords:
+        """Tell the bed in words."""
+        one_sided = (
+            "Eq. (19), corrected: inertia I_O + m (h + b a)^2 and its a'^2 term in (19b), (19e), "
+            "(19f), (19h); resultants over the part in contact"
+        )
+        if self.load.options.small:
+            one_sided = (
+                "Eq. (19), corrected: (19e), (19f), (19h); inertia I_M and heights to second "
+                "order, so that energies balance"
+            )
+        return BaseWords(
+            law="soil's resultants as in Eqs. (18) and (19)",
+            equations=[
+                ("full", "Eq. (18) at small rotation; at finite rotation the same bed with "
+                 "x' = h cos(a), and its resultants over the whole base"),
+                ("left, right", one_sided),
+                ("flight", "free fall and constant rotation rate"),
+                ("contact", f"without impact law; the base parts from the bed "
+                 f"{_SEPARATION[self.separation]}"),
+            ],
+            uplift=("uplift angle, arcsin(delta/b)", uplift_words(self.uplift_angle)),
+            numbers=self._numbers(),
+            left_out=["yielding of the soil", "impact on the soil"],
+            body="body",
+            end="end",
+        )  # fmt: skip
+
+    def _numbers(self) -> list[tuple[str, str]]:
+        body = self.load.body
+        return [
+            ("mass on the soil", f"{body.mass:.6g} kg, centre {body.centre_height:.6g} m above it"),
+            ("soil stiffness k0, damping c0", f"{self.stiffness:.6g} Pa, {self.damping:.6g} Pa s"),
+            ("settlement delta", f"{self.settlement:.6g} m"),
+            *self.vibrations("vertical vibration, Eq. (18a)", "rocking in full contact, Eq. (18b)"),
+        ]
 
 
 def bed_under(soil: WinklerSoil, load: Load) -> BedSupport:
