@@ -82,7 +82,7 @@ class AloneSetting(Setting):
 
         return OnBase(self.load.own_law, self.support.own_law.law)
 
-    @property
+    @cached_property
     def rest_rotation(self) -> float:
         """Rotation at rest: a body leans to the side to which its weight turns it [rad].
 
@@ -93,10 +93,6 @@ class AloneSetting(Setting):
         AssemblyError
             The base is too soft, or too much inclined, to carry the body.
         """
-        return self._leaning
-
-    @cached_property
-    def _leaning(self) -> float:
         if not self.leans:
             return 0.0
         from rockframe.dynamics.rest import rest_rotation

@@ -2,6 +2,7 @@
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar
 
 from rockframe.signals.slope import Slope
@@ -73,7 +74,7 @@ class Setting(ABC):
     def model(self) -> str:
         """Name of the model."""
 
-    @property
+    @cached_property
     def rest_rotation(self) -> float:
         """Rotation at rest, of a body that leans on a base that gives way [rad]."""
         return 0.0

@@ -228,7 +228,7 @@ class CoupledSetting(StackedSetting):
         """Rotation of the cap at rest [rad]."""
         return self.rest.cap_rotation
 
-    @property
+    @cached_property
     def rest_rotation(self) -> float:
         """Rotation of the block at rest, with the cap [rad]."""
         return self.rest.rotation + self.rest.cap_rotation
@@ -272,7 +272,7 @@ class CascadeSetting(StackedSetting):
             rest_rotation=self.lower.rest_rotation,
         )
 
-    @property
+    @cached_property
     def rest_rotation(self) -> float:
         """Rotation of the block at rest, of both stages together [rad]."""
         return self.cap_lean + self.upper.rest_rotation
