@@ -1,7 +1,6 @@
 """A base of which only the law is known: rest and held rotations are found by numbers."""
 
 import math
-from typing import ClassVar
 
 import numpy as np
 
@@ -17,8 +16,6 @@ class NumericSupport(Support):
 
     A subclass gives ``model``, ``law`` and ``words``.
     """
-
-    settlement_name: ClassVar[str] = "pad_settlement"
 
     @property
     def settlement(self) -> float:
@@ -82,11 +79,3 @@ class NumericSupport(Support):
                 for column, value in zip(numbers.columns, shown, strict=True)
             },
         )
-
-    def at_rest(self) -> dict[str, float]:
-        """Give settlement and what the base shows at rest, by their names in the schema."""
-        shown = self.held(0.0, 1.0, self.load.weight).reactions
-        return {
-            self.settlement_name: self.settlement,
-            **{f"static_{name}": value for name, value in shown.items()},
-        }

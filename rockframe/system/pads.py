@@ -82,15 +82,6 @@ class PadSupport(Support):
             reactions={"left_reaction": left, "right_reaction": right},
         )
 
-    def at_rest(self) -> dict[str, float]:
-        """Give settlement and reactions, by their names in the schema."""
-        half = 0.5 * self.load.weight
-        return {
-            "pad_settlement": half / self.stiffness,
-            "static_left_reaction": half,
-            "static_right_reaction": half,
-        }
-
     def words(self) -> BaseWords:
         """Tell the pads in words."""
         return BaseWords(

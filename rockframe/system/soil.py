@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 from rockframe.components import WinklerSoil
 from rockframe.components.soil import Separation
@@ -37,6 +37,7 @@ class BedSupport(Support):
     stiffness: float
     damping: float
     separation: Separation
+    settlement_name: ClassVar[str] = "soil_settlement"
 
     @property
     def model(self) -> str:
@@ -95,10 +96,6 @@ class BedSupport(Support):
                 "toe_pressure": self.stiffness * sunk,
             },
         )
-
-    def at_rest(self) -> dict[str, float]:
-        """Give settlement and reaction, by their names in the schema."""
-        return {"soil_settlement": self.settlement, "static_soil_reaction": self.load.weight}
 
     def words(self) -> BaseWords:
         """Tell the bed in words."""

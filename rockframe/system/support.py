@@ -8,7 +8,7 @@ import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 from rockframe.system.load import Load
 from rockframe.system.statics import sine_cosine_rise
@@ -82,6 +82,8 @@ class Support(ABC):
     """
 
     load: Load
+    settlement_name: ClassVar[str] = "pad_settlement"
+    """Of the settlement, in the schema."""
 
     @property
     @abstractmethod
@@ -122,9 +124,13 @@ class Support(ABC):
     def held(self, sine: float, cosine: float, press: float) -> Held:
         """Give the equilibrium of the base at a rotation under a vertical force [N]."""
 
-    @abstractmethod
     def at_rest(self) -> dict[str, float]:
-        """Give settlement and reactions at rest, by their names in the schema of results."""
+        """Give settlement and what the base shows at rest, by their names in the schema."""
+        shown = self.held(0.0, 1.0, self.load.weight).reactions
+        return {
+            self.settlement_name: self.settlement,
+            **{f"static_{name}": value for name, value in shown.items()},
+        }
 
     @abstractmethod
     def words(self) -> BaseWords:
