@@ -212,7 +212,9 @@ def fitted(
         Of no use where there are faults.
     """
     beginning = _beginning(system, arguments.initial, faults)
-    length = _length(arguments, motion, faults)
+    length = length_of(arguments, motion)
+    if not length:
+        faults.append("nothing to simulate: give a motion, or a duration for a still ground")
     step = None
     if arguments.histories or arguments.points:
         step = arguments.output_step
@@ -274,12 +276,8 @@ def _beginning(
     return given
 
 
-def _length(arguments: Arguments, motion: GroundMotion | None, faults: list[str]) -> float:
-    length = 0.0 if motion is None else motion.si.duration
+def length_of(arguments: Arguments, motion: GroundMotion | None) -> float:
+    """Give the length of a run under a motion; zero where neither tells it [s]."""
     if arguments.duration is not None:
         return arguments.duration
-    if arguments.free_vibration is not None:
-        return length + arguments.free_vibration
-    if motion is None:
-        faults.append("nothing to simulate: give a motion, or a duration for a still ground")
-    return length
+    return (0.0 if motion is None else motion.si.duration) + (arguments.free_vibration or 0.0)

@@ -10,9 +10,9 @@ from rockframe.results.variables.requests import POINT_PEAKS, POINT_TIME, POINTS
 from rockframe.results.variables.runs import HISTORIES
 from rockframe.results.variables.variable import TIME
 from rockframe.simulation.asked import listed
-from rockframe.simulation.plan import STILL_GROUND_OUTPUT_STEP, Arguments
+from rockframe.simulation.plan import STILL_GROUND_OUTPUT_STEP, Arguments, length_of
 from rockframe.studies.sweeps.scenes import FunctionScene, Scene
-from rockframe.studies.sweeps.study import Histories, length_of
+from rockframe.studies.sweeps.study import Histories
 
 MOST_VALUES: Final = 1e9
 """Values of histories, or at points, beyond which a sweep is refused: eight gigabytes."""

@@ -7,14 +7,13 @@ from typing import Final
 
 from rockframe.results.outcome import peak_of
 from rockframe.simulation.certificate import SAFETY
-from rockframe.simulation.plan import Plan
+from rockframe.simulation.plan import Plan, length_of
 from rockframe.solve.accuracy import LEVELS, Accuracy, AccuracyLevel
 from rockframe.solve.integrate import STILL_INTERVAL
 from rockframe.solve.substeps import substeps_of
 from rockframe.studies.sweeps.cases_of_job import CasesOfJob
 from rockframe.studies.sweeps.runs import each_run
 from rockframe.studies.sweeps.side_by_side import Finished
-from rockframe.studies.sweeps.study import length_of
 from rockframe.system.assembly import Assembly
 
 SCREEN: Final = "screen"

@@ -11,7 +11,7 @@ import numpy as np
 from rockframe.compiled import COMPILED
 from rockframe.motion import GroundMotion
 from rockframe.results.outcome import Generic
-from rockframe.simulation.plan import STILL_GROUND_OUTPUT_STEP, Arguments
+from rockframe.simulation.plan import STILL_GROUND_OUTPUT_STEP, Arguments, length_of
 from rockframe.studies.sweeps.axes import Axis
 from rockframe.studies.sweeps.grid import Grid
 from rockframe.studies.sweeps.scenes import Scene
@@ -196,13 +196,6 @@ class Study:
         """Give the number of intervals of a run."""
         step = STILL_GROUND_OUTPUT_STEP if motion is None else motion.si.time_step
         return length_of(self.arguments, motion) / step
-
-
-def length_of(arguments: Arguments, motion: GroundMotion | None) -> float:
-    """Give the length of the runs under a motion, as far as it is known [s]."""
-    if arguments.duration is not None:
-        return arguments.duration
-    return (0.0 if motion is None else motion.si.duration) + (arguments.free_vibration or 0.0)
 
 
 def _digest(values: Generic) -> str:
