@@ -207,7 +207,7 @@ def _attributes(system: Assembly, plan: Plan, summary: Summary) -> dict[str, str
         "kinematics": str(system.options.rotation),
         **slope_attributes(system.options.slope),
         **coupling,
-        "model_description": system.describe(),
+        "model_description": system.description,
         "accuracy": plan.accuracy_name,
         "solver_method": ADAPTIVE if plan.accuracy.substeps is None else FIXED,
         "solver_rtol": plan.accuracy.rtol or math.nan,

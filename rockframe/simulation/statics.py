@@ -13,7 +13,6 @@ from rockframe.results.outcome import Generic
 from rockframe.results.schema import SCHEMA
 from rockframe.results.slope import slope_attributes
 from rockframe.system.assembly import Assembly
-from rockframe.system.setting import Setting
 from rockframe.system.small_motion import modes_of
 from rockframe.units import ANGLE, to_si_values
 
@@ -22,24 +21,20 @@ def equilibrium(system: Assembly) -> xr.Dataset:
     """Give settlements and reactions at rest, and the bounds of full contact."""
     setting = system.setting
     values: dict[str, float] = {
-        **{name: value for name, value in setting.equilibrium().items() if name in SCHEMA},
-        **_sides(setting),
+        name: value for name, value in setting.equilibrium().items() if name in SCHEMA
+    }
+    if setting.leans:
+        left, right = setting.overturning_angles
+        values |= {
+            "left_overturning_angle": left,
+            "right_overturning_angle": right,
+            "rest_rotation": setting.rest_rotation,
+        }
+    values |= {
         "overturning_angle": setting.overturning_angle,
         "uplift_angle": setting.uplift_angle,
     }
     return build_dataset(values, _about(system), title="Rest", source="vertical equilibrium")
-
-
-def _sides(setting: Setting) -> dict[str, float]:
-    """Give what a body that is not symmetric, or stands on a slope, has beyond others."""
-    if not setting.leans:
-        return {}
-    left, right = setting.overturning_angles
-    return {
-        "left_overturning_angle": left,
-        "right_overturning_angle": right,
-        "rest_rotation": setting.rest_rotation,
-    }
 
 
 def moment_rotation(system: Assembly, angles: object) -> xr.Dataset:
@@ -95,7 +90,7 @@ def frequencies(system: Assembly) -> xr.Dataset:
 def _about(system: Assembly) -> dict[str, str]:
     return {
         "model": system.setting.model,
-        "model_description": system.describe(),
+        "model_description": system.description,
         **slope_attributes(system.options.slope),
         "system_json": system.json,
     }

@@ -190,7 +190,7 @@ class System:
         str
             Several lines of plain text.
         """
-        return self._assembly.describe()
+        return self._assembly.description
 
     @hinted(
         damping="dampers belong to the parts, such as TwoSpringSupport(damping_ratio=0.1) or "

@@ -56,12 +56,9 @@ class Assembly:
         return self.setting.compile()
 
     @cached_property
-    def _description(self) -> str:
+    def description(self) -> str:
+        """Which model was picked, by which equations, and what it leaves out."""
         return describe(self.setting, self.parts)
-
-    def describe(self) -> str:
-        """Tell which model was picked, by which equations, and what it leaves out."""
-        return self._description
 
     @cached_property
     def json(self) -> str:

@@ -84,27 +84,6 @@ class Cap:
     inertia: float
 
 
-LARGE_LEAN = 0.1
-"""Share of the overturning angle above which a lean at rest is worth a warning."""
-
-
-def leaning_cautions(
-    body: Body, rest_rotation: float, angles: OverturningAngles, slope: Slope
-) -> list[str]:
-    """Warn of a body that leans far at rest."""
-    share = abs(rest_rotation) / angles.on_side_of(rest_rotation)
-    if share <= LARGE_LEAN:
-        return []
-    reasons = [
-        *(["its centre of mass is beside the middle of its base"] if body.eccentricity else []),
-        *([] if slope.level else ["its base is inclined"]),
-    ]
-    return [
-        f"at rest the body leans by {abs(rest_rotation):.4g} rad, {100.0 * share:.3g} % of its "
-        f"overturning angle to that side, since {' and '.join(reasons)}"
-    ]
-
-
 def body_of(block: BlockSI) -> Body:
     """Give a block as a body."""
     return Body(

@@ -37,21 +37,16 @@ def misfits(parts: Parts) -> list[str]:
             )
     if cap is not None and soil is None:
         faults.append("a CushionCap is given without a WinklerSoil for it to stand on")
-    names = [_named(part) for part in (pads, soil)]
     if pads is not None and soil is not None and cap is None:
         faults.append(
-            f"{names[0]} and {names[1]} are given without a CushionCap; the cap carries the pads "
-            "and spreads their reactions over the soil"
+            f"a {type(pads).__name__} and a {type(soil).__name__} are given without a CushionCap; "
+            "the cap carries the pads and spreads their reactions over the soil"
         )
     given = {slot: part for slot, part in vars(parts).items() if isinstance(part, Component)}
     for part in given.values():
         if isinstance(part, OwnBase):
             faults += part.misfits(given)
     return faults
-
-
-def _named(part: Component | None) -> str:
-    return f"a {type(part).__name__}"
 
 
 def doubts(parts: Parts) -> list[str]:

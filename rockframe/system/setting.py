@@ -6,7 +6,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar
 
 from rockframe.signals.slope import Slope
-from rockframe.system.bodies import Body, OverturningAngles, leaning_cautions
+from rockframe.system.bodies import Body, OverturningAngles
 from rockframe.system.load import Load
 from rockframe.system.options import Options
 from rockframe.system.small_motion import SmallMotion
@@ -15,6 +15,9 @@ from rockframe.system.words import Words
 
 if TYPE_CHECKING:
     from rockframe.dynamics.protocol import ContactModel
+
+LARGE_LEAN = 0.1
+"""Share of the overturning angle above which a lean at rest is worth a warning."""
 
 
 @dataclass(frozen=True)
@@ -111,7 +114,19 @@ class Setting(ABC):
 
     def cautions(self) -> list[str]:
         """Give warnings about values near or beyond the model's validity."""
-        return leaning_cautions(self.body, self.rest_rotation, self.overturning_angles, self.slope)
+        lean = abs(self.rest_rotation)
+        share = lean / self.overturning_angles.on_side_of(self.rest_rotation)
+        if share <= LARGE_LEAN:
+            return []
+        reasons: list[str] = []
+        if self.body.eccentricity != 0.0:
+            reasons.append("its centre of mass is beside the middle of its base")
+        if not self.slope.level:
+            reasons.append("its base is inclined")
+        return [
+            f"at rest the body leans by {lean:.4g} rad, {100.0 * share:.3g} % of its "
+            f"overturning angle to that side, since {' and '.join(reasons)}"
+        ]
 
     @abstractmethod
     def _contact_model(self) -> "ContactModel":
