@@ -14,18 +14,17 @@ from rockframe.results.points import Point
 from rockframe.results.schema import ENERGIES
 from rockframe.simulation.asked import lacking, names_of, points_of
 from rockframe.simulation.beginning import Beginning, continuation_of
-from rockframe.simulation.run_arguments import LengthArguments, RunArguments
+from rockframe.simulation.run_arguments import RunArguments
 from rockframe.solve.accuracy import Accuracy, AccuracyLevel, accuracy_of
 from rockframe.system.assembly import Assembly
 from rockframe.system.options import Overturning, read_option
-from rockframe.units import LENGTH, POSITIVE, TIME, TIME_STEP, to_si
+from rockframe.units import LENGTH, POSITIVE, TIME, TIME_STEP, Measure, QuantityLike, to_si
 
 MOST_SAMPLES = 1e8
 """Samples of the histories beyond which a run is refused: some ten gigabytes."""
 STILL_GROUND_OUTPUT_STEP = 0.005
 """Spacing of the histories of a run without a ground motion [s]."""
 _REST: Final = InitialState()
-_OWNER: Final = "simulate"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -157,32 +156,22 @@ def read_arguments(faults: list[str], **asked: Unpack[RunArguments]) -> Argument
     UnitsError, ComponentError, SolverError
         An argument cannot be read.
     """
-    lengths = {name: asked.get(name) for name in LengthArguments.__annotations__}
-    read = {
-        name: to_si(given, TIME, owner=_OWNER, name=name, condition=POSITIVE)
-        for name, given in lengths.items()
-        if given is not None
-    }
-    if len(read) > 1:
-        faults.append(f"give {' or '.join(read)}, not both: each fixes the run's length")
-    output_step, outputs, points = (
-        asked.get("output_step"),
-        asked.get("outputs", ()),
-        asked.get("points"),
-    )
-    step = None
-    if output_step is not None:
-        step = to_si(output_step, TIME_STEP, owner=_OWNER, name="output_step", condition=POSITIVE)
+    duration = _read_time("duration", asked.get("duration"))
+    free_vibration = _read_time("free_vibration", asked.get("free_vibration"))
+    if duration is not None and free_vibration is not None:
+        faults.append("give duration or free_vibration, not both: each fixes the run's length")
+    output_step = _read_time("output_step", asked.get("output_step"), TIME_STEP)
+    outputs, points = asked.get("outputs", ()), asked.get("points")
     accuracy = asked.get("accuracy", AccuracyLevel.STANDARD)
     verdict = asked.get("overturning", Overturning.STOP)
     course = read_option(Overturning, verdict, "overturning", faults)
     return Arguments(
-        duration=read.get("duration"),
-        free_vibration=read.get("free_vibration"),
+        duration=duration,
+        free_vibration=free_vibration,
         initial=_initial(asked.get("initial"), faults),
         accuracy=accuracy_of(accuracy),
         accuracy_name=str(accuracy) if isinstance(accuracy, str) else "own",
-        output_step=step,
+        output_step=output_step,
         histories=outputs is not None,
         requested=names_of(outputs, points, faults),
         points=points_of(points, faults),
@@ -229,6 +218,12 @@ def fitted(
     asked = {name: getattr(arguments, name) for name in _Asked.__annotations__}
     asked["output_step"] = step
     return Plan(motion=motion, duration=length, initial=beginning, **asked)
+
+
+def _read_time(name: str, given: QuantityLike | None, measure: Measure = TIME) -> float | None:
+    if given is None:
+        return None
+    return to_si(given, measure, owner="simulate", name=name, condition=POSITIVE)
 
 
 def _initial(given: object, faults: list[str]) -> "InitialState | xr.Dataset":

@@ -65,8 +65,7 @@ class AloneSetting(Setting):
         return Words(
             equations=base.equations,
             restraint=restraint_words(self.options, base.end),
-            uplift=[base.uplift],
-            numbers=base.numbers,
+            numbers=[base.uplift, *base.numbers],
             left_out=["sliding", f"elasticity of the {base.body}", *base.left_out],
         )
 

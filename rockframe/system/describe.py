@@ -37,7 +37,6 @@ def describe(setting: Setting, parts: Parts) -> str:
             ("gravity", f"{setting.gravity:.6g} m s^-2"),
             *_overturning(setting),
             ("friction to rock, at least b/h", f"{setting.body.least_friction:.6g}"),
-            *words.uplift,
             *words.numbers,
         ],
     )

@@ -3,7 +3,6 @@
 import math
 
 from rockframe.components import Component
-from rockframe.system.bodies import cap_under
 from rockframe.system.own_base import OwnBase
 from rockframe.system.parts import Parts
 
@@ -92,7 +91,7 @@ def missizes(parts: Parts) -> list[str]:
     block, cap = parts.block, parts.cap
     faults: list[str] = []
     if block is not None and cap is not None:
-        body = cap_under(block.si, cap.si)
+        body = parts.the_cap
         width = 2.0 * body.half_width
         if not math.isfinite(body.inertia + block.si.mass * body.half_height * body.half_height):
             faults.append(

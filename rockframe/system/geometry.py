@@ -7,7 +7,6 @@ import numpy.typing as npt
 
 from rockframe.components import FrameEquivalent
 from rockframe.system.assembly import Assembly
-from rockframe.system.bodies import cap_under
 from rockframe.system.stacked import StackedSetting
 
 Array = npt.NDArray[np.float64]
@@ -102,7 +101,7 @@ def geometry_of(scene: Assembly) -> Geometry:
     """
     parts, setting = scene.parts, scene.setting
     block = parts.the_block
-    cap = None if parts.cap is None else cap_under(block, parts.the_cap)
+    cap = None if parts.cap is None else parts.the_cap
     stacked = isinstance(setting, StackedSetting)
     above_pads = setting.upper if stacked else setting
     on_bed = setting.lower if stacked else setting

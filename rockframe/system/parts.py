@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 from rockframe.components import Block, Component, CushionCap, RigidGround
 from rockframe.components.block_numbers import BlockSI
-from rockframe.components.cap import CushionCapSI
 from rockframe.errors import shown
 from rockframe.motion import GroundMotion
+from rockframe.system.bodies import Cap, cap_under
 from rockframe.system.slots import beyond_models, hint_for, slot_of
 
 
@@ -38,11 +38,11 @@ class Parts:
         return self.block.si
 
     @property
-    def the_cap(self) -> CushionCapSI:
-        """The numbers of the cap, in a scene that has one."""
+    def the_cap(self) -> Cap:
+        """The cap in the size it has under the block, in a scene that has one."""
         if self.cap is None:
             raise TypeError
-        return self.cap.si
+        return cap_under(self.the_block, self.cap.si)
 
     def base(self, slot: str) -> Component:
         """Give the base in a slot, in a scene that has one."""

@@ -170,8 +170,8 @@ class RigidGroundSetting(Setting):
             ],
             restraint="the bearing corner does not slide (the restraint options make no "
             "difference)",
-            uplift=[("uplift angle", "0 rad: any rotation lifts a corner")],
             numbers=[
+                ("uplift angle", "0 rad: any rotation lifts a corner"),
                 ("rocking frequency omega, Eq. (6)", self._frequency_words()),
                 ("restitution eps", self.restitution.words()),
             ],

@@ -6,7 +6,7 @@ from functools import partial
 
 from rockframe.errors import AssemblyError
 from rockframe.system.alone import AloneSetting
-from rockframe.system.bodies import cap_under, one_body
+from rockframe.system.bodies import one_body
 from rockframe.system.load import Load, load_of
 from rockframe.system.options import Coupling, Options
 from rockframe.system.parts import Parts
@@ -50,7 +50,7 @@ def _alone(slot: str, parts: Parts, options: Options) -> AloneSetting:
 
 def _with_cap(parts: Parts, options: Options) -> AloneSetting:
     """Put block and cap as one body on the soil."""
-    cap = cap_under(parts.the_block, parts.the_cap)
+    cap = parts.the_cap
     load = Load(one_body(parts.the_block, cap), options)
     offset = cap.half_height - load.body.centre_height
     return AloneSetting(load, support_of(parts.base("soil"), load), cap_offset=offset)
@@ -70,7 +70,7 @@ def _stacked(kind: type[StackedSetting], parts: Parts, options: Options) -> Stac
     """Put a block on pads on a cap on soil."""
     upper, lower = _alone("pads", parts, options), _with_cap(parts, options)
     _refuse_twins(parts, upper, lower)
-    cap = cap_under(parts.the_block, parts.the_cap)
+    cap = parts.the_cap
     return kind(upper.load, upper, lower, cap)
 
 

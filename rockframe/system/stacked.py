@@ -83,11 +83,9 @@ class StackedSetting(Setting):
         return Words(
             equations=self.equations(pads, soil),
             restraint=f"of the block on the cap and of the cap on the soil alike; {rule}",
-            uplift=[
+            numbers=[
                 _uplift_row(self.upper, "on the pads", pads, "block against cap"),
                 _uplift_row(self.lower, "on the soil", soil, "cap against ground"),
-            ],
-            numbers=[
                 *((f"pads: {name}", words) for name, words in pads.numbers),
                 ("cap", f"{size}, {cap.mass:.6g} kg"),
                 *((f"soil: {name}", words) for name, words in soil.numbers),
