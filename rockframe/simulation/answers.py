@@ -102,28 +102,27 @@ def answers_of(system: Assembly, plan: Plan, run: Trajectory) -> Answers:
         values |= point_histories(plan.points, values, load)
     shown = run.events.kind != SILENT
     impulses = {name: each[shown] for name, each in events.impulses(load.body.mass).items()}
-    asked = {name: each for name, each in impulses.items() if name in plan.requested}
+    everything = values | impulses | _energies(system, plan, run, values)
     kept = {
         name: each
-        for name, each in values.items()
+        for name, each in everything.items()
         if name not in ON_REQUEST or name in plan.requested
     }
-    shown_later = kept | asked | _energies(system, plan, run, values) if plan.histories else {}
-    return Answers(shown_later, told, places, [*slips(system, upright, events_upright)])
+    return Answers(
+        kept if plan.histories else {}, told, places, [*slips(system, upright, events_upright)]
+    )
 
 
 def _energies(
     system: Assembly, plan: Plan, run: Trajectory, values: dict[str, Generic]
 ) -> dict[str, Generic]:
-    """Give the energies that are asked for."""
+    """Give the energies, if any are asked for."""
     if not plan.energies:
         return {}
     found, slope = energy_histories(system.model, run), system.options.slope
-    if not slope.level:
-        found = energies_on_slope(
-            found, system.model, run, values["horizontal_displacement"], slope
-        )
-    return {name: found[name] for name in plan.energies}
+    if slope.level:
+        return found
+    return energies_on_slope(found, system.model, run, values["horizontal_displacement"], slope)
 
 
 def _everything_of(

@@ -11,7 +11,7 @@ from rockframe.errors import AssemblyError
 from rockframe.system.restraints import restraint_words
 from rockframe.system.setting import Setting
 from rockframe.system.small_motion import SmallMotion
-from rockframe.system.statics import Statics, contact_of, sine_cosine_rise
+from rockframe.system.statics import Statics, sine_cosine_rise
 from rockframe.system.support import Support
 from rockframe.system.words import Words, angle_words
 
@@ -142,7 +142,7 @@ class AloneSetting(Setting):
             vertical_displacement=held.rise - rise - beside * sine,
             base_moment=held.moment,
             restoring_moment=held.moment - against,
-            contact_state=contact_of(held.left, held.right),
+            contact_state=held.contact,
             reactions=held.reactions,
         )
 

@@ -1,7 +1,6 @@
 """A block held at a rotation on pads on a cap on soil, in equilibrium, :eq:`eq-static-stack`."""
 
 import math
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING, Final
 
@@ -10,7 +9,7 @@ import numpy as np
 from rockframe.errors import SolverError
 from rockframe.system.bodies import Body, Cap
 from rockframe.system.options import Restraint
-from rockframe.system.statics import Statics, contact_of, sine_cosine_rise
+from rockframe.system.statics import Statics, sine_cosine_rise
 from rockframe.system.support import Held
 
 if TYPE_CHECKING:
@@ -20,17 +19,6 @@ STEPS: Final = 200
 """Steps in which the cap's tilt under a held block is searched."""
 LEAN: Final = 4.0
 """How far it is searched where the cap leans at rest, by that tilt."""
-
-
-@dataclass(frozen=True)
-class _Balance:
-    """A stack with the cap at some tilt, which need not be in balance."""
-
-    lack: float  # of the moments on the cap
-    couple: float  # that holds the block
-    height: float  # of the block's centre of mass above its place at rest
-    upper: Held
-    lower: Held
 
 
 def stack_statics(stack: "StackedSetting", rotation: float) -> Statics:
@@ -52,15 +40,8 @@ def stack_statics(stack: "StackedSetting", rotation: float) -> Statics:
     SolverError
         The soil cannot carry the moment.
     """
-    tilt = _tilt_under(stack, rotation)
-    found = _balance(stack, tilt, rotation)
-    return Statics(
-        vertical_displacement=found.height,
-        base_moment=found.lower.moment,
-        restoring_moment=found.couple,
-        contact_state=contact_of(found.upper.left, found.upper.right),
-        reactions={**found.upper.reactions, **found.lower.reactions, "cap_rotation": tilt},
-    )
+    _, found = _balance(stack, _tilt_under(stack, rotation), rotation)
+    return found
 
 
 def _tilt_under(stack: "StackedSetting", rotation: float) -> float:
@@ -68,7 +49,7 @@ def _tilt_under(stack: "StackedSetting", rotation: float) -> float:
     from scipy.optimize import root_scalar
 
     def lack(tilt: float) -> float:
-        return math.copysign(1.0, rotation) * _balance(stack, tilt, rotation).lack
+        return math.copysign(1.0, rotation) * _balance(stack, tilt, rotation)[0]
 
     if rotation == 0.0 and not stack.leans:
         return 0.0
@@ -89,7 +70,8 @@ def _tilt_under(stack: "StackedSetting", rotation: float) -> float:
     raise SolverError(msg)
 
 
-def _balance(stack: "StackedSetting", tilt: float, rotation: float) -> _Balance:
+def _balance(stack: "StackedSetting", tilt: float, rotation: float) -> tuple[float, Statics]:
+    """Give what the moments on the cap lack to balance at a tilt, and the state of the stack."""
     upper, cap, options = stack.upper.support, stack.cap, stack.options
     block, weight, along = stack.body, stack.load.weight, stack.load.thrust
     h, beside = block.centre_height, block.eccentricity
@@ -116,12 +98,17 @@ def _balance(stack: "StackedSetting", tilt: float, rotation: float) -> _Balance:
         soil -= all_along * (cap.half_height * cosine + (0.0 if options.small else foot * sine))
     arm = cap.half_height + h + normal
     drop = (cap.half_height + h) * 2.0 * math.sin(0.5 * tilt) ** 2
-    return _Balance(
-        lack=(arm - slide) * thrust - across * press + pad_moment - soil,
-        couple=slide * thrust - pad_moment,
-        height=under.rise - cap_rise + normal * frame_cosine - across * frame_sine - drop,
-        upper=held,
-        lower=under,
+    lack = (arm - slide) * thrust - across * press + pad_moment - soil
+    return lack, Statics(
+        vertical_displacement=under.rise
+        - cap_rise
+        + normal * frame_cosine
+        - across * frame_sine
+        - drop,
+        base_moment=under.moment,
+        restoring_moment=slide * thrust - pad_moment,
+        contact_state=held.contact,
+        reactions={**held.reactions, **under.reactions, "cap_rotation": tilt},
     )
 
 

@@ -32,13 +32,6 @@ class Statics:
     reactions: dict[str, float] = field(default_factory=dict[str, float])
 
 
-def contact_of(left: bool, right: bool) -> str:
-    """Name the contact state of a base whose left or right end bears."""
-    if left and right:
-        return "full"
-    return "left" if left else "right"
-
-
 def sine_cosine_rise(
     half_height: float, kinematics: Rotation, rotation: float
 ) -> tuple[float, float, float]:

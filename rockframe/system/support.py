@@ -70,6 +70,13 @@ class Held:
     right: bool
     reactions: dict[str, float] = field(default_factory=dict[str, float])
 
+    @property
+    def contact(self) -> str:
+        """Name of the contact state."""
+        if self.left and self.right:
+            return "full"
+        return "left" if self.left else "right"
+
 
 @dataclass(frozen=True)
 class Support(ABC):
