@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from rockframe.results.outcome import Array, Generic
+from rockframe.results.outcome import Array, Generic, sine_cosine
 from rockframe.system.load import Load
 
 Values = Mapping[str, Generic]
@@ -24,13 +24,6 @@ OF_SOIL_FRICTION: Final = (STACKED, "base_shear", "soil_reaction")
 """Columns that the friction between cap and soil follows from, where a scene has them all."""
 NO_FORCE: Final = 1e-9
 """Force per mass, or change of velocity, that is rounding [m s^-2], [m s^-1]."""
-
-
-def sine_cosine(rotation: Array, *, small: bool) -> tuple[Array, Array]:
-    """Give the sine and cosine of rotations, or their small-rotation forms."""
-    if small:
-        return rotation, np.ones_like(rotation)
-    return np.sin(rotation), np.cos(rotation)
 
 
 def force_histories(values: Values, ground: Array, load: Load) -> dict[str, Generic]:

@@ -72,17 +72,22 @@ def ground_histories(ground: Array, *, has_vertical_motion: bool) -> dict[str, G
     return values
 
 
+def sine_cosine(rotation: Array, *, small: bool) -> tuple[Array, Array]:
+    """Give the sine and cosine of rotations, or their small-rotation forms."""
+    if small:
+        return rotation, np.ones_like(rotation)
+    return np.sin(rotation), np.cos(rotation)
+
+
 def cap_histories(values: Mapping[str, Generic], setting: Setting) -> dict[str, Generic]:
     """Give the motion of a cap that is a part of the body, :eq:`eq-carried`."""
     offset, rotation = setting.cap_offset, values["rotation"]
     if offset is None:
         return {}
-    if setting.options.small:
-        sine, versine = rotation, 0.5 * rotation**2
-    else:
-        sine, versine = np.sin(rotation), 2.0 * np.sin(0.5 * rotation) ** 2
-    rate, beside = values["angular_velocity"], setting.body.eccentricity
-    cosine = 1.0 if setting.options.small else np.cos(rotation)
+    small, beside = setting.options.small, setting.body.eccentricity
+    sine, cosine = sine_cosine(rotation, small=small)
+    versine = 0.5 * rotation**2 if small else 2.0 * np.sin(0.5 * rotation) ** 2
+    rate = values["angular_velocity"]
     return {
         "cap_rotation": rotation.copy(),
         "cap_angular_velocity": rate.copy(),

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rockframe.results.forces import EventStates, sine_cosine
-from rockframe.results.outcome import Array, Generic
+from rockframe.results.forces import EventStates
+from rockframe.results.outcome import Array, Generic, sine_cosine
 from rockframe.system.load import Load
 
 

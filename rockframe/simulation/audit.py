@@ -68,7 +68,7 @@ def unbalanced(
     if residual > FIXED:
         return f"{found}: this is no solution; {remedy}"
     standard = LEVELS[AccuracyLevel.STANDARD]
-    other = run(replace(plan, accuracy=standard, output_step=None, requested=(), points=()))
+    other = run(replace(plan.bare(), accuracy=standard))
     if other.overturned is None:
         return None
     difference = abs(other.peak - shown.peak)

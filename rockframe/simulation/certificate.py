@@ -163,7 +163,7 @@ def certify(
     """
     if base.overturned is None:
         return Certificate(wanted, plan, base)
-    bare = replace(plan, output_step=None, requested=(), points=())
+    bare = plan.bare()
     with warnings.catch_warnings():
         # the run itself has given them
         warnings.simplefilter("ignore", ModelWarning)

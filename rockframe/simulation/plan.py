@@ -1,7 +1,7 @@
 """The arguments of a run, checked against the system and one another."""
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from os import PathLike
 from typing import Any, Final, Unpack
 
@@ -89,6 +89,10 @@ class Plan(_Asked):
     def energies(self) -> tuple[str, ...]:
         """Energies among what is requested."""
         return tuple(name for name in self.requested if name in ENERGIES)
+
+    def bare(self) -> "Plan":
+        """Give the same run without samples."""
+        return replace(self, output_step=None, requested=(), points=())
 
     def to_json(self) -> str:
         """Give the plan as JSON, without the motion."""

@@ -214,14 +214,12 @@ def _first_doubt(sides: Sequence[Side], end: float, resolution: float) -> _Task 
     found: list[_Task] = []
     for side, other in zip(sides, reversed(sides), strict=True):
         for number, (near, far) in enumerate(side.intervals()):
-            if near >= end or (found and near >= found[0][1]):
-                break
-            if side.shown[far].overturned != side.shown[0.0].overturned:
+            if near >= end or side.shown[far].overturned != side.shown[0.0].overturned:
                 break
             if _wide(near, far, resolution) and doubtful(side, number, other):
-                found = [(side, near, far)]
+                found.append((side, near, far))
                 break
-    return found[0] if found else None
+    return min(found, key=lambda one: one[1], default=None)
 
 
 def doubtful(side: Side, number: int, other: Side | None = None) -> bool:

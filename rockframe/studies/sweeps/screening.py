@@ -115,7 +115,7 @@ def second_look(system: Assembly, plan: Plan) -> Plan:
     interval = STILL_INTERVAL if plan.motion is None else plan.motion.si.time_step
     given = max(substeps_of(plan.accuracy, system.model, interval), 1)
     accuracy = Accuracy(substeps=given + math.ceil(MORE * given))
-    return replace(plan, accuracy=accuracy, output_step=None, requested=(), points=())
+    return replace(plan.bare(), accuracy=accuracy)
 
 
 def repeated(_: Assembly, plan: Plan) -> Plan:
