@@ -3,7 +3,6 @@
 import json
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any, TypeAlias, cast
 
 import numpy as np
@@ -17,32 +16,23 @@ from rockframe.system.assembly import Assembly
 _ATTRIBUTE = "end_state"
 
 
-@dataclass(frozen=True)
-class Continuation:
-    """The end of another run of the same system.
-
-    Parameters
-    ----------
-    ending : Ending
-        Of the run.
-    """
-
-    ending: Ending
-
-    def to_dict(self) -> dict[str, Any]:
-        """Give it as plain values, fit for JSON."""
-        return {"type": type(self).__name__, "ending": _plain(self.ending)}
-
-
-Beginning: TypeAlias = InitialState | Continuation
+Beginning: TypeAlias = InitialState | Ending
+"""An initial state, or the end of another run of the same system."""
 
 
 def start_of(beginning: Beginning) -> Start | Ending:
     """Give a beginning as the integrator takes it."""
-    if isinstance(beginning, Continuation):
-        return beginning.ending
+    if isinstance(beginning, Ending):
+        return beginning
     si = beginning.si
     return Start(si.rotation, si.angular_velocity, si.vertical_displacement, si.vertical_velocity)
+
+
+def described(beginning: Beginning) -> dict[str, Any]:
+    """Give a beginning as plain values, fit for JSON."""
+    if isinstance(beginning, Ending):
+        return {"type": "Continuation", "ending": _plain(beginning)}
+    return beginning.to_dict()
 
 
 def end_attributes(ending: Ending) -> dict[str, str]:
@@ -61,9 +51,7 @@ def end_attributes(ending: Ending) -> dict[str, str]:
     return {_ATTRIBUTE: json.dumps(_plain(ending))}
 
 
-def continuation_of(
-    dataset: xr.Dataset, system: Assembly, faults: list[str]
-) -> Continuation | InitialState:
+def continuation_of(dataset: xr.Dataset, system: Assembly, faults: list[str]) -> Beginning:
     """Read where a run ended, or note why none can go on from there.
 
     Parameters
@@ -77,8 +65,8 @@ def continuation_of(
 
     Returns
     -------
-    Continuation or InitialState
-        Rest where there is a fault.
+    Ending or InitialState
+        Rest where the dataset holds no end.
     """
     attributes: Mapping[str, Any] = cast("Mapping[str, Any]", dataset.attrs)
     if _ATTRIBUTE not in attributes or "system_json" not in attributes:
@@ -94,12 +82,10 @@ def continuation_of(
     if not math.isnan(float(attributes.get("overturning_time", math.nan))):
         faults.append("initial is the end of a run that overturned")
     stored: dict[str, Any] = json.loads(attributes[_ATTRIBUTE])
-    return Continuation(
-        Ending(
-            stored["mode"],
-            np.array(stored["state"], dtype=np.float64),
-            np.array(stored["memory"], dtype=np.float64),
-        )
+    return Ending(
+        stored["mode"],
+        np.array(stored["state"], dtype=np.float64),
+        np.array(stored["memory"], dtype=np.float64),
     )
 
 

@@ -4,8 +4,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Final
 
+from rockframe.dynamics.protocol import Ending
 from rockframe.errors import RockframeError
-from rockframe.simulation.beginning import Continuation
 from rockframe.simulation.plan import Plan
 from rockframe.system.assembly import Assembly, assemble
 from rockframe.system.bodies import OverturningAngles
@@ -81,7 +81,7 @@ def scaled(plan: Plan, scale: float, limits: OverturningAngles) -> Plan | None:
     if plan.motion is not None:
         return replace(plan, motion=plan.motion.scaled(scale))
     start = plan.initial
-    if isinstance(start, Continuation):
+    if isinstance(start, Ending):
         return None
     if not start.si.rotation and start.si.angular_velocity == 0.0:
         return None

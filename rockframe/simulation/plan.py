@@ -13,7 +13,7 @@ from rockframe.motion import GroundMotion
 from rockframe.results.points import Point
 from rockframe.results.schema import ENERGIES
 from rockframe.simulation.asked import lacking, names_of, points_of
-from rockframe.simulation.beginning import Beginning, continuation_of
+from rockframe.simulation.beginning import Beginning, continuation_of, described
 from rockframe.simulation.run_arguments import RunArguments
 from rockframe.solve.accuracy import Accuracy, AccuracyLevel, accuracy_of
 from rockframe.system.assembly import Assembly
@@ -96,8 +96,8 @@ class Plan(_Asked):
 
     def to_json(self) -> str:
         """Give the plan as JSON, without the motion."""
-        described = {"duration": _time(self.duration), "initial": self.initial.to_dict()}
-        return json.dumps({**described, **self._described()})
+        own = {"duration": _time(self.duration), "initial": described(self.initial)}
+        return json.dumps({**own, **self._described()})
 
 
 def _time(value: float | None) -> str | None:
