@@ -6,12 +6,7 @@ import numpy as np
 
 from rockframe.dynamics.events import IMPACT, SILENT
 from rockframe.motion import GroundMotion
-from rockframe.results.forces import (
-    EventStates,
-    force_histories,
-    force_scalars,
-    residuals,
-)
+from rockframe.results.forces import EventStates, force_histories, force_scalars, residuals
 from rockframe.results.outcome import (
     Generic,
     cap_histories,

@@ -104,11 +104,7 @@ def _time(value: float | None) -> str | None:
     return None if value is None else f"{value!r} {TIME.unit}"
 
 
-def plan_run(
-    system: Assembly,
-    motion: GroundMotion | None,
-    **asked: Unpack[RunArguments],
-) -> Plan:
+def plan_run(system: Assembly, motion: GroundMotion | None, **asked: Unpack[RunArguments]) -> Plan:
     """Check the arguments of a run against the system and one another.
 
     Parameters

@@ -13,13 +13,7 @@ from rockframe.errors import ModelWarning, RockframeWarning, SolverWarning, warn
 from rockframe.motion import GroundMotion
 from rockframe.results.dataset import build_dataset
 from rockframe.results.forces import friction_words
-from rockframe.results.outcome import (
-    Generic,
-    event_columns,
-    peak_of,
-    scalars,
-    verdict,
-)
+from rockframe.results.outcome import Generic, event_columns, peak_of, scalars, verdict
 from rockframe.results.slope import felt_ground, slope_attributes
 from rockframe.results.variables.runs import Direction
 from rockframe.signals import Motion
