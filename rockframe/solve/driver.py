@@ -55,20 +55,32 @@ SMALL: Final = 1e-6
 """Share of the step below which a correction is small."""
 ROUNDING: Final = 1e-15
 """Share of the time so far below which such a correction is rounding."""
+TIME_NOISE: Final = 8.0 * ROUNDING
+"""Share of the time so far by which an event may be misplaced."""
 FIXED_STEPS: Final = 0.0
 """Stands for the tolerance of a run with fixed sub-steps."""
 
 
 @kernel
-def broken_guard(tables: Tables, w: Workspace) -> int:
-    """Give a guard that a mode breaks from its start, or -1."""
+def broken_guard(tables: Tables, now: float, w: Workspace) -> int:
+    """Give a guard that a mode breaks from its start, or -1.
+
+    One that rises may lie below zero by what it changes within the rounding of time.
+    """
     guards = len(tables.tolerance)
     for i in range(guards):
-        tolerance = tables.tolerance[i]
-        falls = w.before[i] < -tolerance or w.before[guards + i] < 0.0
-        if w.before[i] <= tolerance and falls:
+        tolerance, rate = tables.tolerance[i], w.before[guards + i]
+        noise = tolerance + TIME_NOISE * now * abs(rate)
+        if w.before[i] < -noise or (w.before[i] <= tolerance and rate < 0.0):
             return i
     return -1
+
+
+@inlined
+def time_of(progress: Progress) -> float:
+    """Give the time that a run has come to."""
+    began = progress.counters[at.INTERVAL] * progress.controls[at.TIME_STEP]
+    return began + progress.clock[at.INTO_INTERVAL]
 
 
 @kernel
@@ -122,9 +134,7 @@ def step_to_event(
     crossed, place = earliest_crossing(equations, mode, count, span, tables, w)
     if crossed < 0:
         return whole, -1
-    counters = progress.counters
-    now = counters[at.INTERVAL] * progress.controls[at.TIME_STEP]
-    now += progress.clock[at.INTO_INTERVAL]
+    now = time_of(progress)
     h, rates = place * whole, equations.guard_count + 1
     tolerance, low, high = tables.tolerance[crossed], 0.0, whole
     begins_at_zero = w.before[crossed] <= tolerance
@@ -263,14 +273,13 @@ def run_on(
             look_ahead(equations, mode, progress, w)
             stale = False
             if crossed < 0:
-                crossed = broken_guard(tables, w)
+                crossed = broken_guard(tables, time_of(progress), w)
         if crossed >= 0:
             if counters[at.EVENTS] >= len(events.codes):
                 status = at.MORE_ROOM
                 break
-            time = counters[at.INTERVAL] * controls[at.TIME_STEP] + clock[at.INTO_INTERVAL]
             mode, status = carry_out(
-                equations, crossed, time, mode, tables, memory, progress, events, w
+                equations, crossed, time_of(progress), mode, tables, memory, progress, events, w
             )
             audit(equations, mode, memory, clock, w)
             crossed = -1
@@ -305,8 +314,7 @@ def run_on(
         count, span = int(tables.active[mode]), span_of(h, progress)
         work, ground = Work(w.works[0], w.works[1]), ground_in(1.0, span, w.ground)
         clock[at.INTO_INTERVAL] += h
-        end = counters[at.INTERVAL] * controls[at.TIME_STEP] + clock[at.INTO_INTERVAL]
-        store_outputs(equations, end, span, mode, count, work, progress, output, w)
+        store_outputs(equations, time_of(progress), span, mode, count, work, progress, output, w)
         if h > 0.0:
             follow_peak(equations, count, h, clock, w)
         if tables.contact[mode] == FLIGHT:
@@ -325,7 +333,7 @@ def run_on(
         for i in range(len(home.before)):
             home.before[i] = w.before[i]
     counters[at.STALE] = int(stale)
-    clock[at.TIME] = counters[at.INTERVAL] * controls[at.TIME_STEP] + clock[at.INTO_INTERVAL]
+    clock[at.TIME] = time_of(progress)
     counters[at.MODE] = mode
     counters[at.PENDING] = crossed
     return status
