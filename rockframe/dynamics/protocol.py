@@ -266,3 +266,7 @@ class ContactModel:
     energy_scale: float
     initial: Callable[[Start], tuple[int, Vector, Vector]]
     rounding: Callable[[float], Vector] | None = None
+
+    def rotation_in(self, state: Vector) -> float:
+        """Give the block's rotation in a state."""
+        return float(self.rotation_weights @ state[: len(self.rotation_weights)])

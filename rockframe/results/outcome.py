@@ -175,8 +175,8 @@ _ENDINGS = {
 }
 
 
-def verdict(run: Summary, setting: Setting) -> str:
-    """Say in one sentence what became of the block."""
+def verdict(run: Summary, setting: Setting, *, end: float) -> str:
+    """Say in one sentence what became of the block, whose rotation was `end` at last [rad]."""
     impacts = f"{run.impact_count} impact{'' if run.impact_count == 1 else 's'}"
     nearest = peak_of(run, setting.overturning_angles)
     peak = (
@@ -186,10 +186,7 @@ def verdict(run: Summary, setting: Setting) -> str:
     if setting.leans:
         peak += f" to the {nearest.side.name.lower()}"
     if run.overturned:
-        side = Direction(run.overturning_direction).name.lower()
-        text = f"Overturned to the {side} at {run.overturning_time:.3f} s, after {impacts}"
-        if run.status is Status.TOPPLED:
-            text += f"; fell flat at {run.end_time:.3f} s"
+        text = f"{_overturned(run, setting, end)}, after {impacts}"
     elif run.overturned is None:
         text = f"Not finished: {_cut_off(run)}. Until then no overturning: {peak}; {impacts}"
     else:
@@ -201,6 +198,24 @@ def verdict(run: Summary, setting: Setting) -> str:
     if run.overturned and not run.status.finished:
         text += f". Not finished: {_cut_off(run)}"
     return text + "."
+
+
+def _overturned(run: Summary, setting: Setting, end: float) -> str:
+    """Tell when the overturning angle was passed, and what came of it where the run went on."""
+    angles, side = setting.overturning_angles, Direction(run.overturning_direction)
+    when = f"to the {side.name.lower()} at {run.overturning_time:.3f} s"
+    if run.status is Status.TOPPLED:
+        last = Direction.RIGHT if end > 0.0 else Direction.LEFT
+        flat = f"at {run.end_time:.3f} s"
+        if last is side:
+            return f"Overturned {when}, and fell flat {flat}"
+        return (
+            f"Passed the overturning angle {when}, and fell flat to the {last.name.lower()} {flat}"
+        )
+    if run.status is not Status.COMPLETED:
+        return f"Overturned {when}"
+    ends = "stands" if abs(end) < angles.on_side_of(end) else "is beyond it"
+    return f"Passed the overturning angle {when}, and {ends} at the end"
 
 
 def _cut_off(run: Summary) -> str:

@@ -53,6 +53,8 @@ class Beside:
         How it ended.
     peak_share : float
         Largest share of a rotation in the overturning angle of its side.
+    in_motion : bool
+        Whether it stood with the energy to overturn later.
     """
 
     overturned: bool | None
@@ -64,6 +66,7 @@ class Beside:
     course: tuple[float, ...] = ()
     status: Status = Status.COMPLETED
     peak_share: float = math.nan
+    in_motion: bool = False
 
     def alike(self, other: "Beside") -> bool:
         """Whether both take the same course: both stand, or both overturn in the same swing."""
@@ -83,7 +86,12 @@ Run: TypeAlias = Callable[[Assembly, Plan], Beside]
 
 
 def what_showed(
-    summary: Summary, events: Mapping[str, Generic], peak_share: float, duration: float
+    summary: Summary,
+    events: Mapping[str, Generic],
+    peak_share: float,
+    duration: float,
+    *,
+    in_motion: bool,
 ) -> Beside:
     """Tell what a run showed.
 
@@ -97,6 +105,8 @@ def what_showed(
         Of the peak rotation in the overturning angle of its side [1].
     duration : float
         Length of the run [s].
+    in_motion : bool
+        Whether it stood with the energy to overturn later.
 
     Returns
     -------
@@ -118,6 +128,7 @@ def what_showed(
         _course(events["event_time"] / duration, rates),
         summary.status,
         peak_share,
+        in_motion,
     )
 
 

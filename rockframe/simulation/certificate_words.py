@@ -36,8 +36,11 @@ def sentence(found: "Certificate") -> str:
     means = [tolerance_words(found.plan.accuracy), f"steps {SHORTER:g} times shorter"]
     if found.plan.motion is not None:
         means.append("the motion cut finer")
+    body = "The body"
+    if found.base.in_motion:
+        body = "To the end of the run, where it can still overturn, the body"
     text = (
-        f"The body {verdict} also with {', '.join(means[:-1])} and {means[-1]}, and with every "
+        f"{body} {verdict} also with {', '.join(means[:-1])} and {means[-1]}, and with every "
         f"parameter up to {100.0 * found.wanted.nudge:g} % larger or smaller"
     )
     return f"{text}.{_range(found)}"

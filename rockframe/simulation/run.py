@@ -23,12 +23,12 @@ from rockframe.simulation.beginning import end_attributes, start_of
 from rockframe.simulation.beside import Beside, what_showed
 from rockframe.simulation.certificate import certify
 from rockframe.simulation.certification import Certification
+from rockframe.simulation.end_in_motion import STILL_MOVING, may_overturn_later
 from rockframe.simulation.plan import Plan
 from rockframe.simulation.provenance import motion_attributes
 from rockframe.solve.integrate import STILL_INTERVAL, integrate
 from rockframe.solve.trajectory import Summary, Trajectory
 from rockframe.system.assembly import Assembly
-from rockframe.system.setting import Setting
 
 ADAPTIVE = "Dormand-Prince 5(4) from sample to sample, with event location"
 FIXED = "Nystrom method of order 3 in fixed sub-steps from sample to sample, with event location"
@@ -72,10 +72,17 @@ class Response:
         """All scalars, and peaks at points, by their names in the schema."""
         return {**scalars(self.trajectory, self.system.setting), **self.answers.scalars}
 
+    @cached_property
+    def in_motion(self) -> bool:
+        """Whether the body stood with the energy to overturn later."""
+        return may_overturn_later(self.system, self.trajectory)
+
     def beside(self) -> Beside:
         """Tell what a certificate asks of the run."""
         share = peak_of(self.trajectory, self.system.setting.overturning_angles).share
-        return what_showed(self.trajectory, self.events, share, self.plan.duration)
+        return what_showed(
+            self.trajectory, self.events, share, self.plan.duration, in_motion=self.in_motion
+        )
 
     def cautions(self) -> list[Caution]:
         """Give what is to be warned of."""
@@ -84,7 +91,8 @@ class Response:
             self.system, plan, summary, self.beside, lambda other: beside(self.system, other)
         )
         return [
-            *_unfinished(summary, self.system.setting),
+            *_unfinished(self.system, summary),
+            *([(SolverWarning, STILL_MOVING)] if self.in_motion else []),
             *([] if audit is None else [(SolverWarning, audit)]),
             *_lost_weight(self.system, plan.motion),
             *_pulling(self.system, self.answers.values, summary.overturning_time),
@@ -192,7 +200,7 @@ def respond(system: Assembly, plan: Plan) -> Response:
 def _attributes(system: Assembly, plan: Plan, summary: Summary) -> dict[str, str | float | int]:
     coupling = {"coupling": str(system.options.coupling)} if system.scene.coupling else {}
     return {
-        "verdict": verdict(summary, system.setting),
+        "verdict": _verdict(system, summary),
         "overturned": int(bool(summary.overturned)),
         "overturning_time": summary.overturning_time,
         "overturning_direction": Direction(summary.overturning_direction).name.lower(),
@@ -220,9 +228,14 @@ def nothing_to_say(system: Assembly, summary: Summary) -> bool:
     return summary.status.finished and summary.energy_residual <= doubtful(system)
 
 
-def _unfinished(summary: Summary, setting: Setting) -> Iterator[Caution]:
+def _verdict(system: Assembly, summary: Summary) -> str:
+    end = system.model.rotation_in(summary.ending.state)
+    return verdict(summary, system.setting, end=end)
+
+
+def _unfinished(system: Assembly, summary: Summary) -> Iterator[Caution]:
     if not summary.status.finished:
-        yield SolverWarning, verdict(summary, setting)
+        yield SolverWarning, _verdict(system, summary)
 
 
 def _lost_weight(system: Assembly, motion: GroundMotion | None) -> Iterator[Caution]:

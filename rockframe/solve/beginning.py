@@ -127,7 +127,7 @@ def begun(
     controls[at.CHATTER_TIME] = CHATTER_SHARE * shortest_period
     clock = np.zeros(at.CLOCK)
     clock[at.NEXT_STEP] = controls[at.MAX_STEP] if substeps else FIRST_STEP * shortest_period
-    rotation = float(model.rotation_weights @ state[: len(model.rotation_weights)])
+    rotation = model.rotation_in(state)
     clock[at.PEAK_LEFT], clock[at.PEAK_RIGHT] = max(-rotation, 0.0), max(rotation, 0.0)
     clock[at.FIRST_UPLIFT] = -1.0 if model.contact[mode] == ContactState.FULL else 0.0
     clock[at.OVERTURNING_TIME] = clock[at.EVENT_TIME] = -1.0

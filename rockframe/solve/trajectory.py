@@ -56,6 +56,8 @@ class Summary:
         Fixed steps in each interval of the motion, 0 for steps by tolerance.
     energy_residual : float
         Largest imbalance of the energies over their largest term.
+    ending : Ending
+        Where the run ended.
     """
 
     status: Status
@@ -72,6 +74,7 @@ class Summary:
     rejected_count: int
     substeps: int
     energy_residual: float
+    ending: Ending
 
     @property
     def peak_rotation(self) -> float:
@@ -104,8 +107,6 @@ class Trajectory(Summary):
         The model's memory at the start.
     events : Events
         What happened when.
-    ending : Ending
-        Where the run ended.
     start_energy : float
         Kinetic, gravity and elastic energy at the start, from that at rest.
     """
@@ -117,7 +118,6 @@ class Trajectory(Summary):
     start_mode: int
     start_memory: Vector
     events: Events
-    ending: Ending
     start_energy: float
 
 
@@ -132,7 +132,7 @@ def told_by(clock: Vector, counters: Integers) -> dict[str, Any]:
     Returns
     -------
     dict of str to float or int
-        Without the status and the number of sub-steps.
+        Without the status, the number of sub-steps and the ending.
     """
     reals, wholes = clock.tolist(), counters.tolist()
     moved, residual = reals[at.LARGEST_MOVED], reals[at.RESIDUAL]

@@ -18,6 +18,7 @@ from rockframe.results.variables.studies import Outcome
 from rockframe.shared_arguments import takes
 from rockframe.signals.polynomials import turning_points
 from rockframe.simulation.beside import Beside
+from rockframe.simulation.end_in_motion import STILL_MOVING
 from rockframe.simulation.plan import Plan, plan_run
 from rockframe.simulation.provenance import motion_attributes
 from rockframe.simulation.run import beside, run
@@ -258,6 +259,13 @@ def _cautions(
     if undecided:
         cautions.append(f"{_OWNER}: {unfinished(undecided)}")
         warn(cautions[0], SolverWarning)
+    moving = [scale for scale, shown in found.shown.items() if shown.in_motion]
+    if moving:
+        cautions.append(
+            f"{_OWNER}: at {len(moving)} of {len(found.shown)} scales, such as {moving[0]:.4g}, "
+            f"{STILL_MOVING}"
+        )
+        warn(cautions[-1], SolverWarning)
     if not math.isnan(critical):
         again = run(system.assembly, plan_at(critical))
         cautions += filter(None, [str(again.attrs.get("cautions", ""))])

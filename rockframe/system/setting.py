@@ -9,6 +9,7 @@ from rockframe.signals.slope import Slope
 from rockframe.system.bodies import Body, OverturningAngles
 from rockframe.system.load import Load
 from rockframe.system.options import Options
+from rockframe.system.overturning_energy import least_overturning_energy
 from rockframe.system.small_motion import SmallMotion
 from rockframe.system.statics import Statics
 from rockframe.system.words import Words
@@ -81,6 +82,11 @@ class Setting(ABC):
     def rest_rotation(self) -> float:
         """Rotation at rest, of a body that leans on a base that gives way [rad]."""
         return 0.0
+
+    @cached_property
+    def overturning_energy(self) -> float:
+        """Energy that it takes to overturn the body, by itself, on the weaker side [J]."""
+        return least_overturning_energy(self)
 
     @property
     @abstractmethod

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from rockframe.compiled import LANES, Matrix, bound_in_lanes, numbers_in
 from rockframe.compiled.bound import structure_of
-from rockframe.dynamics.protocol import ContactModel
+from rockframe.dynamics.protocol import ContactModel, Ending
 from rockframe.signals import Motion
 from rockframe.solve import layout as at
 from rockframe.solve.beginning import Begun
@@ -55,11 +55,14 @@ class Outcomes:
         Laid out in :mod:`rockframe.solve.layout`.
     status : ndarray of int64, shape (runs,)
         How they ended, :class:`rockframe.solve.layout.Status`.
+    endings : list of Ending
+        Where they ended.
     """
 
     clock: Matrix
     counters: Whole
     status: Whole
+    endings: list[Ending]
 
 
 def kind_of(model: ContactModel) -> Any:
@@ -93,6 +96,7 @@ def integrate_lanes(
     clock = np.empty((len(run_of), at.CLOCK))
     counters = np.empty((len(run_of), at.COUNTERS), dtype=np.int64)
     status = np.empty(len(run_of), dtype=np.int64)
+    endings: list[Ending] = []
     for some in _batches(motions, motion_of):
         used, place = np.unique(motion_of[some], return_inverse=True)
         rows = made.run([motions[k] for k in used.tolist()], run_of[some], place)
@@ -100,7 +104,8 @@ def integrate_lanes(
         clock[some] = rows[:, fields.CLOCK : fields.CLOCK + at.CLOCK]
         counters[some] = wholes[:, fields.COUNTERS : fields.COUNTERS + at.COUNTERS]
         status[some] = wholes[:, fields.OWN_WHOLE + fields.STATUS]
-    return Outcomes(clock, counters, status)
+        endings += made.endings(rows)
+    return Outcomes(clock, counters, status, endings)
 
 
 def _batches(motions: Sequence[Motion | None], motion_of: Whole) -> list[slice]:
@@ -151,6 +156,14 @@ class _Rows:
         row[behind + self._memory :] = begun.tolerance
         whole[fields.OWN_WHOLE + fields.BUSY] = 1
         whole[fields.OWN_WHOLE + fields.KIND] = k
+
+    def endings(self, rows: Matrix) -> list[Ending]:
+        """Give where runs ended, from their rows."""
+        there, behind = self._places, self._places.numbers + self._count
+        states = rows[:, there.state : there.first].copy()
+        memories = rows[:, behind : behind + self._memory].copy()
+        modes = rows.view(np.int64)[:, fields.COUNTERS + at.MODE].tolist()
+        return [Ending(*one) for one in zip(modes, states, memories, strict=True)]
 
     def run(self, motions: Sequence[Motion | None], run_of: Whole, motion_of: Whole) -> Matrix:
         """Give the rows of cases after their runs."""

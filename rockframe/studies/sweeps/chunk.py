@@ -13,6 +13,7 @@ from rockframe.results.variables.requests import POINT_TIME
 from rockframe.results.variables.runs import RunStatus
 from rockframe.results.variables.studies import REPEATED, VERDICT_CHANGED
 from rockframe.results.variables.variable import TIME
+from rockframe.simulation.end_in_motion import STILL_MOVING, may_overturn_later
 from rockframe.simulation.run import NONE
 from rockframe.studies.sweeps.cases_of_job import CasesOfJob
 from rockframe.studies.sweeps.runs import Failed, each_run
@@ -85,6 +86,12 @@ def run_chunk(job: Job, stopped: Callable[[], bool] = lambda: False) -> Rows | N
     return None if stopped() else told.rows()
 
 
+def _cautions(run: Finished) -> list[str]:
+    if run.response is not None:
+        return [text for _, text in run.response.cautions()]
+    return [STILL_MOVING] if may_overturn_later(run.system, run.summary) else []
+
+
 class _Telling:
     """Collects what cases show."""
 
@@ -111,7 +118,7 @@ class _Telling:
         case, response = run.case, run.response
         if self._status[case] != RunStatus.NOT_RUN:  # of a first run
             self._clear(case)
-        cautions = [] if response is None else [text for _, text in response.cautions()]
+        cautions = _cautions(run)
         self._say(case, "; ".join([*run.said, *cautions]) or NONE)
         self._status[case] = run.summary.status
         if run.summary.overturned is None:

@@ -163,6 +163,7 @@ def _run(group: _Group) -> Iterator[Finished]:
         summary = Summary(
             status=Status(int(found.status[k])),
             substeps=scene.run.begun.substeps,
+            ending=found.endings[k],
             **told_by(found.clock[k], found.counters[k]),
         )
         if nothing_to_say(scene.system, summary):

@@ -1,0 +1,60 @@
+"""Whether a body that stands at the end of a run could still overturn by itself."""
+
+from typing import Final
+
+from rockframe.dynamics.protocol import Ending
+from rockframe.dynamics.rest import still
+from rockframe.solve.trajectory import Summary
+from rockframe.system.assembly import Assembly
+from rockframe.system.overturning_energy import stored_energy
+
+NEGLIGIBLE: Final = 0.02
+"""Share of the overturning angle, and of the energy to it on rigid ground, of a body at rest."""
+
+STILL_MOVING: Final = (
+    "the run ends while the body, which stands, still has the energy to overturn: give a longer "
+    "free_vibration, such as '10 s', to see whether it comes to rest"
+)
+
+
+def may_overturn_later(system: Assembly, summary: Summary) -> bool:
+    """Tell whether a body that stood has as much energy as overturning takes.
+
+    What shakes it is over: its energy is that of its motion and what it takes to hold it at its
+    rotation, :eq:`eq-overturning-energy`.
+
+    Parameters
+    ----------
+    system : Assembly
+        The scene.
+    summary : Summary
+        What became of a run.
+
+    Returns
+    -------
+    bool
+        False of a body that overturned, of a run that was broken off, and where nothing holds
+        the body upright.
+    """
+    if summary.overturned is not False:
+        return False
+    model, setting, ending = system.model, system.setting, summary.ending
+    rotation, body = model.rotation_in(ending.state), setting.body
+    kinetic = _kinetic_energy(system, ending)
+    to_edge = body.mass * setting.gravity * (body.radius - body.centre_height)
+    at_rest = abs(rotation) < NEGLIGIBLE * setting.overturning_angle
+    if at_rest and kinetic < NEGLIGIBLE * to_edge:
+        return False
+    needed = setting.overturning_energy
+    return 0.0 < needed <= kinetic + stored_energy(setting, rotation)
+
+
+def _kinetic_energy(system: Assembly, ending: Ending) -> float:
+    """Give the kinetic energy of the body relative to the ground [J]."""
+    model, body = system.model, system.setting.body
+    ground = still(system.options.slope.along_gravity)
+    slope = model.system.accelerate(ending.mode, ending.state, ground)
+    seen = model.system.observe(ending.mode, ending.state, slope, ground, ending.memory)
+    found = dict(zip((column.name for column in model.columns), seen, strict=True))
+    square = found["horizontal_velocity"] ** 2 + found["vertical_velocity"] ** 2
+    return 0.5 * (body.mass * square + body.inertia * found["angular_velocity"] ** 2)
