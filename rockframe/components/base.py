@@ -67,8 +67,8 @@ class Component:
         self._warn()
 
     def _warn(self) -> None:
-        for caution in self._cautions():
-            warn(f"{type(self).__name__}: {caution}", ModelWarning)
+        for caution in cautions_of(self):
+            warn(caution, ModelWarning)
 
     def _fill(self, given: Mapping[str, object]) -> None:
         """Check and keep the arguments of the constructor."""
@@ -305,6 +305,11 @@ def replaced(
     """
     gone = {name for each in alternatives for name in each.displaced(changes)}
     return {**{name: value for name, value in arguments.items() if name not in gone}, **changes}
+
+
+def cautions_of(part: Component) -> list[str]:
+    """Say what is unusual about the values of a component, with its name."""
+    return [f"{type(part).__name__}: {words}" for words in part._cautions()]
 
 
 def _every_argument(kind: type[Component], given: Mapping[str, object]) -> dict[str, object]:

@@ -126,7 +126,8 @@ def run(system: Assembly, plan: Plan, certification: Certification | None = None
     for kind, text in cautions:
         warn(text, kind)
     # said of every run: what only some datasets say, xarray.concat would take for all
-    attributes["cautions"] = "; ".join(text for _, text in cautions) or NONE
+    every = [*system.cautions, *(text for _, text in cautions)]
+    attributes["cautions"] = "; ".join(every) or NONE
     certificate: dict[str, float | bool] = {}
     if certification is not None:
         found = certify(system, plan, response.beside(), certification, beside)

@@ -14,7 +14,6 @@ from rockframe.motion import GroundMotion
 from rockframe.simulation.provenance import motion_from_dataset
 from rockframe.solve.accuracy import AccuracyLevel
 from rockframe.system.assembly import Assembly, assemble
-from rockframe.system.fitting import doubts
 from rockframe.system.options import (
     AccuracyLike,
     Coupling,
@@ -95,7 +94,7 @@ class System:
             parts, restraint=restraint, rotation=rotation, coupling=coupling, gravity=gravity,
             inclination=inclination,
         )  # fmt: skip
-        for caution in (*self.setting.cautions(), *doubts(self.parts)):
+        for caution in self._assembly.doubts:
             warn(caution, ModelWarning)
 
     @property

@@ -6,9 +6,10 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from rockframe.components.base import cautions_of
 from rockframe.errors import AssemblyError
 from rockframe.system.describe import describe
-from rockframe.system.fitting import misfits, missizes
+from rockframe.system.fitting import doubts, misfits, missizes
 from rockframe.system.options import (
     Coupling,
     Options,
@@ -54,6 +55,17 @@ class Assembly:
     def model(self) -> "ContactModel":
         """The scene's equations, ready for the integrator, which leaves them as they are."""
         return self.setting.compile()
+
+    @cached_property
+    def doubts(self) -> list[str]:
+        """What is unusual about the scene."""
+        return [*self.setting.cautions(), *doubts(self.parts)]
+
+    @cached_property
+    def cautions(self) -> list[str]:
+        """What is unusual about the scene and its parts, each once."""
+        of_parts = [text for part in self.parts.structural() for text in cautions_of(part)]
+        return list(dict.fromkeys([*of_parts, *self.doubts]))
 
     @cached_property
     def description(self) -> str:
