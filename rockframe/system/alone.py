@@ -42,22 +42,9 @@ class AloneSetting(Setting):
         return self.support.model
 
     @property
-    def uplift_angle(self) -> float:
-        """Rotation at which contact is first lost; NaN if it never is [rad]."""
-        return self.support.uplift_angle
-
-    @property
-    def settlement(self) -> float | None:
-        """Settlement under the weight [m]."""
-        return self.support.settlement
-
-    def cautions(self) -> list[str]:
-        """Give the warnings of the base, and of a body that leans far."""
-        return [*self.support.cautions(), *super().cautions()]
-
-    def start_faults(self, rotation: float, has_vertical_start: bool) -> list[str]:
-        """Give the faults that the base finds in an initial state."""
-        return self.support.start_faults(rotation, has_vertical_start)
+    def supports(self) -> tuple[Support, ...]:
+        """The one base."""
+        return (self.support,)
 
     def words(self) -> Words:
         """Tell the base, and what the body on it lacks."""

@@ -7,7 +7,6 @@ import numpy.typing as npt
 
 from rockframe.components import FrameEquivalent
 from rockframe.system.assembly import Assembly
-from rockframe.system.stacked import StackedSetting
 
 Array = npt.NDArray[np.float64]
 
@@ -102,11 +101,8 @@ def geometry_of(scene: Assembly) -> Geometry:
     parts, setting = scene.parts, scene.setting
     block = parts.the_block
     cap = None if parts.cap is None else parts.the_cap
-    stacked = isinstance(setting, StackedSetting)
-    above_pads = setting.upper if stacked else setting
-    on_bed = setting.lower if stacked else setting
-    body = setting.body
-    level = 2.0 * cap.half_height if stacked and cap is not None else 0.0
+    body, sinks = setting.body, [each.settlement for each in setting.supports]
+    level = 2.0 * cap.half_height if setting.stacked and cap is not None else 0.0
     return Geometry(
         outline=rectangle(block.half_width, block.height),
         members=members_of(parts.block),
@@ -114,9 +110,9 @@ def geometry_of(scene: Assembly) -> Geometry:
         centre=(block.eccentricity, block.centre_height),
         moved=(body.eccentricity, level + body.centre_height),
         cap=None if cap is None else (cap.half_width, 2.0 * cap.half_height),
-        pads_sink=None if parts.pads is None else above_pads.settlement or 0.0,
-        bed_sinks=None if parts.soil is None else on_bed.settlement or 0.0,
-        stacked=stacked,
+        pads_sink=None if parts.pads is None else sinks[0],
+        bed_sinks=None if parts.soil is None else sinks[-1],
+        stacked=setting.stacked,
         inclination=scene.options.inclination,
         small_rotation=scene.options.small,
     )

@@ -40,11 +40,6 @@ class RigidGroundSetting(Setting):
         return "rigid ground"
 
     @property
-    def uplift_angle(self) -> float:
-        """Zero: any rotation lifts a corner [rad]."""
-        return 0.0
-
-    @property
     def uplift_acceleration(self) -> float:
         """Horizontal ground acceleration at which rocking starts, g tan(theta) [m s^-2].
 

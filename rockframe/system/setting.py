@@ -12,6 +12,7 @@ from rockframe.system.options import Options
 from rockframe.system.overturning_energy import least_overturning_energy
 from rockframe.system.small_motion import SmallMotion
 from rockframe.system.statics import Statics
+from rockframe.system.support import Support
 from rockframe.system.words import Words
 
 if TYPE_CHECKING:
@@ -89,14 +90,22 @@ class Setting(ABC):
         return least_overturning_energy(self)
 
     @property
-    @abstractmethod
+    def supports(self) -> tuple[Support, ...]:
+        """The bases that give way, from that of the body down; none on rigid ground."""
+        return ()
+
+    @property
     def uplift_angle(self) -> float:
-        """Rotation at which contact is first lost; NaN if never [rad]."""
+        """Rotation on its base at which a body loses full contact; NaN if never [rad].
+
+        Any rotation lifts a corner from rigid ground.
+        """
+        return self.supports[0].uplift_angle if self.supports else 0.0
 
     @property
     def settlement(self) -> float | None:
-        """Settlement under the weight, where the base gives way [m]."""
-        return None
+        """Settlement under the weight, where the base of the body gives way [m]."""
+        return self.supports[0].settlement if self.supports else None
 
     def small_motion(self) -> SmallMotion | None:
         """Give the linear equations of small motion about rest; a rigid base leaves none."""
@@ -114,12 +123,19 @@ class Setting(ABC):
     def words(self) -> Words:
         """Tell equations, restraint, uplift angles, numbers, and what is left out."""
 
-    @abstractmethod
     def start_faults(self, rotation: float, has_vertical_start: bool) -> list[str]:
-        """Give faults of an initial state."""
+        """Give the faults that the base of the body finds in an initial state.
+
+        Rigid ground, which is no support, finds its own.
+        """
+        return self.supports[0].start_faults(rotation, has_vertical_start)
 
     def cautions(self) -> list[str]:
         """Give warnings about values near or beyond the model's validity."""
+        return [*(text for each in self.supports for text in each.cautions()), *self._leaning()]
+
+    def _leaning(self) -> list[str]:
+        """Warn of a body that leans far at rest."""
         lean = abs(self.rest_rotation)
         share = lean / self.overturning_angles.on_side_of(self.rest_rotation)
         if share <= LARGE_LEAN:

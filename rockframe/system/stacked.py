@@ -16,7 +16,7 @@ from rockframe.system.setting import Setting
 from rockframe.system.small_motion import SmallMotion
 from rockframe.system.stack_statics import stack_statics
 from rockframe.system.statics import Statics
-from rockframe.system.support import BaseWords
+from rockframe.system.support import BaseWords, Support
 from rockframe.system.words import Words
 
 if TYPE_CHECKING:
@@ -57,27 +57,13 @@ class StackedSetting(Setting):
         """Rotation of the cap at rest [rad]."""
 
     @property
-    def settlement(self) -> float | None:
-        """Delta = mg/2k, of the block on the pads [m]."""
-        return self.upper.settlement
-
-    @property
-    def uplift_angle(self) -> float:
-        """Rotation on the cap at which a corner lifts, Eq. (16) [rad]."""
-        return self.upper.uplift_angle
-
-    def cautions(self) -> list[str]:
-        """Give the warnings of pads and soil, and of a block that leans far."""
-        bases = self.upper.support.cautions(), self.lower.support.cautions()
-        return [*bases[0], *bases[1], *super().cautions()]
-
-    def start_faults(self, rotation: float, has_vertical_start: bool) -> list[str]:
-        """Give the faults that the block's base finds in an initial state."""
-        return self.upper.start_faults(rotation, has_vertical_start)
+    def supports(self) -> tuple[Support, ...]:
+        """Pads and soil."""
+        return self.upper.support, self.lower.support
 
     def words(self) -> Words:
         """Tell the block on its pads, and both on the soil."""
-        cap, pads, soil = self.cap, self.upper.support.words(), self.lower.support.words()
+        cap, (pads, soil) = self.cap, (each.words() for each in self.supports)
         size = f"{2.0 * cap.half_width:.6g} m by {2.0 * cap.half_height:.6g} m"
         rule = restraint_words(self.options)
         return Words(
@@ -164,7 +150,7 @@ class StackedSetting(Setting):
         """Give block, pads, cap and soil as the coupled equations take them."""
         from rockframe.dynamics.coupled.stack import Stack
 
-        upper, lower, cap = self.upper.support, self.lower.support, self.cap
+        (upper, lower), cap = self.supports, self.cap
         mass = self.body.mass
         least = LEAST_CAP_SHARE * mass
         light = cap.mass < least
