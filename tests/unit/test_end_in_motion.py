@@ -1,0 +1,89 @@
+"""Runs that end while the block, which stands, can still overturn."""
+
+import math
+from contextlib import nullcontext
+
+import pytest
+
+import rockframe as rf
+from rockframe.system.overturning_energy import stored_energy
+
+BLOCK = rf.Block(width="0.5 m", height="2 m", mass="400 kg")
+PULSE = rf.GroundMotion.sine_pulse("4 m/s^2", "1.5 Hz")
+PADS = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.05)
+SOIL = rf.WinklerSoil(stiffness="5 MPa", damping_ratio=0.1)
+CAP = rf.CushionCap(height="0.1 m", mass="100 kg", width="0.6 m")
+STILL_MOVING = "still has the energy to overturn"
+
+
+def rise():
+    """Energy to the edge on rigid ground, m g R (1 - cos theta)."""
+    radius = math.hypot(0.25, 1.0)
+    return 400.0 * 9.80665 * radius * (1.0 - math.cos(math.atan2(0.25, 1.0)))
+
+
+def test_on_rigid_ground_it_takes_the_rise_of_the_centre_of_mass():
+    setting = rf.System(BLOCK).assembly.setting
+    assert setting.overturning_energy == pytest.approx(rise(), rel=1e-12)
+    assert stored_energy(setting, -setting.overturning_angle) == pytest.approx(rise())
+
+
+@pytest.mark.parametrize("parts", [[PADS], [SOIL], [PADS, CAP, SOIL]], ids=len)
+def test_bases_that_give_way_take_part_of_it_back(parts):
+    setting = rf.System(BLOCK, *parts).assembly.setting
+    assert 0.3 * rise() < setting.overturning_energy < rise()
+
+
+def test_of_two_sides_the_weaker_one_counts():
+    leaning = rf.System(BLOCK, inclination="2 deg").assembly.setting
+    radius, left, right = math.hypot(0.25, 1.0), *leaning.overturning_angles
+    to_sides = [400.0 * 9.80665 * radius * (1.0 - math.cos(angle)) for angle in (left, right)]
+    assert leaning.overturning_energy == pytest.approx(min(to_sides), rel=1e-9)
+
+
+def test_a_run_that_ends_in_mid_swing_warns():
+    system = rf.System(BLOCK)
+    with pytest.warns(rf.SolverWarning, match=STILL_MOVING):
+        short = system.simulate(PULSE)
+    assert not short.overturned
+    assert STILL_MOVING in short.attrs["cautions"]
+    long = system.simulate(PULSE, free_vibration="3 s")
+    assert long.overturned
+    assert long.attrs["cautions"] == "none"
+
+
+@pytest.mark.parametrize("parts", [[], [PADS], [SOIL], [PADS, CAP, SOIL]], ids=len)
+@pytest.mark.parametrize("share", [0.9, 1.1])
+def test_the_bound_is_that_of_the_energy(parts, share):
+    """A block that is let go with a rotation rate of that energy, and looked at at once."""
+    system = rf.System(BLOCK, *parts)
+    setting = system.assembly.setting
+    body, rotation = setting.body, 0.0
+    about = body.base_inertia  # about the middle of the base, which pads and soil hold
+    if not parts:
+        about, rotation = body.inertia + body.mass * body.radius**2, 1e-9  # about a corner
+    rate = math.sqrt(2.0 * share * setting.overturning_energy / about)
+    start = rf.InitialState(rotation=f"{rotation!r} rad", angular_velocity=f"{rate!r} rad/s")
+    with pytest.warns(rf.SolverWarning, match=STILL_MOVING) if share > 1.0 else nullcontext():
+        system.simulate(duration="1 ms", initial=start, outputs=None)
+
+
+def test_sweeps_say_so_of_their_cases():
+    with pytest.warns(rf.ModelWarning, match=STILL_MOVING):
+        runs = rf.sweep(rf.System(BLOCK), PULSE, scale=[0.2, 1.0], progress=False)
+    said = runs.message.to_numpy()[runs.message_number.to_numpy().ravel()]
+    assert said[0] == "none"
+    assert STILL_MOVING in said[1]
+
+
+def test_critical_scales_say_so():
+    system = rf.System(BLOCK)
+    with pytest.warns(rf.SolverWarning, match=STILL_MOVING):
+        found = rf.critical_scale(system, PULSE, scales=10, runs=20, progress=False)
+    assert STILL_MOVING in found.attrs["cautions"]
+
+
+def test_a_certificate_speaks_of_the_time_to_the_end():
+    with pytest.warns(rf.SolverWarning, match=STILL_MOVING):
+        found = rf.System(BLOCK).simulate(PULSE, certify=True)
+    assert found.attrs["certificate"].startswith("To the end of the run, where it can still")
