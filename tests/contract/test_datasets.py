@@ -32,10 +32,7 @@ from rockframe.solve.layout import Status
 from rockframe.solve.trajectory import Summary
 from rockframe.system.bodies import OverturningAngles
 
-pytestmark = [
-    pytest.mark.contract,
-    pytest.mark.filterwarnings("ignore:the run ends while the body"),  # some end in mid-swing
-]
+pytestmark = pytest.mark.contract
 
 HISTORIES = {
     "rotation",
