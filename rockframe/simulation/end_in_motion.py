@@ -2,14 +2,17 @@
 
 from typing import Final
 
+import numpy as np
+
 from rockframe.dynamics.protocol import Ending
 from rockframe.dynamics.rest import still
 from rockframe.solve.trajectory import Summary
 from rockframe.system.assembly import Assembly
 from rockframe.system.overturning_energy import stored_energy
 
-NEGLIGIBLE: Final = 0.02
-"""Share of the overturning angle, and of the energy to it on rigid ground, of a body at rest."""
+AT_REST: Final = 0.1
+"""Share of the typical size of everything in the state, :class:`ContactModel`, up to which a body
+has at most a quarter of the energy to overturn."""
 
 STILL_MOVING: Final = (
     "the run ends while the body, which stands, still has the energy to overturn: give a longer "
@@ -39,12 +42,9 @@ def may_overturn_later(system: Assembly, summary: Summary) -> bool:
     if summary.overturned is not False:
         return False
     model, setting, ending = system.model, system.setting, summary.ending
-    rotation, body = model.rotation_in(ending.state), setting.body
-    kinetic = _kinetic_energy(system, ending)
-    to_edge = body.mass * setting.gravity * (body.radius - body.centre_height)
-    at_rest = abs(rotation) < NEGLIGIBLE * setting.overturning_angle
-    if at_rest and kinetic < NEGLIGIBLE * to_edge:
+    if np.all(np.abs(ending.state) < AT_REST * model.scales):
         return False
+    rotation, kinetic = model.rotation_in(ending.state), _kinetic_energy(system, ending)
     needed = setting.overturning_energy
     return 0.0 < needed <= kinetic + stored_energy(setting, rotation)
 
