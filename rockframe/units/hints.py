@@ -12,6 +12,7 @@ from rockframe.units.kinds import (
     Measure,
     Unit,
 )
+from rockframe.units.written import foreign_sign, number_and_unit
 
 _HEAVY: Final = (Unit.KILOGRAM, Unit.KILOGRAM_PER_CUBIC_METRE, Unit.KILOGRAM_METRE_SQUARED)
 _MISREAD_UNITS: Final = (
@@ -38,14 +39,16 @@ _SHARE: Final = (Unit.NEWTON_SECOND_PER_METRE, Unit.PASCAL_SECOND)
 AMBIGUOUS: Final = (
     # read without complaint by pint, but rarely as the writer meant it
     (r",", "a decimal point is written '.'; pint would drop the comma"),
+    (
+        r"\d\s*[^\w\s,.*/^()%+-]\s*\d",
+        "a number is written without marks between its digits; pint would multiply its parts",
+    ),
     (r"\d\s+[\d.]", "a number is written without blanks; pint would multiply its parts"),
     (
         r"\b(?:k|M|G|kilo|mega|giga)?tons?\b",
         "'ton' is the US short ton of 907 kg; the tonne is written 't'",
     ),
 )
-_NUMBER: Final = r"[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|nan\b|inf(?:inity)?\b)"
-NUMBER_AND_UNIT: Final = re.compile(rf"\s*(?P<number>{_NUMBER})\s*(?P<unit>.*)", re.DOTALL)
 
 
 def foreign_quantity(value: object) -> str:
@@ -150,11 +153,14 @@ def misread(text: str, measure: Measure) -> str:
     str
         In brackets, to be added to a message.
     """
-    parts = NUMBER_AND_UNIT.fullmatch(text)
-    text = text if parts is None else parts["unit"]
+    parts = number_and_unit(text)
+    text = text if parts is None else parts[1]
     for pattern, meant, words in _MISREAD_UNITS:
         if meant in (None, measure.unit) and re.search(pattern, text):
             return f" ({words})"
+    sign = foreign_sign(text)
+    if sign is not None:
+        return f" ({shown(sign)} stands in no number and in no unit)"
     if measure is FREQUENCY:
         return " (a cyclic frequency in Hz is the angular one in rad/s divided by 2 pi)"
     return ""

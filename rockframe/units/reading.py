@@ -17,13 +17,13 @@ import pint
 from rockframe.errors import ComponentError, UnitsError, shown
 from rockframe.units.hints import (
     AMBIGUOUS,
-    NUMBER_AND_UNIT,
     foreign_quantity,
     misread,
     other_kind,
     without_unit,
 )
 from rockframe.units.kinds import Condition, Measure, Unit
+from rockframe.units.written import number_and_unit, read
 
 if TYPE_CHECKING:
     import numpy as np
@@ -33,14 +33,8 @@ QuantityLike: TypeAlias = str | pint.Quantity[Any] | tuple[float, str]
 """A number with its unit: ``"0.3 m"``, ``(0.3, "m")``, or a Quantity of pint."""
 RatioLike: TypeAlias = float | str | pint.Quantity[Any]
 
-_NO_UNIT: Final = re.compile(
-    # a second number, or a power of a number or of a power: no unit has them, and
-    # pint would compute even 9**9**9
-    r"^\^|(?:^|[\s/(*])[\d.]|\^[-+]?(?:\d{3}|\d+\^)|[A-Za-z]\d"
-)
 _LONGEST_FACTOR: Final = 12
 """Letters of a unit's size that is a number of few digits, such as 0.45359237 kg or 1e-06 m."""
-_POWER: Final = re.compile(r"\s*(?:\*\*|\^)\s*")
 
 
 def quantity(value: "float | npt.NDArray[np.float64]", measure: Measure) -> pint.Quantity[Any]:
@@ -230,10 +224,10 @@ def _in_si(value: object, measure: Measure) -> float | None:
     """Read a value that is in the SI unit already: most are, and need no conversion."""
     if not isinstance(value, str) or not value.endswith(measure.unit):
         return None
-    parts = NUMBER_AND_UNIT.fullmatch(value)
-    if parts is None or parts["unit"] != measure.unit:
+    parts = number_and_unit(value)
+    if parts is None or parts[1] != measure.unit:
         return None
-    return float(parts["number"])
+    return float(parts[0])
 
 
 def _parse(value: object, measure: Measure, *, owner: str, name: str) -> pint.Quantity[Any]:
@@ -253,14 +247,14 @@ def _parse(value: object, measure: Measure, *, owner: str, name: str) -> pint.Qu
         if re.search(pattern, value):
             msg = f"{needed}, got {shown(value)} ({words}); {example}"
             raise UnitsError(msg)
-    parts = NUMBER_AND_UNIT.fullmatch(value)
-    if parts is None or _NO_UNIT.search(_POWER.sub("^", parts["unit"])):
+    written = read(value)
+    if written is None:
         hint = misread(value, measure)
         wanted = "a number" if measure.unit == Unit.ONE else "one number and a unit"
         msg = f"{needed}, got {shown(value)}, which is not {wanted}{hint}; {example}"
         raise UnitsError(msg)
     try:
-        return pint.get_application_registry().Quantity(value)
+        return pint.get_application_registry().Quantity(written.plain)
     except Exception as problem:  # pint's parser raises many unrelated types
         hint = misread(value, measure)
         msg = f"{needed}, got {shown(value)}, whose unit cannot be read{hint}; {example}"

@@ -303,6 +303,73 @@ def test_a_blank_inside_a_number_is_not_a_multiplication(maker, name, bad):
     assert f"{name} needs" in refusal(maker, **{name: bad})
 
 
+@pytest.mark.parametrize(
+    ("maker", "name", "bad", "why"),
+    [
+        (make_block, "height", "2'500 mm", "without marks between its digits"),
+        (make_block, "height", "2\u2019500 mm", "without marks between its digits"),
+        (make_block, "height", "2·500 mm", "without marks between its digits"),
+        (make_block, "height", "2:500 mm", "without marks between its digits"),
+        (make_block, "height", "2;500 mm", "without marks between its digits"),
+        (make_block, "height", "12'345'678 mm", "without marks between its digits"),
+        (make_block, "height", "6'8 ft", "without marks between its digits"),
+        (make_block, "height", "2·10³ mm", "without marks between its digits"),
+        (make_block, "height", "2½ m", "'½' stands in no number and in no unit"),
+        (make_block, "height", "2 m₂", "'₂' stands in no number and in no unit"),
+        (make_block, "height", "2 m #3", "'#' stands in no number and in no unit"),
+        (make_block, "height", "2\u200b500 mm", "without marks between its digits"),
+        (make_block, "height", "\u22122 m", "'\u2212' stands in no number and in no unit"),
+        (make_block, "height", "2² m", "not one number and a unit"),
+        (make_block, "height", "2\xd73 m", "without marks between its digits"),
+        (make_block, "height", "2\xd710^3 mm", "without marks between its digits"),
+        (make_block, "height", "2 m+3 m", "not one number and a unit"),
+        (make_block, "height", "6 ft-2 in", "not one number and a unit"),
+        (make_block, "height", "2 m.5", "not one number and a unit"),
+        (make_block, "height", "2 (m)5", "not one number and a unit"),
+        (make_block, "height", "2 m^2²/m^3", "not one number and a unit"),
+        (make_pulse, "amplitude", "3 m/-s^2", "not one number and a unit"),
+        (make_pulse, "amplitude", "3 m/⁻s^2", "not one number and a unit"),
+        (make_pads, "damping_ratio", "5 $", "'$' stands in no number and in no unit"),
+        (make_pads, "damping_ratio", "5 %2", "not a number"),
+    ],
+)
+def test_what_pint_would_drop_or_multiply_is_refused(maker, name, bad, why):
+    message = refusal(maker, **{name: bad})
+    assert f"{name} needs" in message
+    assert repr(bad) in message
+    assert why in message
+    assert f"write for example {name}=" in message
+
+
+@pytest.mark.parametrize(
+    ("maker", "name", "text", "attribute", "expected"),
+    [
+        (make_block, "width", "2_500 mm", "width", 2.5),
+        (make_block, "width", "1e-3 km", "width", 1.0),
+        (make_block, "width", "2.5e3mm", "width", 2.5),
+        (make_block, "width", "50 in.", "width", 1.27),
+        (make_block, "width", "2 [m]", "width", 2.0),
+        (make_block, "width", "2\xa0m", "width", 2.0),
+        (make_block, "width", "2 * m", "width", 2.0),
+        (make_block, "width", "2 m^3 / m ** 2", "width", 2.0),
+        (make_block, "width", "2 m^(-1)*m^+2", "width", 2.0),
+        (make_block, "width", "2 square m per m", "width", 2.0),
+        (make_block, "inertia", "5 t·m²", "inertia", 5e3),
+        (make_block, "inertia", "5 t.m^2", "inertia", 5e3),
+        (make_block, "inertia", "5 t\xd7m²", "inertia", 5e3),
+        (make_pads, "damping", "1 kN·s/m", "damping", 1e3),
+        (make_pads, "damping", "1 kN⋅s⋅m⁻¹", "damping", 1e3),
+        (make_pads, "damping", "1 kN/(m/s)", "damping", 1e3),
+        (rf.InitialState, "vertical_displacement", "-.5 mm", "vertical_displacement", -5e-4),
+        (rf.InitialState, "vertical_displacement", "+5. µm", "vertical_displacement", 5e-6),
+    ],
+)
+def test_one_number_and_a_unit_are_read_in_all_their_spellings(
+    maker, name, text, attribute, expected
+):
+    assert getattr(maker(**{name: text}).si, attribute) == pytest.approx(expected, rel=4e-16)
+
+
 @pytest.mark.parametrize("bad", ["m", "kilometre"])
 def test_a_unit_without_a_number_is_not_one(bad):
     assert "width needs" in refusal(make_block, width=bad)
