@@ -259,8 +259,7 @@ def _make(path: Path, study: Study, chunk: int) -> None:
         arrays[_COLUMN] = labels.grid.motion_column
     for k, (name, motion) in enumerate(study.motions.items()):
         one = None if motion is None else motion.to_dict(samples=True)
-        sampled = {} if one is None else {each: one.get(each) or {} for each in _SAMPLED}
-        for component, held in sampled.items():
+        for component, held in _sampled(one).items():
             for what, values in held.items():
                 arrays[f"{_MOTION}{k} {component} {what}"] = np.array(values)
                 held[what] = None
@@ -289,12 +288,19 @@ def _values(words: list[str] | None, arrays: Mapping[str, Generic], name: str) -
 
 
 def _motion(number: int, one: dict[str, Any], arrays: Mapping[str, Generic]) -> GroundMotion:
-    for component in _SAMPLED:
-        if one.get(component):
-            one[component] = {
-                what: arrays[f"{_MOTION}{number} {component} {what}"] for what in one[component]
-            }
+    for component, held in _sampled(one).items():
+        one[component] = {what: arrays[f"{_MOTION}{number} {component} {what}"] for what in held}
     return GroundMotion.from_dict(one)
+
+
+def _sampled(one: Mapping[str, Any] | None) -> dict[str, dict[str, Any]]:
+    """Give the components that a motion is described by, where it is described by samples.
+
+    What a constructor makes is described by its arguments, and ``vertical`` may be one of them.
+    """
+    if one is None or one["constructor"] is not None:
+        return {}
+    return {component: one[component] for component in _SAMPLED if one[component]}
 
 
 def _read(path: Path) -> tuple[dict[str, Any], dict[str, Generic]]:

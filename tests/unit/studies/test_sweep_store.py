@@ -58,6 +58,39 @@ def test_a_case_comes_from_the_folder_alone(whole, monkeypatch):
     assert found.simulate().peak_rotation.item() == runs.peak_rotation[17, 1, 0].item()
 
 
+def test_motions_with_a_vertical_component_are_kept_however_they_were_made(tmp_path, monkeypatch):
+    def make(seed):
+        return rf.GroundMotion.stochastic(6.6, "5 km", seed=seed, vertical=0.6)
+
+    shaking = make(1)
+    stored = tmp_path / "shaking.nc"
+    shaking.to_dataset().to_netcdf(stored)
+    motions = {
+        "of arguments": shaking,
+        "of samples": rf.GroundMotion.read(stored),
+        "of two": make(2).with_vertical(make(3)),
+        "record": RECORD,
+        "record with a vertical": RECORD.with_vertical(RECORD.scaled(0.4)),
+    }
+    system = rf.System(BLOCK, rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1))
+    folder = tmp_path / "study"
+
+    def run(**changes):
+        return rf.sweep(system, motions, scale=[1, 2], chunk=4, **changes)
+
+    plain, kept = run(), run(store=folder)
+    assert as_bytes(kept) == as_bytes(plain)
+    (folder / "chunk-000001.arrays").unlink()
+    assert as_bytes(run(store=folder)) == as_bytes(plain)
+    assert as_bytes(rf.open_study(folder)) == as_bytes(plain)
+    monkeypatch.setattr(of_cases, "_studies", type(of_cases._studies)())
+    for name, motion in motions.items():
+        found = rf.case(folder, scale=2.0, motion=name)
+        assert found.motion.sha256 == motion.scaled(2.0).sha256
+        again = found.simulate(outputs=None).peak_rotation.item()
+        assert again == plain.peak_rotation.sel(scale=2.0, motion=name).item()
+
+
 @pytest.fixture
 def copied(whole, tmp_path):
     folder = tmp_path / "study"
