@@ -13,6 +13,11 @@ _BLOCK: Final = "friction_demand"
 _CAP: Final = "soil_friction_demand"
 
 
+def has_limit(system: Assembly) -> bool:
+    """Whether a base of the scene has a coefficient of friction, to which its runs are held."""
+    return any(True for _ in _frictions(system))
+
+
 def slips(system: Assembly, values: Mapping[str, Generic], events: EventStates) -> Iterator[str]:
     """Tell where a run needs more friction than a base has.
 

@@ -14,6 +14,7 @@ from rockframe.results.points import Point
 from rockframe.results.schema import ENERGIES
 from rockframe.simulation.asked import lacking, names_of, points_of
 from rockframe.simulation.beginning import Beginning, continuation_of, described
+from rockframe.simulation.friction import has_limit
 from rockframe.simulation.run_arguments import RunArguments
 from rockframe.solve.accuracy import Accuracy, AccuracyLevel, accuracy_of
 from rockframe.system.assembly import Assembly
@@ -77,8 +78,8 @@ class Arguments(_Asked):
 class Plan(_Asked):
     """A run's arguments, checked and in SI units.
 
-    There are samples where `output_step` is given: for the histories, if they are kept, and
-    for the peaks at points.
+    There are samples where `output_step` is given: for the histories, if they are kept, for
+    the peaks at points, and for the friction that a base is said to have.
     """
 
     motion: GroundMotion | None
@@ -205,14 +206,15 @@ def fitted(
     if not length:
         faults.append("nothing to simulate: give a motion, or a duration for a still ground")
     step = None
-    if arguments.histories or arguments.points:
+    if arguments.histories or arguments.points or has_limit(system):
         step = arguments.output_step
         if step is None:
             step = STILL_GROUND_OUTPUT_STEP if motion is None else motion.si.time_step
         if length / step > MOST_SAMPLES:
             faults.append(
                 f"the histories would have {length / step:.3g} samples ({length:.6g} s in steps of "
-                f"{step:.6g} s); give a longer output_step, or outputs=None without points"
+                f"{step:.6g} s); give a longer output_step, or outputs=None without points and "
+                "friction"
             )
     faults += lacking(system, arguments.requested)
     asked = {name: getattr(arguments, name) for name in _Asked.__annotations__}

@@ -19,6 +19,7 @@ from rockframe.shared_arguments import takes
 from rockframe.signals.polynomials import turning_points
 from rockframe.simulation.beside import Beside
 from rockframe.simulation.end_in_motion import STILL_MOVING
+from rockframe.simulation.friction import has_limit
 from rockframe.simulation.plan import Plan, plan_run
 from rockframe.simulation.provenance import motion_attributes
 from rockframe.simulation.run import beside, run
@@ -112,7 +113,9 @@ def critical_scale(
     -----
     SolverWarning
         Runs could not be finished. They have no verdict, and are neither counted as
-        standing nor as overturned. What the run at the critical scale warns of, it warns of here.
+        standing nor as overturned. What the run at the critical scale warns of, it warns of here;
+        where a base has a coefficient of friction and nothing overturns, what that at the largest
+        scale warns of.
 
     Notes
     -----
@@ -168,7 +171,10 @@ def critical_scale(
     def plan_at(scale: float) -> Plan:
         return replace(plan, motion=motion.scaled(scale))
 
-    look = _look(system, plan_at, stop=plan.stop_at_overturning)
+    def bare_at(scale: float) -> Plan:
+        return replace(plan_at(scale), output_step=None)
+
+    look = _look(system, bare_at, stop=plan.stop_at_overturning)
     with bar_of(progress, owner=_OWNER, unit="run") as bar:
         found = follow(_counted(look, bar, len(row)), row, most=most, width=share)
     critical = least_overturning(found.shown)
@@ -253,7 +259,7 @@ def _uplift_scale(system: "System", plan: Plan) -> float:
 def _cautions(
     system: "System", plan_at: Callable[[float], Plan], found: Followed, critical: float
 ) -> dict[str, str]:
-    """Repeat what simulate warns of at the critical scale; warn of runs without a verdict."""
+    """Repeat what simulate warns of at the scale that tells; warn of runs without a verdict."""
     cautions: list[str] = []
     undecided = [scale for scale, shown in found.shown.items() if shown.overturned is None]
     if undecided:
@@ -266,8 +272,11 @@ def _cautions(
             f"{STILL_MOVING}"
         )
         warn(cautions[-1], SolverWarning)
-    if not math.isnan(critical):
-        again = run(system.assembly, plan_at(critical))
+    telling = critical
+    if math.isnan(critical) and has_limit(system.assembly):
+        telling = max(found.shown)  # where nothing falls, most friction is needed there
+    if not math.isnan(telling):
+        again = run(system.assembly, plan_at(telling))
         cautions += filter(None, [str(again.attrs.get("cautions", ""))])
     return {"cautions": "; ".join(cautions)} if cautions else {}
 

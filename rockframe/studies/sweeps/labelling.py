@@ -34,8 +34,8 @@ SCREENED: Final = (REPEATED, VERDICT_CHANGED)
 _TITLE: Final = "Sweep of a rocking system"
 ALONE: Final = "each case alone"
 SIDE_BY_SIDE: Final = (
-    "cases side by side in lanes; alone those that are not finished, or whose energies or ground "
-    "need a closer look"
+    "cases side by side in lanes; alone those that are not finished, or whose energies, friction "
+    "or ground need a closer look"
 )
 """How cases were run."""
 

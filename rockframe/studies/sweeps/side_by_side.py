@@ -142,6 +142,8 @@ def _take_up(
 def _prepared(cases: CasesOfJob, case: int, vertical: bool) -> _Scene | None:
     """Prepare a scene for lanes; None if its runs need a closer look."""
     system, said, plan = cases.planned(case)
+    if plan.output_step is not None:
+        return None  # samples are looked at, for friction
     if not system.options.slope.level or (vertical and system.setting.settlement is None):
         return None  # the ground is another one for each scene; or a block may leave it
     interval = STILL_INTERVAL if plan.motion is None else plan.motion.si.time_step

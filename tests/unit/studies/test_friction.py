@@ -1,0 +1,97 @@
+"""Friction that a base is said to have: studies are held to it, as single runs are."""
+
+import numpy as np
+import pytest
+
+import rockframe as rf
+from rockframe.compiled import COMPILED
+from rockframe.studies.sweeps import study
+
+BLOCK = rf.Block(width="0.6 m", height="1.8 m", mass="180 kg")
+SLIPPERY = rf.System(BLOCK, rf.RigidGround(friction=0.2))
+PULSE = rf.GroundMotion.sine_pulse("4 m/s^2", "1.2 Hz")
+SLIDES = "the block would slide: the friction demand exceeds the coefficient"
+
+
+def texts_of(runs):
+    """Give what is said of each case."""
+    return runs.message.to_numpy()[runs.message_number.to_numpy()].squeeze()
+
+
+def test_a_run_without_histories_tells_of_friction_in_the_same_words():
+    with pytest.warns(rf.ModelWarning, match=f"{SLIDES} 0.2") as told:
+        whole = SLIPPERY.simulate(PULSE, free_vibration="3 s")
+    with pytest.warns(rf.ModelWarning, match=f"{SLIDES} 0.2") as again:
+        bare = SLIPPERY.simulate(PULSE, free_vibration="3 s", outputs=None)
+    assert [str(one.message) for one in again] == [str(one.message) for one in told]
+    assert bare.attrs["cautions"] == whole.attrs["cautions"]
+    assert bare.peak_friction_demand.item() == whole.peak_friction_demand.item()
+    assert "time" not in bare.sizes
+    without = rf.System(BLOCK).simulate(PULSE, free_vibration="3 s", outputs=None)
+    assert "peak_friction_demand" not in without
+    for name in without.data_vars:
+        np.testing.assert_array_equal(bare[name], without[name])
+
+
+@pytest.mark.parametrize(
+    "base",
+    [
+        rf.RigidGround(friction=0.2),
+        rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1, friction=0.2),
+        rf.WinklerSoil(stiffness="6 MPa", damping_ratio=0.2, friction=0.2),
+    ],
+)
+def test_cases_of_a_sweep_say_what_single_runs_say(base):
+    system = rf.System(BLOCK, base)
+    frictions = [0.1, 0.5, 10.0]
+    with pytest.warns(rf.ModelWarning, match=f"cases have a result to be careful with.*{SLIDES}"):
+        runs = rf.sweep(system, PULSE, friction=frictions, scale=[0.5, 1.0], accuracy="standard")
+    for (scale, friction), text in zip(
+        [(scale, friction) for friction in frictions for scale in (0.5, 1.0)],
+        texts_of(runs.transpose("friction", "scale", ...)).ravel(),
+        strict=True,
+    ):
+        case = rf.case(runs, friction=friction, scale=scale)
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr("rockframe.simulation.run.warn", lambda *_: None)
+            alone = case.simulate()
+        assert alone.attrs["cautions"] == text
+        peak = runs.peak_friction_demand.sel(friction=friction, scale=scale).item()
+        assert alone.peak_friction_demand.item() == peak
+        assert (peak > friction) == (SLIDES in text)
+
+
+@pytest.mark.skipif(not COMPILED, reason="lanes are compiled")
+@pytest.mark.parametrize("accuracy", ["fast", "screen"])
+def test_cases_with_a_limit_leave_the_lanes_and_the_others_stay(monkeypatch, accuracy):
+    def scene(slippery):
+        return SLIPPERY if slippery else rf.System(BLOCK)
+
+    found = []
+    for fewest in (1, 10**9):
+        monkeypatch.setattr(study, "FEWEST_IN_LANES", fewest)
+        with pytest.warns(rf.ModelWarning, match=SLIDES):
+            runs = rf.sweep(
+                scene, PULSE, slippery=[False, True], scale=[0.1, 0.5, 1.0, 3.0], accuracy=accuracy
+            )
+        found.append(runs)
+    lanes, alone = found
+    assert lanes.drop_attrs().identical(alone.drop_attrs())
+    held, free = (lanes.sel(slippery=one) for one in (True, False))
+    assert [SLIDES in text for text in texts_of(held)] == [False, True, True, True]
+    assert not free.message_number.any()
+    np.testing.assert_array_equal(held.peak_rotation, free.peak_rotation)
+
+
+def test_analyses_tell_of_friction():
+    with pytest.warns(rf.ModelWarning, match=SLIDES):
+        rf.incremental_dynamic_analysis(SLIPPERY, PULSE, scale=[0.5, 1.0])
+    with pytest.warns(rf.ModelWarning, match=SLIDES):
+        found = rf.critical_scale(SLIPPERY, PULSE, scales=20, runs=40)
+    assert SLIDES in found.attrs["cautions"]
+    with pytest.warns(rf.ModelWarning, match=SLIDES):
+        found = rf.critical_scale(SLIPPERY, PULSE, largest=0.9, scales=20, runs=40)
+    assert np.isnan(found.critical_scale)
+    assert SLIDES in found.attrs["cautions"]
+    found = rf.critical_scale(rf.System(BLOCK), PULSE, largest=0.9, scales=20, runs=40)
+    assert "cautions" not in found.attrs
