@@ -1,28 +1,30 @@
 """Blocks of one shape and all sizes, by their rocking period and slenderness."""
 
 import math
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 import xarray as xr
 
 from rockframe.components import Block
-from rockframe.errors import ComponentError, shown
+from rockframe.errors import ComponentError, heard, shown
 from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import Array
 from rockframe.results.variables.studies import CASE
+from rockframe.simulation.system import System
 from rockframe.studies.sweeps.axes import numbers_of
 from rockframe.units import LENGTH, PERIOD, Measure, Unit
 
-if TYPE_CHECKING:
-    from rockframe.simulation.system import System
-
 SIZE: Final = ("slenderness", "rocking_period")
 _SLENDER: Final = Measure("a pure ratio", Unit.ONE, "4")
+_ROUNDING: Final = 1e-9
+"""Relative to the height: a centre of mass that is less beside the middle is there."""
 
 
 class BlockSizes:
     """A system whose block has other sizes.
+
+    Its attribute ``system`` is that system, with the block told by its shape factor.
 
     Parameters
     ----------
@@ -44,8 +46,9 @@ class BlockSizes:
         that width and height do not describe.
     """
 
-    def __init__(self, system: "System", periods: Any, slenderness: Any, *, owner: str) -> None:
-        si = _block(system, owner).si
+    def __init__(self, system: System, periods: Any, slenderness: Any, *, owner: str) -> None:
+        self.system = _by_shape_factor(system, _block(system, owner))
+        si = self.system.parts.the_block
         self.periods = _above_zero(periods, PERIOD, "periods", owner)
         ratio = si.height / si.width
         given = [ratio] if slenderness is None else slenderness
@@ -84,12 +87,32 @@ class BlockSizes:
         return made.assign_coords(labels.coords)
 
 
-def _block(system: "System", owner: str) -> Block:
+def _by_shape_factor(system: System, block: Block) -> System:
+    """Give a system whose block keeps its shape factor where width and height change.
+
+    An inertia and a height of the centre of mass that were given would stay as they are.
+    """
+    if block.given.inertia is None and block.given.centre_height is None:
+        return system
+    with heard():  # block and system have warned when they were made
+        scaling = block.replace(shape_factor=block.shape_factor, centre_height=None)
+        others = [part for part in system.parts.structural() if part is not block]
+        return System(
+            scaling,
+            *others,
+            restraint=system.restraint,
+            rotation=system.rotation,
+            gravity=system.gravity,
+            inclination=system.inclination,
+        )
+
+
+def _block(system: System, owner: str) -> Block:
     block = system.parts.block
     fault = ""
     if block is None or type(block) is not Block:
         fault = f"a {type(block).__name__}"
-    elif block.si.eccentricity != 0.0 or block.si.centre_height != 0.5 * block.si.height:
+    elif not _in_the_middle(block):
         fault = "a block whose centre of mass is not in its middle"
     elif system.parts.cap is not None:
         fault = "a scene with a cap"
@@ -97,6 +120,12 @@ def _block(system: "System", owner: str) -> Block:
         msg = f"{owner}: system needs a block of width and height on its base, got {fault}"
         raise ComponentError(msg)
     return block
+
+
+def _in_the_middle(block: Block) -> bool:
+    si = block.si
+    above = abs(si.centre_height - si.half_height)
+    return si.eccentricity == 0.0 and above <= _ROUNDING * si.height
 
 
 def _above_zero(given: Any, measure: Measure, name: str, owner: str) -> Array:

@@ -88,7 +88,7 @@ def rocking_spectrum(
     sizes = BlockSizes(system, periods, slenderness, owner=_ROCKING)
     heads = {head(name, unit): values for name, (values, unit) in sizes.columns.items()}
     runs = sweep(
-        system,
+        sizes.system,
         _given(motions, system, _ROCKING),
         cases=heads,
         **run,
@@ -161,7 +161,7 @@ def overturning_spectrum(
     share = read_width(width, owner=_OVERTURNING)
     measure = Intensity.read(intensity, period, owner=_OVERTURNING)
     named = motions_of(_given(motions, system, _OVERTURNING))
-    lines = Lines(system, named, sizes.columns, run, _OVERTURNING)
+    lines = Lines(sizes.system, named, sizes.columns, run, _OVERTURNING)
     scan, brackets = lines.followed(
         scales, lambda runs: overturns(runs).expand_dims(VERDICT), width=share
     )

@@ -206,6 +206,49 @@ def test_a_rocking_spectrum_is_single_runs_of_blocks_of_that_size(tmp_path):
             rf.rocking_spectrum(system, motions(), periods=(["2 s"]))
 
 
+BODIES = {
+    "cylinder": rf.Block.cylinder(diameter="0.5 m", height="2 m", mass="400 kg"),
+    "outline": rf.Block.from_outline(
+        [(0.0, 0.0), (0.5, 0.0), (0.6, 0.7), (0.5, 1.4), (0.0, 1.4), (-0.1, 0.7)],
+        unit="m",
+        mass="300 kg",
+    ),
+    "parts": rf.Block.from_parts(
+        {
+            "lower": {"width": "0.6 m", "height": "1 m", "mass": "90 kg"},
+            "upper": {"width": "0.4 m", "height": "1 m", "mass": "90 kg", "at": ("0 m", "1 m")},
+        }
+    ),
+    "inertia": BLOCK.replace(inertia="120 kg*m^2"),
+    "centre of mass": BLOCK.replace(centre_of_mass=("1 m", "0 m")),
+    # 3 times 0.1 is a little more than 0.3
+    "rounded": BLOCK.replace(height="0.6 m", width="0.2 m", centre_height=f"{3 * 0.1!r} m"),
+}
+
+
+@pytest.mark.parametrize("name", BODIES)
+def test_bodies_told_by_their_inertia_keep_their_shape_factor_at_other_sizes(name):
+    body = BODIES[name]
+    motion = motions()["seed 1"]
+    system = rf.System(body, gravity="9.7 m/s^2", inclination="0.5 deg", rotation="small")
+    sizes = {"periods": ([2.0, 3.0], "s"), "slenderness": [3, 5]}
+    found = rf.rocking_spectrum(system, {"seed 1": motion}, **sizes, **FAST)
+    for period in (2.0, 3.0):
+        case = rf.case(found, slenderness=5.0, rocking_period=period, motion="seed 1")
+        block = case.system.parts.the_block
+        frequency = block.frequency_at(system.gravity_si)
+        assert 2.0 * np.pi / frequency == pytest.approx(period, rel=1e-12)
+        assert 1.0 / np.tan(block.overturning_angle) == pytest.approx(5.0, rel=1e-12)
+        assert block.shape_factor == pytest.approx(body.shape_factor, rel=1e-12)
+        assert block.mass == body.si.mass
+        assert case.system.options == system.options
+    least = rf.overturning_spectrum(system, motion, **sizes, scale=[1.0, 4.0, 16.0], **FAST)
+    plain = rf.Block(width="0.5 m", height="2 m", mass="1 t", shape_factor=body.shape_factor)
+    same = rf.System(plain, gravity="9.7 m/s^2", inclination="0.5 deg", rotation="small")
+    again = rf.overturning_spectrum(same, motion, **sizes, scale=[1.0, 4.0, 16.0], **FAST)
+    np.testing.assert_allclose(least.capacity_scale, again.capacity_scale, rtol=2e-3)
+
+
 def test_an_overturning_spectrum_is_a_dynamic_analysis_of_each_block():
     scales = [0.5, 1.0, 2.0, 4.0, 8.0]
     found = rf.overturning_spectrum(
