@@ -179,12 +179,18 @@ class RigidGroundSetting(Setting):
 
     def _start_words(self) -> str:
         """Say when rocking starts."""
-        if self.slope.level:
+        to_right, to_left = self.uplift_accelerations
+        if self.slope.level and to_right == to_left:
             return (
                 "at rest until |xg''| exceeds (g + yg'') tan(theta), "
-                f"{self.uplift_acceleration:.4g} m s^-2 without vertical motion"
+                f"{to_right:.4g} m s^-2 without vertical motion"
             )
-        to_right, to_left = self.uplift_accelerations
+        if self.slope.level:
+            return (
+                "at rest until |xg''| exceeds (g + yg'') tan(theta), with theta of the side that "
+                f"it tips to: without vertical motion {to_right:.4g} m s^-2 to the right, which "
+                f"tips to the left, or {to_left:.4g} m s^-2 to the left"
+            )
         return (
             "at rest until the resultant of gravity and ground acceleration passes beside a "
             f"corner: without vertical motion at xg'' above {to_right:.4g} m s^-2 to the right, "

@@ -30,3 +30,16 @@ def test_a_result_in_a_file_keeps_the_body(tmp_path):
         response.to_netcdf(file)
         with xr.open_dataset(file) as kept:
             assert rf.System.from_dataset(kept) == system
+
+
+def test_descriptions_tell_the_shaking_at_which_a_body_rocks_to_either_side():
+    leaning = [(0.0, 0.0), (1.0, 0.0), (0.2, 3.0), (0.0, 3.0)]
+    system = rf.System(rf.Block.from_outline(leaning, unit="m", mass="1 t"))
+    words = " ".join(system.describe().split())
+    assert "2.895 m s^-2 to the right, which tips to the left, or 5.51 m s^-2 to the left" in words
+    for amplitude, rocks in ((2.88, False), (2.91, True), (-5.5, False), (-5.52, True)):
+        pulse = rf.GroundMotion.half_sine_pulse(f"{amplitude} m/s^2", "0.3 s")
+        peak = system.simulate(pulse, outputs=None).peak_rotation.item()
+        assert (peak != 0.0) is rocks, amplitude
+    level = rf.System(rf.Block(width="0.5 m", height="2 m", mass="1 t")).describe()
+    assert "2.452 m s^-2 without vertical motion" in level
