@@ -40,12 +40,16 @@ class AssemblyError(RockframeError, ValueError):
 
     def __init__(self, faults: Sequence[str], supported: Sequence[str] = ()) -> None:
         self.faults = tuple(faults)
+        self.supported = tuple(supported)
         lines = ["the parts do not make a system:"] if len(self.faults) > 1 else []
         lines += [f"- {fault}" for fault in faults] if lines else list(faults)
         if supported:
             lines.append("Supported scenes:")
             lines += [f"  {scene}" for scene in supported]
         super().__init__("\n".join(lines))
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return (type(self), (self.faults, self.supported))
 
 
 class RecordError(RockframeError, ValueError):

@@ -1,10 +1,14 @@
-"""How messages show what was given."""
+"""How messages show what was given, and how errors travel."""
+
+import copy
+import pickle
 
 import numpy as np
 import pytest
 import xarray as xr
 
 import rockframe as rf
+from rockframe import errors
 from rockframe.errors import LONGEST_SHOWN, shown
 
 pytestmark = pytest.mark.unit
@@ -46,3 +50,22 @@ def test_messages_do_not_print_all_of_a_long_value(call):
     with pytest.raises(rf.RockframeError) as caught:
         call([0.05] * 5000)
     assert max(len(line) for line in str(caught.value).splitlines()) < 4 * LONGEST_SHOWN
+
+
+OF_MANY_FAULTS = {
+    rf.AssemblyError: lambda: rf.AssemblyError(["no block", "two pads"], ["block", "block, pads"]),
+    rf.RecordError: lambda: rf.RecordError("a.AT2", found="a word", expected="a number", line=3),
+    rf.FileError: lambda: rf.FileError("a.toml", [(None, "empty"), (3, "no unit")]),
+    rf.StudyError: lambda: rf.StudyError("no axis", "no motion"),
+}
+
+
+@pytest.mark.parametrize("again", [lambda one: pickle.loads(pickle.dumps(one)), copy.copy])  # noqa: S301
+@pytest.mark.parametrize("kind", [getattr(errors, name) for name in dir(errors)])
+def test_errors_come_back_whole_from_other_processes_and_from_copies(kind, again):
+    made = OF_MANY_FAULTS.get(kind, lambda: kind("out of range"))()
+    other = again(made)
+    assert type(other) is kind
+    assert str(other) == str(made)
+    assert other.args == made.args
+    assert vars(other) == vars(made)
