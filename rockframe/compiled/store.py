@@ -120,7 +120,10 @@ def folders() -> list[Path]:
         own = "~/Library/Caches"
     else:
         own = os.environ.get("XDG_CACHE_HOME", "~/.cache")
-    return [Path(own).expanduser() / "rockframe", PACKAGE / "__pycache__"]
+    places = [PACKAGE / "__pycache__"]
+    with suppress(RuntimeError):  # a user without a home, as containers make them
+        places.insert(0, Path(own).expanduser() / "rockframe")
+    return places
 
 
 def _remove_unused(folder: Path) -> None:

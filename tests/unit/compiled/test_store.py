@@ -274,3 +274,14 @@ def test_the_next_folder_serves_where_the_first_cannot(tmp_path, monkeypatch):
     second = store.file_of(some_function, "pass", ())
     assert second.is_relative_to(tmp_path / "package" / "__pycache__")
     assert second.read_text() == "pass"
+
+
+def test_a_user_without_a_home_keeps_machine_code_beside_the_package(monkeypatch):
+    def homeless(path):
+        msg = "Could not determine home directory."
+        raise RuntimeError(msg)
+
+    monkeypatch.delenv("ROCKFRAME_CACHE_DIR", raising=False)
+    usual = store.folders()
+    monkeypatch.setattr(Path, "expanduser", homeless)
+    assert store.folders() == usual[1:]
