@@ -8,11 +8,11 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, Final
 
+from rockframe.compiled.locks import LONGEST, lock
 from rockframe.compiled.sources import PACKAGE, digest, digest_of_sources
 
-_PATIENCE: Final = 120.0
-"""Longest wait for another process, which may have been killed [s]."""
 _POLL: Final = 0.05
+"""Between two looks at whether another process is still compiling [s]."""
 
 _UNUSED: Final = 30 * 24 * 3600.0
 """Age at which machine code of other sources is removed [s]."""
@@ -68,11 +68,11 @@ def has_code(file: Path) -> bool:
 
 def is_compiled_elsewhere(file: Path) -> bool:
     """Whether another process compiles a module now."""
-    return _mark_of(file).exists()
-
-
-def _mark_of(file: Path) -> Path:
-    return file.with_suffix(".lock")
+    release = lock(file)
+    if release is None:
+        return True
+    release()
+    return False
 
 
 @contextmanager
@@ -86,21 +86,18 @@ def compiling(file: Path, waiting: Callable[[], bool]) -> Generator[None]:
     waiting : callable
         Whether to go on waiting.
     """
-    mark = _mark_of(file)
     begun = time.monotonic()
-    while time.monotonic() - begun < _PATIENCE and waiting():
-        try:
-            mark.touch(exist_ok=False)
+    release = None
+    while time.monotonic() - begun < LONGEST and waiting():
+        release = lock(file)
+        if release is not None:
             break
-        except FileExistsError:
-            time.sleep(_POLL)
-        except OSError:  # nothing can be written: nobody waits
-            break
+        time.sleep(_POLL)
     try:
         yield
     finally:
-        with suppress(OSError):
-            mark.unlink(missing_ok=True)
+        if release is not None:
+            release()
 
 
 def forget_code(file: Path) -> None:

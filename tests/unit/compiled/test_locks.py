@@ -1,0 +1,117 @@
+"""One process compiles a module at a time, and none waits for one that was killed."""
+
+import errno
+import os
+import subprocess
+import sys
+import time
+
+import pytest
+
+from rockframe.compiled import locks, store
+
+pytestmark = pytest.mark.unit
+
+AT_ONCE = 5.0
+"""Less than a process waits for another that does not end, on a slow machine too [s]."""
+
+KEEP = """
+import sys, time
+from pathlib import Path
+from rockframe.compiled.store import compiling
+
+module = Path(sys.argv[1])
+with compiling(module, lambda: True):
+    print("begun", flush=True)
+    time.sleep(float(sys.argv[2]))
+    module.with_suffix(".nbc").touch()
+"""
+
+
+@pytest.fixture
+def module(tmp_path):
+    file = tmp_path / "run.py"
+    file.write_text("pass")
+    return file
+
+
+@pytest.fixture
+def no_locks(monkeypatch):
+    """Stand for a folder of a network that knows no locks."""
+
+    def refuse(number):
+        raise OSError(errno.ENOLCK, "No locks available")
+
+    monkeypatch.setattr(locks, "_lock", refuse)
+
+
+def keep(module, seconds):
+    """Have another process compile for so long; it has begun."""
+    process = subprocess.Popen(
+        [sys.executable, "-c", KEEP, str(module), str(seconds)], text=True, stdout=subprocess.PIPE
+    )
+    assert process.stdout.readline() == "begun\n"
+    return process
+
+
+def seconds_until_compiled(module):
+    begun = time.monotonic()
+    with store.compiling(module, lambda: True):
+        return time.monotonic() - begun
+
+
+def test_what_a_killed_process_leaves_behind_delays_nobody(module):
+    with keep(module, 600) as process:
+        assert store.is_compiled_elsewhere(module)
+        process.kill()
+    assert not store.is_compiled_elsewhere(module)
+    assert seconds_until_compiled(module) < AT_ONCE
+
+
+def test_a_file_that_stands_for_a_lock_delays_nobody_where_there_are_locks(module):
+    module.with_suffix(".lock").touch()
+    assert not store.is_compiled_elsewhere(module)
+    assert seconds_until_compiled(module) < AT_ONCE
+
+
+def test_two_processes_do_not_compile_at_once(module):
+    with keep(module, 1.0), store.compiling(module, lambda: True):
+        assert module.with_suffix(".nbc").exists()
+    assert {path.suffix for path in module.parent.iterdir()} == {".py", ".nbc"}
+    assert module.read_text() == "pass"
+
+
+def test_it_is_not_waited_for_longer_than_is_worth_it(module):
+    asked = iter([True, True, False])
+    with keep(module, 600) as process:
+        with store.compiling(module, lambda: next(asked)):
+            assert store.is_compiled_elsewhere(module)
+        assert store.is_compiled_elsewhere(module)
+        process.kill()
+
+
+def test_nobody_waits_where_nothing_can_be_written(tmp_path):
+    missing = tmp_path / "nowhere" / "run.py"
+    assert not store.is_compiled_elsewhere(missing)
+    assert seconds_until_compiled(missing) < AT_ONCE
+
+
+@pytest.mark.usefixtures("no_locks")
+def test_a_file_stands_for_a_lock_where_there_are_none(module):
+    assert not store.is_compiled_elsewhere(module)
+    with store.compiling(module, lambda: True):
+        assert store.is_compiled_elsewhere(module)
+        assert locks.lock(module) is None
+    assert not store.is_compiled_elsewhere(module)
+    assert list(module.parent.iterdir()) == [module]
+
+
+@pytest.mark.usefixtures("no_locks")
+def test_such_a_file_counts_no_longer_than_one_would_wait(module):
+    mark = module.with_suffix(".lock")
+    mark.touch()
+    assert store.is_compiled_elsewhere(module)
+    old = time.time() - 2.0 * locks.LONGEST
+    os.utime(mark, (old, old))
+    assert seconds_until_compiled(module) < AT_ONCE
+    assert not mark.exists()
