@@ -249,11 +249,15 @@ def test_an_interrupt_gives_back_what_is_done():
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals")
-def test_the_keyboard_itself_interrupts_own_threads():
+def test_the_keyboard_itself_interrupts_own_threads(request):
     def scene(height):
         time.sleep(0.01)
         return on_pads(20, height)
 
+    # in the background of a shell it is ignored from the start
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    request.addfinalizer(lambda: signal.signal(signal.SIGINT, before))
+    rf.sweep(scene, PULSE, height=([3.0], "m"), **FAST)  # loads machine code, or compiles it
     threading.Timer(1.5, os.kill, (os.getpid(), signal.SIGINT)).start()
     heights = np.linspace(3.0, 4.0, 2000)
     begun = time.perf_counter()
