@@ -73,7 +73,8 @@ def _helped(jobs: Sequence[Job]) -> Generator[Callable[[], bool]]:
         return
     with helper:
         try:
-            yield lambda: helper.poll() is None
+            # one that has ended well has left nothing unfinished: what is, others compile
+            yield lambda: not helper.poll()
         except BaseException:
             helper.kill()
             raise

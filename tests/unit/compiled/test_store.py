@@ -155,6 +155,17 @@ def test_what_a_helper_cannot_import_is_compiled_all_the_same(monkeypatch):
     assert values.tolist() == [5.0]
 
 
+@pytest.mark.parametrize(("ends", "waits"), [("0", True), ("1", False)])
+def test_others_are_waited_for_unless_a_helper_has_died(monkeypatch, ends, waits):
+    from rockframe.compiled import together
+
+    helper = subprocess.Popen([sys.executable, "-c", f"raise SystemExit({ends})"])
+    monkeypatch.setattr(together, "_helper", lambda jobs: helper)
+    with together._helped([]) as waiting:
+        helper.wait(timeout=120)
+        assert waiting() is waits
+
+
 def load(own, monkeypatch):
     """Import the user's module here."""
     for name in ("own", "own_help"):
