@@ -11,6 +11,7 @@ from rockframe.components.block_numbers import (
     check_centre,
     check_representable,
     check_rocks,
+    unphysical_inertia,
 )
 from rockframe.components.parameters import DERIVED, Parameter, Ratio
 from rockframe.components.shapes.cylinder import cylinder_body
@@ -49,6 +50,12 @@ class Block(Component):
     ComponentError
         A value is not finite or not positive, both `shape_factor` and
         `inertia` are given, or the block is so squat that it cannot rock.
+
+    Warns
+    -----
+    ModelWarning
+        The given `shape_factor` or `inertia` is that of no body within the
+        rectangle of width and height, :eq:`eq-greatest-inertia`; it is used as given.
 
     Notes
     -----
@@ -176,6 +183,14 @@ class Block(Component):
         check_representable(si, type(self).__name__)
         check_rocks(si, type(self).__name__)
         return si
+
+    def _cautions(self) -> list[str]:
+        return [*super()._cautions(), *self._unphysical()]
+
+    def _unphysical(self) -> list[str]:
+        """Say whether the given inertia is one that no such body has."""
+        told = self.given.shape_factor is not None or self.given.inertia is not None
+        return unphysical_inertia(self.si) if told else []
 
     def _shapes(self) -> list[Shape]:
         half, si = self.si.half_width, self.si

@@ -1,11 +1,14 @@
-"""The numbers of a block in SI units, and whether they make one that rocks."""
+"""The numbers of a block in SI units, whether they make one that rocks, and one that can be."""
 
 import math
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Final, Protocol
 
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError
+
+_ROUNDING: Final = 1e-9
+_PERCENT: Final = 0.01
 
 
 class Shape(Protocol):
@@ -155,3 +158,40 @@ def check_rocks(si: BlockSI, owner: str) -> None:
         f"{si.maximum_restitution:.4g}; a solid rectangle needs H/B above sqrt(2)/2 = 0.7071"
     )
     raise ComponentError(msg)
+
+
+def least_shape_factor(si: BlockSI) -> float:
+    """Give mu of a body with all its mass in the corners, :eq:`eq-greatest-inertia`."""
+    radius = si.radius  # by which sizes are divided, so that squares hold any of them
+    beside = (si.left / radius) * (si.right / radius)
+    above = (si.centre_height / radius) * ((si.height - si.centre_height) / radius)
+    return 1.0 / (beside + above)
+
+
+def unphysical_inertia(si: BlockSI) -> list[str]:
+    """Warn of an inertia that no body within the rectangle has, :eq:`eq-greatest-inertia`."""
+    least = least_shape_factor(si)
+    if si.shape_factor >= (1.0 - _ROUNDING) * least:
+        return []
+    greatest = si.inertia * (si.shape_factor / least)
+    words = (
+        f"a shape factor of {si.shape_factor:.4g} is not physical: the moment of inertia about "
+        f"the centre of mass is {si.inertia:.4g} kg m^2, that of a body within this width and "
+        f"height {greatest:.4g} kg m^2 or less, and its shape factor {least:.4g} or more; the "
+        "value is used as given"
+    )
+    if _about_a_corner(si):
+        words += (
+            ". It is, to a percent, the inertia of the solid rectangle about a corner, "
+            "I_O + m R0^2; `inertia` is I_O, about the centre of mass"
+        )
+    return [words]
+
+
+def _about_a_corner(si: BlockSI) -> bool:
+    """Whether the inertia is that of the solid rectangle about an end of the base."""
+    radius = si.radius
+    width, height, above = si.width / radius, si.height / radius, si.centre_height / radius
+    own = (width * width + height * height) / 12.0 + above * above
+    ratios = (si.shape_factor * (own + x * x) for x in (si.left / radius, si.right / radius))
+    return any(abs(ratio - 1.0) <= _PERCENT for ratio in ratios)

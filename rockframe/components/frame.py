@@ -353,15 +353,17 @@ class FrameEquivalent(Block):
         super()._check(given, owner)
 
     def _cautions(self) -> list[str]:
-        if self._building is not None:
-            return self._building.cautions()
+        return super()._cautions() if self._building is None else self._building.cautions()
+
+    def _unphysical(self) -> list[str]:
         si = self.si
         in_the_middle = si.centre_height == 0.5 * si.height and si.eccentricity == 0.0
-        if self.si.shape_factor >= _LEAST_SHAPE_FACTOR or not in_the_middle:
-            return super()._cautions()
+        if not in_the_middle:
+            return super()._unphysical()
+        if si.shape_factor >= _LEAST_SHAPE_FACTOR:
+            return []
         return [
-            *super()._cautions(),
-            f"a shape factor of {self.si.shape_factor:.4g} is not physical: in the plane of "
+            f"a shape factor of {si.shape_factor:.4g} is not physical: in the plane of "
             "rocking all mass lies within R0 of the centre, so that Eq. (22) gives 1 or more; "
             "the value is used as given",
         ]

@@ -243,6 +243,41 @@ def test_a_shape_factor_must_be_a_positive_number(bad):
         rf.Block(**SIZE, shape_factor=bad)
 
 
+@pytest.mark.parametrize(
+    ("told", "least", "possible"),
+    [
+        ({"shape_factor": 0.2}, "1 or more", 1),
+        ({"inertia": "1e6 kg*m^2"}, "1 or more", "1250 kg*m^2"),
+        # all mass in the corners: m [(b + e) (b - e) + h (H - h)]
+        ({"shape_factor": 1.2, "centre_height": "1.2 m"}, "1.397 or more", 1.4),
+        ({"inertia": "1161 kg*m^2", "eccentricity": "0.3 m"}, "1.078 or more", "1160 kg*m^2"),
+    ],
+)
+def test_an_inertia_that_no_body_of_the_size_has_is_warned_about_and_used(told, least, possible):
+    size = {"width": "1 m", "height": "2 m", "mass": "1 t"}
+    with pytest.warns(rf.ModelWarning, match=rf"Block: .*not physical.*{least}") as caught:
+        block = rf.Block(**size, **told)
+    assert len(caught) == 1
+    assert caught[0].filename == __file__
+    assert "corner" not in str(caught[0].message)
+    assert pickle.loads(pickle.dumps(block)) == block  # noqa: S301
+    name = next(iter(told))
+    rf.Block(**size, **told | {name: possible})
+
+
+def test_an_inertia_about_a_corner_is_told_as_such():
+    size = {"width": "1 m", "height": "2 m", "mass": "1 t"}
+    beside = {"centre_height": "0.9 m", "eccentricity": "0.1 m"}
+    for told in (
+        {"inertia": "1666.67 kg*m^2"},
+        {"shape_factor": 0.745},
+        {"inertia": f"{1000 * (5 / 12 + 0.81 + 0.36)!r} kg*m^2", **beside},
+        {"inertia": f"{1000 * (5 / 12 + 0.81 + 0.16)!r} kg*m^2", **beside},
+    ):
+        with pytest.warns(rf.ModelWarning, match="not physical.*solid rectangle about a corner"):
+            rf.Block(**size, **told)
+
+
 def test_a_squat_block_is_refused_exactly_below_the_limit():
     limit = math.sqrt(0.5)
     for excess in (1e-9, 1e-12):
@@ -265,7 +300,8 @@ def test_a_block_is_refused_where_its_greatest_restitution_is_not_positive(slend
     greatest = (1.0 + mu * math.cos(2.0 * theta)) / (1.0 + mu)
     size = {"width": "1 m", "height": f"{slenderness!r} m", "mass": "1 t", "shape_factor": mu}
     if greatest > 1e-12:
-        assert rf.Block(**size).maximum_restitution == pytest.approx(greatest, abs=1e-14)
+        block = rf.Block.from_dict(size)  # below 1 the constructor warns
+        assert block.maximum_restitution == pytest.approx(greatest, abs=1e-14)
     elif greatest < -1e-12:
         with pytest.raises(rf.ComponentError, match="cannot rock"):
             rf.Block(**size)

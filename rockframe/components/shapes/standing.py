@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any, Final, TypeVar
 
 from rockframe.components.shapes.masses import PlaneMass
-from rockframe.errors import ComponentError, ModelWarning, warn
+from rockframe.errors import ComponentError, ModelWarning, heard, warn
 from rockframe.units import INERTIA, LENGTH, MASS
 
 ROUNDING: Final = 1e-9
@@ -88,7 +88,8 @@ class StandingBody:
         -------
         Block
         """
-        made = kind(**self.arguments)
+        with heard():  # a shape may reach out beside its base, beyond the bound of its inertia
+            made = kind(**self.arguments)
         for caution in self.cautions:
             warn(f"{self.owner}: {caution}", ModelWarning)
         return made

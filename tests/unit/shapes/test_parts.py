@@ -216,3 +216,12 @@ def test_parts_need_units():
     ):
         with pytest.raises(rf.UnitsError, match=words):
             rf.Block.from_parts({"case": part})
+
+
+def test_a_body_that_reaches_out_beside_its_base_may_have_more_inertia_than_its_rectangle():
+    mushroom = rf.Block.from_parts(
+        {"cap": {"width": "3 m", "height": "0.1 m", "mass": "50 kg", "at": ("0 m", "1 m")}},
+        base=("-0.3 m", "0.3 m"),
+    )
+    with pytest.warns(rf.ModelWarning, match="not physical"):
+        assert rf.Block(**{k: v for k, v in mushroom.to_dict().items() if k != "type"}) == mushroom
