@@ -1,6 +1,6 @@
 """What all components share: values, immutability, equality, and the way to text and back."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from inspect import Parameter as Argument
 from inspect import Signature
 from typing import Any, ClassVar, NoReturn, Self
@@ -212,6 +212,21 @@ class Component:
         mapping
         """
         return cls._declared
+
+    def left_behind(self, changed: Collection[str]) -> tuple[str, ...]:
+        """Name what would stay as it was given, although it goes with what is changed.
+
+        Parameters
+        ----------
+        changed : collection of str
+            Names of parameters that become others.
+
+        Returns
+        -------
+        tuple of str
+            Names of parameters; none, unless a class tells of such.
+        """
+        return ()
 
     def with_si(self, values: Mapping[str, Any]) -> Self:
         """Build a component of which some parameters are others, without warnings.

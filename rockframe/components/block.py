@@ -1,8 +1,8 @@
 """The rigid block."""
 
 import math
-from collections.abc import Mapping
-from typing import Any, ClassVar, Self, cast
+from collections.abc import Collection, Mapping
+from typing import Any, ClassVar, Final, Self, cast
 
 from rockframe.components.alternatives import OneOf
 from rockframe.components.base import Component
@@ -20,7 +20,7 @@ from rockframe.components.shapes.part import Part
 from rockframe.components.shapes.parts import body_of_parts
 from rockframe.components.shapes.reading import Place, Points
 from rockframe.components.values import Quantity, SIProperty, SIValues
-from rockframe.errors import ComponentError, shown
+from rockframe.errors import ComponentError, ModelWarning, shown, warn
 from rockframe.notebook import Shape
 from rockframe.units import (
     ANGLE,
@@ -38,6 +38,9 @@ from rockframe.units import (
 
 SOLID_RECTANGLE_SHAPE_FACTOR = 3.0
 """mu of a solid rectangle: I_O = m (B^2 + H^2)/12 = m R0^2/3."""
+
+_SIZES: Final = frozenset({"width", "height", "mass"})
+"""What a moment of inertia goes with."""
 
 
 class Block(Component):
@@ -159,12 +162,58 @@ class Block(Component):
         ------
         TypeError, UnitsError, ComponentError
             As the constructor.
+
+        Warns
+        -----
+        ModelWarning
+            Of a block that was given its `inertia`, as are those by their shape, `width`,
+            `height` or `mass` is changed, but not the `inertia`, nor `shape_factor` in its
+            place; or the `height`, but not a `centre_height` that was given.
         """
         if "centre_of_mass" in changes:
             height, beside = changes.get("centre_height"), changes.get("eccentricity")
             place = _pair(type(self).__name__, changes.pop("centre_of_mass"), height, beside)
             changes |= {"centre_height": place[0], "eccentricity": place[1]}
-        return super().replace(**changes)
+        made = super().replace(**changes)
+        behind = self.left_behind(changes)
+        if behind:
+            left = " and ".join(
+                f"{name}, {getattr(self.si, name):.4g} {self._declared[name].unit}"
+                for name in behind
+            )
+            ways = ", and ".join(behind).replace("inertia", "inertia or shape_factor")
+            msg = (
+                f"{type(self).__name__}.replace: left as it was for the old size and mass: "
+                f"{left}; give {ways}, too"
+            )
+            warn(msg, ModelWarning)
+        return made
+
+    def left_behind(self, changed: Collection[str]) -> tuple[str, ...]:
+        """Name what would stay as it was given, although it goes with what is changed.
+
+        A given `inertia` goes with `width`, `height` and `mass`; with the inertia of a body
+        the height of its centre of mass is given too, and goes with `height`.
+
+        Parameters
+        ----------
+        changed : collection of str
+            Names of parameters that become others.
+
+        Returns
+        -------
+        tuple of str
+            ``"inertia"``, ``"centre_height"``, both or none.
+        """
+        if self.given.inertia is None:
+            return ()
+        behind: list[str] = []
+        if _SIZES.intersection(changed) and not {"inertia", "shape_factor"}.intersection(changed):
+            behind.append("inertia")
+        centred = self.given.centre_height is None or "centre_height" in changed
+        if "height" in changed and not centred:
+            behind.append("centre_height")
+        return tuple(behind)
 
     def _numbers(self, given: SIValues) -> BlockSI:
         owner = type(self).__name__

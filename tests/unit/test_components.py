@@ -278,6 +278,42 @@ def test_an_inertia_about_a_corner_is_told_as_such():
             rf.Block(**size, **told)
 
 
+DRUM = rf.Block.cylinder(diameter="0.5 m", height="2 m", mass="400 kg")
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"mass": "1 t"}, r"mass: inertia, 139.6 kg m\^2; give inertia or shape_factor, too"),
+        ({"width": "0.6 m"}, "give inertia or shape_factor, too"),
+        ({"height": "3 m"}, "and centre_height, 1 m; give inertia or shape_factor, and centre_"),
+        ({"height": "3 m", "inertia": "309 kg*m^2"}, "mass: centre_height, 1 m; give centre_hei"),
+        ({"height": "3 m", "shape_factor": 3.02}, "mass: centre_height, 1 m; give centre_height"),
+    ],
+)
+def test_a_block_whose_given_inertia_is_left_at_another_size_is_warned_about(changes, words):
+    with pytest.warns(rf.ModelWarning, match=f"Block.replace: .*{words}") as caught:
+        changed = DRUM.replace(**changes)
+    assert len(caught) == 1
+    assert caught[0].filename == __file__
+    gone = {"inertia": None} if "shape_factor" in changes else {}
+    assert changed == rf.Block.from_dict(DRUM.to_dict() | changes | gone)
+
+
+def test_a_block_that_is_told_its_inertia_again_or_scales_is_not_warned_about():
+    assert DRUM.replace(mass="1 t", inertia=DRUM.inertia).inertia == DRUM.inertia
+    scaling = DRUM.replace(shape_factor=DRUM.shape_factor)
+    for mass in (400.0, 1000.0):
+        heavier = scaling.replace(mass=f"{mass!r} kg")
+        assert heavier.si.inertia == pytest.approx(DRUM.si.inertia * mass / 400.0, rel=1e-14)
+    DRUM.replace(height="3 m", inertia="309 kg*m^2", centre_of_mass=("1.5 m", "0 m"))
+    DRUM.replace(centre_of_mass=("0.9 m", "0.01 m"))
+    rf.Block(**SIZE, centre_height="3 m").replace(height="9 m", mass="60 t")
+    frame = rf.FrameEquivalent(**SIZE, inertia="3e5 kg*m^2")
+    with pytest.warns(rf.ModelWarning, match=r"FrameEquivalent.replace: .*inertia, 3e\+05 kg m\^2"):
+        frame.replace(mass="60 t")
+
+
 def test_a_squat_block_is_refused_exactly_below_the_limit():
     limit = math.sqrt(0.5)
     for excess in (1e-9, 1e-12):

@@ -130,6 +130,9 @@ class SystemScene:
                 if len(heads) > 1:
                     names = " and ".join(repr(given[name]) for name in ways)
                     found.append(f"axes {names} stand for one another; give one of them")
+            behind = part.left_behind(given)
+            if behind:
+                found.append(_left_behind(part, behind, given))
         return found
 
     def assembled(self, values: Values) -> Assembly:
@@ -271,6 +274,20 @@ def scene_of(given: object) -> Scene:
 def own_motion(scene: Scene) -> GroundMotion | None:
     """Give the motion among a system's parts."""
     return scene.assembly.parts.motion if isinstance(scene, SystemScene) else None
+
+
+def _left_behind(part: Component, behind: tuple[str, ...], given: Mapping[str, str]) -> str:
+    """Say which axes would leave a parameter as it is that goes with theirs."""
+    names = [name for parameter, name in given.items() if part.left_behind([parameter])]
+    axes = f"{'axis' if len(names) == 1 else 'axes'} {' and '.join(map(repr, names))}"
+    kind = type(part).__name__
+    left = " and ".join(behind)
+    scaling = behind == ("inertia",)
+    other = f"a {kind} with shape_factor in the place of its inertia, " if scaling else ""
+    return (
+        f"{axes} would leave {left} of this {kind} as given; give a function of the axes that "
+        f"returns a System, {other}or axes of {left} too"
+    )
 
 
 def _of_motion(name: str, given: object) -> Axis:

@@ -120,6 +120,41 @@ def test_parts_changed_in_si_are_those_changed_with_units():
             BLOCK.with_si(values)
 
 
+DRUM = rf.Block.cylinder(diameter="0.5 m", height="2 m", mass="400 kg")
+
+
+@pytest.mark.parametrize(
+    ("axes", "words"),
+    [
+        ({"mass": ["1 t"]}, "axis 'mass' would leave inertia of this Block .* with shape_factor"),
+        ({"Block.mass": ["1 t"], "width": ["0.6 m"]}, "axes 'Block.mass' and 'width' would leave"),
+        ({"height": ["3 m"]}, "axis 'height' would leave inertia and centre_height of this Bl"),
+        ({"height": ["3 m"], "shape_factor": [3.0]}, "axis 'height' would leave centre_height "),
+    ],
+)
+def test_axes_that_would_leave_a_given_inertia_at_another_size_are_refused(axes, words):
+    system = rf.System(DRUM)
+    with pytest.raises(StudyError, match=words):
+        rf.sweep(system, PULSE, axes=axes, **FAST)
+    with pytest.raises(StudyError, match=words):
+        rf.sweep(system, PULSE, cases=pd.DataFrame(axes), **FAST)
+    if "mass" in axes:
+        spread = {"mass": ("normal", "400 kg", "40 kg"), "scale": ("lognormal", 1.0, 0.3)}
+        with pytest.raises(StudyError, match=words):
+            rf.probability_of_overturning(system, PULSE, spread=spread, cases=8, **FAST)
+
+
+def test_the_mass_of_a_body_told_by_its_shape_factor_makes_no_difference_on_rigid_ground():
+    scaling = DRUM.replace(shape_factor=DRUM.shape_factor)
+    runs = rf.sweep(rf.System(scaling), PULSE.scaled(2.0), mass=([200, 400, 800], "kg"), **FAST)
+    told = rf.System(DRUM).simulate(PULSE.scaled(2.0), **FAST).peak_rotation.item()
+    assert told != 0.0
+    np.testing.assert_allclose(runs.peak_rotation.values.ravel(), told, rtol=1e-12)
+    both = {"mass": ["200 kg", "800 kg"], "inertia": ["69.79 kg*m^2", "279.17 kg*m^2"]}
+    runs = rf.sweep(rf.System(DRUM), PULSE.scaled(2.0), cases=both, **FAST)
+    np.testing.assert_allclose(runs.peak_rotation.values.ravel(), told, rtol=1e-3)
+
+
 def test_targets_scale_each_motion_to_an_intensity():
     motions = [PULSE, OTHER, PULSE]
     for name, target, keywords in (
