@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 import xarray as xr
 
+from rockframe.studies.intensities import PERIOD_OF, in_words
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
@@ -59,6 +61,12 @@ def style_of(number: int) -> Any:
 def label_of(values: xr.DataArray) -> str:
     """Give name and unit of values, for an axis."""
     return labelled(str(values.name).replace("_", " "), str(values.attrs.get("units", "1")))
+
+
+def label_of_intensity(values: xr.DataArray, study: xr.Dataset) -> str:
+    """Give name, period and unit of an intensity measure of a study, for an axis."""
+    words = in_words(str(values.name), study.attrs.get(PERIOD_OF))
+    return labelled(words, str(values.attrs.get("units", "1")))
 
 
 def labelled(words: str, unit: str) -> str:

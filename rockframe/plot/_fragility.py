@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import xarray as xr
 
-from rockframe.plot._axes import COLOURS, grid, label_of
+from rockframe.plot._axes import COLOURS, grid, label_of_intensity
 from rockframe.plot._given import check_study
 from rockframe.plot._panels import Panels, sheet, single
 from rockframe.results.variables.analyses import FragilityStatus
@@ -87,7 +87,7 @@ def _curves(axes: "Axes", states: list[xr.Dataset], measure: str) -> None:
         place = one["stripe_intensity"].to_numpy() * 1.012 ** (number - 0.5 * (len(states) - 1))
         axes.errorbar(place, fraction, yerr=reach, fmt="o", color=colour, ms=3.0, lw=0.8, alpha=0.7)
     axes.set(
-        xlabel=label_of(states[0][measure]),
+        xlabel=label_of_intensity(states[0][measure], states[0]),
         ylabel="probability of exceedance [-]",
         ylim=(-0.02, 1.02),
     )
@@ -106,7 +106,11 @@ def _contours(axes: "Axes", one: xr.Dataset, measures: list[str]) -> None:
         one[across], one[up], surface, levels=_LEVELS, colors=COLOURS[0], linewidths=0.9
     )
     axes.clabel(lines, fontsize="small", fmt="%.2f")
-    axes.set(xlabel=label_of(one[across]), ylabel=label_of(one[up]), title=_name(one))
+    axes.set(
+        xlabel=label_of_intensity(one[across], one),
+        ylabel=label_of_intensity(one[up], one),
+        title=_name(one),
+    )
 
 
 def _name(one: xr.Dataset) -> str:

@@ -14,6 +14,7 @@ from rockframe.plot._axes import (
     VERMILLION,
     grid,
     label_of,
+    label_of_intensity,
     plain_ticks,
     steps_of,
 )
@@ -80,7 +81,9 @@ def dynamic_analysis(
         rest = places[1:]
         left.plot(rest, np.full(len(rest), _CAPPED), "o", mfc="none", color=colour, ms=3)
     left.set(
-        xlabel=label_of(given[name]), ylabel=r"peak of $|\alpha|/\theta$ [-]", ylim=(0.0, 1.06)
+        xlabel=label_of_intensity(given[name], given),
+        ylabel=r"peak of $|\alpha|/\theta$ [-]",
+        ylim=(0.0, 1.06),
     )
     left.set_xlim(left=0.0)
     if given.sizes["motion"] <= _MOST_NAMED:
@@ -99,7 +102,11 @@ def dynamic_analysis(
         shares = np.arange(len(ordered)) / max(1, len(capacity))
         colour = COLOURS[number % len(COLOURS)]
         right.step(ordered, shares, where="post", color=colour, label=str(state))
-    right.set(xlabel=label_of(given[name]), ylabel="share of the motions [-]", ylim=(0.0, 1.02))
+    right.set(
+        xlabel=label_of_intensity(given[name], given),
+        ylabel="share of the motions [-]",
+        ylim=(0.0, 1.02),
+    )
     right.set_xlim(0.0, 1.15 * most if most > 0.0 else left.get_xlim()[1])
     right.legend(frameon=False, fontsize="small")
     for axes in on.panels:
@@ -237,7 +244,7 @@ def overturning_spectrum(
         _lines(axes, one)
         axes.set(xscale="log", yscale="log", title=f"H/B = {float(one['slenderness']):.3g}")
         axes.set_xlabel(r"$2\pi/p$ [s]")
-    on.axes.set_ylabel(label_of(measure))
+    on.axes.set_ylabel(label_of_intensity(measure, given))
     _finish(on, given)
     on.entitle("Least intensity that overturns", title)
     return on.panels

@@ -27,6 +27,7 @@ from rockframe.simulation.run_arguments import ScaleArguments
 from rockframe.solve.layout import Status
 from rockframe.studies.flip_words import least_overturning, sentence, unfinished
 from rockframe.studies.flips import Followed, Look, follow
+from rockframe.studies.intensities import of_study
 from rockframe.studies.scaled_intensity import ScaledIntensity
 from rockframe.studies.sweeps.progress import Progress, bar_of
 from rockframe.system.rigid_ground import RigidGroundSetting
@@ -195,7 +196,7 @@ def critical_scale(
     if measure is None:
         return dataset
     dataset = dataset.assign({measure.name: measure.at(critical)})
-    return dataset.assign_attrs(intensity=measure.name)
+    return dataset.assign_attrs(of_study(measure.name, measure.period))
 
 
 def _look(system: "System", plan_at: Callable[[float], Plan], *, stop: bool) -> Look:

@@ -7,12 +7,13 @@ import numpy as np
 import xarray as xr
 
 from rockframe.comparison.models import check_system
-from rockframe.errors import StudyError
+from rockframe.errors import ModelWarning, StudyError, warn
 from rockframe.results.dataset import build_dataset
+from rockframe.results.outcome import Array
 from rockframe.results.variables.studies import MOTION
 from rockframe.shared_arguments import takes
 from rockframe.studies.brackets import least_exceeding, padded
-from rockframe.studies.intensities import Intensity, intensity_in
+from rockframe.studies.intensities import Intensity, intensity_in, of_study
 from rockframe.studies.limit_states import LimitState, exceeds, interrupted, limit_states
 from rockframe.studies.lines import SCALE, VERDICT, Lines, read_scales, read_width
 from rockframe.studies.sweeps.arguments import SweepArguments
@@ -67,8 +68,9 @@ def incremental_dynamic_analysis(
     xarray.Dataset
         The sweep over ``scale`` and ``motion``, with the intensity measure; and over
         ``limit_state`` and ``motion``: ``capacity_scale``, the least scale found to exceed the
-        limit state, NaN if none; ``flip_count``; over ``flip`` too ``scale_below``,
-        ``scale_above`` [1] and ``exceeds_above``, NaN beyond the last one. The attribute
+        limit state, NaN if none, and a bound from above where it is the least of the scan;
+        ``flip_count``; over ``flip`` too ``scale_below``, ``scale_above`` [1] and
+        ``exceeds_above``, NaN beyond the last one. The attribute
         ``verdict`` says it in words.
 
     Raises
@@ -82,6 +84,8 @@ def incremental_dynamic_analysis(
     -----
     SolverWarning, ModelWarning
         As :func:`rockframe.sweep` does.
+    ModelWarning
+        Motions overturn at the least scale already: the scan starts too high for them.
 
     Notes
     -----
@@ -135,7 +139,8 @@ def incremental_dynamic_analysis(
     found = scan.assign(narrow.data_vars).assign_coords(labels)
     if measure is not None:
         found = found.assign({measure.name: intensity_in(scan, measure, given, owner=_OWNER)})
-        found.attrs["intensity"] = measure.name
+        found.attrs |= of_study(measure.name, measure.period)
+    _say_what_lies_below(found)
     found.attrs |= {
         "title": "Incremental dynamic analysis of a rocking system",
         "source": narrow.attrs["source"],
@@ -157,14 +162,35 @@ def labels_of_states(states: Sequence[LimitState]) -> dict[str, xr.Variable]:
     return {str(name): labels[name].variable for name in labels.variables}
 
 
+def _at_the_least(found: xr.Dataset) -> Array:
+    """Tell which motions overturned at the least scale: their capacities may lie below it."""
+    capacity = found["capacity_scale"].isel(limit_state=-1).to_numpy()
+    return capacity == float(found[SCALE].min())
+
+
+def _say_what_lies_below(found: xr.Dataset) -> None:
+    below = _at_the_least(found)
+    if below.any():
+        warn(
+            f"{_OWNER}: the scan starts too high: {int(below.sum())} of {below.size} motions "
+            f"overturn at its least scale, {float(found[SCALE].min()):.4g}, already, and their "
+            "capacities lie at or below it; give lesser scales",
+            ModelWarning,
+        )
+
+
 def _sentence(found: xr.Dataset, *, whole: bool) -> str:
     """Tell for how many motions overturning was found, and from which scale on."""
     of_overturning = found.isel(limit_state=-1)
     capacity = of_overturning["capacity_scale"].to_numpy()
     count, some = capacity.size, np.isfinite(capacity)
     text = f"Of {count} motions {int(some.sum())} overturned"
-    if some.any():
-        text += f", from {np.nanmin(capacity):.4g} to {np.nanmax(capacity):.4g} times the motion on"
+    below = _at_the_least(found)
+    if some.any() and below.all():
+        text += f", at or below {np.nanmin(capacity):.4g} times the motion"
+    elif some.any():
+        least = f"{'at or below ' if below.any() else ''}{np.nanmin(capacity):.4g}"
+        text += f", from {least} to {np.nanmax(capacity):.4g} times the motion on"
     again = int((of_overturning["flip_count"].to_numpy() > 1).sum())
     if again:
         text += f"; under {again} the verdict changed more than once"

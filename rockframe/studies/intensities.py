@@ -51,7 +51,32 @@ POWERS: Final = {
     SPECTRAL: 1,
 }
 """Powers of the scale of the motion with which measures grow."""
+PERIOD_OF: Final = "intensity_period"
+"""Attribute that keeps the period of a spectral intensity [s]."""
 _OSCILLATORS: Final = tuple(name for name in POWERS if SCHEMA[name].dims == OSCILLATOR)
+
+
+def in_words(name: str, period: float | None) -> str:
+    """Write the name of a measure in words, of a spectral value with its period [s]."""
+    words = name.replace("_", " ")
+    return words if period is None or name not in _OSCILLATORS else f"{words} at {period:.6g} s"
+
+
+def of_study(name: str, period: float | None) -> dict[str, str | float]:
+    """Give the attributes by which a dataset tells of which measure it is.
+
+    Parameters
+    ----------
+    name : str
+        Of the measure.
+    period : float or None
+        Of the oscillator of a spectral value [s].
+
+    Returns
+    -------
+    dict of str to (str or float)
+    """
+    return {"intensity": name} | ({} if period is None else {PERIOD_OF: period})
 
 
 @dataclass(frozen=True)

@@ -69,7 +69,7 @@ class ScaledIntensity:
             needed = "needs a period, for example period='0.5 s'" if spectral else "has no period"
             msg = f"{owner}: intensity {shown(name)} {needed}"
             raise ComponentError(msg)
-        self._period = None if period is None else to_si(period, PERIOD, owner=owner, name="period")
+        self.period = None if period is None else to_si(period, PERIOD, owner=owner, name="period")
         of_motion = self._all(motion)
         known = sorted({*map(str, of_motion.data_vars), *SPECTRAL} - {*_OF_THE_BLOCK})
         if name not in known:
@@ -95,8 +95,8 @@ class ScaledIntensity:
         return xr.full_like(self._one(self._all(self._motion)), np.nan)
 
     def _all(self, motion: "GroundMotion") -> xr.Dataset:
-        if self._period is not None:
-            return response_spectrum(motion, [f"{self._period!r} {TIME.unit}"], self._damping)
+        if self.period is not None:
+            return response_spectrum(motion, [f"{self.period!r} {TIME.unit}"], self._damping)
         return intensity_measures(
             motion, block=self._block, damping_ratio=self._damping, gravity=self._gravity
         )

@@ -14,7 +14,7 @@ from rockframe.results.variables.studies import CASE, MOTION
 from rockframe.shared_arguments import takes
 from rockframe.studies.block_sizes import BlockSizes
 from rockframe.studies.brackets import least_exceeding, padded
-from rockframe.studies.intensities import POWERS, Intensity, motions_in, of_motions
+from rockframe.studies.intensities import POWERS, Intensity, motions_in, of_motions, of_study
 from rockframe.studies.limit_states import overturns
 from rockframe.studies.lines import SCALE, VERDICT, Lines, head, read_scales, read_width
 from rockframe.studies.sweeps.arguments import SweepArguments
@@ -191,7 +191,7 @@ def overturning_spectrum(
     return sizes.arranged(found).assign_attrs(
         title="Overturning spectrum",
         source=narrow.attrs["source"],
-        intensity=measure.name,
+        **of_study(measure.name, measure.period),
         bracket_width=share,
     )
 

@@ -14,7 +14,7 @@ from rockframe.arguments import checked_dataset
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError, SchemaError, shown
 from rockframe.results.variables.analyses import LIMIT_STATE, FragilityStatus
-from rockframe.studies.intensities import SHORT
+from rockframe.studies.intensities import PERIOD_OF, SHORT
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -239,10 +239,10 @@ def _fits(
 
 
 def _period(dataset: xr.Dataset, owner: str) -> float:
-    if "intensity_period" not in dataset.attrs:
-        msg = f"{owner}: found a spectral measure without the attribute 'intensity_period'"
+    if PERIOD_OF not in dataset.attrs:
+        msg = f"{owner}: found a spectral measure without the attribute {PERIOD_OF!r}"
         raise SchemaError(msg)
-    return float(dataset.attrs["intensity_period"])
+    return float(dataset.attrs[PERIOD_OF])
 
 
 def _check_word(given: object) -> None:

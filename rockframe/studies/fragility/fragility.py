@@ -92,6 +92,10 @@ def fragility(
     are separated from those that did not, so that beta would be zero, or
     exceedances grow rarer with the intensity. Runs without a verdict are left out.
 
+    Of a dynamic analysis a capacity may be known from one side only: from above, where the least
+    scale exceeded already, or from below, where none did. Such capacities count with the
+    probability of lying there; where all lie on one side, there are neither fit nor bounds.
+
     Examples
     --------
     >>> import rockframe as rf
@@ -120,9 +124,12 @@ def fragility(
             by_motion = means.bands is Bands.SANDWICH and repeated
             trials.append(trials_of_runs(verdict, measures, by_motion=by_motion))
             counted.append(flat(verdict, measures))
-    found = labelled(trials, counted, [_labels(one) for one in measures], means, states[-1].name)
+    labels = [_labels(one) for one in measures]
+    oscillator = _period_of(period)
+    found = labelled(trials, counted, labels, means, states[-1].name, oscillator)
+    if of_capacities:
+        found.attrs["verdict"] += _without_lower_ends(trials[-1])
     kept = {name: runs.attrs[name] for name in ("model", "system_json") if name in runs.attrs}
-    kept |= _period_of(period)
     return found.assign_coords(labels_of_states(states)).assign_attrs(kept)
 
 
@@ -202,8 +209,10 @@ def fragility_of_counts(
         ),
     )
     labels = (which.name, which.attributes())
-    found = labelled([made], [(each[0][:, None], each[1])], [labels], means, "what was counted")
-    return found.isel(limit_state=0).assign_attrs(_period_of(period))
+    counted = [(each[0][:, None], each[1])]
+    oscillator = _period_of(period)
+    found = labelled([made], counted, [labels], means, "what was counted", oscillator)
+    return found.isel(limit_state=0)
 
 
 def _states(
@@ -222,11 +231,18 @@ def _states(
     return states
 
 
-def _period_of(given: "QuantityLike | None") -> dict[str, float]:
-    """Give the period of a spectral intensity as an attribute [s]."""
-    if given is None:
-        return {}
-    return {"intensity_period": to_si(given, PERIOD, owner=_OWNER, name="period")}
+def _period_of(given: "QuantityLike | None") -> float | None:
+    """Read the period of a spectral intensity [s]."""
+    return None if given is None else to_si(given, PERIOD, owner=_OWNER, name="period")
+
+
+def _without_lower_ends(capacities: Trials) -> str:
+    """Tell how many capacities a scan that starts too high does not part from zero."""
+    lacking = int((~capacities.has_lower).sum())
+    if not lacking:
+        return ""
+    known = len(capacities.has_lower)
+    return f" {lacking} of {known} capacities are only known to lie at or below the least scale."
 
 
 def _several(given: object) -> list[object]:

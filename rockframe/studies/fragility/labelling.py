@@ -13,6 +13,7 @@ from rockframe.results.outcome import Array
 from rockframe.results.variables.analyses import LIMIT_STATE, FragilityStatus
 from rockframe.studies.confidence import clopper_pearson
 from rockframe.studies.fragility.likelihood import Bands, Fit, Trials, boundary, fit, gap
+from rockframe.studies.intensities import PERIOD_OF, in_words
 
 _POINTS: Final = 101
 """Intensities at which a curve is given."""
@@ -60,6 +61,7 @@ def labelled(
     measures: Sequence[Labels],
     means: Means,
     last: str,
+    period: float | None,
 ) -> xr.Dataset:
     """Fit capacities, and label what is found.
 
@@ -75,6 +77,8 @@ def labelled(
         How bounds are found.
     last : str
         The last limit state, in words.
+    period : float or None
+        Of the oscillator of a spectral intensity [s].
 
     Returns
     -------
@@ -83,10 +87,12 @@ def labelled(
     fits = [fit(each, means.bands) for each in trials]
     one = len(measures) == 1
     attributes: dict[str, str | float | int] = {
-        "verdict": _sentence(fits[-1], measures, last),
+        "verdict": _sentence(fits[-1], measures, last, period),
         "bands": means.bands.name.lower(),
         "confidence": means.confidence,
     }
+    if period is not None:
+        attributes[PERIOD_OF] = period
     status = {"fragility_status": np.array([each.status for each in fits])}
     dataset = build_dataset(
         status, attributes, over=LIMIT_STATE, title=_TITLE, source="greatest likelihood"
@@ -327,9 +333,9 @@ def _spaced(trials: Sequence[Trials], measure: int, count: int) -> Array:
     return np.exp(np.linspace(least - reach, most + reach, count))
 
 
-def _sentence(last: Fit, measures: Sequence[Labels], state: str) -> str:
+def _sentence(last: Fit, measures: Sequence[Labels], state: str, period: float | None) -> str:
     """Tell what was fitted to the last limit state."""
-    names = " and ".join(name.replace("_", " ") for name, _ in measures)
+    names = " and ".join(in_words(name, period) for name, _ in measures)
     if last.status is not FragilityStatus.FITTED:
         why = last.status.name.lower().replace("_", " ")
         return f"Against {state} no lognormal capacity fits over {names}: {why}."

@@ -93,6 +93,59 @@ def test_a_dynamic_analysis_agrees_with_the_critical_scale(analysis):
         assert looked.critical_scale.item() <= least * (1.0 + 1e-3)
 
 
+def test_the_period_of_a_spectral_intensity_is_kept_and_told():
+    measure = "pseudo_spectral_acceleration"
+    asked = {"intensity": measure, "period": "1.7 s"}
+    suite = motions()
+    some = {"scale": np.arange(0.5, 4.1, 0.5), **FAST}
+    analysis = rf.incremental_dynamic_analysis(SYSTEM, suite, **asked, **some)
+    critical = rf.critical_scale(SYSTEM, suite["seed 0"], scales=20, runs=30, **asked, **QUIET)
+    found = rf.fragility(analysis, "SA", period="1.7 s")
+    pair = rf.fragility(analysis, ["PGA", "SA"], period="1.7 s")
+    spectrum = rf.overturning_spectrum(SYSTEM, suite, periods=(["1.7 s"]), **asked, **some)
+    for one in (analysis, critical, found, pair, spectrum):
+        assert one.attrs["intensity_period"] == 1.7
+    words = "pseudo spectral acceleration at 1.7 s"
+    assert f"median {words} {found.median_intensity[-1].item():.4g} m s^-2" in found.verdict
+    assert f"peak ground acceleration and {words}" in pair.verdict
+    axes = [
+        rf.plot.fragility(found).get_xlabel(),
+        rf.plot.dynamic_analysis(analysis)[0].get_xlabel(),
+        rf.plot.dynamic_analysis(analysis)[1].get_xlabel(),
+        rf.plot.overturning_spectrum(spectrum)[0].get_ylabel(),
+        rf.plot.fragility(pair)[0].get_ylabel(),
+    ]
+    assert axes == [f"{words} [m s$^{{-2}}$]"] * 5
+    plain = rf.incremental_dynamic_analysis(SYSTEM, suite, intensity="PGA", **some)
+    assert "intensity_period" not in plain.attrs
+    assert rf.plot.dynamic_analysis(plain)[0].get_xlabel().startswith("peak ground acceleration [")
+
+
+def test_a_scan_that_starts_too_high_says_that_capacities_lie_below(analysis):
+    suite = motions()
+    over = analysis.sel(limit_state="overturning").capacity_scale
+    least = float(np.sort(over)[1:3].mean())  # some motions overturn below it, some above
+    below = int(rf.sweep(SYSTEM, suite, scale=[least], **FAST).overturned.sum())
+    assert 0 < below < 4
+    scan = {"scale": [least, least + 1.0, least + 2.0], **FAST}
+    told = rf"{below} of 4 motions overturn at its least scale, {least:.4g}, already"
+    with pytest.warns(rf.ModelWarning, match=f"starts too high.*{told}"):
+        found = rf.incremental_dynamic_analysis(SYSTEM, suite, **scan)
+    most = found.capacity_scale.max().item()
+    start = f"Of 4 motions 4 overturned, from at or below {least:.4g} to {most:.4g} times the"
+    assert found.verdict.startswith(start)
+    fitted = rf.fragility(found)
+    text = f"{below} of 4 capacities are only known to lie at or below the least scale."
+    assert fitted.verdict.endswith(text)
+    with pytest.warns(rf.ModelWarning, match="4 of 4 motions"):
+        found = rf.incremental_dynamic_analysis(SYSTEM, suite, scale=[7.0, 8.0], **FAST)
+    assert "4 overturned, at or below 7 times the motion" in found.verdict
+    fitted = rf.fragility(found)
+    assert "no lognormal capacity fits" in fitted.verdict
+    assert np.isnan(fitted.median_intensity).all()
+    assert "only known" not in rf.fragility(analysis).verdict
+
+
 def test_a_stored_analysis_goes_on_where_it_was(tmp_path, monkeypatch):
     options = {"scale": [1.0, 2.0, 4.0], **FAST}
     kept = rf.incremental_dynamic_analysis(SYSTEM, motions(), store=tmp_path / "s", **options)
