@@ -148,15 +148,16 @@ def scalars(run: Summary, setting: Setting) -> dict[str, float | int | bool]:
         sides = {
             "left_overturning_angle": angles.left,
             "right_overturning_angle": angles.right,
-            "left_peak_rotation": run.peak_left,
-            "right_peak_rotation": run.peak_right,
+            "left_peak_rotation": _unsigned(run.peak_left),
+            "right_peak_rotation": _unsigned(run.peak_right),
+            "rest_rotation": setting.rest_rotation,
         }
     return sides | {
         "overturned": bool(run.overturned),
         "overturning_time": run.overturning_time,
         "overturning_direction": run.overturning_direction,
-        "peak_rotation": run.peak_rotation,
-        "peak_relative_rotation": peak_of(run, angles).share,
+        "peak_rotation": _unsigned(run.peak_rotation),
+        "peak_relative_rotation": _unsigned(peak_of(run, angles).share),
         "first_uplift_time": run.first_uplift_time,
         "impact_count": run.impact_count,
         "flight_time": run.flight_time,
@@ -166,6 +167,11 @@ def scalars(run: Summary, setting: Setting) -> dict[str, float | int | bool]:
         "overturning_angle": angles.least,
         "uplift_angle": setting.uplift_angle,
     }
+
+
+def _unsigned(peak: float) -> float:
+    """Give a peak without the sign that zero may have, of a body that did not move."""
+    return peak + 0.0
 
 
 _ENDINGS = {

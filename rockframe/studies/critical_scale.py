@@ -303,7 +303,7 @@ def _labelled(
     )
     of_runs = build_dataset(
         {
-            "peak_rotation": np.array([one.peak for one in shown]),
+            "peak_rotation": np.array([one.peak for one in shown]) + 0.0,  # no negative zeros
             "status": np.array([one.status for one in shown]),
         },
         {},

@@ -339,6 +339,26 @@ def test_a_base_that_is_too_soft_is_refused():
 # statics ----------------------------------------------------------------------------------------
 
 
+@pytest.mark.parametrize("slope", ["0 deg", "1 deg"])
+def test_runs_and_sweeps_tell_of_the_rotation_at_rest(slope):
+    pads = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
+    motion = rf.GroundMotion.sine_pulse("0.1 m/s^2", "1 Hz")
+    leaning = rf.System(BLOCK, pads, inclination=slope)
+    lean = leaning.equilibrium().rest_rotation.item()
+    assert lean != 0.0
+    assert leaning.simulate(motion).rest_rotation.item() == lean
+    assert rf.sweep(leaning, motion, scale=[0.5, 1.0]).rest_rotation.values.tolist() == [[lean]] * 2
+    plain = rf.System(rf.Block(width="1 m", height="4 m", mass="4 t"))
+    run = plain.simulate(motion)
+    assert "rest_rotation" not in run
+    runs = rf.sweep(plain, motion, scale=[0.5, 1.0])
+    assert np.isnan(runs.rest_rotation).all()
+    found = rf.critical_scale(plain, motion, largest=0.5, scales=5, runs=5)
+    for peaks in (run.peak_rotation, runs.peak_rotation, found.peak_rotation):  # nothing moves
+        assert (peaks == 0.0).all()
+        assert not np.signbit(peaks).any()
+
+
 def test_moments_vanish_at_rest():
     for name in SCENES:
         for rotation in ("finite", "small"):
