@@ -6,6 +6,7 @@ import xarray as xr
 
 from rockframe.command.given import check_folder, scene_from, simulated, system_words, written
 from rockframe.results.variables.runs import RunStatus
+from rockframe.simulation.provenance import motion_words
 
 FINISHED = (RunStatus.COMPLETED, RunStatus.OVERTURNED, RunStatus.TOPPLED)
 
@@ -16,7 +17,7 @@ def execute(arguments: argparse.Namespace) -> int:
     found = scene_from(arguments)
     response = simulated(found)
     print(f"Scene:   {system_words(found.system)} ({response.attrs['model']})")
-    print(f"Motion:  {response.attrs['motion']}")
+    print(f"Motion:  {motion_words(response.attrs)}")
     print(f"Verdict: {response.attrs['verdict']}")
     if "certificate" in response.attrs:
         print(f"Certificate: {response.attrs['certificate']}")

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rockframe.constants import STANDARD_GRAVITY
+from rockframe.motion.shown_name import shown_name
 from rockframe.notebook import card, curve
 
 if TYPE_CHECKING:
@@ -28,7 +29,7 @@ def motion_card(motion: "MotionValue") -> str:
         rows["vertical peak"] = _in_gravity(upwards)
     rows |= {name: str(motion.metadata[name]) for name in _TOLD if name in motion.metadata}
     drawn = curve(samples.tolist())
-    title = f"{type(motion).__name__}: {motion.name}"
+    title = f"{type(motion).__name__}: {shown_name(motion.name, motion.history)}"
     return f"<div>{card(title, rows)}{drawn}</div>"
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe.plot._axes import BLUE, GREEN, GREY, ink, labelled, zero_line
-from rockframe.plot._motions import Drawn, columns_of, motions_of
+from rockframe.plot._motions import columns_of, motions_of, title_of
 from rockframe.plot._panels import Panels, sheet
 from rockframe.plot._runs import window_of
 from rockframe.plot._units import Shown, unit_of
@@ -104,12 +104,8 @@ def motion(
     on.panels[-1].set_xlabel("time [s]")
     if on.own is not None:
         on.own.align_ylabels(on.panels)
-    on.entitle(_named(given), title)
+    on.entitle(title_of(given), title)
     return on.panels
-
-
-def _named(given: list[Drawn]) -> str:
-    return given[0].motion.name if len(given) == 1 else ""
 
 
 def _part(history: xr.Dataset, cut: tuple[float, float]) -> xr.Dataset:

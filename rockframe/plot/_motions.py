@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, TypeAlias, cast
 
+from rockframe.motion.shown_name import shown_name
 from rockframe.plot._axes import colour_of, style_of
 from rockframe.plot._given import check_motion
 
@@ -33,6 +34,14 @@ def columns_of(given: list[Drawn]) -> int:
     return max(1, min(len(given), _LETTERS // (longest + 6)))
 
 
+def title_of(given: list[Drawn]) -> str:
+    """Give the title of a figure: the name of the one motion that it shows."""
+    if len(given) != 1:
+        return ""
+    (one,) = given
+    return shown_name(one.motion.name, one.motion.history)
+
+
 def motions_of(given: object, function: str) -> list[Drawn]:
     """Read one or several motions.
 
@@ -59,7 +68,10 @@ def motions_of(given: object, function: str) -> list[Drawn]:
         labelled = {str(key): one for key, one in cast("Mapping[Any, Any]", given).items()}
     elif isinstance(given, list | tuple):
         several = cast("Sequence[Any]", given)
-        names = [str(getattr(one, "name", "")) for one in several]
+        names = [
+            shown_name(str(getattr(one, "name", "")), getattr(one, "history", ()))
+            for one in several
+        ]
         alike = len(set(names)) < len(names)
         labelled = {
             f"{name} ({number})" if alike else name: one

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe.plot._axes import colour_of, grid, ink, labelled, plain_ticks, style_of, zero_line
-from rockframe.plot._motions import Drawn, columns_of, motions_of
+from rockframe.plot._motions import Drawn, columns_of, motions_of, title_of
 from rockframe.plot._panels import Panels, sheet
 from rockframe.plot._runs import window_of
 from rockframe.plot._units import Shown, unit_of
@@ -100,7 +100,7 @@ def spectra(
     _label(on.panels, found, unit)
     if len(given) > 1:
         on.legend(*on.panels[1].get_legend_handles_labels(), ncols=columns_of(given))
-    on.entitle(given[0].motion.name if len(given) == 1 else "", title)
+    on.entitle(title_of(given), title)
     return on.panels
 
 

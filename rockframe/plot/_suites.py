@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from rockframe.plot._axes import BLUE, GREY, VERMILLION, grid, key, labelled, plain_ticks
-from rockframe.plot._motions import motions_of
+from rockframe.plot._motions import motions_of, title_of
 from rockframe.plot._panels import single
 from rockframe.plot._units import unit_of
 from rockframe.units import ACCELERATION
@@ -72,7 +72,7 @@ def suite(
 
     given = motions_of(motions, "suite")
     unit = unit_of(acceleration, ACCELERATION, function="suite", name="acceleration")
-    named = {one.label or one.motion.name: one.motion for one in given}
+    named = {one.label or title_of(given): one.motion for one in given}
     found = response_spectrum(named, periods, damping_ratio, component=component)
     found = found.isel(period=np.flatnonzero(found["period"].to_numpy() > 0.0))
     values = unit.of(

@@ -19,6 +19,7 @@ from rockframe.reports.figures import figure_of
 from rockframe.reports.limits import GENERAL, limits_of
 from rockframe.reports.values import raised, table_of
 from rockframe.results.variables.runs import CERTIFICATE, RunStatus
+from rockframe.simulation.provenance import motion_words
 from rockframe.simulation.run import NONE
 from rockframe.simulation.system import System
 from rockframe.version import __version__
@@ -83,7 +84,9 @@ def scene(dataset: xr.Dataset, system: System | None) -> Iterator[str]:
 
 def motion(dataset: xr.Dataset, found: GroundMotion | None) -> Iterator[str]:
     """Show the motion, its measures and its figure."""
-    attributes = dataset.attrs
+    attributes = dict(dataset.attrs)
+    if "motion" in attributes:
+        attributes["motion"] = motion_words(attributes)
     known = (
         ("motion", "name"),
         ("motion_history", "made of"),

@@ -1,7 +1,8 @@
 """What a result says of its run, and the way back."""
 
 import json
-from typing import Any
+from collections.abc import Mapping
+from typing import Any, Final
 
 import numpy as np
 import xarray as xr
@@ -9,8 +10,12 @@ import xarray as xr
 from rockframe.components import InitialState
 from rockframe.errors import RecordWarning, SchemaError, warn
 from rockframe.motion import GroundMotion
+from rockframe.motion.shown_name import shown_name
 from rockframe.solve.accuracy import Accuracy
 from rockframe.units import TIME, Unit
+
+_NEXT_STEP: Final = "; "
+"""Between the steps of the history of a motion."""
 
 
 def motion_attributes(motion: GroundMotion | None) -> dict[str, str | float | int]:
@@ -23,8 +28,14 @@ def motion_attributes(motion: GroundMotion | None) -> dict[str, str | float | in
         "motion_time_step": motion.si.time_step,
         "motion_samples": len(motion),
         "motion_json": json.dumps(motion.to_dict()),
-        "motion_history": "; ".join(motion.history),
+        "motion_history": _NEXT_STEP.join(motion.history),
     }
+
+
+def motion_words(attributes: Mapping[str, Any]) -> str:
+    """Say of which motion a result is, and by how much that was scaled."""
+    history = str(attributes.get("motion_history", "")).split(_NEXT_STEP)
+    return shown_name(str(attributes["motion"]), history)
 
 
 def motion_from_dataset(dataset: xr.Dataset) -> GroundMotion | None:

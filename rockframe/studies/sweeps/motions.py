@@ -6,6 +6,7 @@ from typing import Any, Final, cast
 
 from rockframe.errors import ComponentError, shown
 from rockframe.motion import GroundMotion
+from rockframe.motion.shown_name import shown_name
 from rockframe.results.schema import SCHEMA
 from rockframe.studies.sweeps.axes import OWNER
 from rockframe.units import ACCELERATION, TIME, VELOCITY, Measure, Unit
@@ -110,10 +111,12 @@ def motions_of(given: object) -> dict[str, GroundMotion]:
 
 
 def _told_apart(motions: list[Any]) -> dict[str, Any]:
-    """Name motions, with a number behind a name that was there before."""
+    """Name motions: by their scales those of one name, with a number those that remain alike."""
+    names = [str(getattr(motion, "name", place)) for place, motion in enumerate(motions)]
     named: dict[str, Any] = {}
-    for motion in motions:
-        plain = name = str(getattr(motion, "name", len(named)))
+    for own, motion in zip(names, motions, strict=True):
+        alone = names.count(own) == 1
+        plain = name = own if alone else shown_name(own, getattr(motion, "history", ()))
         count = 1
         while name in named:
             count += 1

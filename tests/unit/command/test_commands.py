@@ -60,6 +60,17 @@ def test_a_run_from_the_template_to_the_report(typed, folder):
     assert "A &lt;tower&gt;" in (folder / "out.html").read_text()
 
 
+def test_a_scaled_motion_is_told_with_its_factor(typed, folder):
+    typed("template")
+    code, told, _ = typed("run", "scene.toml", "-o", "out.nc", "--scale", "3")
+    assert code == 0
+    assert "Motion:  3 times sine pulse, -5 m/s^2, 2 Hz" in told
+    with xr.open_dataset("out.nc") as kept:
+        assert kept.attrs["motion"].startswith("sine pulse, -5 m/s^2, 2 Hz")  # which motion it is
+    typed("report", "out.nc", "--no-certificate")
+    assert "3 times sine pulse, -5 m/s^2, 2 Hz" in (folder / "out.html").read_text()
+
+
 def test_options_take_the_place_of_what_the_scene_says(typed):
     given = ["run", "scene.toml", "-o", "out.nc", "--free-vibration", "1 s", "--accuracy", "1e-6"]
     code, *_ = typed(*given, "--motion", "record.AT2", "--scale", "0.5")

@@ -155,6 +155,18 @@ def test_motions_are_drawn_in_their_units_and_compared():
     np.testing.assert_allclose(b.get_ydata(), 2.0 * a.get_ydata(), rtol=1e-9)
 
 
+def test_a_scaled_motion_is_shown_with_its_factor():
+    twice = PULSE.scaled(4.0).scaled(0.5)
+    panels = rf.plot.motion(twice)
+    assert panels[0].figure.get_suptitle() == f"2 times {PULSE.name}"
+    panels = rf.plot.motion(PULSE.scaled(peak="5 m/s^2"))
+    assert panels[0].figure.get_suptitle() == f"2.5 times {PULSE.name}"
+    assert rf.plot.motion(PULSE)[0].figure.get_suptitle() == PULSE.name
+    assert f"-1 times {PULSE.name}" in PULSE.scaled(-1.0)._repr_html_()
+    (legend,) = rf.plot.motion([PULSE, twice])[0].figure.legends
+    assert [one.get_text() for one in legend.get_texts()] == [PULSE.name, f"2 times {PULSE.name}"]
+
+
 def test_energies_fill_up_to_what_was_put_in(runs):
     run = runs["whole"]
     axes = rf.plot.energies(run, energy="J")

@@ -155,6 +155,13 @@ def test_the_mass_of_a_body_told_by_its_shape_factor_makes_no_difference_on_rigi
     np.testing.assert_allclose(runs.peak_rotation.values.ravel(), told, rtol=1e-3)
 
 
+def test_scales_of_one_motion_are_told_apart_by_their_factors():
+    motions = [PULSE.scaled(2.0), PULSE, PULSE.scaled(2.0), OTHER.scaled(3.0)]
+    runs = rf.sweep(ON_PADS, motions, scale=[0.1], **FAST)
+    twice = f"2 times {PULSE.name}"
+    assert runs.motion.values.tolist() == [twice, PULSE.name, f"{twice} (2)", OTHER.name]
+
+
 def test_targets_scale_each_motion_to_an_intensity():
     motions = [PULSE, OTHER, PULSE]
     for name, target, keywords in (
