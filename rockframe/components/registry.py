@@ -1,6 +1,7 @@
 """Classes of components by their names, for the way back from a description."""
 
 from collections.abc import Mapping
+from inspect import signature
 from typing import TYPE_CHECKING, Final
 
 from rockframe.errors import ComponentError, SchemaError, shown
@@ -9,6 +10,7 @@ if TYPE_CHECKING:
     from rockframe.components.base import Component
 
 _KINDS: Final[dict[str, "type[Component]"]] = {}
+_TYPE: Final = "type"
 
 
 def register(kind: "type[Component]") -> None:
@@ -60,9 +62,9 @@ def component_from_dict(description: Mapping[str, float | str]) -> "Component":
     Raises
     ------
     SchemaError
-        ``type`` is missing or unknown.
+        ``type`` is missing or unknown, or something else is not of that class.
     """
-    kind = description.get("type")
+    kind = description.get(_TYPE)
     if not isinstance(kind, str) or kind not in _KINDS:
         known = ", ".join(sorted(_KINDS))
         msg = (
@@ -70,7 +72,15 @@ def component_from_dict(description: Mapping[str, float | str]) -> "Component":
             "your own in a module that has been imported"
         )
         raise SchemaError(msg)
-    return _KINDS[kind].from_dict(description)
+    try:
+        return _KINDS[kind].from_dict(description)
+    except TypeError as problem:
+        known = [name for name in signature(_KINDS[kind]).parameters if name != _TYPE]
+        strange = [shown(name) for name in description if name not in (_TYPE, *known)]
+        if not strange:
+            raise
+        msg = f"found {', '.join(strange)} in {kind}; expected some of {', '.join(known)}"
+        raise SchemaError(msg) from problem
 
 
 def _full_name(kind: type) -> str:

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Mapping, Sequence
+from inspect import signature
 from typing import TYPE_CHECKING, Any, Final, Self
 
 import pint
@@ -9,7 +10,7 @@ import xarray as xr
 
 from rockframe.arguments import checked_dataset, hinted
 from rockframe.components import InitialState, component_from_dict
-from rockframe.errors import ModelWarning, SchemaError, warn
+from rockframe.errors import ModelWarning, SchemaError, shown, warn
 from rockframe.motion import GroundMotion
 from rockframe.simulation.provenance import motion_from_dataset
 from rockframe.solve.accuracy import AccuracyLevel
@@ -431,6 +432,14 @@ class System:
 
     @classmethod
     def _described(cls, description: Mapping[str, Any], motion: GroundMotion | None) -> Self:
+        if "parts" not in description:
+            msg = "found no 'parts'; expected a list of them, as to_dict() gives it"
+            raise SchemaError(msg)
+        known = [name for name in signature(cls).parameters if name != "parts"]
+        strange = [shown(name) for name in description if name not in (*known, "parts", "motion")]
+        if strange:
+            msg = f"found {', '.join(strange)}; expected parts, motion, {', '.join(known)}"
+            raise SchemaError(msg)
         parts = [component_from_dict(part) for part in description["parts"]]
         options: dict[str, Any] = {
             name: str(value)

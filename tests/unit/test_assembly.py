@@ -214,6 +214,24 @@ def test_what_describes_no_system_is_refused(description):
         rf.System.from_dict(description)
 
 
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda told: told.pop("parts"), "found no 'parts'; expected a list of them"),
+        (
+            lambda told: told.update(gravitiy="9 m/s^2"),
+            "found 'gravitiy'; expected parts, .*gravity",
+        ),
+        (lambda told: told["parts"][0].update(hight="2 m"), "found 'hight' in Block; .*height"),
+    ],
+)
+def test_what_is_wrong_in_a_description_is_named(change, words):
+    told = json.loads(json.dumps(assembled("coupled").to_dict()))
+    change(told)
+    with pytest.raises(rf.SchemaError, match=f"does not describe a system: {words}"):
+        rf.System.from_dict(told)
+
+
 def test_a_path_is_no_dataset():
     words = r"System\.from_dataset: found 'run\.nc'; .*xr\.open_dataset first"
     with pytest.raises(rf.SchemaError, match=words):

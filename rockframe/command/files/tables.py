@@ -11,6 +11,10 @@ from rockframe.command.files.lines import Place, lines_of
 from rockframe.errors import FileError, shown
 
 _WHERE: Final = re.compile(r"\s*\(at line (\d+), column \d+\)")
+_NO_TEXT: Final = (
+    "this is no text; expected a scene or a study in TOML, as 'rockframe template' prints it. "
+    "Results (.nc) are for 'rockframe plot' and for 'rockframe report', which certifies them"
+)
 
 
 class TomlFile:
@@ -55,7 +59,9 @@ class TomlFile:
             text = place.read_text(encoding="utf-8")
         except FileNotFoundError as problem:
             raise FileError(str(path), [(None, "there is no such file")]) from problem
-        except (OSError, UnicodeDecodeError) as problem:
+        except UnicodeDecodeError as problem:
+            raise FileError(str(path), [(None, _NO_TEXT)]) from problem
+        except OSError as problem:
             raise FileError(str(path), [(None, f"it cannot be read ({problem})")]) from problem
         # TOML ends lines by \n or \r\n, which read_text makes alike
         try:

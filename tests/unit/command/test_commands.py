@@ -71,6 +71,15 @@ def test_a_scaled_motion_is_told_with_its_factor(typed, folder):
     assert "3 times sine pulse, -5 m/s^2, 2 Hz" in (folder / "out.html").read_text()
 
 
+def test_a_result_where_a_scene_is_needed_is_named_as_one(typed):
+    typed("template")
+    typed("run", "scene.toml", "-o", "out.nc")
+    code, _, problem = typed("certify", "out.nc")
+    assert code == 2
+    assert "out.nc: this is no text; expected a scene or a study in TOML" in problem
+    assert "rockframe report" in problem
+
+
 def test_options_take_the_place_of_what_the_scene_says(typed):
     given = ["run", "scene.toml", "-o", "out.nc", "--free-vibration", "1 s", "--accuracy", "1e-6"]
     code, *_ = typed(*given, "--motion", "record.AT2", "--scale", "0.5")
