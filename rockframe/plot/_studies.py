@@ -31,6 +31,8 @@ if TYPE_CHECKING:
 
     from rockframe.plot._panels import AxesLike
 
+_MOST_AXES: Final = 2
+"""Dimensions that a figure of a sweep has."""
 _MOST_LINES: Final = 12
 _PANELS: Final = ("histories", "residual")
 
@@ -120,7 +122,7 @@ def sweep(
     SchemaError
         No dataset, no such variable, or more than two dimensions.
     """
-    given = checked_dataset(runs, owner="rf.plot.sweep")
+    given = _without_single_values(checked_dataset(runs, owner="rf.plot.sweep"), variable)
     values = _values(given, variable)
     fell = given.get("overturned")
     fell = None if fell is None or set(fell.dims) != set(values.dims) else fell == 1
@@ -215,6 +217,16 @@ def _fitted_words(given: xr.Dataset) -> str:
     )
 
 
+def _without_single_values(given: xr.Dataset, variable: object) -> xr.Dataset:
+    """Leave out what has one value, such as the one motion, where there are too many axes."""
+    if not isinstance(variable, str) or variable not in given.data_vars:
+        return given
+    sizes = given[variable].sizes
+    if len(sizes) <= _MOST_AXES or max(sizes.values()) == 1:
+        return given
+    return given.isel({dim: 0 for dim, size in sizes.items() if size == 1})
+
+
 def _values(given: xr.Dataset, variable: object) -> xr.DataArray:
     if not isinstance(variable, str) or variable not in given.data_vars:
         known = ", ".join(
@@ -223,7 +235,7 @@ def _values(given: xr.Dataset, variable: object) -> xr.DataArray:
         msg = f"rf.plot.sweep: the runs have no {shown(variable)}; they have {known}"
         raise SchemaError(msg)
     values = given[variable]
-    if not 1 <= values.ndim <= 2:
+    if not 1 <= values.ndim <= _MOST_AXES:
         dims = ", ".join(map(str, values.dims)) or "none"
         msg = (
             f"rf.plot.sweep draws over one or two axes, {variable!r} has {values.ndim} ({dims}); "

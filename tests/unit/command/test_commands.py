@@ -60,6 +60,16 @@ def test_a_run_from_the_template_to_the_report(typed, folder):
     assert "A &lt;tower&gt;" in (folder / "out.html").read_text()
 
 
+def test_a_table_without_a_unit_is_asked_for_the_option(typed, folder):
+    rows = "\n".join(f"{0.01 * k:.2f},{0.1 * (k % 3)}" for k in range(50))
+    (folder / "x.csv").write_text(f"{rows}\n")
+    code, _, problem = typed("motion", "x.csv")
+    assert code == 2
+    assert "--unit g" in problem
+    code, _, problem = typed("motion", "x.csv", "--unit", "g")
+    assert code == 0
+
+
 def test_a_scaled_motion_is_told_with_its_factor(typed, folder):
     typed("template")
     code, told, _ = typed("run", "scene.toml", "-o", "out.nc", "--scale", "3")

@@ -84,6 +84,18 @@ def test_what_was_given_and_what_draws_it_are_said(name, made):
         assert len(message) < 250
 
 
+def test_two_axes_are_drawn_beside_the_one_motion():
+    system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
+    pulse = rf.GroundMotion.sine_pulse("2 m/s^2", "1 Hz")
+    runs = rf.sweep(system, pulse, scale=[1.0, 2.0, 3.0], height=["3 m", "4 m"], accuracy="fast")
+    assert runs.peak_rotation.ndim == 3
+    axes = rf.plot.sweep(runs, "peak_rotation")
+    assert len(axes.get_lines()) >= 2
+    several = xr.concat([runs, runs.assign_coords(motion=["other"])], "motion", data_vars="all")
+    with pytest.raises(rf.SchemaError, match=r"has 3 .*isel"):
+        rf.plot.sweep(several, "peak_rotation")
+
+
 def test_a_file_is_opened_by_what_reads_it():
     with pytest.raises(SchemaError, match=r"rf\.plot\.response\(xr\.open_dataset\('run\.nc'\)\)"):
         rf.plot.response("run.nc")
