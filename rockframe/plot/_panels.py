@@ -28,7 +28,8 @@ class Panels(tuple[Any, ...]):
     @property
     def figure(self) -> "Figure":
         """The figure that the panels belong to."""
-        return cast("Figure", self[0].get_figure(root=True))
+        # that of the panel may be a part of it
+        return cast("Figure", self[0].figure.figure)
 
     def __repr__(self) -> str:
         names = ", ".join(repr(_called(axes)) for axes in self)

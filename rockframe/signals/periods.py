@@ -62,8 +62,10 @@ def housner_intensity(signal: Signal, damping_ratio: float) -> float:
     float
         [m]
     """
+    from scipy.integrate import trapezoid
+
     velocity = _pseudo_velocity(signal, HOUSNER_PERIODS, damping_ratio)
-    return float(np.trapezoid(velocity, HOUSNER_PERIODS))
+    return float(trapezoid(velocity, HOUSNER_PERIODS))
 
 
 def predominant_period(signal: Signal, damping_ratio: float) -> float:
