@@ -19,7 +19,7 @@ from rockframe.components.shapes.outline import outline_body
 from rockframe.components.shapes.part import Part
 from rockframe.components.shapes.parts import body_of_parts
 from rockframe.components.shapes.reading import Place, Points
-from rockframe.components.values import Quantity, SIProperty, SIValues
+from rockframe.components.values import SIProperty, SIValues
 from rockframe.errors import ComponentError, ModelWarning, shown, warn
 from rockframe.notebook import Shape
 from rockframe.units import (
@@ -30,6 +30,7 @@ from rockframe.units import (
     LENGTH,
     MASS,
     POSITIVE,
+    Quantity,
     QuantityLike,
     RatioLike,
     to_ratio,

@@ -13,10 +13,9 @@ from rockframe.components.frame_members import Member
 from rockframe.components.frame_regular import INFILL_THICKNESS, SLAB_THICKNESS, RegularFrame
 from rockframe.components.frame_table import members_table
 from rockframe.components.parameters import DERIVED, Ratio
-from rockframe.components.values import Quantity
 from rockframe.errors import ComponentError, SchemaError, shown
 from rockframe.notebook import Shape
-from rockframe.units import LENGTH, POSITIVE, QuantityLike, RatioLike, quantity
+from rockframe.units import LENGTH, POSITIVE, Quantity, QuantityLike, RatioLike, quantity
 
 _LEAST_SHAPE_FACTOR = 1.0 - 1e-9  # a shape factor derived from an inertia is rounded
 

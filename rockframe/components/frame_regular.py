@@ -12,7 +12,7 @@ from rockframe.components.alternatives import OneOf
 from rockframe.components.base import Component
 from rockframe.components.frame_members import Member
 from rockframe.components.parameters import DERIVED, Declared, Missing, Parameter
-from rockframe.components.values import Quantity, SIValues
+from rockframe.components.values import SIValues
 from rockframe.errors import ComponentError
 from rockframe.units import (
     DENSITY,
@@ -21,6 +21,7 @@ from rockframe.units import (
     THICKNESS,
     Condition,
     Measure,
+    Quantity,
     QuantityLike,
     RatioLike,
     quantity,

@@ -4,11 +4,11 @@ from enum import Enum, StrEnum
 from typing import Any, Final, Generic, NoReturn, Self, TypeVar, overload
 
 from rockframe.arguments import one_of_words
-from rockframe.components.values import Quantity
 from rockframe.errors import ComponentError, shown
 from rockframe.units import (
     Condition,
     Measure,
+    Quantity,
     QuantityLike,
     RatioLike,
     Unit,

@@ -9,7 +9,6 @@ from rockframe.components.base import Component
 from rockframe.components.damping import DampingRatio
 from rockframe.components.friction import Friction
 from rockframe.components.parameters import Choice, Parameter
-from rockframe.components.values import Quantity
 from rockframe.units import (
     BED_DAMPING,
     BED_STIFFNESS,
@@ -17,6 +16,7 @@ from rockframe.units import (
     NOT_NEGATIVE,
     POSITIVE,
     SUBGRADE_MODULUS,
+    Quantity,
     QuantityLike,
     RatioLike,
     quantity,

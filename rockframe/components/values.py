@@ -1,13 +1,9 @@
 """Numbers of components in SI units, and properties that give them their units back."""
 
 from types import SimpleNamespace
-from typing import Any, NoReturn, Self, TypeAlias, overload
+from typing import Any, NoReturn, Self, overload
 
-import pint
-
-from rockframe.units import Measure, quantity
-
-Quantity: TypeAlias = pint.Quantity[Any]
+from rockframe.units import Measure, Quantity, quantity
 
 
 class SIValues(SimpleNamespace):

@@ -29,8 +29,9 @@ from rockframe.signals.spectra import check_cost, pseudo_spectra, spectral_peaks
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from rockframe.motion.quantities import ArrayLike, QuantityLike, RatioLike
+    from rockframe.motion.quantities import ArrayLike
     from rockframe.signals import Signal
+    from rockframe.units import QuantityLike, RatioLike
 
 _SPECTRUM: Final = "rotated_spectrum"
 _AXES: Final = "principal_axes"

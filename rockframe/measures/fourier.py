@@ -13,7 +13,7 @@ from rockframe.units import FREQUENCY, POSITIVE, to_si
 
 if TYPE_CHECKING:
     from rockframe.motion import GroundMotion
-    from rockframe.motion.quantities import QuantityLike
+    from rockframe.units import QuantityLike
 
 _OWNER: Final = "fourier_spectrum"
 

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from rockframe.motion import GroundMotion
-    from rockframe.motion.quantities import QuantityLike, RatioLike
+    from rockframe.units import QuantityLike, RatioLike
 
 _OWNER: Final = "intensity_measures"
 _STANDARDIZED_THRESHOLD: Final = 0.025  # g, EPRI (1991)

@@ -23,7 +23,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from rockframe.motion import GroundMotion
-    from rockframe.motion.quantities import ArrayLike, QuantityLike, RatioLike
+    from rockframe.motion.quantities import ArrayLike
+    from rockframe.units import QuantityLike, RatioLike
 
 SAMPLES_PER_PERIOD: Final = 25
 """Samples of the shortest period of a band-limited motion: lines between them lower it by 0.5 %."""

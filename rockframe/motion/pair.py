@@ -21,10 +21,10 @@ from rockframe.motion.readers.source import Request, load
 from rockframe.units import ANGLE
 
 if TYPE_CHECKING:
-    from rockframe.motion.quantities import QuantityLike
     from rockframe.motion.readers.source import RecordLike
     from rockframe.motion.velocity_pulse import VelocityPulse
     from rockframe.signals import Signal
+    from rockframe.units import QuantityLike
 
 _RIGHT_ANGLE: Final = 90.0
 _TOLERANCE: Final = 1.0  # degree; agencies round azimuths to whole ones

@@ -10,21 +10,15 @@ import xarray as xr
 
 from rockframe.errors import ComponentError, UnitsError, shown
 from rockframe.motion.unit_names import RecordUnit, acceleration_unit
-from rockframe.units import ACCELERATION, TIME, Measure, foreign_quantity, to_si
+from rockframe.units import ACCELERATION, TIME, Measure, Quantity, foreign_quantity, to_si
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     import numpy.typing as npt
-    from pint.facets.plain import PlainQuantity
 
     from rockframe.signals.arrays import Array
 
-    # pint.Quantity itself, in a form that a strict type checker can follow
-    Quantity: TypeAlias = PlainQuantity[Any]
-
-QuantityLike: TypeAlias = "str | Quantity | tuple[float, str]"
-RatioLike: TypeAlias = "float | str | Quantity"
 ArrayLike: TypeAlias = "Quantity | xr.DataArray | tuple[Sequence[float] | npt.NDArray[Any], str]"
 
 _TIME_AXES: Final = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}

@@ -12,8 +12,8 @@ from rockframe.units import ACCELERATION, TIME
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from rockframe.motion.quantities import Quantity
     from rockframe.signals import Motion
+    from rockframe.units import Quantity
 
 UNNAMED: Final = "unnamed motion"
 

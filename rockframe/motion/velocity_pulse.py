@@ -9,7 +9,7 @@ from rockframe.motion.value import Made
 from rockframe.units import VELOCITY
 
 if TYPE_CHECKING:
-    from rockframe.motion.quantities import Quantity
+    from rockframe.units import Quantity
 
 LEAST_INDICATOR: Final = 0.85
 """Of a motion that is pulse-like [1] (Baker 2007)."""

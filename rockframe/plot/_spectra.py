@@ -17,10 +17,11 @@ if TYPE_CHECKING:
 
     from matplotlib.axes import Axes
 
-    from rockframe.motion.quantities import ArrayLike, QuantityLike, RatioLike
+    from rockframe.motion.quantities import ArrayLike
     from rockframe.plot._motions import MotionsLike
     from rockframe.plot._panels import AxesLike
     from rockframe.plot._runs import Window
+    from rockframe.units import QuantityLike, RatioLike
 
 _RESOLUTION: Final = "0.05 Hz"  # of short pulses; that of long records is finer
 _PREFIX: Final = {"horizontal": "", "vertical": "vertical_"}

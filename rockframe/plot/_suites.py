@@ -15,10 +15,11 @@ if TYPE_CHECKING:
 
     from matplotlib.axes import Axes
 
-    from rockframe.motion.quantities import ArrayLike, QuantityLike, RatioLike
+    from rockframe.motion.quantities import ArrayLike
     from rockframe.plot._motions import MotionsLike
     from rockframe.plot._panels import AxesLike
     from rockframe.suites import TargetSpectrum
+    from rockframe.units import QuantityLike, RatioLike
 
 _MOST_NAMED: Final = 6
 _PERIODS: Final = (np.geomspace(0.05, 5.0, 80), "s")

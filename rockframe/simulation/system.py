@@ -5,7 +5,6 @@ from collections.abc import Mapping, Sequence
 from inspect import signature
 from typing import TYPE_CHECKING, Any, Final, Self
 
-import pint
 import xarray as xr
 
 from rockframe.arguments import checked_dataset, hinted
@@ -31,7 +30,7 @@ from rockframe.system.options import (
 from rockframe.system.parts import Parts
 from rockframe.system.scenes import Scene
 from rockframe.system.setting import Setting
-from rockframe.units import ACCELERATION, ANGLE, QuantityLike, quantity
+from rockframe.units import ACCELERATION, ANGLE, Quantity, QuantityLike, quantity
 
 if TYPE_CHECKING:
     from rockframe.simulation.certification import Certification
@@ -134,7 +133,7 @@ class System:
         return self.options.coupling
 
     @property
-    def gravity(self) -> pint.Quantity[Any]:
+    def gravity(self) -> Quantity:
         """Acceleration of gravity [m s^-2]."""
         return quantity(self.gravity_si, ACCELERATION)
 
@@ -144,7 +143,7 @@ class System:
         return self.options.gravity
 
     @property
-    def inclination(self) -> pint.Quantity[Any]:
+    def inclination(self) -> Quantity:
         """Angle by which the base line rises to the right [rad]."""
         return quantity(self.options.inclination, ANGLE)
 

@@ -21,7 +21,8 @@ from rockframe.units import PERIOD, POSITIVE, to_ratio
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from rockframe.motion.quantities import ArrayLike, QuantityLike, RatioLike
+    from rockframe.motion.quantities import ArrayLike
+    from rockframe.units import QuantityLike, RatioLike
 
 _USUAL_BAND: Final = (0.1, 4.0)
 _USUAL_COUNT: Final = 40

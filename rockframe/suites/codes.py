@@ -16,7 +16,7 @@ from rockframe.units import ACCELERATION, PERIOD, POSITIVE, to_ratio, to_si, to_
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from rockframe.motion.quantities import QuantityLike, RatioLike
+    from rockframe.units import QuantityLike, RatioLike
 
 Shape: TypeAlias = Callable[[Array], Array]
 """Accelerations [m s^-2] at periods [s]."""

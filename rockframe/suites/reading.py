@@ -18,8 +18,8 @@ from rockframe.units import POSITIVE, TIME_STEP, to_si
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from rockframe.motion.quantities import QuantityLike
     from rockframe.motion.readers.source import RecordLike
+    from rockframe.units import QuantityLike
 
 _OWNER: Final = "read_suite"
 _OTHER_MOTIONS: Final = {".vt2": "a velocity", ".dt2": "a displacement"}

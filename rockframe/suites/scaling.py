@@ -17,10 +17,11 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rockframe.motion import GroundMotion
-    from rockframe.motion.quantities import ArrayLike, QuantityLike, RatioLike
+    from rockframe.motion.quantities import ArrayLike
     from rockframe.signals.arrays import Array
     from rockframe.suites.suite import MotionSuite
     from rockframe.suites.target import TargetSpectrum
+    from rockframe.units import QuantityLike, RatioLike
 
 _OWNER: Final = "scale_to_target"
 USUAL_BOUNDS: Final = (0.25, 4.0)

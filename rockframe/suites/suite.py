@@ -28,8 +28,9 @@ from rockframe.suites.stored import motions_in, suite_dataset
 if TYPE_CHECKING:
     import pandas as pd
 
-    from rockframe.motion.quantities import ArrayLike, QuantityLike, RatioLike
+    from rockframe.motion.quantities import ArrayLike
     from rockframe.suites.target import TargetSpectrum
+    from rockframe.units import QuantityLike, RatioLike
 
 _EXAMPLE: Final = "rf.read_suite(path) reads files"
 

@@ -24,7 +24,8 @@ from rockframe.units import (
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from rockframe.motion.quantities import ArrayLike, QuantityLike, RatioLike
+    from rockframe.motion.quantities import ArrayLike
+    from rockframe.units import QuantityLike, RatioLike
 
 _DEVIATION: Final = Condition("from 0 to 3", lambda value: 0.0 <= value <= 3.0)
 _USUAL: Final = 0.05

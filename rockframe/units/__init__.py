@@ -28,7 +28,15 @@ from rockframe.units.kinds import (
     Measure,
     Unit,
 )
-from rockframe.units.reading import QuantityLike, RatioLike, quantity, to_ratio, to_si, to_si_values
+from rockframe.units.reading import (
+    Quantity,
+    QuantityLike,
+    RatioLike,
+    quantity,
+    to_ratio,
+    to_si,
+    to_si_values,
+)
 
 __all__ = [
     "ACCELERATION",
@@ -55,6 +63,7 @@ __all__ = [
     "VELOCITY",
     "Condition",
     "Measure",
+    "Quantity",
     "QuantityLike",
     "RatioLike",
     "Unit",

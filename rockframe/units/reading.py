@@ -13,6 +13,7 @@ from numbers import Real
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import pint
+from pint.facets.plain import PlainQuantity
 
 from rockframe.errors import ComponentError, UnitsError, shown
 from rockframe.units.hints import (
@@ -29,15 +30,17 @@ if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
 
-QuantityLike: TypeAlias = str | pint.Quantity[Any] | tuple[float, str]
+Quantity: TypeAlias = PlainQuantity[Any]
+"""Every quantity of pint, as type checkers can follow it; pint.Quantity itself they cannot."""
+QuantityLike: TypeAlias = str | Quantity | tuple[float, str]
 """A number with its unit: ``"0.3 m"``, ``(0.3, "m")``, or a Quantity of pint."""
-RatioLike: TypeAlias = float | str | pint.Quantity[Any]
+RatioLike: TypeAlias = float | str | Quantity
 
 _LONGEST_FACTOR: Final = 12
 """Letters of a unit's size that is a number of few digits, such as 0.45359237 kg or 1e-06 m."""
 
 
-def quantity(value: "float | npt.NDArray[np.float64]", measure: Measure) -> pint.Quantity[Any]:
+def quantity(value: "float | npt.NDArray[np.float64]", measure: Measure) -> Quantity:
     """Give an SI value its unit back.
 
     Parameters
@@ -230,7 +233,7 @@ def _in_si(value: object, measure: Measure) -> float | None:
     return float(parts[0])
 
 
-def _parse(value: object, measure: Measure, *, owner: str, name: str) -> pint.Quantity[Any]:
+def _parse(value: object, measure: Measure, *, owner: str, name: str) -> Quantity:
     if isinstance(value, pint.Quantity):
         return value
     value = _joined(value)
@@ -272,9 +275,7 @@ def _joined(value: object) -> object:
     return f"{float(number)!r} {unit}"
 
 
-def _check_kind(
-    given: pint.Quantity[Any], value: object, measure: Measure, *, owner: str, name: str
-) -> None:
+def _check_kind(given: Quantity, value: object, measure: Measure, *, owner: str, name: str) -> None:
     wanted = type(given)(1.0, "" if measure.unit == Unit.ONE else str(measure.unit))
     try:
         same_kind = given.is_compatible_with(wanted) and _roots(given) == _roots(wanted)

@@ -15,12 +15,13 @@ from rockframe.units import (
     LENGTH,
     MASS,
     POSITIVE,
+    Quantity,
     QuantityLike,
     to_si,
 )
 
 Place: TypeAlias = tuple[QuantityLike, QuantityLike]
-Points: TypeAlias = Iterable[Place] | pint.Quantity[Any] | tuple[Any, str]
+Points: TypeAlias = Iterable[Place] | Quantity | tuple[Any, str]
 
 MASS_WAYS: Final = OneOf("mass", ("density", "depth"))
 

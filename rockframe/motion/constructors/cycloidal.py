@@ -10,8 +10,8 @@ from rockframe.motion.pulses.harmonics import sine, type_c_phase
 from rockframe.units import ACCELERATION, FREQUENCY, PERIOD, POSITIVE, VELOCITY
 
 if TYPE_CHECKING:
-    from rockframe.motion.quantities import QuantityLike, RatioLike
     from rockframe.motion.value import Made
+    from rockframe.units import QuantityLike, RatioLike
 
 _QUARTER_TURN: Final = 0.5 * math.pi
 _HIGHEST_ORDER: Final = 1000

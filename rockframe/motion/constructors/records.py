@@ -18,10 +18,11 @@ from rockframe.signals import Motion
 from rockframe.units import POSITIVE, TIME_STEP, to_si
 
 if TYPE_CHECKING:
-    from rockframe.motion.quantities import ArrayLike, QuantityLike
+    from rockframe.motion.quantities import ArrayLike
     from rockframe.motion.readers.source import PathLike, RecordLike
     from rockframe.motion.value import Made
     from rockframe.signals.arrays import Array
+    from rockframe.units import QuantityLike
 
 _SAME_STEP: Final = 1e-6
 _UNEVEN: Final = 0.01

@@ -22,9 +22,9 @@ from rockframe.units import (
 )
 
 if TYPE_CHECKING:
-    from rockframe.motion.quantities import QuantityLike, RatioLike
     from rockframe.motion.stochastic import Corners, PointSource, Site
     from rockframe.motion.value import Made
+    from rockframe.units import QuantityLike, RatioLike
 
 MODEL: Final = (
     "stochastic point source: Boore (2003), doi:10.1007/PL00012553, with the parameters of "

@@ -11,8 +11,8 @@ from rockframe.motion.pulses.wavelets import ricker
 from rockframe.units import ACCELERATION, FREQUENCY, PERIOD, POSITIVE, VELOCITY, Condition, to_si
 
 if TYPE_CHECKING:
-    from rockframe.motion.quantities import QuantityLike, RatioLike
     from rockframe.motion.value import Made
+    from rockframe.units import QuantityLike, RatioLike
 
 _AT_LEAST_ONE: Final = Condition("at least 1", lambda value: value >= 1.0)
 _SHORT: Final = 0.01

@@ -20,9 +20,9 @@ from rockframe.signals.signal import COEFFICIENTS, VERTICAL
 from rockframe.units import ANGLE, to_si
 
 if TYPE_CHECKING:
-    from rockframe.motion.quantities import QuantityLike
     from rockframe.motion.value import Made, MotionValue
     from rockframe.signals.arrays import Array
+    from rockframe.units import QuantityLike
 
 _RIGHT_ANGLE_TOLERANCE: Final = 1.0  # degrees; agencies round azimuths to whole ones
 _ROUNDING: Final = 1e-15

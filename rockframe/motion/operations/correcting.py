@@ -14,8 +14,8 @@ from rockframe.signals.signal import MAXIMUM_SAMPLES
 from rockframe.units import FREQUENCY, POSITIVE, to_si
 
 if TYPE_CHECKING:
-    from rockframe.motion.quantities import QuantityLike
     from rockframe.motion.value import Made
+    from rockframe.units import QuantityLike
 
 _HIGHEST_ORDER: Final = 12
 _HIGHEST_DEGREE: Final = 20

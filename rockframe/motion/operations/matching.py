@@ -19,10 +19,10 @@ from rockframe.units import PERIOD, Condition, to_ratio, to_si_values
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from rockframe.motion.quantities import QuantityLike, RatioLike
     from rockframe.motion.value import Made
     from rockframe.signals import Signal
     from rockframe.signals.arrays import Array
+    from rockframe.units import QuantityLike, RatioLike
 
 USUAL_PERIODS: Final = ("0.1 s", "2 s")
 USUAL_TOLERANCE: Final = 0.05

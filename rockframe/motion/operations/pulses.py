@@ -18,10 +18,10 @@ from rockframe.signals.polynomials import knots_of
 from rockframe.units import PERIOD, POSITIVE, TIME, VELOCITY, to_si
 
 if TYPE_CHECKING:
-    from rockframe.motion.quantities import QuantityLike
     from rockframe.motion.value import Made
     from rockframe.signals import Signal
     from rockframe.signals.arrays import Array
+    from rockframe.units import QuantityLike
 
 SHORTEST: Final = "0.25 s"
 LONGEST: Final = "15 s"

@@ -23,9 +23,9 @@ from rockframe.signals.spectra import (
 from rockframe.units import ACCELERATION, PERIOD, POSITIVE, TIME, VELOCITY, to_ratio, to_si
 
 if TYPE_CHECKING:
-    from rockframe.motion.quantities import QuantityLike, RatioLike
     from rockframe.motion.value import Made
     from rockframe.signals import Signal
+    from rockframe.units import QuantityLike, RatioLike
 
 _OPPOSITE: Final = {UPWARDS: DOWNWARDS, DOWNWARDS: UPWARDS}
 _USUAL_DAMPING: Final = 0.05

@@ -24,9 +24,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from rockframe.motion.processing.floors import Modes
-    from rockframe.motion.quantities import ArrayLike, QuantityLike, RatioLike
+    from rockframe.motion.quantities import ArrayLike
     from rockframe.motion.value import Made
     from rockframe.signals import Signal
+    from rockframe.units import QuantityLike, RatioLike
 
 _SNAP: Final = 1e-9
 _MODES_TOLD: Final = 10

@@ -21,10 +21,10 @@ from rockframe.signals.signal import MAXIMUM_SAMPLES
 from rockframe.units import POSITIVE, TIME, TIME_STEP, to_si
 
 if TYPE_CHECKING:
-    from rockframe.motion.quantities import QuantityLike
     from rockframe.motion.value import Made
     from rockframe.signals import Signal
     from rockframe.signals.arrays import Array
+    from rockframe.units import QuantityLike
 
 _SNAP: Final = 1e-6
 

@@ -9,7 +9,7 @@ from rockframe.errors import ComponentError, shown
 from rockframe.units import ANGLE, Condition, Measure, Unit, to_ratio, to_si
 
 if TYPE_CHECKING:
-    from rockframe.motion.quantities import QuantityLike, RatioLike
+    from rockframe.units import QuantityLike, RatioLike
 
 _SPELLED: Final = {
     Unit.METRE_PER_SECOND_SQUARED: "m/s^2",
