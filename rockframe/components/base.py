@@ -176,12 +176,26 @@ class Component:
 
         Raises
         ------
+        ComponentError
+            It describes a component of another class.
         TypeError, UnitsError, ComponentError
             As the constructor.
         """
         part = object.__new__(cls)
-        part._fill({name: value for name, value in arguments.items() if name != "type"})
+        part._fill(cls._described(arguments))
         return part
+
+    @classmethod
+    def _described(cls, description: Mapping[str, float | str]) -> dict[str, Any]:
+        """Give the arguments in a description; refuse that of another class."""
+        kind = description.get("type", cls.__name__)
+        if kind != cls.__name__:
+            msg = (
+                f"{cls.__name__}.from_dict: expected a {cls.__name__}, got the description of a "
+                f"component of type {shown(kind)}; component_from_dict builds any"
+            )
+            raise ComponentError(msg)
+        return {name: value for name, value in description.items() if name != "type"}
 
     def replace(self, **changes: Any) -> Self:
         """Build a component of which some parameters are others.

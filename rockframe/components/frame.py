@@ -223,10 +223,12 @@ class FrameEquivalent(Block):
         ------
         SchemaError
             The members are not readable.
+        ComponentError
+            It describes a component of another class.
         TypeError, UnitsError, ComponentError
             As the constructor.
         """
-        given: dict[str, Any] = {name: value for name, value in arguments.items() if name != "type"}
+        given = cls._described(arguments)
         if not {"members", "density"} & set(given):
             return super().from_dict(given)
         if "members" in given:

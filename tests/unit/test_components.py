@@ -108,6 +108,14 @@ class TestEveryComponent:
         assert again.si == component.si
         assert json.dumps(again.to_dict()) == text
 
+    def test_it_is_not_made_of_what_describes_another(self, component):
+        kind = type(component)
+        assert kind.from_dict(component.to_dict()) == component
+        other = {**component.to_dict(), "type": "Cupboard"}
+        words = f"{kind.__name__}.from_dict: .* a component of type 'Cupboard'"
+        with pytest.raises(rf.ComponentError, match=words):
+            kind.from_dict(other)
+
     def test_its_repr_builds_it_again(self, component):
         space = {kind.__name__: kind for kind in (type(component),)}
         assert eval(repr(component), space) == component  # noqa: S307
