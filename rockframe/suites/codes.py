@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from enum import StrEnum
 from typing import TYPE_CHECKING, Final, TypeAlias
 
@@ -54,6 +55,43 @@ _EUROCODE: Final = {
 }
 
 
+@dataclass(frozen=True)
+class _Eurocode8:
+    """The elastic spectrum: a_g [m s^-2], S [1], T_B, T_C, T_D [s] and eta [1]."""
+
+    peak: float
+    soil: float
+    first: float
+    second: float
+    third: float
+    correction: float
+
+    def __call__(self, at: Array) -> Array:
+        """Compute :eq:`eq-eurocode-8`."""
+        plateau = _HEIGHT * self.correction
+        longer = np.maximum(at, self.second)
+        rising = 1.0 + np.minimum(at, self.first) / self.first * (plateau - 1.0)
+        falling = plateau * self.second / longer * np.minimum(1.0, self.third / longer)
+        return self.peak * self.soil * np.where(at < self.first, rising, falling)
+
+
+@dataclass(frozen=True)
+class _ASCE7:
+    """The design spectrum: S_DS, S_D1 [m s^-2], the corner between them and T_L [s]."""
+
+    short: float
+    one: float
+    corner: float
+    last: float
+
+    def __call__(self, at: Array) -> Array:
+        """Compute :eq:`eq-asce-7`."""
+        longer = np.maximum(at, self.corner)
+        rising = self.short * (0.4 + 0.6 * at / (0.2 * self.corner))
+        falling = self.one / longer * np.minimum(1.0, self.last / longer)
+        return np.where(at < 0.2 * self.corner, rising, falling)
+
+
 def eurocode_8(
     ground_acceleration: "QuantityLike",
     ground_type: str,
@@ -102,17 +140,9 @@ def eurocode_8(
     damping = to_ratio(damping_ratio, owner=owner, name="damping_ratio", condition=DAMPING_RATIO)
     correction = max(math.sqrt(10.0 / (5.0 + 100.0 * damping)), _LEAST_CORRECTION)
 
-    def shape(at: Array) -> Array:
-        """Compute :eq:`eq-eurocode-8`."""
-        first, second, third = corners
-        plateau = _HEIGHT * correction
-        longer = np.maximum(at, second)
-        rising = 1.0 + np.minimum(at, first) / first * (plateau - 1.0)
-        falling = plateau * second / longer * np.minimum(1.0, third / longer)
-        return peak * soil * np.where(at < first, rising, falling)
-
+    first, second, third = corners
     words = f"Eurocode 8, type {number}, ground {kind}, {peak:.4g} m/s^2"
-    return words, shape, damping
+    return words, _Eurocode8(peak, soil, first, second, third, correction), damping
 
 
 def asce_7(
@@ -154,11 +184,5 @@ def asce_7(
         msg = f"{owner}: long_period must exceed S_D1/S_DS, {corner:.4g} s"
         raise ComponentError(msg)
 
-    def shape(at: Array) -> Array:
-        """Compute :eq:`eq-asce-7`."""
-        longer = np.maximum(at, corner)
-        rising = short * (0.4 + 0.6 * at / (0.2 * corner))
-        falling = one / longer * np.minimum(1.0, last / longer)
-        return np.where(at < 0.2 * corner, rising, falling)
-
-    return f"ASCE 7, S_DS {short:.4g} m/s^2, S_D1 {one:.4g} m/s^2", shape
+    words = f"ASCE 7, S_DS {short:.4g} m/s^2, S_D1 {one:.4g} m/s^2"
+    return words, _ASCE7(short, one, corner, last)

@@ -125,10 +125,9 @@ class TargetSpectrum:
                 msg = f"{owner}: standard_deviations must be {seconds.size}, as the periods"
                 raise ComponentError(msg)
             spread = _interpolated(seconds, deviations)
-        logarithm = _interpolated(seconds, np.log(values))
         return cls(
             name,
-            lambda at: np.exp(logarithm(at)),
+            _Exponential(_interpolated(seconds, np.log(values))),
             spread,
             to_ratio(damping_ratio, owner=owner, name="damping_ratio", condition=DAMPING_RATIO),
             (float(seconds[0]), float(seconds[-1])),
@@ -359,9 +358,8 @@ class TargetSpectrum:
         """
         owner = f"{type(self).__name__}.scaled"
         ratio = to_ratio(factor, owner=owner, name="factor", condition=POSITIVE)
-        before = self.shape
         return replace(
-            self, name=f"{self.name}, times {ratio:g}", shape=lambda at: ratio * before(at)
+            self, name=f"{self.name}, times {ratio:g}", shape=_Multiple(ratio, self.shape)
         )
 
     def with_deviation(self, standard_deviation: "RatioLike") -> Self:
@@ -385,13 +383,47 @@ class TargetSpectrum:
         value = to_ratio(
             standard_deviation, owner=owner, name="standard_deviation", condition=_DEVIATION
         )
-        return replace(self, deviation=lambda at: np.full(at.size, value))
+        return replace(self, deviation=_Constant(value))
 
 
-def _interpolated(seconds: Array, values: Array) -> Shape:
-    logarithms = np.log(seconds)
+# What follows is called as a function, and is a value: targets can be compared and pickled.
 
-    def at(places: Array) -> Any:
-        return np.interp(np.log(places), logarithms, values)
 
-    return at
+@dataclass(frozen=True)
+class _Interpolated:
+    """Straight between values at logarithms of periods."""
+
+    logarithms: tuple[float, ...]
+    values: tuple[float, ...]
+
+    def __call__(self, at: Array) -> Any:
+        return np.interp(np.log(at), self.logarithms, self.values)
+
+
+@dataclass(frozen=True)
+class _Exponential:
+    logarithm: Shape
+
+    def __call__(self, at: Array) -> Any:
+        return np.exp(self.logarithm(at))
+
+
+@dataclass(frozen=True)
+class _Multiple:
+    factor: float
+    shape: Shape
+
+    def __call__(self, at: Array) -> Array:
+        return self.factor * self.shape(at)
+
+
+@dataclass(frozen=True)
+class _Constant:
+    value: float
+
+    def __call__(self, at: Array) -> Array:
+        return np.full(at.size, self.value)
+
+
+def _interpolated(seconds: Array, values: Array) -> _Interpolated:
+    return _Interpolated(tuple(np.log(seconds).tolist()), tuple(values.tolist()))

@@ -1,5 +1,8 @@
 """Target spectra: tables and codes, by their printed equations."""
 
+import copy
+import pickle
+
 import numpy as np
 import pytest
 
@@ -143,3 +146,28 @@ def test_periods_too_short_for_a_record_are_warned_of_where_they_are_asked_for()
     pair = rf.HorizontalPair(motion, motion)
     with pytest.warns(RecordWarning, match="rotated_spectrum: the record is .* from 0.1 s"):
         rf.rotated_spectrum(pair, ["0 s", "0.1 s", "1 s"])
+
+
+EQUAL = {
+    "table": lambda: rf.TargetSpectrum.from_table(
+        (["0.1 s", "1 s"]), ([2.0, 0.2], "m/s^2"), standard_deviations=[0.4, 0.6]
+    ),
+    "Eurocode 8": lambda: rf.TargetSpectrum.eurocode_8("0.3 g_0", ground_type="B"),
+    "ASCE 7": lambda: rf.TargetSpectrum.asce_7("1 g_0", "0.6 g_0"),
+    "scaled": lambda: rf.TargetSpectrum.eurocode_8("0.3 g_0").scaled(2),
+    "with a deviation": lambda: rf.TargetSpectrum.asce_7("1 g_0", "0.6 g_0").with_deviation(0.5),
+}
+
+
+@pytest.mark.parametrize("name", EQUAL)
+def test_a_target_is_a_value(name):
+    target, periods = EQUAL[name](), np.array([0.1, 0.3, 1.0])
+    kept = pickle.loads(pickle.dumps(target))  # noqa: S301
+    for again in (EQUAL[name](), kept, copy.deepcopy(target)):
+        assert again == target
+        assert hash(again) == hash(target)
+        assert again.at((periods, "s")).tolist() == target.at((periods, "s")).tolist()
+        assert again.deviations_at(periods).tolist() == target.deviations_at(periods).tolist()
+    assert len({*(make() for make in EQUAL.values()), target}) == len(EQUAL)
+    assert target != target.scaled(1.5)
+    assert target != target.with_deviation(0.1)
