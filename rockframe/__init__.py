@@ -86,8 +86,10 @@ if TYPE_CHECKING:
 
 def _is_command_line() -> bool:
     """Whether this process is the command line, by its name or as ``python -m rockframe``."""
-    name = os.path.basename("".join(sys.argv[:1])).partition(".")[0]
-    return name == __name__ or ("-m", __name__) in pairwise(sys.orig_argv)
+    program = "".join(sys.argv[:1])
+    if program == "-m":  # what Python is to run is still looked for
+        return ("-m", __name__) in pairwise(sys.orig_argv)
+    return os.path.basename(program) in (__name__, f"{__name__}.exe")
 
 
 # Every scene needs these two. They are most of what has to be loaded: here, so that the
@@ -246,8 +248,10 @@ __all__ = [
 
 def __getattr__(name: str) -> Any:
     # The rest is imported on its first use: a script that only reads records
-    # never waits for the integrator.
+    # never waits for the integrator. A program of the same name as the command line
+    # gets here too, and its datasets are to have the accessor like all others.
     if name in _HOME_OF:
+        import_module(f"{__name__}.accessor")
         value = getattr(import_module(_HOME_OF[name]), name)
     elif name in ("errors", "extension", "plot"):
         value = import_module(f"{__name__}.{name}")

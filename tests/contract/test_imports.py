@@ -95,6 +95,23 @@ def test_help_and_completion_load_no_library(words):
     assert not {*HEAVY, "numpy", "scipy"} & loaded_by_it
 
 
+@pytest.mark.parametrize(
+    ("name", "words", "first"),
+    [
+        ("probe.py", ["-m", "rockframe"], "import rockframe"),
+        ("rockframe.study.py", [], "import rockframe"),
+        ("rockframe", [], "from rockframe import Block"),
+    ],
+)
+def test_every_script_has_the_accessor_however_it_is_called(name, words, first, tmp_path):
+    script = tmp_path / name
+    script.write_text(f"{first}\nimport xarray\nassert hasattr(xarray.Dataset, 'rockframe')")
+    done = subprocess.run(
+        [sys.executable, str(script), *words], capture_output=True, text=True, timeout=60
+    )
+    assert done.returncode == 0, done.stderr
+
+
 def test_simulating_loads_a_compiler_only_to_compile_and_no_plot():
     code = """
 import rockframe as rf
