@@ -14,8 +14,6 @@ exit codes:
   2    the command line or a file is wrong; the message says what, and where
   130  interrupted (Ctrl-C)
 """
-FILES: Final = "files"
-"""Marks an argument that names a file, for completion."""
 PICTURES: Final = "a picture; its ending tells the format: .png, .svg, .pdf"
 
 

@@ -7,12 +7,12 @@ from typing import Final
 
 import numpy as np
 
-from rockframe.identification.free_motion import Array
 from rockframe.identification.least_squares import Solution, minimize
 from rockframe.identification.measured import History, Peaks
 from rockframe.identification.prediction import Prediction
 from rockframe.identification.swings import Swings
 from rockframe.identification.unknowns import Circumstance, Unknown, started_at
+from rockframe.signals.arrays import Array
 
 _FIRST_WEIGHT: Final = 0.01
 """Noise that is assumed before residuals tell it: a share of the first peak, and of the time

@@ -3,17 +3,16 @@
 import math
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Final, TypeAlias
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rockframe.dynamics.protocol import Start
+from rockframe.signals.arrays import Array
 from rockframe.solve.accuracy import Accuracy
 from rockframe.solve.integrate import integrate
 from rockframe.system.assembly import Assembly
-
-Array: TypeAlias = NDArray[np.float64]
 
 SAMPLES_PER_PERIOD: Final = 100
 """Samples in the shortest period of the model, between which a cubic is drawn: its error is

@@ -7,8 +7,8 @@ from typing import Any, Final, cast
 
 import numpy as np
 
-from rockframe.identification.free_motion import Array
 from rockframe.identification.unknowns import Unknown
+from rockframe.signals.arrays import Array
 
 DIFFERENCE: Final = 1e-4
 """Step of the differences by which derivatives are taken, as a share of an unknown's size.

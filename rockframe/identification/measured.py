@@ -9,7 +9,7 @@ import pint
 import xarray as xr
 
 from rockframe.errors import ComponentError, UnitsError, shown
-from rockframe.identification.free_motion import Array
+from rockframe.signals.arrays import Array
 from rockframe.units import ANGLE, TIME, Measure, to_si
 
 _UNITS: Final = {"rotation": "deg", "time": "s"}

@@ -7,9 +7,10 @@ from typing import Final
 
 import numpy as np
 
-from rockframe.identification.free_motion import Array, FreeMotion, first_peaks, let_go
+from rockframe.identification.free_motion import FreeMotion, first_peaks, let_go
 from rockframe.identification.measured import History, Peaks
 from rockframe.identification.unknowns import Circumstance, Trials
+from rockframe.signals.arrays import Array
 from rockframe.solve.accuracy import Accuracy
 
 EARLIER: Final = 0.25

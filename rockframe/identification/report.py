@@ -8,13 +8,13 @@ import numpy as np
 import xarray as xr
 
 from rockframe.errors import ModelWarning, warn
-from rockframe.identification.free_motion import Array
 from rockframe.identification.least_squares import Solution, uncertainty_of
 from rockframe.identification.measured import History, Peaks
 from rockframe.identification.prediction import Prediction
 from rockframe.identification.unknowns import Circumstance
 from rockframe.identification.words import cautions_of, verdict_of
 from rockframe.results.dataset import build_dataset
+from rockframe.signals.arrays import Array
 
 _TIME: Final = "time of the record"
 

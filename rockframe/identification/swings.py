@@ -7,8 +7,8 @@ from typing import Final
 import numpy as np
 
 from rockframe.errors import ComponentError
-from rockframe.identification.free_motion import Array
 from rockframe.identification.measured import History, Peaks
+from rockframe.signals.arrays import Array
 
 _LEVEL: Final = 0.1
 """Share of the first rotation that a swing must exceed: what is smaller may be noise."""

@@ -8,8 +8,8 @@ import numpy as np
 from rockframe.notebook import in_words
 from rockframe.plot._axes import BLUE, GREEN, GREY, ORANGE, VERMILLION, ink
 from rockframe.plot._layout import Drawer, Layout
-from rockframe.results.outcome import Array
 from rockframe.results.placement import Placement
+from rockframe.signals.arrays import Array
 from rockframe.system.geometry import Geometry
 from rockframe.system.parts import Parts
 

@@ -6,8 +6,8 @@ from typing import Final
 import numpy as np
 
 from rockframe.dynamics.events import ContactState
-from rockframe.results.outcome import Array
 from rockframe.results.placement import Placement
+from rockframe.signals.arrays import Array
 from rockframe.system.geometry import Geometry
 
 _PAD_WIDTH: Final = 0.17

@@ -10,8 +10,8 @@ from rockframe.plot._artists import SceneArtist, labels_of
 from rockframe.plot._given import check_run, check_system, system_of
 from rockframe.plot._layout import Drawer
 from rockframe.plot._panels import single
-from rockframe.results.outcome import Array
 from rockframe.results.placement import UPRIGHT, Placement
+from rockframe.signals.arrays import Array
 from rockframe.system.geometry import Geometry, geometry_of
 from rockframe.units import LENGTH, TIME, QuantityLike, to_si
 

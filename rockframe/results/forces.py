@@ -12,7 +12,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from rockframe.results.outcome import Array, Generic, sine_cosine
+from rockframe.results.outcome import Generic, sine_cosine
+from rockframe.signals.arrays import Array
 from rockframe.system.load import Load
 
 Values = Mapping[str, Generic]

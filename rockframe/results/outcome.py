@@ -15,13 +15,13 @@ from rockframe.dynamics.protocol import (
     ContactModel,
 )
 from rockframe.results.variables.runs import Direction
+from rockframe.signals.arrays import Array
 from rockframe.solve.layout import Status
 from rockframe.solve.observe import energies_of, memory_at_outputs
 from rockframe.solve.trajectory import Summary, Trajectory
 from rockframe.system.bodies import OverturningAngles
 from rockframe.system.setting import Setting
 
-Array = NDArray[np.float64]
 Generic = NDArray[Any]
 Values = Mapping[str, "Generic | float | int | bool"]
 

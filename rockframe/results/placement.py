@@ -7,8 +7,8 @@ import numpy as np
 
 from rockframe.dynamics.events import ContactState
 from rockframe.dynamics.restraint import PIVOT_LEFT, PIVOT_RIGHT, pivot_of
-from rockframe.results.outcome import Array
 from rockframe.results.points import carried
+from rockframe.signals.arrays import Array
 from rockframe.system.geometry import Geometry
 from rockframe.system.options import Restraint
 from rockframe.system.restraints import restraint_code

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from rockframe.results.forces import EventStates
-from rockframe.results.outcome import Array, Generic, sine_cosine
+from rockframe.results.outcome import Generic, sine_cosine
+from rockframe.signals.arrays import Array
 from rockframe.system.load import Load
 
 

@@ -5,7 +5,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from rockframe.dynamics.protocol import ContactModel
-from rockframe.results.outcome import Array, Generic
+from rockframe.results.outcome import Generic
+from rockframe.signals.arrays import Array
 from rockframe.signals.slope import Slope
 from rockframe.solve.observe import memory_at_outputs
 from rockframe.solve.trajectory import Trajectory

@@ -8,7 +8,8 @@ from typing import Final, TypeAlias
 import numpy as np
 
 from rockframe.dynamics.events import EventKind
-from rockframe.results.outcome import Array, Generic
+from rockframe.results.outcome import Generic
+from rockframe.signals.arrays import Array
 from rockframe.simulation.plan import Plan
 from rockframe.solve.layout import Status
 from rockframe.solve.trajectory import Summary

@@ -9,8 +9,8 @@ import xarray as xr
 from rockframe.components import Block
 from rockframe.errors import ComponentError, heard, shown
 from rockframe.results.dataset import build_dataset
-from rockframe.results.outcome import Array
 from rockframe.results.variables.studies import CASE
+from rockframe.signals.arrays import Array
 from rockframe.simulation.system import System
 from rockframe.studies.sweeps.axes import numbers_of
 from rockframe.units import LENGTH, PERIOD, Measure, Unit

@@ -10,7 +10,8 @@ from typing import Final
 import numpy as np
 import xarray as xr
 
-from rockframe.results.outcome import Array, Generic
+from rockframe.results.outcome import Generic
+from rockframe.signals.arrays import Array
 from rockframe.studies.limit_states import interrupted
 
 MOST_ROUNDS: Final = 60

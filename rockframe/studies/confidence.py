@@ -4,7 +4,8 @@ from typing import Final
 
 import numpy as np
 
-from rockframe.results.outcome import Array, Generic
+from rockframe.results.outcome import Generic
+from rockframe.signals.arrays import Array
 from rockframe.units import Condition, to_ratio
 
 _LEVEL: Final = Condition("from 0.5 to 0.9999", lambda value: 0.5 <= value <= 0.9999)

@@ -9,7 +9,7 @@ import xarray as xr
 from rockframe.arguments import checked_dataset
 from rockframe.errors import ComponentError, SchemaError, shown
 from rockframe.results.dataset import build_dataset
-from rockframe.results.outcome import Array
+from rockframe.signals.arrays import Array
 from rockframe.studies.confidence import clopper_pearson, read_level
 from rockframe.units import Condition, to_ratio
 

@@ -11,8 +11,9 @@ import xarray as xr
 
 from rockframe.errors import ComponentError, ModelWarning, StudyError, heard, shown, warn
 from rockframe.motion import GroundMotion
-from rockframe.results.outcome import Array, Generic
+from rockframe.results.outcome import Generic
 from rockframe.results.variables.studies import CASE, MOTION
+from rockframe.signals.arrays import Array
 from rockframe.studies.brackets import Bracket, brackets_of, narrowed
 from rockframe.studies.limit_states import interrupted
 from rockframe.studies.sweeps.arguments import ExecutionArguments, SweepArguments

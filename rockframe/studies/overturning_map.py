@@ -12,10 +12,10 @@ from rockframe.comparison.models import check_system
 from rockframe.errors import ComponentError, shown
 from rockframe.motion import GroundMotion
 from rockframe.results.dataset import build_dataset
-from rockframe.results.outcome import Array
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.studies import MOTION
 from rockframe.shared_arguments import takes
+from rockframe.signals.arrays import Array
 from rockframe.studies.brackets import padded
 from rockframe.studies.limit_states import overturns
 from rockframe.studies.lines import SCALE, VERDICT, Lines, read_width

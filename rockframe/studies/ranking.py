@@ -5,7 +5,8 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from rockframe.results.outcome import Array, Generic
+from rockframe.results.outcome import Generic
+from rockframe.signals.arrays import Array
 
 _BINS: Final = 20
 _FEWEST: Final = 20

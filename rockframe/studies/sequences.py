@@ -13,10 +13,10 @@ from rockframe.comparison.models import check_system
 from rockframe.errors import ComponentError, shown
 from rockframe.motion import GroundMotion
 from rockframe.results.dataset import build_dataset
-from rockframe.results.outcome import Array
 from rockframe.results.variables.studies import MOTION
 from rockframe.shared_arguments import takes
 from rockframe.signals import Motion, Signal
+from rockframe.signals.arrays import Array
 from rockframe.signals.signal import COEFFICIENTS
 from rockframe.studies.limit_states import overturns
 from rockframe.studies.sweeps.arguments import SequenceArguments

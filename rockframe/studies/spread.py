@@ -8,7 +8,7 @@ from typing import Any, Final, cast
 import numpy as np
 
 from rockframe.errors import ComponentError, RockframeError, StudyError, heard, shown
-from rockframe.results.outcome import Array
+from rockframe.signals.arrays import Array
 from rockframe.studies.sweeps.axes import Axis
 from rockframe.studies.sweeps.scenes import Scene
 from rockframe.units import POSITIVE, Measure, Unit, to_ratio, to_si

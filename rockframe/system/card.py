@@ -5,7 +5,8 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from rockframe.notebook import Shape, card, drawing, in_words
-from rockframe.system.geometry import Array, Geometry, geometry_of, rectangle
+from rockframe.signals.arrays import Array
+from rockframe.system.geometry import Geometry, geometry_of, rectangle
 
 if TYPE_CHECKING:
     from rockframe.system.assembly import Assembly

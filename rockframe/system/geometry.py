@@ -3,12 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from rockframe.components import FrameEquivalent
+from rockframe.signals.arrays import Array
 from rockframe.system.assembly import Assembly
-
-Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)

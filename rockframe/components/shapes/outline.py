@@ -7,7 +7,6 @@ import numpy as np
 
 from rockframe.components.shapes.masses import PlaneMass
 from rockframe.components.shapes.polygon import (
-    Array,
     crossing,
     is_flat,
     region,
@@ -23,6 +22,7 @@ from rockframe.components.shapes.standing import (
     standing_body,
 )
 from rockframe.errors import ComponentError
+from rockframe.signals.arrays import Array
 
 
 def outline_body(points: object, given: Mapping[str, object], owner: str) -> StandingBody:

@@ -8,8 +8,8 @@ import numpy as np
 import pint
 
 from rockframe.components.alternatives import OneOf
-from rockframe.components.shapes.polygon import Array
 from rockframe.errors import ComponentError, UnitsError, shown
+from rockframe.signals.arrays import Array
 from rockframe.units import (
     DENSITY,
     LENGTH,

@@ -7,8 +7,8 @@ import numpy as np
 import xarray as xr
 
 from rockframe.errors import ComponentError, UnitsError, shown
-from rockframe.results.outcome import Array
 from rockframe.results.variables.studies import MOTION
+from rockframe.signals.arrays import Array
 from rockframe.studies.confidence import read_level
 from rockframe.studies.dynamic_analysis import labels_of_states
 from rockframe.studies.fragility.labelling import Means, labelled

@@ -9,8 +9,8 @@ import numpy as np
 import xarray as xr
 
 from rockframe.results.dataset import build_dataset
-from rockframe.results.outcome import Array
 from rockframe.results.variables.analyses import LIMIT_STATE, FragilityStatus
+from rockframe.signals.arrays import Array
 from rockframe.studies.confidence import clopper_pearson
 from rockframe.studies.fragility.likelihood import Bands, Fit, Trials, boundary, fit, gap
 from rockframe.studies.intensities import PERIOD_OF, in_words

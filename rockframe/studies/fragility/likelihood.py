@@ -14,8 +14,9 @@ from typing import Any, Final, cast
 
 import numpy as np
 
-from rockframe.results.outcome import Array, Generic
+from rockframe.results.outcome import Generic
 from rockframe.results.variables.analyses import FragilityStatus
+from rockframe.signals.arrays import Array
 
 DIRECTIONS: Final = 360
 """Rays on which the boundary of a confidence region is found."""

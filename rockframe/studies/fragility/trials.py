@@ -5,8 +5,9 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
-from rockframe.results.outcome import Array, Generic
+from rockframe.results.outcome import Generic
 from rockframe.results.variables.studies import MOTION
+from rockframe.signals.arrays import Array
 from rockframe.studies.fragility.likelihood import Trials
 from rockframe.studies.lines import SCALE
 
