@@ -9,9 +9,9 @@ import xarray as xr
 from rockframe.comparison.models import check_system
 from rockframe.errors import ModelWarning, StudyError, warn
 from rockframe.results.dataset import build_dataset
-from rockframe.results.outcome import Array
 from rockframe.results.variables.studies import MOTION
 from rockframe.shared_arguments import takes
+from rockframe.signals.arrays import Array
 from rockframe.studies.brackets import least_exceeding, padded
 from rockframe.studies.intensities import Intensity, intensity_in, of_study
 from rockframe.studies.limit_states import LimitState, exceeds, interrupted, limit_states
