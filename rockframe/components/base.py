@@ -67,8 +67,18 @@ class Component:
         self._warn()
 
     def _warn(self) -> None:
-        for caution in cautions_of(self):
+        for caution in self.cautions():
             warn(caution, ModelWarning)
+
+    def cautions(self) -> list[str]:
+        """Say what is unusual about the values, as building the component warned.
+
+        Returns
+        -------
+        list of str
+            Of each what it is and of which component; none of usual values.
+        """
+        return [f"{type(self).__name__}: {words}" for words in self._cautions()]
 
     def _fill(self, given: Mapping[str, object]) -> None:
         """Check and keep the arguments of the constructor."""
@@ -334,11 +344,6 @@ def replaced(
     """
     gone = {name for each in alternatives for name in each.displaced(changes)}
     return {**{name: value for name, value in arguments.items() if name not in gone}, **changes}
-
-
-def cautions_of(part: Component) -> list[str]:
-    """Say what is unusual about the values of a component, with its name."""
-    return [f"{type(part).__name__}: {words}" for words in part._cautions()]
 
 
 def _every_argument(kind: type[Component], given: Mapping[str, object]) -> dict[str, object]:

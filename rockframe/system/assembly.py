@@ -6,7 +6,6 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from rockframe.components.base import cautions_of
 from rockframe.errors import AssemblyError
 from rockframe.system.describe import describe
 from rockframe.system.fitting import doubts, misfits, missizes
@@ -64,7 +63,7 @@ class Assembly:
     @cached_property
     def cautions(self) -> list[str]:
         """What is unusual about the scene and its parts, each once."""
-        of_parts = [text for part in self.parts.structural() for text in cautions_of(part)]
+        of_parts = [text for part in self.parts.structural() for text in part.cautions()]
         return list(dict.fromkeys([*of_parts, *self.doubts]))
 
     @cached_property
