@@ -10,9 +10,9 @@ from rockframe.solve.trajectory import Summary
 from rockframe.system.assembly import Assembly
 from rockframe.system.overturning_energy import stored_energy
 
-AT_REST: Final = 0.1
-"""Share of the typical size of everything in the state, :class:`ContactModel`, up to which a body
-has at most a quarter of the energy to overturn."""
+AT_REST: Final = 0.2
+"""Share of the overturning angle, and of the typical size of all velocities, up to which a body has
+less than the energy to overturn: held at that angle a third of it, 1 - (1 - 0.2)^2."""
 
 STILL_MOVING: Final = (
     "the run ends while the body, which stands, still has the energy to overturn: give a longer "
@@ -42,9 +42,12 @@ def may_overturn_later(system: Assembly, summary: Summary) -> bool:
     if summary.overturned is not False:
         return False
     model, setting, ending = system.model, system.setting, summary.ending
-    if np.all(np.abs(ending.state) < AT_REST * model.scales):
+    rotation, size = model.rotation_in(ending.state), model.system.coordinates()
+    rates, sizes = ending.state[size : 2 * size], model.scales[size : 2 * size]
+    upright = abs(rotation) < AT_REST * setting.overturning_angle
+    if upright and bool(np.all(np.abs(rates) < AT_REST * sizes)):
         return False
-    rotation, kinetic = model.rotation_in(ending.state), _kinetic_energy(system, ending)
+    kinetic = _kinetic_energy(system, ending)
     needed = setting.overturning_energy
     return 0.0 < needed <= kinetic + stored_energy(setting, rotation)
 

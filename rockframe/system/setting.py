@@ -94,7 +94,7 @@ class Setting(ABC):
         """The bases that give way, from that of the body down; none on rigid ground."""
         return ()
 
-    @property
+    @cached_property
     def uplift_angle(self) -> float:
         """Rotation on its base at which a body loses full contact; NaN if never [rad].
 
@@ -102,7 +102,7 @@ class Setting(ABC):
         """
         return self.supports[0].uplift_angle if self.supports else 0.0
 
-    @property
+    @cached_property
     def settlement(self) -> float | None:
         """Settlement under the weight, where the base of the body gives way [m]."""
         return self.supports[0].settlement if self.supports else None
