@@ -1,5 +1,6 @@
 """Running a sweep: cases that fail, histories, who runs it, interrupts, and cases alone."""
 
+import itertools
 import logging
 import os
 import signal
@@ -251,7 +252,11 @@ def test_an_interrupt_gives_back_what_is_done():
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals")
 def test_the_keyboard_itself_interrupts_own_threads(request):
+    calls = itertools.count()
+
     def scene(height):
+        if next(calls) == 100:
+            os.kill(os.getpid(), signal.SIGINT)
         time.sleep(0.01)
         return on_pads(20, height)
 
@@ -259,12 +264,9 @@ def test_the_keyboard_itself_interrupts_own_threads(request):
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     request.addfinalizer(lambda: signal.signal(signal.SIGINT, before))
     rf.sweep(scene, PULSE, height=([3.0], "m"), **FAST)  # loads machine code, or compiles it
-    threading.Timer(1.5, os.kill, (os.getpid(), signal.SIGINT)).start()
     heights = np.linspace(3.0, 4.0, 2000)
-    begun = time.perf_counter()
     with pytest.warns(SolverWarning, match="not been run"):
         runs = rf.sweep(scene, PULSE, height=(heights, "m"), **FAST, chunk=5)
-    assert time.perf_counter() - begun < 10.0
     done = runs.status == 0
     assert 0 < int(done.sum()) < 2000
     assert runs.peak_rotation.where(done, drop=True).notnull().all()
