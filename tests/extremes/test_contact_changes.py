@@ -80,6 +80,11 @@ FAR_FROM_THE_ROOT = [
     ("coupled", 3, 4.908, 13.85, 0.1651, 3924.0, 3.591, 9.047, 2.325e7, 0.5007),
 ]
 """One of which an event was taken for found where its guard was still positive."""
+BY_ROUNDING = (
+    "coupled", 1, 5.904439798154963, 50.33506474945864, 0.205806381471432, 4333.677323920404,
+    3.312061875043419, 9.079241722453189, 122799777.09683603, 0.4518113413673902,
+)  # fmt: skip
+"""One in which a guard stood below zero by what it changes within the rounding of time."""
 
 
 def stack(coupling, ratio, damping_ratio, mass, width, height, stiffness, soil_damping):
@@ -113,3 +118,12 @@ def test_ends_do_not_leave_and_come_back_at_one_instant(case):
     assert fast.status == standard.status
     assert abs(fast.peak_rotation / standard.peak_rotation - 1.0) < 2e-3
     assert standard.energy_residual < 1e-8
+
+
+def test_rounding_of_time_makes_no_events():
+    """Hundreds of contact changes on hard pads, none of which follows another without end."""
+    coupling, number, scale, *parts = BY_ROUNDING
+    system, motion = stack(coupling, *parts), in_both_directions(number).scaled(scale)
+    fast, standard = (system.simulate(motion, accuracy=level) for level in ("fast", "standard"))
+    assert fast.status == standard.status == 0
+    assert abs(fast.sizes["event"] - standard.sizes["event"]) < 10
