@@ -44,7 +44,7 @@ class RockframeAccessor:
         self._dataset = dataset
 
     def __dir__(self) -> list[str]:
-        return ["plot", "summary", "system", "table"]
+        return ["plot", "summary", "system", "table", "verdict"]
 
     def plot(self, **options: Any) -> Any:
         """Draw the dataset with the function of :mod:`rockframe.plot` that draws its kind.
@@ -97,10 +97,17 @@ class RockframeAccessor:
         return System.from_dataset(self._dataset)
 
     @property
+    def verdict(self) -> str:
+        """What became of it in one sentence; of a part of a sweep, what became of that part."""
+        from rockframe.studies.sweeps.telling import verdict_of
+
+        return verdict_of(self._dataset)
+
+    @property
     def summary(self) -> str:
         """What the dataset holds and what became of it, in a few lines."""
         given = self._dataset
-        lines = [str(given.attrs[name]) for name in ("title", "verdict") if name in given.attrs]
+        lines = [line for line in (str(given.attrs.get("title", "")), self.verdict) if line]
         lines += [
             f"{name}: {given.attrs[name]}"
             for name in ("model", "motion", "accuracy")

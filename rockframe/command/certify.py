@@ -3,22 +3,24 @@
 import argparse
 from textwrap import fill
 
-from rockframe.command.given import check_folder, scene_from, simulated, written
+from rockframe.command.given import RUN, Outputs, scene_from, simulated
 from rockframe.command.run import finished
 from rockframe.simulation.certification import Certification
 
 
 def execute(arguments: argparse.Namespace) -> int:
     """Simulate, with all runs beside it, and say what they showed."""
-    check_folder(arguments.output)
+    found = scene_from(arguments)
+    outputs = Outputs(arguments, found.files)
+    outputs.check(arguments.output, RUN)
     given = {name: getattr(arguments, name) for name in ("nudge", "reach", "runs")}
     wanted = Certification(**{name: value for name, value in given.items() if value is not None})
-    response = simulated(scene_from(arguments), certify=wanted)
+    response = simulated(found, certify=wanted)
     print(f"Verdict: {response.attrs['verdict']}")
     print(fill(f"Certificate: {response.attrs['certificate']}", 100))
     sure = {"verdict_converged": "by finer means", "verdict_robust": "with nudged parameters"}
     for name, words in sure.items():
         print(f"  the same {words}: {'yes' if bool(response[name]) else 'no'}")
     print(f"  runs beside it: {response.attrs['certificate_runs']}")
-    written(response, arguments.output)
+    outputs.result(arguments.output, RUN, response)
     return 0 if finished(response) else 1

@@ -5,8 +5,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Final
 
-from rockframe.command.given import check_folder, motion_from, printed
-from rockframe.command.plot import save
+from rockframe.command.given import Outputs, motion_from, printed, table_kind
+from rockframe.command.plot import PICTURE, save
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.measures import intensity_measures
 from rockframe.motion import GroundMotion
@@ -23,15 +23,21 @@ _ABOUT: Final = (
     ("format", "format"),
     ("unit_as_read", "unit"),
 )
+_TABLE: Final = table_kind(
+    "a table of measures", "motion", "peak_ground_acceleration", "arias_intensity"
+)
 _MOST_SHOWN: Final = 10
 """Motions of which all is told; of more there is only the table."""
 
 
 def execute(arguments: argparse.Namespace) -> int:
     """Tell what files hold."""
-    check_folder(arguments.picture)
-    check_folder(arguments.csv)
+    outputs = Outputs(arguments, arguments.files)
+    outputs.check(arguments.csv, _TABLE)
     motions = _read(arguments)
+    pictures = _numbered(arguments.picture, len(motions))
+    for path in pictures:
+        outputs.check(path, PICTURE)
     measures = intensity_measures(motions)
     values = table(measures)
     if len(motions) <= _MOST_SHOWN:
@@ -41,15 +47,20 @@ def execute(arguments: argparse.Namespace) -> int:
                 print(f"  {str(head).replace('_', ' '):<52} {value:.4g}")
     else:
         print(printed(values))
-    if arguments.csv is not None:
-        values.to_csv(Path(arguments.csv).expanduser())
-        print(f"Table: {arguments.csv}")
-    if arguments.picture is not None:
-        for number, motion in enumerate(motions.values(), 1):
-            path = Path(arguments.picture)
-            numbered = path.with_stem(f"{path.stem}-{number}") if len(motions) > 1 else path
-            save(figure_of(draw(motion)), numbered)
+    outputs.table(arguments.csv, _TABLE, values)
+    for path, motion in zip(pictures, motions.values(), strict=bool(pictures)):
+        save(figure_of(draw(motion)), path, outputs)
     return 0
+
+
+def _numbered(picture: str | None, count: int) -> list[Path]:
+    """Give the names of pictures, with numbers where there are several."""
+    if picture is None:
+        return []
+    path = Path(picture)
+    if count == 1 or not path.name:
+        return [path]
+    return [path.with_stem(f"{path.stem}-{number}") for number in range(1, count + 1)]
 
 
 def _read(arguments: argparse.Namespace) -> Mapping[str, GroundMotion]:

@@ -71,6 +71,12 @@ class Command:
 
 _SCENE: Final = _path("scene", metavar="scene.toml", help="the scene; 'template' writes one")
 _DATASET: Final = _path("dataset", metavar="out.nc", help="what 'run' or 'study' has written")
+_OVERWRITE: Final = _word(
+    "--overwrite",
+    action="store_true",
+    help="replace files that are there, also such as rockframe did not write; never one that is "
+    "read",
+)
 _READING: Final = (
     _word("--component", metavar="NAME", help="component of a record that has several, such as NS"),
     _word("--unit", help="unit of the samples, where the file does not say, such as g or cm/s^2"),
@@ -135,6 +141,7 @@ COMMANDS: Final = (
                 help=f"write {PICTURES}; of several motions one for each, numbered",
             ),
             _path("--csv", metavar="x.csv", help="write the table of measures, for a spreadsheet"),
+            _OVERWRITE,
         ),
     ),
     Command(
@@ -150,6 +157,7 @@ COMMANDS: Final = (
             _SCENE,
             *_RUNNING,
             _path("-o", "--output", metavar="out.nc", help="write all results to this file"),
+            _OVERWRITE,
         ),
     ),
     Command(
@@ -179,6 +187,7 @@ COMMANDS: Final = (
                 "--runs", type=int, metavar="N", help="most runs beside the first (default: 200)"
             ),
             _path("-o", "--output", metavar="out.nc", help="write all results to this file"),
+            _OVERWRITE,
         ),
     ),
     Command(
@@ -198,6 +207,7 @@ COMMANDS: Final = (
             ),
             _path("-o", "--output", metavar="runs.nc", help="write all results to this file"),
             _path("--csv", metavar="x.csv", help="write a table with a row for each case"),
+            _OVERWRITE,
         ),
     ),
     Command(
@@ -210,6 +220,7 @@ COMMANDS: Final = (
         (
             _DATASET,
             _path("-o", "--output", required=True, metavar="x.png", help=f"write {PICTURES}"),
+            _OVERWRITE,
             _word("--title", help="above the figure, in the place of the verdict"),
         ),
     ),
@@ -218,13 +229,22 @@ COMMANDS: Final = (
         "write a page on a run, to file or to print",
         "Write one HTML file that needs no other: the scene, the motion and its measures, the "
         "verdict and its certificate, figures, limits of validity, and where it all comes from. "
-        "A run without certificate is certified first, where the file holds its motion.",
+        "A run without certificate is certified first, where the file holds its motion. Of a study "
+        "it is the page of one case, which is simulated again.",
         """\
   rockframe report out.nc
-  rockframe report out.nc -o tower.html --title 'Clock tower, record 12'""",
+  rockframe report out.nc -o tower.html --title 'Clock tower, record 12'
+  rockframe report runs.nc --case scale=2 'width=0.7 m' -o case.html""",
         (
             _DATASET,
             _path("-o", "--output", metavar="x.html", help="the file (default: beside the result)"),
+            _OVERWRITE,
+            _word(
+                "--case",
+                nargs="+",
+                metavar="NAME=VALUE",
+                help="of a study: which case, by its place along every axis of several values",
+            ),
             _word("--title", help="of the page"),
             _word(
                 "--no-certificate",

@@ -1,43 +1,59 @@
 """``rockframe plot``: the figure of a result."""
 
 import argparse
+from io import BytesIO
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from rockframe import plot
-from rockframe.command.given import check_folder, opened
+from rockframe.command.given import Outputs, opened
 from rockframe.errors import ComponentError
 from rockframe.plot._given import drawn_by
 from rockframe.reports.figures import close, figure_of
+from rockframe.version import __version__
+from rockframe.writing import FileKind
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+_MARK: Final = "figure by rockframe "
+_SIGNED: Final = {
+    # (ending, the entry of its metadata that tells the program)
+    ".png": "Software",
+    ".svg": "Creator",
+    ".pdf": "Creator",
+}
+PICTURE: Final = FileKind.marked("a picture", tuple(_SIGNED), _MARK)
+
 
 def execute(arguments: argparse.Namespace) -> int:
     """Draw what a file holds."""
-    check_folder(arguments.output)
+    outputs = Outputs(arguments, [arguments.dataset])
+    outputs.check(arguments.output, PICTURE)
     dataset = opened(arguments.dataset)
     function = getattr(plot, drawn_by(dataset))
     named = {} if arguments.title is None else {"title": arguments.title}
-    save(figure_of(function(dataset, **named)), arguments.output)
+    save(figure_of(function(dataset, **named)), arguments.output, outputs)
     return 0
 
 
-def save(figure: "Figure", path: str | Path) -> None:
+def save(figure: "Figure", path: str | Path, outputs: Outputs) -> None:
     """Write a figure, and say so.
 
     Raises
     ------
     ComponentError
-        The ending of the file names no format.
+        It cannot be drawn.
     """
-    place = Path(path).expanduser()
+    kind = Path(path).suffix.lower()
+    drawn = BytesIO()
     try:
-        figure.savefig(place, dpi=150)
-    except ValueError as problem:
-        msg = f"{path}: {problem}"
+        signed = {_SIGNED[kind]: f"{_MARK}{__version__}"}
+        figure.savefig(drawn, format=kind.removeprefix("."), dpi=150, metadata=signed)
+    except ValueError as problem:  # of a formula in the title
+        words = "found a title that cannot be drawn; expected one whose '$' enclose formulas"
+        msg = f"{path}: {words} ({problem})"
         raise ComponentError(msg) from problem
     finally:
         close(figure)
-    print(f"Figure: {path}")
+    outputs.write(path, PICTURE, "Figure", drawn.getvalue())

@@ -4,7 +4,7 @@ import argparse
 
 import xarray as xr
 
-from rockframe.command.given import check_folder, scene_from, simulated, system_words, written
+from rockframe.command.given import RUN, Outputs, scene_from, simulated, system_words
 from rockframe.results.variables.runs import RunStatus
 from rockframe.simulation.provenance import motion_words
 
@@ -13,15 +13,16 @@ FINISHED = (RunStatus.COMPLETED, RunStatus.OVERTURNED, RunStatus.TOPPLED)
 
 def execute(arguments: argparse.Namespace) -> int:
     """Simulate, and say what became of it."""
-    check_folder(arguments.output)
     found = scene_from(arguments)
+    outputs = Outputs(arguments, found.files)
+    outputs.check(arguments.output, RUN)
     response = simulated(found)
     print(f"Scene:   {system_words(found.system)} ({response.attrs['model']})")
     print(f"Motion:  {motion_words(response.attrs)}")
     print(f"Verdict: {response.attrs['verdict']}")
     if "certificate" in response.attrs:
         print(f"Certificate: {response.attrs['certificate']}")
-    written(response, arguments.output)
+    outputs.result(arguments.output, RUN, response)
     return 0 if finished(response) else 1
 
 

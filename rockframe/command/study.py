@@ -1,15 +1,16 @@
 """``rockframe study``: many runs of a scene."""
 
 import argparse
+import shlex
 import sys
 from pathlib import Path
 from typing import Final
 
 import numpy as np
-import xarray as xr
 
 from rockframe.command.files.studies import DescribedStudy, read_study
-from rockframe.command.given import check_folder, printed, system_words, written
+from rockframe.command.given import STUDY, Outputs, printed, system_words, table_kind
+from rockframe.command.main import INTERRUPTED
 from rockframe.command.run import FINISHED
 from rockframe.errors import FileError, StudyError
 from rockframe.results.table import table
@@ -18,17 +19,40 @@ from rockframe.studies import sweep
 
 _SHOWN: Final = ("status", "peak_relative_rotation", "overturned")
 """What the printed table has of each case."""
+_TABLE: Final = table_kind("the table of a study", "status", "overturned", "peak_rotation")
 _MOST_SHOWN: Final = 40
 """Rows up to which the table is printed."""
 
 
 def execute(arguments: argparse.Namespace) -> int:
-    """Carry out a study, or what is left of it."""
-    check_folder(arguments.output)
-    check_folder(arguments.csv)
+    """Carry out a study, or what is left of it.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        While no case was running.
+    """
     found = read_study(arguments.study)
+    if arguments.output is None and found.output is not None:
+        arguments.output = str(found.output)
+    outputs = Outputs(arguments, found.files)
+    outputs.check(arguments.output, STUDY)
+    outputs.check(arguments.csv, _TABLE)
+    if arguments.store == "":
+        words = "found no name of a folder after --store; expected one, such as --store kept"
+        raise FileError(arguments.study, [(None, words)])
     store = found.store if arguments.store is None else Path(arguments.store).expanduser()
     print(f"Scene:   {system_words(found.system)}")
+    try:
+        return _carried_out(found, store, arguments, outputs)
+    except KeyboardInterrupt:
+        _say_how_to_go_on(store, arguments.typed)
+        raise
+
+
+def _carried_out(
+    found: DescribedStudy, store: Path | None, arguments: argparse.Namespace, outputs: Outputs
+) -> int:
     try:
         runs = sweep(found.system, found.motions, store=store, **found.arguments)
     except StudyError as problem:
@@ -38,23 +62,20 @@ def execute(arguments: argparse.Namespace) -> int:
     if len(values) <= _MOST_SHOWN:
         wanted = [head for head in values if str(head).split(" [")[0] in _SHOWN]
         print(printed(values[wanted]))
-    if arguments.csv is not None:
-        values.to_csv(Path(arguments.csv).expanduser())
-        print(f"Table: {arguments.csv}")
-    _write(runs, arguments.output, found)
-    return _judged(runs, arguments.study, store)
-
-
-def _write(runs: xr.Dataset, path: str | None, found: DescribedStudy) -> None:
-    named = path if path is not None else found.output
-    written(runs, None if named is None else str(named))
-
-
-def _judged(runs: xr.Dataset, study: str, store: Path | None) -> int:
-    """Give the exit code, and say how a study that was interrupted goes on."""
+    outputs.table(arguments.csv, _TABLE, values)
+    outputs.result(arguments.output, STUDY, runs)
     status = runs["status"].to_numpy()
     if (status == RunStatus.NOT_RUN).any():
-        again = f"'rockframe study {study}' goes on with it"
-        lost = "it has no store, so that all has to be run again"
-        print(f"rockframe study: {lost if store is None else again}", file=sys.stderr)
+        _say_how_to_go_on(store, arguments.typed)
+        return INTERRUPTED
     return 0 if np.isin(status, FINISHED).all() else 1
+
+
+def _say_how_to_go_on(store: Path | None, typed: list[str]) -> None:
+    """Say how a study that was interrupted goes on."""
+    words = ["rockframe", *typed]
+    told = "this goes on with it"
+    if store is None:
+        words += ["--store", "study"]
+        told = "it has no store, so that all has to be run again; with one it could go on"
+    print(f"rockframe study: interrupted; {told}: {shlex.join(words)}", file=sys.stderr)

@@ -15,6 +15,8 @@ from rockframe.plot._panels import Panels, sheet
 from rockframe.plot._response import response, strips_of
 from rockframe.plot._runs import Run, runs_of
 from rockframe.plot._scene import Moving, size_of
+from rockframe.version import __version__
+from rockframe.writing import FileKind, checked_path, generator, write_file
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -41,7 +43,14 @@ _BUTTONS: Final = {
     "plus": "faster",
 }
 """Letters on the buttons of a player, by matplotlib's names for them."""
-_KINDS: Final = (".gif", ".html", ".htm")
+_MARK: Final = "animation by rockframe "
+_SIGNED: Final = f"{_MARK}{__version__}".encode()
+_COMMENT: Final = b"\x21\xfe%c%b\x00" % (len(_SIGNED), _SIGNED)  # a block of GIF89a
+_TRAILER: Final = b"\x3b"
+"""The last byte of a GIF."""
+_KIND: Final = FileKind.marked(
+    "an animation", (".gif", ".html", ".htm"), generator("animation"), _MARK
+)
 
 
 class Animation:
@@ -75,7 +84,7 @@ class Animation:
         """The figure that moves."""
         return self.panels.figure
 
-    def save(self, path: "str | Path", *, dpi: float = 100.0) -> Path:
+    def save(self, path: "str | Path", *, dpi: float = 100.0, overwrite: bool = False) -> Path:
         """Write the animation into a file.
 
         Parameters
@@ -84,6 +93,9 @@ class Animation:
             Its name ends in ``.gif``; or in ``.html``, for a player in a page of its own.
         dpi : float, optional
             Pixels per inch of the frames.
+        overwrite : bool, optional
+            Whether a file that is there is replaced though it is no animation that this method
+            wrote.
 
         Returns
         -------
@@ -91,21 +103,28 @@ class Animation:
 
         Raises
         ------
-        ComponentError
-            Another ending.
+        FileError
+            Another ending, or a file that cannot be written or is not replaced.
+        UnitsError, ComponentError
+            A number of pixels that is none.
         """
         from matplotlib.animation import PillowWriter
 
-        file = Path(path)
-        if file.suffix.lower() not in _KINDS:
-            msg = f"Animation.save: the name must end in .gif or .html, got {shown(str(path))}"
-            raise ComponentError(msg)
-        if file.suffix.lower() == ".gif":
-            self._animated().save(file, writer=PillowWriter(fps=cast("Any", self._rate)), dpi=dpi)
-        else:
-            page = f'<!doctype html><meta charset="utf-8">{self.to_html(dpi=dpi)}'
-            file.write_text(page, encoding="utf-8")
-        return file
+        dots = _positive(dpi, "dpi")
+        # before the frames are drawn, which takes a while
+        checked_path(path, _KIND, overwrite=overwrite)
+        if Path(path).suffix.lower() != ".gif":
+            signed = generator("animation", __version__)
+            page = f'<!doctype html><meta charset="utf-8">{signed}{self.to_html(dpi=dots)}'
+            return write_file(path, _KIND, page.encode(), overwrite=overwrite)
+
+        def write(part: Path) -> None:
+            writer = PillowWriter(fps=cast("Any", self._rate))
+            self._animated().save(part, writer=writer, dpi=dots)
+            drawn = part.read_bytes()
+            part.write_bytes(drawn.removesuffix(_TRAILER) + _COMMENT + _TRAILER)
+
+        return write_file(path, _KIND, write, overwrite=overwrite)
 
     def to_html(self, *, dpi: float = 100.0) -> str:
         """Give the animation as a player that stands in a page, with all of its pictures.

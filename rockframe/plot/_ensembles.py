@@ -8,6 +8,8 @@ import xarray as xr
 from rockframe.plot._axes import COLOURS, grid, label_of
 from rockframe.plot._given import check_study
 from rockframe.plot._panels import Panels, sheet, single
+from rockframe.results.outcome import overturns
+from rockframe.studies.sweeps.telling import verdict_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -53,8 +55,7 @@ def ensemble(dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None = 
     axes.step(values, given["cumulative_probability"], where="post", color=COLOURS[0])
     axes.set(xlabel=label_of(values), ylabel="share of the ensemble [-]", ylim=(0.0, 1.02))
     grid(axes)
-    count = int(given["member_count"])
-    on.entitle(f"{count} members; bands of confidence {given.confidence:g}", title)
+    on.entitle(str(given.attrs["verdict"]), title)
     return axes
 
 
@@ -92,7 +93,7 @@ def probability(
     left.barh(names[::-1], given["first_order_index"].to_numpy()[::-1], color=COLOURS[0])
     left.set(xlabel="first-order index [-]", xlim=(0.0, None))
     first = given[str(given["parameter"].to_numpy()[0])]
-    verdict = given["overturned"].to_numpy().astype(np.float64)
+    verdict = overturns(given).to_numpy()
     known = ~np.isnan(verdict)
     if first.dtype.kind == "f":
         cuts = np.quantile(first.to_numpy()[known], np.linspace(0.0, 1.0, 13))
@@ -112,5 +113,5 @@ def probability(
     right.set(ylabel="share that overturns [-]", ylim=(0.0, 1.02))
     for axes in on.panels:
         grid(axes)
-    on.entitle(str(given.attrs["verdict"]), title)
+    on.entitle(verdict_of(given), title)
     return on.panels

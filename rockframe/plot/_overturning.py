@@ -20,6 +20,8 @@ from rockframe.plot._axes import (
 )
 from rockframe.plot._given import check_study
 from rockframe.plot._panels import Panels, Sheet, sheet, single
+from rockframe.results.outcome import overturns
+from rockframe.studies.sweeps.telling import verdict_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -111,7 +113,7 @@ def dynamic_analysis(
     right.legend(frameon=False, fontsize="small")
     for axes in on.panels:
         grid(axes)
-    on.entitle(str(given.attrs["verdict"]), title)
+    on.entitle(verdict_of(given), title)
     return on.panels
 
 
@@ -152,10 +154,11 @@ def overturning_map(
     colours = [STANDS, *(_WAYS[min(k, len(_WAYS) - 1)] for k in range(told + 1))]
     on = single(ax, "overturning_map", (6.0, 4.3))
     axes = on.axes
+    known = overturns(given).transpose(*count.dims).notnull()
     axes.pcolormesh(
         across,
         up,
-        count.fillna(-1.0),
+        count.fillna(-1.0).where(known),
         cmap=ListedColormap(colours),
         vmin=-1.5,
         vmax=told + 0.5,
@@ -171,6 +174,9 @@ def overturning_map(
     )
     words = ["stands", *(_after(k, told) for k in range(told + 1))]
     patches = [Patch(color=one, label=text) for one, text in zip(colours, words, strict=True)]
+    if not known.all():
+        words.append("no verdict")
+        patches.append(Patch(facecolor="none", edgecolor="0.6", label=words[-1]))
     on.legend(patches, words, ncols=2)
     on.entitle("What overturns: dots are boundaries that were halved", title)
     return axes

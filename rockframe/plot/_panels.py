@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias, cast
 
 import numpy as np
 
+from rockframe.arguments import text
 from rockframe.errors import ComponentError, shown
 from rockframe.plot._title import set_title
 
@@ -50,6 +51,8 @@ class Sheet:
 
     def entitle(self, usual: str, title: str | None) -> None:
         """Write the title above the figure; above given panels only one that was asked for."""
+        if title is not None:
+            text(title, owner="rf.plot", name="title")
         if self.own is not None:
             set_title(self.own, title or usual)
         elif title:

@@ -158,7 +158,7 @@ def relative(rotation: Any, left: float, right: float) -> Any:
 
 
 def _unless_relative(given: str, measure: Any, name: str) -> Shown | None:
-    if given == RELATIVE:
+    if isinstance(given, str) and given == RELATIVE:  # pyright: ignore[reportUnnecessaryIsInstance]
         return None
     return unit_of(given, measure, function="response", name=name)
 

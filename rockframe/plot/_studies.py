@@ -23,7 +23,9 @@ from rockframe.plot._axes import (
 from rockframe.plot._given import check_study
 from rockframe.plot._panels import Panels, sheet, single
 from rockframe.plot._units import unit_of
+from rockframe.results.outcome import overturns
 from rockframe.results.variables.studies import Outcome
+from rockframe.studies.sweeps.telling import verdict_of
 from rockframe.units import ANGLE
 
 if TYPE_CHECKING:
@@ -83,7 +85,7 @@ def critical_scale(
     on.axes.set_ylim(bottom=0.0)
     grid(on.axes)
     key(on.axes)
-    on.entitle(str(given.attrs.get("verdict", "")), title)
+    on.entitle(verdict_of(given), title)
     return on.axes
 
 
@@ -124,8 +126,8 @@ def sweep(
     """
     given = _without_single_values(checked_dataset(runs, owner="rf.plot.sweep"), variable)
     values = _values(given, variable)
-    fell = given.get("overturned")
-    fell = None if fell is None or set(fell.dims) != set(values.dims) else fell == 1
+    fell = overturns(given) == 1 if "status" in given else None
+    fell = None if fell is None or set(fell.dims) != set(values.dims) else fell
     dims = sorted((str(dim) for dim in values.dims), key=lambda dim: _is_axis(given, dim))
     on = single(ax, "sweep", (6.4, 4.2))
     if len(dims) == 1 or min(values.sizes.values()) <= _MOST_LINES:

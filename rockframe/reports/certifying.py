@@ -5,6 +5,7 @@ import warnings
 import xarray as xr
 
 from rockframe.errors import RockframeError, RockframeWarning
+from rockframe.results.outcome import verdict_of
 from rockframe.results.variables.runs import CERTIFICATE
 from rockframe.simulation.provenance import run_arguments
 from rockframe.simulation.system import System
@@ -40,7 +41,7 @@ def certified(dataset: xr.Dataset, system: System | None) -> tuple[xr.Dataset, s
             again = system.simulate(**run_arguments(dataset), outputs=None, certify=True)
     except RockframeError as problem:
         return dataset, f"{problem}."
-    if bool(again["overturned"]) != bool(dataset["overturned"]):
+    if verdict_of(again) != verdict_of(dataset):
         return dataset, "run again, it ends otherwise; another version or machine made it."
     found = {
         name: value for name, value in again.attrs.items() if str(name).startswith("certificate")

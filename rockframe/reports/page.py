@@ -7,6 +7,8 @@ from io import BytesIO
 from typing import TYPE_CHECKING, Final
 
 from rockframe.reports.figures import close
+from rockframe.version import __version__
+from rockframe.writing import generator
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -74,6 +76,7 @@ def page(title: str, body: Iterable[str]) -> str:
     """
     head = (
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+        f"{generator('report', __version__)}\n"
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
         f'<meta http-equiv="Content-Security-Policy" content="{_POLICY}">\n'
         f"<title>{escape(title)}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n"

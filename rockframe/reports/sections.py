@@ -18,14 +18,20 @@ from rockframe.reports import page
 from rockframe.reports.figures import figure_of
 from rockframe.reports.limits import GENERAL, limits_of
 from rockframe.reports.values import raised, table_of
-from rockframe.results.variables.runs import CERTIFICATE, RunStatus
+from rockframe.results.outcome import verdict_of
+from rockframe.results.variables.runs import CERTIFICATE
 from rockframe.simulation.provenance import motion_words
 from rockframe.simulation.run import NONE
 from rockframe.simulation.system import System
 from rockframe.version import __version__
 
 _LIBRARIES: Final = ("numpy", "scipy", "xarray")
-_FINISHED: Final = (RunStatus.COMPLETED, RunStatus.OVERTURNED, RunStatus.TOPPLED)
+_BANNERS: Final = {
+    True: ("Overturned", "bad"),
+    False: ("Did not overturn", "good"),
+    None: ("Not finished", "doubt"),
+}
+"""Title and kind of what became of the body, by the verdict."""
 _CERTIFICATE: Final = [row.name for row in CERTIFICATE]
 _PROVENANCE: Final = (
     # (attribute, what it is)
@@ -48,10 +54,7 @@ _PROVENANCE: Final = (
 
 def verdict(dataset: xr.Dataset, reason: str) -> Iterator[str]:
     """Say what became of the body, and how sure that is."""
-    finished = int(dataset["status"]) in _FINISHED
-    overturned = bool(dataset["overturned"])
-    title = ("Overturned" if overturned else "Did not overturn") if finished else "Not finished"
-    kind = ("bad" if overturned else "good") if finished else "doubt"
+    title, kind = _BANNERS[verdict_of(dataset)]
     yield page.banner(title, str(dataset.attrs.get("verdict", "")), kind)
     if "certificate" in dataset.attrs:
         sure = all(bool(dataset[name]) for name in _CERTIFICATE[:2] if name in dataset)

@@ -8,13 +8,15 @@ from typing import Final
 
 import xarray as xr
 
-from rockframe.arguments import checked_dataset
+from rockframe.arguments import checked_dataset, text, truth
 from rockframe.errors import RecordWarning, SchemaError
 from rockframe.reports import page, sections
 from rockframe.reports.certifying import certified
 from rockframe.simulation.system import System
+from rockframe.writing import FileKind, checked_path, generator, write_file
 
 _OWNER: Final = "report"
+_KIND: Final = FileKind.marked("a report", (".html", ".htm"), generator("report"))
 
 
 def report(
@@ -23,6 +25,7 @@ def report(
     *,
     title: str | None = None,
     certify: bool = True,
+    overwrite: bool = False,
 ) -> Path:
     """Write a page on a run: one HTML file that needs no other and makes no request.
 
@@ -31,12 +34,14 @@ def report(
     response : xarray.Dataset
         The result of one run, also one read back from a file.
     path : str or path
-        Of the file.
+        Of the file; its name ends in ``.html``. A report that is there is replaced.
     title : str, optional
         Of the page; the model unless given.
     certify : bool, optional
         Whether a run without a certificate is certified first, where the dataset holds its
         motion; that takes some hundred runs.
+    overwrite : bool, optional
+        Whether a file that is there is replaced though it is no report.
 
     Returns
     -------
@@ -48,6 +53,11 @@ def report(
     ------
     SchemaError
         No dataset, or not the result of one run.
+    ComponentError
+        A title that is no text, or `certify` or `overwrite` neither True nor False.
+    FileError
+        The file cannot be written, its name has another ending, it is there already and no
+        report, or it is the one that the result was read from.
 
     Examples
     --------
@@ -61,13 +71,18 @@ def report(
     """
     dataset = checked_dataset(response, owner=_OWNER)
     _check(dataset)
+    truth(certify, owner=_OWNER, name="certify")
+    given = "" if title is None else text(title, owner=_OWNER, name="title")
+    source = str(dataset.encoding.get("source", ""))
+    read = [source] if source else []
+    # before the certificate, which takes a while
+    checked_path(path, _KIND, overwrite=overwrite, read=read)
     system = _system_of(dataset)
     reason = ""
     if certify:
         dataset, reason = certified(dataset, system)
     model = str(dataset.attrs["model"])
-    heading = title or f"Rocking response, {model} model"
-    file = str(dataset.encoding.get("source", ""))
+    heading = given or f"Rocking response, {model} model"
     motion = None if system is None else system.motion
     made = str(dataset.attrs.get("history", "")).splitlines()
     body = [
@@ -77,11 +92,10 @@ def report(
         page.section("Scene", sections.scene(dataset, system)),
         page.section("Ground motion", sections.motion(dataset, motion)),
         page.section("Limits of validity", sections.limits(system)),
-        page.section("Provenance", sections.provenance(dataset, Path(file).name)),
+        page.section("Provenance", sections.provenance(dataset, Path(source).name)),
     ]
-    place = Path(path).expanduser()
-    place.write_text(page.page(heading, body), encoding="utf-8")
-    return place
+    content = page.page(heading, body).encode()
+    return write_file(path, _KIND, content, overwrite=overwrite, read=read)
 
 
 def _heading(words: str, made: list[str]) -> str:
@@ -108,7 +122,7 @@ def _check(dataset: xr.Dataset) -> None:
             "system.simulate(motion)"
         )
         raise SchemaError(msg)
-    dims = [str(dim) for dim in dataset["overturned"].dims]
+    dims = sorted({str(dim) for name in needed for dim in dataset[name].dims})
     if dims:
         msg = (
             f"{_OWNER}: found several runs over {', '.join(dims)}; expected one: simulate it with "

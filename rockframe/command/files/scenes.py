@@ -51,11 +51,14 @@ class Described:
         Of the ground.
     run : dict
         Further arguments of :meth:`rockframe.System.simulate`.
+    files : tuple of Path
+        All files that it was read from.
     """
 
     system: System
     motion: GroundMotion | None
     run: dict[str, Any] = field(default_factory=dict)
+    files: tuple[Path, ...] = ()
 
 
 def read_scene(path: str | Path) -> Described:
@@ -112,7 +115,7 @@ def described(file: TomlFile) -> Described | None:
     if not file.sound:
         return None
     system = made(file, (OPTIONS,), lambda **rest: System(*parts, **rest), options)
-    return None if system is None else Described(system, motion, run)
+    return None if system is None else Described(system, motion, run, tuple(file.files))
 
 
 def part_of(file: TomlFile, slot: str, given: object) -> Component | None:

@@ -52,6 +52,8 @@ class DescribedStudy:
         Further arguments of it.
     store, output : Path or None
         Where the cases are kept, and the file of the results.
+    files : tuple of Path
+        All files, and folders of files, that it was read from.
     """
 
     system: System
@@ -59,6 +61,7 @@ class DescribedStudy:
     arguments: dict[str, Any]
     store: Path | None
     output: Path | None
+    files: tuple[Path, ...]
 
 
 def read_study(path: str | Path) -> DescribedStudy:
@@ -93,7 +96,8 @@ def read_study(path: str | Path) -> DescribedStudy:
         raise AssertionError
     taken = {name: value for name, value in scene.run.items() if name in _FROM_RUN}
     used = scene.motion if motions is None else motions
-    return DescribedStudy(scene.system, used, taken | arguments, store, output)
+    files = (*file.files, *scene.files)
+    return DescribedStudy(scene.system, used, taken | arguments, store, output, files)
 
 
 def sweep_keys() -> dict[str, bool]:
@@ -134,8 +138,9 @@ def _motions_of(file: TomlFile) -> Motions:
         return None
     paths: list[str] = []
     for item in items:
-        path = str(file.beside(item))
+        path = str(file.path_of(item))
         matching = sorted(glob(path)) if any(mark in item for mark in "*?[") else [path]
+        file.files += map(Path, matching)
         if not matching:
             file.fault(where, f"no file matches {item!r} in {str(file.path.parent)!r}")
         paths += matching
@@ -188,4 +193,4 @@ def _path_of(file: TomlFile, name: str) -> Path | None:
     if not isinstance(given, str) or not given:
         file.fault((name,), f"{name} must be a path, got {shown(given)}")
         return None
-    return file.beside(given)
+    return file.path_of(given)

@@ -35,6 +35,8 @@ class TomlFile:
         self.values = dict(values)
         self._lines = lines
         self._faults: list[tuple[int | None, str]] = []
+        self.files: list[Path] = [path]
+        """This one, and those that were read because they are named in it."""
 
     @classmethod
     def read(cls, path: str | Path) -> Self:
@@ -61,7 +63,7 @@ class TomlFile:
             raise FileError(str(path), [(None, "there is no such file")]) from problem
         except UnicodeDecodeError as problem:
             raise FileError(str(path), [(None, _NO_TEXT)]) from problem
-        except OSError as problem:
+        except (OSError, ValueError) as problem:  # or a name that no file can have
             raise FileError(str(path), [(None, f"it cannot be read ({problem})")]) from problem
         # TOML ends lines by \n or \r\n, which read_text makes alike
         try:
@@ -75,7 +77,12 @@ class TomlFile:
         return cls(place, values, lines_of(text))
 
     def beside(self, name: str) -> Path:
-        """Give the path of a file that is named in this one, relative to its folder."""
+        """Give the path of a file to be read, which is named relative to the folder of this one."""
+        self.files.append(self.path_of(name))
+        return self.files[-1]
+
+    def path_of(self, name: str) -> Path:
+        """Give a path that is named in this file, relative to its folder."""
         return self.path.parent / Path(name).expanduser()
 
     def fault(self, where: Place, words: str) -> None:

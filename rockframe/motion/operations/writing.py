@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from enum import StrEnum
+from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from rockframe.arguments import one_of_words
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError
+from rockframe.writing import FileKind, checked_path, write_file
 
 if TYPE_CHECKING:
     import os
@@ -16,6 +18,7 @@ if TYPE_CHECKING:
     from rockframe.motion.value import MotionValue
 
 _TITLE: Final = "PEER FORMAT ACCELERATION FILE, WRITTEN BY ROCKFRAME"
+_KIND: Final = FileKind.marked("an acceleration file", (".at2",), _TITLE)
 _UNIT: Final = "ACCELERATION TIME SERIES IN UNITS OF G"
 _PER_LINE: Final = 5
 _USUAL_DECIMALS: Final = 4
@@ -32,22 +35,28 @@ def to_at2(
     motion: MotionValue,
     path: str | os.PathLike[str],
     component: Written | str = Written.HORIZONTAL,
+    *,
+    overwrite: bool = False,
 ) -> None:
     """Write a PEER acceleration file (AT2), which most programs read.
 
     Parameters
     ----------
     path : str or path-like
-        File; one that is there is written over.
+        File; its name ends in ``.AT2``. One that this method wrote is replaced.
     component : {"horizontal", "vertical"}, optional
         Which component; the vertical one is written positive upwards.
+    overwrite : bool, optional
+        Whether a file that is there is replaced whoever wrote it; never the one that the motion
+        was read from.
 
     Raises
     ------
     ComponentError
         Another component, or the motion has no vertical one.
-    OSError
-        The file cannot be written.
+    FileError
+        The file cannot be written, or its name has another ending, or it is there already and
+        none that this method wrote.
 
     Notes
     -----
@@ -81,7 +90,20 @@ def to_at2(
         *("".join(row) for row in rows),
     ]
     text = "\n".join(lines) + "\n"
-    Path(path).expanduser().write_text(text, encoding="ascii", newline="\n")
+    content = text.encode("ascii")
+    checked_path(path, _KIND, overwrite=True)
+    read = [path] if _is_source(motion, path, content) else []
+    write_file(path, _KIND, content, overwrite=overwrite, read=read)
+
+
+def _is_source(motion: MotionValue, path: str | os.PathLike[str], content: bytes) -> bool:
+    """Whether a file is the one that a motion was read from, and would be changed."""
+    digest = motion.metadata.get("source_sha256")
+    place = Path(path).expanduser()
+    if digest is None or not place.is_file():
+        return False
+    there = place.read_bytes()
+    return there != content and sha256(there).hexdigest() == digest
 
 
 def _plain(text: str) -> str:

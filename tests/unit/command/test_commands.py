@@ -1,18 +1,23 @@
 """The commands: what they print and write, and their exit codes."""
 
+import itertools
+import re
+import shlex
 import shutil
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
 
 import rockframe as rf
-from rockframe.command import parser
+from rockframe.command import parser, study
 from rockframe.command.completion import script
 from rockframe.command.files.templates import TEMPLATES
 from rockframe.command.main import main
+from rockframe.studies.sweeps import execution
 
 pytestmark = pytest.mark.unit
 
@@ -102,6 +107,13 @@ def test_options_take_the_place_of_what_the_scene_says(typed):
     assert code == 0
     with xr.open_dataset("out.nc") as kept:
         assert float(kept.time[-1]) == pytest.approx(0.7, abs=0.01)
+    scene = Path("scene.toml").read_text()
+    Path("short.toml").write_text(re.sub('free_vibration = "[^"]*"', 'duration = "0.7 s"', scene))
+    for given, end in (([], 0.7), (["--free-vibration", "1.5 s"], 2.0)):
+        code, *_ = typed("run", "short.toml", "-o", "out.nc", *given)
+        assert code == 0
+        with xr.open_dataset("out.nc") as kept:
+            assert float(kept.time[-1]) == pytest.approx(end, abs=0.02)
 
 
 def test_a_certificate_is_told_and_kept(typed):
@@ -130,7 +142,7 @@ def test_a_study_goes_on_with_its_store(typed, folder):
     (folder / "study.toml").write_text(TEMPLATES["study"].replace('accuracy = "fast"', "chunk = 5"))
     code, told, _ = typed("study", "study.toml", "--csv", "runs.csv")
     assert code == 0
-    assert "Of 12 cases" in told
+    assert "Of all 12 cases of the sweep" in told
     assert (folder / "runs.csv").read_text().count("\n") == 13
     kept = sorted((folder / "study").rglob("*"))
     before = {path: path.stat().st_mtime_ns for path in kept if path.is_file()}
@@ -142,6 +154,45 @@ def test_a_study_goes_on_with_its_store(typed, folder):
         assert bool(one.overturned) == bool(runs.overturned.sel(scale=2.0, width=0.7).item())
 
 
+@pytest.mark.parametrize("store", ["my kept", None])
+def test_an_interrupted_study_tells_the_command_that_goes_on(typed, folder, monkeypatch, store):
+    template = TEMPLATES["study"].replace('accuracy = "fast"', "chunk = 2")
+    lines = [line for line in template.splitlines() if not line.startswith("store")]
+    (folder / "study.toml").write_text("\n".join(lines))
+    words = ["study", "study.toml", "--csv", "runs.csv", *(["--store", store] if store else [])]
+    run_chunk, calls = execution.run_chunk, itertools.count()
+
+    def interrupted(*given, **named):
+        if next(calls) == 3:
+            raise KeyboardInterrupt
+        return run_chunk(*given, **named)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(execution, "run_chunk", interrupted)
+        code, told, problem = typed(*words)
+    assert code == 130
+    assert "have not been run" in told
+    if store is None:
+        assert "has to be run again; with one it could go on: rockframe study" in problem
+        assert problem.endswith("study.toml --csv runs.csv --store study\n")
+    else:
+        again = problem.splitlines()[-1].partition("goes on with it: ")[2]
+        assert shlex.split(again) == ["rockframe", *words]
+        kept = {path: path.stat().st_mtime_ns for path in (folder / store).iterdir()}
+        code, told, _ = typed(*shlex.split(again)[1:])
+        assert code == 0
+        assert "not been run" not in told
+        assert all(path.stat().st_mtime_ns == when for path, when in kept.items())
+
+    def at_once(*given, **named):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(study, "sweep", at_once)
+    code, _, problem = typed(*words)
+    assert code == 130
+    assert "rockframe study study.toml --csv runs.csv --store " in problem
+
+
 def test_a_table_of_cases_is_read(typed, folder):
     (folder / "cases.csv").write_text("width [m],scale\n0.7,1\n0.8,2\n")
     (folder / "study.toml").write_text('scene = "scene.toml"\ncases = "cases.csv"\n')
@@ -149,6 +200,26 @@ def test_a_table_of_cases_is_read(typed, folder):
     with xr.open_dataset("runs.nc") as runs:
         assert runs.sizes["case"] == 2
         assert np.isfinite(runs.peak_rotation).all()
+
+
+def test_the_report_of_a_study_is_that_of_a_case(typed, folder):
+    (folder / "study.toml").write_text(
+        'scene = "scene.toml"\n[axes]\nscale = [1.0, 2.0]\nwidth = ["0.7 m", "0.8 m"]\n'
+    )
+    assert typed("study", "study.toml", "-o", "runs.nc")[0] == 0
+    for words, said in (
+        ([], "found a study over scale (2), width (2), motion (1); expected one of its cases"),
+        (["--case", "scale"], "expected NAME=VALUE"),
+        (["--case", "scale=3", "width=0.7 m"], "scale has no '3'"),
+        (["--case", "scale=2"], "width"),
+    ):
+        code, _, err = typed("report", "runs.nc", *words)
+        assert (code, said in err) == (2, True), err
+    given = ["--case", "scale=2", "width=0.7 m", "--no-certificate", "-o", "case.html"]
+    assert typed("report", "runs.nc", *given)[0] == 0
+    with xr.open_dataset("runs.nc") as runs:
+        verdict = rf.case(runs, scale=2.0, width="0.7 m").simulate().attrs["verdict"]
+    assert verdict in (folder / "case.html").read_text()
 
 
 WRONG = {

@@ -201,3 +201,24 @@ def test_moments_and_phases_are_those_of_system_and_run(runs):
         lines(phase)[0].get_ydata(), np.degrees(run.angular_velocity), rtol=1e-12
     )
     assert phase.get_ylabel() == "rate of the rotation [° s$^{-1}$]"
+
+
+def test_counted_shares_reach_to_their_own_bounds():
+    found = rf.fragility_of_counts(([0.2, 0.4, 0.8], "m/s"), [1, 6, 19], 20, measure="PGV")
+    axes = rf.plot.fragility(found)
+    (bars,) = axes.containers
+    reach = np.array([segment[:, 1] for segment in bars.lines[2][0].get_segments()])
+    np.testing.assert_allclose(reach[:, 0], found.stripe_fraction_lower_bound.squeeze())
+    np.testing.assert_allclose(reach[:, 1], found.stripe_fraction_upper_bound.squeeze())
+
+
+def test_peaks_beyond_overturning_are_drawn_alike():
+    system = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
+    motions = {"weak": rf.GroundMotion.sine_pulse("3 m/s^2", "1 Hz")}
+    found = rf.incremental_dynamic_analysis(
+        system, motions, scale=[1.0, 2.0, 4.0], free_vibration="3 s", progress=False
+    )
+    far = found.assign(peak_relative_rotation=3.0 * found.peak_relative_rotation)
+    drawn = [line.get_ydata() for line in rf.plot.dynamic_analysis(far)[0].get_lines()]
+    assert max(np.nanmax(np.append(one, 0.0)) for one in drawn) == 1.0
+    assert float(far.peak_relative_rotation.max()) > 1.0

@@ -7,7 +7,7 @@ import pytest
 from matplotlib.patches import Polygon
 
 import rockframe as rf
-from rockframe.errors import ComponentError, UnitsError
+from rockframe.errors import ComponentError, FileError, UnitsError
 from rockframe.plot._layout import Drawer
 from rockframe.plot._scene import Moving
 from rockframe.results.placement import UPRIGHT, Placement
@@ -194,6 +194,6 @@ def test_an_animation_moves_from_sample_to_sample_and_is_written(tmp_path):
     assert page.count("data:image/png;base64,") == 9
     assert not re.search(r"<link|<script[^>]*src|https?://(?!www\.w3\.org)", page)
     assert "▶" in page
-    with pytest.raises(ComponentError, match=r"must end in \.gif or \.html, got"):
+    with pytest.raises(FileError, match=r"ends in '\.mp4'; that of an animation ends in \.gif or"):
         moving.save(tmp_path / "run.mp4")
     assert rf.plot.animation(run, speed=2.0).times.size == 21

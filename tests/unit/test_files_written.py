@@ -1,0 +1,293 @@
+"""Files that are written: none that is read or somebody else's is lost, none is left half done."""
+
+import ast
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import matplotlib as mpl
+import pytest
+import xarray as xr
+
+import rockframe as rf
+from rockframe.command.files.templates import TEMPLATES
+from rockframe.command.main import main
+from rockframe.errors import FileError
+from rockframe.writing import FileKind, write_file
+
+pytestmark = pytest.mark.unit
+STUDY = 'scene = "scene.toml"\nmotions = ["record.AT2"]\n[axes]\nscale = [0.5, 1.0]\n'
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory):
+    """Give all files that commands read, and one of each kind that they write."""
+    folder = tmp_path_factory.mktemp("written")
+    here = Path.cwd()
+    os.chdir(folder)
+    try:
+        scene = TEMPLATES["block"].split("[run]", maxsplit=1)[0]
+        Path("scene.toml").write_text(scene + '[run]\naccuracy = "fast"\n')
+        rf.GroundMotion.sine_pulse("-4 m/s^2", "1 Hz").to_at2("record.AT2")
+        Path("study.toml").write_text(STUDY)
+        Path("kept").mkdir()
+        Path("kept/other.AT2").write_bytes(Path("record.AT2").read_bytes())
+        for words in (
+            "run scene.toml -o run.nc",
+            "study study.toml -o study.nc --csv study.csv",
+            "motion record.AT2 --csv motion.csv --picture motion.png",
+            "plot run.nc -o run.svg",
+            "plot run.nc -o run.pdf",
+            "report run.nc --no-certificate",
+        ):
+            assert main(words.split()) == 0
+        moving = rf.plot.animation(xr.load_dataset("run.nc"), frames_per_second=2)
+        moving.save("run.gif", dpi=20)
+        moving.save("moving.html", dpi=20)
+        rf.GroundMotion.read("record.AT2").to_dataset().to_netcdf("motion.nc")
+    finally:
+        os.chdir(here)
+    return {path.relative_to(folder): path.read_bytes() for path in folder.rglob("*.*")}
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch, written):
+    """Stand among copies of these files."""
+    for path, content in written.items():
+        (tmp_path / path).parent.mkdir(exist_ok=True)
+        (tmp_path / path).write_bytes(content)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def contents(folder):
+    return {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+REFUSED = {
+    # a file that is read, by any of its names
+    "run scene.toml -o scene.toml --overwrite": "the result of a run ends in .nc",
+    "certify scene.toml -o scene.toml --overwrite": "ends in .nc",
+    "run scene.toml -m motion.nc -o motion.nc --overwrite": "this file is read",
+    "run scene.toml -m motion.nc -o ./kept/../motion.nc --overwrite": "this file is read",
+    "run scene.toml -m motion.nc -o soft.nc --overwrite": "this file is read",
+    "run scene.toml -m motion.nc -o hard.nc --overwrite": "this file is read",
+    "run inner.toml -o motion.nc --overwrite": "this file is read",
+    "study study.toml --csv study.toml --overwrite": "ends in .csv",
+    "study cases.toml --csv study.csv --overwrite": "this file is read",
+    "study stored.toml -o motion.nc --overwrite": "this file is read",
+    "study all.toml --csv kept/some.csv --overwrite": "this file is read",
+    "motion record.AT2 --csv record.AT2 --overwrite": "a table of measures ends in .csv",
+    "motion column.csv --unit g --csv column.csv --overwrite": "this file is read",
+    "motion kept --csv kept/some.csv --overwrite": "'kept', which is read",
+    "plot run.nc -o run.nc --overwrite": "a picture ends in .png or .svg or .pdf",
+    "report run.nc -o run.nc --overwrite": "a report ends in .html or .htm",
+    "report odd.html --overwrite": "this file is read",
+    # what somebody else wrote, or rockframe as another kind
+    "run scene.toml -o mine.nc": "not the result of a run that rockframe wrote",
+    "run scene.toml -o motion.nc": "not the result of a run that rockframe wrote",
+    "run scene.toml -o study.nc": "not the result of a run that rockframe wrote",
+    "certify scene.toml -o mine.nc": "not the result of a run",
+    "study study.toml -o run.nc": "not the result of a study",
+    "study output.toml": "not the result of a study",
+    "study study.toml --csv mine.csv": "not the table of a study",
+    "study study.toml --csv motion.csv": "not the table of a study",
+    "motion record.AT2 --csv study.csv": "not a table of measures",
+    "motion record.AT2 --csv mine.csv": "not a table of measures",
+    "motion record.AT2 --picture mine.png": "not a picture that rockframe wrote",
+    "motion record.AT2 kept --picture mine.png": "mine-2.png: this file is there already",
+    "plot run.nc -o mine.svg": "not a picture that rockframe wrote",
+    "plot run.nc -o mine.pdf": "not a picture that rockframe wrote",
+    "report run.nc -o mine.html": "not a report that rockframe wrote",
+    "report run.nc -o moving.html": "not a report that rockframe wrote",
+    "report mine.nc": "no result of a run",
+    # names that do not fit
+    "run scene.toml -o out": "the name has no ending",
+    "run scene.toml -o out.csv": "ends in '.csv'",
+    "run scene.toml -o kept": "this is a folder",
+    "run scene.toml -o none/out.nc": "there is no folder 'none'",
+    "run scene.toml -o pipe.nc --overwrite": "this is no file",
+    "plot run.nc -o out.jpg": "ends in '.jpg'",
+    "report run.nc -o report.pdf": "ends in '.pdf'",
+    "motion record.AT2 --picture record": "the name has no ending",
+}
+
+
+def write_others():
+    """Put files there that rockframe has not written, and other names of those that it reads."""
+    xr.Dataset({"x": ("t", [1.0])}, attrs={"source": "my own"}).to_netcdf("mine.nc")
+    for ending in ("csv", "png", "svg", "pdf", "html"):
+        Path(f"mine.{ending}").write_text("a report by rockframe 0.1.0, status, overturned\n1,2\n")
+    Path("mine-2.png").write_text("mine")
+    Path("soft.nc").symlink_to("motion.nc")
+    Path("hard.nc").hardlink_to("motion.nc")
+    Path("odd.html").write_bytes(Path("run.nc").read_bytes())
+    os.mkfifo("pipe.nc")
+    block = Path("scene.toml").read_text().split("[motion]", maxsplit=1)[0]
+    Path("inner.toml").write_text(block + '[motion]\nfile = "motion.nc"\n')
+    Path("stored.toml").write_text(STUDY.replace("record.AT2", "mot*.nc"))
+    Path("output.toml").write_text('output = "mine.nc"\n' + STUDY)
+    Path("cases.toml").write_text('scene = "scene.toml"\ncases = "study.csv"\n')
+    Path("study.csv").write_text("scale\n0.5\n")
+    rows = [f"{0.01 * k:.2f},{0.1 * (k % 3)}" for k in range(50)]
+    Path("column.csv").write_text("\n".join(["time [s],a [g]", *rows]))
+    Path("kept/some.csv").write_bytes(Path("column.csv").read_bytes())
+    Path("all.toml").write_text(STUDY.replace("record.AT2", "kept/*.*"))
+
+
+@pytest.mark.parametrize("words", REFUSED)
+def test_no_command_replaces_what_is_read_or_of_another_kind(words, folder, capsys):
+    write_others()
+    before = contents(folder)
+    assert main(words.split()) == 2
+    told = capsys.readouterr().err
+    assert REFUSED[words] in told
+    assert "Traceback" not in told
+    assert contents(folder) == before
+
+
+REPLACED = (
+    "run scene.toml -o run.nc",
+    "study study.toml -o study.nc --csv study.csv",
+    "motion record.AT2 --csv motion.csv --picture motion.png",
+    "plot run.nc -o run.svg",
+    "plot run.nc -o run.pdf",
+    "report run.nc --no-certificate -o run.html",
+    "run scene.toml -o mine.nc --overwrite",
+    "study study.toml --csv mine.csv --overwrite",
+    "motion record.AT2 --csv mine.csv --picture mine.png --overwrite",
+    "report run.nc --no-certificate -o mine.html --overwrite",
+)
+
+
+@pytest.mark.parametrize("words", REPLACED)
+def test_commands_replace_what_rockframe_wrote_and_else_what_they_are_told_to(words, folder):
+    for ending in ("nc", "csv", "png", "html"):
+        Path(f"mine.{ending}").write_text("mine")
+    given = words.split()
+    named = [given[k + 1] for k, word in enumerate(given) if word in ("-o", "--csv", "--picture")]
+    for name in named:
+        os.utime(name, (0, 0))
+        Path(name).chmod(0o640)
+    assert main(given) == 0
+    for name in named:
+        assert Path(name).stat().st_mtime > 0
+        assert Path(name).stat().st_mode & 0o777 == 0o640
+    assert not [path for path in folder.iterdir() if path.name.startswith(".")]
+
+
+def test_functions_replace_nothing_that_they_did_not_write(folder):
+    write_others()
+    run = xr.open_dataset("run.nc")
+    moving = rf.plot.animation(run, frames_per_second=2)
+    record, odd = rf.GroundMotion.read("record.AT2"), xr.open_dataset("odd.html")
+    Path("mine.AT2").write_text("mine")
+    Path("mine.gif").write_text("mine")
+    before = contents(folder)
+    for write, given, words in (
+        (rf.report, (run, "run.nc"), "ends in .html"),
+        (rf.report, (run, "mine.html"), "not a report that rockframe wrote"),
+        (rf.report, (run, "none/r.html"), "there is no folder 'none'"),
+        (rf.report, (run, "kept"), "this is a folder"),
+        (rf.report, (run, 3), "expected the path of a file"),
+        (rf.report, (run, "a\0.html"), "expected the path of a file"),
+        (record.to_at2, ("mine.AT2",), "not an acceleration file that rockframe wrote"),
+        (record.to_at2, ("record.txt",), "ends in .at2"),
+        (record.scaled(2.0).to_at2, ("record.AT2",), "this file is read"),
+        (moving.save, ("mine.gif",), "not an animation"),
+        (moving.save, ("run.html",), "not an animation"),
+    ):
+        with pytest.raises(FileError, match=words):
+            write(*given)
+    for write, given in (
+        (rf.report, (odd, "odd.html")),
+        (record.scaled(2.0).to_at2, ("record.AT2",)),
+    ):
+        with pytest.raises(FileError, match="this file is read"):
+            write(*given, overwrite=True)
+    assert contents(folder) == before
+    run.close()
+    odd.close()
+    moving.save("run.gif", dpi=20)
+    moving.save("moving.html", dpi=20)
+    moving.save("mine.gif", dpi=20, overwrite=True)
+    assert Path("mine.gif").read_bytes().startswith(b"GIF89a")
+    record.to_at2("record.AT2")  # the same bytes
+    record.scaled(2.0).to_at2("kept/twice.AT2")
+    record.scaled(3.0).to_at2("kept/twice.AT2")
+    assert rf.GroundMotion.read("kept/twice.AT2").si.horizontal.peak == pytest.approx(
+        3 * record.si.horizontal.peak
+    )
+    mpl.pyplot.close("all")
+
+
+def test_a_file_is_written_whole_or_stays_as_it_was(tmp_path):
+    kind = FileKind.marked("a text", (".txt",), "by rockframe")
+    path = tmp_path / "x.txt"
+    link = tmp_path / "link.txt"
+    link.symlink_to(path)
+    assert write_file(link, kind, b"by rockframe") == link
+    assert link.is_symlink()
+    assert path.read_bytes() == b"by rockframe"
+
+    def half(part):
+        part.write_text("half")
+        raise OSError(28, "No space left on device")
+
+    with pytest.raises(FileError, match=r"x\.txt: it cannot be written \(No space left"):
+        write_file(path, kind, half)
+    assert path.read_bytes() == b"by rockframe"
+    assert sorted(tmp_path.iterdir()) == [link, path]
+
+
+@pytest.mark.parametrize("closed", ["|head", "full"])
+def test_nothing_is_lost_where_the_output_is_not_read(closed, folder):
+    words = [sys.executable, "-m", "rockframe", "run", "scene.toml", "-o", "new.nc"]
+    reader, writer = os.pipe()
+    os.close(reader)  # whoever read has gone before a word was printed
+    with open(os.devnull if closed == "|head" else "/dev/full", "w") as full:
+        done = subprocess.run(
+            words, stdout=writer if closed == "|head" else full, stderr=subprocess.PIPE, text=True,
+            timeout=300, check=False,
+        )  # fmt: skip
+    os.close(writer)
+    assert "Traceback" not in done.stderr
+    assert "Error" not in done.stderr
+    if closed == "full":
+        assert (done.returncode, "the output cannot be written" in done.stderr) == (2, True)
+    else:
+        assert (done.returncode, done.stderr) == (0, "")
+    with xr.open_dataset(folder / "new.nc") as kept:
+        assert "verdict" in kept.attrs
+
+
+WRITES = {"write_text", "write_bytes", "to_netcdf", "to_csv", "savefig", "savetxt", "save"}
+THEMSELVES = {
+    "writing.py": "the mechanism",
+    "studies/sweeps/arrays_file.py": "the folder of a study, whole or not at all by itself",
+    "compiled/store.py": "machine code, in a folder of its own",
+    "command/given.py": "to the place that the mechanism gives",
+    "command/plot.py": "to memory",
+    "reports/page.py": "to memory",
+    "plot/_animation.py": "to the place that the mechanism gives",
+}
+"""Modules that write, and why they may."""
+
+
+def test_nothing_else_writes_files():
+    """A function that writes goes by `write_file`, or its module stands above with its reason."""
+    package = Path(rf.__file__).parent
+    found = set()
+    for file in package.rglob("*.py"):
+        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+            if not isinstance(node, ast.Call):
+                continue
+            modes = [one.value for one in node.args if isinstance(one, ast.Constant)]
+            opens = getattr(node.func, "attr", getattr(node.func, "id", "")) == "open" and any(
+                isinstance(mode, str) and set(mode) & set("wax") and len(mode) < 4 for mode in modes
+            )
+            trees = ast.unparse(node.func).endswith("ElementTree(root).write")
+            if getattr(node.func, "attr", "") in WRITES or opens or trees:
+                found.add(file.relative_to(package).as_posix())
+    assert found == set(THEMSELVES)
