@@ -38,7 +38,10 @@ _TENTH_G: Final = RecordUnit("1e-1 g_0", 1e-1 * STANDARD_GRAVITY)
 _GAL: Final = RecordUnit("cm/s^2", 0.01)
 _MILLI_GAL: Final = RecordUnit("1e-3 cm/s^2", 1e-5)
 
-_METRES: Final = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
+_METRES: Final = {
+    **{"m": 1.0, "cm": 0.01, "mm": 0.001, "um": 1e-6, "nm": 1e-9},
+    **{"in": 0.0254, "ft": 0.3048},
+}
 _PER_SECOND_SQUARED: Final = tuple(
     pattern.format(second=second)
     for second in ("s", "sec")
@@ -72,7 +75,7 @@ ACCELERATION_UNITS: Final[dict[str, RecordUnit]] = {
 OTHER_QUANTITIES: Final[dict[str, str]] = {
     **{f"{length}/{s}": "a velocity" for length in _METRES for s in ("s", "sec")},
     **{f"{length}{s}-1": "a velocity" for length in _METRES for s in ("s", "s^")},
-    **dict.fromkeys(_METRES, "a displacement"),
+    **dict.fromkeys(_METRES.keys() - {"nm", "um"}, "a displacement"),  # NM is New Mexico, too
 }
 """Units that name another quantity than an acceleration, spelt as above."""
 
@@ -91,7 +94,8 @@ def normalised(name: str) -> str:
     """
     text = re.sub(r"\s+", "", name.casefold())
     text = text.replace("**", "^").replace("²", "^2").replace("·", "").replace("⁻^2", "^-2")
-    return re.sub(r"^(centi|milli)?met(?:er|re)s?(?=/|s|$)", _short_metre, text)
+    text = re.sub(r"^[µμ]m", "um", text)
+    return re.sub(r"^(centi|milli|micro|nano)?met(?:er|re)s?(?=/|s|$)", _short_metre, text)
 
 
 def acceleration_unit(name: str) -> RecordUnit | None:
@@ -116,4 +120,5 @@ def other_quantity(name: str) -> str | None:
 
 
 def _short_metre(match: re.Match[str]) -> str:
-    return {"centi": "c", "milli": "m", None: ""}[match.group(1)] + "m"
+    short = {"centi": "c", "milli": "m", "micro": "u", "nano": "n", None: ""}
+    return short[match.group(1)] + "m"

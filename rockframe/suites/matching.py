@@ -29,7 +29,9 @@ def matched(suite: Suite, target: Target, **arguments: Any) -> Suite:
     MotionSuite
         Without vertical components, unless :meth:`with_verticals` has set them beside their
         motions, which leaves them as they are. `table` tells ``largest_spectral_misfit``,
-        ``mean_spectral_misfit``, ``spectral_misfit`` and ``scale_factor`` [1] of each motion.
+        ``mean_spectral_misfit``, ``spectral_misfit`` and ``scale_factor`` [1] of each motion, and
+        what else has changed: its peaks and pulse indicator before and after, and the growth
+        of the spectrum beyond the range.
 
     Raises
     ------

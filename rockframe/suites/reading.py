@@ -3,7 +3,7 @@
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Final
 
-from rockframe.errors import RecordError, RecordWarning, warn
+from rockframe.errors import ComponentError, RecordError, RecordWarning, warn
 from rockframe.motion import GroundMotion
 from rockframe.motion.quantities import argument_unit
 from rockframe.motion.readers.reading import Reading, read_components
@@ -76,8 +76,8 @@ def read_suite(
     Components are put together by the record sequence number of PEER, in names of files or in
     the table ``_SearchResults.csv``, else by station and earthquake, else by their file. What
     the table tells is added to the metadata. Nothing is unpacked to the disk; an archive may
-    expand to a hundred times its size, archives in it are not opened, and links and names that
-    lead out of it are not followed.
+    expand to a hundred times its size, archives in archives in it are not opened, and links and
+    names that lead out of it are not followed.
 
     Examples
     --------
@@ -141,7 +141,17 @@ class _Found:
         except RecordError as problem:
             self.left.append(unread(file.path, problem))
             return
+        except ComponentError:
+            raise
+        except Exception as problem:
+            # a fault of a reader takes one file away, not the folder, and is told as what it is
+            found = f"found what the reader fails at ({type(problem).__name__}: {problem})"
+            self.left.append(Unread(file.path, f"{found[:300]}; a fault of rockframe's to report"))
+            return
         for reading in readings:
+            if isinstance(reading, RecordError):
+                self.left.append(unread(reading.path, reading))
+                continue
             self.remarks += [one for one in reading.warnings if one not in self.remarks]
             label = self._label(reading, alone=len(readings) == 1)
             motion = GroundMotion(

@@ -1,13 +1,15 @@
 """Which components were recorded together, and which of them is H1, H2 or V."""
 
+import math
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Final
 
 from rockframe.errors import ComponentError
 from rockframe.motion import GroundMotion
 from rockframe.motion.pair import HorizontalPair
+from rockframe.motion.readers.timing import seconds_of
 
 FIRST: Final = "H1"
 SECOND: Final = "H2"
@@ -16,7 +18,11 @@ HORIZONTAL: Final = (FIRST, SECOND)
 
 _OF_THE_SUITE: Final = ("record", "axis")
 _RSN: Final = re.compile(r"RSN(\d{1,6})_", re.IGNORECASE)
-_WHEN: Final = ("event_time", "date", "record_time")
+_WHEN: Final = ("event_time", "date")
+_START: Final = "record_time"
+_WHERE: Final = ("network", "station", "sensor_location")
+# band and instrument of a SEED channel, such as HN of HNE
+_INSTRUMENT: Final = re.compile(r"(?:^|\.)([FGDCESHBML][NLGH])[A-Z0-9](?:\s|$)")
 
 
 @dataclass
@@ -79,18 +85,31 @@ def assign_records(components: Iterable[Component]) -> list[str]:
     Notes
     -----
     Components belong together if they have the same record sequence number, or the same station
-    and earthquake (or time), or come from one file. Then there may be two horizontal ones, at a
-    right angle, and a vertical one; H1 and H2 are in the order in which they were read, unless
-    a table tells.
+    and earthquake (or times that overlap), or come from one file. Then there may be two horizontal
+    ones, at a right angle, and a vertical one; where there are more, those of one instrument and
+    one processing. H1 and H2 are in the order in which they were read, unless a table tells.
     """
-    together: dict[str, list[Component]] = {}
-    for component in components:
-        together.setdefault(_record_of(component), []).append(component)
+    held = list(components)
     remarks: list[str] = []
-    for record, members in together.items():
-        for component in members:
-            component.known["record"] = record
-        remarks += _assign(record, members)
+    names: set[str] = set()
+    lonely: list[Component] = []
+    for members in _together(held, _record_of):
+        for part in [members] if _is_one(members) else _together(members, _instrument):
+            record = unique = _name_of(part[0])
+            if record in names:
+                unique = f"{record}, {' '.join(_instrument(part[0]))}".rstrip(", ")
+            count = 1
+            while unique in names:
+                count += 1
+                unique = f"{record} ({count})"
+            names.add(unique)
+            for component in part:
+                component.known["record"] = unique
+            remarks += _assign(unique, part)
+            level = [one for one in part if not one.vertical]
+            lonely += level if len(level) == 1 else []
+    for members in _together(lonely, _event_and_station):
+        remarks += _why_apart(members)
     return remarks
 
 
@@ -120,19 +139,108 @@ def pairs_of(
     }
 
 
-def _record_of(component: Component) -> str:
+def _together(
+    components: Iterable[Component], key: Callable[[Component], tuple[str, ...]]
+) -> list[list[Component]]:
+    """Sort components by a key, and those of known starts by times that overlap."""
+    sorted_: dict[tuple[str, ...], list[Component]] = {}
+    for component in components:
+        sorted_.setdefault(key(component), []).append(component)
+    return [part for members in sorted_.values() for part in _at_one_time(members)]
+
+
+def _at_one_time(members: list[Component]) -> list[list[Component]]:
+    starts = [_start(one) for one in members]
+    known = [start for start in starts if start is not None]
+    if len(known) < len(members):
+        return [members]
+    parts: list[list[Component]] = []
+    end = -math.inf
+    for start, place in sorted(zip(known, range(len(members)), strict=True)):
+        if start > end:
+            parts.append([])
+            end = start
+        parts[-1].append(members[place])
+        end = max(end, start + members[place].motion.si.duration)
+    for part in parts:
+        part.sort(key=members.index)
+    return sorted(parts, key=lambda part: members.index(part[0]))
+
+
+def _start(component: Component) -> float | None:
+    """Give when a component starts [s], where nothing else tells its earthquake."""
+    about = component.about
+    if not _named_by_station(about) or any(about.get(key) for key in _WHEN):
+        return None
+    return seconds_of(about.get(_START))
+
+
+def _named_by_station(about: Mapping[str, Any]) -> bool:
+    told = about.get("station") or about.get("station_name")
+    return bool(told) and "record_sequence_number" not in about
+
+
+def _record_of(component: Component) -> tuple[str, ...]:
     about = component.about
     if "record_sequence_number" in about:
-        return f"RSN{about['record_sequence_number']}"
-    station = about.get("station") or about.get("station_name")
-    if not station:
+        return (f"RSN{about['record_sequence_number']}",)
+    if not _named_by_station(about):
         # all components of one file have its path
-        return component.file.replace("\\", "/").rsplit("/", 1)[-1]
-    where = [about[key] for key in ("network", "station", "sensor_location") if about.get(key)]
+        return (component.file.replace("\\", "/").rsplit("/", 1)[-1],)
+    where = [about[key] for key in _WHERE if about.get(key)] or [about["station_name"]]
+    return (*_event(component), *map(str, where))
+
+
+def _name_of(component: Component) -> str:
+    start = [] if _start(component) is None else [str(component.about[_START])]
+    return ", ".join((*start, *_record_of(component)))
+
+
+def _event(component: Component) -> tuple[str, ...]:
+    about = component.about
     when = next((about[key] for key in _WHEN if about.get(key)), None)
+    if when is None and _start(component) is None:
+        when = about.get(_START)
     event = str(about.get("event", ""))
-    told = [event, "" if str(when) in event else when, *(where or [station])]
-    return ", ".join(str(part) for part in told if part)
+    told = [event, "" if str(when) in event else when]
+    return tuple(str(part) for part in told if part)
+
+
+def _event_and_station(component: Component) -> tuple[str, ...]:
+    about = component.about
+    if not _named_by_station(about):
+        return _record_of(component)
+    station = about.get("station") or about.get("station_name")
+    return (*_event(component), str(about.get("network", "")), str(station))
+
+
+def _instrument(component: Component) -> tuple[str, ...]:
+    """Give the codes of band and instrument, and the processing, as far as they are known."""
+    about = component.about
+    found = _INSTRUMENT.search(str(about.get("component", "")))
+    return ("" if found is None else found.group(1), str(about.get("processing", "")))
+
+
+def _is_one(members: list[Component]) -> bool:
+    upwards = sum(one.vertical for one in members)
+    return upwards <= 1 and len(members) - upwards <= len(HORIZONTAL)
+
+
+def _why_apart(members: list[Component]) -> list[str]:
+    """Say why components of one station and time are no pair."""
+    if len(members) < len(HORIZONTAL):
+        return []
+    told = {
+        "sensor locations": [str(one.about.get("sensor_location", "")) for one in members],
+        "instruments or processings": [" ".join(_instrument(one)).strip() for one in members],
+    }
+    apart = "; ".join(
+        f"{what} {', '.join(repr(value) for value in values)}"
+        for what, values in told.items()
+        if len(set(values)) > 1
+    )
+    labels = ", ".join(one.label for one in members)
+    return [f"{labels}: of one station and time, but not put together ({apart})"]
 
 
 def _assign(record: str, members: list[Component]) -> list[str]:
@@ -140,9 +248,11 @@ def _assign(record: str, members: list[Component]) -> list[str]:
     upwards = [one for one in members if one.vertical]
     for one in upwards:
         one.known["axis"] = VERTICAL
-    if len(level) > len(HORIZONTAL) or len(upwards) > 1:
+    if not _is_one(members):
         for one in level:
             one.known.pop("axis", None)
+        for one in upwards:
+            one.known["record"] = one.label
         found = f"{len(level)} horizontal and {len(upwards)} vertical components"
         return [f"{record}: {found}, which are not put together"]
     told = sorted(str(one.known.get("axis", "")) for one in level)
@@ -151,11 +261,17 @@ def _assign(record: str, members: list[Component]) -> list[str]:
             one.known["axis"] = axis
     if len(level) < len(HORIZONTAL):
         return []
+    first, second = level
     try:
-        first, second = level
-        HorizontalPair(first.motion, second.motion, *(one.motion for one in upwards))
+        HorizontalPair(first.motion, second.motion)
     except ComponentError as problem:
         for one in level:
             one.known.pop("axis", None)
         return [f"{record}: {problem}"]
+    try:
+        HorizontalPair(first.motion, second.motion, *(one.motion for one in upwards))
+    except ComponentError as problem:
+        for one in upwards:
+            one.known["record"] = one.label
+        return [f"{record}, without its vertical component: {problem}"]
     return []

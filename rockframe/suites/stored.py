@@ -33,11 +33,13 @@ _KIND: Final = "suite of ground motions"
 _TITLE: Final = "Suite of ground motions"
 _EXPECTED: Final = "a suite as MotionSuite.to_dataset().to_netcdf(...) writes it"
 _MOST_NUMBERS: Final = 20_000_000
+_NAME: Final = "motion_name"
 _TEXTS: Final = {
     "motion_sha256": "digest of time step and samples",
     "metadata": "what is known of the motion, as JSON",
     "history": "what was done to the motion, a line for each step",
     "recipe": "constructor and arguments of an analytic motion, as JSON",
+    _NAME: "what titles and messages call the motion",
 }
 _HELD: Final = {
     # variable: dimension, count, words of the count
@@ -86,6 +88,7 @@ def suite_dataset(suite: "MotionSuite") -> xr.Dataset:
         "recipe": [
             "" if one.recipe is None else json.dumps(dict(one.recipe)) for one in motions.values()
         ],
+        _NAME: [one.name for one in motions.values()],
     }
     for name, values in texts.items():
         dataset[name] = (MOTION, np.array(values), {"long_name": _TEXTS[name]})
@@ -222,7 +225,9 @@ def _arrays(si: Motion) -> dict[str, np.ndarray | None]:
 
 def _motions(dataset: xr.Dataset) -> dict[str, GroundMotion]:
     labels = [str(label) for label in dataset[MOTION].to_numpy()]
-    texts = {name: [str(one) for one in dataset[name].to_numpy()] for name in _TEXTS}
+    texts = {
+        name: [str(one) for one in dataset[name].to_numpy()] for name in _TEXTS if name in dataset
+    }
     parts = {name: _parts(dataset, name, len(labels)) for name in _HELD}
     steps = dataset["time_step"].to_numpy()
     motions: dict[str, GroundMotion] = {}
@@ -237,7 +242,7 @@ def _motions(dataset: xr.Dataset) -> dict[str, GroundMotion]:
         recipe = texts["recipe"][k]
         motion = GroundMotion(
             Motion(Signal(step, samples, pieces), vertical),
-            name=label,
+            name=texts.get(_NAME, labels)[k],  # former files have labels only
             metadata=_mapping(texts["metadata"][k]),
             history=tuple(history.split("\n")) if history else (),
             recipe=_mapping(recipe) if recipe else None,

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Final, Self, cast
 
 import xarray as xr
 
-from rockframe.arguments import checked_dataset
+from rockframe.arguments import by_words, checked_dataset
 from rockframe.errors import ComponentError, shown
 from rockframe.measures import (
     average_spectral_acceleration,
@@ -469,7 +469,7 @@ def _named(given: object, owner: str) -> dict[str, GroundMotion]:
     """Read motions with their labels."""
     motions: dict[str, Any] = {}
     if isinstance(given, Mapping):
-        motions = {str(label): one for label, one in cast("Mapping[Any, Any]", given).items()}
+        motions = by_words(cast("Mapping[Any, Any]", given), owner=owner)
     elif isinstance(given, Iterable) and not isinstance(given, str):
         for one in cast("Iterable[Any]", given):
             name = str(getattr(one, "name", len(motions)))

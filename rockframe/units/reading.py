@@ -8,6 +8,7 @@ does no harm.
 import math
 import re
 from collections.abc import Iterable
+from contextlib import suppress
 from fractions import Fraction
 from numbers import Real
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
@@ -139,12 +140,33 @@ def to_si_values(value: object, measure: Measure, *, owner: str, name: str) -> l
         if len(items) == 2 and isinstance(items[1], str) and not isinstance(items[0], str):
             factor = to_si(f"1 {items[1]}", measure, owner=owner, name=name)
             numbers = items[0] if isinstance(items[0], Iterable) else [items[0]]
-            return [
-                _check_value(_product(float(number), factor), number, None, owner=owner, name=name)
-                for number in numbers
-            ]
+            return [_times(number, factor, items[1], owner=owner, name=name) for number in numbers]
         return [to_si(item, measure, owner=owner, name=name) for item in items]
     return [to_si(value, measure, owner=owner, name=name)]
+
+
+def _times(number: Any, factor: float, unit: str, *, owner: str, name: str) -> float:
+    """Convert one of several values whose unit is given for all."""
+    if getattr(number, "ndim", None) == 0:
+        number = number.item()
+    if isinstance(number, str):
+        with suppress(ValueError):
+            number = float(number)
+    if isinstance(number, bool) or not isinstance(number, Real):
+        msg = (
+            f"{owner}: {name} needs numbers where their unit, {unit!r}, is given for all of them; "
+            f"got {shown(number)}"
+        )
+        raise UnitsError(msg)
+    return _check_value(_product(_float(number), factor), number, None, owner=owner, name=name)
+
+
+def _float(number: Real) -> float:
+    """Give a number as a float, infinite where it is larger than any."""
+    try:
+        return float(number)
+    except OverflowError:
+        return math.inf
 
 
 def _converted(given: Any, measure: Measure) -> Any:
@@ -220,7 +242,7 @@ def to_ratio(
             f"{ratio.example_of(name)}"
         )
         raise UnitsError(msg)
-    return _check_value(float(number), value, condition, owner=owner, name=name)
+    return _check_value(_float(number), value, condition, owner=owner, name=name)
 
 
 def _in_si(value: object, measure: Measure) -> float | None:

@@ -129,6 +129,23 @@ def test_runs_that_cannot_be_continued():
         system.simulate(MOTION, initial=3)
 
 
+def test_a_run_that_came_back_from_beyond_the_angle_goes_on():
+    """As the one run that both make, asked to go on; one that ends beyond it, or flat, does not."""
+    system = rf.System(rf.Block(width="1 m", height="5 m", mass="10 t"))
+    pulse = rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz")
+    asked = {"overturning": "continue", "outputs": None, "accuracy": "reference"}
+    first = system.simulate(pulse.scaled(3.68), duration="6 s", **asked)
+    whole = system.simulate(pulse.scaled(3.68), duration="9 s", **asked)
+    assert bool(first.overturned)  # the angle was passed
+    rest = system.simulate(initial=first, duration="3 s", **asked)
+    ends = [json.loads(run.end_state)["state"] for run in (whole, rest)]
+    np.testing.assert_allclose(*ends, atol=1e-9)
+    for scale, duration in ((3.74, "9 s"), (3.74, "3 s"), (3.68, "1.5 s")):
+        run = system.simulate(pulse.scaled(scale), duration=duration, **asked)
+        with pytest.raises(AssemblyError, match="end of a run that overturned"):
+            system.simulate(initial=run, duration="3 s", **asked)
+
+
 def test_units_do_not_matter():
     """The same scene in other units responds alike, to rounding."""
     with warnings.catch_warnings():

@@ -15,6 +15,7 @@ TURNS_ROUND = {
     "horizontal_displacement",
     "relative_rotation",
     "ground_acceleration",
+    "ground_acceleration_after_end",
     "base_shear",
     "event_rotation",
     "residual_rotation",

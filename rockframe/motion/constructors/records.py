@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from rockframe.arguments import text
 from rockframe.errors import ComponentError, RecordWarning, UnitsError
 from rockframe.motion.quantities import accelerations_to_si, argument_unit, declared_times
 from rockframe.motion.readers.components import component_names
@@ -54,7 +55,8 @@ def read(
         direction (``"N"``, ``"090"``, ``"U"``) or by its number
         (``"channel 3"``); a pair takes a horizontal component and sets the
         vertical one beside it. Needed where a file has more than one
-        horizontal component.
+        horizontal component. ``"row by row"`` says of a text without names that one
+        record is wrapped to several values a line.
     unit : str, optional
         Unit of the samples, where the file does not say: ``"g"``,
         ``"gal"``, ``"cm/s^2"``, ... Here ``g`` is the acceleration of gravity.
@@ -170,8 +172,9 @@ def from_arrays(
         times = declared_times(array)
         if times is not None:
             _check_times(times, step, owner=owner, label=label)
+    called = UNNAMED if name is None else text(name, owner=owner, name="name") or UNNAMED
     words = f"built from arrays: {across.size} samples at {step!r} s"
-    return kind(Motion.of_samples(step, across, upwards), name=name or UNNAMED, history=(words,))
+    return kind(Motion.of_samples(step, across, upwards), name=called, history=(words,))
 
 
 def _check_times(times: Array, step: float, *, owner: str, label: str) -> None:

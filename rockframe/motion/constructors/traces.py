@@ -120,7 +120,7 @@ def _component(
     source: Source, request: Request, code: str, traces: list[Any], *, several: bool
 ) -> Component:
     network, station, location, channel = codes_of(code)
-    about = {"network": network, "station": station, "location": location}
+    about = {"network": network, "station": station, "sensor_location": location}
 
     def samples() -> Record:
         values, time_step, start = joined(source, traces)

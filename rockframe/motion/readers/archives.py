@@ -1,17 +1,19 @@
 """Zip and tar archives, file by file in memory: nothing is ever written to the disk.
 
 An archive may be made to harm whoever unpacks it. So it may expand to no more than a hundred
-times its size, a file in it to no more than a record file may have, and names that lead out of
-it, links, devices, and archives inside it are told apart and not followed.
+times its size with all archives in it, a file in it to no more than a record file may have, and
+names that lead out of it, links, devices, and archives in those in it are told apart and not
+followed.
 """
 
 from __future__ import annotations
 
 import gzip
+import io
 import re
 import tarfile
 import zipfile
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import IO, TYPE_CHECKING, Any, Final, cast
 
 from rockframe.errors import RecordError
@@ -37,6 +39,7 @@ _OTHERS: Final = {
     b"PK\x07\x08": "a part of a zip archive",
 }
 _EXPECTED: Final = "a record file, or one in a zip, tar or gzip file"
+_PACKED: Final = "a file packed inside an archive; unpack that one first"
 _START: Final = 512
 _DIRECTORY_END: Final = b"PK\x05\x06"
 _END_LENGTH: Final = 22
@@ -142,7 +145,7 @@ def members(file: IO[bytes], name: str, size: int) -> Iterator[Member]:
     Yields
     ------
     Member
-        Each file, unpacked or with the reason why it was not.
+        Each file, those of archives in the archive too, unpacked or with the reason why it was not.
 
     Raises
     ------
@@ -150,14 +153,35 @@ def members(file: IO[bytes], name: str, size: int) -> Iterator[Member]:
         The archive is damaged, holds too many files, or expands to more than a hundred times
         its size.
     """
+    budget = _Budget(name, MOST_EXPANSION * size + MAXIMUM_BYTES, MOST_MEMBERS)
+    for member in _unpacked(file, name, budget):
+        inner = member.data
+        if inner is None or not (is_archive(inner) or packs_tar(io.BytesIO(inner))):
+            yield _single(member)
+            continue
+        try:
+            for one in _unpacked(io.BytesIO(inner), f"{name}/{member.name}", budget):
+                yield _single(replace(one, name=f"{member.name}/{one.name}"))
+        except RecordError as problem:  # the others may be sound
+            if budget.spent:
+                raise
+            yield Member(member.name, None, problem.found)
+
+
+def _single(member: Member) -> Member:
+    """Refuse what is packed once more."""
+    if member.data is not None and (is_archive(member.data) or is_gzip(member.data)):
+        return Member(member.name, None, _PACKED)
+    return member
+
+
+def _unpacked(file: IO[bytes], name: str, budget: _Budget) -> Iterator[Member]:
     start = file.read(_START)
     file.seek(0)
-    budget = _Budget(name, MOST_EXPANSION * size + MAXIMUM_BYTES)
     unpack = _of_zip if start.startswith(_ZIP) else _of_tar
     try:
-        for count, member in enumerate(unpack(file, name, budget)):
-            if count >= MOST_MEMBERS:
-                raise _too_many(name)
+        for member in unpack(file, name, budget):
+            budget.take_member()
             yield member
     except RecordError:
         raise
@@ -168,16 +192,27 @@ def members(file: IO[bytes], name: str, size: int) -> Iterator[Member]:
 
 @dataclass
 class _Budget:
-    """What an archive may still expand to."""
+    """What an archive may still expand to, and how many files it may hold."""
 
     name: str
     left: int
+    members: int
+
+    @property
+    def spent(self) -> bool:
+        """Whether it has been exceeded."""
+        return self.left < 0 or self.members < 0
 
     def take(self, count: int) -> None:
         self.left -= count
         if self.left < 0:
             found = f"an archive that expands to more than {MOST_EXPANSION} times its size"
             raise RecordError(self.name, found=found, expected="an archive of records")
+
+    def take_member(self) -> None:
+        self.members -= 1
+        if self.members < 0:
+            raise _too_many(self.name)
 
 
 def _of_zip(file: IO[bytes], name: str, budget: _Budget) -> Iterator[Member]:
@@ -289,8 +324,6 @@ def _tar_fault(info: tarfile.TarInfo) -> str:
 def _member(name: str, data: bytes) -> Member:
     if len(data) > MAXIMUM_BYTES:
         return Member(name, None, f"more than {MAXIMUM_BYTES // 2**20} MiB")
-    if is_archive(data) or is_gzip(data):
-        return Member(name, None, "an archive inside an archive")
     return Member(name, data)
 
 

@@ -19,6 +19,7 @@ import json
 import math
 import re
 import warnings
+from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 from typing import TYPE_CHECKING, Any, Final, cast
@@ -42,8 +43,11 @@ from rockframe.motion.readers.source import (
     Source,
 )
 from rockframe.motion.readers.station_xml import Responses, response_in
+from rockframe.motion.readers.traces import codes_of
 
 if TYPE_CHECKING:
+    from collections.abc import Generator
+
     from rockframe.motion.readers.station_xml import Response
     from rockframe.signals.arrays import Array
 
@@ -118,12 +122,21 @@ def read(source: Source, request: Request) -> Record:
         raise source.refuse(found=found, expected=expected)
     import netCDF4
 
+    with _sound(source):
+        # left open for the components, which are read one by one, until the last of them is gone
+        file = netCDF4.Dataset("asdf", memory=source.data)
+        file.set_auto_maskandscale(False)
+        components = _components(source, request, file)
+    return choose_component(source, request, components)
+
+
+@contextmanager
+def _sound(source: Source) -> Generator[None]:
+    """Say of a file that the library cannot read that it is damaged."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            with netCDF4.Dataset("asdf", memory=source.data) as file:
-                file.set_auto_maskandscale(False)
-                return choose_component(source, request, _components(source, request, file))
+            yield
     except RecordError:
         raise
     except Exception as problem:
@@ -146,9 +159,14 @@ def _components(source: Source, request: Request, file: Any) -> list[Component]:
 
     def component(one: _Waveform) -> Component:
         short = one.channel if len(stations) == 1 else one.codes
+
+        def samples() -> Record:
+            with _sound(source):
+                return _samples(source, request, file, one)
+
         return Component(
             short if len(tags) == 1 else f"{short} {one.tag}",
-            lambda: _samples(source, request, file, one),
+            samples,
             orientation_of(one.channel),
             aliases=(one.name, one.codes, one.channel, f"{one.codes} {one.tag}"),
         )
@@ -167,11 +185,11 @@ def _samples(source: Source, request: Request, file: Any, one: _Waveform) -> Rec
     check_time_step(source, time_step, None)
     check_asked_time_step(source, request, time_step, None)
     start = _EPOCH + timedelta(microseconds=int(variable.getncattr("starttime")) // 1000)
-    network, station, location, _ = one.codes.split(".")
+    network, station, location, _ = codes_of(one.codes)
     metadata: Metadata = {
         "network": network,
         "station": station,
-        "location": "" if location == "--" else location,
+        **({"sensor_location": location} if location else {}),
         "processing": one.tag,
         "record_time": f"{start.isoformat()}Z",
     }
@@ -230,12 +248,11 @@ def _stated_unit(file: Any, one: _Waveform) -> str | None:
 def _response(
     source: Source, request: Request, file: Any, one: _Waveform, start: datetime
 ) -> Response | None:
-    names = (one.codes, one.codes.replace(".--.", ".."))
     if request.response is not None:
-        return Responses(source, request).of(names[1], start)
+        return Responses(source, request).of(one.codes, start)
     variable = file.groups["Waveforms"].groups[one.group].variables.get("StationXML")
     if variable is None or math.prod(map(int, variable.shape)) > _LARGEST_TEXT:
         return None
     data = np.asarray(variable[:]).astype(np.uint8).tobytes()
     xml = Source(source.path, data, hashlib.sha256(data).hexdigest())
-    return next((found for name in names if (found := response_in(xml, name, start))), None)
+    return response_in(xml, one.codes, start)

@@ -14,6 +14,7 @@ from rockframe.motion.readers.source import HEADER_WIDTH, MAXIMUM_SAMPLES, Sourc
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from rockframe.errors import RecordError
     from rockframe.signals.arrays import Array
 
 HEADER_LINES: Final = 20
@@ -48,6 +49,8 @@ class Table:
         Line and text of header lines and of comments above the numbers.
     separator : str or None
         ``";"``, ``","`` or None for blanks and tabs.
+    rest : list of str
+        Fields of a last row that has fewer than the others, which end above it.
     """
 
     values: Array
@@ -56,6 +59,7 @@ class Table:
     lines: Sequence[int]
     header: list[tuple[int, str]]
     separator: str | None
+    rest: list[str]
 
 
 def read_table(source: Source, most_columns: int) -> Table:
@@ -76,7 +80,7 @@ def read_table(source: Source, most_columns: int) -> Table:
     ------
     RecordError
         No numbers, too many, a field that is not a number, rows of different
-        length, or commas that can be read in two ways.
+        length but for a shorter last one, or commas that can be read in two ways.
     """
     header, lines, rows = _divide(source)
     if len(rows) > MAXIMUM_SAMPLES:
@@ -96,6 +100,11 @@ def read_table(source: Source, most_columns: int) -> Table:
         rows = [text.replace(",", ".") for text in rows]
     plain = is_plain(body)
     del body
+    rest = _split(rows[-1], separator)
+    if len(rest) < columns and len(rows) > 1:
+        rows = rows[:-1]
+    else:
+        rest = []
     fields = _fields(source, rows, lines, separator, columns)
     values = floats(fields) if plain else None
     if values is None and plain:
@@ -113,7 +122,27 @@ def read_table(source: Source, most_columns: int) -> Table:
         lines,
         header,
         separator,
+        rest,
     )
+
+
+def check_last_row(source: Source, table: Table) -> None:
+    """Refuse columns of which the last row has fewer numbers.
+
+    Parameters
+    ----------
+    source : Source
+        File.
+    table : Table
+        Its columns.
+
+    Raises
+    ------
+    RecordError
+        The last row is shorter.
+    """
+    if table.rest:
+        raise _uneven(source, table.rest, table.values.shape[1], table.lines, -1)
 
 
 def split_header(text: str, separator: str | None) -> list[str]:
@@ -211,11 +240,18 @@ def _fields(
     for place, text in enumerate(rows):
         parts = text.split() if separator is None else text.removesuffix(separator).split(separator)
         if len(parts) != columns:
-            found = f"{len(parts)} fields ({shown(text)})"
-            expected = f"{columns} fields, as in line {lines[0]}"
-            raise source.refuse(found=found, expected=expected, line=lines[place])
+            raise _uneven(source, parts, columns, lines, place)
         fields += parts
     return fields
+
+
+def _uneven(
+    source: Source, parts: list[str], columns: int, lines: Sequence[int], place: int
+) -> RecordError:
+    """Build the error for a row of another length."""
+    found = f"{len(parts)} fields ({shown(' '.join(parts))})"
+    expected = f"{columns} fields, as in line {lines[0]}"
+    return source.refuse(found=found, expected=expected, line=lines[place])
 
 
 def _split(text: str, separator: str | None) -> list[str]:

@@ -18,6 +18,7 @@ from rockframe.motion.readers.orientation import (
     Orientation,
     orientation_of,
 )
+from rockframe.motion.readers.timing import same_start
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -238,7 +239,7 @@ def _pair(source: Source, across: Component, upwards: Component) -> Record:
         expected = f"one time step for {across.label} and {upwards.label}"
         raise source.refuse(found=found, expected=expected, line=upwards.line)
     starts = [record.metadata.get("record_time") for record in (level, raised)]
-    if None not in starts and starts[0] != starts[1]:
+    if not same_start(starts[0], starts[1], level.time_step):
         raise source.refuse(
             found=f"components that start at {starts[0]} and at {starts[1]}",
             expected="one start time for both",

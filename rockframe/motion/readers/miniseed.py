@@ -46,8 +46,8 @@ TITLE: Final = "miniSEED file (through ObsPy)"
 SUFFIXES: Final = (".mseed", ".miniseed", ".ms", ".seed")
 BINARY: Final = True
 
-# sequence number, kind, then the codes of station, location, channel and network
-_RECORD: Final = re.compile(rb"[0-9 ]{6}[DRQM][ \x00]([A-Z0-9 ]{12})")
+# sequence number, kind, then the codes of station, location (some write --), channel and network
+_RECORD: Final = re.compile(rb"[0-9 ]{6}[DRQM][ \x00]([A-Z0-9 ]{5}(?:[A-Z0-9 ]{2}|--)[A-Z0-9 ]{5})")
 _SHORTEST_RECORD: Final = 128
 _HEADER: Final = 48
 _FIELDS: Final = "HHBBBxHHhh"  # start, number of samples, factor and multiplier of the rate
@@ -226,7 +226,7 @@ def _component(
     direction = UNKNOWN if response is None else response.orientation
     if direction == UNKNOWN:
         direction = orientation_of(channel) if len(channel) == 3 else Orientation()
-    metadata: Metadata = {"network": network, "station": station, "location": location}
+    metadata: Metadata = {"network": network, "station": station, "sensor_location": location}
 
     def samples() -> Record:
         if problem is not None:

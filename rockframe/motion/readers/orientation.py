@@ -18,13 +18,15 @@ _COMPASS: Final = {
     **dict.fromkeys(("s", "south"), 180.0),
     **dict.fromkeys(("w", "west"), 270.0),
 }
-_UPWARDS: Final = frozenset(("u", "up", "ud", "u-d", "z"))
+_UPWARDS: Final = frozenset(("u", "up", "ud", "u-d", "updo", "updn", "updown", "up-down", "z"))
 _DOWNWARDS: Final = frozenset(("d", "down", "dwn", "dn"))
 _VERTICAL: Final = frozenset(("v", "vert", "ver", "vertical", "vrt"))
 _DEGREES: Final = re.compile(r"(\d{1,3}(?:\.\d{0,3})?)\s*(?:deg(?:rees?)?\.?)?", re.ASCII)
 _QUADRANT: Final = re.compile(r"([ns])\s*(\d{1,2})\s*([ew])", re.ASCII)
-# band code, N for an accelerometer (or L, G, H: a mass or a seismometer), orientation
-_SEED: Final = re.compile(r"[fgdceshbml][nlgh]([nez])")
+# band code, N for an accelerometer (or L, G, H: a mass or a seismometer), orientation; some write
+# the code of the sensor's location behind them
+_SEED: Final = re.compile(r"[fgdceshbml][nlgh]([nez])(?:[. _-]?(?:\d0|0\d|--))?", re.ASCII)
+_NUMBERED: Final = re.compile(r"([a-z-]+?)[. _-]?\d{1,2}", re.ASCII)
 
 
 @dataclass(frozen=True)
@@ -66,7 +68,7 @@ def orientation_of(name: str) -> Orientation:
     Parameters
     ----------
     name : str
-        ``N``, ``E-W``, ``UP``, ``090``, ``360 DEG``, ``S16W``, ``HNE``, ...
+        ``N``, ``E-W``, ``UP``, ``V1``, ``090``, ``360 DEG``, ``S16W``, ``HNE``, ``HNZ.00``, ...
 
     Returns
     -------
@@ -99,6 +101,12 @@ def orientation_of(name: str) -> Orientation:
     seed = _SEED.fullmatch(text)
     if seed is not None:
         return orientation_of(seed.group(1))
+    numbered = _NUMBERED.fullmatch(text)
+    base = text.lstrip("-").strip() if numbered is None else numbered.group(1)
+    if base in _UPWARDS | _VERTICAL and base != text:
+        # a stroke before the name parts it from another one, or turns it over
+        upwards = base in _UPWARDS and not text.startswith("-")
+        return Orientation(vertical=UPWARDS if upwards else VERTICAL)
     return UNKNOWN
 
 

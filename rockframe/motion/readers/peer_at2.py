@@ -14,6 +14,7 @@ Some files set marks around header and data: ``*** Begin data ***`` above that l
 from __future__ import annotations
 
 import re
+from pathlib import PurePath
 from typing import Final
 
 from rockframe.motion.readers.checks import (
@@ -29,7 +30,7 @@ from rockframe.motion.readers.numbers import (
     free_format,
     last_fields,
 )
-from rockframe.motion.readers.orientation import UNKNOWN, orientation_of
+from rockframe.motion.readers.orientation import UNKNOWN, Orientation, orientation_of
 from rockframe.motion.readers.source import Metadata, Record, Request, Source, shown
 
 NAME: Final = "peer-at2"
@@ -47,6 +48,7 @@ _OTHER_KIND: Final = re.compile(r"\b(VELOCITY|DISPLACEMENT)\b", re.IGNORECASE)
 _END_MARK: Final = re.compile(r"\*{2,}\s*END\b.{0,20}", re.IGNORECASE)
 _LAST_LINES: Final = 50
 _SHOWN_DIGITS: Final = 40
+_UPRIGHT: Final = re.compile(r"[-_](UP|UPDO|DWN|DN|VER|VRT|VERT)$", re.IGNORECASE)
 _DATE: Final = re.compile(r"\d{1,4}[/-]\d{1,2}[/-]\d{1,4}")
 
 
@@ -106,8 +108,14 @@ def read(source: Source, request: Request) -> Record:
         said = (*warnings, *differing)
         return Record(time_step, values, unit, {**metadata, **counts}, warnings=said)
 
-    direction = UNKNOWN if name is None else orientation_of(name)
+    direction = _by_file_name(source) if name is None else orientation_of(name)
     return choose_component(source, request, [Component(name, samples, direction)])
+
+
+def _by_file_name(source: Source) -> Orientation:
+    """Tell a vertical component by the end of the file's name, where the header does not."""
+    end = _UPRIGHT.search(PurePath(source.path).stem)
+    return UNKNOWN if end is None else orientation_of(end.group(1))
 
 
 def _points_line(source: Source) -> int:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from rockframe.errors import RockframeError
+from rockframe.errors import RecordError, RockframeError
 from rockframe.motion.readers.checks import check_no_marks, check_time_step, plausibility
 from rockframe.motion.readers.components import EveryComponentError, named
 from rockframe.motion.readers.registry import (
@@ -34,6 +34,7 @@ from rockframe.signals import Motion
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from rockframe.motion.readers.components import Component
     from rockframe.motion.readers.registry import Format
     from rockframe.signals.arrays import Array
 
@@ -105,7 +106,9 @@ def read_record(given: RecordLike, format_name: str | None, request: Request) ->
     return _reading(entry, source, _read(entry, source, request))
 
 
-def read_components(source: Source, format_name: str | None, request: Request) -> list[Reading]:
+def read_components(
+    source: Source, format_name: str | None, request: Request
+) -> list[Reading | RecordError]:
     """Read all components of a file.
 
     Parameters
@@ -119,13 +122,14 @@ def read_components(source: Source, format_name: str | None, request: Request) -
 
     Returns
     -------
-    list of Reading
-        One for each, vertical ones too, in the order of the file.
+    list of Reading or RecordError
+        One for each, vertical ones too, in the order of the file; of a component that cannot be
+        read, beside others that can, the error.
 
     Raises
     ------
     RecordError
-        The file cannot be read as a ground-motion record.
+        The file cannot be read as a ground-motion record, and none of its components can.
     ComponentError
         No such format.
     """
@@ -134,13 +138,21 @@ def read_components(source: Source, format_name: str | None, request: Request) -
         return [_reading(entry, source, _read(entry, source, replace(request, every=True)))]
     except EveryComponentError as found:
         components = found.components
-    return [
-        replace(
-            _reading(entry, source, named(source, component)),
-            vertical=component.orientation.vertical is not None,
-        )
-        for component in components
-    ]
+    held = [_one_of(entry, source, component) for component in components]
+    refused = [one for one in held if isinstance(one, RecordError)]
+    if len(refused) == len(held):
+        raise refused[0]
+    return held
+
+
+def _one_of(entry: Format, source: Source, component: Component) -> Reading | RecordError:
+    """Read a component, or say why not."""
+    try:
+        reading = _reading(entry, source, named(source, component))
+    except RecordError as problem:
+        where = f"{problem.path}, {component.label}"
+        return RecordError(where, found=problem.found, expected=problem.expected, line=problem.line)
+    return replace(reading, vertical=component.orientation.vertical is not None)
 
 
 def _reading(entry: Format, source: Source, record: Record | StoredMotion) -> Reading:

@@ -38,6 +38,7 @@ from rockframe.motion.readers.source import (
     Source,
 )
 from rockframe.motion.readers.station_xml import Responses
+from rockframe.motion.readers.traces import location_code
 
 if TYPE_CHECKING:
     from rockframe.signals.arrays import Array
@@ -227,7 +228,7 @@ def _description(header: _Header) -> tuple[Metadata, datetime | None]:
     words = {
         "network": header.word(_NETWORK),
         "station": header.word(_STATION),
-        "location": header.word(_LOCATION),
+        "sensor_location": location_code(header.word(_LOCATION)),
         "event": header.word(_EVENT, 2),
     }
     metadata: Metadata = {key: word for key, word in words.items() if word}

@@ -24,6 +24,7 @@ from rockframe.motion.readers.orientation import (
     azimuth_of,
 )
 from rockframe.motion.readers.source import base_name, load
+from rockframe.motion.readers.traces import codes_of, location_code
 from rockframe.motion.unit_names import RecordUnit, acceleration_unit
 
 if TYPE_CHECKING:
@@ -164,7 +165,7 @@ class _Inventory:
     channels: Mapping[str, list[Any]]
 
     def response(self, name: str, time: datetime) -> Response | None:
-        epochs = self.channels.get(name, [])[:_MOST_EPOCHS]
+        epochs = self.channels.get(".".join(codes_of(name)), [])[:_MOST_EPOCHS]
         channel = next((epoch for epoch in epochs if _in_use(epoch, time)), None)
         return None if channel is None else _response(self.file, channel, name)
 
@@ -206,7 +207,7 @@ def _inventory(file: Source) -> _Inventory | None:
     for network in root.iterfind("{*}Network"):
         for station in network.iterfind("{*}Station"):
             for channel in station.iterfind("{*}Channel"):
-                location = channel.get("locationCode", "").strip()
+                location = location_code(channel.get("locationCode", ""))
                 codes = (network.get("code"), station.get("code"), location, channel.get("code"))
                 channels.setdefault(".".join(map(str, codes)), []).append(channel)
     return _Inventory(file, channels)

@@ -4,18 +4,33 @@ from __future__ import annotations
 
 import math
 import re
+from dataclasses import replace
 from typing import TYPE_CHECKING, Final
+
+import numpy as np
 
 from rockframe.motion.readers.checks import (
     check_asked_time_step,
     check_time_step,
     choose_unit,
 )
-from rockframe.motion.readers.columns import HEADER_LINES, Table, read_table
+from rockframe.motion.readers.columns import HEADER_LINES, Table, check_last_row, read_table
 from rockframe.motion.readers.components import Component, choose_component
 from rockframe.motion.readers.declared import settle_count
-from rockframe.motion.readers.numbers import ends_inside_number, free_format, last_fields
-from rockframe.motion.readers.source import Metadata, Record, Request, Source
+from rockframe.motion.readers.numbers import (
+    ends_inside_number,
+    free_format,
+    last_fields,
+    number,
+    too_many,
+)
+from rockframe.motion.readers.source import (
+    MAXIMUM_SAMPLES,
+    Metadata,
+    Record,
+    Request,
+    Source,
+)
 from rockframe.motion.readers.stated import compare_peak
 from rockframe.motion.readers.text_first_lines import (
     FirstLines,
@@ -27,11 +42,14 @@ from rockframe.motion.readers.text_header import (
     acceleration_columns,
     column_names,
     has_times,
+    is_direction,
+    rises,
     time_scale,
     unit_of_header,
 )
 from rockframe.motion.readers.text_stated import stated_peak, stated_step
 from rockframe.motion.readers.timing import uniform_step
+from rockframe.motion.readers.wrapping import BY_ROWS, COLUMNS, ROWS, reading_order
 
 if TYPE_CHECKING:
     from rockframe.signals.arrays import Array
@@ -68,8 +86,8 @@ def read(source: Source, request: Request) -> Record:
     Raises
     ------
     RecordError
-        No columns of numbers, a spectrum, an uneven time step, no unit, or several
-        components and none was asked for.
+        No columns of numbers, a spectrum, an uneven time step, no unit, several
+        components and none was asked for, or columns that may be one record, row by row.
     """
     first_lines = find_first_lines(source)
     if first_lines is not None:
@@ -79,15 +97,26 @@ def read(source: Source, request: Request) -> Record:
     if rows < 2:
         found = "one row of numbers"
         raise source.refuse(found=found, expected="at least two samples", line=table.lines[0])
-    if ends_inside_number(source, table.last_fields):
-        found = f"the end of the file inside a number ({rows} samples)"
-        raise source.refuse(found=found, expected="a complete file", line=table.lines[-1])
     names, line = column_names(source, table)
     timed = has_times(table, names)
     held = acceleration_columns(source, table, names, line, timed=timed)
     metadata: Metadata = {}
     if table.header:
         metadata["description"] = table.header[0][1].lstrip("#% \t")
+    if columns > 1 and not (timed and (names or rises(table))):
+        order = None if any(map(is_direction, names)) else reading_order(table.values)
+        asked = (request.component or "").strip().casefold() == BY_ROWS
+        if order == ROWS or (asked and order != COLUMNS):
+            return _row_by_row(source, request, table, metadata)
+        unsaid = request.every or request.component is None
+        if order is None and unsaid and not names and not timed:
+            found = f"{columns} columns without names, in which one record may go on row by row"
+            expected = f"component={BY_ROWS!r}, or a column such as component={held[0].name!r}"
+            raise source.refuse(found=found, expected=expected, line=table.lines[0])
+    check_last_row(source, table)
+    if ends_inside_number(source, table.last_fields):
+        found = f"the end of the file inside a number ({rows} samples)"
+        raise source.refuse(found=found, expected="a complete file", line=table.lines[-1])
     warnings: list[str] = []
     first = 0
     if timed:
@@ -120,6 +149,32 @@ def read(source: Source, request: Request) -> Record:
         for place, column in enumerate(held, start=1)
     ]
     return choose_component(source, request, components)
+
+
+def _row_by_row(source: Source, request: Request, table: Table, metadata: Metadata) -> Record:
+    """Read a record that is wrapped to several values a line."""
+    columns = table.values.shape[1]
+    rest = [number(field, source, table.lines[-1]) for field in table.rest]
+    values = np.append(table.values.ravel(), rest)
+    if values.size > MAXIMUM_SAMPLES:
+        raise too_many(source, values.size, line=table.lines[-1])
+    words = f"{values.size} samples, {columns} to a line"
+    if request.component is not None and request.component.strip().casefold() != BY_ROWS:
+        found = f"one record of {words}, where numbers go on to the right"
+        expected = f"component={BY_ROWS!r}, or no component"
+        raise source.refuse(found=found, expected=expected, line=table.lines[0])
+    if ends_inside_number(source, last_fields(source, table.lines[0] - 1)):
+        found = f"the end of the file inside a number ({values.size} samples)"
+        raise source.refuse(found=found, expected="a complete file", line=source.last_line)
+    time_step = _step_without_times(source, request, table)
+    single = replace(table, values=values[:, np.newaxis], rest=[])
+
+    def samples() -> Record:
+        only = Column(0, "")
+        record = _record(source, request, single, only, time_step, values, metadata, [])
+        return replace(record, history=(*record.history, f"{words}, read row by row"))
+
+    return choose_component(source, request, [Component(None, samples, aliases=(BY_ROWS,))])
 
 
 def _record(

@@ -92,7 +92,7 @@ def column_names(source: Source, table: Table) -> tuple[list[str], int]:
             found=f"the column {shown(last)}", expected="an acceleration", line=line
         )
     if columns == 2 and (_ACCELERATION_NAME.match(names[0]) or _TIME_NAME.match(last)):
-        both = all(_direction(name) != UNKNOWN for name in names)
+        both = all(map(is_direction, names))
         if not both or _TIME_NAME.match(last):
             found = f"the columns {names[0]!r}, {last!r}"
             expected = "the time first, then the acceleration"
@@ -120,7 +120,7 @@ def _check_no_spectrum(source: Source, table: Table, names: list[str], line: int
     if len(names) > 1 and (_PERIOD_NAME.match(names[0]) or all(map(spectral.match, names[1:]))):
         found = f"a spectrum, the columns {names[0]!r}, {names[1]!r}"
         raise source.refuse(found=found, expected=expected, line=line)
-    if names and any(_TIME_NAME.match(name) or _direction(name) != UNKNOWN for name in names):
+    if names and any(_TIME_NAME.match(name) or is_direction(name) for name in names):
         return
     for number, text in table.header:
         if _SPECTRUM.search(text) and not _MATCHED.search(text) and table.values.shape[1] > 1:
@@ -150,9 +150,19 @@ def has_times(table: Table, names: list[str]) -> bool:
         first = names[0]
         named = _TIME_NAME.match(first) is not None or first.casefold() in TIME_UNITS
         timed = any(unit.casefold() in TIME_UNITS for unit in in_brackets(first))
-        directions = all(_direction(name) != UNKNOWN for name in names)
+        directions = all(map(is_direction, names))
         return named or timed or (columns == 2 and not directions)
-    return columns == 2 or bool((table.values[1:, 0] > table.values[:-1, 0]).all())
+    return columns == 2 or rises(table)
+
+
+def rises(table: Table) -> bool:
+    """Tell whether the numbers of the first column rise all along."""
+    return bool((table.values[1:, 0] > table.values[:-1, 0]).all())
+
+
+def is_direction(name: str) -> bool:
+    """Tell whether the name of a column tells where it points."""
+    return _direction(name) != UNKNOWN
 
 
 def acceleration_columns(

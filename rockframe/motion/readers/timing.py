@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -10,6 +11,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from rockframe.signals.arrays import Array
+
+_EPOCH: Final = datetime(1970, 1, 1, tzinfo=UTC)
+_SAME: Final = 0.1 * (1.0 + 1e-6)
+"""Time steps that samples of one time may be apart: clocks of digitisers round to 0.1 ms."""
 
 _JITTER: Final = 1e-6
 _FLOAT_ULPS: Final = 8.0
@@ -20,6 +25,38 @@ _PLAIN_DIGITS: Final = 4
 _SMALLEST: Final = 1e-9
 _LARGEST: Final = 1e9
 _LONGEST_EXPONENT: Final = 5
+
+
+def same_start(one: object, other: object, time_step: float) -> bool:
+    """Tell whether two samples were taken at the same time.
+
+    Parameters
+    ----------
+    one, other : object
+        Times as files give them, or None where they do not.
+    time_step : float
+        Of the samples [s].
+
+    Returns
+    -------
+    bool
+        False if the times are further apart than a tenth of the time step, or, where one of them
+        cannot be read, if they are written in different ways.
+    """
+    if one is None or other is None or one == other:
+        return True
+    first, second = seconds_of(one), seconds_of(other)
+    return first is not None and second is not None and abs(second - first) <= _SAME * time_step
+
+
+def seconds_of(time: object) -> float | None:
+    """Give the seconds from 1970 to a time in ISO 8601, or None for another one."""
+    try:
+        moment = datetime.fromisoformat(str(time).strip())
+    except ValueError:
+        return None
+    zoned = moment if moment.tzinfo is not None else moment.replace(tzinfo=UTC)
+    return (zoned - _EPOCH).total_seconds()
 
 
 def uniform_step(times: Array, fields: Sequence[str]) -> tuple[float, int | None]:

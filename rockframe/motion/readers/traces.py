@@ -29,14 +29,19 @@ def by_channel(traces: Iterable[Any]) -> dict[str, list[Any]]:
     """
     channels: dict[str, list[Any]] = {}
     for trace in traces:
-        channels.setdefault(str(trace.id), []).append(trace)
+        channels.setdefault(".".join(codes_of(str(trace.id))), []).append(trace)
     return channels
 
 
 def codes_of(name: str) -> tuple[str, str, str, str]:
-    """Take ``NET.STA.LOC.CHA`` apart; what is missing is empty."""
+    """Take ``NET.STA.LOC.CHA`` apart; what is missing is empty, and so is a location ``--``."""
     network, station, location, channel = (*name.split("."), "", "", "", "")[:4]
-    return network, station, location, channel
+    return network, station, location_code(location), channel
+
+
+def location_code(given: str) -> str:
+    """Give the code of a sensor's location; two hyphens or blanks stand for none."""
+    return given.strip(" -")
 
 
 def joined(source: Source, traces: list[Any]) -> tuple[Array, float, str]:

@@ -12,10 +12,16 @@ from rockframe.motion import GroundMotion
 
 
 def miniseed(
-    counts=COUNTS, *, channel: str = "HNE", rate: int = 100, start: int = 0, tenths: int = 0
+    counts=COUNTS,
+    *,
+    channel: str = "HNE",
+    rate: int = 100,
+    start: int = 0,
+    tenths: int = 0,
+    location: str = "  ",
 ) -> bytes:
     """One 512-byte record of 32-bit integers (SEED manual 2.4, chapter 8)."""
-    head = b"000001D " + b"MADE ".ljust(5) + b"  " + channel.encode() + b"XX"
+    head = b"000001D " + b"MADE " + location.encode() + channel.encode() + b"XX"
     head += struct.pack(">HHBBBBH", 2018, 24, 10, 51, start, 0, tenths)
     head += struct.pack(">HhhBBBBiHH", len(counts), rate, 1, 0, 0, 0, 1, 0, 64, 48)
     head += struct.pack(">HHBBBB", 1000, 0, 3, 1, 9, 0)

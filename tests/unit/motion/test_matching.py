@@ -9,8 +9,12 @@ from scipy import signal
 
 import rockframe as rf
 from rockframe.errors import ComponentError, RecordWarning, UnitsError
+from rockframe.motion.matching.changes import PEAKS, unusual
 from rockframe.signals.path import ground_path
 from rockframe.signals.polynomials import knots_of
+
+# that other things change beside the spectrum is looked at in one test
+pytestmark = pytest.mark.filterwarnings("ignore:(?s).*the wavelets have changed")
 
 EUROCODE = rf.TargetSpectrum.eurocode_8("0.3 g_0", "B")
 ASCE = rf.TargetSpectrum.asce_7("1 g_0", "0.6 g_0")
@@ -110,6 +114,51 @@ def test_it_is_told_what_was_done(quickly_matched):
     twice = example().scaled(2.0)
     again = type(twice)(twice.si, metadata={"scale_factor": 2.0}).matched(EUROCODE, periods=RANGE)
     assert again.metadata["scale_factor"] == pytest.approx(about["scale_factor"], rel=1e-9)
+
+
+def test_it_is_told_what_else_has_changed(quickly_matched):
+    weak = example().resampled("0.02 s").filtered(low="1.5 Hz")
+    target = rf.TargetSpectrum.eurocode_8("0.3 g_0", "D")
+    with pytest.warns(RecordWarning, match=r"spectrum 4\.\d+ times at 2\.\d+ s, beyond the range"):
+        grown = weak.matched(target, periods=("0.4 s", "2 s"))
+    for motion, matched in ((example(), quickly_matched), (weak, grown)):
+        about = matched.metadata
+        for when, one in (
+            ("before", motion.scaled(about["scale_factor"])),
+            ("after", matched),
+        ):
+            found = rf.intensity_measures(one).squeeze()
+            for name in ("acceleration", "velocity", "displacement"):
+                peak = float(found[f"peak_ground_{name}"])
+                assert about[f"peak_ground_{name}_{when}_matching"] == pytest.approx(peak, rel=1e-3)
+            indicator = one.velocity_pulse().indicator
+            assert about[f"pulse_indicator_{when}_matching"] == pytest.approx(indicator, rel=1e-6)
+        at = (about["period_of_spectral_growth"], "s")
+        before, after = (
+            float(rf.response_spectrum(one, at).pseudo_spectral_acceleration.squeeze())
+            for one in (motion.scaled(about["scale_factor"]), matched)
+        )
+        assert about["spectral_growth_beyond_range"] == pytest.approx(after / before, rel=1e-3)
+
+
+def test_growth_beyond_half_as_much_again_is_unusual():
+    usual = {f"{name}_{when}_matching": 1.0 for name in PEAKS for when in ("before", "after")}
+    usual |= {
+        "pulse_indicator_before_matching": 0.2,
+        "pulse_indicator_after_matching": 0.84,
+        "spectral_growth_beyond_range": 1.49,
+        "period_of_spectral_growth": 3.0,
+    }
+    assert unusual(usual) == []
+    for name, value, words in (
+        ("peak_ground_acceleration_after_matching", 1.6, "acceleration 1.6 times"),
+        ("peak_ground_velocity_after_matching", 1.6, "velocity 1.6 times"),
+        ("peak_ground_displacement_after_matching", 12.0, "displacement 12 times"),
+        ("spectral_growth_beyond_range", 1.6, "spectrum 1.6 times at 3 s, beyond the range"),
+        ("pulse_indicator_after_matching", 0.9, "a velocity pulse where none was"),
+    ):
+        (found,) = unusual({**usual, name: value})
+        assert words in found
 
 
 def test_it_comes_back_from_where_it_is_kept(quickly_matched):

@@ -261,3 +261,10 @@ def test_what_looks_like_a_wrong_unit_or_time_step_is_warned_about(write, scale,
         GroundMotion.read(path)
     assert len(caught) == 1
     assert caught[0].filename == __file__
+
+
+@pytest.mark.parametrize(("end", "sense"), [("-UP", "up"), ("_dwn", "down"), ("-VERT", "vertical")])
+def test_a_vertical_component_told_by_the_name_of_the_file_alone(write, end, sense):
+    path = write(at2("NPTS= 50, DT= .01", numbers(50), event="Made Up"), f"RSN6_MADE_S6{end}.AT2")
+    with pytest.warns(RecordWarning, match="is vertical"):
+        assert GroundMotion.read(path).metadata["positive"] == sense

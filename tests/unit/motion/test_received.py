@@ -62,6 +62,7 @@ def test_the_same_record_however_it_comes(tmp_path, monkeypatch):
     for given in (AT2, bytearray(AT2), memoryview(AT2), io.BytesIO(AT2), packed["one.zip"]):
         assert GroundMotion.read(given).sha256 == plain.sha256
     assert GroundMotion.read(io.BytesIO(packed["one.tar.gz"])) == plain
+    assert GroundMotion.read(zipped(("in.zip", packed["one.zip"]))).sha256 == plain.sha256
     assert GroundMotion.read(AT2).metadata["source_file"] == "bytes"
 
 
@@ -107,8 +108,12 @@ REFUSED = {
     "symbolic link": (linked(tarfile.SYMTYPE), "a link"),
     "hard link": (linked(tarfile.LNKTYPE), "a link"),
     "device": (linked(tarfile.CHRTYPE), "no ordinary file"),
-    "nested": (zipped(("inner.zip", zipped(("a.AT2", AT2)))), "an archive inside an archive"),
-    "nested in tar": (tarred(("a.gz", gzip.compress(AT2))), "an archive inside an archive"),
+    "nested twice": (
+        zipped(("b.zip", zipped(("c.zip", zipped(("a.AT2", AT2)))))),
+        "packed inside an archive; unpack that one first",
+    ),
+    "packed in tar": (tarred(("a.gz", gzip.compress(AT2))), "packed inside an archive"),
+    "damaged inside": (zipped(("b.zip", zipped(("a.AT2", AT2))[:-30])), "cannot be unpacked"),
     "packed twice": (gzip.compress(gzip.compress(AT2)), "packed twice"),
     "encrypted": (encrypted(), "an encrypted file"),
     "method": (

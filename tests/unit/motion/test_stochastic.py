@@ -105,6 +105,7 @@ def test_defaults_are_as_documented():
         quality_exponent=0.45,
         kappa="0.035 s",
         site="rock 760",
+        source="one corner",
         time_step="0.005 s",
     )
 

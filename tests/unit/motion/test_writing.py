@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rockframe.errors import ComponentError
+from rockframe.errors import ComponentError, FileError
 from rockframe.motion import GroundMotion
 
 VALUES = np.random.default_rng(7).standard_normal(203) * np.geomspace(1e-9, 3.0, 203)
@@ -56,7 +56,7 @@ def test_what_cannot_be_written(tmp_path):
         level.to_at2(tmp_path / "w.AT2", "vertical")
     with pytest.raises(ComponentError, match="component must be 'horizontal' or 'vertical'"):
         level.to_at2(tmp_path / "w.AT2", "up")
-    with pytest.raises(OSError, match=r"w\.AT2"):
+    with pytest.raises(FileError, match=r"w\.AT2: there is no folder"):
         level.to_at2(tmp_path / "nowhere" / "w.AT2")
 
 

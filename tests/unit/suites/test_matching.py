@@ -6,6 +6,8 @@ import pytest
 import rockframe as rf
 from rockframe.errors import RecordWarning
 
+pytestmark = pytest.mark.filterwarnings("ignore:(?s).*the wavelets have changed")
+
 TARGET = rf.TargetSpectrum.eurocode_8("0.2 g_0", "C")
 RANGE = ("0.3 s", "0.6 s")
 
@@ -36,6 +38,8 @@ def test_all_motions_have_the_spectrum_of_the_target():
     assert table["target_reached"].tolist() == [1, 1]
     kept = matched.to_dataset()
     assert kept["largest_spectral_misfit"].attrs["units"] == "1"
+    assert kept["peak_ground_velocity_after_matching"].attrs["units"] == "m s^-1"
+    assert "pulse_indicator_before_matching" in table
     back = rf.MotionSuite.from_dataset(kept)
     assert [back[label].sha256 for label in back] == [one.sha256 for one in matched.values()]
     assert back["motion 1"].metadata == matched["motion 1"].metadata

@@ -175,7 +175,8 @@ def test_to_a_file_and_back(tmp_path):
         unread={"x.AT2": "empty"},
         remarks=["odd"],
     )
-    for suite in (SUITE, mixed, PULSE_SUITE):
+    named = rf.MotionSuite(dict.fromkeys(("b", "a / 第1", "10", "9", " x ", ""), floor))
+    for suite in (SUITE, mixed, PULSE_SUITE, named):
         path = tmp_path / "suite.nc"
         suite.to_dataset().to_netcdf(path)
         with xr.open_dataset(path) as stored:
@@ -185,6 +186,7 @@ def test_to_a_file_and_back(tmp_path):
             for mine, yours in ((suite, other), (suite.verticals, other.verticals)):
                 for label, motion in mine.items():
                     again = yours[label]
+                    assert again == motion
                     assert again.sha256 == motion.sha256
                     assert dict(again.metadata) == dict(motion.metadata)
                     assert again.history == motion.history
@@ -192,6 +194,11 @@ def test_to_a_file_and_back(tmp_path):
             assert dict(other.unread) == dict(suite.unread)
             assert other.remarks == suite.remarks
         path.unlink()
+
+
+def test_motions_without_names_of_their_own_are_called_by_their_labels():
+    former = PULSE_SUITE.to_dataset().drop_vars("motion_name")
+    assert [one.name for one in rf.MotionSuite.from_dataset(former).values()] == ["slow", "fast"]
 
 
 def test_a_dataset_that_was_changed_is_refused(tmp_path):

@@ -1,0 +1,127 @@
+"""Records wrapped to several values a line, beside several records in columns."""
+
+import itertools
+
+import numpy as np
+import pytest
+from records import record_path
+from unit.motion.motion_files import G, rows
+
+import rockframe as rf
+from rockframe.errors import RecordError
+from rockframe.motion import GroundMotion
+from rockframe.motion.readers.reading import read_components
+from rockframe.motion.readers.source import Request, load
+from rockframe.motion.readers.wrapping import COLUMNS, ROWS, reading_order
+
+ASKED = {"unit": "g", "time_step": "0.02 s"}
+WRAPPED = GroundMotion.example("loma-prieta").si.horizontal.samples[:2998]
+FILES = (
+    *("PEERSMD_CHICHI_TCU128-N.AT2", "ElCentro1940_Peknold.AT2", "NIS090.AT2"),
+    *("PEERSMD_IMPVALL_IELC180.AT2", "RSN763_LOMAP_GIL067.AT2", "more2/ALH360.AT2"),
+    *("SMC_LomaPrieta1989_0111a.smc", "ESM_HI.ARS1..HNE.D.20190728.160908.C.ACC.ASC"),
+    *("GEONET_20180212_211557_WPWS_20.V2A", "CWA_20180206_1-EAS.dat"),
+    *("more/AFAD_20170720223109_4801.txt", "more/BHRC_5526-1.V1", "more/CSMIP_CE89146.V1"),
+    *("more/COSMOS_CE23837.V1C", "more/UNAM_CUP50401.012", "more/USC_274o42pv.s0b"),
+)
+SEVERAL = [name for name in FILES if name.startswith(("GEO", "CWA", "more/"))]
+
+
+def components(name: str):
+    """All components of a recorded file."""
+    held = read_components(load(record_path(name)), None, Request())
+    return [one.si.horizontal.samples for one in held]
+
+
+def table(samples, columns: int):
+    count = len(samples) // columns
+    return samples[: count * columns].reshape(count, columns)
+
+
+class TestWrapped:
+    @pytest.mark.parametrize("columns", [2, 3, 5, 8, 10])
+    @pytest.mark.parametrize("head", ["", "A made-up record of an earthquake\n"])
+    def test_is_read_row_by_row_to_the_short_last_line(self, write, columns, head):
+        path = write(head + rows(WRAPPED, columns), "wrapped.dat")
+        motion = GroundMotion.read(path, **ASKED)
+        np.testing.assert_allclose(motion.si.horizontal.samples, G * WRAPPED, rtol=1e-6)
+        assert motion.history[-1] == f"2998 samples, {columns} to a line, read row by row"
+        assert GroundMotion.read(path, component="row by row", **ASKED) == motion
+        (only,) = rf.read_suite(path, **ASKED).values()
+        assert only.sha256 == motion.sha256
+
+    def test_has_no_columns(self, write):
+        path = write(rows(WRAPPED, 5), "wrapped.dat")
+        with pytest.raises(RecordError, match=r"2998 samples, 5 to a line.*component='row by row'"):
+            GroundMotion.read(path, component="column 1", **ASKED)
+
+    def test_that_ends_inside_a_number_is_refused(self, write):
+        path = write(rows(WRAPPED, 5)[:-5], "wrapped.dat")
+        with pytest.raises(RecordError, match="inside a number"):
+            GroundMotion.read(path, **ASKED)
+
+    def test_of_a_download_is_the_one_of_the_database(self):
+        plain, headed = record_path("more2/ALH360.dat"), record_path("more2/ALH360.AT2")
+        motion = GroundMotion.read(plain, unit="g", time_step="0.02 s")
+        expected = GroundMotion.read(headed).si.horizontal.samples
+        np.testing.assert_allclose(motion.si.horizontal.samples, expected, rtol=1e-6)
+
+
+class TestWhereNumbersDoNotTell:
+    def test_both_ways_are_named_and_can_be_asked_for(self, write):
+        noise = np.random.default_rng(1).uniform(-0.1, 0.1, size=300)
+        path = write(rows(noise, 3), "noise.dat")
+        with pytest.raises(RecordError, match=r"'row by row', or .*component='column 1'"):
+            GroundMotion.read(path, **ASKED)
+        with pytest.raises(RecordError, match="'row by row'"):
+            rf.read_suite(path, **ASKED)
+        whole = GroundMotion.read(path, component="row by row", **ASKED)
+        first = GroundMotion.read(path, component="column 1", **ASKED)
+        assert (len(whole), len(first)) == (300, 100)
+
+    @pytest.mark.parametrize("last", [1, 4])
+    def test_a_short_last_line_of_columns_is_refused(self, write, last):
+        noise = np.random.default_rng(1).uniform(-0.1, 0.1, size=320 + last)
+        text = rows(noise, 5)
+        with pytest.raises(RecordError, match=f"{last} fields .* expected 5 fields"):
+            GroundMotion.read(write(text, "r.txt"), component="column 1", **ASKED)
+
+
+class TestReadingOrder:
+    @pytest.mark.parametrize("columns", range(2, 11))
+    def test_of_the_motion_of_the_package(self, columns):
+        samples = GroundMotion.example("loma-prieta").si.horizontal.samples
+        assert reading_order(table(samples, columns)) == ROWS
+
+    @pytest.mark.parametrize("name", FILES)
+    def test_no_recorded_motion_is_taken_for_columns(self, name):
+        found = [
+            reading_order(table(samples, columns))
+            for samples, columns in itertools.product(components(name), range(2, 11))
+        ]
+        assert COLUMNS not in found
+        assert found.count(ROWS) >= 0.3 * len(found)
+
+    @pytest.mark.parametrize("every", [1, 2, 5, 10, 20])
+    @pytest.mark.parametrize("name", SEVERAL)
+    def test_no_components_are_taken_for_one_record(self, name, every):
+        held = components(name)
+        for count in (2, 3):
+            for some in itertools.permutations(held, count) if len(held) >= count else ():
+                assert reading_order(np.stack(some, axis=1)[::every]) != ROWS
+
+    @pytest.mark.parametrize("shared", [0.0, 0.5, 0.9, 1.0])
+    @pytest.mark.parametrize("memory", [-0.5, 0.0, 0.5, 0.9, 0.98])
+    def test_of_columns_of_noise(self, shared, memory):
+        rng = np.random.default_rng(7)
+        for columns in (2, 3, 6):
+            own, common = rng.normal(size=(500, columns)), rng.normal(size=(500, 1))
+            values = np.sqrt(1.0 - shared) * own + np.sqrt(shared) * common
+            for row in range(1, 500):
+                values[row] += memory * values[row - 1]
+            assert reading_order(values) != ROWS
+            assert reading_order(values + np.arange(columns)) != ROWS
+
+    def test_smooth_columns_are_known(self):
+        pulses = np.random.default_rng(3).normal(size=(600, 3)).cumsum(axis=0)
+        assert reading_order(pulses) == COLUMNS
