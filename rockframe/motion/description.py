@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -11,8 +12,6 @@ from rockframe.signals import Motion, Signal
 from rockframe.signals.signal import VERTICAL
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from rockframe.motion.value import Made, MotionValue
 
 ANALYTIC: Final = (
@@ -95,6 +94,9 @@ def from_dict(kind: type[Made], description: Mapping[str, Any]) -> Made:
         The motion is a record without its samples, which must be supplied, or the
         description fits no constructor.
     """
+    if not isinstance(description, Mapping):  # pyright: ignore[reportUnnecessaryIsInstance]
+        msg = f"{kind.__name__}.from_dict: found {shown(description)}; expected what to_dict gives"
+        raise SchemaError(msg)
     arguments = {key: value for key, value in description.items() if key != "type"}
     constructor = arguments.pop("constructor", None)
     if constructor is None and "horizontal" in arguments:
@@ -110,6 +112,9 @@ def from_dict(kind: type[Made], description: Mapping[str, Any]) -> Made:
         known = ", ".join(CONSTRUCTORS)
         msg = f"found the constructor {shown(constructor)}; expected one of {known}"
         raise SchemaError(msg)
+    if constructor == "stochastic":
+        # written where one corner, then the default, was left out
+        arguments.setdefault("source", "one corner")
     try:
         motion = getattr(kind, constructor)(**arguments)
         for operation in operations:

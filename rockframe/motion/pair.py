@@ -16,8 +16,9 @@ from rockframe.motion.operations.pulses import LONGEST, SHORTEST, searched, velo
 from rockframe.motion.processing.sampling import padded
 from rockframe.motion.processing.velocity_pulses import strongest
 from rockframe.motion.quantities import with_quantity
-from rockframe.motion.readers.reading import read_components
+from rockframe.motion.readers.reading import Reading, read_components
 from rockframe.motion.readers.source import Request, load
+from rockframe.motion.readers.timing import same_start
 from rockframe.units import ANGLE
 
 if TYPE_CHECKING:
@@ -39,8 +40,8 @@ class HorizontalPair:
     ----------
     first, second : GroundMotion
         The horizontal components, of the same time step and, where their files tell it, of the
-        same start; the shorter one is taken as padded with zeros. Vertical components in them
-        are not looked at.
+        same start, to a tenth of the time step; the shorter one is taken as padded with zeros.
+        Vertical components in them are not looked at.
     vertical : GroundMotion, optional
         The vertical component, upwards.
 
@@ -108,7 +109,11 @@ class HorizontalPair:
             vertical one.
         """
         source = load(path)
-        readings = read_components(source, format, Request())
+        readings: list[Reading] = []
+        for one in read_components(source, format, Request()):
+            if isinstance(one, RecordError):
+                raise one
+            readings.append(one)
         level = [one for one in readings if not one.vertical]
         upwards = [one for one in readings if one.vertical]
         if len(level) != 2 or len(upwards) > 1:
@@ -235,6 +240,6 @@ def _check_alike(first: GroundMotion, other: GroundMotion, name: str, owner: str
         )
         raise ComponentError(msg)
     starts = first.metadata.get("record_time"), other.metadata.get("record_time")
-    if None not in starts and starts[0] != starts[1]:
+    if not same_start(starts[0], starts[1], steps[0]):
         msg = f"{owner}: first starts at {starts[0]}, {name} at {starts[1]}"
         raise ComponentError(msg)

@@ -78,7 +78,7 @@ class MotionValue:
             "si": si,
             "name": _one_line(name) or UNNAMED,
             "metadata": MappingProxyType(entries),
-            "history": tuple(_one_line(step) for step in history),
+            "history": tuple(map(_Line, history)),
             "recipe": None if recipe is None else MappingProxyType(dict(recipe)),
         }
         for key, value in values.items():
@@ -171,5 +171,15 @@ def _rebuild(
 
 
 def _one_line(text: str) -> str:
-    plain = "".join(letter if letter.isprintable() else " " for letter in text)
-    return " ".join(plain.split())
+    if not text.isprintable():
+        text = "".join(letter if letter.isprintable() else " " for letter in text)
+    return " ".join(text.split())
+
+
+class _Line(str):
+    """A sentence of a history, which is put on one line when it is written, not when copied."""
+
+    __slots__ = ()
+
+    def __new__(cls, text: str) -> _Line:
+        return text if isinstance(text, cls) else super().__new__(cls, _one_line(text))

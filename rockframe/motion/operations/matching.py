@@ -10,6 +10,7 @@ import numpy as np
 
 from rockframe.arguments import hinted
 from rockframe.errors import ComponentError, RecordWarning, shown, warn
+from rockframe.motion.matching.changes import changes, unusual
 from rockframe.motion.matching.iteration import Goal, Matched, match
 from rockframe.motion.operations.following import following, lost_pieces
 from rockframe.motion.processing.coarseness import finer, say_coarse
@@ -93,7 +94,12 @@ def matched(
         one is neither. The metadata tell what was reached: ``largest_spectral_misfit`` and
         ``mean_spectral_misfit`` over the target, ``spectral_misfit``
         (:eq:`eq-spectral-misfit`), ``scale_factor``, ``matching_steps``, and ``target_reached``,
-        1 or 0. A motion that is within the tolerance already is not changed.
+        1 or 0; and what became of the scaled motion, each as ``..._before_matching`` and
+        ``..._after_matching``: ``peak_ground_acceleration``, ``peak_ground_velocity``,
+        ``peak_ground_displacement`` and ``pulse_indicator`` (:eq:`eq-pulse-indicator`); with
+        ``spectral_growth_beyond_range`` at ``period_of_spectral_growth``, where the spectrum
+        grew most beyond the longest period, up to five times as long. A motion that is within
+        the tolerance already is not changed.
 
     Raises
     ------
@@ -108,7 +114,8 @@ def matched(
     -----
     RecordWarning
         The tolerance is not reached: the best motion that was found is returned. Or the
-        shortest period is less than ten time steps.
+        shortest period is less than ten time steps. Or a peak, or the spectrum beyond the range,
+        has grown to more than 1.5 times, or the motion has become a pulse (indicator above 0.85).
 
     Notes
     -----
@@ -131,7 +138,12 @@ def matched(
     found = match(si.horizontal, goal)
     reached = found.misfit <= goal.tolerance
     words = _words(target, goal, found)
-    about = {**_about(motion, target, found), "target_reached": int(reached)}
+    scaled = si.horizontal
+    if found.signal is not scaled:
+        samples = found.scale_factor * scaled.samples
+        scaled = replace(scaled, samples=samples, polynomials=None)
+    changed = changes(scaled, found.signal, goal)
+    about = {**_about(motion, target, found), "target_reached": int(reached), **changed}
     if not reached:
         worst = float(goal.checked[np.abs(found.ratios - 1.0).argmax()])
         msg = (
@@ -139,6 +151,14 @@ def matched(
             f"{worst:.3g} s, and {100.0 * float(np.abs(found.ratios - 1.0).mean()):.2g} % on the "
             f"average; {100.0 * goal.tolerance:.3g} % was not reached in {found.steps} steps. "
             "Another record, a narrower range of periods or a wider tolerance may help"
+        )
+        warn(msg, RecordWarning)
+    grown = unusual(changed)
+    if grown:
+        msg = (
+            f"{owner}: the wavelets have changed {motion.name!r} besides its spectrum: "
+            f"{', '.join(grown)}. Such a motion may overturn what the scaled one does not: take a "
+            "record whose spectrum is closer to the target, or a narrower range of periods"
         )
         warn(msg, RecordWarning)
     if found.signal is si.horizontal:
