@@ -11,7 +11,7 @@ from rockframe.errors import SchemaError, shown
 from rockframe.results.dataset import dated
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.studies import MOTION
-from rockframe.results.variables.variable import EVENT, TIME
+from rockframe.results.variables.variable import AFTER_END, EVENT, TIME
 
 OF_ONE_RUN: Final = frozenset(
     {
@@ -30,6 +30,8 @@ OF_ONE_RUN: Final = frozenset(
     }
 )
 """Attributes that tell what became of one run; of several none of them is said."""
+CASE_COUNT: Final = "case_count"
+"""Attribute that tells how many cases one sweep has; of several it is not said."""
 
 _OWNER: Final = "concat"
 
@@ -74,8 +76,9 @@ def concat(
     An attribute is kept if every run has it with the same value, and if it is none of
     `verdict`, `overturned`, `overturning_time`, `overturning_direction`, `cautions`,
     `certificate`, `certificate_runs`, `solver_substeps`, `solver_steps`,
-    `solver_rejected_steps`, `solver_end_time` and `end_state`, which tell of one run and are
-    left out however many agree. So it does not matter in which order runs are joined.
+    `solver_rejected_steps`, `solver_end_time` and `end_state`, which tell of one run, and
+    `case_count` of one sweep, which are left out however many agree. So it does not matter in
+    which order runs are joined.
     `xarray.concat` with ``combine_attrs="drop_conflicts"`` keeps what some of its datasets do
     not have: of a row of runs in which some overturned and a row in which none did, it says
     that none did.
@@ -99,7 +102,10 @@ def concat(
         msg = f"{_OWNER}: found no runs; expected one at least"
         raise SchemaError(msg)
     _check_dimension(given, dim)
-    parts = [_without(run, EVENT if histories else (*EVENT, *TIME)) for run in given]
+    parts = [
+        _without(run, (*EVENT, *AFTER_END) if histories else (*EVENT, *AFTER_END, *TIME))
+        for run in given
+    ]
     common = set[Any].intersection(*(set(part.data_vars) for part in parts))
     if not common:
         msg = (
@@ -140,7 +146,7 @@ def _each(runs: object) -> Iterable[Any]:
 
 
 def _check_dimension(runs: Sequence[xr.Dataset], dim: object) -> None:
-    if not isinstance(dim, str) or dim in (*TIME, *EVENT):
+    if not isinstance(dim, str) or dim in (*TIME, *EVENT, *AFTER_END):
         msg = (
             f"{_OWNER}: dim must be the name of a dimension of many runs, such as 'run' or "
             f"'scale', got {shown(dim)}"
@@ -182,7 +188,7 @@ def _shared(given: Sequence[Mapping[Any, Any]], context: object = None) -> dict[
     return {
         name: value
         for name, value in first.items()
-        if name not in OF_ONE_RUN
+        if name not in {*OF_ONE_RUN, CASE_COUNT}
         and all(name in other and _same(value, other[name]) for other in others)
     }
 
@@ -195,6 +201,10 @@ def _same(one: object, other: object) -> bool:
 def _labelled(
     joined: xr.Dataset, dim: str, labels: Sequence[Any] | np.ndarray | xr.DataArray
 ) -> xr.Dataset:
+    several = isinstance(labels, Iterable)  # pyright: ignore[reportUnnecessaryIsInstance]
+    if isinstance(labels, str) or not several:
+        msg = f"{_OWNER}: labels must be a list of values, one for each run, got {shown(labels)}"
+        raise SchemaError(msg)
     values = labels.to_numpy() if isinstance(labels, xr.DataArray) else np.asarray(list(labels))
     if values.shape != (joined.sizes[dim],):
         found = f"{len(values)} labels" if values.ndim == 1 else f"labels of shape {values.shape}"

@@ -1,8 +1,8 @@
 """Files of arrays: written whole or not at all, and known to be what was written.
 
 The first line has a name, the version of the format, and the sha256 of all that follows: a line of
-JSON that describes the arrays, and their bytes, one after the other. The same contents give the
-same bytes.
+JSON that describes the arrays, and their bytes, one after the other. The same contents in the
+same order give the same bytes; mappings come back in the order in which they were given.
 """
 
 import hashlib
@@ -32,7 +32,7 @@ def write_arrays(path: Path, described: Mapping[str, Any], arrays: Mapping[str, 
     path : Path
         Of the file; one that is there is replaced.
     described : mapping
-        What else is kept, fit for JSON.
+        What else is kept, fit for JSON, with words for all keys.
     arrays : mapping of str to ndarray
         Numbers.
 
@@ -43,7 +43,7 @@ def write_arrays(path: Path, described: Mapping[str, Any], arrays: Mapping[str, 
     """
     plain = {name: _little(values) for name, values in arrays.items()}
     shapes = [[name, values.dtype.str, list(values.shape)] for name, values in plain.items()]
-    line = json.dumps({"described": dict(described), "arrays": shapes}, sort_keys=True)
+    line = json.dumps({"described": dict(described), "arrays": shapes})
     body = b"".join([line.encode(), b"\n", *(values.tobytes() for values in plain.values())])
     digest = hashlib.sha256(body).hexdigest().encode()
     write_whole(path, b"".join([_HEAD, digest, b"\n", body]))

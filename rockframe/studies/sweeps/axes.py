@@ -226,7 +226,7 @@ def _ratios(given: object) -> object:
 
 
 def _items(given: object) -> list[Any]:
-    if isinstance(given, str) or not isinstance(given, Iterable):
+    if isinstance(given, str | bytes) or not isinstance(given, Iterable):
         return [given]
     if isinstance(given, pint.Quantity) and getattr(cast("Any", given).magnitude, "ndim", 0) == 0:
         return [given]

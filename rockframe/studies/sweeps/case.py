@@ -1,6 +1,7 @@
 """A case of a sweep, to be looked at alone."""
 
 import json
+import math
 from collections import OrderedDict
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -19,7 +20,7 @@ from rockframe.results.variables.studies import MOTION, REPEATED
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import LEVELS, Accuracy
 from rockframe.studies.sweeps.axes import OF_SCENES, Axis, Changes
-from rockframe.studies.sweeps.motions import motions_of, scaled
+from rockframe.studies.sweeps.motions import motion_number, motions_of, scaled
 from rockframe.studies.sweeps.scenes import FunctionScene, Scene, SystemScene, scene_of
 from rockframe.studies.sweeps.screening import AGAIN
 from rockframe.studies.sweeps.starts import started
@@ -174,15 +175,22 @@ def _place(dataset: xr.Dataset, labels: dict[str, Any]) -> dict[str, int]:
     return {name: found.get(name, 0) for name in dims}
 
 
+def _float(number: float | np.number[Any]) -> float:
+    """Give a number as a float, infinite where it is a whole number larger than any."""
+    try:
+        return float(number)
+    except OverflowError:
+        return math.inf
+
+
 def _found(labels: xr.DataArray, name: str, wanted: Any) -> int:
     values = np.atleast_1d(labels.to_numpy())
-    if name == MOTION and isinstance(wanted, int | np.integer):
-        if 0 <= wanted < len(values):
-            return int(wanted)
-    elif values.dtype.kind == "f":
+    if name == MOTION:
+        return motion_number(wanted, values.tolist(), owner=_OWNER)
+    if values.dtype.kind == "f":
         measure = Measure("a value", Unit(labels.attrs["units"]), f"{values[0]:g}")
         number = (
-            float(wanted)
+            _float(wanted)
             if isinstance(wanted, int | float | np.number)
             else (
                 to_ratio(wanted, owner=_OWNER, name=name)

@@ -2,28 +2,40 @@
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from enum import IntEnum
 from typing import Final
 
 import numpy as np
 
 from rockframe.errors import RockframeError
-from rockframe.results.outcome import Generic, scalars
+from rockframe.results.outcome import Generic
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.requests import POINT_TIME
 from rockframe.results.variables.runs import RunStatus
 from rockframe.results.variables.studies import REPEATED, VERDICT_CHANGED
 from rockframe.results.variables.variable import TIME
-from rockframe.simulation.end_in_motion import STILL_MOVING, may_overturn_later
-from rockframe.simulation.run import NONE
+from rockframe.simulation.end_in_motion import STILL_MOVING
+from rockframe.simulation.run import NONE, in_motion, scalars_of
+from rockframe.simulation.second_look import Look
 from rockframe.studies.sweeps.cases_of_job import CasesOfJob
 from rockframe.studies.sweeps.runs import Failed, each_run
-from rockframe.studies.sweeps.screening import Look, in_doubt, look_at, repeated
+from rockframe.studies.sweeps.screening import in_doubt, look_at_case, repeated
 from rockframe.studies.sweeps.side_by_side import Finished
 from rockframe.studies.sweeps.study import FEWEST_IN_LANES, Histories, Job
 
 NO_TEXT: Final = 0
 """Place of the text that says nothing, in the texts of a chunk."""
 _STATUS: Final = "status"
+DRIVER: Final = "driver"
+"""Column that tells how cases were run; no result, and in no dataset."""
+
+
+class Driver(IntEnum):
+    """How a case was run."""
+
+    ALONE = 0
+    IN_LANES = 1
+    AS_PYTHON = 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,7 +47,7 @@ class Rows:
     status : ndarray of int8, shape (cases,)
         How each run ended, or why there is none.
     scalars : dict of str to ndarray of float64, shape (cases,) or (cases, points)
-        By their names in the schema; NaN where a case has no result.
+        By their names in the schema, and `DRIVER`; NaN where a case has no result.
     histories : dict of str to ndarray of float64, shape (cases, times) or (cases, points, times)
         The same; NaN beyond a run's end too.
     message : ndarray of int32, shape (cases,)
@@ -72,24 +84,36 @@ def run_chunk(job: Job, stopped: Callable[[], bool] = lambda: False) -> Rows | N
     cases = CasesOfJob(job)
     told = _Telling(len(cases), job.histories)
     looks: dict[int, Look] = {}
-    for run in each_run(cases, range(len(cases)), stopped):
+    for run in each_run(cases, range(len(cases)), stopped, job.patience):
         told.put(run)
         if job.screened and isinstance(run, Finished):
-            looks[run.case] = look_at(cases, run)
+            looks[run.case] = look_at_case(cases, run)
     if job.screened and not stopped():
         doubtful = in_doubt(cases, looks, stopped)
         told.screen(looks, doubtful)
-        many = len(doubtful) >= FEWEST_IN_LANES  # for few nothing need be compiled
-        for run in each_run(cases.changed(repeated), doubtful, stopped, side_by_side=many):
+        patience = None
+        if job.patience is not None and len(doubtful) >= FEWEST_IN_LANES:
+            patience = job.patience * len(doubtful) / len(cases)
+        for run in each_run(cases.changed(repeated), doubtful, stopped, patience):
             told.put(run)
             told.compare(looks[run.case], run)
     return None if stopped() else told.rows()
 
 
-def _cautions(run: Finished) -> list[str]:
+def _told_by(run: Finished) -> tuple[list[str], Mapping[str, Generic | float]]:
+    """Give what is to be warned of in a run, and its scalars."""
     if run.response is not None:
-        return [text for _, text in run.response.cautions()]
-    return [STILL_MOVING] if may_overturn_later(run.system, run.summary) else []
+        return [text for _, text in run.response.cautions()], run.response.scalars
+    missing: list[str] = []
+    told = scalars_of(run.system, run.summary, missing)
+    moving = in_motion(run.system, run.summary, missing)
+    return [*([STILL_MOVING] if moving else []), *missing], told
+
+
+def _driver(run: Finished) -> Driver:
+    if run.response is None:
+        return Driver.IN_LANES
+    return Driver.AS_PYTHON if run.response.trajectory.as_python else Driver.ALONE
 
 
 class _Telling:
@@ -118,15 +142,15 @@ class _Telling:
         case, response = run.case, run.response
         if self._status[case] != RunStatus.NOT_RUN:  # of a first run
             self._clear(case)
-        cautions = _cautions(run)
+        cautions, told = _told_by(run)
         self._say(case, "; ".join([*run.said, *cautions]) or NONE)
         self._status[case] = run.summary.status
         if run.summary.overturned is None:
             self._clear(case)
             return
-        told = scalars(run.summary, run.system.setting) if response is None else response.scalars
+        self._put_scalars(case, {DRIVER: _driver(run)})
         self._put_scalars(case, {name: told[name] for name in told if name != _STATUS})
-        if self._kept is not None and response is not None:
+        if self._kept is not None and response is not None and response.answers.values:
             self._put_histories(case, response.answers.values, self._kept)
 
     def screen(self, every: Iterable[int], doubtful: Iterable[int]) -> None:

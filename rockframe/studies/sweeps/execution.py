@@ -1,6 +1,5 @@
 """Running the chunks of a sweep, several at a time."""
 
-import os
 from collections.abc import Callable, Generator, Iterable
 from concurrent.futures import (
     FIRST_COMPLETED,
@@ -20,7 +19,7 @@ from typing import Final
 from rockframe.errors import ComponentError, RockframeError, StudyError, shown
 from rockframe.studies.sweeps.axes import OWNER
 from rockframe.studies.sweeps.chunk import Rows, run_chunk
-from rockframe.studies.sweeps.study import Job
+from rockframe.studies.sweeps.study import Job, worker_count
 
 IN_FLIGHT: Final = 256
 """Most chunks that are handed out at once; their jobs have to be held meanwhile."""
@@ -34,13 +33,6 @@ class Chunk:
 
     number: int
     cases: range
-
-
-def worker_count() -> int:
-    """Give the number of processors that this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
 
 
 def carry_out(

@@ -1,28 +1,53 @@
 """What a sweep keeps beside scalars: histories on times that all cases have, peaks at points."""
 
 from collections.abc import Mapping
-from typing import Final
 
 from rockframe.errors import StudyError
 from rockframe.motion import GroundMotion
 from rockframe.results.schema import GROUPS, SCHEMA
-from rockframe.results.variables.requests import POINT_PEAKS, POINT_TIME, POINTS
-from rockframe.results.variables.runs import HISTORIES
+from rockframe.results.variables.requests import (
+    FORCE_SCALARS,
+    POINT_PEAKS,
+    POINT_TIME,
+    POINTS,
+)
+from rockframe.results.variables.runs import EVENTS_AND_SCALARS, HISTORIES
+from rockframe.results.variables.studies import SWEEP
 from rockframe.results.variables.variable import TIME
 from rockframe.simulation.asked import listed
 from rockframe.simulation.plan import STILL_GROUND_OUTPUT_STEP, Arguments, length_of
 from rockframe.studies.sweeps.scenes import FunctionScene, Scene
 from rockframe.studies.sweeps.study import Histories
 
-MOST_VALUES: Final = 1e9
-"""Values of histories, or at points, beyond which a sweep is refused: eight gigabytes."""
 
+def numbers_of_case(
+    arguments: Arguments, kept: Histories | None, *, screened: bool
+) -> dict[str, float]:
+    """Tell how many numbers are kept of a case, by what they are.
 
-def too_many_peaks(points: int, cases: int) -> list[str]:
-    """Tell whether the peaks at points would not fit into memory."""
-    if len(POINT_PEAKS) * points * float(cases) <= MOST_VALUES:
-        return []
-    return [f"the peaks at {points} points of {cases} cases are more than {MOST_VALUES:.0e} values"]
+    Parameters
+    ----------
+    arguments : Arguments
+        Of every run.
+    kept : Histories or None
+        What is kept beside scalars.
+    screened : bool
+        Whether cases tell of a second run.
+
+    Returns
+    -------
+    dict of str to float
+    """
+    points = len(arguments.points)
+    every = [*EVENTS_AND_SCALARS, *FORCE_SCALARS, *(SWEEP if screened else ())]
+    numbers = {"scalars": float(sum(not row.dims for row in every))}
+    if points:
+        numbers[f"peaks at {points} points"] = float(len(POINT_PEAKS) * points)
+    if kept is not None:
+        names = kept.names or [row.name for row in (*HISTORIES, *POINTS) if TIME[0] in row.dims]
+        several = sum(points if SCHEMA[name].dims == POINT_TIME else 1 for name in names)
+        numbers[f"{several} histories of {kept.count} times"] = float(several * kept.count)
+    return numbers
 
 
 def kept_histories(
@@ -30,7 +55,6 @@ def kept_histories(
     motions: Mapping[str, GroundMotion | None],
     arguments: Arguments,
     outputs: object,
-    count: int,
 ) -> Histories | None:
     """Find the histories that are kept, and the times that those of all cases have.
 
@@ -44,8 +68,6 @@ def kept_histories(
         Of every run.
     outputs : object
         As the user gave them, and as they have been read.
-    count : int
-        Number of cases.
 
     Returns
     -------
@@ -55,7 +77,7 @@ def kept_histories(
     Raises
     ------
     StudyError
-        There are no such histories, no common times, or too many values.
+        There are no such histories, or no common times.
     """
     if not arguments.histories:
         return None
@@ -83,13 +105,4 @@ def kept_histories(
             raise StudyError(msg)
         (step,) = steps
     longest = max(length_of(arguments, motion) for motion in motions.values())
-    kept = Histories(names or None, step, 1 + int(longest / step * (1.0 + 1e-12)))
-    every = names or [row.name for row in (*HISTORIES, *POINTS) if TIME[0] in row.dims]
-    several = sum(len(arguments.points) if SCHEMA[name].dims == POINT_TIME else 1 for name in every)
-    if several * float(kept.count) * count > MOST_VALUES:
-        msg = (
-            f"{several} histories of {kept.count} times in {count} cases are more than "
-            f"{MOST_VALUES:.0e} values; name fewer outputs, or give a longer output_step"
-        )
-        raise StudyError(msg)
-    return kept
+    return Histories(names or None, step, 1 + int(longest / step * (1.0 + 1e-12)))

@@ -8,29 +8,28 @@ from typing import Any, Final
 import numpy as np
 import xarray as xr
 
-from rockframe.errors import ModelWarning, SolverWarning, warn
 from rockframe.results.dataset import build_dataset
+from rockframe.results.joining import CASE_COUNT
 from rockframe.results.outcome import Generic
 from rockframe.results.points import Point, point_labels
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.requests import POINT_PEAKS
 from rockframe.results.variables.runs import EVENTS_AND_SCALARS, RunStatus
-from rockframe.results.variables.studies import CASE, MESSAGE, MOTION, REPEATED, VERDICT_CHANGED
+from rockframe.results.variables.studies import CASE, MESSAGE, MOTION
 from rockframe.results.variables.variable import TIME
 from rockframe.simulation.run import NONE
-from rockframe.studies.sweeps.axes import OWNER, Axis
-from rockframe.studies.sweeps.chunk import Rows
+from rockframe.studies.sweeps.axes import Axis
+from rockframe.studies.sweeps.chunk import DRIVER, Driver, Rows
 from rockframe.studies.sweeps.grid import Grid
-from rockframe.studies.sweeps.scenes import SystemScene
+from rockframe.studies.sweeps.scenes import FunctionScene, SystemScene
 from rockframe.studies.sweeps.screening import SCREEN
 from rockframe.studies.sweeps.study import Histories, Study
+from rockframe.studies.sweeps.telling import SCREENED, summed_up, whole_verdict
 
 ALWAYS: Final = tuple(
     row.name for row in EVENTS_AND_SCALARS if not row.dims and row.name != "status"
 )
 """Scalars that every run has."""
-SCREENED: Final = (REPEATED, VERDICT_CHANGED)
-"""What every case of a screened sweep has beside."""
 _TITLE: Final = "Sweep of a rocking system"
 ALONE: Final = "each case alone"
 SIDE_BY_SIDE: Final = (
@@ -78,15 +77,14 @@ def labels_of(study: Study) -> Labels:
         ),
         "motion_names": json.dumps(list(study.motions)),
         "study_sha256": study.digest,
-        "driver": SIDE_BY_SIDE if study.side_by_side else ALONE,
     }
     if study.period is not None:
         attributes["spectral_period"] = study.period
     if isinstance(scene, SystemScene):
         attributes["model"] = scene.assembly.setting.model
         attributes["system_json"] = scene.assembly.json
-    else:
-        attributes["function"] = str(scene.to_dict()["function"])
+    elif isinstance(scene, FunctionScene):
+        attributes["function"] = scene.name
     return Labels(study.grid, tuple(study.motions), study.histories, arguments.points, attributes)
 
 
@@ -103,7 +101,7 @@ def labelled(labels: Labels, found: Iterable[tuple[range, Rows]]) -> xr.Dataset:
     labels : Labels
         Of the sweep.
     found : iterable of (range, Rows)
-        Cases in the order of running, and what they showed; those that are not there have
+        Cases, and what they showed, in the order of running; those that are not there have
         not been run.
 
     Returns
@@ -117,9 +115,11 @@ def labelled(labels: Labels, found: Iterable[tuple[range, Rows]]) -> xr.Dataset:
     if labels.points:
         gaps = np.full((grid.count, len(labels.points)), np.nan)
         scalars |= {row.name: gaps for row in POINT_PEAKS}
+    driver = _driver(rows.scalars.get(DRIVER, np.empty(0)))
     scalars |= rows.scalars
     # what cannot be counted before it has run stays a flag, also where nothing has
-    values = {name: grid.arranged(scalars[name]) for name in SCHEMA if name in scalars}
+    rows.scalars.clear()  # what has been arranged need not be there twice
+    values = {name: grid.arranged(scalars.pop(name)) for name in SCHEMA if name in scalars}
     values |= {
         "status": grid.arranged(rows.status),
         "message_number": grid.arranged(rows.message),
@@ -134,11 +134,18 @@ def labelled(labels: Labels, found: Iterable[tuple[range, Rows]]) -> xr.Dataset:
         around[TIME[0]] = labels.histories.times
     if labels.points:
         around |= point_labels(labels.points)
-    attributes = {"verdict": _verdict(rows), **labels.attributes}
+    attributes = {
+        "verdict": whole_verdict(runs),
+        CASE_COUNT: grid.count,
+        "driver": driver,
+        **labels.attributes,
+    }
     dataset = build_dataset(around, attributes, title=_TITLE).assign(runs.data_vars)
     if rows.histories:
         histories = {
-            name: grid.arranged(rows.histories[name]) for name in SCHEMA if name in rows.histories
+            name: grid.arranged(rows.histories.pop(name))
+            for name in SCHEMA
+            if name in rows.histories
         }
         dataset = dataset.assign(build_dataset(histories, {}, over=tuple(grid.sizes)).data_vars)
     dataset = dataset.assign_coords(_coordinates(labels))
@@ -148,32 +155,6 @@ def labelled(labels: Labels, found: Iterable[tuple[range, Rows]]) -> xr.Dataset:
     return dataset
 
 
-def say_what_is_missing(dataset: xr.Dataset) -> None:
-    """Warn of cases without a result, and of cautions.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        A sweep.
-    """
-    status = dataset["status"].to_numpy().ravel()
-    number = dataset["message_number"].to_numpy().ravel()
-    texts = dataset[MESSAGE].to_numpy()
-    lacking = np.isnan(dataset["peak_rotation"].to_numpy().ravel())
-    not_run = status == RunStatus.NOT_RUN
-    failed = lacking & ~not_run
-    for which, kind, words in (
-        (failed, SolverWarning, "have no result"),
-        (not_run, SolverWarning, "have not been run"),
-        (~lacking & (texts[number] != NONE), ModelWarning, "have a result to be careful with"),
-    ):
-        if which.any():
-            text = str(texts[number[which][0]])
-            first = "" if text == NONE else f"; of the first it is said: {text}"
-            count = f"{int(which.sum())} of {len(status)} cases"
-            warn(f"{OWNER}: {count} {words} (status, message){first}", kind)
-
-
 def _joined(count: int, found: Iterable[tuple[range, Rows]]) -> Rows:
     """Put chunks together, in the order of running, with gaps where there are none."""
     scalars: dict[str, Generic] = {}
@@ -181,7 +162,7 @@ def _joined(count: int, found: Iterable[tuple[range, Rows]]) -> Rows:
     status = np.full(count, RunStatus.NOT_RUN, dtype=np.int8)
     message = np.zeros(count, dtype=np.int64)
     texts: dict[str, int] = {NONE: 0}
-    for cases, rows in sorted(found, key=lambda one: one[0].start):
+    for cases, rows in found:
         here = slice(cases.start, cases.stop)
         status[here] = rows.status
         # texts in the order of their cases, however these were cut into chunks
@@ -194,7 +175,8 @@ def _joined(count: int, found: Iterable[tuple[range, Rows]]) -> Rows:
                 if name not in kept:
                     kept[name] = np.full((count, *values.shape[1:]), np.nan)
                 kept[name][here] = values
-    return Rows(status, scalars, histories, message, tuple(texts))
+    few, message = summed_up(list(texts), message)
+    return Rows(status, scalars, histories, message, few)
 
 
 def _coordinates(labels: Labels) -> dict[str, xr.Variable]:
@@ -217,18 +199,11 @@ def _labels(values: Generic) -> Generic:
     return values.astype(object) if values.dtype.kind == "U" else values
 
 
-def _verdict(rows: Rows) -> str:
-    """Say in one sentence what became of the cases."""
-    count = len(rows.status)
-    overturned = rows.scalars.get("overturned", np.full(count, np.nan))
-    falls, stands = int((overturned == 1.0).sum()), int((overturned == 0.0).sum())
-    not_run = int((rows.status == RunStatus.NOT_RUN).sum())
-    text = f"Of {count} cases {falls} overturned and {stands} did not"
-    if count - not_run - falls - stands:
-        text += f"; {count - not_run - falls - stands} have no result"
-    if not_run:
-        text += f"; {not_run} have not been run"
-    if REPEATED in rows.scalars:
-        again, changed = (int((rows.scalars[name] == 1.0).sum()) for name in SCREENED)
-        text += f"; {again} near a flip were run again by tolerance, which changed {changed}"
-    return f"{text}."
+def _driver(found: Generic) -> str:
+    """Say how cases were run, from a `Driver` for each; NaN for those without a result."""
+    words = SIDE_BY_SIDE if (found == Driver.IN_LANES).any() else ALONE
+    as_python = int((found == Driver.AS_PYTHON).sum())
+    if not as_python:
+        return words
+    which = "" if as_python == int(np.isfinite(found).sum()) else f" {as_python} of them"
+    return f"{words},{which} in plain Python"

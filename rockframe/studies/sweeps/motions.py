@@ -1,10 +1,13 @@
 """The ground motions of a sweep: their names, and how axes change them."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final, cast
 
-from rockframe.errors import ComponentError, shown
+import numpy as np
+
+from rockframe.arguments import by_words
+from rockframe.errors import ComponentError, StudyError, shown
 from rockframe.motion import GroundMotion
 from rockframe.motion.shown_name import shown_name
 from rockframe.results.schema import SCHEMA
@@ -15,6 +18,8 @@ NO_MOTION: Final = "none"
 """Name of a ground that stands still, as in the attributes of a run."""
 OF_THE_SCENE: Final = "of the scene"
 """Name of motions that a function puts into its systems."""
+_FEW: Final = 6
+"""Names that a message lists."""
 
 
 @dataclass(frozen=True)
@@ -91,13 +96,13 @@ def motions_of(given: object) -> dict[str, GroundMotion]:
     Raises
     ------
     ComponentError
-        None at all, or something else.
+        None at all, something else, or two of one name.
     """
     named: dict[str, Any]
     if isinstance(given, GroundMotion):
         return {given.name: given}
     if isinstance(given, Mapping):
-        named = {str(name): one for name, one in cast("Mapping[Any, Any]", given).items()}
+        named = by_words(cast("Mapping[Any, Any]", given), owner=OWNER)
     elif isinstance(given, Iterable) and not isinstance(given, str):
         named = _told_apart(list(cast("Iterable[Any]", given)))
     else:
@@ -108,6 +113,48 @@ def motions_of(given: object) -> dict[str, GroundMotion]:
         msg = f"{OWNER}: motions must be a GroundMotion, or several, got {found}"
         raise ComponentError(msg)
     return named
+
+
+def motion_number(wanted: object, names: Sequence[str], *, owner: str) -> int:
+    """Give the number of the motion that a name, or a number, stands for.
+
+    Parameters
+    ----------
+    wanted : object
+        Name or number.
+    names : sequence of str
+        Of the motions, in their order.
+    owner : str
+        Argument or function, for the message.
+
+    Returns
+    -------
+    int
+
+    Raises
+    ------
+    StudyError
+        There is none, or it is the number of one motion and the name of another.
+    """
+    if isinstance(wanted, str):
+        if wanted in names:
+            return names.index(wanted)
+    elif isinstance(wanted, int | np.integer) and not isinstance(wanted, bool):
+        number = int(wanted)
+        if str(number) in names and names.index(str(number)) != number:
+            msg = (
+                f"{owner}: {number} is the name of one motion, and the place of another; give the "
+                f"name, {str(number)!r}"
+            )
+            raise StudyError(msg)
+        if 0 <= number < len(names):
+            return number
+    few = ", ".join(map(repr, names[:_FEW])) + ", ..." * (len(names) > _FEW)
+    msg = (
+        f"{owner}: there is no motion {shown(wanted)}; expected a name, or a number from 0 to "
+        f"{len(names) - 1}; there are {few}"
+    )
+    raise StudyError(msg)
 
 
 def _told_apart(motions: list[Any]) -> dict[str, Any]:

@@ -23,16 +23,18 @@ from rockframe.results.variables.variable import EVENT, TIME
 from rockframe.simulation.plan import Arguments, read_arguments
 from rockframe.studies.sweeps.axes import OWNER, Axis, Changes
 from rockframe.studies.sweeps.grid import MOST_CASES, Grid
-from rockframe.studies.sweeps.kept import kept_histories, too_many_peaks
+from rockframe.studies.sweeps.kept import kept_histories, numbers_of_case
+from rockframe.studies.sweeps.memory import check_memory
 from rockframe.studies.sweeps.motions import (
     NO_MOTION,
     OF_THE_SCENE,
     SPECTRAL,
+    motion_number,
     motions_of,
 )
 from rockframe.studies.sweeps.scenes import FunctionScene, Scene, own_motion, scene_of
 from rockframe.studies.sweeps.screening import FIRST, SCREEN
-from rockframe.studies.sweeps.study import Study
+from rockframe.studies.sweeps.study import Histories, Study
 from rockframe.units import PERIOD, POSITIVE, QuantityLike, to_si
 
 Read = TypeVar("Read")
@@ -122,11 +124,21 @@ def plan_study(
     if not 0 < grid.count <= MOST_CASES:
         faults.append(f"there are {grid.count} cases; expected 1 to {MOST_CASES}")
     faults += _without_length(made, given, arguments)
-    faults += too_many_peaks(len(arguments.points), grid.count)
-    kept = tried(lambda: kept_histories(made, given, arguments, outputs, grid.count), None)
+    kept = tried(lambda: kept_histories(made, given, arguments, outputs), None)
+    numbers = numbers_of_case(arguments, kept, screened=screened)
+    faults += check_memory(numbers, grid.count, _remedies(arguments, kept), owner=OWNER)
     if faults:
         raise StudyError(*faults)
     return Study(made, grid, given, arguments, seconds, kept, screened=screened)
+
+
+def _remedies(arguments: Arguments, kept: Histories | None) -> str:
+    """Say what would need less memory."""
+    ways = ["run fewer cases"]
+    ways += ["name fewer points"] if arguments.points else []
+    if kept is not None:
+        ways += ["name fewer outputs", "give a longer output_step", "keep none: outputs=None"]
+    return f"{', '.join(ways[:-1])} or {ways[-1]}" if len(ways) > 1 else ways[0]
 
 
 def _motions(given: object, scene: Scene) -> dict[str, GroundMotion | None]:
@@ -161,17 +173,8 @@ def _table(cases: object) -> dict[str, object]:
 
 def _motion_column(column: Any, names: list[str]) -> Generic:
     """Read which motion each case has, by name or by number."""
-    found: list[int] = []
-    for one in np.asarray(column).tolist():
-        number = names.index(one) if one in names else one
-        if isinstance(number, bool) or not isinstance(number, int) or not 0 <= number < len(names):
-            msg = (
-                f"cases: there is no motion {one!r}; expected a name, or a number from 0 to "
-                f"{len(names) - 1}"
-            )
-            raise StudyError(msg)
-        found.append(number)
-    return np.array(found, dtype=np.intp)
+    wanted = np.asarray(column).tolist()
+    return np.array([motion_number(one, names, owner="cases") for one in wanted], dtype=np.intp)
 
 
 def _read(

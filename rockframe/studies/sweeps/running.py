@@ -12,12 +12,13 @@ from rockframe.errors import SolverWarning, StudyError, shown, warn
 from rockframe.studies.sweeps.axes import OWNER
 from rockframe.studies.sweeps.case import remember
 from rockframe.studies.sweeps.chunk import Rows
-from rockframe.studies.sweeps.execution import Chunk, carry_out, worker_count
+from rockframe.studies.sweeps.execution import Chunk, carry_out
 from rockframe.studies.sweeps.grid import chunks_of
-from rockframe.studies.sweeps.labelling import labelled, labels_of, say_what_is_missing
+from rockframe.studies.sweeps.labelling import labelled, labels_of
 from rockframe.studies.sweeps.progress import Progress
 from rockframe.studies.sweeps.store import Store, begin_with
-from rockframe.studies.sweeps.study import Study
+from rockframe.studies.sweeps.study import Study, worker_count
+from rockframe.studies.sweeps.telling import say_what_is_missing
 
 _LARGEST_CHUNK: Final = 1_000_000
 
@@ -78,7 +79,7 @@ def _in_memory(
         bar.update(len(one.cases))
 
     whole = carry_out(chunks, lambda one: study.job(one.cases), take, executor)
-    return labelled(labels_of(study), found), whole
+    return labelled(labels_of(study), sorted(found, key=lambda one: one[0].start)), whole
 
 
 def _kept(

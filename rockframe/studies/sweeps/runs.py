@@ -28,8 +28,7 @@ def each_run(
     cases: CasesOfJob,
     which: Sequence[int],
     stopped: Callable[[], bool],
-    *,
-    side_by_side: bool = True,
+    patience: float | None,
 ) -> Iterator[Finished | Failed]:
     """Run cases.
 
@@ -41,8 +40,8 @@ def each_run(
         Those to run.
     stopped : callable
         Whether to leave off; asked between cases.
-    side_by_side : bool
-        Whether they may run in lanes, where the job allows it.
+    patience : float or None
+        Longest time to compile what lanes need [s]; None lets no cases run in lanes.
 
     Yields
     ------
@@ -50,8 +49,8 @@ def each_run(
         In any order; not all where it was left off.
     """
     alone = set(which)
-    if side_by_side:
-        for finished in run_side_by_side(cases, which, stopped):
+    if patience is not None:
+        for finished in run_side_by_side(cases, which, stopped, patience):
             alone.discard(finished.case)
             yield finished
     for case in sorted(alone):

@@ -1,6 +1,5 @@
 """From the values of a case to the scene: a system with other parameters, or a user's function."""
 
-import hashlib
 import inspect
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
@@ -24,6 +23,7 @@ from rockframe.studies.sweeps.axes import (
     numbers_of,
     words_of,
 )
+from rockframe.studies.sweeps.identity import name_of
 from rockframe.studies.sweeps.motions import TARGETS, target_words
 from rockframe.studies.sweeps.starts import STARTS, of_start
 from rockframe.system.assembly import Assembly, joined
@@ -55,10 +55,6 @@ class Scene(Protocol):
 
     def assembled(self, values: Values) -> Assembly:
         """Give the scene of a case; warn as :class:`rockframe.System` does."""
-        ...
-
-    def to_dict(self) -> dict[str, Any]:
-        """Describe the scene, fit for JSON: two that differ have other descriptions."""
         ...
 
 
@@ -155,10 +151,6 @@ class SystemScene:
             warn(caution, ModelWarning)
         return found
 
-    def to_dict(self) -> dict[str, Any]:
-        """Describe parts and options."""
-        return {"system": self.assembly.to_dict()}
-
     def _parts(self) -> dict[str, Component]:
         parts = vars(self.assembly.parts)
         return {slot: part for slot, part in parts.items() if isinstance(part, Component)}
@@ -236,16 +228,7 @@ class FunctionScene:
     @property
     def name(self) -> str:
         """Name of the function."""
-        return getattr(self.function, "__qualname__", type(self.function).__name__)
-
-    def to_dict(self) -> dict[str, Any]:
-        """Name the function, with a digest of its source, or else of its compiled code."""
-        try:
-            text = inspect.getsource(self.function)
-        except (OSError, TypeError):
-            code = getattr(self.function, "__code__", None)
-            text = repr(None if code is None else (code.co_code, code.co_consts, code.co_names))
-        return {"function": self.name, "source": hashlib.sha256(text.encode()).hexdigest()}
+        return name_of(self.function)
 
     def _signature(self) -> inspect.Signature:
         return inspect.signature(self.function)

@@ -7,13 +7,13 @@ from typing import Any, Final
 
 import numpy as np
 
-from rockframe.compiled import COMPILED
+from rockframe.compiled import compiling_for
 from rockframe.signals import Motion
 from rockframe.simulation.beginning import start_of
 from rockframe.simulation.run import Response, nothing_to_say
 from rockframe.solve.beginning import begun
 from rockframe.solve.integrate import STILL_INTERVAL
-from rockframe.solve.lanes.integrate import LaneRun, integrate_lanes, kind_of
+from rockframe.solve.lanes.integrate import LaneRun, integrate_lanes, kind_of, lanes_compiled
 from rockframe.solve.layout import Status
 from rockframe.solve.trajectory import Summary, told_by
 from rockframe.studies.sweeps.cases_of_job import CasesOfJob
@@ -85,7 +85,7 @@ class _Group:
 
 
 def run_side_by_side(
-    cases: CasesOfJob, which: Sequence[int], stopped: Callable[[], bool]
+    cases: CasesOfJob, which: Sequence[int], stopped: Callable[[], bool], patience: float
 ) -> Iterator[Finished]:
     """Run what can run side by side.
 
@@ -97,20 +97,29 @@ def run_side_by_side(
         Those to run.
     stopped : callable
         Whether to leave off; asked now and then.
+    patience : float
+        Longest time to compile what lanes need [s].
 
     Yields
     ------
     Finished
         Cases in any order; those that are missing are to run alone.
     """
-    if not (cases.job.side_by_side and COMPILED):
-        return
     scenes: dict[Any, _Scene | None] = {}
+    kinds: dict[Any, bool] = {}
+
+    def ready(scene: _Scene) -> bool:
+        if scene.kind not in kinds:
+            kinds[scene.kind] = False  # unless it can be compiled
+            with compiling_for(f"a sweep in lanes ({scene.system.setting.model})"):
+                kinds[scene.kind] = lanes_compiled(scene.run, patience)
+        return kinds[scene.kind]
+
     for begin in range(0, len(which), TOGETHER):
         groups: dict[Any, _Group] = {}
         for case in which[begin : begin + TOGETHER]:
             with suppress(Exception):  # which is told of where the case runs alone
-                _take_up(cases, case, scenes, groups)
+                _take_up(cases, case, scenes, groups, ready)
         for group in groups.values():
             if stopped():
                 return
@@ -118,7 +127,11 @@ def run_side_by_side(
 
 
 def _take_up(
-    cases: CasesOfJob, case: int, scenes: dict[Any, _Scene | None], groups: dict[Any, _Group]
+    cases: CasesOfJob,
+    case: int,
+    scenes: dict[Any, _Scene | None],
+    groups: dict[Any, _Group],
+    ready: Callable[[_Scene], bool],
 ) -> None:
     unscaled = cases.unscaled(case)
     length = None if unscaled is None else (unscaled.si.time_step, unscaled.si.duration)
@@ -126,7 +139,8 @@ def _take_up(
     key = (cases.scene_key(case), cases.start_key(case), length, vertical)
     if key not in scenes:
         scenes[key] = None  # unless it can be prepared
-        scenes[key] = _prepared(cases, case, vertical)
+        prepared = _prepared(cases, case, vertical)
+        scenes[key] = prepared if prepared is not None and ready(prepared) else None
     scene = scenes[key]
     if scene is None:
         return

@@ -31,11 +31,14 @@ from rockframe.studies.sweeps.axes import Axis
 from rockframe.studies.sweeps.chunk import Rows
 from rockframe.studies.sweeps.execution import Chunk
 from rockframe.studies.sweeps.grid import Grid, chunks_of
+from rockframe.studies.sweeps.identity import difference
 from rockframe.studies.sweeps.labelling import Labels, labels_of
 from rockframe.studies.sweeps.study import Histories, Study
 from rockframe.version import __version__
 
-FORMAT: Final = 2
+FORMAT: Final = 3
+_WITHOUT_ORDER: Final = (1, 2)
+"""Formats that read motions in another order, and whose digests left out what functions use."""
 _STUDY: Final = "study.json"
 _LABELS: Final = "labels.arrays"
 _LEFT_OVER: Final = 3600.0
@@ -209,21 +212,22 @@ class Store:
             )
             for kind in ("axes", "columns")
         )
-        grid = Grid(axes, columns, len(described["motions"]), arrays.get(_COLUMN))
+        names = tuple(name for name, _ in described["motions"])
+        grid = Grid(axes, columns, len(names), arrays.get(_COLUMN))
         kept = described["histories"]
         histories = None
         if kept is not None:
-            names = None if kept["names"] is None else tuple(kept["names"])
-            histories = Histories(names, kept["step"], kept["count"])
+            which = None if kept["names"] is None else tuple(kept["names"])
+            histories = Histories(which, kept["step"], kept["count"])
         points = tuple(Point(**one) for one in described["points"])
-        return Labels(grid, tuple(described["motions"]), histories, points, described["attributes"])
+        return Labels(grid, names, histories, points, described["attributes"])
 
     def motions(self) -> dict[str, GroundMotion | None]:
         """Read the motions of the study."""
         described, arrays = _read(self.folder / _LABELS)
         return {
             name: None if one is None else _motion(k, one, arrays)
-            for k, (name, one) in enumerate(described["motions"].items())
+            for k, (name, one) in enumerate(described["motions"])
         }
 
     def _file(self, chunk: Chunk) -> Path:
@@ -250,7 +254,7 @@ def _make(path: Path, study: Study, chunk: int) -> None:
         "attributes": dict(labels.attributes),
         "histories": None if labels.histories is None else vars(labels.histories),
         "points": [vars(one) for one in labels.points],
-        "motions": {},
+        "motions": [],  # in their order, in which cases are counted
     }
     for kind, axes in (("axes", labels.grid.axes), ("columns", labels.grid.columns)):
         described[kind] = [(axis.to_dict(), _words(axis)) for axis in axes]
@@ -263,7 +267,7 @@ def _make(path: Path, study: Study, chunk: int) -> None:
             for what, values in held.items():
                 arrays[f"{_MOTION}{k} {component} {what}"] = np.array(values)
                 held[what] = None
-        described["motions"][name] = one
+        described["motions"].append((name, one))
     write_arrays(path / _LABELS, described, arrays)
     head = {
         "format": FORMAT,
@@ -327,9 +331,12 @@ def _read_head(path: Path) -> dict[str, Any]:
         msg = f"{file}: damaged: {problem}"
         raise StudyError(msg) from problem
     if form != FORMAT or version != __version__:
+        why = "whose numbers may be others"
+        if form in _WITHOUT_ORDER:
+            why = "which does not tell for certain whose results it holds"
         msg = (
-            f"{path}: found a study of rockframe {version} (format {form}), whose numbers may be "
-            f"others; this is rockframe {__version__} (format {FORMAT})"
+            f"{path}: found a study of rockframe {version} (format {form}), {why}; this is "
+            f"rockframe {__version__} (format {FORMAT}): run the study again, in another folder"
         )
         raise StudyError(msg)
     if not whole:
@@ -340,18 +347,9 @@ def _read_head(path: Path) -> dict[str, Any]:
 
 def _difference(path: Path, kept: Any, asked: Any) -> str:
     """Tell in which entries two studies differ."""
-    asked = json.loads(json.dumps(asked))
-    names = sorted(name for name in {*kept, *asked} if kept.get(name) != asked.get(name))
-    told: list[str] = []
-    for name in names:
-        old, new = kept.get(name), asked.get(name)
-        if isinstance(old, dict) and isinstance(new, dict):
-            inside = sorted(one for one in {*old, *new} if old.get(one) != new.get(one))
-            told.append(f"{name} ({', '.join(inside)})")
-        else:
-            told.append(name)
+    named = difference(kept, json.loads(json.dumps(asked)))
     return (
-        f"{path}: found another study, which differs in {', '.join(told)}; expected the one that "
+        f"{path}: found another study, which differs in {', '.join(named)}; expected the one that "
         "is asked for: give another folder"
     )
 

@@ -1,7 +1,6 @@
 """A sweep that has been planned: all that its results depend on."""
 
-import hashlib
-import json
+import os
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Final
@@ -9,19 +8,23 @@ from typing import Any, Final
 import numpy as np
 
 from rockframe.compiled import COMPILED
+from rockframe.errors import heard
 from rockframe.motion import GroundMotion
 from rockframe.results.outcome import Generic
 from rockframe.simulation.plan import STILL_GROUND_OUTPUT_STEP, Arguments, length_of
-from rockframe.studies.sweeps.axes import Axis
+from rockframe.studies.sweeps.axes import OF_SCENES, Axis
 from rockframe.studies.sweeps.grid import Grid
-from rockframe.studies.sweeps.scenes import Scene
+from rockframe.studies.sweeps.identity import digest_of, told
+from rockframe.studies.sweeps.scenes import FunctionScene, Scene
 from rockframe.version import __version__
 
 LONG_ENOUGH: Final = 1.0
 """What a chunk should take, so that handing it out costs little [s]."""
 LARGEST_CHUNK: Final = 10_000
 FEWEST_IN_LANES: Final = 500
-"""Cases below which lanes, which must be compiled too, save less than a fraction of a second."""
+"""Cases below which lanes, whose machine code has to be read, save next to nothing."""
+WORTH: Final = 1.0
+"""Longest time to compile what lanes need, over the time that they save in the sweep."""
 IN_LANES: Final = 0.25
 """Of the time of a run alone."""
 _OVERHEAD: Final = 5e-4
@@ -34,6 +37,10 @@ _SCREENED: Final = 2.5
 """Time of a run and of one with half as many steps again, over that of the first."""
 _SLOWER: Final = 300.0
 """Without compilation."""
+_SCENES_TOLD: Final = 16
+"""Cases at which it is looked what a function makes of them."""
+_GOLDEN: Final = 0.6180339887498949
+"""The golden section, by whose multiples these cases are spread evenly, whatever their number."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,8 +87,8 @@ class Job:
         Of the oscillator, where spectral values are a target [s].
     histories : Histories or None
         What is kept beside scalars.
-    side_by_side : bool
-        Whether cases run in lanes, as far as they can.
+    patience : float or None
+        Longest time to compile what lanes need [s]; None where no cases run in lanes.
     screened : bool
         Whether each is run twice, and again by tolerance where its verdict is in doubt.
     """
@@ -93,7 +100,7 @@ class Job:
     arguments: Arguments
     period: float | None
     histories: Histories | None
-    side_by_side: bool
+    patience: float | None
     screened: bool
 
 
@@ -140,57 +147,64 @@ class Study:
             self.arguments,
             self.period,
             self.histories,
-            self.side_by_side,
+            self.patience,
             self.screened,
         )
 
     @property
-    def side_by_side(self) -> bool:
-        """Whether cases run in lanes: compiled, without samples, and many.
+    def patience(self) -> float | None:
+        """Longest time to compile what lanes need: what they save in turn [s].
 
-        Their numbers are the same either way.
+        None where no cases run in lanes: not compiled, with samples, or too few. Their numbers
+        are the same either way.
         """
         sampled = self.histories is not None or bool(self.arguments.points)
-        return COMPILED and not sampled and self.grid.count >= FEWEST_IN_LANES
+        if not COMPILED or sampled or self.grid.count < FEWEST_IN_LANES:
+            return None
+        saved = (1.0 - IN_LANES) * self.grid.count * self._time_of_case() / worker_count()
+        return WORTH * saved
 
     def to_dict(self) -> dict[str, Any]:
-        """Tell all that the results depend on, long rows of numbers by their digests."""
-        rows = (*self.grid.axes, *self.grid.columns)
-        motions = {
-            name: None if motion is None else motion.sha256 for name, motion in self.motions.items()
-        }
-        column = self.grid.motion_column
-        return {
-            "rockframe_version": __version__,
-            "scene": self.scene.to_dict(),
-            "axes": {axis.name: axis.to_dict() | {"values": _digest(axis.values)} for axis in rows},
-            "dimensions": self.grid.sizes,
-            "motions": motions,
-            "motion_of_case": None if column is None else _digest(column),
-            "arguments": self.arguments.to_dict(),
-            "period": self.period,
-            "histories": None if self.histories is None else vars(self.histories),
-            "screened": self.screened,
-        }
+        """Tell all that the results depend on: every field, and what a function makes of cases."""
+        return {"rockframe_version": __version__, **told(self), "scenes": self._scenes_told()}
+
+    def _scenes_told(self) -> list[str]:
+        """Give digests of scenes that a function has made, which its source need not tell."""
+        if not isinstance(self.scene, FunctionScene):
+            return []
+        count = self.grid.count
+        spread = [int((k * _GOLDEN) % 1.0 * count) for k in range(_SCENES_TOLD)]
+        found: list[str] = []
+        for case in sorted({*spread, count - 1}):
+            axes = self.grid.of_cases(case, case + 1)
+            values = {axis: each.item() for axis, each in axes if axis.changes in OF_SCENES}
+            try:
+                with heard():
+                    found.append(digest_of(told(self.scene.assembled(values))))
+            except Exception as problem:  # of which its run tells
+                found.append(type(problem).__name__)
+        return found
 
     @cached_property
     def digest(self) -> str:
         """The sha256 of :meth:`to_dict`."""
-        text = json.dumps(self.to_dict(), sort_keys=True)
-        return hashlib.sha256(text.encode()).hexdigest()
+        return digest_of(self.to_dict())
 
     def chunk_size(self, workers: int) -> int:
         """Give a number of cases that takes long enough, and leaves work for all workers."""
+        one = self._time_of_case() * (1.0 if self.patience is None else IN_LANES)
+        size = LONG_ENOUGH / (one if COMPILED else _SLOWER * one)
+        fair = -(-self.grid.count // (4 * workers))
+        return int(max(1, min(size, fair, LARGEST_CHUNK)))
+
+    def _time_of_case(self) -> float:
+        """Give about how long a case takes alone, by machine code [s]."""
         lengths = [self._length(motion) for motion in self.motions.values()]
         fixed = self.arguments.accuracy.rtol is None
         one = _OVERHEAD + max(lengths) * (_FIXED if fixed else _BY_TOLERANCE)
         if not fixed:
             one *= (2e-8 / float(self.arguments.accuracy.rtol or 1.0)) ** 0.2
-        one *= IN_LANES if self.side_by_side else 1.0
-        one *= _SCREENED if self.screened else 1.0
-        size = LONG_ENOUGH / (one if COMPILED else _SLOWER * one)
-        fair = -(-self.grid.count // (4 * workers))
-        return int(max(1, min(size, fair, LARGEST_CHUNK)))
+        return one * (_SCREENED if self.screened else 1.0)
 
     def _length(self, motion: GroundMotion | None) -> float:
         """Give the number of intervals of a run."""
@@ -198,7 +212,8 @@ class Study:
         return length_of(self.arguments, motion) / step
 
 
-def _digest(values: Generic) -> str:
-    kept = values if values.dtype.kind == "U" else values.astype(values.dtype.newbyteorder("<"))
-    data = json.dumps(kept.tolist()).encode() if kept.dtype.kind == "U" else kept.tobytes()
-    return hashlib.sha256(f"{kept.dtype.kind}{kept.shape}".encode() + data).hexdigest()
+def worker_count() -> int:
+    """Give the number of processors that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import xarray as xr
 
-from rockframe.errors import StudyError
+from rockframe.errors import StudyError, shown
 from rockframe.shared_arguments import documented_by
 from rockframe.solve.accuracy import AccuracyLevel
 from rockframe.studies.sweeps.arguments import SweepArguments
@@ -127,6 +127,11 @@ def sweep(
     >>> dict(runs.overturned.sizes)
     {'scale': 2, 'frequency_ratio': 3, 'motion': 1}
     """
+    named = axes is None or isinstance(axes, Mapping)  # pyright: ignore[reportUnnecessaryIsInstance]
+    if not named:
+        found = f"axes must be a mapping of names to values, got {shown(axes)}"
+        msg = f"{found}; write for example axes={{'Block.mass': ['1 t', '2 t']}}"
+        raise StudyError(msg)
     given = dict(axes or {})
     twice = sorted(set(given) & set(more_axes))
     if twice:

@@ -310,7 +310,7 @@ REFUSED = [
     ),
     (
         ON_PADS, PULSE, {"scale": np.arange(1, 9999.0), "outputs": (), "output_step": "1 us"},
-        ["more than 1e+09 values"],
+        ["histories of 1000001 times", "TB", "are available", "or keep none: outputs=None"],
     ),
     (lambda width: None, PULSE, {"height": ["1 m"]}, ["do not fit the arguments of <lambda>"]),
     (lambda width: None, PULSE, {"width": ["1 K"]}, ["width has the unit 'K'"]),

@@ -102,9 +102,9 @@ def copied(whole, tmp_path):
 
 def test_another_study_is_refused_with_the_difference(copied):
     for changes, words in (
-        ({"scale": SCALES[:-1]}, r"differs in axes \(scale\), dimensions \(scale\)"),
-        ({"accuracy": "fast"}, r"arguments \(accuracy\)"),
-        ({"outputs": ["rotation", "base_shear"]}, r"histories \(names\)"),
+        ({"scale": SCALES[:-1]}, r"differs in grid \(axes \(scale \(values\)\)\)"),
+        ({"accuracy": "fast"}, r"arguments \(accuracy \(.*\), accuracy_name\)"),
+        ({"outputs": ["rotation", "base_shear"]}, r"differs in histories \(names\)"),
     ):
         with pytest.raises(StudyError, match=f"another study.*{words}.*another folder"):
             the_sweep(copied, **changes)
@@ -115,7 +115,7 @@ def test_another_function_is_another_study(tmp_path):
     scenes.append(lambda height: rf.System(BLOCK.replace(height=height), gravity="9 m/s^2"))
     arguments = {"height": ["3 m"], "store": tmp_path / "study"}
     rf.sweep(scenes[0], PULSE, **arguments)
-    with pytest.raises(StudyError, match=r"differs in scene \(source\)"):
+    with pytest.raises(StudyError, match=r"differs in scene \(function \(source\)\), scenes"):
         rf.sweep(scenes[1], PULSE, **arguments)
 
 
@@ -127,7 +127,7 @@ def test_other_versions_and_damaged_files_are_refused_with_a_reason(copied):
             keep.replace('"rockframe_version": "', '"rockframe_version": "9.'),
             "found a study of rockframe 9",
         ),
-        (keep.replace('"format": 2', '"format": 3'), r"\(format 3\)"),
+        (keep.replace('"format": 3', '"format": 4'), r"\(format 4\)"),
         (keep[:300], "study.json: damaged"),
         (keep.replace('"cases":', '"kases":'), "entries are missing"),
         ("", "study.json: damaged"),

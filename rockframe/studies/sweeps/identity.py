@@ -1,0 +1,160 @@
+"""What a study is made of, field by field: two that differ in anything have other digests."""
+
+import hashlib
+import inspect
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import fields, is_dataclass
+from functools import cache
+from types import CodeType
+from typing import Any, Final, cast
+
+import numpy as np
+
+from rockframe.components import Component
+from rockframe.errors import StudyError, shown
+from rockframe.motion import GroundMotion
+from rockframe.results.outcome import Generic
+
+_OWN: Final = __name__.partition(".")[0]
+
+
+def told(value: object) -> Any:
+    """Describe a value, fit for JSON, so that two that differ have other descriptions.
+
+    Parameters
+    ----------
+    value : object
+        A number, a word, an array, a ground motion, a component, a function, a dataclass, or a
+        row or a mapping of such. Of a dataclass all fields are told, but for those that take no
+        part in comparing because they follow from the others.
+
+    Returns
+    -------
+    object
+        Arrays and motions by their digests; mappings keep their order.
+
+    Raises
+    ------
+    StudyError
+        Anything else, of which nothing tells whether it is the same in another process.
+    """
+    if value is None or isinstance(value, str | bool | int | float):
+        return value
+    if isinstance(value, np.generic):
+        return told(value.item())
+    if isinstance(value, np.ndarray):
+        return _of_array(cast("Generic", value))
+    if isinstance(value, GroundMotion):
+        return digest_of(told(value.si))
+    if isinstance(value, Component):
+        return {**value.to_dict(), "given": told(vars(value.given)), **_written(type(value))}
+    if is_dataclass(value) and not isinstance(value, type):
+        own = {one.name: told(getattr(value, one.name)) for one in fields(value) if one.compare}
+        return {"kind": type(value).__name__, **own}
+    if isinstance(value, Mapping):
+        items = cast("Mapping[Any, Any]", value).items()
+        return [[told(key), told(one)] for key, one in items]
+    if isinstance(value, tuple | list):
+        return [told(one) for one in cast("list[Any]", value)]
+    if callable(value):
+        return _of_function(value)
+    msg = (
+        f"found {shown(value)}, of which nothing tells whether it is the same in another process; "
+        "expected numbers, words, arrays, motions, components or dataclasses of them"
+    )
+    raise StudyError(msg)
+
+
+def digest_of(described: object) -> str:
+    """Give the sha256 of what :func:`told` has described; the order of entries counts."""
+    return hashlib.sha256(json.dumps(described).encode()).hexdigest()
+
+
+def difference(one: object, other: object) -> list[str]:
+    """Name the entries in which two descriptions differ, those inside them in brackets.
+
+    Parameters
+    ----------
+    one, other : object
+        As read from JSON.
+
+    Returns
+    -------
+    list of str
+    """
+    a, b = _entries(one), _entries(other)
+    found: list[str] = []
+    for name in dict.fromkeys([*a, *b]):
+        if name in a and name in b and a[name] == b[name]:
+            continue
+        inside = difference(a.get(name), b.get(name)) if name in a and name in b else []
+        found.append(f"{name} ({', '.join(inside)})" if inside else name)
+    if not found and list(a) != list(b):
+        return ["in their order"]
+    return found
+
+
+def _entries(described: object) -> dict[str, Any]:
+    """Give what has names in a description: of a dataclass, of a mapping, of a row of named."""
+    if isinstance(described, dict):
+        return cast("dict[str, Any]", described)
+    rows = cast("list[Any]", described) if isinstance(described, list) else []
+    if rows and all(isinstance(row, dict) and "name" in row for row in rows):
+        return {row["name"]: row for row in rows}
+    if rows and all(isinstance(row, list) and len(row) == 2 for row in rows):
+        return {str(name): one for name, one in rows}
+    return {}
+
+
+def _of_array(values: Generic) -> str:
+    if values.dtype.kind in "OU":
+        return digest_of([list(values.shape), values.astype(str).tolist()])
+    little = values.astype(values.dtype.newbyteorder("<"))
+    about = f"{little.dtype.str}{little.shape}".encode()
+    return hashlib.sha256(about + little.tobytes()).hexdigest()
+
+
+def _of_function(function: Callable[..., object]) -> dict[str, str]:
+    """Name a function, with a digest of its source, or else of its compiled code."""
+    try:
+        written = inspect.getsource(function)
+    except (OSError, TypeError):
+        written = _of_code(getattr(function, "__code__", None))
+    return {"function": name_of(function), "source": digest_of(written)}
+
+
+def _of_code(code: CodeType | None) -> list[Any]:
+    """Describe compiled code, and the code of functions inside it."""
+    if code is None:
+        return []
+    constants = [
+        _of_code(one) if isinstance(one, CodeType) else repr(one) for one in code.co_consts
+    ]
+    return [code.co_code.hex(), code.co_names, constants]
+
+
+def name_of(function: Callable[..., object]) -> str:
+    """Give the name of a function, or else of its class."""
+    return getattr(function, "__qualname__", type(function).__name__)
+
+
+@cache
+def _written(kind: type) -> dict[str, str]:
+    """Tell how a class is written that is not rockframe's, with all that stands beside it.
+
+    The equations of a user's base are the classes, functions and constants beside its component.
+    """
+    texts: list[Any] = []
+    for one in kind.__mro__:
+        module = inspect.getmodule(one)
+        if module is None or module.__name__.partition(".")[0] in (_OWN, "builtins"):
+            continue
+        texts.append(_of_function(one))
+        for name, each in sorted(vars(module).items()):
+            if callable(each) and getattr(each, "__module__", None) == module.__name__:
+                texts.append(_of_function(each))
+            # those of a script or a notebook are many, and most of them not of the base
+            elif isinstance(each, int | float | str) and module.__name__ != "__main__":
+                texts += [] if name.startswith("__") else [[name, each]]
+    return {"written": digest_of(texts)} if texts else {}

@@ -1,0 +1,91 @@
+"""What a study needs of memory: told before it begins, and refused where there is not so much."""
+
+import math
+import os
+from collections.abc import Mapping
+from contextlib import suppress
+from pathlib import Path
+from typing import Final
+
+from rockframe.errors import SolverWarning, warn
+
+_FLOAT: Final = 8.0
+"""Size of a number [bytes]."""
+_COPIES: Final = 2.5
+"""How often a number is there at once: of its chunk, of all, some in the order of the axes too."""
+_TOLD: Final = 0.5
+"""Share of what there is from which on it is told what a study needs."""
+_MEMORY: Final = Path("/proc/meminfo")
+_GROUPS: Final = (
+    # most, and now, of a container or a job: control groups of both versions
+    (Path("/sys/fs/cgroup/memory.max"), Path("/sys/fs/cgroup/memory.current")),
+    (
+        Path("/sys/fs/cgroup/memory/memory.limit_in_bytes"),
+        Path("/sys/fs/cgroup/memory/memory.usage_in_bytes"),
+    ),
+)
+
+
+def check_memory(
+    numbers: Mapping[str, float], cases: int, remedies: str, *, owner: str, copies: float = _COPIES
+) -> list[str]:
+    """Tell what cases need, and whether it is there.
+
+    Parameters
+    ----------
+    numbers : mapping of str to float
+        How many numbers each case has, by what they are.
+    cases : int
+        How many there are.
+    remedies : str
+        What would need less.
+    owner : str
+        Function, for the warning.
+    copies : float
+        How often each number is there at once [1].
+
+    Returns
+    -------
+    list of str
+        What is wrong: nothing, or that the memory does not suffice.
+
+    Warns
+    -----
+    SolverWarning
+        More than half of what there is.
+    """
+    sizes = {what: _FLOAT * copies * each * cases for what, each in numbers.items()}
+    needed, there = sum(sizes.values()), available()
+    parts = ", ".join(f"{what} {_shown(size)}" for what, size in sizes.items())
+    told = (
+        f"{cases} cases need about {_shown(needed)} of memory ({parts}); {_shown(there)} are "
+        "available"
+    )
+    if needed > there:
+        return [f"{told}; {remedies}"]
+    if needed > _TOLD * there:
+        warn(f"{owner}: {told}", SolverWarning)
+    return []
+
+
+def available() -> float:
+    """Give what this process may still use; infinite where the system does not tell [bytes]."""
+    found = [math.inf]
+    with suppress(OSError, ValueError, IndexError):
+        (line,) = (one for one in _MEMORY.read_text().splitlines() if "MemAvailable" in one)
+        found.append(1024.0 * float(line.split()[1]))
+    if len(found) == 1 and hasattr(os, "sysconf"):
+        with suppress(OSError, ValueError):
+            found.append(float(os.sysconf("SC_PHYS_PAGES")) * os.sysconf("SC_PAGE_SIZE"))
+    for most, now in _GROUPS:
+        with suppress(OSError, ValueError):  # "max" where there is no limit
+            found.append(max(float(most.read_text()) - float(now.read_text()), 0.0))
+    return min(found)
+
+
+def _shown(size: float) -> str:
+    """Show a size as people do."""
+    for unit, large in (("TB", 1e12), ("GB", 1e9)):
+        if size >= large:
+            return f"{size / large:.3g} {unit}"
+    return f"{size / 1e6:.3g} MB"

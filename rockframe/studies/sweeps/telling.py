@@ -1,0 +1,148 @@
+"""What is said of a sweep in words: its verdict, its warnings, and texts that are alike."""
+
+import re
+from collections.abc import Iterable, Sequence
+from typing import Any, Final
+
+import numpy as np
+import xarray as xr
+
+from rockframe.errors import ModelWarning, SolverWarning, warn
+from rockframe.results.joining import CASE_COUNT
+from rockframe.results.outcome import Generic, overturned_by
+from rockframe.results.variables.runs import RunStatus
+from rockframe.results.variables.studies import MESSAGE, REPEATED, VERDICT_CHANGED
+from rockframe.simulation.friction import count_words
+from rockframe.simulation.run import NONE
+from rockframe.studies.sweeps.axes import OWNER
+
+SCREENED: Final = (REPEATED, VERDICT_CHANGED)
+"""What every case of a screened sweep has beside."""
+MOST_ALIKE: Final = 16
+"""Texts that differ in their numbers alone and are still told one by one."""
+_NUMBER: Final = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w.]*\w)")
+
+
+def verdict_of(dataset: xr.Dataset) -> str:
+    """Say what became of the cases of a dataset: of a whole result as its attribute does.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        A result, or a part of a sweep.
+
+    Returns
+    -------
+    str
+        Empty where the dataset has no verdict.
+    """
+    said, whole = str(dataset.attrs.get("verdict", "")), dataset.attrs.get(CASE_COUNT)
+    if not said or whole is None or "status" not in dataset:
+        return said
+    status = dataset["status"]
+    if status.size == whole or status.dtype.kind not in "iu":  # such as a mean
+        return said
+    some = f"{status.size} of the {whole} cases of the sweep"
+    return sentence(dataset, f"Of {some if status.size < whole else f'{status.size} cases'}")
+
+
+def whole_verdict(dataset: xr.Dataset) -> str:
+    """Say what became of all cases of a sweep, in words that stay true of a part of it."""
+    return sentence(dataset, f"Of all {dataset['status'].size} cases of the sweep")
+
+
+def sentence(runs: xr.Dataset, these: str) -> str:
+    """Say in one sentence what became of cases.
+
+    Parameters
+    ----------
+    runs : xarray.Dataset
+        With the cases that are meant.
+    these : str
+        How the sentence begins, which names them.
+
+    Returns
+    -------
+    str
+    """
+    status = runs["status"].to_numpy()
+    overturned = overturned_by(status)
+    falls, stands = int((overturned == 1.0).sum()), int((overturned == 0.0).sum())
+    not_run = int((status == RunStatus.NOT_RUN).sum())
+    text = f"{these} {falls} overturned and {stands} did not"
+    if "would_slide" in runs and (sliding := count_words(runs["would_slide"].to_numpy())):
+        text += f"; {sliding}"
+    lacking = status.size - not_run - falls - stands
+    if lacking:
+        text += f"; {lacking} have no result"
+    if not_run:
+        text += f"; {not_run} have not been run"
+    if REPEATED in runs and runs[REPEATED].notnull().any():
+        again, changed = (int((runs[name] == 1.0).sum()) for name in SCREENED)
+        text += f"; {again} near a flip were run again by tolerance, which changed {changed}"
+    return f"{text}."
+
+
+def say_what_is_missing(dataset: xr.Dataset) -> None:
+    """Warn of cases without a result, and of cautions.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        A sweep.
+    """
+    status = dataset["status"].to_numpy().ravel()
+    number = dataset["message_number"].to_numpy().ravel()
+    texts = dataset[MESSAGE].to_numpy()
+    lacking = np.isnan(dataset["peak_rotation"].to_numpy().ravel())
+    not_run = status == RunStatus.NOT_RUN
+    failed = lacking & ~not_run
+    for which, kind, words in (
+        (failed, SolverWarning, "have no result"),
+        (not_run, SolverWarning, "have not been run"),
+        (~lacking & (texts[number] != NONE), ModelWarning, "have a result to be careful with"),
+    ):
+        if which.any():
+            first = number[which][0]
+            text, those = str(texts[first]), int((number[which] == first).sum())
+            said = "" if text == NONE else f"; of {those} of them it is said: {text}"
+            count = f"{int(which.sum())} of {len(status)} cases"
+            warn(f"{OWNER}: {count} {words} (status, message){said}", kind)
+
+
+def summed_up(texts: Sequence[str], message: Generic) -> tuple[tuple[str, ...], Generic]:
+    """Tell texts that differ in their numbers alone as one, if they are more than a few.
+
+    Parameters
+    ----------
+    texts : sequence of str
+        Each once.
+    message : ndarray of int
+        Their places, for each case.
+
+    Returns
+    -------
+    tuple of str, ndarray of int
+        The same; where numbers differ they are told from the least to the greatest.
+    """
+    alike: dict[tuple[str, ...], list[int]] = {}
+    for place, text in enumerate(texts):
+        alike.setdefault(tuple(_NUMBER.split(text)), []).append(place)
+    found: dict[str, int] = {}
+    places = np.empty(len(texts), dtype=message.dtype)
+    one_for = {
+        place: _ranged(words, [texts[k] for k in several])
+        for words, several in alike.items()
+        if len(several) > MOST_ALIKE
+        for place in several
+    }
+    for place, text in enumerate(texts):
+        places[place] = found.setdefault(one_for.get(place, text), len(found))
+    return tuple(found), places[message]
+
+
+def _ranged(words: Sequence[str], texts: Iterable[str]) -> str:
+    columns: Any = zip(*(_NUMBER.findall(text) for text in texts), strict=True)
+    ranges = [sorted(set(column), key=float) for column in columns]
+    told = [each[0] if len(each) == 1 else f"{each[0]} to {each[-1]}" for each in ranges]
+    return words[0] + "".join(map("".join, zip(told, words[1:], strict=True)))

@@ -1,0 +1,265 @@
+"""What a study is: whatever changes its numbers changes its digest, and nothing is forgotten."""
+
+import inspect
+import shutil
+from dataclasses import dataclass, fields, is_dataclass, replace
+
+import numpy as np
+import pytest
+from kept_sweep import alike
+from own_example import example
+
+import rockframe as rf
+from rockframe.errors import StudyError
+from rockframe.studies.sweeps.identity import _written, digest_of, told
+from rockframe.studies.sweeps.planning import plan_study
+from rockframe.studies.sweeps.study import Job, Study
+
+pytestmark = [
+    pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning"),
+    pytest.mark.filterwarnings("ignore::rockframe.errors.ModelWarning"),
+]
+
+SYSTEM = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
+OTHER = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"), gravity="9.8 m/s^2")
+WEAK, STRONG = (rf.GroundMotion.sine_pulse(f"{size} m/s^2", "1 Hz") for size in (3, 9))
+MOTIONS = {"weak": WEAK, "strong": STRONG}
+TURNED = dict(reversed(MOTIONS.items()))
+KEPT = {
+    "executor": "runs are the same, whoever makes them",
+    "chunk": "a store keeps to the chunks that it was begun with",
+    "progress": "a bar shows what is done",
+    "store": "it is where the study is kept",
+}
+"""Arguments that change no numbers, and why."""
+RUN = {
+    "duration": "2.5 s",
+    "free_vibration": "1 s",
+    "initial": rf.InitialState(rotation="0.01 rad"),
+    "accuracy": "standard",
+    "overturning": "continue",
+}
+SEQUENCE = ("initial", "accuracy", "overturning")
+
+SWEPT = {"scene": SYSTEM, "motions": MOTIONS, "scale": [1.0, 2.0], "accuracy": "fast"}
+SWEEP_CHANGES = {
+    **RUN,
+    "scene": OTHER,
+    "motions": TURNED,
+    "axes": {"height": ["1 m", "2 m"]},
+    "cases": {"width": ["0.5 m"]},
+    "points": {"top": ("0 m", "2 m")},
+    "outputs": ["rotation"],
+    "more_axes": ({}, {"scale": [1.0, 3.0]}),
+    "output_step": ({"outputs": ["rotation"]}, {"outputs": ["rotation"], "output_step": "0.02 s"}),
+    "period": tuple(
+        {"scale": None, "pseudo_spectral_acceleration": ["2 m/s^2", "3 m/s^2"], "period": period}
+        for period in ("0.5 s", "2 s")
+    ),
+}
+"""By arguments: another value, or what is asked for at first and then."""
+
+SIZES = {"system": SYSTEM, "motions": MOTIONS, "periods": ([2, 4], "s"), "slenderness": [3, 4]}
+OF_SIZES = {
+    "system": OTHER, "motions": TURNED, "periods": ([2, 5], "s"), "slenderness": [3, 5],
+}  # fmt: skip
+SPECTRAL = tuple({"intensity": "SA", "period": period} for period in ("0.5 s", "2 s"))
+LINES = {"scale": [0.5, 2.0], "width": 0.05}
+OF_LINES = {"scale": [0.5, 2.5], "width": 0.02, "intensity": "PGV", "period": SPECTRAL}
+ANALYSES = {
+    "incremental_dynamic_analysis": (
+        {"system": SYSTEM, "motions": MOTIONS, **LINES, "intensity": "PGA"},
+        {**RUN, **OF_LINES, "system": OTHER, "motions": TURNED, "limits": ["uplift", 0.5]},
+    ),
+    "overturning_map": (
+        {"system": SYSTEM, "pulse": rf.GroundMotion.sine_pulse, "amplitude": ([2, 4, 8], "m/s^2"),
+         "frequency": ([0.8, 10], "Hz"), "width": 0.05, "overturning": "stop"},
+        {**RUN, "system": OTHER, "pulse": rf.GroundMotion.cosine_pulse, "width": 0.02,
+         "amplitude": ([2, 4, 9], "m/s^2"), "frequency": ([0.8, 2], "Hz"), "impacts": 1},
+    ),
+    "rocking_spectrum": (SIZES, {**RUN, **OF_SIZES}),
+    "overturning_spectrum": ({**SIZES, **LINES}, {**RUN, **OF_SIZES, **OF_LINES}),
+    "probability_of_overturning": (
+        {"system": SYSTEM, "motions": MOTIONS, "spread": {"scale": ("lognormal", 1.5, 0.4)},
+         "cases": 24},
+        {**RUN, "system": OTHER, "motions": TURNED, "spread": {"scale": ("lognormal", 1.6, 0.4)},
+         "cases": 25, "sampling": "random", "seed": 1, "confidence": 0.9},
+    ),
+    "earthquake_sequences": (
+        {"system": SYSTEM, "sequences": {"zwei": [WEAK, STRONG], "1": [STRONG]}, "pause": "1 s"},
+        {**{name: RUN[name] for name in SEQUENCE}, "system": OTHER, "pause": "2 s",
+         "sequences": {"1": [STRONG], "zwei": [WEAK, STRONG]}},
+    ),
+}  # fmt: skip
+
+
+def arguments_of(name):
+    return set(inspect.signature(getattr(rf, name)).parameters)
+
+
+def test_every_argument_is_changed_in_turn():
+    assert set(SWEEP_CHANGES) | set(KEPT) == arguments_of("sweep")
+    for name, (_, changes) in ANALYSES.items():
+        assert set(changes) | set(KEPT) == arguments_of(name), name
+
+
+def two(base, name, change):
+    """Give what is asked for before and after an argument has been changed."""
+    before, after = change if isinstance(change, tuple) and len(change) == 2 and all(
+        isinstance(one, dict) for one in change
+    ) else ({}, {name: change})  # fmt: skip
+    return tuple(
+        {key: value for key, value in {**base, **more}.items() if value is not None}
+        for more in (before, after)
+    )
+
+
+@pytest.mark.parametrize("name", SWEEP_CHANGES)
+def test_another_argument_of_a_sweep_is_another_study(name, tmp_path):
+    before, after = two(SWEPT, name, SWEEP_CHANGES[name])
+    rf.sweep(**before, store=tmp_path / "study")
+    with pytest.raises(StudyError, match=r"found another study, which differs in \w+"):
+        rf.sweep(**after, store=tmp_path / "study")
+
+
+def test_what_changes_no_numbers_is_the_same_study(tmp_path):
+    from concurrent.futures import ThreadPoolExecutor
+
+    plain = rf.sweep(**SWEPT)
+    with ThreadPoolExecutor(1) as pool:
+        for changes in ({"chunk": 1}, {"executor": pool}, {"progress": False}, {}):
+            alike(rf.sweep(**SWEPT, **changes, store=tmp_path / "study"), plain)
+
+
+@pytest.fixture(scope="module")
+def begun(tmp_path_factory):
+    """Give a function that makes the store of an analysis, each but once."""
+    made = {}
+
+    def store(name, asked, into):
+        key = name, repr(sorted(asked.items(), key=lambda one: one[0]))
+        if key not in made:
+            made[key] = tmp_path_factory.mktemp("store") / "study"
+            getattr(rf, name)(**asked, store=made[key])
+        shutil.copytree(made[key], into)
+
+    return store
+
+
+@pytest.mark.parametrize(
+    ("analysis", "name"),
+    [(one, name) for one, (_, changes) in ANALYSES.items() for name in changes],
+)
+def test_a_store_never_serves_other_arguments(analysis, name, begun, tmp_path):
+    base, changes = ANALYSES[analysis]
+    before, after = two({"accuracy": "fast", **base}, name, changes[name])
+    begun(analysis, before, tmp_path / "study")
+    try:
+        kept = getattr(rf, analysis)(**after, store=tmp_path / "study")
+    except StudyError as problem:
+        assert "found another study, which differs in" in str(problem)  # noqa: PT017
+    else:
+        alike(kept, getattr(rf, analysis)(**after))
+
+
+# what is told ----------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Asked:
+    size: float
+    words: tuple[str, ...]
+    further: object = None
+
+
+def test_all_fields_are_told_and_none_that_cannot_be():
+    one = Asked(1.0, ("a", "b"))
+    others = [
+        replace(one, size=np.nextafter(1.0, 2.0)), replace(one, words=("b", "a")),
+        *(replace(one, further=each) for each in (
+            0, False, 0.0, "0", (), (0,), {"a": 1, "b": 2}, {"b": 2, "a": 1}, np.zeros(2),
+            np.zeros(3), np.zeros((1, 2)), np.zeros(2, dtype=np.float32), np.array(["a", "b"]),
+            np.array(["ab", ""]), WEAK, STRONG, SYSTEM.parts.block, RUN["initial"], one, alike,
+        )),
+    ]  # fmt: skip
+    digests = [digest_of(told(each)) for each in (one, *others)]
+    assert len(set(digests)) == len(digests)
+    assert digest_of(told(Asked(1.0, ("a", "b")))) == digests[0]
+    for unknown in (object(), {1, 2}, Asked(1.0, (), object()), {"a": object()}):
+        with pytest.raises(StudyError, match="nothing tells whether it is the same"):
+            told(unknown)
+
+
+def studied(**changes):
+    return plan_study(SYSTEM, MOTIONS, {"scale": [1.0]}, None, outputs=["rotation"], **changes)
+
+
+def test_every_field_of_a_study_and_of_what_it_is_made_of_is_told():
+    seen = []
+
+    def walked(value, described):
+        if is_dataclass(value):
+            seen.append(type(value).__name__)
+            for one in fields(value):
+                if one.compare:
+                    walked(getattr(value, one.name), described[one.name])
+
+    study = studied()
+    walked(study, study.to_dict())
+    assert {"Study", "SystemScene", "Assembly", "Parts", "Options", "Grid", "Arguments",
+            "Accuracy", "Histories"} <= set(seen)  # fmt: skip
+    assert not [name for name in seen if name.startswith("_")]
+    # a job has nothing that its study does not tell: two are of the grid, and in lanes, for which
+    # it waits as long as they save, cases have the same numbers to the last bit
+    told_of = {one.name for one in fields(Study)} | {"axes", "motion_of_case", "patience"}
+    assert {one.name for one in fields(Job)} <= told_of
+
+
+def test_the_samples_of_a_motion_are_told():
+    si = WEAK.si
+    other = replace(si.horizontal, samples=si.horizontal.samples * 1.0000001)
+    longer = replace(si.horizontal, time_step=2 * si.time_step)
+    straight = replace(si.horizontal, polynomials=None)
+    upwards = replace(si.horizontal, name="vertical")
+    changed = [replace(si, horizontal=one) for one in (other, longer, straight)]
+    changed.append(replace(si, vertical=upwards))
+    assert len({digest_of(told(rf.GroundMotion(one))) for one in (si, *changed)}) == 5
+
+
+def test_what_a_function_uses_is_told():
+    def scene_with(density):
+        def scene(height):
+            return rf.System(rf.Block(width="0.5 m", height=height, mass=f"{density} kg"))
+
+        return scene
+
+    def digest(function):
+        return plan_study(function, MOTIONS, {"height": ["1 m", "2 m"]}, None).digest
+
+    assert digest(scene_with(400)) == digest(scene_with(400))
+    assert digest(scene_with(400)) != digest(scene_with(401))
+
+
+GIVEN = {"frequency_ratio": 15, "damping_ratio": 0.05, "strength": 0.6, "hardening": 0.1}
+
+
+def test_the_laws_of_a_users_base_are_told(tmp_path):
+    def digest(module):
+        _written.cache_clear()
+        pads = module.YieldingPads(**GIVEN)
+        return digest_of(told(pads))
+
+    with example() as module:
+        plain = digest(module)
+        assert digest(module) == plain
+        changed = tmp_path / "changed.py"
+        changed.write_text("def helper():\n    return 1\n")
+        code = compile(changed.read_text(), str(changed), "exec")
+        exec(code, vars(module))  # noqa: S102
+        assert digest(module) != plain
+        del module.helper
+        assert digest(module) == plain
+        module.CONSTANT = 0.1
+        assert digest(module) != plain
+        del module.CONSTANT
+    _written.cache_clear()

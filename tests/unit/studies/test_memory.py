@@ -1,0 +1,83 @@
+"""What a study needs of memory: told before it begins, refused where there is not so much."""
+
+import tracemalloc
+
+import numpy as np
+import pytest
+
+import rockframe as rf
+from rockframe.errors import SolverWarning, StudyError
+from rockframe.studies.sweeps import memory
+
+SYSTEM = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
+PULSE = rf.GroundMotion.sine_pulse("3 m/s^2", "1 Hz")
+SPREAD = {"scale": ("lognormal", 1.0, 0.4)}
+MANY = 30_000
+
+
+@pytest.mark.parametrize(
+    "study",
+    [
+        lambda: rf.sweep(
+            SYSTEM, PULSE, scale=np.arange(1.0, MANY), height=(np.arange(1.0, MANY), "m")
+        ),
+        lambda: rf.probability_of_overturning(SYSTEM, PULSE, spread=SPREAD, cases=900_000_000),
+        lambda: rf.rocking_spectrum(
+            SYSTEM, PULSE, periods=(np.linspace(2, 3, 2000), "s"),
+            slenderness=np.linspace(3, 4, 500),
+        ),
+        lambda: rf.overturning_map(
+            SYSTEM, rf.GroundMotion.sine_pulse, amplitude=(np.linspace(1, 2, 20_000), "m/s^2"),
+            frequency=(np.linspace(1, 2, 50), "Hz"),
+        ),
+    ],
+)  # fmt: skip
+def test_what_cannot_fit_is_refused_before_it_begins(study, monkeypatch):
+    monkeypatch.setattr(memory, "available", lambda: 2e8)
+    with pytest.raises(StudyError, match=r"cases need about .* [GM]B of memory .*; 200 MB are ava"):
+        study()
+
+
+def test_what_needs_most_of_it_is_told_of(monkeypatch):
+    monkeypatch.setattr(memory, "available", lambda: 7e4)
+    with pytest.warns(SolverWarning, match=r"sweep: 100 cases need about 0.056 MB of memory"):
+        runs = rf.sweep(SYSTEM, PULSE, scale=np.linspace(0.1, 1, 100), free_vibration="5 s")
+    assert runs.overturned.notnull().all()
+
+
+def test_what_is_told_is_what_is_taken(monkeypatch):
+    motions = [PULSE, PULSE.scaled(1.1)]
+    sizes = []  # of scalars, of histories, of both, and what there is
+    monkeypatch.setattr(memory, "available", lambda: 1e12)
+    shown = memory._shown
+    monkeypatch.setattr(memory, "_shown", lambda size: sizes.append(size) or shown(size))
+    arguments = {
+        "scale": np.linspace(0.1, 0.2, 40), "outputs": ["rotation", "base_shear"],
+        "output_step": "1 ms", "duration": "5 s", "progress": False,
+    }  # fmt: skip
+    rf.sweep(SYSTEM, motions, **{**arguments, "scale": [0.1, 0.2]})  # what is made once
+    sizes.clear()
+    tracemalloc.start()
+    try:
+        rf.sweep(SYSTEM, motions, **arguments)
+        taken = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert taken == pytest.approx(sizes[2], rel=0.3)
+    assert sizes[2] > 1.5e7
+
+
+def test_the_least_of_all_limits_counts(monkeypatch, tmp_path):
+    machine, most, now = (tmp_path / name for name in ("meminfo", "max", "current"))
+    monkeypatch.setattr(memory, "_MEMORY", machine)
+    monkeypatch.setattr(memory, "_GROUPS", ((most, now),))
+    assert memory.available() > 1e7  # what the machine has, or infinite
+    machine.write_text("MemTotal: 9 kB\nMemAvailable:   4000 kB\n")
+    assert memory.available() == 4096e3
+    most.write_text("max\n")
+    now.write_text("1000000\n")
+    assert memory.available() == 4096e3
+    most.write_text("3000000\n")
+    assert memory.available() == 2e6
+    most.write_text("900000\n")
+    assert memory.available() == 0.0

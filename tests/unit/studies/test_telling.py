@@ -1,0 +1,89 @@
+"""What is said of a sweep: of a part of it nothing that is another's, of many cases no list."""
+
+import numpy as np
+import pytest
+import xarray as xr
+from kept_sweep import alike
+
+import rockframe as rf
+from rockframe.studies.sweeps.telling import MOST_ALIKE, summed_up
+
+BLOCK = rf.Block(width="0.5 m", height="2 m", mass="400 kg")
+PULSE = rf.GroundMotion.sine_pulse("3 m/s^2", "1 Hz")
+MOTIONS = {"weak": PULSE, "strong": PULSE.scaled(3)}
+
+
+@pytest.fixture(scope="module")
+def runs():
+    return rf.sweep(rf.System(BLOCK), MOTIONS, scale=[0.5, 1.0, 2.0, 4.0], free_vibration="3 s")
+
+
+def test_a_part_of_a_sweep_has_a_verdict_of_its_own(runs, tmp_path):
+    falls = int(runs.overturned.sum())
+    assert 0 < falls < 8
+    said = f"Of all 8 cases of the sweep {falls} overturned and {8 - falls} did not."
+    assert runs.verdict == runs.rockframe.verdict == said
+    runs.to_netcdf(tmp_path / "runs.nc")
+    with xr.open_dataset(tmp_path / "runs.nc") as read:
+        for whole in (runs, read.load()):
+            for part in (
+                whole.isel(scale=[0, 1]), whole.sel(motion="strong"), whole.isel(scale=0, motion=1),
+                whole.sortby("scale", ascending=False).isel(scale=slice(0, 3)),
+            ):  # fmt: skip
+                down = int(part.overturned.sum())
+                count = part.overturned.size
+                own = f"Of {count} of the 8 cases of the sweep {down} overturned and {count - down}"
+                assert part.rockframe.verdict == f"{own} did not."
+                assert part.rockframe.verdict in part.rockframe.summary
+                assert part.attrs["verdict"] == said  # which is still true
+    assert runs.transpose().rockframe.verdict == said
+    assert runs.mean("motion", keep_attrs=True).rockframe.verdict == said
+    twice = rf.concat([runs, runs], "run")
+    assert twice.rockframe.verdict == ""
+    assert "case_count" not in twice.attrs
+
+
+def test_figures_of_a_part_are_entitled_by_its_own_verdict():
+    axes = pytest.importorskip("matplotlib.pyplot")
+    drawn = rf.probability_of_overturning(
+        rf.System(BLOCK), MOTIONS, spread={"scale": ("lognormal", 1.0, 0.4)}, cases=20
+    )
+    for part, words in ((drawn, drawn.verdict), (drawn.isel(case=slice(15)), "Of 15 of the 20")):
+        panels = part.rockframe.plot()
+        assert words[:30] in " ".join(panels[0].figure.get_suptitle().split())
+        axes.close(panels[0].figure)
+
+
+@pytest.mark.filterwarnings("ignore::rockframe.errors.ModelWarning")
+def test_texts_of_many_cases_are_summed_up(tmp_path):
+    system = rf.System(BLOCK, rf.RigidGround(friction=0.1))
+    scales = np.linspace(0.5, 1.3, 6 * MOST_ALIKE)
+
+    def swept(**how):
+        return rf.sweep(system, PULSE, scale=scales, free_vibration="5 s", **how)
+
+    with pytest.warns(rf.ModelWarning, match=r"of \d\d of them it is said: .* 0\.1"):
+        many = swept()
+    assert 1 < many.message.size <= 2 + MOST_ALIKE
+    assert many.message.values[0] == "none"
+    few = rf.sweep(system, PULSE, scale=scales[:3], free_vibration="5 s")
+    assert few.message.size == 4
+    one = few.message.values[1]
+    text = many.message.values[int(many.message_number[-1, 0])]
+    assert " to " in text
+    for said in (text, one):
+        assert said.startswith("the block would slide from ")
+        assert " of 0.1, and more than that for " in said
+    assert len(many.to_dataframe()) == many.message.size * len(scales)
+    assert len(rf.table(many)) == len(scales)
+    alike(swept(chunk=5), many)
+    alike(swept(chunk=7, store=tmp_path / "study"), many)
+
+
+def test_numbers_of_texts_become_ranges_and_words_stay():
+    texts = ["none", *(f"x2: {k / 10} m at {9 - k:.1e} s, Eq. (6)" for k in range(MOST_ALIKE + 1))]
+    message = np.array([3, 0, 5, 1, len(texts) - 1])
+    few, places = summed_up(texts, message)
+    assert few == ("none", "x2: 0.0 to 1.6 m at -7.0e+00 to 9.0e+00 s, Eq. (6)")
+    assert places.tolist() == [1, 0, 1, 1, 1]
+    assert summed_up(texts[:-1], message[:-1])[0] == tuple(texts[:-1])
