@@ -75,7 +75,7 @@ def brackets_of(scales: Array, verdicts: Array) -> list[Bracket]:
 
 def narrowed(
     brackets: Sequence[Bracket], sweep: Sweep, verdicts: Verdicts, *, width: float
-) -> list[Bracket]:
+) -> tuple[list[Bracket], bool]:
     """Halve brackets in rounds until they are narrow.
 
     Where the middle has a third verdict a bracket becomes two.
@@ -95,9 +95,12 @@ def narrowed(
     -------
     list of Bracket
         Rising, line by line; wider where a run had no verdict, or an interrupt came.
+    bool
+        Whether none came.
     """
     done: list[Bracket] = []
     waiting = list(brackets)
+    whole = True
     for number in range(1, MOST_ROUNDS + 1):
         wide = [one for one in waiting if one.above - one.below > width * one.above]
         done += [one for one in waiting if one.above - one.below <= width * one.above]
@@ -107,8 +110,12 @@ def narrowed(
         # brackets of several verdicts may have the same middle
         wanted = sorted({(one.line, 0.5 * (one.below + one.above)) for one in wide})
         lines, middles = (np.array(each) for each in zip(*wanted, strict=True))
-        runs = sweep(number, lines, middles)
-        found = verdicts(runs)
+        try:
+            runs = sweep(number, lines, middles)
+            found, whole = verdicts(runs), not interrupted(runs)
+        except KeyboardInterrupt:  # between the runs of two rounds
+            done, whole = [*done, *wide], False
+            break
         place = {case: k for k, case in enumerate(wanted)}
         for one in wide:
             middle = 0.5 * (one.below + one.above)
@@ -117,9 +124,10 @@ def narrowed(
                 done.append(one)
             else:
                 waiting += _halved(one, middle, shown)
-        if interrupted(runs):
+        if not whole:
             break
-    return sorted([*done, *waiting], key=lambda one: (one.verdict, one.line, one.below))
+    rising = sorted([*done, *waiting], key=lambda one: (one.verdict, one.line, one.below))
+    return rising, whole
 
 
 def _halved(one: Bracket, middle: float, shown: float) -> Iterator[Bracket]:

@@ -24,7 +24,6 @@ from rockframe.simulation.plan import Plan, plan_run
 from rockframe.simulation.provenance import motion_attributes
 from rockframe.simulation.run import beside, run
 from rockframe.simulation.run_arguments import ScaleArguments
-from rockframe.solve.layout import Status
 from rockframe.studies.flip_words import least_overturning, sentence, unfinished
 from rockframe.studies.flips import Followed, Look, follow
 from rockframe.studies.intensities import of_study
@@ -94,8 +93,9 @@ def critical_scale(
     -------
     xarray.Dataset
         Scalars: ``critical_scale``, the least scale found to overturn, NaN if none did;
-        ``followed_scale``, up to which the runs are close enough together to tell of all
-        flips; ``uplift_scale``, up to which nothing happens on rigid ground [1]; and the
+        ``followed_scale``, up to which no interval between runs is left that shows signs of
+        flips; ``largest_gap``, the largest distance between neighbouring scales;
+        ``uplift_scale``, up to which nothing happens on rigid ground [1]; and the
         intensity measure, by its name. Over ``flip``, for each change of the verdict:
         ``scale_below``, ``scale_above`` [1], and ``overturns_above``. Over ``scale``, for
         each run: ``outcome``, ``peak_rotation`` [rad] and ``status``. The attribute
@@ -116,7 +116,8 @@ def critical_scale(
         Runs could not be finished. They have no verdict, and are neither counted as
         standing nor as overturned. What the run at the critical scale warns of, it warns of here;
         where a base has a coefficient of friction and nothing overturns, what that at the largest
-        scale warns of.
+        scale warns of. Or it was interrupted (Ctrl-C): then it gives what the runs until then
+        show, as far as ``followed_scale``.
 
     Notes
     -----
@@ -125,7 +126,8 @@ def critical_scale(
     with them a lesser critical scale. The signs by which certificates look for flips
     (``rf.Certification``) decide which intervals are halved, first below the least scale
     that overturns, down to 0.2 % of the scale; ``followed_scale`` tells how far `runs`
-    sufficed. Flips that come in pairs closer together than that may still be missed.
+    sufficed. It proves nothing: flips that come in pairs closer together than ``largest_gap``
+    may be missed wherever no run tells of them.
 
     A block at rest on rigid ground, without vertical motion, does not move before the peak
     ground acceleration exceeds g tan(theta): the scan begins there.
@@ -175,12 +177,17 @@ def critical_scale(
     def bare_at(scale: float) -> Plan:
         return replace(plan_at(scale), output_step=None)
 
-    look = _look(system, bare_at, stop=plan.stop_at_overturning)
+    def look(scale: float) -> Beside:
+        return beside(system.assembly, bare_at(scale))
+
     with bar_of(progress, owner=_OWNER, unit="run") as bar:
         found = follow(_counted(look, bar, len(row)), row, most=most, width=share)
     critical = least_overturning(found.shown)
+    told = sentence(found, width=share)
+    if not found.whole:
+        warn(f"{_OWNER}: interrupted; {told}", SolverWarning)
     attributes = {
-        "verdict": sentence(found, width=share),
+        "verdict": told,
         "largest_scale": greatest_scale,
         "first_scales": count,
         "most_runs": most,
@@ -199,16 +206,6 @@ def critical_scale(
     return dataset.assign_attrs(of_study(measure.name, measure.period))
 
 
-def _look(system: "System", plan_at: Callable[[float], Plan], *, stop: bool) -> Look:
-    """Give what makes the run at a scale."""
-
-    def look(scale: float) -> Beside:
-        shown = beside(system.assembly, plan_at(scale))
-        return shown if stop else _lying(shown)
-
-    return look
-
-
 def _counted(look: Look, bar: Progress, first: int) -> Look:
     """Let a bar count the runs: those that come first, and as many more as there will be."""
     bar.expect(first)
@@ -225,20 +222,6 @@ def _counted(look: Look, bar: Progress, first: int) -> Look:
         return shown
 
     return counted
-
-
-def _lying(shown: Beside) -> Beside:
-    """Let a block that was beyond the overturning angle stand, unless it lies flat in the end."""
-    if not shown.overturned or shown.status is Status.TOPPLED:
-        return shown
-    beyond = shown.peak_share - 1.0
-    return replace(
-        shown,
-        overturned=False if shown.status.finished else None,
-        clearances=(beyond,),
-        time=math.nan,
-        direction=0,
-    )
 
 
 def _uplift_scale(system: "System", plan: Plan) -> float:
@@ -290,6 +273,7 @@ def _labelled(
         {
             "critical_scale": critical,
             "followed_scale": found.up_to,
+            "largest_gap": found.largest_gap,
             "uplift_scale": at_rest_to,
             "scale_below": np.array([flip.below for flip in flips]),
             "scale_above": np.array([flip.above for flip in flips]),

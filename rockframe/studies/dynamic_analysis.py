@@ -9,13 +9,14 @@ import xarray as xr
 from rockframe.comparison.models import check_system
 from rockframe.errors import ModelWarning, StudyError, warn
 from rockframe.results.dataset import build_dataset
+from rockframe.results.outcome import overturns
 from rockframe.results.variables.studies import MOTION
 from rockframe.shared_arguments import takes
 from rockframe.signals.arrays import Array
 from rockframe.studies.brackets import least_exceeding, padded
 from rockframe.studies.intensities import Intensity, intensity_in, of_study
-from rockframe.studies.limit_states import LimitState, exceeds, interrupted, limit_states
-from rockframe.studies.lines import SCALE, VERDICT, Lines, read_scales, read_width
+from rockframe.studies.limit_states import LimitState, exceeds, limit_states
+from rockframe.studies.lines import INTERRUPTED, SCALE, VERDICT, Lines, read_scales, read_width
 from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.studies.sweeps.motions import motions_of
 
@@ -145,7 +146,7 @@ def incremental_dynamic_analysis(
         "title": "Incremental dynamic analysis of a rocking system",
         "source": narrow.attrs["source"],
         "bracket_width": share,
-        "verdict": _sentence(found, whole=not interrupted(scan)),
+        "verdict": _sentence(found),
     }
     return found
 
@@ -179,7 +180,7 @@ def _say_what_lies_below(found: xr.Dataset) -> None:
         )
 
 
-def _sentence(found: xr.Dataset, *, whole: bool) -> str:
+def _sentence(found: xr.Dataset) -> str:
     """Tell for how many motions overturning was found, and from which scale on."""
     of_overturning = found.isel(limit_state=-1)
     capacity = of_overturning["capacity_scale"].to_numpy()
@@ -194,4 +195,8 @@ def _sentence(found: xr.Dataset, *, whole: bool) -> str:
     again = int((of_overturning["flip_count"].to_numpy() > 1).sum())
     if again:
         text += f"; under {again} the verdict changed more than once"
-    return f"{text}{'' if whole else '; interrupted'}."
+    cut = str(found.attrs["verdict"]).endswith(INTERRUPTED)  # that of the scan
+    lacking = int(overturns(found).isnull().sum())
+    if lacking and not cut:
+        text += f"; {lacking} of {found['status'].size} runs of the scan have no verdict"
+    return f"{text}{INTERRUPTED if cut else '.'}"

@@ -1,6 +1,6 @@
 """Statistics of ensembles: how a result is distributed over motions or cases."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -9,8 +9,10 @@ import xarray as xr
 from rockframe.arguments import checked_dataset
 from rockframe.errors import ComponentError, SchemaError, shown
 from rockframe.results.dataset import build_dataset
+from rockframe.results.variables.studies import MOTION
 from rockframe.signals.arrays import Array
 from rockframe.studies.confidence import clopper_pearson, read_level
+from rockframe.studies.probability import SAMPLED
 from rockframe.units import Condition, to_ratio
 
 if TYPE_CHECKING:
@@ -25,6 +27,7 @@ def ensemble_statistics(
     name: str = "peak_relative_rotation",
     *,
     quantiles: "Sequence[RatioLike]" = (0.16, 0.5, 0.84),
+    pooled: Iterable[str] = (),
     confidence: "RatioLike" = 0.95,
 ) -> xr.Dataset:
     """Give the empirical distribution of a result, with bands.
@@ -32,12 +35,14 @@ def ensemble_statistics(
     Parameters
     ----------
     runs : xarray.Dataset or DataArray
-        Of a sweep; all its cases are one ensemble: pick those that are meant before.
-        Or values, such as measured ones.
+        Of a sweep over motions, or a sample that was drawn; of further axes pick a value before,
+        or name them in `pooled`. Or values, such as measured ones, which are all one ensemble.
     name : str, optional
         Which variable.
     quantiles : sequence of float, optional
         Shares of the distribution whose values are wanted [1].
+    pooled : iterable of str, optional
+        Dimensions of a sweep beside its motions whose runs are members of the one ensemble too.
     confidence : float, optional
         Of all bounds [1].
 
@@ -47,19 +52,22 @@ def ensemble_statistics(
         Over ``rank``: ``ordered_value``, ``cumulative_probability`` with bounds that hold at each
         value (Clopper and Pearson), and bounds that hold everywhere at once (``simultaneous``,
         Kolmogorov). Over ``quantile``: ``quantile_value``, with bounds by order
-        statistics, infinite where the ensemble is too small.
+        statistics, infinite where the ensemble is too small. Without bounds, as NaN, where
+        several members are of one motion. The attribute ``verdict`` counts members and
+        what was left out.
 
     Raises
     ------
     SchemaError
         No dataset, or no such variable.
     ComponentError
-        An argument is out of range, or there are no values.
+        An argument is out of range, there are no values, or the sweep goes over more than
+        motions.
 
     Notes
     -----
     All bounds hold whatever the distribution, for independent members. Cases without a
-    result are left out. Runs that stop at the overturning angle have a
+    result are left out, and counted. Runs that stop at the overturning angle have a
     ``peak_relative_rotation`` of 1, which stands for all that is more.
 
     A model that misses single tests may still give their distribution (Bachmann et al., 2018):
@@ -75,7 +83,7 @@ def ensemble_statistics(
     >>> found.sizes["rank"]
     20
     """
-    level = read_level(confidence, owner=_OWNER)
+    asked = read_level(confidence, owner=_OWNER)
     shares = np.array(
         [
             to_ratio(one, owner=_OWNER, name="quantiles", condition=_SHARE, example="0.5")
@@ -83,6 +91,8 @@ def ensemble_statistics(
         ]
     )
     values = _values(runs, name)
+    together = (pooled,) if isinstance(pooled, str) else tuple(pooled)
+    level = np.nan if _dependent(values, runs.attrs, together) else asked
     ordered = np.sort(values.to_numpy().ravel().astype(np.float64))
     ordered = ordered[~np.isnan(ordered)]
     if not len(ordered):
@@ -97,8 +107,13 @@ def ensemble_statistics(
             "quantile_value_lower_bound": lower,
             "quantile_value_upper_bound": upper,
             "member_count": len(ordered),
+            "left_out_count": values.size - len(ordered),
         },
-        {"variable": str(values.name), "confidence": level},
+        {
+            "variable": str(values.name),
+            "confidence": asked,
+            "verdict": _sentence(len(ordered), values.size - len(ordered), asked, level),
+        },
         title="Statistics of an ensemble",
         source="empirical distribution",
     )
@@ -120,6 +135,36 @@ def _values(runs: Any, name: str) -> xr.DataArray:
     return dataset[name]
 
 
+def _dependent(values: xr.DataArray, attributes: Mapping[Any, Any], pooled: Sequence[str]) -> bool:
+    """Tell whether members of a sweep depend on one another; refuse axes that nobody named."""
+    if "axes_json" not in attributes or SAMPLED in attributes:
+        return False
+    wide = [str(dim) for dim, size in values.sizes.items() if size > 1 and dim != MOTION]
+    unnamed = [dim for dim in wide if dim not in pooled]
+    if unnamed:
+        msg = (
+            f"{_OWNER}: the sweep goes over {', '.join(unnamed)} beside motions; pick a value of "
+            f"each, or take all for one ensemble with pooled={tuple(unnamed)}"
+        )
+        raise ComponentError(msg)
+    if not wide or MOTION not in values.coords:
+        return bool(wide)
+    names = values[MOTION].broadcast_like(values).where(values.notnull(), "").to_numpy().astype(str)
+    _, count = np.unique(names[names != ""], return_counts=True)
+    return bool(count.max(initial=0) > 1)
+
+
+def _sentence(count: int, left_out: int, asked: float, level: float) -> str:
+    """Tell of how many members the ensemble is, and what its bounds are."""
+    lacking = f"; {left_out} without a result are left out" if left_out else ""
+    bounds = (
+        "no bounds, for several members are of one motion"
+        if np.isnan(level)
+        else f"bands of confidence {asked:g}"
+    )
+    return f"{count} members{lacking}; {bounds}"
+
+
 def _distribution(ordered: Array, level: float) -> dict[str, Array]:
     """Give the share of members up to each value, and its bounds."""
     from scipy.stats import kstwo
@@ -139,13 +184,15 @@ def _distribution(ordered: Array, level: float) -> dict[str, Array]:
     }
 
 
-def _quantile_bounds(ordered: Array, shares: Array, level: float) -> tuple[Array, Array]:
+def _quantile_bounds(ordered: Array, shares: Array, level: float) -> Array:
     """Give the members between which quantiles lie: the number below one is binomial."""
     from scipy.stats import binom
 
+    if np.isnan(level):
+        return np.full((2, len(shares)), np.nan)
     count, tail = len(ordered), 0.5 * (1.0 - level)
     padded = np.concatenate([[-np.inf], ordered, [np.inf]])
     # P(at least k members below) for the lower end, at most for the upper one
     low = binom.ppf(tail, count, shares).astype(int)
     high = binom.ppf(1.0 - tail, count, shares).astype(int) + 1
-    return padded[low], padded[np.minimum(high, count + 1)]
+    return np.stack([padded[low], padded[np.minimum(high, count + 1)]])

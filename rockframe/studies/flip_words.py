@@ -8,6 +8,8 @@ from rockframe.simulation.beside import Beside
 from rockframe.studies.flips import Flip, Followed
 
 _FEWEST_DIGITS: Final = 4
+_ROUNDING: Final = 1e-9
+"""Of a distance over its last digit, not to be rounded up [1]."""
 _MOST_GAPS: Final = 3
 """Ranges that stand again which are named one by one."""
 
@@ -44,17 +46,26 @@ def sentence(found: Followed, *, width: float) -> str:
     gaps = [f"at {start}" if start == end else f"from {start} to {end}" for start, end in ends]
     if gaps:
         text += f", stands again {_listed(gaps)}"
-    text += f"; looked at {len(scales)} scales up to {number(largest)}."
+    text += f"; looked at {len(scales)} scales up to {number(largest)}"
+    if not math.isnan(found.largest_gap):
+        text += f", at most {_at_most(found.largest_gap)} apart"
+    text += "." if found.whole else ", then interrupted."
     if found.up_to < largest:
         lesser = " and a lesser scale" if not found.up_to >= critical else ""
         text += (
-            f" Beyond {number(found.up_to)} they are not close enough together to exclude "
-            f"further flips{lesser}."
+            f" Beyond {number(found.up_to)} there are signs of further flips{lesser} between them: "
+            "they are not close enough together to tell."
         )
     undecided = [scale for scale, run in found.shown.items() if run.overturned is None]
     if undecided:
         text += f" {unfinished(undecided)}, the first at {number(undecided[0])}."
     return text
+
+
+def _at_most(gap: float) -> str:
+    """Give a distance to two digits, rounded up."""
+    size = 10.0 ** (math.floor(math.log10(gap)) - 1)
+    return f"{math.ceil(gap / size - _ROUNDING) * size:.2g}"
 
 
 def unfinished(undecided: Sequence[float]) -> str:

@@ -1,5 +1,6 @@
 """Every change of the verdict along the scale of a motion, between brackets."""
 
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -44,16 +45,28 @@ class Followed:
     shown : dict of float to Beside
         All runs by their scales, rising.
     up_to : float
-        Scale up to which every run has a verdict, and no interval is left in which a
-        hidden flip is to be feared [1].
+        Scale up to which every run has a verdict, and no interval is left that shows signs
+        of a hidden flip. It is no proof that there is none [1].
+    whole : bool
+        Whether no interrupt (Ctrl-C) came in between.
     """
 
     shown: dict[float, Beside]
     up_to: float
+    whole: bool = True
 
     def flips(self) -> list[Flip]:
         """Give all changes of the verdict, from low to high."""
         return list(_flips(self.shown))
+
+    @property
+    def largest_gap(self) -> float:
+        """Largest distance between neighbouring scales with a verdict; NaN of fewer than two [1].
+
+        Flips closer together than that may be missed, in pairs, wherever nothing tells of them.
+        """
+        decided = [scale for scale, run in self.shown.items() if run.overturned is not None]
+        return max((far - near for near, far in pairwise(decided)), default=math.nan)
 
 
 def follow(look: Look, row: Sequence[float], *, most: int, width: float) -> Followed:
@@ -77,18 +90,32 @@ def follow(look: Look, row: Sequence[float], *, most: int, width: float) -> Foll
     Returns
     -------
     Followed
+        After an interrupt (Ctrl-C) what the runs until then show.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        During the first run.
     """
     least, *others = row
     side = Side(1.0, {least: look(least)}, [least])
-    for scale in others:
-        side.add(scale, look(scale))
-    for up_to_first in (True, False):
-        while _halve(side, look, most, up_to_first=up_to_first):
-            pass
-    suspects = [near for near, _ in _suspects(side, up_to_first=False)]
-    for flip in list(_flips(_in_order(side))):
-        _narrow(side, look, flip, width)
-    return Followed(_in_order(side), min([*suspects, *_undecided(side), row[-1]]))
+    suspects: list[float] | None = None
+    whole = True
+    try:
+        for scale in others:
+            side.add(scale, look(scale))
+        for up_to_first in (True, False):
+            while _halve(side, look, most, up_to_first=up_to_first):
+                pass
+        suspects = _suspect_from(side)
+        for flip in list(_flips(_in_order(side))):
+            _narrow(side, look, flip, width)
+    except KeyboardInterrupt:
+        whole = False
+    if suspects is None:  # also flips before the first one known have not been looked for
+        suspects = _suspect_from(side) + _suspect_from(side, up_to_first=True)
+    largest = side.places[-1]
+    return Followed(_in_order(side), min([*suspects, *_undecided(side), largest]), whole)
 
 
 def _halve(side: Side, look: Look, most: int, *, up_to_first: bool) -> bool:
@@ -127,10 +154,15 @@ def _suspects(side: Side, *, up_to_first: bool) -> Iterator[tuple[float, float]]
             yield near, far
 
 
+def _suspect_from(side: Side, *, up_to_first: bool = False) -> list[float]:
+    """Give the lower ends of the intervals in which flips may hide."""
+    return [near for near, _ in _suspects(side, up_to_first=up_to_first)]
+
+
 def _clearance(side: Side, near: float, far: float) -> float:
-    """Give what the larger peak left of the overturning angle; 0 where a run overturned."""
+    """Give what the larger peak left of the overturning angle; 0 where that was passed."""
     ends = side.shown[near], side.shown[far]
-    return min(0.0 if one.overturned else one.clearances[0] for one in ends)
+    return min(one.clearances[0] if one.within_the_angle else 0.0 for one in ends)
 
 
 def _undecided(side: Side) -> Iterator[float]:

@@ -179,7 +179,16 @@ def motions_in(runs: xr.Dataset, given: object, *, owner: str) -> dict[str, Grou
     known = remembered(attributes)
     found: dict[str, GroundMotion] = {}
     used = set(np.unique(runs[MOTION].to_numpy().astype(str)).tolist())
-    for number, name in enumerate(json.loads(attributes["motion_names"])):
+    names: list[str] = json.loads(attributes["motion_names"])
+    unknown = sorted(used - set(names))
+    if unknown:
+        msg = (
+            f"{owner}: the sweep had no motion {unknown[0]!r}; datasets that were put together "
+            "tell the motions of the first alone: run all motions in one sweep, or give the "
+            "intensity as a DataArray"
+        )
+        raise StudyError(msg)
+    for number, name in enumerate(names):
         if name not in used:
             continue
         motion = motion_of(given, number, attributes, known)

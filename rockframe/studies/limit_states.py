@@ -1,6 +1,5 @@
 """Limit states of a rocking body, and which runs exceed them."""
 
-import json
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any, Final, cast
@@ -10,14 +9,16 @@ import xarray as xr
 
 from rockframe.arguments import checked_dataset
 from rockframe.errors import ComponentError, SchemaError, shown
+from rockframe.results.outcome import overturns
 from rockframe.results.variables.runs import RunStatus
-from rockframe.system.options import Overturning
 from rockframe.units import Condition, to_ratio
 
 UPLIFT: Final = "uplift"
 OVERTURNING: Final = "overturning"
 _SHARE: Final = Condition("above 0 and below 1", lambda value: 0.0 < value < 1.0)
 _NEEDED: Final = ("status", "peak_relative_rotation", "first_uplift_time", "overturned")
+_TOLD: Final = ("run_json", "axes_json", "motions_json", "motion_names", "study_sha256")
+"""Attributes of a sweep."""
 
 
 @dataclass(frozen=True)
@@ -84,9 +85,13 @@ def check_runs(given: object, *, owner: str) -> xr.Dataset:
     """
     runs = checked_dataset(given, owner=owner)
     missing = [name for name in _NEEDED if name not in runs]
-    if missing or "run_json" not in runs.attrs:
-        lacks = f" without {', '.join(missing)}" if missing else ""
-        msg = f"{owner}: found a dataset{lacks} that is no sweep; expected the result of rf.sweep"
+    if missing or not set(_TOLD) <= set(runs.attrs):
+        what = f"a dataset without {', '.join(missing)}" if missing else "joined runs"
+        what = what if missing or "end_state" not in runs.attrs else "a single run"
+        msg = (
+            f"{owner}: found {what}, which is no sweep; expected the result of rf.sweep, with its "
+            "attributes"
+        )
         raise SchemaError(msg)
     return runs
 
@@ -116,35 +121,6 @@ def exceeds(runs: xr.Dataset, state: LimitState) -> xr.DataArray:
     )
     known = runs["peak_relative_rotation"].notnull()
     return (beyond | (runs["overturned"] == 1)).astype(float).where(known)
-
-
-def overturns(runs: xr.Dataset) -> xr.DataArray:
-    """Tell which runs overturn, in the sense in which they were asked.
-
-    Where they were to go on beyond the overturning angle, those that lie flat in the end do:
-    the ground may bring a block back.
-
-    Parameters
-    ----------
-    runs : xarray.Dataset
-        A sweep.
-
-    Returns
-    -------
-    xarray.DataArray
-        1, 0, or NaN where a run has no verdict.
-    """
-    if goes_on(runs):
-        finished = (RunStatus.COMPLETED, RunStatus.OVERTURNED, RunStatus.TOPPLED)
-        flat = (runs["status"] == RunStatus.TOPPLED).astype(float)
-        return flat.where(runs["status"].isin([int(one) for one in finished]))
-    known = runs["peak_relative_rotation"].notnull()
-    return (runs["overturned"] == 1).astype(float).where(known)
-
-
-def goes_on(runs: xr.Dataset) -> bool:
-    """Tell whether runs went on beyond the overturning angle."""
-    return json.loads(runs.attrs["run_json"])["overturning"] == Overturning.CONTINUE
 
 
 def interrupted(runs: xr.Dataset) -> bool:

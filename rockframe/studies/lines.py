@@ -9,7 +9,15 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 import xarray as xr
 
-from rockframe.errors import ComponentError, ModelWarning, StudyError, heard, shown, warn
+from rockframe.errors import (
+    ComponentError,
+    ModelWarning,
+    SolverWarning,
+    StudyError,
+    heard,
+    shown,
+    warn,
+)
 from rockframe.motion import GroundMotion
 from rockframe.results.outcome import Generic
 from rockframe.results.variables.studies import CASE, MOTION
@@ -29,6 +37,8 @@ if TYPE_CHECKING:
 
 SCALE: Final = "scale"
 _SCAN: Final = "scan"
+INTERRUPTED: Final = "; interrupted."
+"""Ends the verdict of an analysis whose brackets are wider than asked."""
 _WIDTH: Final = Condition("from 1e-12 to 0.1", lambda value: 1e-12 <= value <= 0.1)
 
 Verdicts = Callable[[xr.Dataset], xr.DataArray]
@@ -66,7 +76,8 @@ class Lines:
     ) -> tuple[xr.Dataset, list[Bracket]]:
         """Run all rows and motions at all scales, and narrow every change of a verdict.
 
-        One bar counts the cases of the scan and of all rounds.
+        One bar counts the cases of the scan and of all rounds. After an interrupt (Ctrl-C) the
+        verdict of the scan says so.
 
         Parameters
         ----------
@@ -89,7 +100,12 @@ class Lines:
         with bar_of(self.run.get("progress"), owner=self.owner) as bar:
             runner = _Runner(self, store, bar)
             scan = runner.scan(scales)
-            return scan, runner.narrowed(scan, verdicts, width)
+            found, whole = runner.narrowed(scan, verdicts, width)
+        if not whole:
+            scan.attrs["verdict"] = f"{str(scan.attrs['verdict']).removesuffix('.')}{INTERRUPTED}"
+            kept = "; the same call goes on, as it has a store" if store is not None else ""
+            warn(f"{self.owner}: interrupted; brackets are wider than asked{kept}", SolverWarning)
+        return scan, found
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,15 +121,17 @@ class _Runner:
         heads = self._heads(slice(None))
         return self._sweep(_SCAN, heads or None, {SCALE: scales})
 
-    def narrowed(self, scan: xr.Dataset, verdicts: Verdicts, width: float) -> list[Bracket]:
-        """Narrow every change of a verdict between two scales of the scan."""
+    def narrowed(
+        self, scan: xr.Dataset, verdicts: Verdicts, width: float
+    ) -> tuple[list[Bracket], bool]:
+        """Narrow every change of a verdict between two scales of the scan; tell if all are."""
         names = list(self.lines.motions)
         order = (VERDICT, *([CASE] if self.lines.columns else []), MOTION, SCALE)
         shown = verdicts(scan).transpose(*order).to_numpy()
         shown = shown.reshape(len(shown), -1, shown.shape[-1])
         found = brackets_of(scan[SCALE].to_numpy(), shown)
         if interrupted(scan):
-            return found
+            return found, False
 
         def middles(number: int, lines: Generic, scales: Array) -> xr.Dataset:
             rows, motions = np.divmod(lines, len(names))
@@ -124,10 +142,10 @@ class _Runner:
             return verdicts(runs).transpose(VERDICT, CASE).to_numpy()
 
         with heard() as said:
-            narrow = narrowed(found, middles, seen, width=width)
-        if said:
+            narrow, whole = narrowed(found, middles, seen, width=width)
+        if said and whole:
             warn(f"while brackets were narrowed: {said[0]}", ModelWarning)
-        return narrow
+        return narrow, whole
 
     def _heads(self, rows: Any) -> dict[str, Any]:
         columns = self.lines.columns.items()

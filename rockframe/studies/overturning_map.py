@@ -68,7 +68,8 @@ def overturning_map(
     -------
     xarray.Dataset
         The sweep over ``amplitude`` and ``frequency``, with ``impacts_before_overturning``, NaN
-        where the block stands. Over ``frequency``: ``boundary_count``, and over ``boundary``
+        where the block stands, or where the run has no verdict (``status``). Over
+        ``frequency``: ``boundary_count``, and over ``boundary``
         too ``amplitude_below`` and ``amplitude_above`` [m s^-2], ``impacts_below`` and
         ``impacts_above``, NaN beyond the last one. On rigid ground also the coordinates
         ``relative_peak_ground_acceleration`` and ``relative_pulse_frequency`` [1].

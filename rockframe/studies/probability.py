@@ -7,6 +7,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe.arguments import one_of_words, whole_number
+from rockframe.errors import StudyError
 from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import Generic
 from rockframe.results.variables.studies import MOTION
@@ -17,6 +18,7 @@ from rockframe.studies.lines import head
 from rockframe.studies.ranking import ranked
 from rockframe.studies.spread import Sampling, drawn, read_spread
 from rockframe.studies.sweeps.arguments import SweepArguments
+from rockframe.studies.sweeps.memory import check_memory
 from rockframe.studies.sweeps.motions import motions_of
 from rockframe.studies.sweeps.scenes import own_motion, scene_of
 from rockframe.studies.sweeps.sweep import sweep
@@ -29,6 +31,8 @@ if TYPE_CHECKING:
     from rockframe.units import RatioLike
 
 _OWNER: Final = "probability_of_overturning"
+SAMPLED: Final = "sampling"
+"""Attribute that tells how cases were drawn."""
 _MOST_CASES: Final = 1_000_000_000
 
 
@@ -113,6 +117,11 @@ def probability_of_overturning(
     level = read_level(confidence, owner=_OWNER)
     own = own_motion(scene) if motions is None else motions
     named = None if own is None else motions_of(own)
+    wrong = check_memory(
+        {"numbers that are drawn": 1.0 + len(spreads)}, count, "draw fewer cases", owner=_OWNER
+    )
+    if wrong:
+        raise StudyError(*wrong)
     cube = drawn(spreads, count, way, first)
     several = 1 if named is None else len(named)
     number = np.minimum((cube[:, 0] * several).astype(int), several - 1)
@@ -134,9 +143,9 @@ def probability_of_overturning(
     found = _counted(runs, [one.name for one in spreads], several=several > 1, level=level)
     return found.assign_attrs(
         title="Probability of overturning",
-        sampling=str(way),
         seed=first,
         confidence=level,
+        **{SAMPLED: str(way)},
     )
 
 
@@ -167,6 +176,12 @@ def _counted(runs: xr.Dataset, names: Sequence[str], *, several: bool, level: fl
     most = next(iter(order), "")
     said = f"Overturns with probability {share:.3g}, from {float(lower):.3g} to {float(upper):.3g}"
     said += f" with confidence {level:g}, by {count} cases"
+    if several:
+        # the bounds are those of further cases of the same motions
+        said += f" under these {len(np.unique(columns[MOTION]))} motions"
+    lacking = len(verdict) - count
+    if lacking:
+        said += f"; {lacking} without a verdict are left out"
     if most and not np.isnan(order[most].first_order):
         said += f"; {most} matters most"
     return runs.assign(added.data_vars).assign_coords(added.coords).assign_attrs(verdict=f"{said}.")

@@ -9,10 +9,12 @@ from typing import TYPE_CHECKING, Any, Final, Unpack, cast
 import numpy as np
 import xarray as xr
 
+from rockframe.arguments import by_words
 from rockframe.comparison.models import check_system
 from rockframe.errors import ComponentError, shown
 from rockframe.motion import GroundMotion
 from rockframe.results.dataset import build_dataset
+from rockframe.results.joining import CASE_COUNT
 from rockframe.results.variables.studies import MOTION
 from rockframe.shared_arguments import takes
 from rockframe.signals import Motion, Signal
@@ -112,14 +114,14 @@ def earthquake_sequences(
     )
     found = arranged.assign(labels.data_vars).assign_coords(labels.coords)
     falls = int((labels["overturning_earthquake"] > 0).sum())
-    verdict = f"Of {len(joined)} sequences {falls} overturned."
+    verdict = f"Of all {len(joined)} sequences {falls} overturned."
     return found.assign_attrs(title="Earthquakes in sequence", pause=rest, verdict=verdict)
 
 
 def _sequences(given: object) -> dict[str, list[GroundMotion]]:
     """Read the sequences, and check that their motions fit."""
     if isinstance(given, Mapping):
-        named = {str(name): each for name, each in cast("Mapping[Any, Any]", given).items()}
+        named = by_words(cast("Mapping[Any, Any]", given), owner=_OWNER)
     elif isinstance(given, Iterable) and not isinstance(given, str):
         several = list(cast("Iterable[Any]", given))
         named = {f"sequence {number}": each for number, each in enumerate(several, start=1)}
@@ -209,7 +211,8 @@ def _arranged(
             attributes["flag_values"] = attributes["flag_values"].astype(np.float64)
         found[str(name)] = xr.Variable(("sequence", NUMBER), values, attributes)
     others = {"message": runs["message"]} if "message" in runs.coords else {}
-    return xr.Dataset(found, coords=others, attrs=runs.attrs)
+    attributes = {name: one for name, one in runs.attrs.items() if name != CASE_COUNT}
+    return xr.Dataset(found, coords=others, attrs=attributes)
 
 
 def _first(found: xr.Dataset) -> Array:

@@ -129,6 +129,7 @@ def overturning_spectrum(
     xarray.Dataset
         Over ``slenderness``, ``rocking_period`` [s] and ``motion``: ``capacity_scale`` [1] and
         ``capacity_intensity``, the least found to overturn, NaN if none did;
+        ``left_out_count``, how many runs of the first row have no verdict;
         ``flip_count``, and over ``flip`` too ``scale_below``, ``scale_above`` and
         ``exceeds_above``.
 
@@ -178,6 +179,7 @@ def overturning_spectrum(
             "capacity_scale": capacity,
             "capacity_intensity": unit.to_numpy() * np.where(np.isnan(capacity), np.nan, powers),
             "flip_count": np.isfinite(below).sum(axis=-1),
+            "left_out_count": np.isnan(shown).sum(axis=-1),
             "scale_below": below,
             "scale_above": above,
             "exceeds_above": after,

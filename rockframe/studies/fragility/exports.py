@@ -15,6 +15,8 @@ from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError, SchemaError, shown
 from rockframe.results.variables.analyses import LIMIT_STATE, FragilityStatus
 from rockframe.studies.intensities import PERIOD_OF, SHORT
+from rockframe.version import __version__
+from rockframe.writing import FileKind, write_file
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -22,6 +24,9 @@ if TYPE_CHECKING:
 _PELICUN: Final = "to_pelicun"
 _OPENQUAKE: Final = "to_openquake"
 _NAMESPACE: Final = "http://openquake.org/xmlns/nrml/0.5"
+_PROLOGUE: Final = "<?xml version='1.0' encoding='UTF-8'?>\n"
+_MARK: Final = "fragility model by rockframe "
+_KIND: Final = FileKind.marked("a fragility model", (".xml",), _MARK)
 _LOSSES: Final = ("structural", "nonstructural", "contents", "business_interruption")
 _WORD: Final = re.compile(r"[A-Za-z0-9_-]{1,100}")
 
@@ -75,7 +80,7 @@ def to_pelicun(
     SchemaError
         Not a fragility over one such measure.
     ComponentError
-        A limit state has no fit, or dispersion zero.
+        A limit state has no fit, or dispersion zero; or there are several structures.
 
     Notes
     -----
@@ -122,6 +127,7 @@ def to_openquake(
     loss: str = "contents",
     category: str = "contents",
     no_damage_limit: float | None = None,
+    overwrite: bool = False,
 ) -> Path:
     """Write OpenQuake's fragility model, NRML 0.5.
 
@@ -132,7 +138,7 @@ def to_openquake(
         same limit states, over the peak ground acceleration or velocity, or a spectral
         acceleration.
     path : str or path
-        Of the file.
+        Of the file; its name ends in ``.xml``. One that this function wrote is replaced.
     name, description : str, optional
         Of the model.
     loss : {"contents", "structural", "nonstructural", "business_interruption"}
@@ -141,6 +147,8 @@ def to_openquake(
         Of the assets.
     no_damage_limit : float, optional
         Intensity below which nothing is exceeded, in g or cm/s.
+    overwrite : bool, optional
+        Whether a file that is there is replaced whoever wrote it.
 
     Returns
     -------
@@ -154,6 +162,9 @@ def to_openquake(
     ComponentError
         A limit state has no fit, or dispersion zero; limit states differ; or a name has
         other letters than OpenQuake allows.
+    FileError
+        The file cannot be written, its name has another ending, or it is there already and
+        none that this function wrote.
 
     Notes
     -----
@@ -206,9 +217,8 @@ def to_openquake(
                 stddev=f"{deviation:.10g}",
             )
     Tree.indent(root)
-    file = Path(path)
-    Tree.ElementTree(root).write(file, encoding="UTF-8", xml_declaration=True)
-    return file
+    text = f"{_PROLOGUE}<!-- {_MARK}{__version__} -->\n{Tree.tostring(root, encoding='unicode')}\n"
+    return write_file(path, _KIND, text.encode(), overwrite=overwrite)
 
 
 def _fits(
@@ -224,6 +234,15 @@ def _fits(
         )
         raise SchemaError(msg)
     several = dataset if LIMIT_STATE[0] in dataset.dims else dataset.expand_dims(*LIMIT_STATE)
+    structures = [str(dim) for dim in several["fragility_status"].dims if dim not in LIMIT_STATE]
+    wide = [dim for dim in structures if several.sizes[dim] > 1]
+    if wide:
+        msg = (
+            f"{owner}: found fragilities of several structures, by {', '.join(wide)}; pick one, "
+            f"for example fragility.isel({wide[0]}=0)"
+        )
+        raise ComponentError(msg)
+    several = several.isel(dict.fromkeys(structures, 0))
     found: list[tuple[str, float, float]] = []
     for number in range(several.sizes["limit_state"]):
         one = several.isel(limit_state=number)

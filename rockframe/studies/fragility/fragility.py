@@ -6,16 +6,25 @@ from typing import TYPE_CHECKING, Any, Final, cast
 import numpy as np
 import xarray as xr
 
-from rockframe.errors import ComponentError, UnitsError, shown
+from rockframe.errors import ComponentError, SchemaError, UnitsError, shown
+from rockframe.results.dataset import build_dataset
+from rockframe.results.variables.analyses import LIMIT_STATE
 from rockframe.results.variables.studies import MOTION
-from rockframe.signals.arrays import Array
 from rockframe.studies.confidence import read_level
 from rockframe.studies.dynamic_analysis import labels_of_states
-from rockframe.studies.fragility.labelling import Means, labelled
+from rockframe.studies.fragility.labelling import Found, Means, labelled
 from rockframe.studies.fragility.likelihood import Bands, Trials
-from rockframe.studies.fragility.trials import flat, trials_of_capacities, trials_of_runs
-from rockframe.studies.intensities import Intensity, intensity_in
+from rockframe.studies.fragility.structures import structures_of
+from rockframe.studies.fragility.trials import (
+    flat,
+    motion_numbers,
+    trials_of_capacities,
+    trials_of_runs,
+)
+from rockframe.studies.fragility.words import POOLED, sentences
+from rockframe.studies.intensities import PERIOD_OF, Intensity, intensity_in
 from rockframe.studies.limit_states import LimitState, check_runs, exceeds, limit_states
+from rockframe.studies.lines import SCALE
 from rockframe.studies.sweeps.axes import free_values
 from rockframe.units import PERIOD, to_si
 
@@ -35,10 +44,11 @@ def fragility(
     limits: Iterable[object] | None = None,
     period: "QuantityLike | None" = None,
     motions: "GroundMotion | Mapping[str, GroundMotion] | Sequence[GroundMotion] | None" = None,
+    pooled: Iterable[str] = (),
     bands: str | None = None,
     confidence: "RatioLike" = 0.95,
 ) -> xr.Dataset:
-    """Fit lognormal capacities to runs, by maximum likelihood.
+    """Fit lognormal capacities to runs, by maximum likelihood: one for each structure.
 
     Parameters
     ----------
@@ -57,17 +67,23 @@ def fragility(
         Of the oscillator of a spectral intensity [s].
     motions : GroundMotion, or sequence or mapping of them, optional
         The records of the sweep, where neither the dataset nor this process has them.
+    pooled : iterable of str, optional
+        Axes of the sweep, or columns of its table, of which all values are taken for one
+        structure, whose dispersion then holds their differences too.
     bands : {"profile", "sandwich"}, optional
         Where confidence bounds come from: the profile of the likelihood, which takes all runs
         for independent; or the sandwich covariance with clusters of runs under one motion.
         The latter where motions were run more than once, unless given.
     confidence : float, optional
-        Of all bounds [1].
+        Of all bounds [1]. It is nominal: with few motions bounds hold the true value less
+        often, which the verdict tells.
 
     Returns
     -------
     xarray.Dataset
-        Over ``limit_state``: ``median_intensity``, ``dispersion``, their bounds and standard
+        Over the axes of the sweep that change neither motion nor intensity, each with a
+        curve of its own, and over ``limit_state``: ``median_intensity``, ``dispersion``, their
+        bounds and standard
         errors, ``fragility_status``; over the intensity too ``exceedance_probability`` and
         its bounds; and over ``stripe`` what was counted, with bounds of Clopper and Pearson. Of
         two measures the coefficients of the fit instead of median and dispersion. The
@@ -76,11 +92,12 @@ def fragility(
     Raises
     ------
     ComponentError
-        An argument is out of range or names no such measure.
+        An argument is out of range or names no such measure, or each run has a structure of
+        its own.
     SchemaError
         Not the result of a sweep.
     StudyError
-        The motions must be given.
+        The motions must be given, or are not those of the sweep.
 
     Notes
     -----
@@ -90,7 +107,13 @@ def fragility(
     the greatest likelihood, :eq:`eq-fragility-likelihood`. A fit that does not exist is told of
     by ``fragility_status``, with NaN in its place: no run exceeded, all did, those that did
     are separated from those that did not, so that beta would be zero, or
-    exceedances grow rarer with the intensity. Runs without a verdict are left out.
+    exceedances grow rarer with the intensity. Where they are separated, the median is in the middle
+    of the gap, the dispersion 0, at which the likelihood is greatest, and there are no bounds;
+    nor are there with fewer than ten motions, or five of which each was run once. Runs without a
+    verdict are left out, ``left_out_count``.
+
+    Rows of a table of cases that differ in motion and scale alone are of one structure, which
+    ``case`` calls by the first of them.
 
     Of a dynamic analysis a capacity may be known from one side only: from above, where the least
     scale exceeded already, or from below, where none did. Such capacities count with the
@@ -107,30 +130,48 @@ def fragility(
     ['uplift', 'overturning']
     """
     runs = check_runs(runs, owner=_OWNER)
+    given = _several(intensity)
+    structures = structures_of(runs, pooled, given, owner=_OWNER)
     of_capacities = "capacity_scale" in runs
     states = _states(runs, limits, of_capacities=of_capacities)
-    measures = [_measure(runs, one, period, motions) for one in _several(intensity)]
-    repeated = not of_capacities and _repeated(runs)
-    given = Bands.SANDWICH if repeated else Bands.PROFILE
-    means = Means(_bands(bands, given, len(measures)), read_level(confidence, owner=_OWNER))
-    trials: list[Trials] = []
-    counted: list[tuple[Array, Array]] = []
-    for state in states:
-        if of_capacities:
-            of_state = runs.sel(limit_state=state.name)
-            trials.append(trials_of_capacities(of_state, measures))
-        else:
-            verdict = exceeds(runs, state)
-            by_motion = means.bands is Bands.SANDWICH and repeated
-            trials.append(trials_of_runs(verdict, measures, by_motion=by_motion))
-            counted.append(flat(verdict, measures))
-    labels = [_labels(one) for one in measures]
-    oscillator = _period_of(period)
-    found = labelled(trials, counted, labels, means, states[-1].name, oscillator)
+    measures = [_measure(runs, one, period, motions) for one in given]
+    if len({one.name for one in measures}) < len(measures):
+        msg = f"{_OWNER}: the two intensity measures are one, {measures[0].name}; give another"
+        raise ComponentError(msg)
+    verdicts = [exceeds(runs, state) for state in states]
+    repeated = not of_capacities and any(map(_repeated, structures.parts(verdicts[-1])))
+    usual = Bands.SANDWICH if repeated else Bands.PROFILE
+    means = Means(_bands(bands, usual, len(measures)), read_level(confidence, owner=_OWNER))
+    by_motion = means.bands is Bands.SANDWICH and repeated
+    parts = zip(*(structures.parts(one) for one in (*verdicts, *measures)), strict=True)
+    found: list[Found] = []
+    for part in parts:
+        those, along = part[: len(states)], part[len(states) :]
+        for state, verdict in zip(states, those, strict=True):
+            if of_capacities:
+                found.append(_of_capacities(runs, state, verdict, along))
+            else:
+                trials, count = trials_of_runs(verdict, along, by_motion=by_motion)
+                left_out = verdict.size - int(trials.weight.sum())
+                found.append(Found(trials, flat(verdict, along), left_out, count))
+    over = dict(zip(structures.groups, structures.shape, strict=True))
+    about: dict[str, str | float | int] = {"trials": "capacities" if of_capacities else "runs"}
+    together = (pooled,) if isinstance(pooled, str) else tuple(pooled)
+    if together:
+        about[POOLED] = ", ".join(together)
+    dataset = labelled(
+        found, {**over, "limit_state": len(states)}, [_labels(one) for one in measures], means,
+        about | _period_of(period),
+    )  # fmt: skip
+    dataset = dataset.assign_coords({**structures.coordinates, **labels_of_states(states)})
     if of_capacities:
-        found.attrs["verdict"] += _without_lower_ends(trials[-1])
-    kept = {name: runs.attrs[name] for name in ("model", "system_json") if name in runs.attrs}
-    return found.assign_coords(labels_of_states(states)).assign_attrs(kept)
+        below = np.array([int((~one.trials.has_lower).sum()) for one in found])
+        added = build_dataset({"below_scan_count": below}, {}, over=LIMIT_STATE)
+        dataset = dataset.assign(added.data_vars)
+    dataset.attrs["verdict"] = sentences(dataset)
+    # a system that the sweep changed is not that of the runs
+    told = ("model",) if structures.coordinates or together else ("model", "system_json")
+    return dataset.assign_attrs({name: runs.attrs[name] for name in told if name in runs.attrs})
 
 
 def fragility_of_counts(
@@ -208,11 +249,14 @@ def fragility_of_counts(
             [np.repeat([1.0, 0.0], [int(k), int(n - k)]) for k, n in zip(over, count, strict=True)]
         ),
     )
+    total = int(count.sum())
     labels = (which.name, which.attributes())
-    counted = [(each[0][:, None], each[1])]
-    oscillator = _period_of(period)
-    found = labelled([made], counted, [labels], means, "what was counted", oscillator)
-    return found.isel(limit_state=0)
+    about: dict[str, str | float | int] = {"trials": "trials"}
+    found = labelled(
+        [Found(made, (each[0][:, None], each[1]), 0, total)],
+        {"limit_state": 1}, [labels], means, about | _period_of(period),
+    ).isel(limit_state=0)  # fmt: skip
+    return found.assign_attrs(verdict=sentences(found))
 
 
 def _states(
@@ -220,7 +264,7 @@ def _states(
 ) -> tuple[LimitState, ...]:
     if not of_capacities:
         return limit_states(("uplift",) if limits is None else limits, owner=_OWNER)
-    known = [float(one) for one in runs["rotation_limit"].to_numpy()]
+    known = [float(one) for one in np.atleast_1d(runs["rotation_limit"].to_numpy())]
     if limits is None:
         return tuple(LimitState(one) for one in known)
     states = limit_states(limits, owner=_OWNER)
@@ -231,18 +275,27 @@ def _states(
     return states
 
 
-def _period_of(given: "QuantityLike | None") -> float | None:
-    """Read the period of a spectral intensity [s]."""
-    return None if given is None else to_si(given, PERIOD, owner=_OWNER, name="period")
+def _of_capacities(
+    analysis: xr.Dataset, state: LimitState, verdict: xr.DataArray, measures: Sequence[xr.DataArray]
+) -> Found:
+    """Give what a dynamic analysis tells of a limit state."""
+    if SCALE not in analysis.dims:
+        msg = f"{_OWNER}: found a dynamic analysis at one scale; expected one with all its scales"
+        raise SchemaError(msg)
+    one = analysis.sel(limit_state=state.name) if "limit_state" in analysis.dims else analysis
+    known = verdict.notnull()
+    if MOTION not in analysis.dims:
+        one, known = one.expand_dims(MOTION), known.expand_dims(MOTION)
+    trials = trials_of_capacities(one, known, measures)
+    count = len(trials.weight)
+    return Found(trials, None, one.sizes[MOTION] - count, count)
 
 
-def _without_lower_ends(capacities: Trials) -> str:
-    """Tell how many capacities a scan that starts too high does not part from zero."""
-    lacking = int((~capacities.has_lower).sum())
-    if not lacking:
-        return ""
-    known = len(capacities.has_lower)
-    return f" {lacking} of {known} capacities are only known to lie at or below the least scale."
+def _period_of(given: "QuantityLike | None") -> dict[str, str | float | int]:
+    """Read the period of a spectral intensity [s], and give it as an attribute."""
+    if given is None:
+        return {}
+    return {PERIOD_OF: to_si(given, PERIOD, owner=_OWNER, name="period")}
 
 
 def _several(given: object) -> list[object]:
@@ -276,12 +329,9 @@ def _labels(measure: xr.DataArray) -> tuple[str, dict[str, Any]]:
     return str(measure.name), dict(measure.attrs)
 
 
-def _repeated(runs: xr.Dataset) -> bool:
+def _repeated(runs: xr.DataArray) -> bool:
     """Tell whether some motion was run more than once."""
-    if MOTION not in runs.coords:
-        return False
-    names = runs[MOTION].broadcast_like(runs["status"]).to_numpy().ravel()
-    return len(np.unique(names.astype(str))) < len(names)
+    return len(np.unique(motion_numbers(runs))) < runs.size
 
 
 def _bands(given: str | None, usual: Bands, measures: int) -> Bands:

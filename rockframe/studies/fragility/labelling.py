@@ -1,19 +1,20 @@
 """The dataset of fragilities: fits, curves and what was counted."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Final, cast
+from typing import Any, Final
 
 import numpy as np
 import xarray as xr
 
 from rockframe.results.dataset import build_dataset
-from rockframe.results.variables.analyses import LIMIT_STATE, FragilityStatus
+from rockframe.results.outcome import Generic
+from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.signals.arrays import Array
 from rockframe.studies.confidence import clopper_pearson
+from rockframe.studies.fragility.coverage import bounded
 from rockframe.studies.fragility.likelihood import Bands, Fit, Trials, boundary, fit, gap
-from rockframe.studies.intensities import PERIOD_OF, in_words
 
 _POINTS: Final = 101
 """Intensities at which a curve is given."""
@@ -25,11 +26,31 @@ _BINS: Final = 10
 _TITLE: Final = "Fragility of a rocking system"
 _OF_INTENSITY: Final = (
     "median_intensity", "median_intensity_lower_bound", "median_intensity_upper_bound",
-    "stripe_intensity",
+    "separation_lower_intensity", "separation_upper_intensity", "stripe_intensity",
 )  # fmt: skip
 """Variables in the unit of the intensity."""
 Labels = tuple[str, dict[str, Any]]
 """Name and attributes of an intensity measure."""
+
+
+@dataclass(frozen=True)
+class Layout:
+    """How numbers of structures and limit states are arranged.
+
+    Parameters
+    ----------
+    dims : tuple of str
+        Dimensions, the last one fastest.
+    shape : tuple of int
+        Their sizes.
+    """
+
+    dims: tuple[str, ...]
+    shape: tuple[int, ...]
+
+    def arranged(self, values: Generic) -> Generic:
+        """Give values, whose first dimension counts, their dimensions."""
+        return values.reshape(*self.shape, *values.shape[1:])
 
 
 @dataclass(frozen=True)
@@ -55,88 +76,130 @@ class Means:
         return float(ndtri(0.5 + 0.5 * self.confidence))
 
 
+@dataclass(frozen=True, eq=False)
+class Found:
+    """What was found out of one structure against one limit state.
+
+    Parameters
+    ----------
+    trials : Trials
+        What is known of its capacity.
+    runs : (ndarray, ndarray) or None
+        Intensities, and whether they were exceeded, of each run; None of capacities.
+    left_out : int
+        How many runs or capacities are no trials.
+    independent : int
+        How many trials, or motions of trials, are independent.
+    """
+
+    trials: Trials
+    runs: tuple[Array, Array] | None
+    left_out: int
+    independent: int
+
+
+@dataclass(frozen=True, eq=False)
+class _Fitted:
+    """Trials with their fit, its region by profile, and whether there are bounds."""
+
+    trials: Trials
+    fit: Fit
+    edge: Array | None
+    bounded: bool
+
+    @classmethod
+    def of(cls, found: Found, means: Means) -> "_Fitted":
+        """Fit, and look for the region where bounds come from it."""
+        made = fit(found.trials, means.bands)
+        fitted = made.status is FragilityStatus.FITTED
+        bounds = fitted and bounded(means.bands, found.independent)
+        edge = None
+        if bounds and means.bands is Bands.PROFILE:
+            edge = boundary(found.trials, made, means.confidence)
+        return cls(found.trials, made, edge, bounds)
+
+
 def labelled(
-    trials: Sequence[Trials],
-    counted: Sequence[tuple[Array, Array]],
+    found: Sequence[Found],
+    over: Mapping[str, int],
     measures: Sequence[Labels],
     means: Means,
-    last: str,
-    period: float | None,
+    attributes: Mapping[str, str | float | int],
 ) -> xr.Dataset:
     """Fit capacities, and label what is found.
 
     Parameters
     ----------
-    trials : sequence of Trials
-        Of each limit state.
-    counted : sequence of (ndarray, ndarray)
-        Intensities, and whether they were exceeded, of each run; none of capacities.
+    found : sequence of Found
+        Of each structure and limit state.
+    over : mapping of str to int
+        Their dimensions and sizes, the last one fastest.
     measures : sequence of (str, dict)
         Names and attributes of the intensity measures.
     means : Means
         How bounds are found.
-    last : str
-        The last limit state, in words.
-    period : float or None
-        Of the oscillator of a spectral intensity [s].
+    attributes : mapping
+        Further ones.
 
     Returns
     -------
     xarray.Dataset
     """
-    fits = [fit(each, means.bands) for each in trials]
-    one = len(measures) == 1
-    attributes: dict[str, str | float | int] = {
-        "verdict": _sentence(fits[-1], measures, last, period),
-        "bands": means.bands.name.lower(),
-        "confidence": means.confidence,
+    every = [_Fitted.of(one, means) for one in found]
+    layout = Layout(tuple(over), tuple(over.values()))
+    counts = {
+        "fragility_status": [one.fit.status for one in every],
+        "trial_count": [one.trials.weight.sum() for one in found],
+        "left_out_count": [one.left_out for one in found],
+        "independent_count": [one.independent for one in found],
     }
-    if period is not None:
-        attributes[PERIOD_OF] = period
-    status = {"fragility_status": np.array([each.status for each in fits])}
     dataset = build_dataset(
-        status, attributes, over=LIMIT_STATE, title=_TITLE, source="greatest likelihood"
-    )
-    if one:
+        {name: layout.arranged(np.array(values)) for name, values in counts.items()},
+        {**attributes, "bands": means.bands.name.lower(), "confidence": means.confidence},
+        over=layout.dims, title=_TITLE, source="greatest likelihood",
+    )  # fmt: skip
+    if len(measures) == 1:
         (labels,) = measures
-        dataset = _with_parameters(dataset, trials, fits, means)
-        dataset = _with_curves(dataset, trials, fits, labels, means)
-        pairs = counted or _decided(trials)
-        dataset = _with_stripes(dataset, pairs, means)
+        dataset = _with_parameters(dataset, every, layout, means)
+        dataset = _with_curves(dataset, every, layout, labels, means)
+        runs = [one.runs for one in found if one.runs is not None]
+        dataset = _with_stripes(
+            dataset, runs or _decided([one.trials for one in found]), layout, means
+        )
         unit = labels[1].get("units")
         for name in _OF_INTENSITY:
             if name in dataset and unit is not None:
                 dataset[name].attrs["units"] = unit
     else:
-        dataset = _with_coefficients(dataset, fits, measures)
-        dataset = _with_surface(dataset, trials, fits, measures, means)
+        dataset = _with_coefficients(dataset, every, layout, measures)
+        dataset = _with_surface(dataset, every, layout, measures, means)
     return dataset
 
 
 def _with_parameters(
-    dataset: xr.Dataset, trials: Sequence[Trials], fits: Sequence[Fit], means: Means
+    dataset: xr.Dataset, every: Sequence[_Fitted], layout: Layout, means: Means
 ) -> xr.Dataset:
     """Add medians and dispersions."""
-    rows: dict[str, list[float]] = {}
-    for each, found in zip(trials, fits, strict=True):
-        for name, value in _parameters(each, found, means).items():
-            rows.setdefault(name, []).append(value)
-    values = {name: np.array(row) for name, row in rows.items()}
-    return dataset.assign(build_dataset(values, {}, over=LIMIT_STATE).data_vars)
+    rows = [_parameters(each, means) for each in every]
+    values = {name: layout.arranged(np.array([row[name] for row in rows])) for name in rows[0]}
+    return dataset.assign(build_dataset(values, {}, over=layout.dims).data_vars)
 
 
-def _parameters(trials: Trials, found: Fit, means: Means) -> dict[str, float]:
-    if found.status is FragilityStatus.SEPARATED:
-        return _step(trials)
-    intercept, slope = (float(one) for one in found.coefficients)
-    log_median, spread = -intercept / slope, 1.0 / slope
-    turn = np.array([[-1.0 / slope, intercept / slope**2], [0.0, -1.0 / slope**2]])
-    errors = np.sqrt(np.diag(turn @ found.covariance @ turn.T))
-    bounds = np.full((2, 2), np.nan)
-    if found.status is FragilityStatus.FITTED and means.bands is Bands.PROFILE:
-        edge = boundary(trials, found, means.confidence)
-        bounds = _extremes(edge)
-    elif found.status is FragilityStatus.FITTED:
+def _parameters(each: _Fitted, means: Means) -> dict[str, float]:
+    ends = (math.nan, math.nan)
+    errors, bounds = np.full(2, np.nan), np.full((2, 2), np.nan)
+    if each.fit.status is FragilityStatus.SEPARATED:
+        # the likelihood rises as the dispersion falls; every median between the ends is as likely
+        ends = gap(each.trials) or ends
+        log_median, spread = 0.5 * sum(ends), 0.0
+    else:
+        intercept, slope = (float(one) for one in each.fit.coefficients)
+        log_median, spread = -intercept / slope, 1.0 / slope
+        turn = np.array([[-1.0 / slope, intercept / slope**2], [0.0, -1.0 / slope**2]])
+        errors = np.sqrt(np.diag(turn @ each.fit.covariance @ turn.T))
+    if each.edge is not None:
+        bounds = _extremes(each.edge)
+    elif each.bounded:
         reach = means.deviations * errors
         bounds = np.array([[log_median], [spread]]) + reach[:, None] * np.array([-1.0, 1.0])
         # a dispersion is above zero: its logarithm has the interval
@@ -145,26 +208,13 @@ def _parameters(trials: Trials, found: Fit, means: Means) -> dict[str, float]:
         "median_intensity": math.exp(log_median),
         "median_intensity_lower_bound": float(np.exp(bounds[0, 0])),
         "median_intensity_upper_bound": float(np.exp(bounds[0, 1])),
+        "separation_lower_intensity": math.exp(ends[0]),
+        "separation_upper_intensity": math.exp(ends[1]),
         "log_median_error": float(errors[0]),
         "dispersion": spread,
         "dispersion_lower_bound": float(bounds[1, 0]),
         "dispersion_upper_bound": float(bounds[1, 1]),
         "dispersion_error": float(errors[1]),
-    }
-
-
-def _step(trials: Trials) -> dict[str, float]:
-    """Give the capacity of all trials alike, in the gap that parts those that exceed."""
-    ends = gap(trials) or (math.nan, math.nan)
-    return {
-        "median_intensity": math.exp(0.5 * sum(ends)),
-        "median_intensity_lower_bound": math.exp(ends[0]),
-        "median_intensity_upper_bound": math.exp(ends[1]),
-        "log_median_error": math.nan,
-        "dispersion": 0.0,
-        "dispersion_lower_bound": math.nan,
-        "dispersion_upper_bound": math.nan,
-        "dispersion_error": math.nan,
     }
 
 
@@ -178,56 +228,53 @@ def _extremes(edge: Array) -> Array:
 
 
 def _with_curves(
-    dataset: xr.Dataset,
-    trials: Sequence[Trials],
-    fits: Sequence[Fit],
-    labels: Labels,
-    means: Means,
+    dataset: xr.Dataset, every: Sequence[_Fitted], layout: Layout, labels: Labels, means: Means
 ) -> xr.Dataset:
     """Add exceedance probabilities over the intensity."""
     name, attributes = labels
-    values = _spaced(trials, 0, _POINTS)
+    values = _spaced(every, 0, _POINTS)
     rows = np.stack([np.ones(_POINTS), np.log(values)])
-    curves = [_curve(each, found, rows, means) for each, found in zip(trials, fits, strict=True)]
-    return dataset.assign(_probabilities(np.stack(curves, axis=1), name)).assign_coords(
+    curves = np.stack([_curve(each, rows, means) for each in every])
+    return dataset.assign(_probabilities(curves, layout, name)).assign_coords(
         {name: (name, values, attributes)}
     )
 
 
-def _curve(trials: Trials, found: Fit, rows: Array, means: Means) -> Array:
-    """Give eta and its bounds at intensities."""
-    if found.status is FragilityStatus.SEPARATED:
-        low, high = gap(trials) or (math.nan, math.nan)
-        ends = np.array([[0.5 * (low + high)], [high], [low]])
-        return np.where(rows[1] < ends, -np.inf, np.inf)
-    eta = found.coefficients @ rows
-    if found.status is FragilityStatus.FITTED and means.bands is Bands.PROFILE:
-        at = boundary(trials, found, means.confidence).T @ rows
+def _curve(each: _Fitted, rows: Array, means: Means) -> Array:
+    """Give eta and its bounds at intensities; shape (3, intensities)."""
+    if each.fit.status is FragilityStatus.SEPARATED:
+        low, high = gap(each.trials) or (math.nan, math.nan)
+        eta = np.where(rows[1] < 0.5 * (low + high), -np.inf, np.inf)
+        return np.stack([eta, *np.full((2, len(eta)), np.nan)])
+    eta = each.fit.coefficients @ rows
+    if each.edge is not None:
+        at = each.edge.T @ rows
         return np.stack([eta, at.min(axis=0), at.max(axis=0)])
-    return _with_errors(eta, rows, found, means)
+    return _with_errors(each, rows, means)
 
 
-def _with_errors(eta: Array, rows: Array, found: Fit, means: Means) -> Array:
+def _with_errors(each: _Fitted, rows: Array, means: Means) -> Array:
     """Give eta and its bounds by the covariance of the coefficients."""
-    reach = means.deviations * np.sqrt(np.einsum("ik,ij,jk->k", rows, found.covariance, rows))
+    eta = each.fit.coefficients @ rows
+    deviations = means.deviations if each.bounded else math.nan
+    reach = deviations * np.sqrt(np.einsum("ik,ij,jk->k", rows, each.fit.covariance, rows))
     return np.stack([eta, eta - reach, eta + reach])
 
 
 def _with_surface(
     dataset: xr.Dataset,
-    trials: Sequence[Trials],
-    fits: Sequence[Fit],
+    every: Sequence[_Fitted],
+    layout: Layout,
     measures: Sequence[Labels],
     means: Means,
 ) -> xr.Dataset:
     """Add exceedance probabilities over two intensities."""
-    sides = [_spaced(trials, k, _SIDE) for k in range(len(measures))]
+    sides = [_spaced(every, k, _SIDE) for k in range(len(measures))]
     mesh = np.meshgrid(*sides, indexing="ij")
     rows = np.stack([np.ones(_SIDE**2), *(np.log(one).ravel() for one in mesh)])
-    etas = [_with_errors(each.coefficients @ rows, rows, each, means) for each in fits]
-    shape = (3, len(fits), *mesh[0].shape)
+    etas = np.stack([_with_errors(each, rows, means) for each in every])
     names = [name for name, _ in measures]
-    found = _probabilities(np.stack(etas, axis=1).reshape(shape), *names)
+    found = _probabilities(etas.reshape(len(every), 3, *mesh[0].shape), layout, *names)
     coordinates = {
         name: (name, side, attributes)
         for (name, attributes), side in zip(measures, sides, strict=True)
@@ -236,39 +283,39 @@ def _with_surface(
 
 
 def _with_coefficients(
-    dataset: xr.Dataset, fits: Sequence[Fit], measures: Sequence[Labels]
+    dataset: xr.Dataset, every: Sequence[_Fitted], layout: Layout, measures: Sequence[Labels]
 ) -> xr.Dataset:
     """Add the coefficients of fits over several measures."""
     names = ["intercept", *(name for name, _ in measures)]
+    errors = np.sqrt(np.stack([np.diag(one.fit.covariance) for one in every]))
     added = build_dataset(
         {
-            "fitted_coefficient": np.stack([one.coefficients for one in fits]),
-            "fitted_coefficient_error": np.sqrt(
-                np.stack([np.diag(one.covariance) for one in fits])
+            "fitted_coefficient": layout.arranged(
+                np.stack([one.fit.coefficients for one in every])
             ),
+            "fitted_coefficient_error": layout.arranged(errors),
         },
         {},
-        over=LIMIT_STATE,
+        over=layout.dims,
     )
     labels = build_dataset({"coefficient": np.array(names, dtype=object)}, {})
     return dataset.assign(added.data_vars).assign_coords(labels.coords)
 
 
-def _probabilities(etas: Array, *measures: str) -> dict[str, xr.Variable]:
+def _probabilities(etas: Array, layout: Layout, *measures: str) -> dict[str, xr.Variable]:
+    """Label probabilities from eta and its bounds; shape (fits, 3, intensities...)."""
     from scipy.special import ndtr
 
-    value, lower, upper = ndtr(etas)
     values = {
-        "exceedance_probability": value,
-        "exceedance_probability_lower_bound": lower,
-        "exceedance_probability_upper_bound": upper,
+        f"exceedance_probability{end}": layout.arranged(ndtr(etas[:, k]))
+        for k, end in enumerate(("", "_lower_bound", "_upper_bound"))
     }
-    built = build_dataset(values, {}, over=(*LIMIT_STATE, *measures))
+    built = build_dataset(values, {}, over=(*layout.dims, *measures))
     return {str(name): built[name].variable for name in built.data_vars}
 
 
 def _with_stripes(
-    dataset: xr.Dataset, counted: Sequence[tuple[Array, Array]], means: Means
+    dataset: xr.Dataset, counted: Sequence[tuple[Array, Array]], layout: Layout, means: Means
 ) -> xr.Dataset:
     """Add how many exceeded, by groups of intensities, with the bounds of Clopper and Pearson."""
     every = np.concatenate([columns[:, 0] for columns, _ in counted])
@@ -297,7 +344,8 @@ def _with_stripes(
         "stripe_fraction_lower_bound": lower,
         "stripe_fraction_upper_bound": upper,
     }
-    of_states = build_dataset(values, {}, over=LIMIT_STATE)
+    arranged = {name: layout.arranged(value) for name, value in values.items()}
+    of_states = build_dataset(arranged, {}, over=layout.dims)
     of_all = build_dataset({"stripe_intensity": np.exp(middles)}, {})
     return dataset.assign(of_states.data_vars).assign(of_all.data_vars)
 
@@ -319,31 +367,15 @@ def _decided(trials: Sequence[Trials]) -> list[tuple[Array, Array]]:
     return found
 
 
-def _spaced(trials: Sequence[Trials], measure: int, count: int) -> Array:
+def _spaced(every: Sequence[_Fitted], measure: int, count: int) -> Array:
     """Give intensities from the least to the greatest, with equal ratios."""
     ends = np.concatenate(
         [
             values[has, measure]
-            for each in trials
+            for each in (one.trials for one in every)
             for values, has in ((each.lower, each.has_lower), (each.upper, each.has_upper))
         ]
     )
     least, most = (float(ends.min()), float(ends.max())) if len(ends) else (-1.0, 1.0)
     reach = 0.0 if most > least else 1.0
     return np.exp(np.linspace(least - reach, most + reach, count))
-
-
-def _sentence(last: Fit, measures: Sequence[Labels], state: str, period: float | None) -> str:
-    """Tell what was fitted to the last limit state."""
-    names = " and ".join(in_words(name, period) for name, _ in measures)
-    if last.status is not FragilityStatus.FITTED:
-        why = last.status.name.lower().replace("_", " ")
-        return f"Against {state} no lognormal capacity fits over {names}: {why}."
-    if len(measures) > 1:
-        return f"Capacity against {state} fitted over {names}."
-    intercept, slope = (float(one) for one in last.coefficients)
-    unit = cast("str", measures[0][1].get("units", ""))
-    return (
-        f"Capacity against {state}: median {names} {math.exp(-intercept / slope):.4g} {unit}, "
-        f"dispersion {1.0 / slope:.3g}."
-    )

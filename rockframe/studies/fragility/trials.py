@@ -14,7 +14,7 @@ from rockframe.studies.lines import SCALE
 
 def trials_of_runs(
     exceeded: xr.DataArray, measures: Sequence[xr.DataArray], *, by_motion: bool
-) -> Trials:
+) -> tuple[Trials, int]:
     """Give the trials of runs, each of which exceeds a limit state or does not.
 
     Parameters
@@ -29,27 +29,34 @@ def trials_of_runs(
     Returns
     -------
     Trials
+    int
+        Under how many motions they are.
     """
     columns, verdict = flat(exceeded, measures)
     kept = ~np.isnan(verdict) & np.all(columns > 0.0, axis=1) & np.all(np.isfinite(columns), axis=1)
-    cluster = motion_numbers(exceeded)[kept] if by_motion else None
+    cluster = motion_numbers(exceeded)[kept]
+    motions = len(np.unique(cluster))
     logs, verdict = np.log(columns[kept]), verdict[kept]
-    if cluster is None:  # what is alike is counted
+    if not by_motion:  # what is alike is counted
         points, place = np.unique(logs, axis=0, return_inverse=True)
         size = len(points)
         over = np.bincount(place.ravel(), weights=verdict, minlength=size)
         every = np.bincount(place.ravel(), minlength=size).astype(np.float64)
-        return Trials.of_verdicts(points, over.astype(np.float64), every)
-    return Trials.of_verdicts(logs, verdict, np.ones(len(verdict)), cluster)
+        return Trials.of_verdicts(points, over.astype(np.float64), every), motions
+    return Trials.of_verdicts(logs, verdict, np.ones(len(verdict)), cluster), motions
 
 
-def trials_of_capacities(analysis: xr.Dataset, measures: Sequence[xr.DataArray]) -> Trials:
+def trials_of_capacities(
+    analysis: xr.Dataset, known: xr.DataArray, measures: Sequence[xr.DataArray]
+) -> Trials:
     """Give the trials of a dynamic analysis: one for each motion, from its first exceedance.
 
     Parameters
     ----------
     analysis : xarray.Dataset
         Of :func:`rockframe.incremental_dynamic_analysis`, of one limit state.
+    known : xarray.DataArray
+        Which runs of its scan have a verdict.
     measures : sequence of xarray.DataArray
         Intensities over ``scale`` and ``motion``, or over ``motion``.
 
@@ -58,35 +65,43 @@ def trials_of_capacities(analysis: xr.Dataset, measures: Sequence[xr.DataArray])
     Trials
     """
     scales = analysis[SCALE].to_numpy()
-    below, above = first_brackets(analysis)
+    below, above = first_brackets(analysis, known)
     has_lower, has_upper = below > 0.0, np.isfinite(above)
     ends: list[Array] = []
     for scale in (np.where(has_lower, below, scales[0]), np.where(has_upper, above, scales[-1])):
         columns = [_at_scales(measure, scale) for measure in measures]
         ends.append(np.log(np.column_stack(columns)))
     lower, upper = ends
-    known = has_lower | has_upper
-    weight = np.ones(int(known.sum()))
-    return Trials(lower[known], upper[known], has_lower[known], has_upper[known], weight, None)
+    told = has_lower | has_upper
+    weight = np.ones(int(told.sum()))
+    return Trials(lower[told], upper[told], has_lower[told], has_upper[told], weight, None)
 
 
-def first_brackets(analysis: xr.Dataset) -> tuple[Array, Array]:
+def first_brackets(analysis: xr.Dataset, known: xr.DataArray) -> tuple[Array, Array]:
     """Give for each motion the scales between which the limit state is first exceeded.
+
+    Parameters
+    ----------
+    analysis : xarray.Dataset
+        Of one limit state.
+    known : xarray.DataArray
+        Which runs of the scan have a verdict.
 
     Returns
     -------
     ndarray, ndarray
-        The lower is 0 where it is exceeded at the least scale; the upper infinite where it
-        is not exceeded up to the largest.
+        The lower is 0 where it is exceeded at the least scale, or nothing is known; the upper
+        infinite where it is not exceeded up to the largest that has a verdict.
     """
     capacity = analysis["capacity_scale"].to_numpy()
     above = analysis["scale_above"].transpose(MOTION, "flip").to_numpy()
     below = analysis["scale_below"].transpose(MOTION, "flip").to_numpy()
-    largest = float(analysis[SCALE].max())
+    seen = known.transpose(MOTION, SCALE).to_numpy()
+    largest = np.where(seen, analysis[SCALE].to_numpy(), 0.0).max(axis=1)
     lower = np.zeros(len(capacity))
     for k, least in enumerate(capacity):
         (at,) = np.nonzero(above[k] == least)
-        lower[k] = below[k, at[0]] if len(at) else 0.0 if np.isfinite(least) else largest
+        lower[k] = below[k, at[0]] if len(at) else 0.0 if np.isfinite(least) else largest[k]
     return lower, np.where(np.isfinite(capacity), capacity, np.inf)
 
 
@@ -118,7 +133,7 @@ def motion_numbers(runs: xr.DataArray) -> Generic:
 def _at_scales(measure: xr.DataArray, scales: Array) -> Array:
     """Give a measure of each motion at its scale; measures are powers of the scale."""
     if SCALE not in measure.dims:
-        return measure.to_numpy()
+        return np.broadcast_to(measure.to_numpy(), scales.shape)
     least = measure.isel({SCALE: 0}), measure.isel({SCALE: -1})
     near, far = (one.to_numpy() for one in least)
     ends = measure[SCALE].to_numpy()[[0, -1]]

@@ -1,5 +1,7 @@
 """Dynamic analysis, maps, spectra, probabilities, ensembles: labels, brute force, files."""
 
+import itertools
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -8,8 +10,10 @@ from scipy import stats
 import rockframe as rf
 from rockframe.errors import ComponentError, SchemaError, StudyError
 from rockframe.results.schema import SCHEMA
+from rockframe.studies import lines
 from rockframe.studies.brackets import Bracket, brackets_of, narrowed, padded
 from rockframe.studies.ranking import ranked
+from rockframe.studies.sweeps import execution
 
 BLOCK = rf.Block(width="0.5 m", height="2 m", mass="400 kg")
 SYSTEM = rf.System(BLOCK)
@@ -19,9 +23,9 @@ FAST = {"accuracy": "fast", "free_vibration": "4 s", **QUIET}
 
 def motions(sign=1.0):
     return {
-        f"seed {k}": rf.GroundMotion.stochastic(6.6, "5 km", seed=k, stress_drop="20 MPa").scaled(
-            sign
-        )
+        f"seed {k}": rf.GroundMotion.stochastic(
+            6.6, "5 km", seed=k, stress_drop="20 MPa", source="one corner"
+        ).scaled(sign)
         for k in range(4)
     }
 
@@ -164,6 +168,45 @@ def test_a_stored_analysis_goes_on_where_it_was(tmp_path, monkeypatch):
         xr.testing.assert_identical(one.drop_attrs(), plain.drop_attrs())
 
 
+@pytest.mark.parametrize("after", [0, 1, 3])
+@pytest.mark.parametrize("kind", ["in a round", "between rounds"])
+def test_an_interrupted_analysis_says_so_and_goes_on(tmp_path, monkeypatch, after, kind):
+    options = {"scale": [1.0, 2.0, 4.0], "store": tmp_path / "s", **FAST}
+    run_study, rounds = lines.run_study, itertools.count()
+
+    def cut(study, bar, **means):
+        if next(rounds) <= after:
+            return run_study(study, bar, **means)
+        if kind == "between rounds":
+            raise KeyboardInterrupt
+
+        def stop(*given, **named):
+            raise KeyboardInterrupt
+
+        with monkeypatch.context() as patch:
+            patch.setattr(execution, "run_chunk", stop)
+            return run_study(study, bar, **means)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(lines, "run_study", cut)
+        with pytest.warns(rf.SolverWarning, match="interrupted; brackets are wider.*goes on"):
+            found = rf.incremental_dynamic_analysis(SYSTEM, motions(), **options)
+        rounds = itertools.count()
+        with pytest.warns(rf.SolverWarning, match="interrupted; brackets"):
+            spectrum = rf.overturning_spectrum(
+                SYSTEM, motions(), periods=["1.7 s"], scale=[1.0, 2.0, 4.0], **FAST
+            )
+    assert found.verdict.endswith("; interrupted.")
+    assert spectrum.verdict.endswith("; interrupted.")
+    apart = (found.scale_above - found.scale_below).max().item()
+    assert apart == pytest.approx(2.0 / 2**after)
+    whole = rf.incremental_dynamic_analysis(SYSTEM, motions(), **options)
+    options["store"] = None
+    plain = rf.incremental_dynamic_analysis(SYSTEM, motions(), **options)
+    xr.testing.assert_identical(whole.drop_attrs(), plain.drop_attrs())
+    assert "interrupted" not in whole.verdict
+
+
 def test_a_fragility_of_capacities(analysis):
     found = rf.fragility(analysis, "PGA")
     capacity = analysis.capacity_scale.sel(limit_state="overturning")
@@ -199,10 +242,11 @@ def test_brackets_split_where_a_third_verdict_lies_between():
             {"status": ("case", np.zeros(len(middles), int)), "at": ("case", middles)}
         )
 
-    found = narrowed(
+    found, whole = narrowed(
         brackets_of(scales, shown), sweep,
         lambda seen: np.array([[verdict(s) for s in seen["at"].values]]), width=1e-6,
     )  # fmt: skip
+    assert whole
     assert [one.above for one in found] == pytest.approx([1.234, 1.301, 3.3], rel=1e-6)
     assert [(one.before, one.after) for one in found] == [(-1.0, 2.0), (2.0, -1.0), (-1.0, 0.0)]
     assert runs == list(range(1, len(runs) + 1))
@@ -433,7 +477,7 @@ def test_bands_of_ensembles_hold_as_often_as_they_say():
 
 def test_an_ensemble_of_runs_has_the_units_of_its_variable(tmp_path):
     runs = rf.sweep(SYSTEM, motions(), scale=[1.0, 3.0], **FAST)
-    found = rf.ensemble_statistics(runs, "peak_rotation")
+    found = rf.ensemble_statistics(runs, "peak_rotation", pooled=["scale"])
     assert checked(found, tmp_path)
     assert found.ordered_value.units == found.quantile_value.units == "rad"
     assert found.ordered_value.values.tolist() == sorted(runs.peak_rotation.values.ravel())
@@ -451,7 +495,7 @@ def test_figures_are_drawn_of_what_they_are_for(analysis):
         "rocking_spectrum": rf.rocking_spectrum(
             SYSTEM, motions(), periods=(["2 s", "3 s"]), **FAST
         ),
-        "ensemble": rf.ensemble_statistics(analysis),
+        "ensemble": rf.ensemble_statistics(analysis.isel(scale=-1)),
     }
     for name, dataset in drawn.items():
         figure = getattr(rf.plot, name)(dataset).figure

@@ -1,6 +1,8 @@
 """The least scale that overturns: labels, brackets, options, measures, refusals."""
 
+import itertools
 import warnings
+from importlib import import_module
 
 import numpy as np
 import pytest
@@ -8,12 +10,15 @@ import xarray as xr
 
 import rockframe as rf
 from rockframe.errors import AssemblyError, ComponentError, SolverError, UnitsError
+from rockframe.simulation.run import beside
 
 BLOCK = rf.Block(width="0.8 m", height="3.6 m", mass="4 t")
 RIGID = rf.System(BLOCK)
 ON_PADS = rf.System(BLOCK, rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1))
 ON_SOIL = rf.System(BLOCK, rf.WinklerSoil(stiffness="9 MPa", damping_ratio=0.2))
-SHAKING = rf.GroundMotion.stochastic(6.5, "8 km", seed=4).scaled(peak="3 m/s^2")
+SHAKING = rf.GroundMotion.stochastic(6.5, "8 km", seed=4, source="one corner").scaled(
+    peak="3 m/s^2"
+)
 PULSE = rf.GroundMotion.sine_pulse("2 m/s^2", "1 Hz")
 SPARING = {"scales": 30, "runs": 60, "free_vibration": "3 s", "accuracy": "fast"}
 CASES = {
@@ -27,6 +32,9 @@ CASES = {
     "pads, until it lies flat": (ON_PADS, PULSE, {**SPARING, "overturning": "continue"}),
 }
 OF_A_RUN = ("free_vibration", "initial", "accuracy", "overturning")
+
+
+MODULE = import_module("rockframe.studies.critical_scale")  # the package has the function there
 
 
 @pytest.fixture(scope="module")
@@ -54,7 +62,9 @@ def test_runs_at_both_ends_of_every_bracket_have_the_verdicts_told(found):
         ):  # fmt: skip
             assert above - below <= told.bracket_width * above
             for scale, expected in ((below, not falls), (above, falls)):
-                run = system.simulate(motion.scaled(scale), **of_run, outputs=None)
+                run = system.simulate(
+                    motion.scaled(scale), **of_run, outputs=None, second_look=False
+                )
                 assert overturns(run) == expected, (name, scale)
             flips += 1
         assert told.overturns_above[0].item()
@@ -203,3 +213,24 @@ def test_what_cannot_be_asked_is_refused():
         rf.critical_scale(RIGID)
     with pytest.raises(ComponentError, match="system needs a System"):
         rf.critical_scale(BLOCK, PULSE)
+
+
+def test_an_interrupt_gives_back_the_runs_until_then(monkeypatch):
+    calls = itertools.count()
+
+    def interrupted(*given):
+        if next(calls) == 17:
+            raise KeyboardInterrupt
+        return beside(*given)
+
+    options = {"scales": 20, "runs": 30, "free_vibration": "5 s", "accuracy": "fast"}
+    monkeypatch.setattr(MODULE, "beside", interrupted)
+    with pytest.warns(rf.SolverWarning, match="critical_scale: interrupted; .*17 scales"):
+        found = rf.critical_scale(ON_PADS, PULSE, **options)
+    assert found.sizes["scale"] == 17
+    assert found.followed_scale <= found.scale.max()
+    assert found.verdict.endswith("then interrupted.") or "interrupted. Beyond" in found.verdict
+    monkeypatch.undo()
+    whole = rf.critical_scale(ON_PADS, PULSE, **options)
+    same = whole.sel(scale=found.scale)
+    np.testing.assert_array_equal(found.peak_rotation, same.peak_rotation)

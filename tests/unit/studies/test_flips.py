@@ -3,6 +3,8 @@
 import math
 from itertools import pairwise
 
+import pytest
+
 from rockframe.simulation.beside import Beside
 from rockframe.solve.layout import Status
 from rockframe.studies.flip_words import sentence
@@ -52,6 +54,32 @@ def test_an_island_between_two_scales_is_found_where_peaks_tell_of_it():
     assert len(set(asked)) == len(asked) == len(found.shown) < 100
 
 
+def test_it_says_how_far_apart_the_runs_were():
+    """An island that nothing tells of is missed, and the sentence promises nothing else."""
+    look, _ = runs_of(lambda scale: 1.5 if 2.001 < scale < 2.099 else 0.05)
+    found = follow(look, ROW, most=100, width=1e-4)
+    assert found.flips() == []
+    assert found.up_to == ROW[-1]
+    assert found.largest_gap == pytest.approx(0.1)
+    assert sentence(found, width=1e-4).endswith("looked at 41 scales up to 4, at most 0.1 apart.")
+    fine = follow(look, [0.05 * k for k in range(81)], most=100, width=1e-4)
+    assert fine.largest_gap < 2.099 - 2.001
+    assert len(fine.flips()) == 2
+
+
+@pytest.mark.parametrize("gap", [0.1, 0.30000001, 0.0126, 0.00999, 9.91, 1e-9, 123.0])
+def test_a_gap_is_rounded_up(gap):
+    look, _ = runs_of(lambda scale: 0.01)
+    text = sentence(follow(look, [0.0, gap], most=2, width=1e-3), width=1e-3)
+    said = float(text.partition("at most ")[2].partition(" apart")[0])
+    assert gap * (1.0 - 1e-9) <= said <= 1.1 * gap
+
+
+def test_a_run_without_a_verdict_leaves_a_gap():
+    look, _ = runs_of(lambda scale: 0.05, undecided=lambda scale: 1.05 < scale < 1.45)
+    assert follow(look, ROW, most=41, width=1e-3).largest_gap == pytest.approx(0.5)
+
+
 def test_without_runs_to_spare_it_says_how_far_it_looked():
     def peak(scale):
         return 0.2 * scale + 0.8 * math.exp(-((10.0 * (scale - 1.55)) ** 2))
@@ -98,3 +126,31 @@ def test_ranges_that_stand_again_are_named_up_to_three():
         named = text.partition(";")[0].count("from") - 1
         assert named == min(ranges, 3)
         assert (f"and in {ranges - 3} further ranges;" in text) == (ranges > 3)
+
+
+def test_an_interrupt_leaves_what_was_found_until_then():
+    def peak(scale):
+        return 0.2 * scale + 0.8 * math.exp(-((10.0 * (scale - 1.55)) ** 2))
+
+    look, asked = runs_of(peak)
+    whole = follow(look, ROW, most=100, width=1e-4)
+    assert whole.whole
+    for count in range(1, len(asked)):
+        look, _ = runs_of(peak)
+        left = iter([None] * count)
+
+        def interrupted(scale, look=look, left=left):
+            for _ in left:
+                return look(scale)
+            raise KeyboardInterrupt
+
+        found = follow(interrupted, ROW, most=100, width=1e-4)
+        assert not found.whole
+        assert sorted(found.shown) == sorted(asked[:count])
+        assert "interrupted" in sentence(found, width=1e-4)
+        # up to there every flip that the whole analysis found lies in a bracket
+        for flip in whole.flips():
+            around = [one for one in found.flips() if one.below <= flip.below < one.above]
+            assert flip.above > found.up_to or around
+    with pytest.raises(KeyboardInterrupt):
+        follow(interrupted, ROW, most=100, width=1e-4)

@@ -6,7 +6,7 @@ import xarray as xr
 from scipy import optimize, stats
 
 import rockframe as rf
-from rockframe.errors import ComponentError, SchemaError, UnitsError
+from rockframe.errors import ComponentError, FileError, SchemaError, UnitsError
 from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.studies.confidence import clopper_pearson
 from rockframe.studies.fragility.likelihood import Bands, Trials, boundary, fit, log_likelihood
@@ -193,9 +193,11 @@ def test_what_has_no_fit_says_so():
     found = rf.fragility_of_counts(([1.0, 2.0, 4.0], "m/s^2"), [0, 0, 5], 5)
     assert found.dispersion.item() == 0.0
     assert found.median_intensity.item() == pytest.approx(np.sqrt(8.0))
-    bounds = found.median_intensity_lower_bound.item(), found.median_intensity_upper_bound.item()
-    assert bounds == pytest.approx((2.0, 4.0))
+    gap = found.separation_lower_intensity.item(), found.separation_upper_intensity.item()
+    assert gap == pytest.approx((2.0, 4.0))
     assert set(found.exceedance_probability.values.tolist()) == {0.0, 1.0}
+    bounds = [found[name] for name in found if str(name).endswith("_bound")]
+    assert all(np.isnan(one).all() for one in bounds if not one.name.startswith("stripe"))
     one = rf.fragility_of_counts(([2.0, 2.0], "m/s^2"), [1, 2], 5)
     assert one.fragility_status.item() == FragilityStatus.ONE_INTENSITY
     reversed_ = rf.fragility_of_counts(([1.0, 2.0], "m/s^2"), [5, 0], 5)
@@ -244,7 +246,7 @@ def test_runs_are_counted_by_what_they_exceed(runs):
         assert found.sel(limit_state=state).stripe_exceedances.sum() == over.sum(), state
     uplift = found.sel(limit_state="uplift")
     assert uplift.fragility_status == FragilityStatus.SEPARATED
-    assert uplift.median_intensity_lower_bound < GRAVITY / 4 < uplift.median_intensity_upper_bound
+    assert uplift.separation_lower_intensity < GRAVITY / 4 < uplift.separation_upper_intensity
     pga = np.array([one.peak_acceleration.m_as("m/s^2") for one in motions().values()])
     logs = np.log(np.outer(runs.scale.values, pga)).ravel()[:, None]
     cluster = np.tile(np.arange(6), 5)
@@ -376,3 +378,12 @@ def test_a_file_for_openquake(runs, tmp_path):
     for wrong in ({"a b": found}, {}):
         with pytest.raises(ComponentError):
             rf.to_openquake(wrong, tmp_path / "w.xml")
+    mine = tmp_path / "mine.xml"
+    mine.write_text("<nrml/>")
+    with pytest.raises(FileError, match="not a fragility model that rockframe wrote"):
+        rf.to_openquake({"b": velocity}, mine)
+    with pytest.raises(FileError, match=r"ends in \.xml"):
+        rf.to_openquake({"b": velocity}, tmp_path / "f.csv")
+    assert mine.read_text() == "<nrml/>"
+    assert rf.to_openquake({"b": velocity}, mine, overwrite=True).read_text() == text
+    assert rf.to_openquake({"b": velocity}, file).read_text() == text  # its own

@@ -7,7 +7,8 @@ import pytest
 import xarray as xr
 
 import rockframe as rf
-from rockframe.studies.sweeps.screening import Look, is_sure
+from rockframe.simulation.second_look import Look, is_sure
+from rockframe.studies.sweeps import study
 from rockframe.studies.sweeps.study import FEWEST_IN_LANES
 
 pytestmark = pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
@@ -92,7 +93,8 @@ def test_a_case_runs_alone_as_it_ran_in_the_sweep(runs):
         assert float(alone.peak_rotation) == float(screen.peak_rotation[tuple(place)])
 
 
-def test_chunks_stores_and_lanes_change_nothing(runs, tmp_path):
+def test_chunks_stores_and_lanes_change_nothing(runs, tmp_path, monkeypatch):
+    monkeypatch.setattr(study, "WORTH", np.inf)
     cases = {**AXES, "scale": np.linspace(0.4, 1.1, 128).tolist()}
     lanes = rf.sweep(SYSTEM, shaking(), **cases, accuracy="screen")
     assert lanes.repeated.size >= FEWEST_IN_LANES

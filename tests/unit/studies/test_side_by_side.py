@@ -1,14 +1,17 @@
 """Cases that run side by side in lanes give the numbers of cases that run alone, bit for bit."""
 
+import math
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 
 import numpy as np
 import pytest
 import xarray as xr
+from unit.own_parts import TabulatedPads
 
 import rockframe as rf
 from rockframe.compiled import COMPILED
-from rockframe.studies.sweeps import study
+from rockframe.studies.sweeps import side_by_side, study
+from rockframe.studies.sweeps.planning import plan_study
 
 pytestmark = [
     pytest.mark.skipif(not COMPILED, reason="lanes are compiled"),
@@ -49,6 +52,7 @@ def on(*parts, **options):
 def both(monkeypatch, *arguments, accuracy="fast", **options):
     """Run a sweep in lanes, and again alone."""
     found = []
+    monkeypatch.setattr(study, "WORTH", math.inf)
     for fewest in (1, 10**9):
         monkeypatch.setattr(study, "FEWEST_IN_LANES", fewest)
         found.append(rf.sweep(*arguments, accuracy=accuracy, **options))
@@ -154,6 +158,7 @@ def test_still_ground_and_inclined_bases(monkeypatch):
 @pytest.mark.parametrize("chunk", [1, 7, 1000])
 def test_neighbours_chunks_and_executors_change_nothing(monkeypatch, chunk):
     monkeypatch.setattr(study, "FEWEST_IN_LANES", 1)
+    monkeypatch.setattr(study, "WORTH", math.inf)
     system = rf.System(BLOCK, PADS)
     axes = {"scale": np.linspace(0.2, 2.0, 12), "damping_ratio": [0.05, 0.2]}
 
@@ -175,3 +180,53 @@ def test_neighbours_chunks_and_executors_change_nothing(monkeypatch, chunk):
 def test_small_sweeps_run_alone(accuracy):
     few = rf.sweep(rf.System(BLOCK, PADS), MOTIONS[0], scale=[0.5, 1.0], accuracy=accuracy)
     assert few.attrs["driver"] == "each case alone"
+
+
+@pytest.mark.parametrize("worth", [0.0, math.inf])
+def test_a_law_that_cannot_be_compiled_runs_in_plain_python(monkeypatch, fallbacks, worth):
+    monkeypatch.setattr(study, "WORTH", worth)
+    rf.register(TabulatedPads)
+    system = rf.System(BLOCK, TabulatedPads(frequency_ratio=20, damping_ratio=0.1))
+    options = {"accuracy": "fast", "duration": "0.03 s"}
+    scales = np.linspace(2.0, 9.0, 520)
+    runs = rf.sweep(system, MOTIONS[0], scale=scales, **options)
+    assert runs.attrs["driver"] == "each case alone, in plain Python"
+    for scale in scales[::104]:
+        alone = system.simulate(MOTIONS[0].scaled(scale), outputs=None, **options)
+        picked = runs.sel(scale=scale).squeeze()
+        for name in ("peak_rotation", "overturned", "energy_residual", "solver_steps"):
+            if name in picked:
+                assert picked[name].item() == alone[name].item()
+    assert all("could not be compiled" in text for text in fallbacks)
+    fallbacks.clear()
+    plain = rf.sweep(rf.System(BLOCK, PADS), MOTIONS[0], scale=scales, **options)
+    assert plain.attrs["driver"] != runs.attrs["driver"]
+    np.testing.assert_allclose(plain.peak_rotation, runs.peak_rotation, rtol=1e-9)
+
+
+def test_lanes_are_compiled_where_they_save_more_than_that_takes(monkeypatch):
+    system, asked = rf.System(BLOCK, PADS), []
+    shaking = rf.GroundMotion.from_arrays((np.ones(1501), "m/s^2"), "0.02 s")
+
+    def patience(count, **options):
+        axes = {"scale": np.linspace(0.1, 2.0, count)}
+        planned = plan_study(system, shaking, axes, None, **options)
+        return planned.patience
+
+    monkeypatch.setattr(study, "worker_count", lambda: 2)
+    assert patience(499, accuracy="fast") is None
+    assert patience(500, accuracy="standard", outputs=["rotation"]) is None
+    assert patience(500, accuracy="fast") < 1.0
+    assert patience(500, accuracy="standard") < 2.0
+    assert patience(100_000, accuracy="fast") > 20.0
+
+    def never(run, seconds):
+        asked.append(seconds)
+        return False
+
+    monkeypatch.setattr(side_by_side, "lanes_compiled", never)
+    scales = np.linspace(0.1, 0.2, 500)
+    runs = rf.sweep(system, MOTIONS[3], scale=scales, accuracy="fast", duration="0.1 s")
+    assert asked
+    assert max(asked) < 1.0
+    assert runs.attrs["driver"] == "each case alone"

@@ -1,0 +1,128 @@
+"""Ensembles, samples, maps: what is one population, which runs say nothing, few cases."""
+
+import numpy as np
+import pytest
+
+import rockframe as rf
+from rockframe.errors import ComponentError
+from rockframe.results.variables.runs import RunStatus
+from rockframe.studies.dynamic_analysis import _sentence
+from rockframe.studies.probability import _counted
+from rockframe.studies.ranking import ranked
+
+SYSTEM = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
+HOW = {"free_vibration": "3 s", "progress": False}
+
+
+def motions(count=5):
+    return {f"seed {k}": rf.GroundMotion.stochastic(6.3, "8 km", seed=k) for k in range(count)}
+
+
+def fail(runs, **place):
+    runs.status[place] = RunStatus.REFUSED
+    for name in ("peak_relative_rotation", "peak_rotation", "overturned"):
+        runs[name] = runs[name].astype(float)
+        runs[name][place] = np.nan
+
+
+def test_a_sweep_over_structures_is_no_ensemble():
+    runs = rf.sweep(SYSTEM, motions(), scale=[1.0, 2.0], width=["0.4 m", "0.5 m"], **HOW)
+    with pytest.raises(ComponentError, match=r"over scale, width .*pooled=\('scale', 'width'\)"):
+        rf.ensemble_statistics(runs)
+    with pytest.raises(ComponentError, match="goes over scale beside motions"):
+        rf.ensemble_statistics(runs.isel(width=0))
+    one = rf.ensemble_statistics(runs.isel(width=0, scale=0))
+    assert one.member_count.item() == 5
+    assert one.cumulative_probability_lower_bound.notnull().all()
+    assert one.verdict == "5 members; bands of confidence 0.95"
+    every = rf.ensemble_statistics(runs, pooled=["width", "scale"])
+    assert every.member_count.item() == 20
+    assert "no bounds, for several members are of one motion" in every.verdict
+    bounds = [name for name in every if str(name).endswith("_bound")]
+    # that the whole ensemble is at most all of it needs no confidence
+    assert all(every[name][:-1].isnull().all() for name in bounds)
+    table = rf.sweep(SYSTEM, motions(), cases={"width": ["0.4 m", "0.5 m"]}, **HOW)
+    with pytest.raises(ComponentError, match="over case"):
+        rf.ensemble_statistics(table)
+
+
+def test_members_without_a_result_are_counted():
+    runs = rf.sweep(SYSTEM, motions(), scale=[2.0], **HOW)
+    fail(runs, motion=1)
+    found = rf.ensemble_statistics(runs)
+    assert (found.member_count.item(), found.left_out_count.item()) == (4, 1)
+    assert found.verdict == "4 members; 1 without a result are left out; bands of confidence 0.95"
+
+
+def test_a_sample_tells_its_motions_and_what_was_left_out():
+    drawn = rf.probability_of_overturning(
+        SYSTEM, motions(), cases=40, spread={"scale": ("uniform", 2.0, 8.0)}, **HOW
+    )
+    assert "by 40 cases under these 5 motions" in drawn.verdict
+    assert "left out" not in drawn.verdict
+    assert rf.ensemble_statistics(drawn).member_count.item() == 40
+    bare = drawn.drop_dims("parameter").copy(deep=True)
+    fail(bare, case=slice(0, 7))
+    found = _counted(bare, ["scale"], several=True, level=0.95)
+    assert found.verdict_count.item() == 33
+    assert "7 without a verdict are left out" in found.verdict
+
+
+def test_a_dynamic_analysis_counts_runs_without_a_verdict():
+    analysis = rf.incremental_dynamic_analysis(SYSTEM, motions(3), scale=[1.0, 4.0, 9.0], **HOW)
+    assert "no verdict" not in analysis.verdict
+    fail(analysis, motion=0, scale=slice(0, 2))
+    assert "2 of 9 runs of the scan have no verdict" in _sentence(analysis)
+
+
+def test_a_map_does_not_draw_runs_without_a_verdict_as_standing():
+    from matplotlib import pyplot
+
+    found = rf.overturning_map(
+        SYSTEM, rf.GroundMotion.sine_pulse, amplitude=([1, 6], "m/s^2"),
+        frequency=([1, 2], "Hz"), **HOW,
+    )  # fmt: skip
+    drawn = {}
+    for name in ("known", "failed"):
+        axes = rf.plot.overturning_map(found)
+        (legend,) = axes.figure.legends
+        drawn[name] = (
+            np.ma.getmaskarray(axes.collections[0].get_array()).ravel().tolist(),
+            [text.get_text() for text in legend.get_texts()],
+        )
+        fail(found, amplitude=0, frequency=1)
+    assert drawn["known"][0] == [False] * 4
+    assert drawn["failed"][0] == [False, True, False, False]
+    assert [words[-1] == "no verdict" for _, words in drawn.values()] == [False, True]
+    pyplot.close("all")
+
+
+def test_a_spectrum_counts_runs_without_a_verdict(monkeypatch):
+    from rockframe.studies import spectra
+
+    def asked():
+        return rf.overturning_spectrum(
+            SYSTEM, motions(1), periods=([2, 4], "s"), scale=[1.0, 2.0, 4.0], **HOW
+        ).left_out_count.values.tolist()
+
+    assert asked() == [[[0], [0]]]
+    told = spectra.overturns
+    monkeypatch.setattr(spectra, "overturns", lambda runs: told(runs).where(runs.scale != 2.0))
+    assert asked() == [[[1], [1]]]
+
+
+@pytest.mark.parametrize("count", [44, 90])
+def test_the_index_is_the_adjusted_correlation_ratio(count):
+    """One less the variance within groups over that of all, each by its degrees of freedom."""
+    rng = np.random.default_rng(count)
+    values = rng.normal(size=count)
+    verdict = (values + rng.normal(size=count) > 0.0).astype(float)
+    groups = count // 20
+    parts = np.array_split(verdict[np.argsort(values)], groups)
+    if count % groups:  # the first groups of the function are those that are larger
+        place = np.arange(count) * groups // count
+        parts = [verdict[np.argsort(values)][place == k] for k in range(groups)]
+    within = sum(((part - part.mean()) ** 2).sum() for part in parts) / (count - groups)
+    of_all = ((verdict - verdict.mean()) ** 2).sum() / (count - 1)
+    found = ranked({"a": values}, verdict)["a"]
+    assert found.first_order == pytest.approx(1.0 - within / of_all, rel=1e-9)

@@ -1,0 +1,171 @@
+"""Bounds of fragilities: covariances by hand, how often they hold, and what is said of them."""
+
+import numpy as np
+import pytest
+from pages import table
+from scipy import optimize, stats
+
+import rockframe as rf
+from rockframe.studies.fragility.coverage import COVERAGE, bounded, words_of_bounds
+from rockframe.studies.fragility.labelling import Found, Layout, Means, labelled
+from rockframe.studies.fragility.likelihood import Bands, FragilityStatus, Trials, fit
+
+SCALES = np.array([0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0])
+MEASURE = ("peak_ground_acceleration", {"units": "m s^-2"})
+
+
+def runs_of(rng, motions, dispersion):
+    """Every motion at all scales, a lognormal capacity of median 1 for each."""
+    logs = rng.normal(np.log(0.5), 0.4, motions)[:, None] + np.log(SCALES)
+    over = logs > rng.normal(0.0, dispersion, motions)[:, None]
+    return logs.ravel(), over.ravel().astype(float), np.repeat(np.arange(motions), len(SCALES))
+
+
+def by_hand(logs, over, cluster):
+    """The sandwich of a probit regression, from its definition."""
+    rows = np.column_stack([np.ones(len(logs)), logs])
+
+    def loss(at):
+        return -np.sum(stats.norm.logcdf(np.where(over == 1.0, 1.0, -1.0) * (rows @ at)))
+
+    best = optimize.minimize(loss, [0.0, 1.0], method="Nelder-Mead",
+                             options={"xatol": 1e-10, "fatol": 1e-13}).x  # fmt: skip
+    eta = rows @ best
+    density, share = stats.norm.pdf(eta), stats.norm.cdf(eta)
+    score = rows * (density * (over - share) / (share * (1.0 - share)))[:, None]
+    step = 1e-4
+    curvature = np.empty((2, 2))
+    for i, j in np.ndindex(2, 2):
+        a, b = step * np.eye(2)[i], step * np.eye(2)[j]
+        cross = loss(best + a + b) - loss(best + a - b) - loss(best - a + b) + loss(best - a - b)
+        curvature[i, j] = cross / (4.0 * step**2)
+    names = np.unique(cluster)
+    filling = sum(np.outer(*[score[cluster == one].sum(axis=0)] * 2) for one in names)
+    inverse = np.linalg.inv(curvature)
+    return best, len(names) / (len(names) - 1.0) * inverse @ filling @ inverse
+
+
+@pytest.mark.parametrize("motions", [3, 6])
+def test_the_sandwich_is_that_of_its_definition(motions):
+    """The factor for few clusters is 1.5 with three of them, 1.2 with six."""
+    logs, over, cluster = runs_of(np.random.default_rng(4), motions, 0.5)
+    best, covariance = by_hand(logs, over, cluster)
+    found = fit(Trials.of_verdicts(logs[:, None], over, np.ones(len(over)), cluster),
+                Bands.SANDWICH)  # fmt: skip
+    assert found.coefficients == pytest.approx(best, rel=1e-5, abs=1e-6)
+    assert found.covariance == pytest.approx(covariance, rel=1e-4, abs=1e-6)
+
+
+def test_the_sandwich_of_counts_takes_each_trial_for_a_cluster():
+    logs, over, count = np.log([0.5, 1.0, 2.0]), np.array([1.0, 2.0, 3.0]), np.full(3, 4.0)
+    found = fit(Trials.of_verdicts(logs[:, None], over, count), Bands.SANDWICH)
+    each = [(one, 1.0) for one, k in zip(logs, over, strict=True) for _ in range(int(k))]
+    each += [(one, 0.0) for one, k in zip(logs, count - over, strict=True) for _ in range(int(k))]
+    alone, verdict = np.array(each).T
+    best, covariance = by_hand(alone, verdict, np.arange(len(alone)))
+    assert found.coefficients == pytest.approx(best, rel=1e-5, abs=1e-6)
+    assert found.covariance == pytest.approx(covariance, rel=1e-4, abs=1e-6)
+
+
+def held(samples, dispersion, bands):
+    """Shares of samples in which the bounds hold the median, 1, and the dispersion."""
+    found = labelled(
+        [Found(trials, None, 0, independent) for trials, independent in samples],
+        {"limit_state": len(samples)}, [MEASURE], Means(bands, 0.95), {"trials": "runs"},
+    )  # fmt: skip
+    fitted = found.fragility_status == FragilityStatus.FITTED
+    shares = []
+    for name, truth in (("median_intensity", 1.0), ("dispersion", dispersion)):
+        inside = (found[f"{name}_lower_bound"] <= truth) & (found[f"{name}_upper_bound"] >= truth)
+        shares.append(float(inside[fitted].mean()))
+    return shares, float(fitted.sum())
+
+
+@pytest.mark.parametrize("motions", [10, 20])
+def test_bounds_by_sandwich_hold_as_often_as_is_said(motions):
+    rng, samples = np.random.default_rng(8), []
+    for _ in range(200):
+        logs, over, cluster = runs_of(rng, motions, 0.4)
+        trials = Trials.of_verdicts(logs[:, None], over, np.ones(len(over)), cluster)
+        samples.append((trials, motions))
+    shares, count = held(samples, 0.4, Bands.SANDWICH)
+    for share, said in zip(shares, COVERAGE[Bands.SANDWICH][motions], strict=True):
+        assert share == pytest.approx(said, abs=3.0 * np.sqrt(said * (1.0 - said) / count))
+
+
+@pytest.mark.parametrize("count", [5, 10])
+def test_bounds_by_profile_hold_as_often_as_is_said(count):
+    """Of known capacities that follows from Student's and from the chi-squared distribution."""
+    said = COVERAGE[Bands.PROFILE][count]
+    drop = stats.chi2.ppf(0.95, 1)
+    # the likelihood ratio of a mean is n ln(1 + t^2 / (n - 1))
+    reach = np.sqrt((count - 1) * np.expm1(drop / count))
+    assert said.median == pytest.approx(2.0 * stats.t.cdf(reach, count - 1) - 1.0, abs=0.006)
+
+    # that of a deviation depends on n s^2 / beta^2, chi-squared with n - 1 degrees of freedom
+    def ratio(q):
+        return q - count - count * np.log(q / count) - drop
+
+    ends = [optimize.brentq(ratio, 1e-6, count), optimize.brentq(ratio, count, 20.0 * count)]
+    exact = np.diff(stats.chi2.cdf(ends, count - 1)).item()
+    assert said.dispersion == pytest.approx(exact, abs=0.006)
+
+
+def test_too_few_motions_have_no_bounds():
+    rng = np.random.default_rng(1)
+    for bands, fewest in ((Bands.SANDWICH, 10), (Bands.PROFILE, 5)):
+        assert not bounded(bands, fewest - 1)
+        assert bounded(bands, fewest)
+    logs, over, cluster = runs_of(rng, 9, 0.5)
+    trials = Trials.of_verdicts(logs[:, None], over, np.ones(len(over)), cluster)
+    for independent, lacking in ((9, True), (10, False)):
+        found = labelled(
+            [Found(trials, None, 0, independent)], {"limit_state": 1}, [MEASURE],
+            Means(Bands.SANDWICH, 0.95), {"trials": "runs"},
+        )  # fmt: skip
+        assert found.median_intensity.notnull().all()
+        for name in ("median_intensity", "dispersion", "exceedance_probability"):
+            for end in ("lower", "upper"):
+                assert found[f"{name}_{end}_bound"].isnull().all() == lacking, name
+
+
+def test_what_bounds_are_is_said():
+    def said(bands, independent, trials=200, confidence=0.95, **more):
+        counts = np.array([independent]), np.array([trials])
+        return " ".join(words_of_bounds(bands, confidence, *counts, kind="motions", **more))
+
+    assert said(Bands.SANDWICH, 6) == ("There are no bounds: 6 motions are too few, 10 are needed.")
+    assert said(Bands.SANDWICH, 12, confidence=0.9) == (
+        "With 12 motions bounds of nominal 90 % are too narrow: of 10, those of 95 % held the "
+        "median in 89 %, the dispersion in 80 % of simulated samples."
+    )
+    assert said(Bands.SANDWICH, 12, measures=2) == (
+        "With 12 motions bounds of nominal 95 % are too narrow."
+    )
+    assert said(Bands.SANDWICH, 80) == ""
+    assert "for independent" in said(Bands.PROFILE, 20)
+    assert said(Bands.PROFILE, 20, trials=20) == ""
+    counted = rf.fragility_of_counts(([1.0, 2.0, 4.0], "m/s^2"), [0, 1, 1], 1)
+    assert counted.verdict.endswith("all did from 2 on: so the dispersion is not known, only that "
+                                    "it may be small, and there are no bounds.")  # fmt: skip
+
+
+def test_layouts_arrange_the_last_dimension_fastest():
+    layout = Layout(("width", "limit_state"), (3, 2))
+    assert layout.arranged(np.arange(6)).tolist() == [[0, 1], [2, 3], [4, 5]]
+    assert layout.arranged(np.zeros((6, 4))).shape == (3, 2, 4)
+
+
+def test_pages_tell_what_the_code_tells():
+    heads = {
+        "guide/fragility.md": "| bounds by | of | the median in | the dispersion in |",
+        "theory/fragility.md": "| bounds | independent | median | dispersion |",
+    }
+    for page, head in heads.items():
+        rows = {(row[0], int(row[1].split()[0])): row[2:] for row in table(page, head)}
+        for bands, known in COVERAGE.items():
+            for count, shares in known.items():
+                written = [
+                    float(cell.removesuffix(" %")) for cell in rows[bands.name.lower(), count]
+                ]
+                assert written == pytest.approx([100.0 * one for one in shares]), (page, count)

@@ -1,0 +1,218 @@
+"""Fragilities of several structures: a curve for each, and none from what is no sweep."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import rockframe as rf
+from rockframe.errors import ComponentError, SchemaError, StudyError
+from rockframe.results.variables.runs import RunStatus
+
+SYSTEM = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
+HOW = {"free_vibration": "3 s", "progress": False}
+SCALES = [0.5, 1.0, 2.0, 3.0, 5.0, 8.0, 12.0]
+
+
+def motions(first=0, count=6):
+    every = range(first, first + count)
+    return {f"seed {k}": rf.GroundMotion.stochastic(6.3, "8 km", seed=k) for k in every}
+
+
+@pytest.fixture(scope="module")
+def runs():
+    return rf.sweep(SYSTEM, motions(), scale=SCALES, width=["0.4 m", "0.5 m", "0.8 m"], **HOW)
+
+
+def fail(runs, **place):
+    """Make runs of a sweep ones that have no result."""
+    runs.status[place] = RunStatus.REFUSED
+    runs.peak_relative_rotation[place] = np.nan
+
+
+def assert_same_fit(one, other):
+    for name in ("median_intensity", "dispersion", "fragility_status", "stripe_trials"):
+        assert one[name].sum() == other[name].sum(), name
+
+
+def test_each_structure_has_a_curve_of_its_own(runs):
+    found = rf.fragility(runs, "PGV", limits=[0.3])
+    assert found.median_intensity.dims == ("width", "limit_state")
+    assert found.exceedance_probability.dims == ("width", "limit_state", "peak_ground_velocity")
+    assert found.width.values.tolist() == [0.4, 0.5, 0.8]
+    assert found.width.units == "m"
+    last = found.sel(limit_state="overturning")
+    assert (np.diff(last.median_intensity) > 0.0).all()
+    for k in range(3):
+        alone = rf.fragility(runs.isel(width=[k]), "PGV", limits=[0.3])
+        assert_same_fit(found.isel(width=[k]), alone)
+        assert f"{alone.median_intensity[0, -1].item():.4g} m s^-1" in alone.verdict
+        assert "structures" not in alone.verdict
+    assert "(3 structures by width)" in found.verdict
+    for end in (0, -1):
+        assert f"{last.median_intensity[end].item():.4g}" in found.verdict
+
+
+def test_structures_are_pooled_where_that_is_asked_for(runs):
+    found = rf.fragility(runs, "PGV", limits=(), pooled=("width",))
+    assert found.median_intensity.dims == ("limit_state",)
+    assert found.attrs["pooled"] == "width"
+    assert "(pooled over width)" in found.verdict
+    assert found.trial_count.item() == runs.status.size
+    # the differences of the structures are in its dispersion
+    alone = rf.fragility(runs, "PGV", limits=())
+    assert found.dispersion.item() > 1.3 * alone.dispersion.max().item()
+    # a motion is run once for each structure, and once more for each that is pooled
+    once = runs.isel(scale=[3])
+    assert rf.fragility(once, "PGV").attrs["bands"] == "profile"
+    assert rf.fragility(once, "PGV", pooled="width").attrs["bands"] == "sandwich"
+    with pytest.raises(ComponentError, match=r"pooled names 'depth'; .*: width"):
+        rf.fragility(runs, pooled=["depth"])
+    with pytest.raises(ComponentError, match="pooled names 'scale'"):
+        rf.fragility(runs, pooled="scale")
+
+
+def test_rows_of_a_table_are_of_one_structure_where_they_are_alike(runs):
+    widths = ["0.4 m"] * len(SCALES) + ["0.8 m"] * len(SCALES)
+    table = rf.sweep(SYSTEM, motions(), cases={"width": widths, "scale": SCALES * 2}, **HOW)
+    found = rf.fragility(table, "PGV", limits=())
+    assert found.case.values.tolist() == [0, len(SCALES)]
+    assert found.width.values.tolist() == [0.4, 0.8]
+    assert_same_fit(found, rf.fragility(runs.isel(width=[0, 2]), "PGV", limits=()))
+    order = [*range(len(SCALES), 2 * len(SCALES)), *range(len(SCALES))]
+    turned = rf.fragility(table.isel(case=order), "PGV", limits=())
+    assert turned.case.values.tolist() == [len(SCALES), 0]
+    assert turned.width.values.tolist() == [0.8, 0.4]
+    assert turned.median_intensity.values.tolist() == found.median_intensity.values[::-1].tolist()
+    apart = rf.sweep(SYSTEM, motions(), scale=SCALES, cases={"width": ["0.4 m", "0.8 m"]}, **HOW)
+    assert_same_fit(rf.fragility(apart, "PGV", limits=()), found)
+    both = rf.fragility(apart, "PGV", limits=(), pooled="width")
+    assert both.trial_count.item() == apart.status.size
+    with pytest.raises(SchemaError, match="without its coordinate 'width'"):
+        rf.fragility(table.drop_vars("width"))
+
+
+def test_dimensions_of_analyses_are_structures_or_motions():
+    spectrum = rf.rocking_spectrum(
+        SYSTEM, motions(), periods=([2, 4, 6], "s"), slenderness=[3, 5], **HOW
+    )
+    found = rf.fragility(spectrum, limits=())
+    assert found.median_intensity.dims == ("slenderness", "rocking_period", "limit_state")
+    assert found.width.dims == ("slenderness", "rocking_period")
+    pulses = rf.overturning_map(
+        SYSTEM, rf.GroundMotion.sine_pulse, amplitude=([2, 4, 6], "m/s^2"),
+        frequency=([1, 2], "Hz"), **HOW,
+    )  # fmt: skip
+    assert rf.fragility(pulses, limits=()).median_intensity.dims == ("limit_state",)
+
+
+def test_an_axis_given_as_the_intensity_tells_no_structures_apart(runs):
+    by_width = rf.fragility(runs, runs.width, limits=())
+    assert by_width.median_intensity.dims == ("limit_state",)
+    own = (runs.scale / runs.width).rename("relative_scale").assign_attrs(units="m^-1")
+    assert rf.fragility(runs, own, limits=()).median_intensity.dims == ("width", "limit_state")
+
+
+def test_a_structure_for_each_run_is_refused():
+    drawn = rf.probability_of_overturning(
+        SYSTEM, motions(), cases=30, **HOW,
+        spread={"width": ("uniform", "0.4 m", "0.6 m"), "scale": ("uniform", 1.0, 8.0)},
+    )  # fmt: skip
+    with pytest.raises(ComponentError, match=r"pooled=\('width',\) takes all"):
+        rf.fragility(drawn)
+    assert rf.fragility(drawn, limits=(), pooled="width").trial_count.item() == 30
+
+
+def test_what_was_put_together_is_told_apart(runs):
+    one, other = (rf.sweep(SYSTEM, motions(first), scale=SCALES[:3], **HOW) for first in (0, 10))
+    run = SYSTEM.simulate(motions()["seed 0"])
+    joined = rf.concat([run, SYSTEM.simulate(motions()["seed 1"])], "motion")
+    for given, kind, said in (
+        (run, SchemaError, "found a single run, which is no sweep"),
+        (joined, SchemaError, "found joined runs, which is no sweep"),
+        (rf.concat([one, other], "motion"), SchemaError, "found joined runs"),
+        (
+            xr.concat([one, other], "suite", join="outer"),
+            StudyError,
+            "the sweep had no dimension 'suite'",
+        ),
+        (
+            xr.concat([one, other], "motion", join="outer"),
+            StudyError,
+            "the sweep had no motion 'seed 10'",
+        ),
+        (xr.concat([one, one], "motion"), StudyError, "'seed 0' stands twice along 'motion'"),
+    ):
+        with pytest.raises(kind, match=said):
+            rf.fragility(given)
+    for twice in (("PGA", "PGA"), ("PGA", "peak_ground_acceleration")):
+        with pytest.raises(ComponentError, match="are one, peak_ground_acceleration"):
+            rf.fragility(one, twice)
+    # what an axis goes on with is one sweep, and numbers of one's own need no motions
+    split = [runs.isel(scale=slice(0, 3)), runs.isel(scale=slice(3, None))]
+    assert_same_fit(rf.fragility(xr.concat(split, "scale")), rf.fragility(runs))
+    own = rf.fragility(xr.concat([one, one], "suite"), one.scale, limits=())
+    assert own.median_intensity.dims == ("suite", "limit_state")
+
+
+def test_runs_without_a_verdict_are_counted(runs):
+    lacking = runs.copy(deep=True)
+    fail(lacking, width=0, motion=1)
+    found = rf.fragility(lacking, limits=())
+    assert found.left_out_count.squeeze().values.tolist() == [len(SCALES), 0, 0]
+    assert (found.left_out_count + found.trial_count == len(SCALES) * 6).all()
+    assert f"{len(SCALES)} of {runs.status.size} runs are left out" in found.verdict
+    assert found.independent_count.squeeze().values.tolist() == [5, 6, 6]
+    assert "left out" not in rf.fragility(runs).verdict
+
+
+def test_capacities_that_nobody_knows_are_left_out():
+    """A motion whose runs failed is none that the block withstood."""
+    analysis = rf.incremental_dynamic_analysis(
+        SYSTEM, motions(count=12), scale=[1.0, 3.0, 6.0, 12.0], **HOW
+    )
+    all_known = rf.fragility(analysis)
+    lacking = analysis.copy(deep=True)
+    fail(lacking, motion=0)
+    fail(lacking, motion=1, scale=slice(1, None))
+    for name in ("capacity_scale", "scale_above", "scale_below", "exceeds_above"):
+        lacking[name][{"motion": [0, 1]}] = np.nan
+    found = rf.fragility(lacking)
+    assert found.left_out_count.item() == 1
+    assert found.trial_count.item() == 11
+    assert "1 of 12 capacities are left out" in found.verdict
+    # of motion 1 it is known that it withstood the least scale, and no more
+    without = rf.fragility(lacking.isel(motion=slice(2, None)))
+    assert found.median_intensity.item() == pytest.approx(without.median_intensity.item(), rel=0.02)
+    assert all_known.left_out_count.item() == 0
+    one = analysis.isel(limit_state=0)
+    assert rf.fragility(one).median_intensity.item() == all_known.median_intensity.item()
+    with pytest.raises(SchemaError, match="at one scale"):
+        rf.fragility(analysis.isel(scale=1), analysis.scale.isel(scale=1))
+
+
+def test_programs_take_one_structure(runs, tmp_path):
+    found = rf.fragility(runs, limits=())
+    with pytest.raises(ComponentError, match=r"several structures, by width; .*isel\(width=0\)"):
+        rf.to_pelicun(found, "x")
+    with pytest.raises(ComponentError, match="several structures"):
+        rf.to_openquake({"x": found}, tmp_path / "x.xml")
+    for one in (found.isel(width=0), found.isel(width=[0])):
+        theta = rf.to_pelicun(one, "x")["LS1-Theta_0"].item()
+        assert theta == pytest.approx(found.median_intensity[0].item() / 9.80665, rel=1e-12)
+
+
+def test_figures_tell_structures_apart(runs):
+    from matplotlib import pyplot
+
+    found = rf.fragility(runs, "PGV", limits=[0.3])
+    panels = rf.plot.fragility(found)
+    assert [axes.get_title() for axes in panels] == ["rotation 0.3", "overturning"]
+    names = [text.get_text() for text in panels[1].get_legend().get_texts()]
+    assert names == ["width 0.4", "width 0.5", "width 0.8"]
+    axes = rf.plot.fragility(found.isel(width=1))
+    told = axes.figure.get_suptitle().replace("\n", " ")
+    assert f"{found.median_intensity[1, 1].item():.4g}" in told
+    assert "structures" not in told
+    with pytest.raises(SchemaError, match="found 3 structures, by width; a figure shows 1"):
+        rf.plot.fragility(rf.fragility(runs, ("PGA", "PGV"), limits=()))
+    pyplot.close("all")
