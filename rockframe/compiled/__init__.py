@@ -17,6 +17,8 @@ from rockframe.compiled.bound import bound as bound
 from rockframe.compiled.bound import bound_in_lanes as bound_in_lanes
 from rockframe.compiled.bound import numbers_in as numbers_in
 from rockframe.compiled.entries import COMPILED as COMPILED
+from rockframe.compiled.entries import compiled_within as compiled_within
+from rockframe.compiled.entries import compiling_for as compiling_for
 from rockframe.compiled.entries import entry as entry
 from rockframe.compiled.entries import say_slow as say_slow
 from rockframe.compiled.entries import table as table

@@ -5,12 +5,15 @@ kinds of its arrays and numbers.
 """
 
 import logging
+import math
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Generator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from functools import update_wrapper, wraps
 from importlib.util import find_spec
 from threading import RLock
-from typing import Any, Final, TypeVar, cast
+from typing import Any, Final, ParamSpec, TypeVar, cast
 
 import numpy as np
 
@@ -20,6 +23,7 @@ from rockframe.compiled.marks import inlined
 from rockframe.compiled.plain import viewed
 
 Function = TypeVar("Function", bound=Callable[..., Any])
+P = ParamSpec("P")
 
 _HAS_NUMBA: Final = find_spec("numba") is not None
 COMPILED: Final = os.environ.get("ROCKFRAME_COMPILE", "1") != "0" and _HAS_NUMBA
@@ -27,6 +31,9 @@ COMPILED: Final = os.environ.get("ROCKFRAME_COMPILE", "1") != "0" and _HAS_NUMBA
 PATIENCE: Final = 3.0
 """Length of a run in plain Python from which on numba is spoken of [s]."""
 _said_slow: Final[list[bool]] = []
+
+NEEDED_BY: Final = ContextVar("needed_by", default="this")
+"""What needs the machine code that is being compiled."""
 
 _logger = logging.getLogger("rockframe")
 _lock: Final = RLock()
@@ -119,18 +126,30 @@ class Entry:
             words = [word.address if isinstance(word, Source) else word for word in words]
         return routine(*words)
 
+    def is_compiled_within(self, patience: float, arguments: tuple[Any, ...]) -> bool:
+        """See :func:`compiled_within`."""
+        sources: list[Source] = []
+        structure = tuple(_structure_of(argument, [], sources) for argument in arguments)
+        with _lock:
+            return self._compiled(structure, sources, patience) is not None
+
     def _compiled(
-        self, structure: tuple[Any, ...], sources: list[Source]
+        self, structure: tuple[Any, ...], sources: list[Source], patience: float = math.inf
     ) -> Callable[..., Any] | None:
         from rockframe.compiled.jobs import Job
-        from rockframe.compiled.together import NotCompiledError, make_all
+        from rockframe.compiled.together import NotCompiledError, make_all, time_for
 
         failed = structure in self._routines and self._routines[structure] is None
         if failed or any(source.failed for source in sources):
             return None
         missing = [*{id(source): source for source in sources if not source.address}.values()]
+        routine = self._routines.get(structure)
+        if routine is not None and not missing:
+            return routine
         jobs = [Job(source.function, source.structure, True, source.in_lanes) for source in missing]
         jobs.append(Job(self.source, structure, False))
+        if time_for(jobs) > patience:
+            return None
         try:
             *codes, routine = make_all(jobs)
         except NotCompiledError as found:
@@ -144,6 +163,44 @@ class Entry:
             source.code, source.address = code, code.address
         self._routines[structure] = routine
         return routine
+
+
+def compiled_within(
+    patience: float, function: Callable[P, Any], *arguments: P.args, **_: P.kwargs
+) -> bool:
+    """Tell whether an entry runs as machine code, which is compiled now if that does not take long.
+
+    Parameters
+    ----------
+    patience : float
+        Longest time for that [s].
+    function : callable
+        An entry.
+    *arguments
+        Those it is to be called with, or others of their structure.
+
+    Returns
+    -------
+    bool
+        False too where it cannot be compiled.
+    """
+    return isinstance(function, Entry) and function.is_compiled_within(patience, arguments)
+
+
+@contextmanager
+def compiling_for(words: str) -> Generator[None]:
+    """Say, where something is compiled meanwhile, for what.
+
+    Parameters
+    ----------
+    words : str
+        What needs it, as in "rockframe compiles what ... needs".
+    """
+    before = NEEDED_BY.set(words)
+    try:
+        yield
+    finally:
+        NEEDED_BY.reset(before)
 
 
 def _structure_of(argument: Any, words: list[Any], sources: list[Source]) -> Any:

@@ -4,6 +4,7 @@ numba compiles one function at a time. A helper process starts at the other end 
 both meet: each finds in the store what the other one has made.
 """
 
+import logging
 import os
 import pickle
 import subprocess
@@ -11,11 +12,16 @@ import sys
 from collections.abc import Callable, Generator, Sequence
 from contextlib import contextmanager, suppress
 from importlib import import_module
-from typing import IO, Any, cast
+from typing import IO, Any, Final, cast
 
 from rockframe.compiled import store
-from rockframe.compiled.entries import Entry
+from rockframe.compiled.entries import NEEDED_BY, Entry
 from rockframe.compiled.jobs import Job
+
+_logger = logging.getLogger("rockframe")
+_announced: Final[set[str]] = set()
+_FREEZE: Final = 2.0
+"""Time that is told of each time, once it has been said that something is compiled [s]."""
 
 
 class NotCompiledError(Exception):
@@ -53,8 +59,41 @@ def make_all(jobs: Sequence[Job]) -> list[Any]:
     NotCompiledError
         The first job that failed.
     """
+    _tell(jobs)
     with _helped(jobs) as waiting:
         return [_made(place, job, waiting) for place, job in enumerate(jobs)]
+
+
+def time_for(jobs: Sequence[Job]) -> float:
+    """Give about how long jobs take that have not been kept, on a machine that is idle [s]."""
+    try:
+        seconds = [job.seconds for job in jobs if not job.is_stored]
+    except Exception:  # said where it is compiled
+        return 0.0
+    if not seconds:
+        return 0.0
+    return max(*seconds, sum(seconds) / min(2, _processors())) if len(seconds) > 1 else seconds[0]
+
+
+def _tell(jobs: Sequence[Job]) -> None:
+    """Say that something is compiled, for what, and about how long it takes."""
+    seconds = time_for(jobs)
+    if not seconds:
+        return
+    once = "once"
+    if any(job.file is None for job in jobs):
+        places = " or ".join(map(str, store.folders()))
+        once = (
+            "and again in every process: it cannot be kept, for nothing can be written to "
+            f"{places} (ROCKFRAME_CACHE_DIR names another folder), or its source has no file"
+        )
+    if once in _announced and seconds < _FREEZE:
+        return
+    _announced.add(once)
+    _logger.warning(
+        "rockframe compiles what %s needs for this machine: about %.0f s where nothing else runs, "
+        "%s", NEEDED_BY.get(), max(seconds, 1.0), once,
+    )  # fmt: skip
 
 
 def _made(place: int, job: Job, waiting: Callable[[], bool]) -> Any:

@@ -12,6 +12,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from rockframe.results.along_steps import AlongSteps
 from rockframe.results.outcome import Generic, sine_cosine
 from rockframe.signals.arrays import Array
 from rockframe.system.load import Load
@@ -23,6 +24,15 @@ STACKED: Final = "rotation_on_cap"
 """A column of scenes in which a block stands on a cap."""
 OF_SOIL_FRICTION: Final = (STACKED, "base_shear", "soil_reaction")
 """Columns that the friction between cap and soil follows from, where a scene has them all."""
+DERIVED: Final = (
+    "absolute_horizontal_acceleration", "absolute_vertical_acceleration",
+    "base_overturning_moment", "friction_demand", "soil_friction_demand",
+)  # fmt: skip
+"""What follows from columns."""
+HALF: Final = 0.5
+ENOUGH: Final = 1.0
+"""The friction demand is told to last while it is above half its peak, or above what floors seldom
+have."""
 NO_FORCE: Final = 1e-9
 """Force per mass, or change of velocity, that is rounding [m s^-2], [m s^-1]."""
 
@@ -59,11 +69,21 @@ def force_histories(values: Values, ground: Array, load: Load) -> dict[str, Gene
         "base_overturning_moment": weight_arm * press
         - thrust_arm * thrust
         - body.inertia * values["angular_acceleration"],
-        "friction_demand": friction_demand(thrust, press, body.mass),
+    }
+    return found | friction_demands(values, load)
+
+
+def friction_demands(values: Values, load: Load) -> dict[str, Generic]:
+    """Give the friction demand of the bases, by their names in the schema."""
+    mass = load.body.mass
+    found: dict[str, Generic] = {
+        "friction_demand": friction_demand(
+            values["horizontal_reaction"], values["vertical_reaction"], mass
+        )
     }
     if all(name in values for name in OF_SOIL_FRICTION):
         found["soil_friction_demand"] = friction_demand(
-            values["base_shear"], values["soil_reaction"], body.mass
+            values["base_shear"], values["soil_reaction"], mass
         )
     return found
 
@@ -119,14 +139,6 @@ class EventStates:
         )
         return EventStates(self.time[kept], self.is_impact[kept], before, after)
 
-    def with_samples(self, values: Values, name: str) -> Array:
-        """Give a history's samples, then its values before and after the events."""
-        return np.concatenate([values[name], self.before[name], self.after[name]])
-
-    def times_with_samples(self, values: Values) -> Array:
-        """Give the times of these [s]."""
-        return np.concatenate([values["time"], self.time, self.time])
-
     def impulses(self, mass: float) -> dict[str, Generic]:
         """Give the impulses of the base on the body at the events [N s].
 
@@ -139,24 +151,13 @@ class EventStates:
         }
 
 
-def friction_words(scalars: Mapping[str, Generic | float]) -> str:
-    """Say in a sentence what friction a run needed; nothing without its forces."""
-    if "peak_friction_demand" not in scalars:
-        return ""
-    most = float(scalars["peak_friction_demand"])
-    when = float(scalars["peak_friction_demand_time"])
-    if math.isfinite(most):
-        return f" Friction needed: {most:.3g}."
-    return f" Friction needed: more than any, where the base holds without pressing ({when:.4g} s)."
-
-
-def force_scalars(values: Values, events: EventStates, mass: float) -> dict[str, float]:
-    """Give peaks of forces over samples and events.
+def force_scalars(along: AlongSteps, events: EventStates, mass: float) -> dict[str, float]:
+    """Give peaks of forces.
 
     Parameters
     ----------
-    values : mapping of str to ndarray
-        Histories with those of :func:`force_histories`, up to overturning.
+    along : AlongSteps
+        What the model shows, with what :func:`force_histories` adds, up to overturning.
     events : EventStates
         Up to overturning, too.
     mass : float
@@ -167,18 +168,28 @@ def force_scalars(values: Values, events: EventStates, mass: float) -> dict[str,
     dict of str to float
         By their names in the schema.
     """
-    demand = events.with_samples(values, "friction_demand")
-    most = int(np.argmax(demand))
+    (shear, most), (_, when) = along.largest(_shear_and_demand)
+    level = min(HALF * most, ENOUGH)
+    lasted = along.above(_demand, level)[1] if level > 0.0 else 0.0
     impulses = events.impulses(mass)
     struck = friction_demand(
         impulses["event_horizontal_impulse"], impulses["event_vertical_impulse"], mass
     )[events.is_impact]
     return {
-        "peak_friction_demand": float(demand[most]),
-        "peak_friction_demand_time": float(events.times_with_samples(values)[most]),
+        "peak_friction_demand": float(most),
+        "peak_friction_demand_time": float(when),
+        "peak_friction_demand_duration": lasted,
         "peak_impulsive_friction_demand": float(struck.max(initial=0.0)),
-        "peak_base_shear": float(np.abs(events.with_samples(values, "base_shear")).max()),
+        "peak_base_shear": float(shear),
     }
+
+
+def _demand(values: Values) -> Array:
+    return values["friction_demand"]
+
+
+def _shear_and_demand(values: Values) -> Array:
+    return np.stack([np.abs(values["base_shear"]), _demand(values)])
 
 
 def residuals(values: Values, load: Load) -> dict[str, float]:

@@ -5,8 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rockframe.results.forces import EventStates
+from rockframe.results.along_steps import AlongSteps
 from rockframe.results.outcome import Generic, sine_cosine
+from rockframe.results.variables.requests import POINT_PEAKS
 from rockframe.signals.arrays import Array
 from rockframe.system.load import Load
 
@@ -109,22 +110,15 @@ def point_histories(
     }
 
 
-def point_peaks(
-    points: Sequence[Point],
-    values: Mapping[str, Generic],
-    events: EventStates,
-    load: Load,
-) -> dict[str, Generic]:
-    """Give peaks of displacements and absolute accelerations of points, over samples and events.
+def point_peaks(points: Sequence[Point], along: AlongSteps, load: Load) -> dict[str, Generic]:
+    """Give peaks of displacements and absolute accelerations of points.
 
     Parameters
     ----------
     points : sequence of Point
         Of the body.
-    values : mapping of str to ndarray
+    along : AlongSteps
         As for :func:`point_histories`, up to overturning.
-    events : EventStates
-        Up to overturning, too.
     load : Load
         The body.
 
@@ -133,8 +127,12 @@ def point_peaks(
     dict of str to ndarray, shape (points,)
         By their names in the schema.
     """
-    sides = [point_histories(points, side, load) for side in (values, events.before, events.after)]
+
+    def sizes(values: Mapping[str, Generic]) -> Array:
+        return np.abs(np.concatenate([*point_histories(points, values, load).values()]))
+
+    peaks, _ = along.largest(sizes)
     return {
-        f"peak_{name}": np.abs(np.concatenate([side[name] for side in sides], axis=1)).max(axis=1)
-        for name in sides[0]
+        row.name: one
+        for row, one in zip(POINT_PEAKS, np.split(peaks, len(POINT_PEAKS)), strict=True)
     }

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, fields
 from enum import StrEnum
 from numbers import Integral, Real
-from typing import Final, Literal
+from typing import Any, Final, Literal
 
 from rockframe.errors import SolverError, shown
 
@@ -69,7 +69,8 @@ class Accuracy:
         }
         for field in fields(self):
             value = getattr(self, field.name)
-            if value is None or (field.name == "substeps" and value == FEWEST):
+            is_word = field.name == "substeps" and isinstance(value, str)
+            if value is None or (is_word and value == FEWEST):
                 continue
             low, high = bounds[field.name]
             whole = field.name in ("max_steps", "substeps")
@@ -80,7 +81,8 @@ class Accuracy:
             if whole and not isinstance(value, Integral):
                 msg = f"Accuracy: {field.name} must be a whole number, got {shown(value)}"
                 raise SolverError(msg)
-            if not low <= float(value) <= high:
+            number: Any = value  # of any size, which a float is not
+            if not low <= number <= high:
                 msg = (
                     f"Accuracy: {field.name} must lie from {low:g} to {high:g}, got {shown(value)}"
                 )

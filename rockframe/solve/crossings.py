@@ -5,7 +5,7 @@ from typing import Final
 
 from rockframe.compiled import kernel
 from rockframe.solve.equations import Equations, write_guards
-from rockframe.solve.guards import DIP_MARGIN
+from rockframe.solve.guards import DIP_MARGIN, may_dip
 from rockframe.solve.hermite import interpolate
 from rockframe.solve.workspace import Span, Tables, Workspace
 
@@ -13,6 +13,8 @@ ROOT_TOLERANCE: Final = 1e-13
 """Width of the bracket, as a share of the step, at which the search for a root ends."""
 SEARCHING: Final = 100
 """Most guards evaluated in that search; halving alone takes 44."""
+LOOKING: Final = 40
+"""Most guards evaluated in the search of a dip; each halves it."""
 GUESSING: Final = 5
 """Corrections of the guess with which it begins."""
 CONVERGED: Final = 1e-7
@@ -27,42 +29,64 @@ def earliest_crossing(
     span: Span,
     tables: Tables,
     w: Workspace,
-) -> tuple[int, float]:
-    """Give the guard that falls through zero first, and where (a fraction of the step).
+) -> tuple[int, float, float]:
+    """Give the guard that falls through zero first, where, and where it is negative then.
 
-    Looks at the step's end and, where a guard falls at first and rises at last,
-    for a dip in between. Gives -1 if no guard crosses.
+    Places are fractions of the step. Looks into the first dip of each guard that may have one,
+    however it begins, and at the step's end. Gives -1 if no guard crosses.
     """
-    guards = len(tables.tolerance)
-    found = -1
-    place = 2.0
-    for i in range(guards):
-        armed = w.before[i] > tables.tolerance[i]
+    found, place, negative = -1, 2.0, 1.0
+    for i in range(len(tables.tolerance)):
+        end_change = span.h * w.after[len(tables.tolerance) + i]
+        c0, c1, c2, c3 = _cubic_of(i, span.h, tables, w)
+        if not may_dip(c0, c1, w.after[i], end_change):
+            continue
         end = -1.0
-        if w.after[i] < 0.0:
+        bottom, low, high = _dip(c1, c2, c3)
+        depth = c0 + bottom * (c1 + bottom * (c2 + bottom * c3))
+        if 0.0 < bottom < 1.0 and depth < DIP_MARGIN * (abs(c1) + abs(end_change)):
+            end = _point_below_zero(equations, i, bottom, low, high, mode, count, span, tables, w)
+        if end < 0.0 and w.after[i] < 0.0:
             end = 1.0
-        elif armed and w.before[guards + i] < 0.0 and w.after[guards + i] > 0.0:
-            fall = span.h * w.before[guards + i]
-            rise = span.h * w.after[guards + i]
-            bottom, depth = _dip(w.before[i], fall, w.after[i], rise)
-            if depth < DIP_MARGIN * (rise - fall):
-                end = _point_below_zero(equations, i, bottom, mode, count, span, tables, w)
         if end >= 0.0:
             root = _first_root(equations, i, end, mode, count, span, tables, w)
             if root < place:
-                found = i
-                place = root
-    return found, place
+                found, place, negative = i, root, end
+    return found, place, negative
 
 
 @kernel
-def _dip(g0: float, fall: float, g1: float, rise: float) -> tuple[float, float]:
-    """Give place and depth of the lowest point of a cubic that falls at 0 and rises at 1."""
-    c2 = 3.0 * (g1 - g0) - 2.0 * fall - rise
-    c3 = 2.0 * (g0 - g1) + fall + rise
-    u = -fall / (c2 + math.sqrt(max(c2 * c2 - 3.0 * c3 * fall, 0.0)))
-    u = min(max(u, 0.0), 1.0)
-    return u, g0 + u * (fall + u * (c2 + u * c3))
+def _cubic_of(
+    which: int, h: float, tables: Tables, w: Workspace
+) -> tuple[float, float, float, float]:
+    """Give the coefficients of the cubic through a guard's values and rates at both ends."""
+    guards = len(tables.tolerance)
+    start, c1 = w.before[which], h * w.before[guards + which]
+    rise, bend = w.after[which] - start - c1, h * w.after[guards + which] - c1
+    return start, c1, 3.0 * rise - bend, bend - 2.0 * rise
+
+
+@kernel
+def _dip(c1: float, c2: float, c3: float) -> tuple[float, float, float]:
+    """Give the place of a cubic's dip, and the places inside the step between which it lies.
+
+    Where its rate comes close to zero without a change of sign, that of the least rate; outside
+    the step where there is neither.
+    """
+    root = math.sqrt(max(c2 * c2 - 3.0 * c3 * c1, 0.0))
+    bottom = 2.0
+    if c2 >= 0.0 > c1 and c2 + root > 0.0:
+        bottom = -c1 / (c2 + root)
+    elif c2 < 0.0 < c3:
+        bottom = (root - c2) / (3.0 * c3)
+    low, high = 0.0, 1.0
+    if c3 != 0.0:
+        top = -2.0 * c2 / (3.0 * c3) - bottom
+        if c3 > 0.0:
+            low = max(min(top, bottom), low)
+        else:
+            high = min(max(top, bottom), high)
+    return bottom, low, high
 
 
 @kernel
@@ -87,28 +111,32 @@ def _point_below_zero(
     equations: Equations,
     which: int,
     bottom: float,
+    low: float,
+    high: float,
     mode: int,
     count: int,
     span: Span,
     tables: Tables,
     w: Workspace,
 ) -> float:
-    """Search around a predicted dip (golden section); -1 if the guard stays positive."""
-    low = max(bottom - 0.25, 0.0)
-    high = min(bottom + 0.25, 1.0)
-    for _ in range(40):
-        left = low + 0.381966 * (high - low)
-        right = low + 0.618034 * (high - low)
-        g_left = _guard_inside(equations, which, left, mode, count, span, tables, w)
-        if g_left < 0.0:
-            return left
-        g_right = _guard_inside(equations, which, right, mode, count, span, tables, w)
-        if g_right < 0.0:
-            return right
-        if g_left < g_right:
-            high = right
+    """Search a predicted dip for a negative value by the guard's rate; -1 if there is none.
+
+    Of a guard that starts at zero, within its rounding noise, only what lies deeper is a dip.
+    """
+    start, tolerance = w.before[which], tables.tolerance[which]
+    zero = 0.0 if start > tolerance else min(start, 0.0) - tolerance
+    for _ in range(LOOKING):
+        g = _guard_inside(equations, which, bottom, mode, count, span, tables, w)
+        if g < zero:
+            return bottom
+        rate = span.h * w.inside[len(tables.tolerance) + which]
+        if g - zero > abs(rate) * (high - low):  # it is convex there, and nowhere lower by more
+            break
+        if rate > 0.0:
+            high = bottom
         else:
-            low = left
+            low = bottom
+        bottom = 0.5 * (low + high)
     return -1.0
 
 
@@ -148,9 +176,7 @@ def _first_root(
     to land.
     """
     guards = len(tables.tolerance)
-    start, c1 = w.before[which], span.h * w.before[guards + which]
-    rise, bend = w.after[which] - start - c1, span.h * w.after[guards + which] - c1
-    c2, c3 = 3.0 * rise - bend, bend - 2.0 * rise
+    start, c1, c2, c3 = _cubic_of(which, span.h, tables, w)
     if start > tables.tolerance[which]:
         place = _root_of_cubic(start, c1, c2, c3, end)
     elif c1 > 0.0:

@@ -9,7 +9,7 @@ import math
 from typing import Final
 
 from rockframe.compiled import Integers, Vector, entry, inlined, kernel
-from rockframe.dynamics.protocol import LAST_EVENT, Ground
+from rockframe.dynamics.protocol import LAST_EVENT, POWERS, Ground
 from rockframe.solve import layout as at
 from rockframe.solve.bookkeeping import (
     FLIGHT,
@@ -35,15 +35,19 @@ from rockframe.solve.march import (
 )
 from rockframe.solve.schemes import adapted, rest_of
 from rockframe.solve.workspace import (
+    BESIDE,
     TERMS,
     EventTable,
     Output,
     Pieces,
     Progress,
     Span,
+    StepTable,
     Tables,
     Work,
     Workspace,
+    has_no_room,
+    keep_row,
     swapped,
 )
 
@@ -107,46 +111,49 @@ def span_of(h: float, progress: Progress) -> Span:
 @inlined
 def march(
     equations: Equations, mode: int, trial: float, tables: Tables, pieces: Pieces,
-    progress: Progress, w: Workspace,
+    progress: Progress, steps: StepTable, w: Workspace,
 ) -> int:  # fmt: skip
     """Make steps until something happens, or try one; see :mod:`rockframe.solve.march`."""
     flies = int(tables.contact[mode] == FLIGHT)
     return equations.march.call(
         mode, int(tables.active[mode]), flies, tables.longest[mode], trial, pieces.x, pieces.y,
         w.both_ends, w.stages, w.works, w.reference, w.limits, w.ground, progress.controls,
-        progress.clock, progress.counters, equations.numbers,
+        progress.clock, progress.counters, steps.values, steps.codes, equations.numbers,
     )  # fmt: skip
 
 
 @kernel
 def step_to_event(
     equations: Equations, mode: int, whole: float, tables: Tables, pieces: Pieces,
-    progress: Progress, w: Workspace,
+    progress: Progress, steps: StepTable, w: Workspace,
 ) -> tuple[float, int]:  # fmt: skip
     """Repeat a step up to the first crossing of a guard; give its length and the guard, or -1.
 
     The place is found on the dense solution, and corrected (Newton) on the Runge-Kutta solution
     itself, kept by bisection between lengths at which the guard is positive and negative: of a
     step that is long beside a damped vibration the one tells little of the other. So is the
-    guard that rises from zero and falls again from its first root, the start.
+    guard that rises from zero and falls again from its first root, the start. A dip that the
+    Runge-Kutta solution does not have is an event where it comes closest.
     """
     count, span = int(tables.active[mode]), span_of(whole, progress)
-    crossed, place = earliest_crossing(equations, mode, count, span, tables, w)
+    crossed, place, negative = earliest_crossing(equations, mode, count, span, tables, w)
     if crossed < 0:
         return whole, -1
     now = time_of(progress)
     h, rates = place * whole, equations.guard_count + 1
-    tolerance, low, high = tables.tolerance[crossed], 0.0, whole
-    begins_at_zero = w.before[crossed] <= tolerance
-    rises = h > 0.0 and begins_at_zero and w.before[rates + crossed] > 0.0
-    has_root = w.after[crossed] < 0.0 and not begins_at_zero
+    tolerance, low, high = tables.tolerance[crossed], 0.0, negative * whole
+    begins_positive = w.before[crossed] > tolerance or w.before[rates + crossed] > 0.0
+    has_root = h > 0.0 and begins_positive
+    if has_root and negative < 1.0:
+        march(equations, mode, high, tables, pieces, progress, steps, w)
+        has_root = w.after[crossed] < 0.0
     for correction in range(1 + MOST_POLISHING):
         if h > 0.0:
-            march(equations, mode, h, tables, pieces, progress, w)
+            march(equations, mode, h, tables, pieces, progress, steps, w)
         else:
             stand_still(w)
         guard, fall = w.after[crossed], w.after[rates + crossed]
-        ends = fall >= 0.0 and not (rises or has_root)
+        ends = fall >= 0.0 and not has_root
         if ends or abs(guard) <= tolerance or correction == MOST_POLISHING:
             break
         if guard > 0.0:
@@ -154,7 +161,7 @@ def step_to_event(
         else:
             high = h
         moved = h - guard / fall if fall < 0.0 else low
-        if (rises or has_root) and not low < moved < high:
+        if has_root and not low < moved < high:
             moved = 0.5 * (low + high)
         moved = min(max(moved, 0.0), whole)
         change = abs(moved - h)
@@ -217,6 +224,19 @@ def next_output(controls: Vector, counters: Integers, output: Output) -> float:
 
 
 @kernel
+def keep_start(mode: int, progress: Progress, steps: StepTable, w: Workspace) -> None:
+    """Keep where steps start anew, in place of a start from which no step was made."""
+    clock, counters = progress.clock, progress.counters
+    row, width, slopes = counters[at.STEPS_KEPT], len(w.state), len(w.first) - POWERS
+    if row > 0 and steps.values[(row - 1) * (BESIDE + width + slopes) + 1] == 0.0:
+        counters[at.STEPS_KEPT] = row - 1
+    keep_row(
+        time_of(progress), 0.0, mode, Ground(clock[at.GROUND_X], clock[at.GROUND_Y]),
+        width, slopes, w.state, w.first, counters, steps.values, steps.codes,
+    )  # fmt: skip
+
+
+@kernel
 def run_on(
     equations: Equations,
     tables: Tables,
@@ -227,7 +247,7 @@ def run_on(
     events: EventTable,
     w: Workspace,
 ) -> int:
-    """Integrate until the run ends or pauses, or the event table is full.
+    """Integrate until the run ends or pauses, or a table is full.
 
     Parameters
     ----------
@@ -242,7 +262,7 @@ def run_on(
     progress : Progress
         Settings and progress; changed in place.
     output : Output
-        Filled at the output times.
+        Filled at the output times, and by each step where it has room for steps.
     events : EventTable
         Filled at the events.
     w : Workspace
@@ -267,11 +287,15 @@ def run_on(
     fixed, shortest = controls[at.RTOL] == FIXED_STEPS, SHORTEST * controls[at.DURATION]
     crossed = counters[at.PENDING]
     stale = counters[at.STALE] == 1  # slope and guards at the state, after a switch or a jump
+    steps, anew = output.steps, False
     status = at.COMPLETED
     while True:
+        if has_no_room(steps.codes, counters):
+            status = at.MORE_ROOM
+            break
         if stale:
             look_ahead(equations, mode, progress, w)
-            stale = False
+            stale, anew = False, True
             if crossed < 0:
                 crossed = broken_guard(tables, time_of(progress), w)
         if crossed >= 0:
@@ -287,8 +311,11 @@ def run_on(
             if status != at.COMPLETED:
                 break
             continue
+        if anew and len(steps.codes) > 0:
+            keep_start(mode, progress, steps, w)
+        anew = False
         clock[at.NEXT_OUTPUT] = next_output(controls, counters, output)
-        happened = march(equations, mode, 0.0, tables, pieces, progress, w)
+        happened = march(equations, mode, 0.0, tables, pieces, progress, steps, w)
         if counters[at.HALF] != half:
             half = 1 - half
             w = swapped(w)
@@ -306,7 +333,7 @@ def run_on(
             break
         h = whole = clock[at.STEP]
         if happened == GUARDED:
-            h, crossed = step_to_event(equations, mode, whole, tables, pieces, progress, w)
+            h, crossed = step_to_event(equations, mode, whole, tables, pieces, progress, steps, w)
         if fixed:
             clock[at.NEXT_STEP] = rest_of(clock[at.ASKED], h, shortest, controls)
         elif crossed < 0:
@@ -317,6 +344,11 @@ def run_on(
         store_outputs(equations, time_of(progress), span, mode, count, work, progress, output, w)
         if h > 0.0:
             follow_peak(equations, count, h, clock, w)
+            if len(steps.codes) > 0:
+                keep_row(
+                    time_of(progress), h, mode, ground, len(w.new), len(w.last) - POWERS, w.new,
+                    w.last, counters, steps.values, steps.codes,
+                )  # fmt: skip
         if tables.contact[mode] == FLIGHT:
             clock[at.FLIGHT_TIME] += h
         accept(fixed, work, ground, clock, counters, w)

@@ -4,10 +4,19 @@ So one integrator, compiled once, serves every system: it knows these functions 
 addresses, and the system's numbers as a vector.
 """
 
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
-from rockframe.compiled import Bound, Vector, bound, inlined, kernel, numbers_in, put
-from rockframe.dynamics.protocol import Energies, Ground, System
+from rockframe.compiled import (
+    COMPILED,
+    Bound,
+    Vector,
+    bound,
+    inlined,
+    kernel,
+    numbers_in,
+    put,
+)
+from rockframe.dynamics.protocol import BODY_COLUMNS, BODY_FORCES, Energies, Ground, System
 from rockframe.solve.ground import ground_in
 from rockframe.solve.guards import guards_at
 from rockframe.solve.march import march_by_tolerance, march_fixed
@@ -48,13 +57,25 @@ def energies(system: System, mode: int, state: Vector, out: Vector) -> None:
 
 @kernel
 def observed(
-    system: System, mode: int, state: Vector, ground_x: float, ground_y: float, memory: Vector,
-    out: Vector,
+    system: System, mode: int, state: Vector, slope: Vector, ground_x: float, ground_y: float,
+    memory: Vector, out: Vector,
 ) -> None:  # fmt: skip
     """Write the columns of a state."""
-    ground = Ground(ground_x, ground_y)
-    slope = system.accelerate(mode, state, ground)
-    put(system.observe(mode, state, slope, ground, memory), 0, out)
+    put(system.observe(mode, state, slope, Ground(ground_x, ground_y), memory), 0, out)
+
+
+_BODY: Final = [column.name for column in BODY_COLUMNS]
+SHEAR, THRUST, PRESS = (_BODY.index(name) for name in BODY_FORCES)
+
+
+@kernel
+def forces(
+    system: System, mode: int, state: Vector, slope: Vector, ground_x: float, ground_y: float,
+    memory: Vector, out: Vector,
+) -> None:  # fmt: skip
+    """Write `BODY_FORCES` alone, so that nothing else is computed."""
+    columns = system.observe(mode, state, slope, Ground(ground_x, ground_y), memory)
+    out[0], out[1], out[2] = columns[SHEAR], columns[THRUST], columns[PRESS]
 
 
 class Equations(NamedTuple):
@@ -98,6 +119,11 @@ def equations_of(system: System, *, fixed_steps: bool) -> Equations:
         variable_count=system.variables(),
         guard_count=system.guards(),
     )
+
+
+def runs_as_python(equations: Equations) -> bool:
+    """Whether runs of a system are those of plain Python: its equations could not be compiled."""
+    return not COMPILED or any(one.source.failed for one in equations if isinstance(one, Bound))
 
 
 @inlined

@@ -43,15 +43,15 @@ def write_guards(system: System, found: Guards, state: Vector, limits: Vector, o
 
 
 @inlined
-def may_dip(start: float, fall: float, end: float, rise: float) -> bool:
+def may_dip(start: float, change: float, end: float, end_change: float) -> bool:
     """Whether a guard with these rates, by its step, is negative at its end or may be inside it.
 
-    One that falls at first and rises at last follows a cubic, which is nowhere below its
-    lowest Bernstein coefficient.
+    The cubic through values and rates is nowhere below its lowest Bernstein coefficient, however
+    it begins and ends; divided by the place in the step, where it begins at zero, it has the
+    same ones but for factors.
     """
-    lowest = min(start + THIRD * fall, end - THIRD * rise)
-    dips = (fall < 0.0) & (rise > 0.0) & (lowest < DOUBT * (rise - fall))
-    return dips | (end < 0.0)
+    lowest = min(start + THIRD * change, end - THIRD * end_change)
+    return (lowest < DOUBT * (abs(change) + abs(end_change))) | (end < 0.0)
 
 
 @inlined

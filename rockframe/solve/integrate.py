@@ -5,7 +5,7 @@ from time import perf_counter
 
 import numpy as np
 
-from rockframe.compiled import Matrix, Vector, say_slow
+from rockframe.compiled import Integers, Matrix, Vector, say_slow
 from rockframe.dynamics.protocol import ContactModel, Ending, Start
 from rockframe.signals import Motion
 from rockframe.solve import layout as at
@@ -13,19 +13,28 @@ from rockframe.solve.accuracy import Accuracy
 from rockframe.solve.beginning import begun
 from rockframe.solve.bookkeeping import ON_SAMPLE
 from rockframe.solve.driver import advance
-from rockframe.solve.equations import equations_of
+from rockframe.solve.equations import equations_of, runs_as_python
 from rockframe.solve.layout import Status
+from rockframe.solve.steps import steps_of
 from rockframe.solve.trajectory import Events, Trajectory, told_by
 from rockframe.solve.workspace import (
+    BESIDE,
+    CODES,
     EventTable,
     Output,
     Pieces,
     Progress,
+    StepTable,
     Tables,
+    has_no_room,
     make_workspace,
+    no_steps,
 )
 
 EVENT_ROOM = 256
+STEP_ROOM = 1024
+STEPS_PER_INTERVAL = 3.0
+"""Room for steps, more than most runs need: memory that is not written to costs nothing."""
 STILL_INTERVAL = 0.01
 """Interval into which time is cut where the ground has no samples [s]."""
 
@@ -40,6 +49,7 @@ def integrate(
     output_step: float | None,
     stop_at_overturning: bool = True,
     with_work: bool = False,
+    keep_steps: bool = False,
 ) -> Trajectory:
     """Integrate a model under a ground motion.
 
@@ -61,6 +71,8 @@ def integrate(
         Whether the run ends when the rotation reaches its limit.
     with_work : bool
         Whether dashpot and input work are stored at the output times.
+    keep_steps : bool
+        Whether both ends of all steps are kept.
 
     Returns
     -------
@@ -83,7 +95,12 @@ def integrate(
         counters[at.OUTPUTS] = 1
 
     progress = Progress(run.controls, clock, counters)
-    output = Output(out_state, out_mode, out_work)
+    steps = no_steps()
+    if keep_steps:
+        intervals = duration / run.controls[at.TIME_STEP]
+        room = STEP_ROOM + math.ceil(STEPS_PER_INTERVAL * intervals * max(run.substeps, 1))
+        row = BESIDE + 2 * width - model.system.coordinates()
+        steps = StepTable(np.empty(room * row), np.empty(room * CODES, dtype=np.int64))
     events = EventTable(
         np.empty((EVENT_ROOM, 1 + 2 * width + len(memory))),
         np.empty((EVENT_ROOM, 3), dtype=np.int64),
@@ -100,16 +117,16 @@ def integrate(
             memory,
             pieces,
             progress,
-            output,
+            Output(out_state, out_mode, out_work, steps),
             events,
             workspace,
         )
         if result != at.MORE_ROOM:
             break
-        events = EventTable(
-            np.concatenate([events.values, np.empty_like(events.values)]),
-            np.concatenate([events.codes, np.empty_like(events.codes)]),
-        )
+        if counters[at.EVENTS] >= len(events.codes):
+            events = EventTable(*_longer(*events))
+        if has_no_room(steps.codes, counters):
+            steps = StepTable(*_longer(*steps))
 
     say_slow(perf_counter() - began)
 
@@ -138,6 +155,18 @@ def integrate(
         substeps=run.substeps,
         ending=Ending(int(counters[at.MODE]), workspace.state.copy(), memory.copy()),
         start_energy=float(clock[at.START_ENERGY]),
+        as_python=runs_as_python(equations),
+        steps=steps_of(steps, int(counters[at.STEPS_KEPT]), width, exact=accuracy.rtol is not None)
+        if keep_steps
+        else None,
+    )
+
+
+def _longer(values: Matrix, codes: Integers) -> tuple[Matrix, Integers]:
+    """Give the arrays of a table with as much room again."""
+    return (
+        np.concatenate([values, np.empty_like(values)]),
+        np.concatenate([codes, np.empty_like(codes)]),
     )
 
 

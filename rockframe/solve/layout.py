@@ -23,9 +23,14 @@ class Status(IntEnum):
         """Whether the run went as far as it was asked to."""
         return self <= Status.TOPPLED
 
-    def verdict(self, overturned: bool) -> bool | None:
-        """Give whether the block overturned; None if the run was cut off before it could tell."""
-        return overturned if overturned or self.finished else None
+    @property
+    def overturned(self) -> bool | None:
+        """Whether the block overturned; None if the run was cut off before it could tell.
+
+        This is the verdict of a run, in the sense in which it was asked: one that ends at the
+        overturning angle has reached it; one that goes on beyond it has fallen flat.
+        """
+        return self is not Status.COMPLETED if self.finished else None
 
 
 # Results of the integrator: a Status, or one of these.
@@ -93,7 +98,8 @@ DEGREE_X: Final = 13
 DEGREE_Y: Final = 14
 STALE: Final = 15  # whether slope and guards at the state are to be evaluated anew
 LAST_INTERVAL: Final = 16  # at whose end the run pauses
-COUNTERS: Final = 17
+STEPS_KEPT: Final = 17
+COUNTERS: Final = 18
 
 CLOSE_EVENTS_LIMIT: Final = 1000
 """Events in a row, each within CHATTER_TIME of the one before, that end a run as chatter."""

@@ -14,7 +14,7 @@ from rockframe.solve.guards import guards_at, may_fall
 from rockframe.solve.peaks import rotation_in_step
 from rockframe.solve.schemes import FixedSteps, StepsByTolerance
 from rockframe.solve.step_control import next_step
-from rockframe.solve.workspace import TERMS, Span
+from rockframe.solve.workspace import TERMS, Span, has_no_room, keep_row
 
 Scheme: TypeAlias = FixedSteps | StepsByTolerance
 
@@ -22,7 +22,8 @@ Scheme: TypeAlias = FixedSteps | StepsByTolerance
 AT_END: Final = 0  # of the run
 JUMPED: Final = 1  # the ground, from one interval to the next
 GUARDED: Final = 2  # a step was made, and some guard asks for a closer look
-TO_BE_SEEN: Final = 3  # a step was made that holds an output time, or a reversal of the rotation
+# a step was made that holds an output time, or a reversal, or is the last that there is room for
+TO_BE_SEEN: Final = 3
 EXHAUSTED: Final = 4  # the limit of steps
 TOO_SMALL: Final = 5  # no step was small enough
 PAUSED: Final = 6  # the end of the interval at which it was asked to stop
@@ -60,7 +61,7 @@ def march(
     scheme: Scheme, system: System, mode: int, count: int, flies: int, trial: float,
     pieces_x: ReadOnlyMatrix, pieces_y: ReadOnlyMatrix, ends: Vector, stages: Vector, works: Vector,
     reference: Vector, limits: Vector, ground: Vector, controls: Vector, clock: Vector,
-    counters: Integers,
+    counters: Integers, kept: Vector, codes: Integers,
 ) -> int:  # fmt: skip
     """Make steps until something happens that the driver must see to.
 
@@ -88,6 +89,8 @@ def march(
         Coefficients of the ground motion in the interval.
     controls, clock, counters : ndarray
         Settings and progress, laid out in :mod:`rockframe.solve.layout`.
+    kept, codes : ndarray
+        Table of steps, see :class:`rockframe.solve.workspace.StepTable`.
 
     Returns
     -------
@@ -153,12 +156,18 @@ def march(
         rotation = rotation_in_step(system, limits, state, new)
         peaks = rotation.may_peak(h, clock[at.PEAK_LEFT], clock[at.PEAK_RIGHT])
         found = may_fall(system, h, before, after)
-        if found or peaks or begin + tau + h >= clock[at.NEXT_OUTPUT]:
+        seen = begin + tau + h >= clock[at.NEXT_OUTPUT] or has_no_room(codes, counters)
+        if found or peaks or seen:
             clock[at.STEP], clock[at.ASKED], clock[at.EXCESS] = h, asked, excess
             result = GUARDED if found else TO_BE_SEEN
             break
         h_next = scheme.step_after(h, asked, h_next, excess, shortest, controls)
         tau += h
+        if len(codes) > 0:
+            keep_row(
+                begin + tau, h, mode, now, width, slope_end - width - POWERS, new, last, counters,
+                kept, codes,
+            )  # fmt: skip
         clock[at.PEAK_LEFT] = max(clock[at.PEAK_LEFT], rotation.largest_left())
         clock[at.PEAK_RIGHT] = max(clock[at.PEAK_RIGHT], rotation.largest_right())
         if flies == 1:
@@ -182,12 +191,12 @@ def march_fixed(
     system: System, mode: int, count: int, flies: int, longest: float, trial: float,
     pieces_x: ReadOnlyMatrix, pieces_y: ReadOnlyMatrix, ends: Vector, stages: Vector, works: Vector,
     reference: Vector, limits: Vector, ground: Vector, controls: Vector, clock: Vector,
-    counters: Integers,
+    counters: Integers, kept: Vector, codes: Integers,
 ) -> int:  # fmt: skip
     """Make steps of fixed length, see :func:`march`."""
     return march(
         FixedSteps(longest), system, mode, count, flies, trial, pieces_x, pieces_y, ends, stages,
-        works, reference, limits, ground, controls, clock, counters,
+        works, reference, limits, ground, controls, clock, counters, kept, codes,
     )  # fmt: skip
 
 
@@ -196,10 +205,10 @@ def march_by_tolerance(
     system: System, mode: int, count: int, flies: int, longest: float, trial: float,
     pieces_x: ReadOnlyMatrix, pieces_y: ReadOnlyMatrix, ends: Vector, stages: Vector, works: Vector,
     reference: Vector, limits: Vector, ground: Vector, controls: Vector, clock: Vector,
-    counters: Integers,
+    counters: Integers, kept: Vector, codes: Integers,
 ) -> int:  # fmt: skip
     """Make steps of the Dormand-Prince pair, see :func:`march`."""
     return march(
         StepsByTolerance(longest), system, mode, count, flies, trial, pieces_x, pieces_y, ends,
-        stages, works, reference, limits, ground, controls, clock, counters,
+        stages, works, reference, limits, ground, controls, clock, counters, kept, codes,
     )  # fmt: skip

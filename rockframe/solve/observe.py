@@ -1,6 +1,6 @@
 """From states to the quantities a model can be observed by."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -8,6 +8,7 @@ import numpy as np
 from rockframe.compiled import (
     Bound,
     Codes,
+    IntegerMatrix,
     Integers,
     Matrix,
     Vector,
@@ -16,15 +17,18 @@ from rockframe.compiled import (
     kernel,
     numbers_in,
 )
-from rockframe.dynamics.protocol import ContactModel, System
-from rockframe.solve.equations import energies, observed
+from rockframe.dynamics.protocol import BODY_FORCES, POWERS, Column, ContactModel, System
+from rockframe.solve.equations import energies, forces, observed, slope
+from rockframe.solve.steps import Steps
 from rockframe.solve.trajectory import Trajectory
+from rockframe.solve.workspace import BESIDE
 
 
 class Room(NamedTuple):
     """Room for one row."""
 
     state: Vector
+    slope: Vector
     memory: Vector
     columns: Vector
 
@@ -49,25 +53,59 @@ def _of(system: System, function: Callable[..., None]) -> OfSystem:
 
 @entry
 def observe_rows(
+    sloping: OfSystem,
     observing: OfSystem,
     mode: Integers,
     state: Matrix,
     memory: Matrix,
     memory_row: Integers,
     ground: Matrix,
+    wanted: Integers,
     room: Room,
     out: Matrix,
 ) -> None:
-    """Fill a row of columns for each row of states."""
+    """Fill the wanted columns, one below the other, for each row of states."""
     for i in range(len(mode)):
         copy_row(state, i, room.state)
         copy_row(memory, memory_row[i], room.memory)
+        x, y = ground[i, 0], ground[i, 1]
+        sloping.function.call(mode[i], room.state, x, y, room.slope, sloping.numbers)
         observing.function.call(
-            mode[i], room.state, ground[i, 0], ground[i, 1], room.memory, room.columns,
-            observing.numbers,
-        )  # fmt: skip
-        for j in range(len(room.columns)):
-            out[i, j] = room.columns[j]
+            mode[i], room.state, room.slope, x, y, room.memory, room.columns, observing.numbers
+        )
+        for j in range(len(wanted)):
+            out[j, i] = room.columns[wanted[j]]
+
+
+@entry
+def observe_kept(
+    sloping: OfSystem,
+    observing: OfSystem,
+    exact: int,
+    values: Matrix,
+    codes: IntegerMatrix,
+    memory: Matrix,
+    wanted: Integers,
+    room: Room,
+    out: Matrix,
+) -> None:
+    """Do the same for each row of steps, by the slopes that stand there if they are exact."""
+    width, slopes = len(room.state), values.shape[1] - BESIDE - len(room.state)
+    for i in range(len(codes)):
+        for j in range(width):
+            room.state[j] = values[i, BESIDE + j]
+        mode, x, y = codes[i, 0], values[i, 2], values[i, 3]
+        if exact:
+            for j in range(slopes):
+                room.slope[j] = values[i, BESIDE + width + j]
+        else:
+            sloping.function.call(mode, room.state, x, y, room.slope, sloping.numbers)
+        copy_row(memory, codes[i, 1], room.memory)
+        observing.function.call(
+            mode, room.state, room.slope, x, y, room.memory, room.columns, observing.numbers
+        )
+        for j in range(len(wanted)):
+            out[j, i] = room.columns[wanted[j]]
 
 
 @entry
@@ -127,23 +165,81 @@ def observe_states(
     dict of str to ndarray
         By the names in ``model.columns``.
     """
-    out = np.empty((len(mode), len(model.columns)))
-    sizes = state.shape[1], memory.shape[1], out.shape[1]
-    room = Room(*(np.zeros(size) for size in sizes))
+    wanted = np.arange(len(model.columns))
+    out = np.empty((len(wanted), len(mode)))
     observe_rows(
+        _of(model.system, slope),
         _of(model.system, observed),
         mode.astype(np.int64),
         np.ascontiguousarray(state),
         memory,
         memory_row.astype(np.int64),
         ground,
-        room,
+        wanted,
+        _room(model, memory),
         out,
     )
-    return {
-        column.name: out[:, i] * (model.mass * column.mass_ratio if column.per_mass else 1.0)
-        for i, column in enumerate(model.columns)
-    }
+    return _named(model, model.columns, out)
+
+
+def observe_steps(
+    model: ContactModel, steps: Steps, memory: Matrix, names: tuple[str, ...] | None
+) -> dict[str, Vector]:
+    """Give columns at the ends and starts of steps.
+
+    Parameters
+    ----------
+    model : ContactModel
+        The equations.
+    steps : Steps
+        The steps.
+    memory : ndarray, shape (memories, memory)
+        Memories of the system.
+    names : tuple of str, or None
+        Of the columns asked for, of those that there are; None asks for all. `BODY_FORCES` cost
+        least.
+
+    Returns
+    -------
+    dict of str to ndarray, shape (rows,)
+        By the names in ``model.columns``.
+    """
+    columns, function = model.columns, observed
+    if names == BODY_FORCES:
+        columns = tuple(one for one in columns if one.name in BODY_FORCES)
+        function = forces
+    asked = [i for i, one in enumerate(columns) if names is None or one.name in names]
+    wanted = np.array(asked, dtype=np.int64)
+    out = np.empty((len(wanted), len(steps.time)))
+    observe_kept(
+        _of(model.system, slope),
+        _of(model.system, function),
+        int(steps.exact),
+        steps.values,
+        steps.codes,
+        memory,
+        wanted,
+        _room(model, memory),
+        out,
+    )
+    return _named(model, [columns[i] for i in asked], out)
+
+
+def _room(model: ContactModel, memory: Matrix) -> Room:
+    size, variables = model.system.coordinates(), model.system.variables()
+    slopes = size + variables
+    sizes = size + slopes, slopes + POWERS, memory.shape[1], len(model.columns)
+    return Room(*(np.zeros(size) for size in sizes))
+
+
+def _named(model: ContactModel, columns: Sequence[Column], out: Matrix) -> dict[str, Vector]:
+    """Give columns by their names, in the units of the schema."""
+    found: dict[str, Vector] = {}
+    for column, values in zip(columns, out, strict=True):
+        if column.per_mass:
+            values *= model.mass * column.mass_ratio
+        found[column.name] = values
+    return found
 
 
 def energies_of(model: ContactModel, trajectory: Trajectory) -> Matrix:

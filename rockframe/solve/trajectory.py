@@ -8,6 +8,7 @@ from rockframe.compiled import Codes, Integers, Matrix, Vector
 from rockframe.dynamics.protocol import Ending
 from rockframe.solve import layout as at
 from rockframe.solve.layout import Status
+from rockframe.solve.steps import Steps
 
 
 @dataclass(frozen=True)
@@ -82,9 +83,28 @@ class Summary:
         return max(self.peak_left, self.peak_right)
 
     @property
+    def passed(self) -> bool:
+        """Whether the rotation reached the overturning angle."""
+        return not math.isnan(self.overturning_time)
+
+    @property
     def overturned(self) -> bool | None:
-        """Whether the block overturned; None where the run was cut off before it could tell."""
-        return self.status.verdict(not math.isnan(self.overturning_time))
+        """The verdict: whether the block overturned, in the sense in which the run was asked."""
+        return self.status.overturned
+
+    @property
+    def verdict_time(self) -> float:
+        """When it overturned in that sense; NaN if it did not [s]."""
+        if self.status is Status.TOPPLED:
+            return self.end_time
+        return self.overturning_time if self.overturned else math.nan
+
+    @property
+    def verdict_direction(self) -> int:
+        """Sign of the rotation at that time; 0 if it did not overturn."""
+        if self.status is Status.TOPPLED:
+            return 1 if self.peak_right > self.peak_left else -1
+        return self.overturning_direction if self.overturned else 0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -109,6 +129,10 @@ class Trajectory(Summary):
         What happened when.
     start_energy : float
         Kinetic, gravity and elastic energy at the start, from that at rest.
+    as_python : bool
+        Whether it was made in plain Python, not by machine code.
+    steps : Steps or None
+        Both ends of all steps, if they are kept.
     """
 
     time: Vector
@@ -119,6 +143,8 @@ class Trajectory(Summary):
     start_memory: Vector
     events: Events
     start_energy: float
+    as_python: bool
+    steps: Steps | None
 
 
 def told_by(clock: Vector, counters: Integers) -> dict[str, Any]:

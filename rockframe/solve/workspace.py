@@ -13,7 +13,8 @@ from rockframe.compiled import (
     Vector,
     inlined,
 )
-from rockframe.dynamics.protocol import POWERS
+from rockframe.dynamics.protocol import POWERS, Ground
+from rockframe.solve import layout as at
 from rockframe.solve.dormand_prince_tableau import STAGES
 
 if TYPE_CHECKING:
@@ -21,6 +22,11 @@ if TYPE_CHECKING:
 
 TERMS: Final = 6
 """Most coefficients per direction and interval; a record needs two, an analytic pulse six."""
+
+BESIDE: Final = 4
+"""Numbers of a row of steps before its state."""
+CODES: Final = 2
+"""Whole numbers of such a row."""
 
 ERRORS: Final = 3
 """Place of the errors of the state behind the works of a step."""
@@ -50,12 +56,26 @@ class Progress(NamedTuple):
     counters: Integers
 
 
+class StepTable(NamedTuple):
+    """Ends of steps, each the start of the step in the next row; or no rows.
+
+    Time, length of the step, both directions of the ground's acceleration, state, and slope
+    without powers; mode and number of events before. A start that is not the end of the row
+    before it has a row of its own, of length 0. Row follows row: the functions that are compiled
+    for a system take vectors.
+    """
+
+    values: Vector
+    codes: Integers
+
+
 class Output(NamedTuple):
     """Samples at the output times; `work` may have no rows."""
 
     state: Matrix
     mode: Codes
     work: Matrix
+    steps: StepTable
 
 
 class EventTable(NamedTuple):
@@ -88,6 +108,35 @@ class Workspace(NamedTuple):
     powers: Vector  # another slope in between
     ground: Vector  # coefficients of the ground motion in this interval
     energy_room: Vector
+
+
+def no_steps() -> StepTable:
+    """Give the table of a run whose steps are not kept."""
+    return StepTable(np.empty(0), np.empty(0, dtype=np.int64))
+
+
+@inlined
+def keep_row(
+    time: float, length: float, mode: int, ground: Ground, width: int, slopes: int, state: Vector,
+    slope: Vector, counters: Integers, values: Vector, codes: Integers,
+) -> None:  # fmt: skip
+    """Fill a row of the table of steps with `width` and `slopes` numbers of state and slope."""
+    row = counters[at.STEPS_KEPT]
+    begin = row * (BESIDE + width + slopes)
+    values[begin], values[begin + 1] = time, length
+    values[begin + 2], values[begin + 3] = ground.x, ground.y
+    for i in range(width):
+        values[begin + BESIDE + i] = state[i]
+    for i in range(slopes):
+        values[begin + BESIDE + width + i] = slope[i]
+    codes[CODES * row], codes[CODES * row + 1] = mode, counters[at.EVENTS]
+    counters[at.STEPS_KEPT] = row + 1
+
+
+@inlined
+def has_no_room(codes: Integers, counters: Integers) -> bool:
+    """Whether a table of steps that are kept has no room for a start and the step from it."""
+    return CODES * (counters[at.STEPS_KEPT] + 2) > len(codes) > 0
 
 
 @inlined

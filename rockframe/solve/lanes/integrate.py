@@ -7,7 +7,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from rockframe.compiled import LANES, Matrix, bound_in_lanes, numbers_in
+from rockframe.compiled import LANES, Matrix, bound_in_lanes, compiled_within, numbers_in
 from rockframe.compiled.bound import structure_of
 from rockframe.dynamics.protocol import ContactModel, Ending
 from rockframe.signals import Motion
@@ -20,7 +20,14 @@ from rockframe.solve.lanes.batch import Batch, Shape, advance_batch
 from rockframe.solve.lanes.fields import Places, places_of
 from rockframe.solve.lanes.fixed_steps import step_lanes
 from rockframe.solve.lanes.steps_by_tolerance import step_lanes_by_tolerance
-from rockframe.solve.workspace import EventTable, Output, Pieces, Workspace, make_workspace
+from rockframe.solve.workspace import (
+    EventTable,
+    Output,
+    Pieces,
+    Workspace,
+    make_workspace,
+    no_steps,
+)
 
 ROOM: Final = 4_000_000
 """Numbers of polynomials that a batch may hold: what stays in the caches near a processor."""
@@ -70,6 +77,25 @@ def kind_of(model: ContactModel) -> Any:
     return structure_of(model.system), len(model.memory), len(model.active)
 
 
+def lanes_compiled(run: LaneRun, patience: float) -> bool:
+    """Tell whether runs of a kind can be made in lanes.
+
+    Parameters
+    ----------
+    run : LaneRun
+        One of them.
+    patience : float
+        Longest time in which what lanes need may be compiled now [s].
+
+    Returns
+    -------
+    bool
+        False too where it cannot be compiled: there are no lanes in plain Python.
+    """
+    rows, one = _Rows([run]), np.zeros(1, dtype=np.int64)
+    return compiled_within(patience, advance_batch, rows.batch([None], one, one), rows.steps)
+
+
 def integrate_lanes(
     runs: Sequence[LaneRun],
     motions: Sequence[Motion | None],
@@ -81,7 +107,7 @@ def integrate_lanes(
     Parameters
     ----------
     runs : sequence of LaneRun
-        Runs without their motions.
+        Runs without their motions, of a kind for which :func:`lanes_compiled` has said yes.
     motions : sequence of Motion or None
         Motions.
     run_of, motion_of : ndarray of int64, shape (cases,)
@@ -99,7 +125,9 @@ def integrate_lanes(
     endings: list[Ending] = []
     for some in _batches(motions, motion_of):
         used, place = np.unique(motion_of[some], return_inverse=True)
-        rows = made.run([motions[k] for k in used.tolist()], run_of[some], place)
+        batch = made.batch([motions[k] for k in used.tolist()], run_of[some], place)
+        advance_batch(batch, made.steps)
+        rows = batch.rows.reshape(len(place), -1)
         wholes = rows.view(np.int64)
         clock[some] = rows[:, fields.CLOCK : fields.CLOCK + at.CLOCK]
         counters[some] = wholes[:, fields.COUNTERS : fields.COUNTERS + at.COUNTERS]
@@ -132,7 +160,7 @@ class _Rows:
         self._places = there = places_of(model.system)
         fixed = first.substeps > 0
         self._equations = equations_of(model.system, fixed_steps=fixed)
-        self._steps = bound_in_lanes(step_lanes if fixed else step_lanes_by_tolerance, model.system)
+        self.steps = bound_in_lanes(step_lanes if fixed else step_lanes_by_tolerance, model.system)
         self._count = len(self._equations.numbers)
         self._memory = len(first.memory)
         width = there.numbers + self._count + self._memory + len(first.tolerance)
@@ -165,8 +193,8 @@ class _Rows:
         modes = rows.view(np.int64)[:, fields.COUNTERS + at.MODE].tolist()
         return [Ending(*one) for one in zip(modes, states, memories, strict=True)]
 
-    def run(self, motions: Sequence[Motion | None], run_of: Whole, motion_of: Whole) -> Matrix:
-        """Give the rows of cases after their runs."""
+    def batch(self, motions: Sequence[Motion | None], run_of: Whole, motion_of: Whole) -> Batch:
+        """Give the rows of cases, and all that they need to run."""
         rows = self._rows[run_of]
         own = rows.view(np.int64)[:, fields.OWN_WHOLE : fields.OWN_WHOLE + fields.WHOLES]
         both = [pieces_of(motion) for motion in motions]
@@ -182,13 +210,11 @@ class _Rows:
             numbers=there.numbers, number_count=self._count, memory=self._memory,
             mode_count=len(model.active),
         )  # fmt: skip
-        batch = Batch(
+        return Batch(
             shape, rows.reshape(-1), np.zeros((there.numbers + self._count) * LANES),
             np.zeros(LANES + 1, dtype=np.int64), Pieces(x, y), model.active, model.contact,
             self._longest, self._equations, *_scratch(self._equations, there, self._memory),
         )  # fmt: skip
-        advance_batch(batch, self._steps)
-        return rows
 
 
 def _scratch(
@@ -196,7 +222,7 @@ def _scratch(
 ) -> tuple[Output, EventTable, Workspace]:
     """Give room for a single run: no outputs, events that are not kept, a step."""
     width = there.first - there.state
-    output = Output(np.empty((0, width)), np.empty(0, dtype=np.int32), np.empty((0, 2)))
+    output = Output(np.empty((0, width)), np.empty(0, dtype=np.int32), np.empty((0, 2)), no_steps())
     events = EventTable(
         np.empty((EVENT_ROOM, 1 + 2 * width + memory)), np.empty((EVENT_ROOM, 3), dtype=np.int64)
     )

@@ -12,7 +12,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rockframe.compiled import COMPILED, Vector, entry, sources, store
+from rockframe.compiled import (
+    COMPILED,
+    Vector,
+    compiled_within,
+    compiling_for,
+    entry,
+    sources,
+    store,
+)
 
 pytestmark = [
     pytest.mark.unit,
@@ -257,10 +265,30 @@ def add_three(values: Vector) -> None:
     values[0] += 3.0
 
 
-def test_where_nothing_can_be_written_a_warning_is_all(tmp_path, monkeypatch, caplog):
-    from rockframe.compiled import jobs
+@entry
+def add_four(values: Vector) -> None:
+    values[0] += 4.0
 
-    monkeypatch.setattr(jobs, "_said", set())
+
+@entry
+def add_five(values: Vector) -> None:
+    values[0] += 5.0
+
+
+@entry
+def add_six(values: Vector) -> None:
+    values[0] += 6.0
+
+
+@entry
+def add_seven(values: Vector) -> None:
+    values[0] += 7.0
+
+
+def test_where_nothing_can_be_written_a_warning_is_all(tmp_path, monkeypatch, caplog):
+    from rockframe.compiled import together
+
+    monkeypatch.setattr(together, "_announced", set())
     blocked = tmp_path / "a file, no folder"
     blocked.write_text("")
     monkeypatch.setenv("ROCKFRAME_CACHE_DIR", str(blocked))
@@ -270,6 +298,46 @@ def test_where_nothing_can_be_written_a_warning_is_all(tmp_path, monkeypatch, ca
     assert values.tolist() == [5.0]
     assert len(caplog.messages) == 1
     assert None not in (*add_two._routines.values(), *add_three._routines.values())
+
+
+def test_each_long_compilation_is_told_with_what_it_is_for(monkeypatch, caplog):
+    from rockframe.compiled import together
+    from rockframe.compiled.jobs import Job
+
+    def told_of(words, called, seconds):
+        monkeypatch.setattr(Job, "seconds", seconds)
+        with compiling_for(words):
+            called(np.zeros(1))
+        said = [text for text in caplog.messages if "compiles what" in text]
+        caplog.clear()
+        return said
+
+    monkeypatch.setattr(together, "_announced", set())
+    text = "rockframe compiles what a run (pads) needs for this machine: about 1 s where nothing"
+    assert told_of("a run (pads)", add_four, 0.1)[0].startswith(text)
+    assert told_of("a run (pads)", add_four, 30.0) == []
+    assert told_of("a run (pads)", add_five, 0.1) == []  # nobody notices
+    [text] = told_of("lanes (soil)", add_six, 30.0)
+    assert text.startswith(
+        "rockframe compiles what lanes (soil) needs for this machine: about 30 s"
+    )
+
+
+def test_what_takes_longer_than_it_is_worth_is_not_compiled(folder, monkeypatch):
+    from rockframe.compiled.jobs import Job
+
+    monkeypatch.setattr(Job, "seconds", 10.0)
+    values = np.zeros(1)
+    assert not compiled_within(9.0, add_seven, values)
+    assert not add_seven._routines
+    assert not list(folder.rglob("*.nbc"))
+    assert compiled_within(11.0, add_seven, values)
+    assert list(folder.rglob("*.nbc"))
+    assert compiled_within(0.0, add_seven, values)  # it is there
+    add_seven._routines.clear()
+    assert compiled_within(0.0, add_seven, values)  # and kept for others
+    add_seven(values)
+    assert values.tolist() == [7.0]
 
 
 def test_the_next_folder_serves_where_the_first_cannot(tmp_path, monkeypatch):

@@ -1,0 +1,90 @@
+"""Peaks of forces do not depend on where samples are."""
+
+import numpy as np
+import pytest
+
+import rockframe as rf
+
+BLOCK = rf.Block(width="1 m", height="4 m", mass="10 t")
+PADS = rf.TwoSpringSupport(frequency_ratio=40, damping_ratio=0.1)
+SOIL = rf.WinklerSoil(stiffness="30 MPa", damping_ratio=0.2)
+CAP = rf.CushionCap(height="0.6 m", mass="6 t", width="1.4 m")
+SCENES = {
+    "rigid ground": rf.System(BLOCK),
+    "pads": rf.System(BLOCK, PADS),
+    "bed": rf.System(BLOCK, SOIL),
+    "stack": rf.System(BLOCK, PADS, CAP, SOIL),
+    "cascade": rf.System(BLOCK, PADS, CAP, SOIL, coupling="cascade"),
+    "inclined": rf.System(BLOCK, PADS, inclination="2 deg"),
+}
+PULSE = rf.GroundMotion.sine_pulse("4 m/s^2", "1.5 Hz").resampled("20 ms")
+TOP = {"top": ("0.5 m", "4 m"), "base": ("0 m", "0 m")}
+PEAKS = ("peak_base_shear", "peak_friction_demand", "peak_point_horizontal_acceleration",
+         "peak_point_vertical_acceleration", "peak_point_vertical_displacement")  # fmt: skip
+STEPS = ("1 ms", "5 ms", "20 ms")
+
+
+@pytest.fixture(scope="module", params=SCENES)
+def scene(request):
+    return SCENES[request.param]
+
+
+@pytest.mark.parametrize("accuracy", ["standard", "fast"])
+def test_peaks_do_not_depend_on_the_output_step(scene, accuracy):
+    runs = [
+        scene.simulate(
+            PULSE, duration="1.5 s", output_step=step, points=TOP, accuracy=accuracy,
+            overturning="continue",
+        )
+        for step in STEPS
+    ]  # fmt: skip
+    for name in PEAKS:
+        first, *others = (run[name].values for run in runs)
+        for other in others:
+            np.testing.assert_array_equal(other, first)
+
+
+@pytest.mark.parametrize("accuracy", ["standard", "fast"])
+def test_peaks_are_those_of_very_fine_samples(scene, accuracy):
+    run = scene.simulate(
+        PULSE, duration="1.5 s", output_step="0.05 ms", points=TOP, accuracy=accuracy,
+        outputs=("friction_demand",),
+    )  # fmt: skip
+    for name in PEAKS:
+        history = run[{"peak_friction_demand": "friction_demand"}.get(name, name[5:])]
+        seen, found = np.abs(history).max("time").values, run[name].values
+        finite = np.isfinite(found)
+        assert (found >= (1.0 - 1e-5) * seen).all(), name
+        if name != "peak_friction_demand" or (seen < 2.0).all():  # near a pole samples see little
+            assert (found <= (1.0 + 1e-3) * seen)[finite].all(), (name, found, seen)
+
+
+def test_peaks_of_sweeps_are_those_of_runs_whatever_the_output_step():
+    runs = [
+        rf.sweep(
+            SCENES["pads"], PULSE, scale=[0.6, 1.0], points=TOP, duration="1.5 s",
+            output_step=step, outputs=outputs,
+        ).squeeze("motion")
+        for step in STEPS for outputs in (None, ("base_shear",))
+    ]  # fmt: skip
+    for scale in (0.6, 1.0):
+        alone = SCENES["pads"].simulate(PULSE.scaled(scale), duration="1.5 s", points=TOP)
+        for name in PEAKS:
+            for run in runs:
+                np.testing.assert_array_equal(run[name].sel(scale=scale), alone[name])
+
+
+def test_a_jump_of_the_ground_is_seen_from_both_sides():
+    """A step of the ground that no sample shows: the force is largest just before it ends."""
+    hold = rf.GroundMotion.from_arrays(([0.0, 1.0, 1.0, 1.0], "m/s^2"), "50 ms")
+    run = rf.System(BLOCK).simulate(hold, duration="1 s", output_step="0.4 s")
+    assert run.peak_base_shear == pytest.approx(1e4, rel=1e-12)
+    assert run.peak_friction_demand == pytest.approx(1.0 / 9.80665, rel=1e-12)
+
+
+def test_the_table_of_steps_grows(monkeypatch):
+    whole = SCENES["pads"].simulate(PULSE, duration="1.5 s", points=TOP)
+    monkeypatch.setattr("rockframe.solve.integrate.STEP_ROOM", 1)
+    monkeypatch.setattr("rockframe.solve.integrate.STEPS_PER_INTERVAL", 0.0)
+    grown = SCENES["pads"].simulate(PULSE, duration="1.5 s", points=TOP)
+    assert grown.drop_attrs().identical(whole.drop_attrs())

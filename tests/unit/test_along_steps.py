@@ -1,0 +1,81 @@
+"""Peaks and durations from both ends of steps, and from their insides."""
+
+import math
+
+import numpy as np
+import pytest
+
+from rockframe.results.along_steps import FRACTIONS, AlongSteps
+from rockframe.solve.steps import Steps
+
+
+def along(ends, starts, inside=None, length=0.5, events=None):
+    """Make steps of one length; `starts` tells those that begin anew, by their number."""
+    rows, shown = [], []
+    for step, end in enumerate(ends):
+        if step in starts:
+            rows.append([length * step, 0.0])
+            shown.append(starts[step])
+        rows.append([length * (step + 1), length])
+        shown.append(end)
+    codes = np.zeros((len(rows), 2), dtype=np.int64)
+    steps = Steps(np.array(rows), codes, width=0, exact=True)
+    shown = {"demand": np.array(shown)}
+
+    def straight(which):
+        start, end = shown["demand"][which - 1, None], shown["demand"][which, None]
+        return {"demand": (start * (1.0 - FRACTIONS) + end * FRACTIONS).ravel()}
+
+    return AlongSteps(steps, shown, straight if inside is None else inside)
+
+
+def demand(values):
+    return values["demand"][None]
+
+
+def test_what_is_largest_just_after_an_event_is_found():
+    """The friction demand jumps at an event: the samples before it and long after see nothing."""
+    found = along([1.0, 1.0, 1.0, 1.0], {0: 0.5, 2: 7.0})
+    (peak,), (time,) = found.largest(demand)
+    assert (peak, time) == (7.0, 1.0)
+    first, lasted = found.above(lambda values: values["demand"], 4.0)
+    assert first == 1.0
+    assert lasted == pytest.approx(0.5 * (7.0 - 4.0) / (7.0 - 1.0))
+
+
+def test_what_is_largest_just_before_an_event_is_found():
+    found = along([1.0, 7.0, 1.0], {0: 0.5, 2: 1.0})
+    (peak,), (time,) = found.largest(demand)
+    assert (peak, time) == (7.0, 1.0)
+
+
+def test_a_peak_inside_a_step_is_that_of_a_parabola():
+    def inside(which):
+        place = 0.5 * (which[:, None] - 1 + FRACTIONS)
+        return {"demand": (3.0 - (place - 0.77) ** 2).ravel()}
+
+    ends = [3.0 - (t - 0.77) ** 2 for t in (0.5, 1.0, 1.5)]
+    (peak,), (time,) = along(ends, {0: 3.0 - 0.77**2}, inside).largest(demand)
+    assert peak == pytest.approx(3.0, rel=1e-14)
+    assert time == pytest.approx(0.77, rel=1e-12)
+
+
+def test_from_without_bound_it_falls_as_fast_as_its_reciprocal():
+    found = along([2.0, 0.0], {0: math.inf})
+    (peak,), (time,) = found.largest(demand)
+    assert (peak, time) == (math.inf, 0.0)
+    first, lasted = found.above(lambda values: values["demand"], 4.0)
+    assert (first, lasted) == (0.0, 0.25)  # 1/q from 0 to 1/2 passes 1/4 in the middle
+
+
+def test_never_above_is_said():
+    first, lasted = along([1.0, 2.0], {0: 0.0}).above(lambda values: values["demand"], 2.0)
+    assert math.isnan(first)
+    assert lasted == 0.0
+
+
+def test_of_many_that_are_as_large_the_first_is_told():
+    found = along([1.0, 1.0, *[math.inf, 1.0] * 400], {0: 1.0})
+    (peak,), (time,) = found.largest(demand)
+    assert peak == math.inf
+    assert 0.5 < time <= 1.5
