@@ -81,7 +81,7 @@ class Block(Component):
     """
 
     si: BlockSI
-    noun: ClassVar[str] = "superstructure"
+    noun: ClassVar[str] = "body"
     alternatives: ClassVar[tuple[OneOf, ...]] = (OneOf("shape_factor", "inertia", required=False),)
 
     width = Parameter(LENGTH, POSITIVE, doc="Base width B.")

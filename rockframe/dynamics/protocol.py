@@ -159,6 +159,8 @@ BODY_COLUMNS: Final = (
 Velocities and accelerations are those of the centre of mass, relative to the ground; the
 reactions are those of the body's own base, along and normal to what that stands on.
 """
+BODY_FORCES: Final = ("base_shear", "horizontal_reaction", "vertical_reaction")
+"""Those of them that friction depends on."""
 
 
 @dataclass(frozen=True)

@@ -12,14 +12,17 @@ import numpy as np
 
 from rockframe.compiled import Vector
 from rockframe.dynamics.alone_model import eccentricity_of, starting_state
+from rockframe.dynamics.body import BodyState
 from rockframe.dynamics.coupled.model import StackRest, state_at
 from rockframe.dynamics.coupled.system import Coupled
-from rockframe.dynamics.on_base import OnBase
+from rockframe.dynamics.on_base import Mode, OnBase
 from rockframe.dynamics.protocol import Ground, Start
 from rockframe.dynamics.stacked import COORDINATES
 
 STEPS: Final = 200
 """Steps in which the rotation at rest is searched, up to that at which the body falls."""
+CLOSE: Final = 1e-10
+"""Share of the rotation of falling to which it is found where another point comes to be held."""
 SMALL: Final = 1e-6
 """Share of the angular acceleration of an upright body below which it is at rest."""
 ROUNDING: Final = 1e-10
@@ -65,19 +68,43 @@ def rest_rotation(part: OnBase, along_gravity: float = 0.0) -> float:
     edge += tilt if shape.small else math.atan(tilt)
     if edge * moment <= 0.0:
         return math.nan
-    ground = still(along_gravity)
+    ground, variables = still(along_gravity), part.base.variables()
+
+    def placed(rotation: float) -> tuple[BodyState, Mode]:
+        return starting_state(part, Start(rotation), part.base.read(np.zeros(variables), 0))
 
     def falling(rotation: float) -> float:
         """Give the angular acceleration to the side to which the weight turns the body."""
-        own = part.base.read(np.zeros(part.base.variables()), 0)
-        body, mode = starting_state(part, Start(rotation), own)
+        body, mode = placed(rotation)
+        own = part.base.read(np.zeros(variables), 0)
         return math.copysign(1.0, moment) * part.rates_in(mode, body, own, ground).rotation
 
-    held = (share for share in np.linspace(0.0, edge, STEPS + 1)[1:-1] if falling(share) < 0.0)
-    first = next(held, None)
-    if first is None:
+    def last_held_alike(low: float, high: float) -> float:
+        """Give the last rotation at which the same point is held as at the lower one."""
+        held = placed(low)[1].pivot
+        while abs(high - low) > CLOSE * abs(edge):
+            middle = 0.5 * (low + high)
+            low, high = (middle, high) if placed(middle)[1].pivot == held else (low, middle)
+        return low
+
+    def beyond_rest() -> tuple[float, float] | None:
+        """Give the first rotations between which the body stops falling."""
+        low, held = 0.0, placed(0.0)[1].pivot
+        for share in np.linspace(0.0, edge, STEPS + 1)[1:-1].tolist():
+            before, held = held, placed(share)[1].pivot
+            if held != before:
+                last = last_held_alike(low, share)
+                if last != low and falling(last) < 0.0:
+                    return low, last
+            if falling(share) < 0.0:
+                return low, share
+            low = share
+        return None
+
+    bracket = beyond_rest()
+    if bracket is None:
         return math.nan
-    root = root_scalar(falling, bracket=(0.0, float(first)), xtol=1e-300, rtol=1e-15).root
+    root = root_scalar(falling, bracket=bracket, xtol=1e-300, rtol=1e-15).root
     # where an end leaves an inclined base another point is held, and the moment of the thrust jumps
     jumps = along_gravity != 0.0 and abs(falling(root)) > SMALL * abs(falling(0.0))
     return math.nan if jumps else root

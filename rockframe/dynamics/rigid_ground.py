@@ -154,8 +154,10 @@ class RigidGround(NamedTuple):
         state[0] = 0.0
         restoring = -self.side(new) * self.angular_acceleration(new, 0.0, ground)
         rebound = after * after / (2.0 * restoring) if restoring > 0.0 else math.inf
+        # a ground that tips the block back over the corner that it has left allows no rest
+        held = self.side(mode) * self.angular_acceleration(mode, 0.0, ground) <= 0.0
         memory[LAST_EVENT] = IMPACT
-        if rebound < REST_AMPLITUDE * self.corner(new).angle:
+        if held and rebound < REST_AMPLITUDE * self.corner(new).angle:
             memory[LAST_EVENT] = REST
             after, new = 0.0, RESTING
         old, now = self.corner(mode).inertia, self.corner(new).inertia

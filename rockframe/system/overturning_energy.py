@@ -4,6 +4,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from rockframe.errors import SolverError
+
 if TYPE_CHECKING:
     from rockframe.system.setting import Setting
 
@@ -29,7 +31,7 @@ def stored_energy(setting: "Setting", rotation: float) -> float:
     -------
     float
     """
-    moments = ((setting.statics(at * rotation).restoring_moment, of) for at, of in _PLACES)
+    moments = ((_restoring_moment(setting, at * rotation), of) for at, of in _PLACES)
     return rotation * sum(of * moment for moment, of in moments)
 
 
@@ -52,5 +54,13 @@ def least_overturning_energy(setting: "Setting") -> float:
 
 
 def _work_against(setting: "Setting", end: float) -> float:
-    moments = ((end * setting.statics(at * end).restoring_moment, of) for at, of in _PLACES)
+    moments = ((end * _restoring_moment(setting, at * end), of) for at, of in _PLACES)
     return sum(of * max(moment, 0.0) for moment, of in moments)
+
+
+def _restoring_moment(setting: "Setting", rotation: float) -> float:
+    """Give what holds a body back at a rotation: nothing where its base gives way altogether."""
+    try:
+        return setting.statics(rotation).restoring_moment
+    except SolverError:
+        return 0.0

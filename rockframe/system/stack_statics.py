@@ -16,7 +16,10 @@ if TYPE_CHECKING:
     from rockframe.system.stacked import StackedSetting
 
 STEPS: Final = 200
-"""Steps in which the cap's tilt under a held block is searched."""
+"""Steps in which the cap's tilt is searched up to the rotation of a held block."""
+BEYOND: Final = 2
+"""How far it is searched, by that rotation: a cap on soft soil leans further than a block that
+has to be pulled back."""
 LEAN: Final = 4.0
 """How far it is searched where the cap leans at rest, by that tilt."""
 
@@ -54,14 +57,14 @@ def _tilt_under(stack: "StackedSetting", rotation: float) -> float:
     if rotation == 0.0 and not stack.leans:
         return 0.0
     # a far held block leaves the cap a second, larger tilt, which is not stable
-    steps = np.linspace(0.0, rotation, STEPS + 1).tolist()
+    reach, count = BEYOND * rotation, BEYOND * STEPS
+    tilts = np.linspace(0.0, reach, count + 1)
     if stack.leans:  # even under an upright block
-        reach = max(abs(rotation), LEAN * abs(stack.cap_lean))
-        side = math.copysign(1.0, rotation)
-        around = np.linspace(-side * reach, side * reach, 2 * STEPS + 1).tolist()
-        steps = sorted(around, key=lambda tilt: side * tilt)
-    for low, high in pairwise(steps):
-        if lack(low) <= 0.0 < lack(high):
+        reach = math.copysign(max(abs(reach), LEAN * abs(stack.cap_lean)), rotation)
+        tilts = np.linspace(-reach, reach, 2 * count + 1)
+    lacks = ((float(tilt), lack(float(tilt))) for tilt in tilts)
+    for (low, before), (high, after) in pairwise(lacks):
+        if before <= 0.0 < after:
             return root_scalar(lack, bracket=(low, high), xtol=1e-15, rtol=1e-14).root
     msg = (
         f"no equilibrium of cap and soil was found with the block held at {rotation:.6g} rad: "
