@@ -1,4 +1,4 @@
-"""Arguments without a unit: one of a few words, a whole number, or a dataset."""
+"""Arguments without a unit: one of a few words, a text, a whole number, or a dataset."""
 
 from collections.abc import Callable, Mapping
 from enum import StrEnum
@@ -53,6 +53,35 @@ def hints_of(function: Callable[..., Any]) -> Mapping[str, str]:
     return getattr(function, "hints", {})
 
 
+def by_words(given: Mapping[Any, Any], *, owner: str) -> dict[str, Any]:
+    """Read a mapping whose keys are labels, also numbers, as a mapping of words.
+
+    Parameters
+    ----------
+    given : mapping
+        What the user gave.
+    owner : str
+        Class or function, for the message.
+
+    Returns
+    -------
+    dict
+        In the same order.
+
+    Raises
+    ------
+    ComponentError
+        Two keys are the same word.
+    """
+    found = {str(key): value for key, value in given.items()}
+    if len(found) < len(given):
+        words = [str(key) for key in given]
+        twice = next(word for word in words if words.count(word) > 1)
+        msg = f"{owner}: two are called {twice!r}; expected names that differ"
+        raise ComponentError(msg)
+    return found
+
+
 def one_of_words(kind: type[Words], given: object, *, owner: str, name: str) -> Words:
     """Read an argument that is one of a few words.
 
@@ -80,6 +109,34 @@ def one_of_words(kind: type[Words], given: object, *, owner: str, name: str) -> 
         known = " or ".join(repr(str(one)) for one in kind)
         msg = f"{owner}: {name} must be {known}, got {shown(given)}"
         raise ComponentError(msg) from None
+
+
+def text(given: object, *, owner: str, name: str) -> str:
+    """Read an argument that is a text.
+
+    Raises
+    ------
+    ComponentError
+        Something else.
+    """
+    if isinstance(given, str):
+        return given
+    msg = f"{owner}: {name} must be a text, got {shown(given)}"
+    raise ComponentError(msg)
+
+
+def truth(given: object, *, owner: str, name: str) -> bool:
+    """Read an argument that is True or False.
+
+    Raises
+    ------
+    ComponentError
+        Something else.
+    """
+    if isinstance(given, bool):
+        return given
+    msg = f"{owner}: {name} must be True or False, got {shown(given)}"
+    raise ComponentError(msg)
 
 
 def whole_number(

@@ -5,11 +5,13 @@ Every error derives from :class:`RockframeError`, so that a script can tell
 """
 
 import warnings
-from collections.abc import Generator, Sequence
+from collections.abc import Callable, Generator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from inspect import currentframe
-from typing import Final
+from typing import Final, TypeVar
+
+Found = TypeVar("Found")
 
 LONGEST_SHOWN = 100
 """Characters of a value beyond which a message does not show all of it."""
@@ -82,12 +84,12 @@ def _rebuild_record_error(path: str, found: str, expected: str, line: int | None
 
 
 class FileError(RockframeError, ValueError):
-    """A file that describes a scene or a study is not what it should be.
+    """A file of a scene, study or result is not what it should be, or must not be written.
 
     Parameters
     ----------
     path : str
-        File that was read.
+        File that was read, or was to be written.
     faults : sequence of (int or None, str)
         Every fault found, with its line, counted from 1, where it has one.
     """
@@ -211,6 +213,34 @@ def warn(message: str, category: type[RockframeWarning]) -> None:
     while frame and str(frame.f_globals.get("__name__")).partition(".")[0] == package:
         level, frame = level + 1, frame.f_back
     warnings.warn(message, category, stacklevel=level)
+
+
+def attempted(work: Callable[[], Found], instead: Found, what: str, missing: list[str]) -> Found:
+    """Compute what a finished run is told with, without a risk to the run.
+
+    Parameters
+    ----------
+    work : callable
+        Computes it.
+    instead : object
+        What stands for it where that fails, whatever the reason.
+    what : str
+        What it is, in words.
+    missing : list of str
+        Takes up what could not be computed, and why.
+
+    Returns
+    -------
+    object
+    """
+    try:
+        return work()
+    except Warning:  # asked for as an error
+        raise
+    except Exception as problem:
+        kind = "" if isinstance(problem, RockframeError) else f"{type(problem).__name__}: "
+        missing.append(f"{what} could not be computed: {kind}{problem}")
+        return instead
 
 
 def __dir__() -> list[str]:

@@ -3,12 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from rockframe.solve.layout import Status
-
-
-def verdict_of(run: xr.Dataset) -> bool | None:
-    """Tell whether a run overturned; None where it was cut off before it could tell."""
-    return Status(int(run["status"])).verdict(bool(run["overturned"]))
+from rockframe.results.outcome import verdict_of
 
 
 def verdicts_agree(run: xr.Dataset, reference: xr.Dataset) -> bool:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from rockframe.constants import CONVENTIONS, PAPER_TITLE
 from rockframe.errors import SchemaError
 from rockframe.results.outcome import Values
-from rockframe.results.schema import COORDINATES, SCHEMA, SCHEMA_VERSION
+from rockframe.results.schema import COORDINATES, SCHEMA_VERSION, row_of
 from rockframe.version import __version__
 
 
@@ -49,10 +49,7 @@ def build_dataset(
     variables: dict[str, tuple[tuple[str, ...], NDArray[Any]]] = {}
     labels: dict[str, dict[str, Any]] = {}
     for name, value in values.items():
-        row = SCHEMA.get(name)
-        if row is None:
-            msg = f"{name!r} is not in the schema of results"
-            raise SchemaError(msg)
+        row = row_of(name)
         data = np.asarray(value)
         gaps = data.dtype.kind == "f" and row.dtype != "float64" and bool(np.isnan(data).any())
         data = data if gaps else np.asarray(data, dtype=row.dtype)

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
+import xarray as xr
 from numpy.typing import NDArray
 
 from rockframe.dynamics.events import SILENT
@@ -140,7 +141,9 @@ def event_columns(model: ContactModel, run: Trajectory) -> dict[str, Generic]:
     }
 
 
-def scalars(run: Summary, setting: Setting) -> dict[str, float | int | bool]:
+def scalars(
+    run: Summary, setting: Setting, *, uplift_angle: float
+) -> dict[str, float | int | bool]:
     """Give the scalars of a run by their names in the schema."""
     angles = setting.overturning_angles
     sides: dict[str, float] = {}
@@ -153,7 +156,7 @@ def scalars(run: Summary, setting: Setting) -> dict[str, float | int | bool]:
             "rest_rotation": setting.rest_rotation,
         }
     return sides | {
-        "overturned": bool(run.overturned),
+        "overturned": run.passed,
         "overturning_time": run.overturning_time,
         "overturning_direction": run.overturning_direction,
         "peak_rotation": _unsigned(run.peak_rotation),
@@ -165,8 +168,40 @@ def scalars(run: Summary, setting: Setting) -> dict[str, float | int | bool]:
         "energy_residual": run.energy_residual,
         "status": int(run.status),
         "overturning_angle": angles.least,
-        "uplift_angle": setting.uplift_angle,
+        "uplift_angle": uplift_angle,
     }
+
+
+def overturns(runs: xr.Dataset) -> xr.DataArray:
+    """Tell which runs overturned, in the sense in which they were asked.
+
+    Parameters
+    ----------
+    runs : xarray.Dataset
+        One run, or several with their dimensions; their ``status`` tells it.
+
+    Returns
+    -------
+    xarray.DataArray
+        1, 0, or NaN where a run has no verdict.
+    """
+    status = runs["status"]
+    return status.copy(data=overturned_by(status.to_numpy()), deep=False).drop_attrs()
+
+
+def verdict_of(run: xr.Dataset) -> bool | None:
+    """Tell whether one run overturned, as :func:`overturns`; None where it has no verdict."""
+    found = float(overturns(run))
+    return None if math.isnan(found) else bool(found)
+
+
+def overturned_by(status: Generic) -> Array:
+    """Give the verdicts of statuses: 1, 0, or NaN where there is none."""
+    shown = [np.nan if one.overturned is None else float(one.overturned) for one in Status]
+    found = np.full(np.shape(status), np.nan)
+    for one, verdict in zip(Status, shown, strict=True):
+        found[status == one] = verdict
+    return found
 
 
 def _unsigned(peak: float) -> float:
@@ -191,17 +226,17 @@ def verdict(run: Summary, setting: Setting, *, end: float) -> str:
     )
     if setting.leans:
         peak += f" to the {nearest.side.name.lower()}"
-    if run.overturned:
+    if run.passed:
         text = f"{_overturned(run, setting, end)}, after {impacts}"
-    elif run.overturned is None:
+    elif not run.status.finished:
         text = f"Not finished: {_cut_off(run)}. Until then no overturning: {peak}; {impacts}"
     else:
         text = f"Did not overturn: {peak}; {impacts}"
-    if not run.overturned and math.isnan(run.first_uplift_time):
+    if not run.passed and math.isnan(run.first_uplift_time):
         text += ", no uplift from the pads" if setting.stacked else ", no uplift"
     if run.flight_time > 0.0:
         text += f", {run.flight_time:.3g} s in flight"
-    if run.overturned and not run.status.finished:
+    if run.passed and not run.status.finished:
         text += f". Not finished: {_cut_off(run)}"
     return text + "."
 

@@ -2,6 +2,7 @@
 
 from typing import Final
 
+from rockframe.errors import SchemaError
 from rockframe.results.variables.analyses import (
     DYNAMIC_ANALYSIS,
     ENSEMBLE,
@@ -29,13 +30,16 @@ from rockframe.results.variables.runs import (
     ENERGY_HISTORIES,
     EVENTS_AND_SCALARS,
     HISTORIES,
+    MOTION_AFTER_END,
 )
 from rockframe.results.variables.statics import HELD, MODES, REST
 from rockframe.results.variables.studies import CASE, CRITICAL_SCALE, MESSAGE, MOTION, SWEEP
 from rockframe.results.variables.suites import RECORDS, TARGETS
+from rockframe.results.variables.variable import Variable
 
 _TABLES: Final = (
     HISTORIES,
+    MOTION_AFTER_END,
     ENERGY_HISTORIES,
     ACCELERATIONS,
     REACTIONS,
@@ -68,6 +72,31 @@ _TABLES: Final = (
 
 SCHEMA: Final = {row.name: row for table in _TABLES for row in table}
 """All variables by name, with those that users have registered."""
+
+
+def row_of(name: str) -> Variable:
+    """Give the row of a variable.
+
+    Parameters
+    ----------
+    name : str
+        Of the variable.
+
+    Returns
+    -------
+    Variable
+
+    Raises
+    ------
+    SchemaError
+        There is none of this name.
+    """
+    row = SCHEMA.get(name)
+    if row is None:
+        msg = f"{name!r} is not in the schema of results"
+        raise SchemaError(msg)
+    return row
+
 
 COORDINATES: Final = (
     "time",

@@ -216,8 +216,16 @@ def _variables(run: xr.Dataset) -> list[tuple[str, xr.Variable]]:
 
 
 def _head(name: Hashable, values: xr.Variable) -> str:
-    unit = values.attrs.get("units", str(Unit.ONE))
-    return str(name) if unit == str(Unit.ONE) else f"{name} [{unit}]"
+    return _with_unit(str(name), values.attrs.get("units", str(Unit.ONE)))
+
+
+def head_of(name: str) -> str:
+    """Give the head of the column of a variable of the schema."""
+    return _with_unit(name, SCHEMA[name].attributes().get("units", str(Unit.ONE)))
+
+
+def _with_unit(name: str, unit: object) -> str:
+    return name if unit == str(Unit.ONE) else f"{name} [{unit}]"
 
 
 def _in_words(column: Any, values: xr.Variable) -> "pd.Series":

@@ -4,9 +4,20 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from rockframe.compiled import Integers
 from rockframe.dynamics.events import IMPACT, SILENT
+from rockframe.dynamics.protocol import BODY_FORCES
 from rockframe.motion import GroundMotion
-from rockframe.results.forces import EventStates, force_histories, force_scalars, residuals
+from rockframe.results.along_steps import FRACTIONS, AlongSteps
+from rockframe.results.forces import (
+    DERIVED,
+    OF_SOIL_FRICTION,
+    EventStates,
+    force_histories,
+    force_scalars,
+    friction_demands,
+    residuals,
+)
 from rockframe.results.outcome import (
     Generic,
     cap_histories,
@@ -19,9 +30,9 @@ from rockframe.results.points import point_histories, point_labels, point_peaks
 from rockframe.results.schema import ON_REQUEST
 from rockframe.results.slope import energies_on_slope, felt_ground, without_gravity
 from rockframe.signals.arrays import Array
-from rockframe.simulation.friction import slips
+from rockframe.simulation.friction import Sliding, sliding_scalars, slidings
 from rockframe.simulation.plan import Plan
-from rockframe.solve.observe import memory_at_outputs, observe_states
+from rockframe.solve.observe import memory_at_outputs, observe_states, observe_steps
 from rockframe.solve.trajectory import Trajectory
 from rockframe.system.assembly import Assembly
 
@@ -38,14 +49,14 @@ class Answers:
         Peaks of forces, what is left at the end, and peaks at points, shape (points,).
     points : dict of str to ndarray, shape (points,)
         Names and places of points.
-    slips : list of str
-        Where a base has too little friction.
+    slidings : list of Sliding
+        Whether bases have friction enough, of those to which it was given.
     """
 
     values: dict[str, Generic] = field(default_factory=dict[str, Generic])
     scalars: dict[str, Generic | float] = field(default_factory=dict[str, Generic | float])
     points: dict[str, Generic] = field(default_factory=dict[str, Generic])
-    slips: list[str] = field(default_factory=list[str])
+    slidings: list[Sliding] = field(default_factory=list[Sliding])
 
 
 def ground_at(motion: GroundMotion | None, time: Array) -> Array:
@@ -73,8 +84,10 @@ def answers_of(system: Assembly, plan: Plan, run: Trajectory) -> Answers:
     Answers
     """
     setting, load, count = system.setting, system.setting.load, len(run.time)
-    shown_at, ground = _everything_of(system, plan, run)
+    shown_at, ground, moved = _everything_of(system, plan, run)
     values = {name: each[:count] for name, each in shown_at.items()}
+    if plan.points or not set(DERIVED).isdisjoint(plan.requested):
+        values |= force_histories(values, moved[:count], load)
     values |= contact_histories(system.model, run)
     values |= cap_histories(values, setting)
     values |= relative_histories(values, setting)
@@ -82,17 +95,18 @@ def answers_of(system: Assembly, plan: Plan, run: Trajectory) -> Answers:
     values |= ground_histories(ground[:count], has_vertical_motion=vertical)
     values["time"] = run.time
     events = _events_in(shown_at, run)
-    upright, events_upright = values, events
+    along, upright = _along(system, plan, run), events
     if run.overturning_time <= run.end_time:  # how a block falls is another matter
-        stands = run.time <= run.overturning_time
-        upright = {name: each[stands] for name, each in values.items()}
-        events_upright = events.until(run.overturning_time)
+        upright = events.until(run.overturning_time)
+    found = slidings(system, along)
     told: dict[str, Generic | float] = {
-        **force_scalars(upright, events_upright, load.body.mass), **residuals(values, load)
-    }  # fmt: skip
+        **force_scalars(along, upright, load.body.mass),
+        **sliding_scalars(found),
+        **residuals(values, load),
+    }
     places: dict[str, Generic] = {}
     if plan.points:
-        told |= point_peaks(plan.points, upright, events_upright, load)
+        told |= point_peaks(plan.points, along, load)
         places = point_labels(plan.points)
         values |= point_histories(plan.points, values, load)
     shown = run.events.kind != SILENT
@@ -103,9 +117,7 @@ def answers_of(system: Assembly, plan: Plan, run: Trajectory) -> Answers:
         for name, each in everything.items()
         if name not in ON_REQUEST or name in plan.requested
     }
-    return Answers(
-        kept if plan.histories else {}, told, places, [*slips(system, upright, events_upright)]
-    )
+    return Answers(kept if plan.histories else {}, told, places, found)
 
 
 def _energies(
@@ -122,29 +134,75 @@ def _energies(
 
 def _everything_of(
     system: Assembly, plan: Plan, run: Trajectory
-) -> tuple[dict[str, Generic], Array]:
+) -> tuple[dict[str, Generic], Array, Array]:
     """Give what the model shows at the samples, then before and then after all events.
 
-    With it, the ground's acceleration there as it was given.
+    With it, the ground's acceleration there as it was given, and along and normal to the base.
     """
-    slope = system.options.slope
     events = run.events
     memory, row = memory_at_outputs(run)
     before = np.arange(len(events.time))
     ground = ground_at(plan.motion, np.concatenate([run.time, events.time, events.time]))
-    moved, felt = felt_ground(ground, slope)
-    shown: dict[str, Generic] = dict(
-        observe_states(
-            system.model,
-            np.concatenate([run.mode.astype(np.int64), events.mode_before, events.mode_after]),
-            np.concatenate([run.state, events.state_before, events.state_after]),
+    moved, felt = felt_ground(ground, system.options.slope)
+    shown = _shown(
+        system,
+        np.concatenate([run.mode.astype(np.int64), events.mode_before, events.mode_after]),
+        np.concatenate([run.state, events.state_before, events.state_after]),
+        memory,
+        np.concatenate([row, before, before + 1]),
+        felt,
+    )
+    return shown, ground, moved
+
+
+def _shown(
+    system: Assembly,
+    mode: Integers,
+    state: Array,
+    memory: Array,
+    memory_row: Integers,
+    ground: Array,
+) -> dict[str, Generic]:
+    """Give what the model shows in some states, on ground as the equations take it."""
+    shown = observe_states(system.model, mode, state, memory, memory_row, ground)
+    return without_gravity(shown, system.options.slope)
+
+
+def _along(system: Assembly, plan: Plan, run: Trajectory) -> AlongSteps:
+    """Give what the model shows along the steps, up to overturning."""
+    if run.steps is None:
+        msg = "no steps were kept"
+        raise ValueError(msg)
+    slope, load, memory = system.options.slope, system.setting.load, memory_at_outputs(run)[0]
+    until = run.overturning_time if run.overturning_time <= run.end_time else np.inf
+    steps = run.steps.until(until)
+    if plan.points:
+        shown = without_gravity(observe_steps(system.model, steps, memory, None), slope)
+        moved = steps.ground - np.array([slope.along_gravity, 0.0])
+        shown |= force_histories(shown, moved, load)
+    else:
+        names = BODY_FORCES
+        if system.setting.stacked:
+            names += OF_SOIL_FRICTION
+        shown: dict[str, Generic] = {**observe_steps(system.model, steps, memory, names)}
+        shown |= friction_demands(shown, load)
+
+    def inside(which: Integers) -> dict[str, Generic]:
+        places, length = len(FRACTIONS), steps.length[which]
+        time = (steps.time[which] - length)[:, None] + length[:, None] * FRACTIONS
+        states = steps.inside(which, system.model, FRACTIONS)
+        moved, felt = felt_ground(ground_at(plan.motion, time.ravel()), slope)
+        found = _shown(
+            system,
+            np.repeat(steps.mode[which], places),
+            states.reshape(-1, states.shape[-1]),
             memory,
-            np.concatenate([row, before, before + 1]),
+            np.repeat(steps.memory_row[which], places),
             felt,
         )
-    )
-    shown = without_gravity(shown, slope)
-    return shown | force_histories(shown, moved, system.setting.load), ground
+        return found | force_histories(found, moved, load)
+
+    return AlongSteps(steps, shown, inside)
 
 
 def _events_in(shown_at: dict[str, Generic], run: Trajectory) -> EventStates:

@@ -10,6 +10,7 @@ import xarray as xr
 
 from rockframe.components import InitialState
 from rockframe.dynamics.protocol import Ending, Start
+from rockframe.results.outcome import verdict_of
 from rockframe.results.schema import SCHEMA_VERSION
 from rockframe.system.assembly import Assembly
 
@@ -77,16 +78,25 @@ def continuation_of(dataset: xr.Dataset, system: Assembly, faults: list[str]) ->
             f"initial is the end of a run of rockframe {attributes.get('rockframe_version')}, "
             "which kept states in another way; run it again"
         )
-    if json.loads(attributes["system_json"]) != system.to_dict():
-        faults.append("initial is the end of a run of another system")
-    if not math.isnan(float(attributes.get("overturning_time", math.nan))):
-        faults.append("initial is the end of a run that overturned")
     stored: dict[str, Any] = json.loads(attributes[_ATTRIBUTE])
-    return Ending(
+    ending = Ending(
         stored["mode"],
         np.array(stored["state"], dtype=np.float64),
         np.array(stored["memory"], dtype=np.float64),
     )
+    passed = not math.isnan(float(attributes.get("overturning_time", math.nan)))
+    if json.loads(attributes["system_json"]) != system.to_dict():
+        faults.append("initial is the end of a run of another system")
+    elif passed and not _came_back(dataset, system, ending):
+        faults.append("initial is the end of a run that overturned")
+    return ending
+
+
+def _came_back(dataset: xr.Dataset, system: Assembly, ending: Ending) -> bool:
+    """Whether a run that passed the overturning angle stands, and ends within it."""
+    rotation = system.model.rotation_in(ending.state)
+    within = abs(rotation) < system.setting.overturning_angles.on_side_of(rotation)
+    return within and "status" in dataset and verdict_of(dataset) is False
 
 
 def _plain(ending: Ending) -> dict[str, Any]:

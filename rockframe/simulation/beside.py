@@ -11,6 +11,7 @@ from rockframe.dynamics.events import EventKind
 from rockframe.results.outcome import Generic
 from rockframe.signals.arrays import Array
 from rockframe.simulation.plan import Plan
+from rockframe.solve.bookkeeping import RIGHT_ANGLE
 from rockframe.solve.layout import Status
 from rockframe.solve.trajectory import Summary
 from rockframe.system.assembly import Assembly
@@ -27,8 +28,10 @@ PARTS: Final = 6
 class Beside:
     """What a run showed.
 
-    The clearances are numbers above zero that change smoothly from scene to scene, and at
-    least one of them goes to zero where the verdict changes.
+    The verdict is that of the run, in the sense in which it was asked. The clearances are
+    numbers above zero that change smoothly from scene to scene, and at least one of them goes
+    to zero where the verdict changes, or where a body that comes back first passes the
+    overturning angle.
 
     Parameters
     ----------
@@ -37,11 +40,13 @@ class Beside:
     peak : float
         Largest absolute rotation [rad].
     clearances : tuple of float
-        Of a body that stands, the share of the overturning angle that its peak left. Of
-        one that overturns, the square of its rate at that angle, and the time that was
-        left: it fails to overturn if it gets there without speed, or not within the run.
+        Of a body that stands, the share of the overturning angle that its peak left; of one
+        that came back from beyond it, how far it was beyond, and the share of a right angle
+        that was left. Of one that overturns, the square of its rate at that angle, and the
+        time that was left: it fails to overturn if it gets there without speed, or not within
+        the run.
     time : float
-        Of overturning; NaN if none [s].
+        Of overturning, or of falling flat in a run that goes on; NaN if none [s].
     direction : int
         Sign of the rotation at overturning, 0 if none.
     step : float
@@ -69,12 +74,23 @@ class Beside:
     peak_share: float = math.nan
     in_motion: bool = False
 
+    @property
+    def within_the_angle(self) -> bool:
+        """Whether it stood and never passed the overturning angle: it has one clearance then."""
+        return not self.overturned and len(self.clearances) == 1
+
     def alike(self, other: "Beside") -> bool:
-        """Whether both take the same course: both stand, or both overturn in the same swing."""
+        """Whether both take the same course.
+
+        Both stand, within the overturning angle or back from beyond it, or both overturn in the
+        same swing.
+        """
         if self.overturned is None or self.overturned != other.overturned:
             return False
         pairs = list(zip(self.course, other.course, strict=True))
         if pairs and max(abs(a - b) for a, b in pairs) > OTHER * max(map(max, pairs)):
+            return False
+        if len(self.clearances) != len(other.clearances):  # one of them passed the angle
             return False
         if not self.overturned:
             return True
@@ -116,15 +132,17 @@ def what_showed(
     rates = np.abs(events["angular_velocity_before"])
     if summary.overturned:
         rate = float(rates[events["event_kind"] == EventKind.OVERTURNING][0])
-        clearances = (rate * rate, duration - summary.overturning_time)
+        clearances = (rate * rate, duration - summary.verdict_time)
+    elif summary.passed:
+        clearances = (peak_share - 1.0, 1.0 - summary.peak_rotation / RIGHT_ANGLE)
     else:
         clearances = (1.0 - peak_share,)
     return Beside(
         summary.overturned,
         summary.peak_rotation,
         clearances,
-        summary.overturning_time,
-        summary.overturning_direction,
+        summary.verdict_time,
+        summary.verdict_direction,
         summary.end_time / max(summary.step_count, 1),
         _course(events["event_time"] / duration, rates),
         summary.status,

@@ -77,7 +77,8 @@ class Certificate:
         Nor is one to be feared between the changes that were tried.
         """
         followed = all(found.flip is None and found.followed for _, found in self.nudged)
-        return self.finished and followed and not self.margin < self.wanted.nudge
+        least = min(self.wanted.nudge, self.wanted.reach)
+        return self.finished and followed and not self.margin < least
 
     @property
     def margin(self) -> float:
@@ -115,7 +116,7 @@ class Certificate:
     @property
     def sentence(self) -> str:
         """All this in words."""
-        return sentence(self)
+        return sentence(self, self.values())
 
     def values(self) -> dict[str, float | bool]:
         """Give the scalars by their names in the schema."""
@@ -200,11 +201,10 @@ def _scaled(
     system: Assembly, plan: Plan, base: Beside, wanted: Certification, run: Run, most: int
 ) -> Scan:
     """Scale the motion, or the start."""
-    stopping = replace(plan, stop_at_overturning=True)
     limits = system.setting.overturning_angles
 
     def look(change: float) -> Beside | None:
-        other = scaled(stopping, 1.0 + change, limits)
+        other = scaled(plan, 1.0 + change, limits)
         return None if other is None else run(system, other)
 
     row = scales(wanted.nudge, wanted.reach)

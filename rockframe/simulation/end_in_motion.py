@@ -15,8 +15,8 @@ AT_REST: Final = 0.2
 less than the energy to overturn: held at that angle a third of it, 1 - (1 - 0.2)^2."""
 
 STILL_MOVING: Final = (
-    "the run ends while the body, which stands, still has the energy to overturn: give a longer "
-    "free_vibration, such as '10 s', to see whether it comes to rest"
+    "the run ends while the body, which stands, still has the energy to overturn: add "
+    "free_vibration='10 s', still ground after the motion, to see whether it comes to rest"
 )
 
 

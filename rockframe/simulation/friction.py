@@ -1,16 +1,64 @@
-"""Whether the friction of a scene's bases holds what stands on them."""
+"""Whether the friction of a scene's bases holds what stands on them, and how that is said."""
 
-from collections.abc import Iterator, Mapping
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Final
 
-import numpy as np
-
-from rockframe.results.forces import EventStates
+from rockframe.results.along_steps import AlongSteps, Values
 from rockframe.results.outcome import Generic
+from rockframe.signals.arrays import Array
 from rockframe.system.assembly import Assembly
 
 _BLOCK: Final = "friction_demand"
 _CAP: Final = "soil_friction_demand"
+DIGITS: Final = 3
+MOST_DIGITS: Final = 15
+"""Digits in which coefficients are told, more where both would look alike."""
+
+
+@dataclass(frozen=True)
+class Sliding:
+    """Whether a body would slide on a base to which friction was given.
+
+    Parameters
+    ----------
+    body : str
+        What stands on it.
+    friction, needed : float
+        The coefficient that the base has, and the largest demand [1].
+    first, lasted : float
+        From when on and how long in all the demand is beyond it; NaN and 0 where it never is [s].
+    """
+
+    body: str
+    friction: float
+    needed: float
+    first: float
+    lasted: float
+
+    @property
+    def slides(self) -> bool:
+        """Whether the demand is ever beyond the coefficient."""
+        return self.needed > self.friction
+
+    @property
+    def words(self) -> str:
+        """Say it, without the body."""
+        needed = "more than any floor has"
+        digits = DIGITS
+        if math.isfinite(self.needed):
+            while f"{self.needed:.{digits}g}" == f"{self.friction:.{digits}g}":
+                digits += 1
+                if digits > MOST_DIGITS:
+                    break
+            needed = f"{self.needed:.{digits}g}"
+        if not self.slides:
+            return f"would not slide: needs {needed} of {self.friction:.{digits}g}"
+        return (
+            f"would slide from {self.first:.4g} s on: needs {needed} of "
+            f"{self.friction:.{digits}g}, and more than that for {self.lasted:.3g} s in all"
+        )
 
 
 def has_limit(system: Assembly) -> bool:
@@ -18,39 +66,83 @@ def has_limit(system: Assembly) -> bool:
     return any(True for _ in _frictions(system))
 
 
-def slips(system: Assembly, values: Mapping[str, Generic], events: EventStates) -> Iterator[str]:
-    """Tell where a run needs more friction than a base has.
+def slidings(system: Assembly, along: AlongSteps) -> list[Sliding]:
+    """Tell of each base with a coefficient of friction whether it holds what stands on it.
 
     Parameters
     ----------
     system : Assembly
         The checked scene.
-    values : mapping of str to ndarray
-        Histories, by their names in the schema.
-    events : EventStates
-        The events among them.
+    along : AlongSteps
+        What its run showed, up to overturning.
 
-    Yields
-    ------
-    str
-        For each base with a coefficient of friction that is exceeded.
+    Returns
+    -------
+    list of Sliding
     """
-    time = values["time"]
-    for name, friction, words in _frictions(system):
-        if name not in values:  # a soil of one's own that does not show its reaction
-            continue
-        demand = events.with_samples(values, name)
-        exceeds = demand > friction
-        if not exceeds.any():
-            continue
-        first = events.times_with_samples(values)[exceeds].min()
-        above = (values[name] > friction).astype(float)
-        lasted = float(np.diff(time) @ (above[1:] + above[:-1])) / 2.0
-        most = f"up to {demand.max():.3g}" if np.isfinite(demand.max()) else "without bound"
-        yield (
-            f"{words} would slide: the friction demand exceeds the coefficient {friction:.6g} "
-            f"from {first:.4g} s on, for {lasted:.3g} s in all, {most}; the model holds it"
+    return [
+        _sliding(along, name, friction, body)
+        for name, friction, body in _frictions(system)
+        if name in along.shown  # a soil of one's own may not show its reaction
+    ]
+
+
+def _sliding(along: AlongSteps, name: str, friction: float, body: str) -> Sliding:
+    def demand(values: Values) -> Array:
+        return values[name][None]
+
+    (needed,), (when,) = along.largest(demand)
+    first, lasted = along.above(lambda values: values[name], friction)
+    if needed > friction and math.isnan(first):  # within a step
+        first = when
+    return Sliding(body, friction, float(needed), float(first), lasted)
+
+
+def sliding_scalars(found: Sequence[Sliding]) -> dict[str, float | bool]:
+    """Give the same as numbers, by their names in the schema; of no base nothing."""
+    if not found:
+        return {}
+    slides = [each for each in found if each.slides]
+    return {
+        "would_slide": bool(slides),
+        "sliding_time": min((each.first for each in slides), default=math.nan),
+        "sliding_duration": max(each.lasted for each in found),
+    }
+
+
+def friction_words(scalars: Mapping[str, Generic | float], found: Sequence[Sliding]) -> str:
+    """Say in a sentence whether a run would slide, or what friction it needed; nothing without."""
+    if len(found) == 1:
+        words = found[0].words
+        return f" {words[0].upper()}{words[1:]}."
+    if found:
+        words = "; ".join(f"{each.body} {each.words}" for each in found)
+        return f" {words[0].upper()}{words[1:]}."
+    if "peak_friction_demand" not in scalars:
+        return ""
+    most, when, lasted = (
+        float(scalars[f"peak_friction_demand{what}"]) for what in ("", "_time", "_duration")
+    )
+    if not math.isfinite(most):
+        return (
+            " Friction needed: more than any, where the base holds without pressing "
+            f"({when:.4g} s); more than 1 for {lasted:.3g} s in all."
         )
+    level = "more than 1" if most > 2.0 else "more than half of it"
+    return f" Friction needed: {most:.3g}, {level} for {lasted:.3g} s in all."
+
+
+def slips(found: Sequence[Sliding]) -> Iterator[str]:
+    """Tell where a run needs more friction than a base has."""
+    for each in found:
+        if each.slides:
+            yield f"{each.body} {each.words}; the model holds it"
+
+
+def count_words(would_slide: Generic) -> str:
+    """Say of how many cases it is known, and of how many it is so; nothing of none."""
+    slide, hold = int((would_slide == 1.0).sum()), int((would_slide == 0.0).sum())
+    return f"{slide} would slide and {hold} would not" if slide + hold else ""
 
 
 def _frictions(system: Assembly) -> Iterator[tuple[str, float, str]]:

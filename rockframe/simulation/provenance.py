@@ -6,6 +6,7 @@ from typing import Any, Final
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
 from rockframe.components import InitialState
 from rockframe.errors import RecordWarning, SchemaError, warn
@@ -14,6 +15,8 @@ from rockframe.motion.shown_name import shown_name
 from rockframe.solve.accuracy import Accuracy
 from rockframe.units import TIME, Unit
 
+_AFTER_END: Final = "_after_end"
+"""Of the names of samples that follow those of the histories."""
 _NEXT_STEP: Final = "; "
 """Between the steps of the history of a motion."""
 
@@ -36,6 +39,32 @@ def motion_words(attributes: Mapping[str, Any]) -> str:
     """Say of which motion a result is, and by how much that was scaled."""
     history = str(attributes.get("motion_history", "")).split(_NEXT_STEP)
     return shown_name(str(attributes["motion"]), history)
+
+
+def motion_after_end(
+    motion: GroundMotion | None, histories: Mapping[str, NDArray[Any]]
+) -> dict[str, NDArray[Any]]:
+    """Give the samples that histories at the samples of a motion lack, where the run ended early.
+
+    With them the result holds its motion, if that is nothing but samples.
+    """
+    if motion is None or motion.recipe is not None or "time" not in histories:
+        return {}
+    count = _on_samples(histories["time"], motion.si.time_step)
+    if count < min(len(histories["time"]) - 1, len(motion)) or count >= len(motion):
+        return {}
+    both = {"ground": motion.si.horizontal, "vertical_ground": motion.si.vertical}
+    return {
+        f"{name}_acceleration{_AFTER_END}": signal.samples[count:].copy()
+        for name, signal in both.items()
+        if signal is not None
+    }
+
+
+def _on_samples(time: NDArray[Any], step: float) -> int:
+    """Count the times of histories that are samples of a motion, from the first one on."""
+    same = time == np.arange(len(time)) * step
+    return len(time) if bool(same.all()) else int(np.argmin(same))
 
 
 def motion_from_dataset(dataset: xr.Dataset) -> GroundMotion | None:
@@ -80,13 +109,15 @@ def _from_histories(dataset: xr.Dataset) -> tuple[GroundMotion | None, str]:
     if "time" not in dataset or "ground_acceleration" not in dataset:
         return None, "it holds no history of the ground acceleration"
     time = dataset["time"].to_numpy()
-    if not np.array_equal(time[:count], np.arange(min(count, len(time))) * step):
+    common = min(count, _on_samples(time, step))
+    rest = f"ground_acceleration{_AFTER_END}"
+    if common < min(count, len(time) - (rest in dataset)):
         return None, f"its times are not the motion's samples, {step:g} s apart from zero"
-    if len(time) < count:
+    if common + (dataset[rest].size if rest in dataset else 0) < count:
         return None, f"its histories end before the motion, which has {count} samples"
     unit = str(Unit.METRE_PER_SECOND_SQUARED)
     components = {
-        name: (dataset[variable].to_numpy()[:count], unit)
+        name: (_joined(dataset, variable, common), unit)
         for name, variable in (
             ("acceleration", "ground_acceleration"),
             ("vertical", "vertical_ground_acceleration"),
@@ -99,6 +130,14 @@ def _from_histories(dataset: xr.Dataset) -> tuple[GroundMotion | None, str]:
     if motion.sha256 != dataset.attrs["motion_sha256"]:
         return None, "its ground acceleration is not what the run had"
     return motion, ""
+
+
+def _joined(dataset: xr.Dataset, name: str, count: int) -> NDArray[Any]:
+    """Give a component of a motion: samples of the histories, and those after their end."""
+    parts = [dataset[name].to_numpy()[:count]]
+    if f"{name}{_AFTER_END}" in dataset:
+        parts.append(dataset[f"{name}{_AFTER_END}"].to_numpy())
+    return np.concatenate(parts)
 
 
 def run_arguments(dataset: xr.Dataset) -> dict[str, Any]:

@@ -2,18 +2,19 @@
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Final, TypeAlias
 
 import numpy as np
 import xarray as xr
 
-from rockframe.errors import ModelWarning, RockframeWarning, SolverWarning, warn
+from rockframe.compiled import compiling_for
+from rockframe.errors import ModelWarning, RockframeWarning, SolverWarning, attempted, warn
 from rockframe.motion import GroundMotion
 from rockframe.results.dataset import build_dataset
-from rockframe.results.forces import friction_words
 from rockframe.results.outcome import Generic, event_columns, peak_of, scalars, verdict
+from rockframe.results.schema import row_of
 from rockframe.results.slope import felt_ground, slope_attributes
 from rockframe.results.variables.runs import Direction
 from rockframe.signals import Motion
@@ -24,8 +25,11 @@ from rockframe.simulation.beside import Beside, what_showed
 from rockframe.simulation.certificate import certify
 from rockframe.simulation.certification import Certification
 from rockframe.simulation.end_in_motion import STILL_MOVING, may_overturn_later
+from rockframe.simulation.friction import friction_words, slips
 from rockframe.simulation.plan import Plan
-from rockframe.simulation.provenance import motion_attributes
+from rockframe.simulation.provenance import motion_after_end, motion_attributes
+from rockframe.simulation.second_look import doubts, peak_error, second_look
+from rockframe.solve.accuracy import LEVELS, AccuracyLevel
 from rockframe.solve.integrate import STILL_INTERVAL, integrate
 from rockframe.solve.trajectory import Summary, Trajectory
 from rockframe.system.assembly import Assembly
@@ -38,6 +42,10 @@ _LEAVES: Final = (
 )
 NONE: Final = "none"
 """What is said where there is nothing to be cautious of."""
+_SAMPLES: Final = "histories, and the peaks of forces and at points,"
+_SECOND: Final = "a second run with more steps"
+_FRICTION: Final = "whether the base has the friction that is needed"
+_LEAVING: Final = "whether the block would leave the ground"
 TENSION: Final = 1e-9
 """Share of the largest reaction below which a pull is rounding."""
 
@@ -55,12 +63,16 @@ def felt_motion(system: Assembly, plan: Plan) -> Motion | None:
 
 @dataclass(frozen=True)
 class Response:
-    """A run before it is labelled: what became of it, and what its samples tell."""
+    """A run before it is labelled: what became of it, and what its samples tell.
+
+    What fails behind the integration is missing, and told; the run is not lost.
+    """
 
     system: Assembly
     plan: Plan
     trajectory: Trajectory
     answers: Answers
+    missing: list[str] = field(default_factory=list[str])
 
     @cached_property
     def events(self) -> dict[str, Generic]:
@@ -70,12 +82,13 @@ class Response:
     @cached_property
     def scalars(self) -> dict[str, Generic | float | int | bool]:
         """All scalars, and peaks at points, by their names in the schema."""
-        return {**scalars(self.trajectory, self.system.setting), **self.answers.scalars}
+        told = scalars_of(self.system, self.trajectory, self.missing)
+        return {**told, **self.answers.scalars}
 
     @cached_property
     def in_motion(self) -> bool:
         """Whether the body stood with the energy to overturn later."""
-        return may_overturn_later(self.system, self.trajectory)
+        return in_motion(self.system, self.trajectory, self.missing)
 
     def beside(self) -> Beside:
         """Tell what a certificate asks of the run."""
@@ -86,21 +99,85 @@ class Response:
 
     def cautions(self) -> list[Caution]:
         """Give what is to be warned of."""
-        summary, plan = self.trajectory, self.plan
-        audit = unbalanced(
-            self.system, plan, summary, self.beside, lambda other: beside(self.system, other)
-        )
+        summary, plan, missing = self.trajectory, self.plan, self.missing
+        moving = [STILL_MOVING] if self.in_motion else []
+        audit = attempted(
+            lambda: unbalanced(
+                self.system, plan, summary, self.beside, lambda other: beside(self.system, other)
+            ),
+            None, "whether another run agrees with this one", missing,
+        )  # fmt: skip
+        others = [
+            attempted(lambda: [*_lost_weight(self.system, plan.motion)], [], _LEAVING, missing),
+            attempted(
+                lambda: [*_pulling(self.system, self.answers.values, summary.overturning_time)],
+                [], _LEAVING, missing,
+            ),
+            attempted(
+                lambda: [(ModelWarning, text) for text in slips(self.answers.slidings)],
+                [], _FRICTION, missing,
+            ),
+        ]  # fmt: skip
+        _ = self.scalars  # what is missing of them is said, too
         return [
             *_unfinished(self.system, summary),
-            *([(SolverWarning, STILL_MOVING)] if self.in_motion else []),
+            *((SolverWarning, text) for text in moving),
             *([] if audit is None else [(SolverWarning, audit)]),
-            *_lost_weight(self.system, plan.motion),
-            *_pulling(self.system, self.answers.values, summary.overturning_time),
-            *((ModelWarning, text) for text in self.answers.slips),
+            *(caution for found in others for caution in found),
+            *((SolverWarning, text) for text in missing),
         ]
 
 
-def run(system: Assembly, plan: Plan, certification: Certification | None = None) -> xr.Dataset:
+def in_motion(system: Assembly, summary: Summary, missing: list[str]) -> bool:
+    """Tell whether a body that stood may overturn later; False where it cannot be told.
+
+    Parameters
+    ----------
+    system : Assembly
+        The scene.
+    summary : Summary
+        What became of a run.
+    missing : list of str
+        Takes up why it cannot be told.
+
+    Returns
+    -------
+    bool
+    """
+    what = "whether the body still has the energy to overturn"
+    return attempted(lambda: may_overturn_later(system, summary), False, what, missing)
+
+
+def scalars_of(
+    system: Assembly, summary: Summary, missing: list[str]
+) -> dict[str, float | int | bool]:
+    """Give the scalars of a run by their names in the schema, without those of its samples.
+
+    Parameters
+    ----------
+    system : Assembly
+        The scene.
+    summary : Summary
+        What became of a run.
+    missing : list of str
+        Takes up what is NaN since it could not be computed.
+
+    Returns
+    -------
+    dict of str to float, int or bool
+    """
+    setting = system.setting
+    uplift = attempted(lambda: setting.uplift_angle, math.nan, "the uplift angle", missing)
+    return scalars(summary, setting, uplift_angle=uplift)
+
+
+def run(
+    system: Assembly,
+    plan: Plan,
+    certification: Certification | None = None,
+    *,
+    look_again: bool = False,
+) -> xr.Dataset:
     """Integrate as planned and label the result.
 
     Parameters
@@ -111,33 +188,68 @@ def run(system: Assembly, plan: Plan, certification: Certification | None = None
         The checked arguments.
     certification : Certification, optional
         What to try, to tell how sure the verdict is.
+    look_again : bool
+        Whether a run with the steps of ``"fast"`` is made a second time, with more of them,
+        where there is no certificate.
 
     Returns
     -------
     xarray.Dataset
     """
+    for column in system.model.columns:
+        row_of(column.name)  # before the run
     response = respond(system, plan)
-    summary = response.trajectory
-    attributes = _attributes(system, plan, summary)
+    summary, missing = response.trajectory, response.missing
+    attributes = _attributes(system, plan, summary, missing)
     attributes |= end_attributes(summary.ending)
     if summary.status.finished:
-        attributes["verdict"] = f"{attributes['verdict']}{friction_words(response.answers.scalars)}"
-    cautions = response.cautions()
+        answers = response.answers
+        friction = attempted(
+            lambda: friction_words(answers.scalars, answers.slidings), "", _FRICTION, missing
+        )
+        attributes["verdict"] = f"{attributes['verdict']}{friction}"
+    of_scene = attempted(lambda: system.cautions, [], "what is unusual about the scene", missing)
+    cautions, told = response.cautions(), len(missing)
+    values = {**response.events, **response.scalars}
+    if look_again and certification is None and plan.accuracy == LEVELS[AccuracyLevel.FAST]:
+        error, doubted = attempted(
+            lambda: _looked_again(system, plan, summary), (math.nan, []), _SECOND, missing
+        )
+        values["peak_error_estimate"] = error
+        cautions += doubted
+    # said of every run: what only some datasets say, xarray.concat would take for all
+    attributes["cautions"] = NONE
     for kind, text in cautions:
         warn(text, kind)
-    # said of every run: what only some datasets say, xarray.concat would take for all
-    every = [*system.cautions, *(text for _, text in cautions)]
-    attributes["cautions"] = "; ".join(every) or NONE
-    certificate: dict[str, float | bool] = {}
     if certification is not None:
-        found = certify(system, plan, response.beside(), certification, beside)
-        certificate = found.values()
-        attributes |= found.attributes()
-    values = {
-        **response.events, **response.answers.values, **response.answers.points,
-        **response.scalars, **certificate,
-    }  # fmt: skip
-    return build_dataset(values, attributes)
+        found = attempted(
+            lambda: certify(system, plan, response.beside(), certification, beside),
+            None, "the certificate", missing,
+        )  # fmt: skip
+        attributes |= {"certificate": "Not known."} if found is None else found.attributes()
+        values |= {} if found is None else found.values()
+    of_samples = {**response.answers.values, **response.answers.points}
+    dataset = attempted(
+        lambda: build_dataset(
+            {**values, **of_samples, **motion_after_end(plan.motion, of_samples)}, attributes
+        ),
+        None, _SAMPLES, missing,
+    )  # fmt: skip
+    if dataset is None:
+        dataset = build_dataset(values, attributes)
+    late = missing[told:]
+    for text in late:
+        warn(text, SolverWarning)
+    every = [*of_scene, *(text for _, text in cautions), *late]
+    dataset.attrs["cautions"] = "; ".join(every) or NONE
+    return dataset
+
+
+def _looked_again(system: Assembly, plan: Plan, summary: Summary) -> tuple[float, list[Caution]]:
+    """Give the error of the peak that a second run with more steps shows, and its doubts."""
+    second = outcome(system, second_look(system, plan))
+    found = doubts(system.setting, plan, summary, second)
+    return peak_error(summary, second), [(SolverWarning, text) for text in found]
 
 
 def outcome(system: Assembly, plan: Plan) -> Summary:
@@ -188,21 +300,33 @@ def respond(system: Assembly, plan: Plan) -> Response:
     -------
     Response
     """
-    trajectory = integrate(
-        system.model, start_of(plan.initial), felt_motion(system, plan), plan.accuracy,
-        duration=plan.duration, output_step=plan.output_step,
-        stop_at_overturning=plan.stop_at_overturning, with_work=bool(plan.energies),
-    )  # fmt: skip
     sampled = plan.output_step is not None
-    answers = answers_of(system, plan, trajectory) if sampled else Answers()
-    return Response(system, plan, trajectory, answers)
+    # of a run without histories only the start and the end are asked for
+    output_step = plan.duration if sampled and not plan.histories else plan.output_step
+    missing: list[str] = []
+    answers = Answers()
+    with compiling_for(f"a run ({system.setting.model})"):
+        trajectory = integrate(
+            system.model, start_of(plan.initial), felt_motion(system, plan), plan.accuracy,
+            duration=plan.duration, output_step=output_step,
+            stop_at_overturning=plan.stop_at_overturning, with_work=bool(plan.energies),
+            keep_steps=sampled,
+        )  # fmt: skip
+        if sampled:
+            answers = attempted(
+                lambda: answers_of(system, plan, trajectory), answers, _SAMPLES, missing
+            )
+    return Response(system, plan, trajectory, answers, missing)
 
 
-def _attributes(system: Assembly, plan: Plan, summary: Summary) -> dict[str, str | float | int]:
+def _attributes(
+    system: Assembly, plan: Plan, summary: Summary, missing: list[str]
+) -> dict[str, str | float | int]:
+    description = attempted(lambda: system.description, "", "the words of the model", missing)
     coupling = {"coupling": str(system.options.coupling)} if system.scene.coupling else {}
     return {
         "verdict": _verdict(system, summary),
-        "overturned": int(bool(summary.overturned)),
+        "overturned": int(summary.passed),
         "overturning_time": summary.overturning_time,
         "overturning_direction": Direction(summary.overturning_direction).name.lower(),
         "model": system.setting.model,
@@ -210,7 +334,7 @@ def _attributes(system: Assembly, plan: Plan, summary: Summary) -> dict[str, str
         "kinematics": str(system.options.rotation),
         **slope_attributes(system.options.slope),
         **coupling,
-        "model_description": system.description,
+        "model_description": description,
         "accuracy": plan.accuracy_name,
         "solver_method": ADAPTIVE if plan.accuracy.substeps is None else FIXED,
         "solver_rtol": plan.accuracy.rtol or math.nan,
@@ -218,9 +342,9 @@ def _attributes(system: Assembly, plan: Plan, summary: Summary) -> dict[str, str
         "solver_steps": summary.step_count,
         "solver_rejected_steps": summary.rejected_count,
         "solver_end_time": summary.end_time,
-        **motion_attributes(plan.motion),
-        "system_json": system.json,
-        "run_json": plan.to_json(),
+        **attempted(lambda: motion_attributes(plan.motion), {}, "the motion's origin", missing),
+        "system_json": attempted(lambda: system.json, "", "the parts as text", missing),
+        "run_json": attempted(plan.to_json, "", "the arguments as text", missing),
     }
 
 

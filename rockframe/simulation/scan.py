@@ -91,8 +91,8 @@ class Side:
 
     def add(self, place: float, shown: Beside) -> None:
         """Put a run in its place."""
+        self.shown[place] = shown  # first, so that an interrupt leaves no place without a run
         insort(self.places, place)
-        self.shown[place] = shown
         # intervals whose ends took other courses are remembered, with their lengths
         number = self.places.index(place)
         for near, far in pairwise(self.places[number - 1 : number + 2]):

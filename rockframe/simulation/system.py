@@ -216,6 +216,7 @@ class System:
         points: PointsLike | None = None,
         overturning: OverturningLike = Overturning.STOP,
         certify: "bool | Certification" = False,
+        second_look: bool = True,
     ) -> xr.Dataset:
         """Integrate the equations of motion.
 
@@ -251,6 +252,10 @@ class System:
         certify : bool or Certification
             Whether some hundred runs beside this one, by finer means, with nudged
             parameters and scaled motions, tell how sure the verdict is.
+        second_look : bool
+            Whether a run with ``accuracy="fast"`` is made once more, with half as many steps
+            again and without histories, to tell whether its verdict and its peak rotation are
+            sure. No other run is, nor one that is certified.
 
         Returns
         -------
@@ -285,7 +290,7 @@ class System:
             points=points,
             overturning=overturning,
         )
-        return run(self._assembly, plan, certification_of(certify))
+        return run(self._assembly, plan, certification_of(certify), look_again=second_look)
 
     def frequencies(self) -> xr.Dataset:
         """Give the modes of small motion about rest, in full contact.

@@ -142,7 +142,7 @@ POINT_PEAKS: Final = tuple(
         POINT,
         row.unit,
         f"largest {'' if 'absolute' in row.long_name else 'absolute '}"
-        f"{row.long_name.split(',')[0]} at samples and events, up to overturning",
+        f"{row.long_name.split(',')[0]} up to overturning",
     )
     for row in POINTS
     if row.dims == POINT_TIME
@@ -150,17 +150,21 @@ POINT_PEAKS: Final = tuple(
 """Of points, in runs with samples."""
 
 FORCE_SCALARS: Final = (
-    Variable("peak_friction_demand", (), Unit.ONE, "largest friction demand at samples and events"),
+    Variable("peak_friction_demand", (), Unit.ONE, "largest friction demand up to overturning"),
     Variable("peak_friction_demand_time", (), Unit.SECOND, "time of the largest friction demand"),
+    Variable(
+        "peak_friction_demand_duration",
+        (),
+        Unit.SECOND,
+        "time in all with a friction demand above half its peak, or above 1 where that is less",
+    ),
     Variable(
         "peak_impulsive_friction_demand",
         (),
         Unit.ONE,
         "largest ratio of horizontal and vertical impulses of impacts",
     ),
-    Variable(
-        "peak_base_shear", (), Unit.NEWTON, "largest absolute base shear at samples and events"
-    ),
+    Variable("peak_base_shear", (), Unit.NEWTON, "largest absolute base shear up to overturning"),
     Variable("residual_rotation", (), Unit.RADIAN, "rotation at the end of the run"),
     Variable(
         "residual_settlement",
@@ -168,5 +172,14 @@ FORCE_SCALARS: Final = (
         Unit.METRE,
         "how much lower than at rest the middle of the base stands at the end of the run",
     ),
+    Variable(
+        "would_slide",
+        (),
+        None,
+        "whether the friction demand exceeds the coefficient that a base was given",
+        dtype="bool",
+    ),
+    Variable("sliding_time", (), Unit.SECOND, "time from which on it does, NaN if it never does"),
+    Variable("sliding_duration", (), Unit.SECOND, "time in all for which it does"),
 )
-"""Of runs with histories."""
+"""Of runs with histories, or points; the last three of scenes to which friction was given."""

@@ -4,7 +4,7 @@ from enum import IntEnum
 from typing import Final
 
 from rockframe.dynamics.events import ContactState, EventKind
-from rockframe.results.variables.variable import EVENT, TIME, Variable, count, flag
+from rockframe.results.variables.variable import AFTER_END, EVENT, TIME, Variable, count, flag
 from rockframe.solve.layout import Status
 from rockframe.units import Unit
 
@@ -113,6 +113,20 @@ HISTORIES: Final = (
 )
 """Over time, wherever the scene has them."""
 
+MOTION_AFTER_END: Final = (
+    Variable(
+        "ground_acceleration_after_end",
+        AFTER_END,
+        Unit.METRE_PER_SECOND_SQUARED,
+        "samples of the horizontal ground acceleration that follow those of the histories",
+    ),
+    Variable(
+        "vertical_ground_acceleration_after_end",
+        AFTER_END,
+        Unit.METRE_PER_SECOND_SQUARED,
+        "samples of the vertical ground acceleration that follow those of the histories, upwards",
+    ),
+)
 ENERGY_HISTORIES: Final = (
     Variable("kinetic_energy", TIME, Unit.JOULE, "kinetic energy relative to the ground"),
     Variable("potential_energy", TIME, Unit.JOULE, "gravity energy from rest"),

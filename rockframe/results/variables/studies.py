@@ -34,7 +34,14 @@ CRITICAL_SCALE: Final = (
         "followed_scale",
         (),
         Unit.ONE,
-        "scale of the motion up to which the runs are close enough together to tell of all flips",
+        "scale of the motion up to which no interval between runs shows signs of hidden flips",
+    ),
+    Variable(
+        "largest_gap",
+        (),
+        Unit.ONE,
+        "largest distance between neighbouring scales with a verdict: pairs of flips that are "
+        "closer together may be missed",
     ),
     Variable(
         "uplift_scale",

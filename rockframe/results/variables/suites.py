@@ -52,6 +52,31 @@ RECORDS: Final = (
         Unit.ONE,
         "mean distance of the matched spectrum from the target, over the target",
     ),
+    *(
+        Variable(f"{name}_{when}_matching", (), unit, f"{words} {when} the spectrum was matched")
+        for name, unit, words in (
+            (
+                "peak_ground_acceleration",
+                Unit.METRE_PER_SECOND_SQUARED,
+                "greatest absolute ground acceleration",
+            ),
+            (
+                "peak_ground_velocity",
+                Unit.METRE_PER_SECOND,
+                "greatest absolute ground velocity",
+            ),
+            ("peak_ground_displacement", Unit.METRE, "greatest absolute ground displacement"),
+            ("pulse_indicator", Unit.ONE, "pulse indicator of Baker"),
+        )
+        for when in ("before", "after")
+    ),
+    Variable(
+        "spectral_growth_beyond_range",
+        (),
+        Unit.ONE,
+        "greatest ratio of matched to scaled spectrum beyond the range of periods",
+    ),
+    Variable("period_of_spectral_growth", (), Unit.SECOND, "period of that ratio"),
 )
 """Of a motion in a suite; in datasets over ``motion``."""
 

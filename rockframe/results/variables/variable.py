@@ -10,6 +10,7 @@ from rockframe.units import Unit
 
 TIME: Final = ("time",)
 EVENT: Final = ("event",)
+AFTER_END: Final = ("sample_after_end",)
 ANGLE: Final = ("angle",)
 MODE: Final = ("mode",)
 OSCILLATOR: Final = ("damping_ratio", "period")

@@ -1,0 +1,160 @@
+"""Single runs at "fast" are made a second time, and tell what is not sure of them."""
+
+import math
+import warnings
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import rockframe as rf
+from rockframe.simulation.certificate import SAFETY
+from rockframe.simulation.plan import plan_run
+from rockframe.simulation.run import outcome
+from rockframe.simulation.second_look import MORE, OFF, doubts, peak_error
+from rockframe.solve.layout import Status
+
+SYSTEM = rf.System(
+    rf.Block.from_size(radius="2.5 m", slenderness=4.5, mass="20 t"),
+    rf.TwoSpringSupport(frequency_ratio=10, damping_ratio=0.1),
+)
+PULSE = rf.GroundMotion.sine_pulse("-3 m/s^2", "1 Hz")
+
+
+def fast(system=SYSTEM, motion=PULSE, **arguments):
+    """Run at "fast"; give the result, and what it warns of."""
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        given = {"free_vibration": "4 s", "outputs": None, **arguments}
+        run = system.simulate(motion, accuracy="fast", **given)
+    return run, [str(one.message) for one in said]
+
+
+def noise():
+    white = np.random.default_rng(8).normal(size=700)
+    smooth = np.convolve(white, np.ones(6) / 6, "same")
+    return rf.GroundMotion.from_arrays((6 * smooth, "m/s^2"), "0.02 s", name="noise")
+
+
+def test_a_sure_run_says_nothing_and_estimates_the_error_of_its_peak():
+    run, said = fast()
+    assert said == []
+    substeps = run.attrs["solver_substeps"]
+    finer = rf.Accuracy(substeps=substeps + math.ceil(MORE * substeps))
+    again = SYSTEM.simulate(PULSE, free_vibration="4 s", outputs=None, accuracy=finer)
+    exact = SYSTEM.simulate(PULSE, free_vibration="4 s", outputs=None, accuracy="reference")
+    told = float(run.peak_error_estimate)
+    assert told == SAFETY * abs(float(run.peak_rotation) - float(again.peak_rotation))
+    assert abs(float(run.peak_rotation) - float(exact.peak_rotation)) <= told
+    assert told < 1e-3 * float(run.peak_rotation)
+
+
+@pytest.mark.parametrize(
+    ("number", "ratio", "words"),
+    [
+        (35, 60.0, "the verdict is not sure"),
+        (7, 28.0, "its peak rotation is"),
+        (20, 14.0, "its peak rotation is"),
+    ],
+)
+def test_a_run_that_is_wrong_says_so(number, ratio, words):
+    """One verdict and two peaks among 384 scales of a noise on six pads."""
+    pads = rf.TwoSpringSupport(frequency_ratio=ratio, damping_ratio=0.1)
+    system = rf.System(rf.Block.from_size(radius="2.5 m", slenderness=4.5, mass="20 t"), pads)
+    motion = noise().scaled(float(np.linspace(0.4, 1.1, 64)[number]))
+    run, said = fast(system, motion, free_vibration=None)
+    exact = system.simulate(motion, outputs=None, accuracy="reference")
+    other = bool(run.overturned) != bool(exact.overturned)
+    off = abs(float(run.peak_rotation) - float(exact.peak_rotation))
+    assert other or off > OFF * float(exact.peak_rotation)
+    assert other == (words == "the verdict is not sure")
+    assert any(words in one for one in said)
+    assert words in run.attrs["cautions"]
+    assert float(run.energy_residual) < 0.01  # which tells nothing
+    # and without the second look it says nothing of it
+    _, said = fast(system, motion, free_vibration=None, second_look=False)
+    assert not any("not sure" in one for one in said)
+
+
+def test_it_can_be_switched_off_and_belongs_to_fast_alone(monkeypatch):
+    made = []
+
+    def counted(system, plan):
+        made.append(plan)
+        return outcome(system, plan)
+
+    monkeypatch.setattr("rockframe.simulation.run.outcome", counted)
+    run, _ = fast(second_look=False)
+    assert "peak_error_estimate" not in run
+    SYSTEM.simulate(PULSE, accuracy="standard")
+    SYSTEM.simulate(PULSE, accuracy=rf.Accuracy(substeps=4))
+    rf.sweep(SYSTEM, PULSE, scale=[0.5, 1.0], accuracy="fast", progress=False)
+    assert made == []
+    fast()
+    assert len(made) == 1
+    assert made[0].output_step is None
+
+
+@pytest.fixture(scope="module")
+def base():
+    plan = plan_run(SYSTEM.assembly, PULSE, free_vibration="4 s", accuracy="fast", outputs=None)
+    return plan, outcome(SYSTEM.assembly, plan)
+
+
+def told(base, first, second):
+    plan, run = base
+    return list(doubts(SYSTEM.setting, plan, replace(run, **first), replace(run, **second)))
+
+
+STANDS = {"status": Status.COMPLETED, "overturning_time": math.nan, "overturning_direction": 0}
+FALLS = {"status": Status.OVERTURNED, "overturning_time": 2.0, "overturning_direction": 1}
+CUT = {"status": Status.CHATTER}
+
+
+def test_what_is_said(base):
+    standing = {**STANDS, "peak_left": 0.0, "peak_right": 0.1}
+    angle = SYSTEM.setting.overturning_angle
+    falling = {**FALLS, "peak_left": 0.0, "peak_right": angle}
+    assert told(base, standing, standing) == []
+    # small impacts after the peak may differ, but not where the peak itself does
+    assert told(base, standing, {**standing, "impact_count": 99}) == []
+    [other] = told(base, standing, {**standing, "impact_count": 99, "peak_right": 0.1006})
+    assert "the verdict is not sure" in other
+    assert told(base, CUT, standing) == []
+    [cut] = told(base, standing, CUT)
+    assert cut.startswith("with half as many steps again the run cannot be finished: the verdict")
+    verdict, peak = told(base, standing, falling)
+    assert "the body overturns to the right at 2.000 s: the verdict is not sure" in verdict
+    assert f"its peak rotation is {angle:.4g} rad, not 0.1: it is not sure" in peak
+    assert told(base, falling, falling) == []
+    assert told(base, falling, {**falling, "impact_count": 99, "overturning_time": 2.001}) == []
+    assert told(base, falling, {**falling, "overturning_time": 2.02}) == []
+    assert told(base, falling, {**falling, "impact_count": 99, "overturning_time": 2.02})
+    for other in ({"overturning_time": 2.5}, {"overturning_direction": -1}):
+        [late] = told(base, falling, {**falling, **other})
+        assert "the verdict is not sure" in late
+    near, nearer = ({**standing, "peak_right": share * angle} for share in (0.97, 0.98))
+    [close] = told(base, near, nearer)
+    assert "stands, its peak 98 % of the overturning angle: the verdict is not sure" in close
+
+
+@pytest.mark.parametrize(("off", "said"), [(0.9 * OFF / SAFETY, 0), (1.1 * OFF / SAFETY, 1)])
+def test_a_peak_is_not_sure_where_its_estimated_error_is_large(base, off, said):
+    first, second = (
+        {**STANDS, "peak_left": 0.0, "peak_right": at} for at in (0.1, 0.1 + 0.1 * off)
+    )
+    assert len(told(base, first, second)) == said
+    _, run = base
+    error = peak_error(replace(run, **first), replace(run, **second))
+    assert error == pytest.approx(SAFETY * 0.1 * off)
+    assert math.isnan(peak_error(replace(run, **first), replace(run, **CUT)))
+
+
+def test_a_block_back_from_beyond_the_angle_is_judged_by_how_far_it_was_beyond(base):
+    angle = SYSTEM.setting.overturning_angle
+    came_back = {"status": Status.COMPLETED, "overturning_time": 2.0, "peak_left": 0.0}
+    beyond, farther, short = (
+        {**came_back, "peak_right": share * angle} for share in (1.2, 1.201, 0.99)
+    )
+    assert told(base, beyond, farther) == []
+    assert told(base, beyond, {**short, **STANDS})
