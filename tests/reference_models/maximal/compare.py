@@ -2,12 +2,15 @@
 
 python tests/reference_models/maximal/compare.py --scenes 1000 --seed 1 [--only pads]
 python tests/reference_models/maximal/compare.py --seed 1 --only pads --replay 17 23
+python tests/reference_models/maximal/compare.py --scenes 340 --seed 12 \\
+    --variants plain eccentric inclined --levels tight standard fast
 """
 
 import argparse
 import json
 import sys
 import time
+from collections.abc import Sequence
 from pathlib import Path
 
 HERE = Path(__file__).resolve()
@@ -16,12 +19,13 @@ if __package__ in (None, ""):
     sys.path.insert(0, str(HERE.parents[2]))
     sys.path.append(str(ROOT))
 
-from reference_models.maximal.comparing import AGREES, Outcome, compare  # noqa: E402
+from reference_models.maximal.comparing import LEVELS, Outcome, compare  # noqa: E402
+from reference_models.maximal.drawing import VARIANTS  # noqa: E402
 from reference_models.maximal.motions import have_records  # noqa: E402
 from reference_models.maximal.scene import KINDS  # noqa: E402
 
 DATA = ROOT / "docs" / "data"
-LABELS = ("agrees", "chaos", "sensitive", "disagrees")
+LABELS = ("agrees", "chaos", "sensitive", "by tolerance", "disagrees", "apart")
 
 
 def main() -> None:
@@ -32,73 +36,100 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", nargs="+", choices=KINDS, default=list(KINDS))
     parser.add_argument("--replay", type=int, nargs="+", help="numbers of scenes to repeat")
-    parser.add_argument("--limit", type=float, default=AGREES, help="of agreement")
-    parser.add_argument("--eccentric", action="store_true", help="centres of mass to the side")
+    parser.add_argument("--limit", type=float, help="of agreement, in the place of the level's")
+    parser.add_argument("--variants", nargs="+", choices=VARIANTS, default=[VARIANTS[0]])
+    parser.add_argument("--levels", nargs="+", choices=LEVELS, default=["tight"])
     parser.add_argument("--json", type=Path)
     given = parser.parse_args()
     if not have_records():
         print("no recorded motions (set ROCKFRAME_RECORDS): sums of sines in their place")
     tables = []
-    for kind in given.only:
-        numbers = given.replay or range(given.first, given.first + given.scenes)
-        begun = time.perf_counter()
-        outcomes = [_one(kind, number, given) for number in numbers]
-        tables.append(_summary(kind, given, outcomes))
-        print(_line(tables[-1]), f"{time.perf_counter() - begun:.0f} s", flush=True)
-        print("    scenes with:", ", ".join(f"{k} {v}" for k, v in tables[-1]["seen"].items()))
-        for outcome in outcomes:
-            if outcome.label != "agrees" or given.replay:
-                print("   ", _words(outcome), flush=True)
+    for variant in given.variants:
+        for kind in given.only:
+            tables += _compared(kind, variant, given)
     if not given.replay:
-        name = "maximal_oracle_eccentric.json" if given.eccentric else "maximal_oracle.json"
-        path = given.json or DATA / name
+        usual = given.variants == [VARIANTS[0]] and given.levels == ["tight"]
+        path = given.json or DATA / f"maximal_oracle{'' if usual else '_levels'}.json"
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(json.dumps(tables, indent=1) + "\n")
 
 
-def _one(kind: str, number: int, given: argparse.Namespace) -> Outcome:
+def _compared(kind: str, variant: str, given: argparse.Namespace) -> list[dict]:
+    """Compare scenes of one kind, and give a table for each level."""
+    numbers = given.replay or range(given.first, given.first + given.scenes)
+    begun = time.perf_counter()
+    scenes = [_one(kind, number, variant, given) for number in numbers]
+    print(f"{kind} {variant}: {time.perf_counter() - begun:.0f} s")
+    tables = []
+    for outcomes in zip(*scenes, strict=True):
+        tables.append(_summary(kind, variant, given, outcomes))
+        print("   ", _line(tables[-1]), flush=True)
+        for outcome in outcomes:
+            if outcome.label != "agrees" or given.replay:
+                print("       ", _words(outcome), flush=True)
+    print("    scenes with:", ", ".join(f"{k} {v}" for k, v in tables[-1]["seen"].items()))
+    return tables
+
+
+def _one(kind: str, number: int, variant: str, given: argparse.Namespace) -> list[Outcome]:
     try:
-        return compare(kind, given.seed, number, given.eccentric, given.limit)
+        return compare(kind, given.seed, number, variant, given.levels, given.limit)
     except Exception as problem:  # a scene that breaks a program is a finding too
         words = f"{type(problem).__name__}: {problem}"
-        return Outcome(
-            kind, given.seed, number, "disagrees", 1.0, 1.0, 0.0, (False, False), (-1, -1),
-            note=words,
-        )  # fmt: skip
+        return [
+            Outcome(
+                kind, given.seed, number, level, "disagrees", 1.0, 1.0, 0.0, 1.0, (False, False),
+                (-1, -1), note=words,
+            )
+            for level in given.levels
+        ]  # fmt: skip
 
 
-def _summary(kind: str, given: argparse.Namespace, outcomes: list[Outcome]) -> dict:
+def _summary(
+    kind: str, variant: str, given: argparse.Namespace, outcomes: Sequence[Outcome]
+) -> dict:
     agreeing = [o for o in outcomes if o.label == "agrees"]
-    table = {"kind": kind, "seed": given.seed, "records": have_records(), "scenes": len(outcomes)}
+    level = outcomes[0].level
+    table = {"kind": kind, "variant": variant, "level": level, "seed": given.seed}
+    table |= {"records": have_records(), "scenes": len(outcomes)}
     table |= {label: sum(o.label == label for o in outcomes) for label in LABELS}
     table["worst_agreeing"] = max(
         (max(o.difference, o.rise_difference) for o in agreeing), default=0
     )
     table["overturned"] = sum(o.overturned[1] for o in outcomes)
     table["verdicts_differ"] = [o.number for o in outcomes if o.overturned[0] != o.overturned[1]]
-    table["limit"] = given.limit
+    table["verdicts_told"] = [
+        o.number for o in outcomes if o.overturned[0] != o.overturned[1] and o.told
+    ]
+    far = [o for o in outcomes if o.peak_difference > 0.05]
+    table["peaks_far"] = [o.number for o in far]
+    table["peaks_far_told"] = [o.number for o in far if o.told]
+    table["told"] = sum(o.told for o in outcomes)
+    table["limit"] = given.limit or LEVELS[level].agrees
     seen = [name for o in outcomes for name in o.seen]
     table["seen"] = {name: seen.count(name) for name in sorted(set(seen))}
-    table["beyond"] = [o.plain() for o in outcomes if o.label != "agrees"]
+    table["beyond"] = [o.plain() for o in outcomes if o.label not in ("agrees", "apart")]
     return table
 
 
 def _line(table: dict) -> str:
     counts = "  ".join(f"{label} {table[label]}" for label in LABELS)
     return (
-        f"{table['kind']:8} scenes {table['scenes']}  {counts}  worst agreeing "
-        f"{table['worst_agreeing']:.1e}  overturned {table['overturned']}  verdicts differ "
-        f"{len(table['verdicts_differ'])}"
+        f"{table['kind']} {table['variant']} {table['level']}: scenes {table['scenes']}  {counts}  "
+        f"worst agreeing {table['worst_agreeing']:.1e}  overturned {table['overturned']}  "
+        f"verdicts differ {len(table['verdicts_differ'])} (told {len(table['verdicts_told'])})  "
+        f"peaks off by 5 % {len(table['peaks_far'])} (told {len(table['peaks_far_told'])})"
     )
 
 
 def _words(outcome: Outcome) -> str:
     growth = " ".join(f"{value:.1e}" for value in outcome.growth)
     return (
-        f"{outcome.kind} --seed {outcome.seed} --replay {outcome.number}: {outcome.label}, "
-        f"rotation {outcome.difference:.1e}, rise {outcome.rise_difference:.1e}, from "
-        f"{outcome.first:.3f} s, overturned {outcome.overturned}, status {outcome.status}, "
-        f"growth {growth} {outcome.note} seen {', '.join(outcome.seen)}"
+        f"{outcome.level} {outcome.kind} --seed {outcome.seed} --replay {outcome.number}: "
+        f"{outcome.label}, rotation {outcome.difference:.1e}, "
+        f"rise {outcome.rise_difference:.1e}, from {outcome.first:.3f} s, "
+        f"overturned {outcome.overturned}, status {outcome.status}, growth {growth} "
+        f"{outcome.note} seen {', '.join(outcome.seen)}"
     )
 
 

@@ -1,8 +1,11 @@
 """Set both programs beside one another, scene by scene."""
 
-from dataclasses import asdict, dataclass
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, replace
 
 import numpy as np
+
+import rockframe as rf
 
 from .drawing import draw
 from .layout import (
@@ -18,31 +21,57 @@ from .layout import (
     TOO_SMALL,
 )
 from .motions import both
-from .program import rows_at, run_program, scaled_start
+from .program import TIGHT, rows_at, run_program, scaled_start
 from .scene import Scene, parameters
 from .simulate import TOLERANCE, History, simulate
 
-AGREES = 1e-6
-STEPS = (1e-10, 1e-9)
+
+@dataclass(frozen=True)
+class Level:
+    """An accuracy of rockframe, and what is to be asked of it.
+
+    `agrees` is the largest difference over the peak that agrees. `changes` of the motion, as shares
+    of it, show chaos and sensitivity: those of some steps' errors, and of some hundred steps'.
+    None where verdicts and peaks alone are compared. With each of the `tighter` tolerances a
+    difference that errors of steps have grown to becomes at most a third.
+    """
+
+    accuracy: rf.Accuracy | str
+    agrees: float
+    changes: tuple[float, float] | None
+    tighter: tuple[rf.Accuracy, ...] = ()
+
+
+LEVELS = {
+    "tight": Level(TIGHT, 1e-6, (1e-10, 1e-9)),
+    "standard": Level(
+        "standard", 1e-5, (1e-7, 1e-6), (rf.Accuracy(rtol=2e-9), rf.Accuracy(rtol=2e-10))
+    ),
+    "fast": Level("fast", 5e-2, None),
+}
 
 
 @dataclass
 class Outcome:
-    """How far the programs are apart in one scene."""
+    """How far the programs are apart in one scene at one accuracy."""
 
     kind: str
     seed: int
     number: int
+    level: str
     label: str
     difference: float
     rise_difference: float
     peak: float
+    peak_difference: float
     overturned: tuple[bool, bool]
     status: tuple[int, int]
     growth: tuple[float, ...] = ()
     first: float = -1.0
     note: str = ""
     seen: tuple[str, ...] = ()
+    told: bool = False
+    """Whether rockframe says that verdict or peak are not sure."""
 
     def plain(self) -> dict:
         """Give plain values."""
@@ -97,60 +126,95 @@ def _digits(code: float) -> tuple[int, tuple[int, ...], int, tuple[int, ...]]:
 
 
 def compare(
-    kind: str, seed: int, number: int, eccentric: bool = False, limit: float = AGREES
-) -> Outcome:
-    """Run a random scene with both programs and judge a difference that exceeds a limit."""
-    scene = draw(kind, seed, number, eccentric)
-    history, run = run_reference(scene), run_program(scene)
+    kind: str,
+    seed: int,
+    number: int,
+    variant: str = "plain",
+    levels: Sequence[str] = ("tight",),
+    agrees: float | None = None,
+) -> list[Outcome]:
+    """Run a random scene with both programs and judge differences that exceed a limit.
+
+    The limit is that of the level unless `agrees` states another.
+    """
+    scene = draw(kind, seed, number, variant)
+    history = run_reference(scene)
+    return [_compare(scene, history, (kind, seed, number), level, agrees) for level in levels]
+
+
+def _compare(scene: Scene, history: History, which, name: str, agrees: float | None) -> Outcome:
+    level = LEVELS[name] if agrees is None else replace(LEVELS[name], agrees=agrees)
+    run = run_program(scene, accuracy=level.accuracy)
     t, off, rise = apart(history, run, scene)
     worst, worst_rise = float(np.max(off)), float(np.max(rise))
+    peak = float(np.max(np.abs(history.rotation)))
+    common = np.isin(history.time, t)
+    ours = np.max(np.abs(run.rotation.values[rows_at(t, run)]))
+    theirs = np.max(np.abs(history.rotation[common]))
     outcome = Outcome(
-        kind,
-        seed,
-        number,
+        *which,
+        name,
         "agrees",
         worst,
         worst_rise,
-        float(np.max(np.abs(history.rotation))),
+        peak,
+        float(abs(ours - theirs) / max(theirs, 1e-9)),
         (bool(run.overturned), history.status == OVERTURNED),
         (int(run.status), int(history.status)),
+        told="not sure" in run.attrs.get("cautions", ""),
     )
     outcome.seen = states_seen(history, scene)
     if history.status in (CHATTER, TOO_SMALL):
         outcome.note = "the reference model did not finish"
     same = outcome.overturned[0] == outcome.overturned[1]
-    if same and max(worst, worst_rise) <= limit and not outcome.note:
+    if same and max(worst, worst_rise) <= level.agrees and not outcome.note:
         return outcome
     total = np.maximum(off, rise)
-    beyond = np.flatnonzero(total > limit)
+    beyond = np.flatnonzero(total > level.agrees)
     outcome.first = float(t[beyond[0]]) if beyond.size else float(t[-1])
-    _judge(scene, outcome, t, total, history, run, limit)
+    if level.changes is None:
+        outcome.label = "apart"
+    else:
+        _judge(scene, outcome, t, total, history, level)
     return outcome
 
 
-def _judge(scene: Scene, outcome: Outcome, t, total, history, run, limit: float) -> None:
+def _judge(scene: Scene, outcome: Outcome, t, total, history, level: Level) -> None:
     """Tell chaos from disagreement: does a tiny change of the motion do as much?"""
     growth, spread = [], []
-    for size in STEPS:
+    tight = run_program(scene)
+    for size in level.changes:
         other, again = run_reference(scene, 1.0 + size), run_program(scene, 1.0 + size)
         ours = _between(history, other, t)
-        theirs = _between_runs(run, again, t, outcome.peak)
+        theirs = _between_runs(tight, again, t, outcome.peak)
         grown = np.maximum.accumulate(np.maximum(ours, theirs))
         spread.append(grown)
         growth.append(float(grown[-1] / size))
         growth.append(float(np.max(ours)))
         growth.append(float(np.max(theirs)))
     outcome.growth = tuple(growth)
-    beyond = total > limit
+    beyond = total > level.agrees
     if not np.any(beyond):
         last = [float(s[-1]) for s in spread]
-        outcome.label = "chaos" if max(last) > limit else "disagrees"
+        outcome.label = "chaos" if max(last) > level.agrees else "disagrees"
     elif np.all(total[beyond] <= 3.0 * spread[0][beyond]):
         outcome.label = "chaos"
     elif np.all(total[beyond] <= 3.0 * spread[1][beyond]):
         outcome.label = "sensitive"
     else:
-        outcome.label = "disagrees"
+        outcome.label = "by tolerance" if _shrinks(scene, outcome, history, level) else "disagrees"
+
+
+def _shrinks(scene: Scene, outcome: Outcome, history, level: Level) -> bool:
+    """Tell whether a difference becomes smaller as the tolerance does."""
+    last = max(outcome.difference, outcome.rise_difference)
+    for accuracy in level.tighter:
+        _, off, rise = apart(history, run_program(scene, accuracy=accuracy), scene)
+        found = max(float(np.max(off)), float(np.max(rise)))
+        if found > last / 3.0:
+            return False
+        last = found
+    return bool(level.tighter)
 
 
 def _between(one: History, other: History, t: np.ndarray) -> np.ndarray:

@@ -10,11 +10,14 @@ from .layout import LIMIT, RULES
 from .motions import RECORDS, have_records
 from .rest import NoRestError, rest_of
 from .scene import GRAVITY, KINDS, Scene, parameters
+from .starting import rest_on_slope
 
 LARGEST_LEAN = 0.6
+LEAST_SHARE = 1e-3
+VARIANTS = ("plain", "eccentric", "inclined")
 
 
-def draw(kind: str, seed: int, number: int, eccentric: bool = False) -> Scene:
+def draw(kind: str, seed: int, number: int, variant: str = "plain") -> Scene:
     """Draw a scene; the same seed and number give the same scene.
 
     Parameters
@@ -22,8 +25,9 @@ def draw(kind: str, seed: int, number: int, eccentric: bool = False) -> Scene:
     kind : str
         One of `KINDS`.
     seed, number : int
-    eccentric : bool
-        Whether the block's centre of mass is moved to the side.
+    variant : str
+        One of `VARIANTS`: as it is, with the block's centre of mass moved to the side, or on an
+        inclined base, half of these with the centre of mass to the side too.
 
     Returns
     -------
@@ -44,9 +48,37 @@ def draw(kind: str, seed: int, number: int, eccentric: bool = False) -> Scene:
     )
     if scene.motion["form"] == "still":
         scene = replace(scene, free=float(round(rng.uniform(3.0, 6.0), 3)))
-    if not eccentric:
+    if variant == "plain":
         return scene
-    return _beside(scene, np.random.default_rng([seed, number, KINDS.index(kind), 1]))
+    others = np.random.default_rng([seed, number, KINDS.index(kind), VARIANTS.index(variant)])
+    if variant == "eccentric":
+        return _beside(scene, others)
+    scene = replace(scene, small=False)  # the reference model has the whole kinematics on slopes
+    return _inclined(_beside(scene, others) if others.random() < 0.5 else scene, others)
+
+
+def _inclined(scene: Scene, rng: np.random.Generator) -> Scene:
+    """Incline the base as far as the body rests on it with all of its bases pressed."""
+    side = 1.0 if rng.random() < 0.5 else -1.0
+    share = float(rng.uniform(0.02, 0.6))
+    told = bool(rng.random() < 0.15)
+    level = replace(scene, inclination=0.0)
+    while True:
+        given = replace(level, inclination=side * share * min(level.limits()), told=told)
+        if scene.kind == "rigid" or _rests_on_slope(given):
+            return given
+        share *= 0.7
+        if share < LEAST_SHARE:  # an end of the base is raised by the eccentricity alone
+            level, share = replace(level, eccentricity=0.0), 100.0 * share
+
+
+def _rests_on_slope(scene: Scene) -> bool:
+    p = parameters(scene, 1e-13)
+    try:
+        rest = rest_on_slope(scene, p)
+    except NoRestError:
+        return False
+    return abs(rest.lower_angle + rest.angle) < LARGEST_LEAN * p[LIMIT]
 
 
 def _beside(scene: Scene, rng: np.random.Generator) -> Scene:

@@ -1,14 +1,27 @@
-"""The ground's acceleration: straight lines between samples, or formulas of pulses."""
+"""The ground's acceleration: straight lines between samples, or formulas of pulses.
+
+On an inclined base the axes are along it and normal to it, and the part of gravity along it acts
+as an acceleration of the ground that lasts.
+"""
 
 import math
 
 from .compiling import compiled
 
 STILL, RECORD, HARMONIC, RICKER, RICKER_ODD = 0, 1, 2, 3, 4
+COSINE, SINE, PULL = 5, 6, 7
 
 
 @compiled
 def ground(t, piece, shape, across, upwards):
+    """Give the acceleration of the ground along the base and normal to it, see `_level`."""
+    gx, gy = _level(t, piece, shape, across, upwards)
+    cosine, sine = shape[COSINE], shape[SINE]
+    return gx * cosine + gy * sine + shape[PULL], gy * cosine - gx * sine
+
+
+@compiled
+def _level(t, piece, shape, across, upwards):
     """Give the horizontal and vertical acceleration of the ground.
 
     Parameters
@@ -19,7 +32,8 @@ def ground(t, piece, shape, across, upwards):
         Which interval between samples; -1 where the ground is still.
     shape : ndarray
         Kind; for a record its time step; for a pulse frequency or period, phase, and the
-        amplitudes of both components.
+        amplitudes of both components; then cosine and sine of the inclination of the base, and
+        the part of gravity along it.
     across, upwards : ndarray
         Samples of a record.
     """

@@ -2,6 +2,8 @@
 
 import math
 
+import numpy as np
+
 from .bed import resultants
 from .compiling import compiled
 from .kinematics import height, is_small, limit_of, relative, sway
@@ -72,6 +74,20 @@ def inverse_masses(p, inverse):
     inverse[2] = 1.0 / p[LOWER_INERTIA] if lower else 0.0
     inverse[3] = inverse[4] = 1.0 / p[MASS] if p[MASS] > 0.0 else 0.0
     inverse[5] = 1.0 / p[INERTIA] if p[INERTIA] > 0.0 else 0.0
+
+
+def rooms(p: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Give the room that the compiled functions work in."""
+    room = (
+        np.zeros(8),
+        np.zeros((3, 6)),
+        np.zeros(6),
+        np.zeros((2, 6)),
+        np.zeros((2, 6)),
+        np.zeros(6),
+    )
+    inverse_masses(p, room[2])
+    return room
 
 
 @compiled

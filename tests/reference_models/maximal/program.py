@@ -7,10 +7,12 @@ import numpy as np
 
 import rockframe as rf
 
+from .layout import LIMIT
 from .motions import both
-from .scene import Scene
+from .scene import Scene, parameters
 
 RTOL = 1e-12
+TIGHT = rf.Accuracy(rtol=RTOL)
 
 
 def system_of(scene: Scene) -> rf.System:
@@ -41,6 +43,8 @@ def system_of(scene: Scene) -> rf.System:
                 )
             )
     options = {"coupling": scene.kind} if scene.kind in ("cascade", "coupled") else {}
+    if scene.inclination != 0.0:
+        options["inclination"] = _in(scene.inclination, "rad")
     return rf.System(
         *parts, restraint=scene.rule, rotation="small" if scene.small else "finite", **options
     )
@@ -63,19 +67,20 @@ def _block_of(scene: Scene) -> rf.Block:
     )
 
 
-def run_program(scene: Scene, factor: float = 1.0, rtol: float = RTOL):
+def run_program(scene: Scene, factor: float = 1.0, accuracy: str | rf.Accuracy = TIGHT):
     """Run the scene with rockframe; `factor` multiplies motion and start."""
     motion, _ = both(scene.motion, factor)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         system = system_of(scene)
-        limit = float(system.equilibrium().overturning_angle)
-        told = scene.told or scene.start != 0.0 or scene.eccentricity == 0.0
+        limit = parameters(scene, RTOL)[LIMIT]
+        leans = scene.eccentricity != 0.0 or scene.inclination != 0.0
+        told = scene.told or scene.start != 0.0 or not leans
         initial = rf.InitialState(
             rotation=_in(factor * scene.start * limit, "rad") if told else None,
             angular_velocity=_in(factor * scene.start_rate * scene.frequency * limit, "rad/s"),
         )
-        options = {"initial": initial, "accuracy": rf.Accuracy(rtol=rtol)}
+        options = {"initial": initial, "accuracy": accuracy}
         if motion is None:
             return system.simulate(duration=_in(scene.free, "s"), output_step="0.01 s", **options)
         return system.simulate(motion, free_vibration=_in(scene.free, "s"), **options)

@@ -50,6 +50,15 @@ def corner_place(p, side):
     return side * p[HALF_WIDTH] - p[ECCENTRICITY]
 
 
+def _holding(p, side, gx, gy):
+    """Give the moment, per mass, that brings the block back from a corner."""
+    b, h = side * corner_place(p, side), p[HALF_HEIGHT]
+    if is_small(p):
+        lean = (p[GRAVITY] + gy) * limit_of(p, side) + side * gx
+        return lean * math.hypot(b, h)
+    return (p[GRAVITY] + gy) * b + side * gx * h
+
+
 def start_rocking(z, gx, contact, held, p):
     """The ground tips the block over the corner that it leaves behind."""
     contact[HOLD] = HELD
@@ -67,13 +76,9 @@ def impact(z, gx, gy, contact, held, p):
     z[5] = 0.0
     z[11] *= p[RIGHT_RESTITUTION] if side > 0.0 else p[LEFT_RESTITUTION]
     inertia = p[INERTIA] + p[MASS] * (b * b + h * h)
-    if is_small(p):
-        frequency2 = p[MASS] * p[GRAVITY] * math.hypot(b, h) / inertia
-        back = (1.0 + gy / p[GRAVITY]) * limit_of(p, side) + side * gx / p[GRAVITY]
-        back *= frequency2
-    else:
-        back = p[MASS] * ((p[GRAVITY] + gy) * b + side * gx * h) / inertia
-    if back > 0.0 and 0.5 * z[11] * z[11] / back < LEAST_REBOUND * p[LIMIT]:
+    back = p[MASS] * _holding(p, side, gx, gy) / inertia
+    rests = _holding(p, -side, gx, gy) >= 0.0  # else the next bounce leaves over the other corner
+    if rests and back > 0.0 and 0.5 * z[11] * z[11] / back < LEAST_REBOUND * p[LIMIT]:
         contact[HOLD] = RESTING
         z[11] = 0.0
         z[4] = z[9] = z[10] = 0.0

@@ -6,7 +6,7 @@ from .bed import bed_energy
 from .driver import advance, typical_sizes
 from .events import fire
 from .excitation import ground
-from .forces import corner, has_lower, inverse_masses
+from .forces import corner, has_lower, rooms
 from .guards import noise_levels
 from .impulses import note_places
 from .kinematics import relative
@@ -26,20 +26,6 @@ from .layout import (
 
 MOST_EVENTS = 20000
 AT_ONCE = 400
-
-
-def rooms(p: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Give the room that the compiled functions work in."""
-    room = (
-        np.zeros(8),
-        np.zeros((3, 6)),
-        np.zeros(6),
-        np.zeros((2, 6)),
-        np.zeros((2, 6)),
-        np.zeros(6),
-    )
-    inverse_masses(p, room[2])
-    return room
 
 
 def run(stops, pieces, motion, z, contact, held, p, pace, longest):

@@ -18,7 +18,8 @@ class Scene:
 
     `radius` and `slenderness` are those of a block whose centre of mass stands above the middle of
     its base; `eccentricity` then moves it to the right. `told` says that a start at rotation zero
-    is meant, where the block would lean at rest.
+    is meant, where the block would lean at rest. The base rises to the right by `inclination`;
+    rotations are relative to it.
     """
 
     kind: str
@@ -42,6 +43,7 @@ class Scene:
     start: float = 0.0
     start_rate: float = 0.0
     told: bool = False
+    inclination: float = 0.0
     free: float = 2.0
     motion: dict[str, Any] = field(default_factory=dict)
 
@@ -135,7 +137,8 @@ class Scene:
 def parameters(scene: Scene, tolerance: float) -> np.ndarray:
     """Give the parameters of a scene as an array."""
     p = np.zeros(at.PARAMETERS)
-    p[at.GRAVITY] = GRAVITY
+    weight = GRAVITY * math.cos(scene.inclination)  # of a unit of mass, normal to the base
+    p[at.GRAVITY] = weight
     p[at.RULE] = at.RULES.index(scene.rule)
     p[at.SMALL] = scene.small
     p[at.KIND] = KINDS_NUMBER[scene.kind]
@@ -151,9 +154,12 @@ def parameters(scene: Scene, tolerance: float) -> np.ndarray:
         fast = scene.beta * scene.frequency
         p[at.STIFFNESS] = 0.5 * scene.mass * fast**2
         p[at.DAMPING] = scene.xi * scene.mass * fast
-        p[at.SETTLEMENT] = scene.mass * GRAVITY / (2.0 * p[at.STIFFNESS])
+        p[at.SETTLEMENT] = scene.mass * weight / (2.0 * p[at.STIFFNESS])
     if scene.kind in ("bed", "cascade", "coupled"):
         _soil(scene, p)
+    # the centre of mass stands above an end of the base
+    p[at.LEFT_LIMIT] -= scene.inclination
+    p[at.RIGHT_LIMIT] += scene.inclination
     p[at.LIMIT] = min(p[at.LEFT_LIMIT], p[at.RIGHT_LIMIT])
     return p
 
@@ -174,7 +180,7 @@ def _soil(scene: Scene, p: np.ndarray) -> None:
     p[at.LOWER_MASS], p[at.LOWER_INERTIA] = m, inertia
     p[at.LOWER_HALF_WIDTH], p[at.LOWER_HEIGHT] = b, level
     p[at.BED_STIFFNESS] = scene.soil_stiffness
-    p[at.BED_SETTLEMENT] = total * GRAVITY / (2.0 * b * scene.soil_stiffness)
+    p[at.BED_SETTLEMENT] = total * p[at.GRAVITY] / (2.0 * b * scene.soil_stiffness)
     whole = 2.0 * scene.soil_xi * math.sqrt(2.0 * b * scene.soil_stiffness * total)
     p[at.BED_DAMPING] = whole / (2.0 * b)
 
@@ -209,4 +215,5 @@ def mirrored(scene: Scene) -> Scene:
         start=-scene.start,
         start_rate=-scene.start_rate,
         eccentricity=-scene.eccentricity,
+        inclination=-scene.inclination,
     )

@@ -1,13 +1,13 @@
 """Run a scene with the reference model."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from . import excitation
 from . import layout as at
 from .running import run
-from .scene import Scene, paces, parameters
+from .scene import GRAVITY, Scene, paces, parameters
 from .starting import start
 
 TOLERANCE = 1e-13
@@ -27,22 +27,38 @@ class Excitation:
     @classmethod
     def still(cls, step: float = 0.01) -> "Excitation":
         """Give still ground."""
-        return cls(step, 0, np.zeros(5), np.zeros(2), np.zeros(2), np.inf)
+        return cls(step, 0, _shape(), np.zeros(2), np.zeros(2), np.inf)
 
     @classmethod
     def record(cls, step: float, across, upwards=None) -> "Excitation":
         """Give straight lines between samples."""
         across = np.array(across, dtype=np.float64)
         upwards = np.zeros_like(across) if upwards is None else np.array(upwards, dtype=np.float64)
-        shape = np.array([excitation.RECORD, step, 0.0, 0.0, 0.0])
+        shape = _shape(excitation.RECORD, step)
         return cls(step, across.size - 1, shape, across, upwards, np.inf)
 
     @classmethod
     def pulse(cls, kind, step, intervals, scale, phase, peak, vertical) -> "Excitation":
         """Give a formula; `scale` is its frequency, or a wavelet's period."""
-        shape = np.array([kind, scale, phase, peak, vertical], dtype=np.float64)
+        shape = _shape(kind, scale, phase, peak, vertical)
         longest = 0.02 / scale if kind == excitation.HARMONIC else 0.01 * scale
         return cls(step, intervals, shape, np.zeros(2), np.zeros(2), longest)
+
+    def along(self, inclination: float) -> "Excitation":
+        """Give the same motion on a base that rises to the right."""
+        shape = self.shape.copy()
+        sine = np.sin(inclination)
+        shape[[excitation.COSINE, excitation.SINE]] = np.cos(inclination), sine
+        shape[excitation.PULL] = GRAVITY * sine
+        return replace(self, shape=shape)
+
+
+def _shape(*values: float) -> np.ndarray:
+    """Give the numbers of a motion on a level base, see `excitation.ground`."""
+    shape = np.zeros(8)
+    shape[: len(values)] = values
+    shape[excitation.COSINE] = 1.0
+    return shape
 
 
 @dataclass(frozen=True)
@@ -73,6 +89,7 @@ def simulate(scene: Scene, motion: Excitation, tolerance: float = TOLERANCE) -> 
     History
     """
     p = parameters(scene, tolerance)
+    motion = motion.along(scene.inclination)
     z, contact, held = start(scene, p)
     total = motion.intervals * motion.step + scene.free
     count = int(np.ceil(total / motion.step * (1.0 - 1e-12)))

@@ -3,11 +3,13 @@
 import math
 
 import numpy as np
+from scipy.optimize import root
 
 from . import layout as at
-from .rest import lowered, rest_of
+from .forces import accelerate, rooms
+from .rest import NoRestError, Rest, lowered, rest_of
 from .rigid_switches import place_hinged
-from .scene import Scene
+from .scene import GRAVITY, Scene
 
 
 def start(scene: Scene, p: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -20,7 +22,7 @@ def start(scene: Scene, p: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarr
     if scene.kind == "rigid":
         _on_rigid_ground(p, z, contact, held, angle, rate)
         return z, contact, held
-    rest = rest_of(scene, p)
+    rest = rest_on_slope(scene, p) if scene.inclination else rest_of(scene, p)
     told = scene.told or angle != 0.0
     if scene.kind == "bed":
         height = _height_over_bed(p, angle) if told else rest.lower_height
@@ -34,6 +36,44 @@ def start(scene: Scene, p: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarr
         height = _height_over_pads(p, on_base)
     _upper(scene, p, z, contact, held, on_base, height, rate)
     return z, contact, held
+
+
+def rest_on_slope(scene: Scene, p: np.ndarray) -> Rest:
+    """Give the rest of bodies on an inclined base, with all of their bases pressed.
+
+    It is found from the accelerations of the equations of motion, which must vanish.
+
+    Raises
+    ------
+    NoRestError
+        There is none, or a part of a base has no contact in it.
+    """
+    lower, upper = scene.kind != "pads", scene.kind != "bed"
+    places = [1, 2] * lower + [4, 5] * upper
+    pull, room, out = GRAVITY * math.sin(scene.inclination), rooms(p), np.zeros(10)
+    sizes = [p[at.LIMIT], p[at.BED_SETTLEMENT]] * lower + [p[at.LIMIT], p[at.SETTLEMENT]] * upper
+
+    def placed(shares: np.ndarray) -> tuple[Rest, np.ndarray, np.ndarray, np.ndarray]:
+        values = [float(value) for value in shares * np.array(sizes)]
+        rest = Rest(*values) if lower else Rest(0.0, 0.0, *values)
+        z, contact, held = np.zeros(at.STATES), np.zeros(at.CONTACTS, dtype=np.int64), np.zeros(8)
+        if lower:
+            _lower(scene, p, z, contact, held, rest.lower_angle, rest.lower_height, 0.0)
+        if upper:
+            _upper(scene, p, z, contact, held, rest.angle, rest.height, 0.0)
+        return rest, z, contact, held
+
+    def lacks(shares: np.ndarray) -> np.ndarray:
+        accelerate(placed(shares)[1], pull, 0.0, *placed(shares)[2:], p, room, out)
+        return out[places]
+
+    found = root(lacks, np.full(len(sizes), -1e-6 * np.sign(scene.inclination)), tol=1e-15).x
+    rest, _, contact, _ = placed(found)
+    bases = [at.BED_LEFT, at.BED_RIGHT] * lower + [at.LEFT, at.RIGHT] * upper
+    pressed = all(contact[base] == at.TOUCHING for base in bases)
+    if not (pressed and np.max(np.abs(lacks(found))) < 1e-9 * GRAVITY):
+        raise NoRestError
+    return rest
 
 
 def _on_rigid_ground(p, z, contact, held, angle: float, rate: float) -> None:
@@ -105,7 +145,7 @@ def _lower(scene: Scene, p, z, contact, held, angle, middle, rate) -> None:
     left, right = (contact[at.BED_LEFT + i] == at.TOUCHING for i in range(2))
     held[at.LOWER_LEAD] = _lead(angle, rate, e)
     held[at.LOWER_POINT] = _point(scene.rule, b, left, right, held[at.LOWER_LEAD]) - e
-    if scene.eccentricity != 0.0:
+    if scene.eccentricity != 0.0 or scene.inclination != 0.0:
         z[0] = lowered(scene.small, held[at.LOWER_POINT], h, angle)
     first = h if scene.small else h * math.cos(angle) + held[at.LOWER_POINT] * math.sin(angle)
     z[6] = first * rate
