@@ -264,7 +264,9 @@ def test_what_is_not_known_is_refused():
 def test_a_verdict_tells_the_friction_that_it_needed():
     response = SCENES["rigid ground"].simulate(PULSE)
     needed = response.peak_friction_demand.item()
-    assert response.attrs["verdict"].endswith(f"Friction needed: {needed:.3g}.")
+    lasted = response.peak_friction_demand_duration.item()
+    told = f"Friction needed: {needed:.3g}, more than half of it for {lasted:.3g} s in all."
+    assert response.attrs["verdict"].endswith(told)
     assert "Friction" not in SCENES["rigid ground"].simulate(PULSE, outputs=None).attrs["verdict"]
     assert "friction to rock, at least b/h    0.25\n" in rf.System(BLOCK).describe()
 
@@ -279,21 +281,37 @@ def test_too_little_friction_warns_with_time_and_duration():
     first = time[demand > 0.25][0]
     lasted = (demand > 0.25).sum() * (time[1] - time[0])
     told = float(text.split(" from ")[1].split(" s on")[0])
+    assert response.would_slide
+    assert response.sliding_time == pytest.approx(told, rel=1e-3)
     assert first - (time[1] - time[0]) <= told <= first
     assert float(text.split("for ")[1].split(" s in all")[0]) == pytest.approx(lasted, rel=0.05)
-    assert f"up to {reference.peak_friction_demand.item():.3g}" in text
+    assert f"needs {reference.peak_friction_demand.item():.3g} of 0.25, " in text
+    said = text.removeprefix("the block ").removesuffix("; the model holds it")
+    assert response.attrs["verdict"].endswith(f"; 1 impact. {said.capitalize()}.")
     assert response.attrs["cautions"] == text
     np.testing.assert_array_equal(response.rotation, reference.rotation)
-    enough = rf.RigidGround(friction=1.01 * reference.peak_friction_demand.item())
-    assert rf.System(BLOCK, enough).simulate(PULSE).attrs["cautions"] == "none"
+    most = reference.peak_friction_demand.item()
+    holds = rf.System(BLOCK, rf.RigidGround(friction=1.01 * most)).simulate(PULSE)
+    assert holds.attrs["cautions"] == "none"
+    assert not holds.would_slide
+    assert np.isnan(holds.sliding_time)
+    assert holds.sliding_duration == 0
+    assert holds.attrs["verdict"].endswith(
+        f"Would not slide: needs {most:.3g} of {1.01 * most:.3g}."
+    )
+    # two numbers that look alike are told in as many digits as tell them apart
+    with pytest.warns(rf.ModelWarning, match="needs 0.33[0-9]{4,} of 0.33[0-9]{4,},"):
+        rf.System(BLOCK, rf.RigidGround(friction=(1.0 - 1e-6) * most)).simulate(PULSE)
 
 
 def test_the_friction_of_a_stack_is_that_of_both_its_bases():
     pads, soil = PADS.replace(friction=0.05), SOIL.replace(friction=0.05)
     with pytest.warns(rf.ModelWarning) as caught:
-        rf.System(BLOCK, pads, CAP, soil).simulate(PULSE)
+        response = rf.System(BLOCK, pads, CAP, soil).simulate(PULSE)
     words = [str(each.message) for each in caught]
     assert any(word.startswith("the block would slide") for word in words)
     assert any(word.startswith("the cap would slide") for word in words)
+    assert "The block would slide from " in response.attrs["verdict"]
+    assert "; the cap would slide from " in response.attrs["verdict"]
     with pytest.warns(rf.ModelWarning, match="the block would slide"):
         rf.System(BLOCK, soil).simulate(PULSE)

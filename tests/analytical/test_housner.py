@@ -159,6 +159,32 @@ def test_uplift_starts_at_its_threshold(rotation):
         assert np.sign(moved.rotation.values[first]) == -sign
 
 
+def test_a_block_that_the_ground_tips_does_not_come_to_rest():
+    """It bounces on one corner for an instant, and leaves over the other one with its speed."""
+    b, h, restitution, ground = 0.5, 2.0, 0.3, -0.27 * GRAVITY
+    block = rf.Block(width="1 m", height="4 m", mass="1 t")
+    system = rf.System(block, rf.RigidGround(restitution=restitution), gravity=f"{GRAVITY!r} m/s^2")
+    motion = rf.GroundMotion.from_arrays(([ground, ground], "m/s^2"), "0.02 s")
+    # it lands so slowly that its rebound is below the share of the overturning angle that is rest
+    start, rate = 1e-10, -1e-5
+    run = system.simulate(
+        motion,
+        initial=rf.InitialState(rotation=f"{start!r} rad", angular_velocity=f"{rate!r} rad/s"),
+        accuracy="reference",
+    )
+    inertia = 4.0 * (b * b + h * h) / 3.0
+    back = (GRAVITY * b - ground * h) / inertia  # about the left corner
+    away = (-GRAVITY * b - ground * h) / inertia  # about the right one
+    landing = math.sqrt(rate * rate - 2.0 * away * start)
+    bounce = 2.0 * restitution * landing / back
+    assert back > 0.0
+    assert away > 0.0
+    assert run.event_kind.values.tolist() == [2, 2]  # impacts, and no rest
+    assert np.diff(run.event_time.values)[0] == pytest.approx(bounce, rel=1e-4)
+    speeds = [-restitution * landing, restitution**2 * landing]
+    assert run.angular_velocity_after.values == pytest.approx(speeds, rel=1e-6)
+
+
 def test_a_ramp_lifts_the_block_when_it_crosses_the_threshold():
     theta = 0.25
     system = rigid_block(theta)

@@ -173,6 +173,49 @@ def test_bases_that_give_way_lean_by_the_weight_along_them():
         np.testing.assert_allclose(run.friction_demand, math.tan(i), rtol=1e-9)
 
 
+@pytest.mark.filterwarnings("ignore:at rest the body leans")
+@pytest.mark.parametrize("share", [0.3, 0.9, 0.99, 0.999])
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_a_body_on_a_bed_rests_on_its_whole_base_up_to_uplift(share, side):
+    """There K sin a cos a = m g h sin(i + a); beyond it the held point moves, and so does rest."""
+    b, h, stiffness = 0.5 * WIDTH, 0.5 * HEIGHT, 2e6
+    rocking, weight = stiffness * b**3 / 1.5, MASS * G
+    lean = inclination = 0.0
+    for _ in range(60):
+        uplift = math.asin(0.5 * weight * math.cos(inclination) / (b * b * stiffness))
+        lean = share * uplift
+        moment = rocking * math.sin(lean) * math.cos(lean)
+        inclination = math.asin(moment / (weight * h)) - lean
+    system = rf.System(
+        BLOCK,
+        rf.WinklerSoil(stiffness=f"{stiffness!r} Pa", damping_ratio=0.1),
+        gravity=f"{G!r} m/s^2",
+        inclination=f"{-side * inclination!r} rad",
+    )
+    assert inclination > 0.0
+    assert system.equilibrium().rest_rotation.item() == pytest.approx(side * lean, rel=1e-9)
+    run = system.simulate(duration="0.5 s")
+    assert run.contact_state.values.tolist() == [0] * run.sizes["time"]
+    assert np.ptp(run.rotation.values) < 1e-9
+
+
+@pytest.mark.filterwarnings("ignore:at rest the body leans")
+@pytest.mark.parametrize("inclination", [0.02, -0.03])
+def test_nothing_holds_a_stack_at_its_rest_on_a_slope(inclination):
+    """Rest from the accelerations, the holding moment from the balance of forces."""
+    system = rf.System(
+        rf.Block(width="2 m", height="5 m", mass="40 t"),
+        rf.TwoSpringSupport(frequency_ratio=12, damping_ratio=0.1),
+        rf.CushionCap(width="3.4 m", height="1.2 m", mass="20 t"),
+        rf.WinklerSoil(stiffness="6 MPa", damping_ratio=0.2),
+        inclination=f"{inclination} rad",
+    )
+    rest = system.equilibrium().rest_rotation.item()
+    held = system.moment_rotation(([rest], "rad"))
+    assert abs(rest) > 1e-3
+    assert abs(held.restoring_moment.item()) < 1e-12 * 40e3 * 9.80665 * 2.5
+
+
 def test_absolute_accelerations_hold_no_gravity():
     motion, _ = record(3, 3.5, 4.0)
     system = rf.System(BLOCK, inclination="6 deg")

@@ -212,7 +212,9 @@ def test_without_dampers_both_rules_of_separation_are_one(rule):
     )
     assert int((one.contact_state != 0).sum()) > 20
     for name in one.data_vars:
-        np.testing.assert_allclose(one[name], other[name], rtol=1e-9, atol=1e-13, err_msg=name)
+        # a duration is read off between the ends of steps, which the rules place otherwise
+        rtol = 1e-6 if name == "peak_friction_demand_duration" else 1e-9
+        np.testing.assert_allclose(one[name], other[name], rtol=rtol, atol=1e-13, err_msg=name)
 
 
 def test_with_dampers_the_rules_differ_and_only_one_of_them_pulls():

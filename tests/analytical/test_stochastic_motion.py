@@ -57,9 +57,10 @@ RECORDED = {
 @pytest.mark.parametrize("magnitude", RECORDED)
 def test_two_corners_come_nearer_to_recorded_motions_at_long_periods(magnitude):
     ratios = {}
-    for kind in ("one corner", "two corners"):
+    for kind in ("one corner", "two corners", "unless given"):
+        given = {} if kind == "unless given" else {"source": kind}
         motions = {
-            seed: rf.GroundMotion.stochastic(magnitude, "20 km", seed, source=kind)
+            seed: rf.GroundMotion.stochastic(magnitude, "20 km", seed, **given)
             for seed in range(12)
         }
         spectra = rf.response_spectrum(motions, (PERIODS, "s")).pseudo_spectral_acceleration
@@ -69,6 +70,19 @@ def test_two_corners_come_nearer_to_recorded_motions_at_long_periods(magnitude):
     assert ratios["one corner"].max() > 1.5
     assert ratios["two corners"].min() > 0.7
     assert ratios["two corners"].max() < 1.45
+    assert ratios["unless given"].tolist() == ratios["two corners"].tolist()
+
+
+@pytest.mark.parametrize(
+    ("magnitude", "expected"), [(3.0, "one corner"), (5.99, "one corner"), (6.0, "two corners")]
+)
+def test_large_earthquakes_have_two_corners_unless_one_is_asked_for(magnitude, expected):
+    motion = rf.GroundMotion.stochastic(magnitude, "20 km", 1)
+    assert motion.metadata["source"] == expected
+    assert motion == rf.GroundMotion.stochastic(magnitude, "20 km", 1, source=expected)
+    old = {key: value for key, value in motion.to_dict().items() if key != "source"}
+    one = rf.GroundMotion.stochastic(magnitude, "20 km", 1, source="one corner")
+    assert rf.GroundMotion.from_dict(old) == one
 
 
 @pytest.mark.parametrize("magnitude", [4.0, 6.0, 7.5])
@@ -280,7 +294,9 @@ def test_mean_peak_is_that_of_random_vibration_theory(magnitude, kilometres):
 
 @pytest.fixture(scope="module")
 def many():
-    return [rf.GroundMotion.stochastic(6.0, "20 km", seed) for seed in range(200)]
+    return [
+        rf.GroundMotion.stochastic(6.0, "20 km", seed, source="one corner") for seed in range(200)
+    ]
 
 
 def test_mean_peaks_are_those_of_smsim(many):

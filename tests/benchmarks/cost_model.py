@@ -40,7 +40,9 @@ WINDOW = ("5 s", "13 s")
 
 def excitation() -> rf.GroundMotion:
     """Give the motion of the five scenes, unscaled and whole."""
-    return rf.GroundMotion.stochastic(6.8, "5 km", seed=29, stress_drop="20 MPa")
+    return rf.GroundMotion.stochastic(
+        6.8, "5 km", seed=29, stress_drop="20 MPa", source="one corner"
+    )
 
 
 def measured(system: rf.System, motion: rf.GroundMotion, accuracy, repeats: int) -> dict:

@@ -29,7 +29,9 @@ class Scene:
 @cache
 def motion() -> rf.GroundMotion:
     """Give eight seconds of strong motion: in every scene contact changes."""
-    drawn = rf.GroundMotion.stochastic(6.8, "5 km", seed=29, stress_drop="20 MPa")
+    drawn = rf.GroundMotion.stochastic(
+        6.8, "5 km", seed=29, stress_drop="20 MPa", source="one corner"
+    )
     return drawn.scaled(2.4).window("5 s", "13 s")
 
 

@@ -27,7 +27,9 @@ TOLERANCES = tuple(10.0**-power for power in range(2, 12))
 
 def excitation(factor: float) -> rf.GroundMotion:
     """Give the motion of the five scenes, by another factor."""
-    drawn = rf.GroundMotion.stochastic(6.8, "5 km", seed=29, stress_drop="20 MPa")
+    drawn = rf.GroundMotion.stochastic(
+        6.8, "5 km", seed=29, stress_drop="20 MPa", source="one corner"
+    )
     return drawn.scaled(factor).window("5 s", "13 s")
 
 

@@ -9,6 +9,7 @@ how much faster two threads are than one. The record is a file; without one the 
 length of El Centro and is drawn from a model.
 """
 
+import math
 import os
 import sys
 import time
@@ -30,7 +31,9 @@ def main() -> None:
     if len(sys.argv) > 1:
         motion = rf.GroundMotion.read(sys.argv[1])
     else:
-        motion = rf.GroundMotion.stochastic(6.5, "10 km", seed=4, time_step="0.02 s")
+        motion = rf.GroundMotion.stochastic(
+            6.5, "10 km", seed=4, time_step="0.02 s", source="one corner"
+        )
     print(motion)
     ratios, scales = np.linspace(0.05, 0.5, CASES), np.linspace(0.1, 2.0, CASES)
     grids = {
@@ -53,6 +56,9 @@ def main() -> None:
         print(f"fast, {name}: {share(motion, axes):.0%} of the processor time outside the lanes")
         print(f"fast, {name}: {gain(motion, axes):.2f} times as fast with two threads as with one")
     print(f"load of the machine meanwhile: {os.getloadavg()[0]:.1f} on {os.cpu_count()} processors")
+
+
+study.WORTH = math.inf  # lanes are compiled in the first round
 
 
 def costs(motion, axes, accuracy) -> dict[str, float]:

@@ -58,7 +58,9 @@ def test_all_lanes_share_their_instructions(base, fixed):
 def test_lanes_beside_single_runs(base):
     from rockframe.solve.lanes.integrate import LaneRun, integrate_lanes
 
-    motion = rf.GroundMotion.stochastic(6.5, "10 km", seed=4, time_step="0.02 s").si
+    motion = rf.GroundMotion.stochastic(
+        6.5, "10 km", seed=4, time_step="0.02 s", source="one corner"
+    ).si
     model = model_on(*BASES[base])
     options = {"duration": motion.duration, "output_step": None}
     start = begun(

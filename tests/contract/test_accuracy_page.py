@@ -64,7 +64,9 @@ def least_overturning(system, accuracy, low):
 
     def overturns(amplitude):
         pulse = rf.GroundMotion.sine_pulse(f"{-amplitude!r} m/s^2")
-        run = system.simulate(pulse, free_vibration="10 s", outputs=None, accuracy=accuracy)
+        run = system.simulate(
+            pulse, free_vibration="10 s", outputs=None, accuracy=accuracy, second_look=False
+        )
         return bool(run.overturned)
 
     high = low + 0.1

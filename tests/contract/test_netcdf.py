@@ -225,7 +225,6 @@ def test_the_run_itself_is_on_record(tmp_path):
     [
         {"outputs": None},
         {"output_step": "33 ms"},
-        {"duration": "0.5 s"},
     ],
 )
 def test_a_record_that_the_result_does_not_hold_is_left_out(options, tmp_path):
@@ -234,6 +233,13 @@ def test_a_record_that_the_result_does_not_hold_is_left_out(options, tmp_path):
         system = rf.System.from_dataset(through_file(response, tmp_path))
     assert system.motion is None
     assert system.to_dict() == SCENES["rigid ground, finite"]().to_dict()
+
+
+def test_a_record_is_kept_by_a_run_that_ends_before_it(tmp_path):
+    response = SCENES["rigid ground, finite"]().simulate(record(), duration="0.5 s")
+    system = rf.System.from_dataset(through_file(response, tmp_path))
+    assert system.motion is not None
+    assert system.motion.sha256 == record().sha256
 
 
 def test_a_pulse_is_kept_even_without_histories(tmp_path):

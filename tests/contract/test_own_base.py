@@ -2,11 +2,13 @@
 
 import importlib
 import json
+import math
 import os
 import subprocess
 import sys
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -403,6 +405,58 @@ class Doubled(rf.TwoSpringSupport):
         return ext.pads_under(self.replace(frequency_ratio=40), load)
 
 
+@ext.on_pads
+class TiedLaw(NamedTuple):
+    """Pads and a spring against the rotation of the base."""
+
+    pads: ext.Pads
+    tie: float  # per unit mass, by the difference of the heights of both ends
+
+    @ext.inlined
+    def now(self, own):
+        return self.pads
+
+    @ext.inlined
+    def force(self, contact, line, own):
+        found = self.pads.force(contact, line, own)
+        moment = found.moment - self.tie * (line.left - line.right)
+        return ext.BaseForce(found.upward, moment, found.dissipated)
+
+
+@dataclass(frozen=True)
+class TiedSupport(ext.PadSupport):
+    """Pads and a tie, of which the answers are those of pads."""
+
+    tie: float
+
+    def law(self, body, mass, load_mass):
+        pads = super().law(body, mass, load_mass)
+        return replace(pads, law=TiedLaw(pads.law, self.tie / mass))
+
+
+class TiedByNumbers(ext.NumericSupport, TiedSupport):
+    """The same with the answers of the law."""
+
+
+class TiedPads(ext.OwnBase):
+    """Pads and a tie."""
+
+    slot = "pads"
+    tie = ext.Ratio(ext.NOT_NEGATIVE, doc="Over the weight.")
+    sort = TiedSupport
+
+    def support(self, load):
+        pads = ext.pads_under(rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1), load)
+        numbers = pads.stiffness, pads.damping, pads.restitution
+        return self.sort(load, *numbers, self.si.tie * load.weight)
+
+
+class TiedWell(TiedPads):
+    """The same by numbers."""
+
+    sort = TiedByNumbers
+
+
 def column(**changed):
     given = {"name": "wear", "dims": ext.TIME, "unit": ext.Unit.METRE, "long_name": "wear of it"}
     return ext.Variable(**{**given, **changed})
@@ -543,6 +597,31 @@ class TestRegistration:
         assert response.attrs["cautions"] == "none"
         with pytest.raises(rf.AssemblyError, match="no 'soil_friction_demand' in this scene"):
             system.simulate(PULSE, duration="0.2 s", outputs="soil_friction_demand")
+
+    def test_statics_that_are_not_those_of_the_law_are_refused(self):
+        rf.register(TiedPads)
+        rf.System(BLOCK, TiedPads(tie=0))
+        told = (
+            "TiedPads: held at .* rad under 98066.5 N the support TiedSupport answers with a "
+            r"moment of .* N m, its law with .* N m .*class TiedSupport\(ext.NumericSupport, "
+            r"ext.PadSupport\)"
+        )
+        for parts in ((), (CAP, SOIL)):
+            with pytest.raises(rf.AssemblyError, match=told):
+                rf.System(BLOCK, TiedPads(tie=0.1), *parts)
+
+    @pytest.mark.parametrize("rotation", [-0.1, 0.001, 0.05])
+    def test_statics_by_numbers_have_what_a_base_adds(self, rotation):
+        rf.register(TiedWell)
+        pads, tied = (
+            rf.System(BLOCK, base).moment_rotation(f"{rotation} rad").restoring_moment.item()
+            for base in (
+                rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1),
+                TiedWell(tie=0.1),
+            )
+        )
+        lift = 0.1 * 1e4 * 9.80665 * 2 * 0.5 * math.sin(rotation)
+        assert tied - pads == pytest.approx(lift, rel=1e-9)
 
     def test_who_is_not_registered_is_told(self):
         with pytest.raises(rf.AssemblyError, match=r"call rockframe.register\(Copied\) first"):

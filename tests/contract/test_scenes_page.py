@@ -33,3 +33,34 @@ def test_the_table_is_that_of_the_command():
         ]
         assert one["scenes"] >= 1000
         assert one["disagrees"] == one["sensitive"] == 0
+
+
+LEVELS = (
+    "| accuracy | scenes | agree | chaos | sensitive | by tolerance | else | other verdict | "
+    "of these told | peak off by 5 % | of these told |"
+)
+
+
+def test_the_table_of_accuracies_is_that_of_the_command():
+    found = json.loads((DOCS / "data/maximal_oracle_levels.json").read_text())
+    assert {(row["kind"], row["variant"]) for row in found} == {
+        (kind, variant) for kind in NAMES.values() for variant in ("plain", "eccentric", "inclined")
+    }
+    rows = table("validation_scenes.md", LEVELS)
+    assert [row[0] for row in rows] == ["tight", '`"standard"`', '`"fast"`']
+    for name, *cells in rows:
+        here = [row for row in found if row["level"] == name.strip('`"')]
+        counts = [
+            sum(row[label] for row in here)
+            for label in ("scenes", "agrees", "chaos", "sensitive", "by tolerance")
+        ]
+        counts.append(sum(row["disagrees"] + row["apart"] for row in here))
+        counts += [
+            sum(len(row[label]) for row in here)
+            for label in ("verdicts_differ", "verdicts_told", "peaks_far", "peaks_far_told")
+        ]
+        assert cells == [str(count) for count in counts]
+        assert counts[0] >= 5000
+        assert sum(row["disagrees"] for row in here) == 0
+        if name != '`"fast"`':
+            assert counts[6] == 0

@@ -63,6 +63,9 @@ DIMENSIONS = {
     "peak_point_vertical_acceleration": (0, 1, -2, 0),
     "peak_friction_demand": (0, 0, 0, 0),
     "peak_friction_demand_time": (0, 0, 1, 0),
+    "peak_friction_demand_duration": (0, 0, 1, 0),
+    "sliding_time": (0, 0, 1, 0),
+    "sliding_duration": (0, 0, 1, 0),
     "peak_impulsive_friction_demand": (0, 0, 0, 0),
     "peak_base_shear": (1, 1, -2, 0),
     "residual_rotation": (0, 0, 0, 1),
@@ -150,6 +153,7 @@ DIMENSIONS = {
     "fourier_phase": (0, 0, 0, 1),
     "critical_scale": (0, 0, 0, 0),
     "followed_scale": (0, 0, 0, 0),
+    "largest_gap": (0, 0, 0, 0),
     "uplift_scale": (0, 0, 0, 0),
     "scale_below": (0, 0, 0, 0),
     "scale_above": (0, 0, 0, 0),
@@ -229,6 +233,7 @@ DIMENSIONS = {
 }
 DIMENSION_NAMES = {
     "time",
+    "sample_after_end",
     "event",
     "point",
     "angle",

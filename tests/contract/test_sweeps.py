@@ -102,7 +102,7 @@ def test_status_and_message_are_there_for_every_case(runs):
     assert runs.message.size == len(set(runs.message.values.tolist()))
     finished = runs.peak_rotation.notnull()
     assert (finished == ~refused).all()
-    assert runs.attrs["verdict"].startswith(f"Of {runs.status.size} cases")
+    assert runs.attrs["verdict"].startswith(f"Of all {runs.status.size} cases of the sweep ")
 
 
 def test_tables_and_joining_take_it(runs):

@@ -114,6 +114,7 @@ class Scene:
                 overturning="continue" if self.continues else "stop",
                 accuracy=accuracy,
                 outputs=None,
+                second_look=False,
             )
 
 

@@ -67,6 +67,17 @@ def test_what_pages_load_is_there():
                 assert file.exists(), f"{page.relative_to(SITE)} loads {address}"
 
 
+def test_no_page_tells_of_the_machine_that_built_it():
+    """A warning of a script would stand there with its file: those wanted are printed as text."""
+    sources = SITE.joinpath("_sources").rglob("*.txt")
+    for page in [*pages(), *sources, *SITE.rglob("*.ipynb")]:
+        text = page.read_text(encoding="utf-8")
+        assert f"{ROOT}{os.sep}" not in text, page.relative_to(SITE)
+        assert not re.search(r"\.py:\d+: \w*Warning: ", text), page.relative_to(SITE)
+        if "gallery" in page.parts:  # what is said of compiling depends on the machine
+            assert "rockframe compiles what" not in text, page.relative_to(SITE)
+
+
 def test_formulas_are_drawn_by_files_of_the_site():
     page = (SITE / "theory" / "two_pads.html").read_text(encoding="utf-8")
     (script,) = re.findall(r'src="([^"]*mathjax[^"]*)"', page)

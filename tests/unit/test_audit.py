@@ -101,3 +101,23 @@ def test_fast_says_where_its_course_is_wrong():
     peak, right = float(fast.peak_rotation), float(exact.peak_rotation)
     assert abs(peak - right) > 0.01 * right
     assert "repeat the run with accuracy='standard'" in fast.attrs["cautions"]
+
+
+@pytest.mark.parametrize("scale", [1.00001, 1.001, 1.01])
+def test_a_block_that_hardly_stirs_is_no_wrong_solution(scale):
+    """Just beyond g b/h a few fixed steps hold all the motion there is."""
+    system = rf.System(rf.Block(width="1 m", height="4 m", mass="10 t"))
+    motion = rf.GroundMotion.sine_pulse(f"{scale * 9.80665 / 4} m/s^2", "1 Hz")
+    run = system.simulate(motion, free_vibration="2 s", accuracy="fast", outputs=None)
+    assert run.peak_relative_rotation < 1e-4
+    assert run.attrs["cautions"] == "none"
+
+
+def test_motion_that_is_not_felt_is_compared_all_the_same():
+    still = replace(STOOD, peak=1e-6, peak_share=1e-5)
+    assert said("standard", 2.0 * BY_TOLERANCE, base=still) == (None, [])
+    assert said("fast", 2.0 * FIXED, base=still, other=replace(still, peak=2e-6))[0] is None
+    for other in (STOOD, replace(STOOD, overturned=True, time=1.0)):
+        text, tried = said("fast", 2.0 * FIXED, base=still, other=other)
+        assert "steps by tolerance give another course" in text
+        assert len(tried) == 1

@@ -1,5 +1,6 @@
 """Certificates: how sure a verdict is."""
 
+import itertools
 import math
 import re
 import warnings
@@ -13,11 +14,14 @@ from pages import read, said
 
 import rockframe as rf
 from rockframe.errors import ComponentError, UnitsError
+from rockframe.results.outcome import verdict_of
 from rockframe.simulation.beside import Beside
-from rockframe.simulation.certificate import RESOLUTION, SAFETY, certify
+from rockframe.simulation.certificate import RESOLUTION, SAFETY, Certificate, certify
+from rockframe.simulation.certificate_words import NEAR
 from rockframe.simulation.finer import CUTS, SHORTER, cut, shortened
 from rockframe.simulation.nudging import parameters
 from rockframe.simulation.plan import plan_run
+from rockframe.simulation.scan import NOT_TRIED, Scan
 from rockframe.solve.accuracy import accuracy_of
 
 BLOCK = rf.Block.from_size(radius="5 m", slenderness=5, mass="50 t")
@@ -101,7 +105,7 @@ def test_near_the_boundary_it_says_so(side):
     assert float(run.verdict_margin) < 1.1e-3
     text = run.attrs["certificate"]
     assert text.startswith("Near the boundary: the body")
-    assert "of the superstructure" in text
+    assert "of the body" in text
     assert f"scaled {'up' if side > 0.0 else 'down'} by 0.0" in text
 
 
@@ -203,8 +207,8 @@ def test_a_nudge_that_makes_parts_misfit_is_left_out():
     at = dict(parameters(system.assembly))
     assert at["width of the cap"](0.001) is not None
     assert at["width of the cap"](-0.001) is None
-    assert at["width of the superstructure"](-0.001) is not None
-    assert at["width of the superstructure"](0.001) is None
+    assert at["width of the body"](-0.001) is not None
+    assert at["width of the body"](0.001) is None
 
 
 def test_what_a_scene_has_warned_of_its_certificate_does_not_repeat():
@@ -318,6 +322,99 @@ def test_a_margin_of_more_than_a_hundredth_is_not_near(edge, words):
         lambda _, plan: (plan.motion.si.peak / PULSE.si.peak - edge) * (edge - 1.0) > 0.0
     )
     assert re.match(words, found.sentence)
+
+
+def combinations():
+    """Give certificates of all that may be found, in the runs of either sense."""
+    stands, falls = Beside(False, 0.1, (0.5,)), Beside(True, 0.2, (1.0, 1.0), 1.0, 1)
+    back, lost = Beside(False, 0.3, (0.5, 0.5)), Beside(None, 0.1)
+    same = dict.fromkeys((-0.1, 0.1), stands)
+    for course, base, moving in itertools.product(
+        ("stop", "continue"), (stands, falls, back), (False, True)
+    ):
+        plan = replace(planned(), stop_at_overturning=course == "stop")
+        other = stands if base.overturned else falls
+        near_it = replace(base, clearances=tuple(0.5 * one for one in base.clearances))
+        finer = [base, other, lost, near_it]
+        nudged = [
+            Scan(1e-3, None, None, followed=True, tried=same),
+            Scan(5e-4, 5e-4, other, followed=True, tried=same),
+            Scan(5e-4, None, None, followed=False, tried=same),
+        ]
+        along = [NOT_TRIED, Scan(0.5, None, None, followed=True, tried=same)]
+        for margin, flip in itertools.product(
+            (1e-4, 0.0049, 0.03, 0.3), (0.0001, 0.005, 0.012, 0.122, 0.4, None)
+        ):
+            size = 0.5 if flip is None else flip
+            if margin <= size:
+                sign = -1.0 if flip == 0.122 else 1.0
+                signed = None if flip is None else sign * flip
+                followed = flip is not None and size - margin <= RESOLUTION
+                ended = None if flip is None else other
+                along.append(Scan(margin, signed, ended, followed=followed, tried=same))
+        for one, parameter, scaled in itertools.product(finer, nudged, along):
+            for wanted in (rf.Certification(), rf.Certification(nudge=0.1, reach=0.5)):
+                yield Certificate(
+                    wanted, plan, replace(base, in_motion=moving), [("means", one)],
+                    [("parameter", parameter)], scaled,
+                )  # fmt: skip
+
+
+def test_the_sentence_says_what_the_numbers_say():
+    """Whatever was found: the flip that is known, the margin, and whether the verdict is sure."""
+    seen = set()
+    for found in combinations():
+        text, values, attributes = found.sentence, found.values(), found.attributes()
+        flip, margin = values["verdict_flip_scale"], values["verdict_margin"]
+        seen.add((found.converged, found.robust, math.isnan(flip), math.isnan(margin)))
+        assert attributes["certificate"] == text
+        scaled = f"scaled {'up' if flip > 1.0 else 'down'} by {100.0 * abs(flip - 1.0):.3g} %"
+        nearest = f"with another verdict is {flip:.6g}."
+        # the flip is said once, wherever it is known, and none where it is not
+        said = (scaled in text) + (nearest in text)
+        assert said == (0 if math.isnan(flip) else 1), text
+        assert ("another verdict is" in text) + ("scaled" in text) == said, text
+        doubt = text.startswith("Near the boundary: ")
+        assert doubt or (found.converged and found.robust), text
+        assert doubt != (" also with " in text)
+        sure = found.converged and found.robust and not margin <= max(NEAR, found.wanted.nudge)
+        assert doubt != sure, text
+        if not doubt and not math.isnan(margin):
+            assert f"tried from {1.0 - margin:.6g} to {1.0 + margin:.6g}" in text
+            assert found.along.followed != ("did not do to follow it" in text)
+        if found.along.tried and margin <= max(NEAR, found.wanted.nudge):
+            assert found.along.followed or "intricate" in text or scaled in text
+        stops = found.plan.stop_at_overturning
+        words = ("overturns", "stands") if stops else ("falls flat", "does not fall flat")
+        assert f"body {words[not found.base.overturned]}" in text
+        other = ("falls flat", "does not fall flat") if stops else (" overturns", " stands")
+        assert not any(one in text for one in other), text
+    assert {one[:3] for one in seen} == set(itertools.product((True, False), repeat=3))
+
+
+def test_a_reach_within_the_nudge_is_all_that_is_asked():
+    same = {scale: Beside(False, 0.1, (0.5,)) for scale in (-0.01, 0.01)}
+    along = Scan(0.01, None, None, followed=True, tried=same)
+    wanted = rf.Certification(nudge=0.1, reach=0.01)
+    found = Certificate(wanted, planned(), same[0.01], along=along)
+    assert found.robust
+    assert found.sentence.startswith("The body stands also with")
+
+
+def test_a_run_that_goes_on_is_judged_by_whether_it_falls_flat():
+    """Under a pulse that brings the block back from beyond the angle, up to 3.735 of it."""
+    system = rf.System(rf.Block(width="1 m", height="5 m", mass="10 t"))
+    pulse = rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz").scaled(3.70)
+    run = system.simulate(
+        pulse, free_vibration="10 s", overturning="continue", certify=True, outputs=None
+    )
+    assert bool(run.overturned)  # it passed the angle
+    assert verdict_of(run) is False
+    flip = float(run.verdict_flip_scale)
+    assert flip == pytest.approx(3.736 / 3.70, abs=1e-3)
+    assert float(run.verdict_margin) == pytest.approx(flip - 1.0, rel=0.01)
+    assert run.attrs["certificate"].startswith("Near the boundary: the body does not fall flat")
+    assert "scaled up by 0.9" in run.attrs["certificate"]
 
 
 def test_no_scale_within_reach():

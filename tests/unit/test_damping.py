@@ -28,3 +28,14 @@ def test_a_damping_ratio_of_ten_may_mean_ten_per_cent():
     # what pytest would turn into errors: neither at 1 nor a second time
     rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=1)
     assert pickle.loads(pickle.dumps(pads)) == pads  # noqa: S301
+
+
+def test_the_dashpots_of_a_bed_are_those_of_its_ratio():
+    """c0 over the base is 2 xi sqrt(k m), of the vertical motion of all that stands on it."""
+    block = rf.Block(width="4 m", height="10 m", mass="100 t")
+    cap = rf.CushionCap(width="5 m", height="1 m", mass="60 t")
+    for parts, width, mass in (((), 4.0, 1e5), ((cap,), 5.0, 1.6e5)):
+        soil = rf.WinklerSoil(stiffness="9 MPa", damping_ratio=0.2)
+        words = rf.System(block, *parts, soil).describe()
+        critical = 2.0 * (width * 9e6 * mass) ** 0.5
+        assert f"9e+06 Pa, {0.2 * critical / width:.6g} Pa s" in words

@@ -87,3 +87,56 @@ def test_a_certificate_speaks_of_the_time_to_the_end():
     with pytest.warns(rf.SolverWarning, match=STILL_MOVING):
         found = rf.System(BLOCK).simulate(PULSE, certify=True)
     assert found.attrs["certificate"].startswith("To the end of the run, where it can still")
+
+
+def pedestal(height, width="1 m", stiffness="5 MPa"):
+    """A block on pads on a tall cap: held far, it leaves soil and cap without equilibrium."""
+    return rf.System(
+        rf.Block(width="1 m", height="2 m", mass="4 t"),
+        rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1),
+        rf.CushionCap(height=height, width=width, density="2400 kg/m^3", depth="1 m"),
+        rf.WinklerSoil(stiffness=stiffness, damping_ratio=0.2),
+    )
+
+
+@pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
+@pytest.mark.parametrize("height", ["1 m", "2 m", "3 m"])
+@pytest.mark.parametrize("stiffness", ["1 MPa", "5 MPa"])
+def test_a_stack_that_cannot_be_held_far_has_its_energy(height, stiffness):
+    setting = pedestal(height, stiffness=stiffness).assembly.setting
+    rigid = 4e3 * 9.80665 * math.hypot(0.5, 1.0) * (1.0 - math.cos(setting.overturning_angle))
+    assert 0.0 <= setting.overturning_energy < rigid
+
+
+@pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
+def test_a_cap_on_soft_soil_leans_further_than_the_block():
+    setting = pedestal("1 m", stiffness="1 MPa").assembly.setting
+    angle = setting.overturning_angle
+    far = setting.statics(angle)
+    assert far.restoring_moment < 0.0  # it has to be pulled back
+    assert angle < far.reactions["cap_rotation"] < 1.01 * angle
+
+
+def test_where_no_soil_carries_a_stack_its_energy_is_that_on_the_way(monkeypatch):
+    setting = pedestal("0.5 m").assembly.setting
+    whole, held = setting.overturning_energy, type(setting).statics
+
+    def gives_way(self, rotation):
+        if abs(rotation) > 0.5 * setting.overturning_angle:
+            msg = "the soil cannot carry the moment"
+            raise rf.SolverError(msg)
+        return held(self, rotation)
+
+    monkeypatch.setattr(type(setting), "statics", gives_way)
+    on_the_way = pedestal("0.5 m").assembly.setting.overturning_energy
+    assert 0.5 * whole < on_the_way < whole
+
+
+@pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
+@pytest.mark.parametrize("amplitude", ["1 m/s^2", "3 m/s^2"])
+def test_a_run_of_such_a_stack_is_kept(amplitude):
+    pulse = rf.GroundMotion.sine_pulse(amplitude, "1 Hz")
+    found = pedestal("2 m").simulate(pulse, outputs=None)
+    assert found.attrs["verdict"]
+    runs = rf.sweep(pedestal("2 m"), pulse, scale=[0.5, 1.0], progress=False)
+    assert (runs.peak_rotation > 0.0).all()

@@ -3,10 +3,13 @@
 import re
 from html.parser import HTMLParser
 
+import numpy as np
 import pytest
+import xarray as xr
 from pages import read
 
 import rockframe as rf
+from rockframe.reports import sections
 from rockframe.reports.limits import LIMITS
 
 pytestmark = pytest.mark.unit
@@ -80,6 +83,41 @@ def test_what_cannot_be_had_is_said(response, tmp_path):
     assert "kept no histories" in text
     unknown = response.assign_attrs(system_json="{}")
     assert "does not describe its system" in rf.report(unknown, tmp_path / "u.html").read_text()
+
+
+def test_a_run_by_a_record_has_its_certificate_though_it_overturned(tmp_path):
+    system = rf.System(rf.Block(width="0.8 m", height="3.2 m", mass="5.5 t"))
+    shaking = 8.0 * np.sin(np.linspace(0.0, 30.0, 400)) * np.linspace(0.0, 1.0, 400)
+    level = rf.GroundMotion.from_arrays((shaking, "m/s^2"), "0.02 s", name="a record")
+    both = rf.GroundMotion.from_arrays(
+        (shaking, "m/s^2"), "0.02 s", vertical=(0.5 * shaking, "m/s^2")
+    )
+    for motion in (level, both):
+        run = system.simulate(motion)
+        assert bool(run.overturned)
+        assert float(run.time[-1]) < 7.9  # and the motion goes on
+        run.to_netcdf(tmp_path / "out.nc")
+        with xr.open_dataset(tmp_path / "out.nc") as kept:
+            assert rf.System.from_dataset(kept).motion == rf.GroundMotion.from_arrays(
+                (shaking, "m/s^2"), "0.02 s", name=motion.name,
+                **({"vertical": (0.5 * shaking, "m/s^2")} if motion is both else {}),
+            )  # fmt: skip
+            rf.report(kept, tmp_path / "out.html")
+        assert "No certificate" not in (tmp_path / "out.html").read_text()
+    assert rf.concat([run, run]).sizes == {"run": 2}
+    assert "ground_acceleration_after_end [m s^-2]" not in rf.table(run)
+    # other samples are no other motion: the digest tells
+    changed = run.assign(ground_acceleration_after_end=0.0 * run.ground_acceleration_after_end)
+    with pytest.warns(rf.RecordWarning, match="not what the run had"):
+        assert rf.System.from_dataset(changed).motion is None
+
+
+@pytest.mark.parametrize("doubted", ["verdict_converged", "verdict_robust"])
+def test_a_certificate_holds_only_where_it_is_sure_in_every_way(response, doubted):
+    told = response.assign(dict.fromkeys(("verdict_converged", "verdict_robust"), True))
+    told.attrs["certificate"] = "The body stands."
+    assert "the verdict holds" in "".join(sections.verdict(told, ""))
+    assert "the verdict is in doubt" in "".join(sections.verdict(told.assign({doubted: False}), ""))
 
 
 def test_only_results_of_one_run_are_reported(response, tmp_path):

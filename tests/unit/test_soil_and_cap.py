@@ -376,3 +376,26 @@ def test_absurd_caps_are_refused_or_make_a_sound_scene(size):
         for name in ("soil_settlement", "static_soil_reaction", "overturning_angle"):
             assert math.isfinite(rest[name].item()), name
             assert rest[name].item() > 0.0, name
+
+
+def test_block_and_cap_as_one_body_have_the_masses_of_both():
+    """Summed up over point masses that have the mass, the centre and the inertia of each part."""
+    block = rf.Block(width="2 m", height="6 m", mass="30 t", centre_of_mass=("2.5 m", "0.2 m"))
+    cap = rf.CushionCap(height="0.8 m", mass="20 t", width="3 m")
+    body = rf.System(block, cap, rf.WinklerSoil(**SOIL)).assembly.setting.body
+    points = []
+    for mass, x, y, inertia in (
+        (30e3, 0.2, 0.8 + 2.5, block.inertia.m_as("kg m^2")),
+        (20e3, 0.0, 0.4, 20e3 * (3.0**2 + 0.8**2) / 12.0),
+    ):
+        r = math.sqrt(inertia / mass)
+        points += [(0.5 * mass, x - r, y), (0.5 * mass, x + r, y)]
+    total = sum(mass for mass, _, _ in points)
+    x, y = (sum(each[0] * each[k] for each in points) / total for k in (1, 2))
+    inertia = sum(m * ((px - x) ** 2 + (py - y) ** 2) for m, px, py in points)
+    assert body.mass == pytest.approx(total, rel=1e-14)
+    assert body.half_width == pytest.approx(1.5, rel=1e-14)
+    assert body.eccentricity == pytest.approx(x, rel=1e-12)
+    assert body.centre_height == pytest.approx(y, rel=1e-12)
+    assert body.inertia == pytest.approx(inertia, rel=1e-12)
+    assert body.shape_factor == pytest.approx(total * (1.5**2 + y**2) / inertia, rel=1e-12)

@@ -1,0 +1,124 @@
+"""Print the table of the page "Accuracy": which runs at "fast" are wrong, and which say so.
+
+From the root of the repository: ``python tests/benchmarks/fast_verdicts.py``. Random scenes run at
+"fast" with the second look and at "reference". The short ones are those of the pages on extremes
+and certificates, the long ones shake by noise and records for up to 25 s, also on stiff pads.
+"""
+
+import sys
+import time
+import warnings
+from collections import Counter
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+
+from benchmarks.certified_scenes import draw
+from extremes.scenes import GRAVITY, shake, usual
+from records import records_folder
+
+import rockframe as rf
+from rockframe.simulation.plan import plan_run
+from rockframe.simulation.run import respond
+from rockframe.simulation.second_look import OFF, doubts, second_look
+
+RECORDS = (
+    "ElCentro1940_Peknold.AT2",
+    "RSN763_LOMAP_GIL067.AT2",
+    "NIS090.AT2",
+    "PEERSMD_CHICHI_TCU128-N.AT2",
+)
+LONGEST = 25.0
+OTHER_FALL = 0.05
+"""Share of its time by which an overturning is another one."""
+
+
+def short(number):
+    """Give a scene, its motion and its arguments."""
+    rng = np.random.default_rng([1, number])
+    if number % 2 == 0:
+        _, system, motion, duration = draw(rng)
+        motion = motion.scaled(float(10.0 ** rng.uniform(-0.3, 0.8)))
+        return system, motion, {"duration": f"{duration!r} s"}
+    scene = usual(rng)
+    return scene.system, scene.motion, arguments(scene, scene.duration)
+
+
+def long(number):
+    """Give the same, of many impacts."""
+    rng = np.random.default_rng([100, number])
+    scene = usual(rng)
+    ratio = float(10.0 ** rng.uniform(0.9, 2.2))
+    scene = replace(scene, frequency_ratio=ratio, start=float(rng.choice([0.0, 0.0, 0.0, 0.5])))
+    theta = float(np.arctan(1.0 / scene.slenderness))
+    if number % 2:
+        record = rf.GroundMotion.read(records_folder() / RECORDS[int(rng.integers(len(RECORDS)))])
+        peak = theta * 9.81 * float(10.0 ** rng.uniform(-0.1, 0.9))
+        motion = record.scaled(peak=f"{peak!r} m/s^2")
+    else:
+        step, count = float(rng.choice([0.005, 0.01, 0.02])), int(rng.choice([800, 2000]))
+        across, up = shake("noise", count, rng)
+        peak = theta * GRAVITY * float(10.0 ** rng.uniform(0.0, 1.2))
+        vertical = (0.3 * peak * up, "m/s^2") if rng.integers(2) else None
+        motion = rf.GroundMotion.from_arrays(
+            (peak * across, "m/s^2"), f"{step!r} s", vertical=vertical
+        )
+    return scene.system, motion, arguments(scene, min(motion.si.duration + 2.0, LONGEST))
+
+
+def arguments(scene, duration):
+    """Give how long a run is, where it starts, and in which sense it is asked."""
+    start = scene.start * float(np.arctan(1.0 / scene.slenderness))
+    return {
+        "duration": f"{duration!r} s",
+        "initial": rf.InitialState(rotation=f"{start!r} rad"),
+        "overturning": "continue" if scene.continues else "stop",
+    }
+
+
+def timed(system, plan):
+    """Run; give what became of it, and the time."""
+    start = time.perf_counter()
+    found = respond(system.assembly, plan).trajectory
+    return found, time.perf_counter() - start
+
+
+def judged(system, motion, asked):
+    """Tell what is wrong with a run at "fast", whether it says so, and what the looks cost."""
+    plan = plan_run(system.assembly, motion, accuracy="fast", **asked)
+    respond(system.assembly, plan)  # what is computed once for a scene is no cost of either
+    first, cost = timed(system, plan)
+    second, more = timed(system, second_look(system.assembly, plan))
+    exact = plan_run(system.assembly, motion, accuracy="reference", outputs=None, **asked)
+    truth, _ = timed(system, exact)
+    told = bool(list(doubts(system.setting, plan, first, second)))
+    if first.overturned != truth.overturned:
+        kind = "other verdict"
+    elif abs(first.peak_rotation - truth.peak_rotation) > OFF * truth.peak_rotation:
+        kind = "peak off"
+    elif first.verdict_direction != truth.verdict_direction or (
+        abs(first.verdict_time - truth.verdict_time) > OTHER_FALL * truth.verdict_time
+    ):
+        kind = "other fall"
+    else:
+        kind = "right"
+    return kind, told, more / cost
+
+
+def main():
+    """Print the table."""
+    warnings.simplefilter("ignore", rf.RockframeWarning)
+    print("scenes | number | what is wrong | how many | of which told | median cost of the look")
+    for name, drawn, count in (("short", short, 1600), ("long", long, 3000)):
+        rows = [judged(*drawn(number)) for number in range(count)]
+        every, told = (Counter(kind for kind, said, _ in rows if said or k) for k in (True, False))
+        cost = float(np.median([cost for *_, cost in rows]))
+        for kind, of in every.items():
+            print(f"{name} | {count} | {kind} | {of} | {told[kind]} | {cost:.2f}", flush=True)
+
+
+if __name__ == "__main__":
+    main()

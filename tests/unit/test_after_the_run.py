@@ -1,0 +1,107 @@
+"""A run that has been integrated is not lost, whatever fails in telling what it showed."""
+
+import math
+from functools import cached_property
+
+import pytest
+
+import rockframe as rf
+from rockframe.simulation import run as running
+from rockframe.simulation.plan import Plan
+from rockframe.system.assembly import Assembly
+from rockframe.system.setting import Setting
+
+BLOCK = rf.Block(width="0.5 m", height="2 m", mass="400 kg")
+PULSE = rf.GroundMotion.sine_pulse("3 m/s^2", "1.5 Hz")
+ASKED = {"free_vibration": "1 s", "output_step": "0.1 s"}
+STEPS = {
+    "answers_of": "peaks of forces",
+    "may_overturn_later": "energy to overturn",
+    "unbalanced": "another run agrees",
+    "_lost_weight": "leave the ground",
+    "_pulling": "leave the ground",
+    "slips": "friction that is needed",
+    "friction_words": "friction that is needed",
+    "motion_attributes": "origin",
+    "certify": "certificate",
+    "second_look": "second run with more steps",
+    "to_json": "arguments as text",
+    "json": "parts as text",
+    "description": "words of the model",
+    "cautions": "unusual about the scene",
+    "uplift_angle": "uplift angle",
+}
+OF_CLASSES = {
+    "to_json": Plan, "json": Assembly, "description": Assembly, "cautions": Assembly,
+    "uplift_angle": Setting,
+}  # fmt: skip
+
+
+def broken(*_, **__):
+    msg = "left out on purpose"
+    raise ZeroDivisionError(msg)
+
+
+def broken_property(name):
+    found = cached_property(broken)
+    found.__set_name__(None, name)
+    return found
+
+
+@pytest.fixture(params=list(STEPS))
+def failing(request, monkeypatch):
+    name = request.param
+    if name in OF_CLASSES:
+        way = broken if name == "to_json" else broken_property(name)
+        monkeypatch.setattr(OF_CLASSES[name], name, way)
+    else:
+        monkeypatch.setattr(running, name, broken)
+    return name
+
+
+@pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning")
+def test_a_run_tells_what_could_not_be_computed(failing):
+    asked = {"accuracy": "fast" if failing == "second_look" else "standard"}
+    asked |= {"certify": failing == "certify", **ASKED}
+    found = rf.System(BLOCK).simulate(PULSE, **asked)
+    told = f"{STEPS[failing]}.* could not be computed: ZeroDivisionError: left out on purpose"
+    with pytest.warns(rf.SolverWarning, match=told):
+        again = rf.System(BLOCK).simulate(PULSE, **asked)
+    assert "ZeroDivisionError: left out on purpose" in found.attrs["cautions"]
+    assert again.attrs["verdict"].startswith("Did not overturn")
+    assert float(again.peak_rotation) > 0.0
+    assert ("rotation" in again) == (failing != "answers_of")
+    assert math.isnan(float(again.uplift_angle)) == (failing == "uplift_angle")
+
+
+def test_columns_that_the_schema_does_not_have_cost_the_histories_alone(monkeypatch):
+    answers = running.answers_of
+
+    def with_another(*given):
+        found = answers(*given)
+        found.values["unheard_of"] = found.values["rotation"]
+        return found
+
+    monkeypatch.setattr(running, "answers_of", with_another)
+    with pytest.warns(rf.SolverWarning, match="'unheard_of' is not in the schema"):
+        found = rf.System(BLOCK).simulate(PULSE, **ASKED)
+    assert float(found.peak_rotation) > 0.0
+
+
+@pytest.mark.parametrize("accuracy", ["standard", "fast"])
+def test_a_case_of_a_sweep_keeps_its_result(monkeypatch, accuracy):
+    monkeypatch.setattr(running, "may_overturn_later", broken)
+    with pytest.warns(rf.ModelWarning, match="left out on purpose"):
+        found = rf.sweep(
+            rf.System(BLOCK), PULSE, scale=[0.9, 1.0], accuracy=accuracy, progress=False, **ASKED
+        )
+    assert (found.peak_rotation > 0.0).all()
+
+
+def test_an_interrupt_is_no_failure(monkeypatch):
+    def interrupted(*_, **__):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(running, "may_overturn_later", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        rf.System(BLOCK).simulate(PULSE, **ASKED)
