@@ -54,6 +54,8 @@ sphinx_gallery_conf = {
     "matplotlib_animations": (True, "jshtml"),
     "min_reported_time": 60,
     "remove_config_comments": True,
+    "reset_modules": ("matplotlib", "figures.raise_warnings"),
+    "reset_modules_order": "both",
     "show_memory": False,
     "write_computation_times": False,
 }

@@ -3,7 +3,7 @@
 Usage: python examples/critical_scale.py [record] [--largest 4] [--folder results]
 
 The record is a file as agencies give it out. Without one the motion is drawn from a model of
-an earthquake of magnitude 6.8 at 5 km. Prints from which scale on the tower overturns, where it
+an earthquake of magnitude 7.2 at 5 km. Prints from which scale on the tower overturns, where it
 stands again above that, and the spectral acceleration at the critical scale, and writes
 critical_scale.nc (all scales tried and all flips of the verdict, labelled).
 """
@@ -41,7 +41,7 @@ def search(record: str | None, largest: float, folder: Path) -> None:
     if record:
         motion = rf.GroundMotion.read(record)
     else:
-        motion = rf.GroundMotion.stochastic(6.8, "5 km", seed=29, stress_drop="20 MPa")
+        motion = rf.GroundMotion.stochastic(7.2, "5 km", seed=0, stress_drop="20 MPa")
     print(motion)
     found = rf.critical_scale(
         tower,

@@ -28,7 +28,7 @@ def main() -> None:
     with warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("always")
         response = system.simulate(
-            motion.scaled(2.8), free_vibration="5 s",
+            motion.scaled(3.5), free_vibration="5 s",
             outputs=("acceleration", "reaction", "friction_demand"),
             points={"upper shelf": ("0 m", "1.5 m")},
         )  # fmt: skip

@@ -55,7 +55,7 @@ def shake_floors(record: str | None, period: float, folder: Path) -> None:
     if record:
         ground = rf.GroundMotion.read(record)
     else:
-        ground = rf.GroundMotion.stochastic(7, "10 km", seed=3)
+        ground = rf.GroundMotion.stochastic(7, "10 km", seed=3, source="one corner")
     case = rf.System(rf.Block(width="0.45 m", height="1.8 m", mass="250 kg"))
 
     print(f"A case 1.8 m high and 0.45 m deep, shaken by {ground.name}:")
@@ -64,7 +64,7 @@ def shake_floors(record: str | None, period: float, folder: Path) -> None:
         ground.through_storeys(storeys=STOREYS, floor=floor, period=f"{period!r} s")
         for floor in range(1, STOREYS + 1)
     ]
-    runs = [case.simulate(motion) for motion in motions]
+    runs = [case.simulate(motion, free_vibration="5 s") for motion in motions]
     for floor, (motion, run) in enumerate(zip(motions, runs, strict=True)):
         place = f"on floor {floor}" if floor else "on the ground"
         peak = motion.peak_acceleration.m_as("g_0")

@@ -3,7 +3,7 @@
 Usage: python examples/quickstart.py [record] [--component NS] [--folder results]
 
 The record is a file as agencies give it out; of several components in it one is to be named.
-Without a record the motion is drawn from a model of an earthquake of magnitude 6.8 at 5 km.
+Without a record the motion is drawn from a model of an earthquake of magnitude 7.5 at 5 km.
 Prints what became of the frame, and writes
 quickstart.nc (all results, labelled) and quickstart.png (rotation, vertical displacement
 and contact along time).
@@ -48,7 +48,7 @@ def simulate(record: str | None, component: str | None, folder: Path) -> None:
     if record:
         motion = rf.GroundMotion.read(record, component=component)
     else:
-        motion = rf.GroundMotion.stochastic(6.8, "5 km", seed=29, stress_drop="20 MPa")
+        motion = rf.GroundMotion.stochastic(7.5, "5 km", seed=8, stress_drop="20 MPa")
     print(motion)
     response = system.simulate(motion, free_vibration="10 s")
     print(response.attrs["verdict"])

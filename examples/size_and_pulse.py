@@ -62,7 +62,7 @@ def study(sizes: int, amplitudes: int, store: str | None) -> xr.Dataset:
         rf.GroundMotion.sine_pulse("1 m/s^2", "1 Hz"),
         radius=(np.geomspace(0.5, 20.0, sizes), "m"),
         peak_ground_acceleration=(np.linspace(2.5, 20.0, amplitudes), "m/s^2"),
-        free_vibration="10 s",
+        free_vibration="20 s",
         overturning="continue",
         accuracy="fast",
         store=store,

@@ -22,8 +22,8 @@ def main() -> None:
     folder = Path(parser.parse_args().folder)
     folder.mkdir(parents=True, exist_ok=True)
 
-    block = rf.Block(width="4.85 m", height="19.4 m", mass="600 t")
-    motion = rf.GroundMotion.stochastic(6.8, "5 km", seed=29, stress_drop="20 MPa")
+    block = rf.Block(width="1.2 m", height="6 m", mass="20 t")
+    motion = rf.GroundMotion.stochastic(7.2, "5 km", seed=0, stress_drop="20 MPa")
     rows = []
     for damping_ratio in DAMPING_RATIOS:
         pads = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=damping_ratio)

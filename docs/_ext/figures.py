@@ -1,7 +1,10 @@
 """Figures that are drawn when the manual is built, into ``reference/generated``."""
 
+import logging
 import subprocess
 import sys
+import warnings
+from contextlib import ExitStack
 from pathlib import Path
 
 import numpy as np
@@ -29,6 +32,9 @@ from study_figures import size_and_pulse
 import rockframe as rf
 
 INK = "#1f3a5f"
+
+_changed = ExitStack()
+"""Gives Python's filters of warnings back."""
 
 
 def conventions() -> Figure:
@@ -109,6 +115,18 @@ FIGURES = (
 )
 
 
+def raise_warnings(gallery_conf: object = None, name: object = None, when: str = "before") -> None:
+    """Make errors of the warnings of a script of the gallery, but for those that Python ignores.
+
+    What it warns of would stand on its page, with the path of the file on this machine.
+    """
+    _changed.close()
+    if when == "before":
+        _changed.enter_context(warnings.catch_warnings())
+        # last, so that the deprecations of other packages are left to their owners
+        warnings.simplefilter("error", append=True)
+
+
 def draw(app: Sphinx) -> None:
     """Draw all figures, in a process of their own, while the gallery is drawn in this one."""
     folder = Path(app.srcdir) / "reference" / "generated"
@@ -125,11 +143,14 @@ def draw(app: Sphinx) -> None:
 
 def setup(app: Sphinx) -> dict[str, bool]:
     """Draw before the pages are read."""
+    # what is said of compiling goes to the terminal, and stands on no page of the gallery
+    logging.getLogger("rockframe").addHandler(logging.StreamHandler())
     app.connect("builder-inited", draw, priority=100)
     return {"parallel_read_safe": True}
 
 
 if __name__ == "__main__":
+    raise_warnings()
     front_page(Path(sys.argv[1]) / "front_page.gif")
     write_card(Path(sys.argv[1]))
     for figure in FIGURES:

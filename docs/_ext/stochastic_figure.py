@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import rockframe as rf
-from rockframe.motion.stochastic import PointSource
+from rockframe.motion.stochastic import Corners, PointSource
 
 COLOURS = {5.0: "#88aacc", 6.0: "#cc6677", 7.0: "#1f3a5f"}
 SEEDS = range(1, 21)
@@ -23,7 +23,8 @@ def stochastic_motions() -> Figure:
         powers = [one.fourier_amplitude.values.ravel()[1:] ** 2 for one in drawn]
         mean = np.sqrt(np.mean(powers, axis=0))
         spectra.loglog(frequency, mean, color=colour, lw=0.5, alpha=0.6)
-        curve = PointSource(magnitude, 20e3).acceleration_spectrum(target)
+        corners = Corners(motions[0].metadata["source"])
+        curve = PointSource(magnitude, 20e3, corners=corners).acceleration_spectrum(target)
         spectra.loglog(target, curve, color=colour, lw=1.8, label=f"magnitude {magnitude:g}")
         history = figure.add_subplot(layout[row, 1])
         samples = motions[0].si.horizontal.samples

@@ -13,7 +13,7 @@ system = rf.System(
     rf.CushionCap(height="0.9 m", mass="36 t"),
     rf.WinklerSoil(stiffness="9 MPa", damping_ratio=0.20),
 )
-motion = rf.GroundMotion.stochastic(6.8, "5 km", seed=29, stress_drop="20 MPa")
+motion = rf.GroundMotion.stochastic(7.5, "5 km", seed=8, stress_drop="20 MPa")
 response = system.simulate(motion, free_vibration="10 s")
 print(response.attrs["verdict"])
 rf.plot.response(response)

@@ -7,6 +7,8 @@ Scaling keeps the peaks and troughs of a spectrum; wavelets added at the right t
 build-up, and the ground comes to rest where it did. Grey: the periods that were matched.
 """
 
+import warnings
+
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -14,10 +16,13 @@ import rockframe as rf
 
 record = rf.GroundMotion.example("loma-prieta").resampled("0.02 s")
 target = rf.TargetSpectrum.eurocode_8("0.3 g_0", "B")
-matched = record.matched(target, periods=("0.2 s", "2 s"))
+with warnings.catch_warnings(record=True) as said:
+    warnings.simplefilter("always")
+    matched = record.matched(target, periods=("0.2 s", "2 s"))
 about = matched.metadata
 scaled = record.scaled(about["scale_factor"])
 print(matched.history[-1])
+print(*(one.message for one in said), sep="\n")
 
 periods = (np.geomspace(0.2, 3.0, 150), "s")
 figure, panels = plt.subplot_mosaic(

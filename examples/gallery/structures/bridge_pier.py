@@ -33,7 +33,7 @@ for name, base in bases.items():
     runs = [
         system.simulate(
             rf.GroundMotion.type_a_pulse("1 m/s", "1.5 s").scaled(peak=f"{peak} m/s^2"),
-            free_vibration="3 s",
+            free_vibration="10 s",
             outputs=("base_shear",),
         )
         for peak in peaks

@@ -22,7 +22,7 @@ for height in (4, 7, 10, 13):
         amplitude=(np.linspace(0.2, 9.0, 36), "m/s^2"),
         frequency=(1.0 / periods[::-1], "Hz"),
         impacts=1,
-        free_vibration="8 s",
+        free_vibration="20 s",
         accuracy="fast",
         progress=False,
     )

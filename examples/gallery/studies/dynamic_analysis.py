@@ -12,7 +12,7 @@ import rockframe as rf
 
 cabinet = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
 suite = {
-    f"seed {k}": rf.GroundMotion.stochastic(6.6, "5 km", seed=k, stress_drop="20 MPa")
+    f"seed {k}": rf.GroundMotion.stochastic(7.0, "5 km", seed=k, stress_drop="20 MPa")
     for k in range(8)
 }
 analysis = rf.incremental_dynamic_analysis(

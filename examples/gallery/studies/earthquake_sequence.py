@@ -11,7 +11,7 @@ import matplotlib.pyplot as plt
 import rockframe as rf
 
 cabinet = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
-shock = rf.GroundMotion.stochastic(6.6, "5 km", seed=0, stress_drop="20 MPa")
+shock = rf.GroundMotion.stochastic(7.0, "5 km", seed=0, stress_drop="20 MPa")
 shares = {"falling": (1.5, 1.3, 1.1), "rising": (1.1, 1.3, 1.5)}
 found = rf.earthquake_sequences(
     cabinet,
