@@ -67,7 +67,7 @@ def earthquakes(count: int) -> dict[str, rf.GroundMotion]:
     """Draw shallow earthquakes of magnitude 6.5 to 7 at 10 km, all with a peak of 1 m/s."""
     return {
         f"seed {seed}": rf.GroundMotion.stochastic(
-            magnitude, "10 km", seed=seed, stress_drop="10 MPa", source="one corner"
+            magnitude, "10 km", seed=seed, stress_drop="10 MPa"
         ).scaled(peak_velocity="1 m/s")
         for seed, magnitude in enumerate(np.linspace(6.5, 7.0, count))
     }

@@ -36,9 +36,7 @@ def main() -> None:
     for side in ("left", "right"):
         angle = rest[f"{side}_overturning_angle"].item()
         print(f"It falls to the {side} once tilted by {math.degrees(angle):.1f} degrees.")
-    motion = rf.GroundMotion.stochastic(
-        magnitude=7.0, distance="5 km", seed=11, source="one corner"
-    )
+    motion = rf.GroundMotion.stochastic(magnitude=7.0, distance="5 km", seed=11)
     found = {
         name: rf.critical_scale(
             system, shaking, largest=8.0, scales=40, intensity="peak_ground_acceleration"

@@ -43,10 +43,8 @@ def scene_and_state() -> Figure:
         rf.CushionCap(height="0.9 m", mass="36 t"),
         rf.WinklerSoil(stiffness="9 MPa", damping_ratio=0.20),
     )
-    motion = rf.GroundMotion.stochastic(
-        6.8, "5 km", seed=29, stress_drop="20 MPa", source="one corner"
-    )
-    run = system.simulate(motion.scaled(1.5), points={"roof": ("0 m", "18 m")})
+    motion = rf.GroundMotion.stochastic(7.5, "5 km", seed=29, stress_drop="20 MPa")
+    run = system.simulate(motion.scaled(2.0), points={"roof": ("0 m", "18 m")})
     figure, (left, right) = pyplot.subplots(1, 2, figsize=(9.4, 5.2), layout="constrained")
     rf.plot.scene(system, ax=left)
     rf.plot.state(run, ax=right, title="at the largest rotation")

@@ -27,7 +27,7 @@ def test_deviations_from_straight_lines():
     step = 0.005
     time = np.arange(4000) * step
     noise = np.random.default_rng(0).normal(size=time.size)
-    earthquake = rf.GroundMotion.stochastic(7, "10 km", seed=3, source="one corner")
+    earthquake = rf.GroundMotion.stochastic(7, "10 km", seed=3)
     assert earthquake.si.time_step == step
     rows = table(PAGE, HEAD)
     assert len(rows) == 5

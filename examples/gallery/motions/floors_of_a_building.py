@@ -11,7 +11,7 @@ import numpy as np
 
 import rockframe as rf
 
-ground = rf.GroundMotion.stochastic(7, "10 km", seed=3, source="one corner")
+ground = rf.GroundMotion.stochastic(7.2, "5 km", seed=3)
 periods = (np.geomspace(0.05, 4.0, 80), "s")
 figure, axes = plt.subplots(figsize=(6.6, 4.0), layout="constrained")
 for floor in (0, 2, 4, 6):

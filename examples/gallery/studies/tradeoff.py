@@ -13,7 +13,7 @@ system = rf.System(
     rf.CushionCap(height="0.9 m", mass="36 t"),
     rf.WinklerSoil(stiffness="9 MPa", damping_ratio=0.20),
 )
-motion = rf.GroundMotion.stochastic(6.8, "5 km", seed=29, stress_drop="20 MPa", source="one corner")
+motion = rf.GroundMotion.stochastic(7.5, "5 km", seed=29, stress_drop="20 MPa")
 rungs = rf.tradeoff(system, motion, repeats=3)
-print(rf.recommend(rungs, 0.05))
+print(rf.recommend(rungs, 0.05, error="history_error"))
 rf.plot.tradeoff(rungs)
