@@ -187,7 +187,7 @@ def scan(
         side, near, far = task
         try_at(side, 0.5 * (near + far))
 
-    flip = None if nearest is None else nearest[0].sign * nearest[2]
+    flip = min((side.sign * far for side, _, far in _flips(sides)), key=abs, default=None)
     return Scan(
         margin=end if doubtful is None else doubtful[1],
         flip=flip,
@@ -200,9 +200,13 @@ def scan(
 _Task = tuple[Side, float, float]
 
 
+def _flips(sides: Sequence[Side]) -> list[_Task]:
+    return [(side, *flip) for side in sides if (flip := side.flip()) is not None]
+
+
 def _nearest_flip(sides: Sequence[Side]) -> _Task | None:
-    found = [(side, *flip) for side in sides if (flip := side.flip()) is not None]
-    return min(found, key=lambda one: one[2], default=None)
+    """Give the interval that may hold the nearest flip: the one that begins first."""
+    return min(_flips(sides), key=lambda one: one[1:], default=None)
 
 
 def _wide(near: float, far: float, resolution: float) -> bool:

@@ -16,12 +16,12 @@ import rockframe as rf
 from rockframe.errors import ComponentError, UnitsError
 from rockframe.results.outcome import verdict_of
 from rockframe.simulation.beside import Beside
-from rockframe.simulation.certificate import RESOLUTION, SAFETY, Certificate, certify
+from rockframe.simulation.certificate import RESOLUTION, SAFETY, Certificate, certify, settles
 from rockframe.simulation.certificate_words import NEAR
 from rockframe.simulation.finer import CUTS, SHORTER, cut, shortened
 from rockframe.simulation.nudging import parameters
 from rockframe.simulation.plan import plan_run
-from rockframe.simulation.scan import NOT_TRIED, Scan
+from rockframe.simulation.scan import NOT_TRIED, Scan, scan
 from rockframe.solve.accuracy import accuracy_of
 
 BLOCK = rf.Block.from_size(radius="5 m", slenderness=5, mass="50 t")
@@ -637,6 +637,46 @@ def test_shorter_steps_are_shorter(accuracy):
     settings = shortened(accuracy_of(accuracy), SYSTEM.assembly, step, PULSE.si.time_step)
     finer = SYSTEM.simulate(PULSE, free_vibration="4 s", accuracy=settings)
     assert finer.attrs["solver_steps"] > 2.0 * run.attrs["solver_steps"]
+
+
+def test_a_verdict_is_settled_only_if_all_that_it_hangs_on_is():
+    """Of a body that overturns: its rate at that angle, and the time that was left."""
+    falls = Beside(overturned=True, peak=0.2, clearances=(1.0, 0.5), time=4.0, direction=1)
+    for clearances, sure in (
+        ((1.1, 0.6), True),
+        ((1.4, 0.5), False),
+        ((1.0, 0.7), False),
+        ((0.6, 0.3), False),
+    ):
+        assert settles(falls, replace(falls, clearances=clearances)) is sure
+    assert not settles(falls, replace(falls, direction=-1))
+
+
+@pytest.mark.parametrize("sign", [-1.0, 1.0])
+def test_of_flips_to_both_sides_the_nearest_is_told(sign):
+    """Both lie between the same changes of the first row."""
+    near, far = 0.12, 0.17
+
+    def look(change):
+        reached = sign * change > near or -sign * change > far
+        left = min(abs(near - sign * change), abs(far + sign * change))
+        return Beside(overturned=reached, peak=0.1, clearances=(left,))
+
+    row = [0.05, 0.1, 0.2]
+    found = scan(look, look(0.0), row, most=100, resolution=RESOLUTION)
+    assert found.flip == pytest.approx(sign * near, rel=RESOLUTION)
+    assert sign * found.flip > near
+    assert found.ended.overturned
+    assert found.margin <= near
+    assert found.margin == pytest.approx(near, rel=2.0 * RESOLUTION)
+
+
+def test_changes_at_the_reach_itself_were_tried():
+    base = Beside(overturned=False, peak=0.1, clearances=(0.9,))
+    found = scan(lambda _: base, base, [0.1, 0.2], most=100, resolution=0.5)
+    assert found.margin == 0.2
+    assert found.within(found.margin) == len(found.tried)
+    assert found.within(0.1) == sum(abs(change) < 0.11 for change in found.tried)
 
 
 def test_the_page_says_what_is_done():
