@@ -101,6 +101,20 @@ def test_uplift_to_either_side():
             assert toppled.overturning_direction.item() == side
 
 
+@pytest.mark.parametrize(("side", "word"), [(LEFT, "left"), (RIGHT, "right")])
+def test_rotations_are_told_over_the_angle_of_their_side(side, word):
+    uplift = G * math.tan(Corner(side).theta)
+    run = scene("rigid ground").simulate(rectangle(-side * 1.3 * uplift, 0.4))
+    assert run.overturned.item() == 0
+    rotation = run.rotation.values
+    assert side * rotation[-1] > 0.0
+    expected = rotation / Corner(side).theta
+    np.testing.assert_allclose(run.relative_rotation, expected, rtol=1e-12)
+    peak = np.abs(expected).max()
+    assert run.peak_relative_rotation.item() == pytest.approx(peak, rel=1e-9)
+    assert f"{100.0 * peak:.3g} % of the overturning angle to the {word};" in run.attrs["verdict"]
+
+
 def test_overturning_by_a_rectangular_pulse_to_either_side():
     """(A/theta - 1)(exp(p t) - 1) = 1, with angle and frequency of the corner it stands on."""
     for side in (LEFT, RIGHT):

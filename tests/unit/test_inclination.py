@@ -1,6 +1,7 @@
 """What an inclination is given as, and what refuses one."""
 
 import math
+import warnings
 
 import numpy as np
 import pytest
@@ -80,3 +81,23 @@ def test_ladders_certificates_and_critical_scales_know_the_slope():
     assert not below.overturned.item()
     assert below.verdict_margin.item() > 1e-4
     assert block.simulate(pulse.scaled(1.001 * least)).first_uplift_time.item() > 0.0
+
+
+@pytest.mark.parametrize(("peak", "leaves"), [("-9.9 m/s^2", False), ("-10.1 m/s^2", True)])
+def test_a_slope_is_left_as_soon_as_nothing_presses_on_it(peak, leaves):
+    """On a slope g cos(i) presses, less than g: of a motion normal to it that much is enough."""
+    angle, gravity = math.radians(12.0), 10.2
+    size = float(peak.split()[0])
+    assert (-size > gravity * math.cos(angle)) == leaves
+    assert -size < gravity
+    time = np.linspace(0.0, 1.0, 101)
+    normal = size * np.sin(math.pi * time) ** 2
+    motion = rf.GroundMotion.from_arrays(
+        (-normal * math.sin(angle), "m/s^2"),
+        "10 ms",
+        vertical=(normal * math.cos(angle), "m/s^2"),
+    )
+    system = rf.System(BLOCK, inclination="12 deg", gravity=f"{gravity} m/s^2")
+    with warnings.catch_warnings(record=True, action="always") as said:
+        system.simulate(motion, outputs=None)
+    assert any("leave the rigid ground" in str(one.message) for one in said) == leaves

@@ -60,6 +60,13 @@ def test_a_verdict_is_sure_where_it_is_clear_of_three_times_its_error():
     ):
         assert not is_sure(FALLS, other)
     assert is_sure(FALLS, replace(FALLS, impacts=21))
+    # whichever of both runs has less time left, or more impacts
+    soon = replace(FALLS, time=8.02, left=0.05)
+    many, more = replace(FALLS, impacts=59), replace(FALLS, impacts=62)
+    for first, second in ((FALLS, soon), (soon, FALLS)):
+        assert not is_sure(first, second)
+    for first, second in ((many, more), (more, many)):
+        assert is_sure(first, second)
 
 
 def test_cases_near_a_flip_are_those_of_standard_and_all_others_those_of_fast(runs):
