@@ -13,8 +13,8 @@ from rockframe.results.outcome import Generic
 from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.signals.arrays import Array
 from rockframe.studies.confidence import clopper_pearson
-from rockframe.studies.fragility.coverage import bounded
 from rockframe.studies.fragility.likelihood import Bands, Fit, Trials, boundary, fit, gap
+from rockframe.studies.fragility.words import bounded
 
 _POINTS: Final = 101
 """Intensities at which a curve is given."""

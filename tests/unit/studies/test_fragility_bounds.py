@@ -6,9 +6,9 @@ from pages import table
 from scipy import optimize, stats
 
 import rockframe as rf
-from rockframe.studies.fragility.coverage import COVERAGE, bounded, words_of_bounds
 from rockframe.studies.fragility.labelling import Found, Layout, Means, labelled
 from rockframe.studies.fragility.likelihood import Bands, FragilityStatus, Trials, fit
+from rockframe.studies.fragility.words import COVERAGE, bounded, words_of_bounds
 
 SCALES = np.array([0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0])
 MEASURE = ("peak_ground_acceleration", {"units": "m s^-2"})
