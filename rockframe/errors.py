@@ -174,6 +174,9 @@ def shown(value: object) -> str:
     return line if len(line) <= LONGEST_SHOWN else f"{line[: LONGEST_SHOWN - 3]}..."
 
 
+PLEASE_REPORT: Final = "this is an error in rockframe; please report it"
+"""What is said of faults that no argument can cause."""
+
 _heard: Final[ContextVar[list[str] | None]] = ContextVar("heard", default=None)
 
 

@@ -3,7 +3,7 @@
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Final
 
-from rockframe.errors import ComponentError, RecordError, RecordWarning, warn
+from rockframe.errors import PLEASE_REPORT, ComponentError, RecordError, RecordWarning, warn
 from rockframe.motion import GroundMotion
 from rockframe.motion.quantities import argument_unit
 from rockframe.motion.readers.reading import Reading, read_components
@@ -146,7 +146,7 @@ class _Found:
         except Exception as problem:
             # a fault of a reader takes one file away, not the folder, and is told as what it is
             found = f"found what the reader fails at ({type(problem).__name__}: {problem})"
-            self.left.append(Unread(file.path, f"{found[:300]}; a fault of rockframe's to report"))
+            self.left.append(Unread(file.path, f"{found[:300]}; {PLEASE_REPORT}"))
             return
         for reading in readings:
             if isinstance(reading, RecordError):

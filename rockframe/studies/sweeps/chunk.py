@@ -18,9 +18,9 @@ from rockframe.simulation.end_in_motion import STILL_MOVING
 from rockframe.simulation.run import NONE, in_motion, scalars_of
 from rockframe.simulation.second_look import Look
 from rockframe.studies.sweeps.cases_of_job import CasesOfJob
-from rockframe.studies.sweeps.runs import Failed, each_run
+from rockframe.studies.sweeps.runs import each_run
 from rockframe.studies.sweeps.screening import in_doubt, look_at_case, repeated
-from rockframe.studies.sweeps.side_by_side import Finished
+from rockframe.studies.sweeps.side_by_side import Failed, Finished
 from rockframe.studies.sweeps.study import FEWEST_IN_LANES, Histories, Job
 
 NO_TEXT: Final = 0

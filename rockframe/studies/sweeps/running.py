@@ -1,6 +1,7 @@
 """A planned sweep, from its chunks to the labelled dataset, in memory or in a folder."""
 
 from concurrent.futures import Executor
+from dataclasses import replace
 from os import PathLike
 from pathlib import Path
 from typing import Any, Final
@@ -8,9 +9,12 @@ from typing import Any, Final
 import xarray as xr
 
 from rockframe.arguments import whole_number
+from rockframe.compiled import COMPILED
 from rockframe.errors import SolverWarning, StudyError, shown, warn
+from rockframe.simulation.run import respond
 from rockframe.studies.sweeps.axes import OWNER
 from rockframe.studies.sweeps.case import remember
+from rockframe.studies.sweeps.cases_of_job import CasesOfJob
 from rockframe.studies.sweeps.chunk import Rows
 from rockframe.studies.sweeps.execution import Chunk, carry_out
 from rockframe.studies.sweeps.grid import chunks_of
@@ -19,8 +23,11 @@ from rockframe.studies.sweeps.progress import Progress
 from rockframe.studies.sweeps.store import Store, begin_with
 from rockframe.studies.sweeps.study import Study, worker_count
 from rockframe.studies.sweeps.telling import say_what_is_missing
+from rockframe.system.own_base import OwnBase
 
 _LARGEST_CHUNK: Final = 1_000_000
+_GLIMPSE: Final = 1e-3
+"""Share of a run that tells whether its law can be compiled."""
 
 
 def run_study(
@@ -52,7 +59,7 @@ def run_study(
         As for :func:`rockframe.sweep`.
     """
     size = (
-        study.chunk_size(worker_count())
+        study.chunk_size(worker_count(), as_python=_runs_as_python(study))
         if chunk is None
         else whole_number(chunk, owner=OWNER, name="chunk", lowest=1, highest=_LARGEST_CHUNK)
     )
@@ -65,6 +72,20 @@ def run_study(
         warn(f"{OWNER}: interrupted; {dataset.attrs['verdict']}", SolverWarning)
     say_what_is_missing(dataset)
     return dataset
+
+
+def _runs_as_python(study: Study) -> bool:
+    """Whether the first case runs in plain Python, as with a law that cannot be compiled."""
+    if not COMPILED:
+        return True
+    try:
+        system, _, plan = CasesOfJob(study.job(range(1))).planned(0)
+        if not any(isinstance(part, OwnBase) for part in system.parts.structural()):
+            return False
+        glimpse = replace(plan.bare(), duration=_GLIMPSE * plan.duration)
+        return respond(system, glimpse).trajectory.as_python
+    except Exception:  # of which its run tells
+        return False
 
 
 def _in_memory(

@@ -1,27 +1,11 @@
 """The runs of the cases of a job, side by side where they can, else one after the other."""
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 
+from rockframe.errors import PLEASE_REPORT
 from rockframe.simulation.run import respond
 from rockframe.studies.sweeps.cases_of_job import CasesOfJob
-from rockframe.studies.sweeps.side_by_side import Finished, run_side_by_side
-
-
-@dataclass(frozen=True)
-class Failed:
-    """A case without a run.
-
-    Parameters
-    ----------
-    case : int
-        Its number in the job.
-    problem : Exception
-        Why.
-    """
-
-    case: int
-    problem: Exception
+from rockframe.studies.sweeps.side_by_side import Failed, Finished, run_side_by_side
 
 
 def each_run(
@@ -49,16 +33,28 @@ def each_run(
         In any order; not all where it was left off.
     """
     alone = set(which)
+    faults: dict[int, Exception] = {}
     if patience is not None:
-        for finished in run_side_by_side(cases, which, stopped, patience):
-            alone.discard(finished.case)
-            yield finished
+        for found in run_side_by_side(cases, which, stopped, patience):
+            if isinstance(found, Failed):
+                faults[found.case] = found.problem
+            else:
+                alone.discard(found.case)
+                yield found
     for case in sorted(alone):
         if stopped():
             return
         try:
             system, said, plan = cases.planned(case)
             response = respond(system, plan)
+            if case in faults:  # that it alone does not have
+                said = [*said, _not_beside_others(faults[case])]
             yield Finished(case, system, response.trajectory, said, response)
         except Exception as problem:  # whatever it is, it is this case's alone
             yield Failed(case, problem)
+
+
+def _not_beside_others(problem: Exception) -> str:
+    """Say of a case that ran alone why it did not run in a lane."""
+    kind = type(problem).__name__
+    return f"its run beside others failed ({kind}: {problem}), and it ran alone: {PLEASE_REPORT}"

@@ -1,13 +1,13 @@
 """Cases of a chunk that run side by side; the others are left to run alone."""
 
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any, Final
 
 import numpy as np
 
 from rockframe.compiled import compiling_for
+from rockframe.errors import RockframeError
 from rockframe.signals import Motion
 from rockframe.simulation.beginning import start_of
 from rockframe.simulation.run import Response, nothing_to_say
@@ -49,6 +49,22 @@ class Finished:
 
 
 @dataclass(frozen=True)
+class Failed:
+    """A case without a run.
+
+    Parameters
+    ----------
+    case : int
+        Its number in the job.
+    problem : Exception
+        Why.
+    """
+
+    case: int
+    problem: Exception
+
+
+@dataclass(frozen=True)
 class _Scene:
     """A scene under motions of one length and time step."""
 
@@ -86,7 +102,7 @@ class _Group:
 
 def run_side_by_side(
     cases: CasesOfJob, which: Sequence[int], stopped: Callable[[], bool], patience: float
-) -> Iterator[Finished]:
+) -> Iterator[Finished | Failed]:
     """Run what can run side by side.
 
     Parameters
@@ -102,8 +118,8 @@ def run_side_by_side(
 
     Yields
     ------
-    Finished
-        Cases in any order; those that are missing are to run alone.
+    Finished or Failed
+        Cases in any order; those that are missing, and those that failed, are to run alone.
     """
     scenes: dict[Any, _Scene | None] = {}
     kinds: dict[Any, bool] = {}
@@ -118,8 +134,12 @@ def run_side_by_side(
     for begin in range(0, len(which), TOGETHER):
         groups: dict[Any, _Group] = {}
         for case in which[begin : begin + TOGETHER]:
-            with suppress(Exception):  # which is told of where the case runs alone
+            try:
                 _take_up(cases, case, scenes, groups, ready)
+            except RockframeError:  # which is told of where the case runs alone
+                continue
+            except Exception as problem:
+                yield Failed(case, problem)
         for group in groups.values():
             if stopped():
                 return

@@ -190,10 +190,14 @@ class Study:
         """The sha256 of :meth:`to_dict`."""
         return digest_of(self.to_dict())
 
-    def chunk_size(self, workers: int) -> int:
+    def chunk_size(self, workers: int, *, as_python: bool) -> int:
         """Give a number of cases that takes long enough, and leaves work for all workers."""
-        one = self._time_of_case() * (1.0 if self.patience is None else IN_LANES)
-        size = LONG_ENOUGH / (one if COMPILED else _SLOWER * one)
+        one = self._time_of_case()
+        if as_python:
+            one *= _SLOWER
+        elif self.patience is not None:
+            one *= IN_LANES
+        size = LONG_ENOUGH / one
         fair = -(-self.grid.count // (4 * workers))
         return int(max(1, min(size, fair, LARGEST_CHUNK)))
 

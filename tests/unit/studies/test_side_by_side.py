@@ -204,6 +204,67 @@ def test_a_law_that_cannot_be_compiled_runs_in_plain_python(monkeypatch, fallbac
     np.testing.assert_allclose(plain.peak_rotation, runs.peak_rotation, rtol=1e-9)
 
 
+def test_chunks_of_a_law_that_cannot_be_compiled_are_small(monkeypatch, fallbacks):
+    rf.register(TabulatedPads)
+    asked = []
+
+    def size(self, workers, *, as_python):
+        asked.append((as_python, chunk_size(self, workers, as_python=as_python)))
+        return 10
+
+    chunk_size = study.Study.chunk_size
+    monkeypatch.setattr(study.Study, "chunk_size", size)
+    monkeypatch.setattr(study, "worker_count", lambda: 1)
+    for pads in (TabulatedPads(frequency_ratio=20, damping_ratio=0.1), PADS):
+        for scene in (rf.System(BLOCK, pads), on(pads)):
+            axes = {"slenderness": [4.0], "radius": ["4 m"]} if callable(scene) else {}
+            scales = np.linspace(0.01, 0.02, 10)
+            rf.sweep(scene, MOTIONS[0], axes=axes, scale=scales, duration="0.03 s")
+    fallbacks.clear()
+    assert [as_python for as_python, _ in asked] == [True, True, False, False]
+    long = plan_study(
+        rf.System(BLOCK, PADS), MOTIONS[0], {"scale": np.linspace(0.1, 2.0, 9000)}, None
+    )
+    assert chunk_size(long, 1, as_python=True) < 0.1 * chunk_size(long, 1, as_python=False)
+
+
+def test_what_fails_in_preparing_lanes_is_told_as_an_error(monkeypatch):
+    system = rf.System(BLOCK, PADS)
+    axes = {"scale": np.linspace(0.2, 1.0, 3), "damping_ratio": [0.05, 0.2]}
+
+    def swept():
+        return rf.sweep(system, MOTIONS[0], axes=axes, accuracy="fast")
+
+    alone = swept()
+
+    def fails(*_, **__):
+        msg = "no such lane"
+        raise ZeroDivisionError(msg)
+
+    monkeypatch.setattr(study, "FEWEST_IN_LANES", 1)
+    monkeypatch.setattr(study, "WORTH", math.inf)
+    monkeypatch.setattr(side_by_side, "begun", fails)
+    told = r"beside others failed \(ZeroDivisionError: no such lane\).*error in rockframe"
+    with pytest.warns(rf.ModelWarning, match=told):
+        runs = swept()
+    assert runs.attrs["driver"] == "each case alone"
+    for name in ("peak_rotation", "status", "impact_count"):
+        xr.testing.assert_identical(runs[name].variable, alone[name].variable)
+
+    # what a user's function raises is told of that case alone
+    def scene(width):
+        if width > 0.9:
+            raise ZeroDivisionError
+        return rf.System(rf.Block(width=f"{width} m", height="3.6 m", mass="4 t"), PADS)
+
+    monkeypatch.undo()
+    monkeypatch.setattr(study, "FEWEST_IN_LANES", 1)
+    monkeypatch.setattr(study, "WORTH", math.inf)
+    runs = rf.sweep(scene, MOTIONS[0], width=[0.8, 1.0], accuracy="fast")
+    assert runs.status.values.ravel().tolist() == [1, 6]
+    assert not any("error in rockframe" in text for text in runs.message.values)
+
+
 def test_lanes_are_compiled_where_they_save_more_than_that_takes(monkeypatch):
     system, asked = rf.System(BLOCK, PADS), []
     shaking = rf.GroundMotion.from_arrays((np.ones(1501), "m/s^2"), "0.02 s")

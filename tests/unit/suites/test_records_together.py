@@ -176,4 +176,4 @@ class TestOneBadFile:
         ((path, reason),) = suite.unread.items()
         assert path.endswith("bad.txt")
         assert f"{type(fault).__name__}" in reason
-        assert "a fault of rockframe" in reason
+        assert "this is an error in rockframe" in reason
