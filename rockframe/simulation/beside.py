@@ -61,6 +61,9 @@ class Beside:
         Largest share of a rotation in the overturning angle of its side.
     in_motion : bool
         Whether it stood with the energy to overturn later.
+    slides : float
+        Whether it would slide, 1 or 0; NaN where no base has a coefficient of friction, or the
+        run was made without samples.
     """
 
     overturned: bool | None
@@ -73,6 +76,7 @@ class Beside:
     status: Status = Status.COMPLETED
     peak_share: float = math.nan
     in_motion: bool = False
+    slides: float = math.nan
 
     @property
     def within_the_angle(self) -> bool:

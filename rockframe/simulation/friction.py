@@ -140,9 +140,21 @@ def slips(found: Sequence[Sliding]) -> Iterator[str]:
 
 
 def count_words(would_slide: Generic) -> str:
-    """Say of how many cases it is known, and of how many it is so; nothing of none."""
-    slide, hold = int((would_slide == 1.0).sum()), int((would_slide == 0.0).sum())
+    """Say how many cases would slide and how many would not; nothing where none is known."""
+    slide, hold = _counts(would_slide)
     return f"{slide} would slide and {hold} would not" if slide + hold else ""
+
+
+def share_words(would_slide: Generic, *, runs: str = "runs") -> str:
+    """Say in how many of the runs that an analysis made its verdict supposes too much friction."""
+    slide, hold = _counts(would_slide)
+    some = f"in {slide or 'none'} of {slide + hold} {runs}"
+    return f"{some} the block would slide first" if slide + hold else ""
+
+
+def _counts(would_slide: Generic) -> tuple[int, int]:
+    """Give how many slide and how many do not; NaN is neither."""
+    return int((would_slide == 1.0).sum()), int((would_slide == 0.0).sum())
 
 
 def _frictions(system: Assembly) -> Iterator[tuple[str, float, str]]:

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Final, TypeAlias
 
@@ -93,9 +93,12 @@ class Response:
     def beside(self) -> Beside:
         """Tell what a certificate asks of the run."""
         share = peak_of(self.trajectory, self.system.setting.overturning_angles).share
-        return what_showed(
+        shown = what_showed(
             self.trajectory, self.events, share, self.plan.duration, in_motion=self.in_motion
         )
+        slidings = self.answers.slidings
+        slides = float(any(each.slides for each in slidings)) if slidings else math.nan
+        return replace(shown, slides=slides)
 
     def cautions(self) -> list[Caution]:
         """Give what is to be warned of."""
@@ -108,9 +111,11 @@ class Response:
             None, "whether another run agrees with this one", missing,
         )  # fmt: skip
         others = [
-            attempted(lambda: [*_lost_weight(self.system, plan.motion)], [], _LEAVING, missing),
             attempted(
-                lambda: [*_pulling(self.system, self.answers.values, summary.overturning_time)],
+                lambda: [
+                    *_lost_weight(self.system, plan.motion),
+                    *_pulling(self.system, self.answers.values, summary.overturning_time),
+                ],
                 [], _LEAVING, missing,
             ),
             attempted(

@@ -174,11 +174,11 @@ def critical_scale(
     def plan_at(scale: float) -> Plan:
         return replace(plan, motion=motion.scaled(scale))
 
-    def bare_at(scale: float) -> Plan:
-        return replace(plan_at(scale), output_step=None)
+    # samples tell of friction, and of nothing else that is asked for here
+    step = plan.output_step if has_limit(system.assembly) else None
 
     def look(scale: float) -> Beside:
-        return beside(system.assembly, bare_at(scale))
+        return beside(system.assembly, replace(plan_at(scale), output_step=step))
 
     with bar_of(progress, owner=_OWNER, unit="run") as bar:
         found = follow(_counted(look, bar, len(row)), row, most=most, width=share)

@@ -13,6 +13,7 @@ from rockframe.results.outcome import overturns
 from rockframe.results.variables.studies import MOTION
 from rockframe.shared_arguments import takes
 from rockframe.signals.arrays import Array
+from rockframe.simulation.friction import share_words
 from rockframe.studies.brackets import least_exceeding, padded
 from rockframe.studies.intensities import Intensity, intensity_in, of_study
 from rockframe.studies.limit_states import LimitState, exceeds, limit_states
@@ -199,4 +200,7 @@ def _sentence(found: xr.Dataset) -> str:
     lacking = int(overturns(found).isnull().sum())
     if lacking and not cut:
         text += f"; {lacking} of {found['status'].size} runs of the scan have no verdict"
+    slides = found["would_slide"].to_numpy() if "would_slide" in found else np.empty(0)
+    if words := share_words(slides, runs="runs of the scan"):
+        text += f"; {words}"
     return f"{text}{INTERRUPTED if cut else '.'}"

@@ -4,7 +4,10 @@ import math
 from collections.abc import Sequence
 from typing import Final
 
+import numpy as np
+
 from rockframe.simulation.beside import Beside
+from rockframe.simulation.friction import share_words
 from rockframe.studies.flips import Flip, Followed
 
 _FEWEST_DIGITS: Final = 4
@@ -49,6 +52,8 @@ def sentence(found: Followed, *, width: float) -> str:
     text += f"; looked at {len(scales)} scales up to {number(largest)}"
     if not math.isnan(found.largest_gap):
         text += f", at most {_at_most(found.largest_gap)} apart"
+    slides = share_words(np.array([run.slides for run in found.shown.values()]))
+    text += f"; {slides}" if slides else ""
     text += "." if found.whole else ", then interrupted."
     if found.up_to < largest:
         lesser = " and a lesser scale" if not found.up_to >= critical else ""

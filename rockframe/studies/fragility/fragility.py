@@ -10,6 +10,7 @@ from rockframe.errors import ComponentError, SchemaError, UnitsError, shown
 from rockframe.results.dataset import build_dataset
 from rockframe.results.variables.analyses import LIMIT_STATE
 from rockframe.results.variables.studies import MOTION
+from rockframe.simulation.friction import share_words
 from rockframe.studies.confidence import read_level
 from rockframe.studies.dynamic_analysis import labels_of_states
 from rockframe.studies.fragility.labelling import Found, Means, labelled
@@ -168,7 +169,7 @@ def fragility(
         below = np.array([int((~one.trials.has_lower).sum()) for one in found])
         added = build_dataset({"below_scan_count": below}, {}, over=LIMIT_STATE)
         dataset = dataset.assign(added.data_vars)
-    dataset.attrs["verdict"] = sentences(dataset)
+    dataset.attrs["verdict"] = f"{sentences(dataset)}{_sliding(runs, of_capacities=of_capacities)}"
     # a system that the sweep changed is not that of the runs
     told = ("model",) if structures.coordinates or together else ("model", "system_json")
     return dataset.assign_attrs({name: runs.attrs[name] for name in told if name in runs.attrs})
@@ -289,6 +290,15 @@ def _of_capacities(
     trials = trials_of_capacities(one, known, measures)
     count = len(trials.weight)
     return Found(trials, None, one.sizes[MOTION] - count, count)
+
+
+def _sliding(runs: xr.Dataset, *, of_capacities: bool) -> str:
+    """Say in how many runs friction would not hold the block; nothing where none was given."""
+    if "would_slide" not in runs:
+        return ""
+    which = "runs of the scan" if of_capacities else "runs"
+    words = share_words(runs["would_slide"].to_numpy(), runs=which)
+    return f" {words[0].upper()}{words[1:]}; these count as if it were held." if words else ""
 
 
 def _period_of(given: "QuantityLike | None") -> dict[str, str | float | int]:

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import rockframe as rf
 from rockframe.compiled import COMPILED
@@ -9,6 +10,7 @@ from rockframe.studies.sweeps import study
 
 BLOCK = rf.Block(width="0.6 m", height="1.8 m", mass="180 kg")
 SLIPPERY = rf.System(BLOCK, rf.RigidGround(friction=0.2))
+ROUGH = rf.System(BLOCK, rf.RigidGround(friction=10))
 PULSE = rf.GroundMotion.sine_pulse("4 m/s^2", "1.2 Hz")
 SLIDES = "the block would slide from"
 
@@ -90,6 +92,36 @@ def test_cases_with_a_limit_leave_the_lanes_and_the_others_stay(monkeypatch, acc
     assert [SLIDES in text for text in texts_of(held)] == [False, True, True, True]
     assert not free.message_number.any()
     np.testing.assert_array_equal(held.peak_rotation, free.peak_rotation)
+
+
+def test_analyses_count_the_runs_that_would_slide():
+    scales = [0.3, 0.5, 1.0, 1.6]
+    ignored = pytest.warns(rf.ModelWarning, match=SLIDES)
+    with ignored:
+        runs = rf.sweep(SLIPPERY, PULSE, scale=scales, accuracy="standard")
+        analysis = rf.incremental_dynamic_analysis(SLIPPERY, PULSE, scale=scales)
+    slide = int(runs.would_slide.sum())
+    assert 0 < slide < 4
+    words = f"n {slide} of 4 runs"
+    assert f"; i{words} of the scan the block would slide first." in analysis.attrs["verdict"]
+    said = "the block would slide first; these count as if it were held."
+    assert f" I{words} {said}" in rf.fragility(runs).attrs["verdict"]
+    assert f" I{words} of the scan {said}" in rf.fragility(analysis).attrs["verdict"]
+    held = rf.critical_scale(ROUGH, PULSE, largest=1.6, scales=20, runs=40)
+    assert f"; in none of {held.scale.size} runs the block" in held.attrs["verdict"]
+    needed = rf.sweep(ROUGH, PULSE, scale=held.scale.values).peak_friction_demand
+    friction = float(needed.median())
+    slide = int((needed > friction).sum())
+    assert 0 < slide < held.scale.size
+    base = rf.RigidGround(friction=friction)
+    with ignored:
+        found = rf.critical_scale(rf.System(BLOCK, base), PULSE, largest=1.6, scales=20, runs=40)
+    words = f"; in {slide} of {held.scale.size} runs the block would slide first."
+    assert words in found.attrs["verdict"]
+    free = rf.critical_scale(rf.System(BLOCK), PULSE, largest=1.6, scales=20, runs=40)
+    assert "slide" not in free.attrs["verdict"]
+    xr.testing.assert_identical(free.scale, found.scale)
+    xr.testing.assert_identical(free.peak_rotation, found.peak_rotation)
 
 
 def test_analyses_tell_of_friction():
