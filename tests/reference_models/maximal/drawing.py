@@ -41,7 +41,12 @@ def draw(kind: str, seed: int, number: int, variant: str = "plain") -> Scene:
     starts = rng.random() < 0.2
     scene = replace(
         scene,
-        motion=_motion(scene, rng, still=starts and rng.random() < 0.5),
+        motion=draw_motion(
+            GRAVITY / scene.slenderness,
+            scene.frequency,
+            rng,
+            still=starts and rng.random() < 0.5,
+        ),
         free=float(round(rng.uniform(1.0, 3.0), 3)),
         start=float(rng.uniform(-0.6, 0.6)) if starts else 0.0,
         start_rate=float(rng.uniform(-0.4, 0.4)) if starts and rng.random() < 0.5 else 0.0,
@@ -103,12 +108,13 @@ def _leans_little(scene: Scene) -> bool:
     return abs(rest.lower_angle + rest.angle) < LARGEST_LEAN * p[LIMIT]
 
 
-def _log(rng: np.random.Generator, low: float, high: float) -> float:
+def draw_log(rng: np.random.Generator, low: float, high: float) -> float:
+    """Draw a number whose logarithm is spread evenly."""
     return float(np.exp(rng.uniform(math.log(low), math.log(high))))
 
 
 def _body(kind: str, rng: np.random.Generator) -> Scene:
-    radius, slenderness = _log(rng, 0.3, 15.0), _log(rng, 1.0, 8.0)
+    radius, slenderness = draw_log(rng, 0.3, 15.0), draw_log(rng, 1.0, 8.0)
     mu = float(rng.uniform(2.6, 3.2)) if rng.random() < 0.7 else 3.0
     scene = Scene(
         kind=kind,
@@ -117,7 +123,7 @@ def _body(kind: str, rng: np.random.Generator) -> Scene:
         slenderness=slenderness,
         mass=1e4 * radius**2,
         shape_factor=mu,
-        beta=_log(rng, 8.0, 80.0),
+        beta=draw_log(rng, 8.0, 80.0),
         xi=0.0 if rng.random() < 0.15 else float(rng.uniform(0.0, 0.6)),
         small=bool(rng.random() < 0.1),
         soil_xi=0.0 if rng.random() < 0.15 else float(rng.uniform(0.0, 0.6)),
@@ -134,10 +140,10 @@ def _body(kind: str, rng: np.random.Generator) -> Scene:
             cap=True,
             cap_width=2.0 * scene.half_width * float(rng.uniform(1.0, 1.6)),
             cap_height=2.0 * scene.half_height * float(rng.uniform(0.01, 0.2)),
-            cap_mass=scene.mass * _log(rng, 0.03, 0.6),
+            cap_mass=scene.mass * draw_log(rng, 0.03, 0.6),
         )
     mass, _, b, level = scene.one_body()
-    firmness = _log(rng, 1.4, 100.0)
+    firmness = draw_log(rng, 1.4, 100.0)
     return replace(scene, soil_stiffness=1.5 * firmness * mass * GRAVITY * level / b**3)
 
 
@@ -154,14 +160,16 @@ def _stands(scene: Scene) -> bool:
     return soft < 0.8
 
 
-def _motion(scene: Scene, rng: np.random.Generator, still: bool) -> dict[str, Any]:
-    threshold = GRAVITY / scene.slenderness
+def draw_motion(
+    threshold: float, frequency: float, rng: np.random.Generator, still: bool
+) -> dict[str, Any]:
+    """Draw a motion for bodies of a rocking frequency that uplift at a threshold."""
     vertical = float(rng.uniform(0.05, 0.7)) * GRAVITY if rng.random() < 0.5 else 0.0
     sign = 1.0 if rng.random() < 0.5 else -1.0
     kind = rng.random()
-    pace = scene.frequency / (2.0 * math.pi)
-    scale = pace * _log(rng, 0.8, 8.0)
-    peak = sign * threshold * _log(rng, 0.8, 2.2) * max(1.0, 0.4 * scale / pace)
+    pace = frequency / (2.0 * math.pi)
+    scale = pace * draw_log(rng, 0.8, 8.0)
+    peak = sign * threshold * draw_log(rng, 0.8, 2.2) * max(1.0, 0.4 * scale / pace)
     cycles = float(rng.choice([0.5, 1.0, 1.5, 2.5, 4.0]))
     waves = [_waves(rng), _waves(rng)]
     length, lead = float(rng.uniform(3.0, 7.0)), float(rng.uniform(0.1, 0.6))
@@ -176,7 +184,7 @@ def _motion(scene: Scene, rng: np.random.Generator, still: bool) -> dict[str, An
         return {
             "form": form, "peak": peak, "vertical": vertical, "scale": scale, "cycles": cycles,
         }  # fmt: skip
-    size = sign * threshold * _log(rng, 1.0, 3.5)
+    size = sign * threshold * draw_log(rng, 1.0, 3.5)
     if kind < 0.6 and have_records():
         return {
             "form": "record", "which": which, "length": length, "lead": lead, "peak": size,
@@ -190,5 +198,6 @@ def _motion(scene: Scene, rng: np.random.Generator, still: bool) -> dict[str, An
 
 def _waves(rng: np.random.Generator) -> list[tuple[float, float, float]]:
     return [
-        (float(rng.uniform(0.3, 1.0)), _log(rng, 0.3, 8.0), float(rng.random())) for _ in range(6)
+        (float(rng.uniform(0.3, 1.0)), draw_log(rng, 0.3, 8.0), float(rng.random()))
+        for _ in range(6)
     ]

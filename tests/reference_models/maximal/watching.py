@@ -81,7 +81,7 @@ def earliest(
             if m > start and samples[m, k] < 0.0:
                 low, high = h * (m - 1) / SAMPLES, h * m / SAMPLES
             else:
-                left, right = _dip(samples, k, m, start)
+                left, right = dip(samples, k, m, start)
                 if right > left:
                     low, high, hunt = h * left / SAMPLES, h * right / SAMPLES, True
             if high > 0.0:
@@ -100,7 +100,7 @@ def earliest(
 
 
 @compiled
-def _dip(samples, k, m, start):
+def dip(samples, k, m, start):
     """Tell between which samples a guard may dip below zero though both are positive."""
     if start == 0 and m == 0:
         g0, g1, g2 = samples[0, k], samples[1, k], samples[2, k]

@@ -1,0 +1,107 @@
+"""Random scenes of blocks on pads."""
+
+import math
+
+import numpy as np
+from reference_models.maximal.drawing import draw_log, draw_motion
+
+from .scene import GRAVITY, RULES, Body, Pads, Scene
+
+SOFTEST = 0.6
+"""Greatest share of the weight that would tip the stack over on its pads."""
+
+
+def draw(rng: np.random.Generator, count: int = 3, offsets: bool = False) -> Scene:
+    """Draw blocks on pads, one on the other, and a motion.
+
+    Of three blocks on level ground about half uplift and some overturn. Widths are from 0.5 to
+    2 m, that of a block at most that of the one below.
+
+    Parameters
+    ----------
+    rng : numpy.random.Generator
+    count : int
+        Number of blocks.
+    offsets : bool
+        Whether blocks stand beside the middle of those below.
+
+    Returns
+    -------
+    Scene
+        Its motion is one for `maximal.motions.both`.
+    """
+    rule = RULES[0] if rng.random() < 0.7 else RULES[1 + int(rng.integers(2))]
+    while True:
+        bodies = _blocks(rng, count, offsets)
+        bases = _pads(rng, bodies)
+        if softness(bodies, bases) < SOFTEST:
+            break
+    starts = rng.random() < 0.2
+    still = starts and rng.random() < 0.3
+    threshold, size = _threshold(bodies)
+    motion = draw_motion(
+        draw_log(rng, 0.1, 1.0) * threshold, math.sqrt(0.75 * GRAVITY / size), rng, still
+    )
+    rotation = None
+    if starts:
+        top = bodies[0]
+        rotation = float(rng.uniform(-0.5, 0.5)) * math.atan(top.half_width / top.height)
+    return Scene(
+        tuple(bodies), tuple(bases), rule, rotation, free=float(round(rng.uniform(1.0, 3.0), 3)),
+        motion=motion,
+    )  # fmt: skip
+
+
+def _blocks(rng: np.random.Generator, count: int, offsets: bool) -> list[Body]:
+    bodies: list[Body] = []
+    width = float(rng.uniform(0.5, 2.0))
+    for _ in range(count):
+        if bodies:  # from the ground up
+            width = float(rng.uniform(max(0.5, 0.6 * width), width))
+        height = width * float(rng.uniform(2.0, 6.0))
+        mass = 2000.0 * width * height
+        inertia = mass * (width**2 + height**2) / 12.0
+        beside = 0.05 * width * float(rng.uniform(-1.0, 1.0)) if offsets and bodies else 0.0
+        half = 0.5 * height
+        bodies.insert(0, Body(mass, inertia, 0.5 * width, half, half, beside))
+    return bodies
+
+
+def _pads(rng: np.random.Generator, bodies: list[Body]) -> list[Pads]:
+    """Draw pads by the frequency of vertical vibration, over that of rocking of the block."""
+    carried, pads = 0.0, []
+    for body in bodies:
+        carried += body.mass
+        radius = math.hypot(body.half_width, body.height)
+        fast = draw_log(rng, 10.0, 60.0) * math.sqrt(0.75 * GRAVITY / radius)
+        share, eps = float(rng.uniform(0.02, 0.2)), float(rng.uniform(0.2, 0.95))
+        pads.append(Pads(0.5 * carried * fast**2, share * carried * fast, eps))
+    return pads
+
+
+def _above(bodies: list[Body], k: int) -> tuple[float, float]:
+    """Give mass of a body and all above it, and the height of their centre over its base."""
+    mass = rise = base = 0.0
+    for body in bodies[k::-1]:
+        mass += body.mass
+        rise += body.mass * (base + body.height)
+        base += body.height + body.top
+    return mass, rise / mass
+
+
+def softness(bodies: list[Body], bases: list[Pads]) -> float:
+    """Give an upper bound for the weight over that which tips the upright stack, by Dunkerley."""
+    total = 0.0
+    for k, (body, pads) in enumerate(zip(bodies, bases, strict=True)):
+        mass, level = _above(bodies, k)
+        total += mass * GRAVITY * level / (2.0 * pads.stiffness * body.half_width**2)
+    return total
+
+
+def _threshold(bodies: list[Body]) -> tuple[float, float]:
+    """Give the acceleration that uplifts the weakest base, and the size of what rocks there."""
+    found = []
+    for k, body in enumerate(bodies):
+        level = _above(bodies, k)[1]
+        found.append((GRAVITY * body.half_width / level, math.hypot(body.half_width, level)))
+    return min(found)

@@ -1,0 +1,184 @@
+"""A stack of bodies in SI units, and the arrays that the equations want."""
+
+import math
+from dataclasses import dataclass, field, replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+GRAVITY = 9.80665
+# restraint rules
+CONTACT_STATE, LEADING_CORNER, CENTRE = 0, 1, 2
+RULES = ("contact-state", "leading-corner", "centre")
+# numbers of a state behind coordinates and rates: dissipated, and put in by the ground
+WORKS = 2
+
+
+@dataclass(frozen=True)
+class Body:
+    """A rigid body.
+
+    `height` is that of the centre of mass above the base, `top` that of the deck above the centre
+    of mass. The centre of mass stands `eccentricity` to the right of the middle of the base, which
+    stands `offset` to the right of the middle of the base of the body below. At a rotation of
+    `limit` the run ends; None: where the centre of mass of the body and of all above it, upright,
+    stands above the end of the base.
+    """
+
+    mass: float
+    inertia: float
+    half_width: float
+    height: float
+    top: float
+    offset: float = 0.0
+    eccentricity: float = 0.0
+    limit: float | None = None
+
+
+@dataclass(frozen=True)
+class Pads:
+    """Two pads under the ends of a base; stiffness and damping are those of each.
+
+    A restitution for both, or one for the left and one for the right.
+    """
+
+    stiffness: float
+    damping: float
+    restitution: float | tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Bed:
+    """A bed under a base; stiffness and damping per length. It parts by displacement."""
+
+    stiffness: float
+    damping: float
+
+
+@dataclass(frozen=True)
+class Scene:
+    """Bodies from the top down, what each stands on, and how the lowest base is shaken.
+
+    The stack starts at rest, if `rotation` is not None with the top body rotated by it relative to
+    the body below, in vertical equilibrium on its base, and with the relative rate `rate`.
+    """
+
+    bodies: tuple[Body, ...]
+    bases: tuple[Pads | Bed, ...]
+    rule: str = "contact-state"
+    rotation: float | None = None
+    rate: float = 0.0
+    free: float = 2.0
+    motion: dict[str, Any] = field(default_factory=dict)
+
+
+class Stack(NamedTuple):
+    """The numbers of a scene; body k stands on body k + 1, the last one on the ground.
+
+    The ground is a body itself, without inverse mass, that rests at zero.
+    """
+
+    inverse: np.ndarray  # of masses and inertias, for each coordinate
+    mass: np.ndarray
+    half_width: np.ndarray
+    height: np.ndarray
+    eccentricity: np.ndarray
+    across: np.ndarray  # from the centre of mass of what carries a body to its own, at rest
+    apart: np.ndarray
+    is_bed: np.ndarray
+    stiffness: np.ndarray
+    damping: np.ndarray
+    restitution: np.ndarray
+    settlement: np.ndarray
+    load: np.ndarray  # weight of a body and of all above it
+    limits: np.ndarray  # to the left and to the right
+    rule: int
+    gravity: float
+    tolerance: float
+    pace: float  # upper bound for the angular frequencies
+
+
+def stack_of(scene: Scene, tolerance: float) -> Stack:
+    """Give the numbers of a scene."""
+    bodies, bases = scene.bodies, scene.bases
+    n = len(bodies)
+    mass = np.array([body.mass for body in bodies])
+    inverse = np.zeros(3 * (n + 1))
+    for k, body in enumerate(bodies):
+        inverse[3 * k : 3 * k + 3] = 1.0 / body.mass, 1.0 / body.mass, 1.0 / body.inertia
+    carried = np.cumsum(mass)
+    wide = np.array([body.half_width for body in bodies])
+    beside = np.array([body.eccentricity for body in bodies])
+    level = np.array([body.height for body in bodies])
+    is_bed = np.array([isinstance(base, Bed) for base in bases])
+    stiffness = np.array([base.stiffness for base in bases])
+    damping = np.array([base.damping for base in bases])
+    # of a whole base over that of a pad, or of a length
+    size = np.where(is_bed, 2.0 * wide, 2.0)
+    offset = np.array([body.offset for body in bodies])
+    return Stack(
+        inverse=inverse,
+        mass=mass,
+        half_width=wide,
+        height=level,
+        eccentricity=beside,
+        across=offset + beside - np.append(beside[1:], 0.0),
+        apart=level + np.append([body.top for body in bodies[1:]], 0.0),
+        is_bed=is_bed,
+        stiffness=stiffness,
+        damping=damping,
+        restitution=np.array([_rebounds(base) for base in bases]),
+        settlement=carried * GRAVITY / (size * stiffness),
+        load=carried * GRAVITY,
+        limits=np.array([_limits(bodies, k) for k in range(n)]),
+        rule=RULES.index(scene.rule),
+        gravity=GRAVITY,
+        tolerance=tolerance,
+        pace=_pace(inverse, size * stiffness, size * damping, wide),
+    )
+
+
+def _rebounds(base: Pads | Bed) -> tuple[float, float]:
+    if isinstance(base, Bed):
+        return 1.0, 1.0
+    given = base.restitution
+    return given if isinstance(given, tuple) else (given, given)
+
+
+def _limits(bodies: tuple[Body, ...], k: int) -> tuple[float, float]:
+    """Give the overturning angles of a body to the left and to the right."""
+    body = bodies[k]
+    if body.limit is not None:
+        return body.limit, body.limit
+    mass, moment, rise = body.mass, body.mass * body.eccentricity, body.mass * body.height
+    base, place = 0.0, 0.0
+    for j in range(k, 0, -1):
+        below, above = bodies[j], bodies[j - 1]
+        base, place = base + below.height + below.top, place + above.offset
+        mass += above.mass
+        moment += above.mass * (place + above.eccentricity)
+        rise += above.mass * (base + above.height)
+    wide, beside = body.half_width, moment / mass
+    return math.atan((wide + beside) * mass / rise), math.atan((wide - beside) * mass / rise)
+
+
+def _pace(inverse, stiffness, damping, wide) -> float:
+    fastest = 1.0
+    for k in range(wide.size):
+        here, under = inverse[3 * k : 3 * k + 3], inverse[3 * k + 3 : 3 * k + 6]
+        light = here[0] + under[0] + wide[k] ** 2 * (here[2] + under[2])
+        fastest = max(fastest, math.sqrt(2.0 * stiffness[k] * light) + damping[k] * light)
+    return fastest
+
+
+def mirrored(scene: Scene) -> Scene:
+    """Give the scene with left and right exchanged, for still ground."""
+    return replace(
+        scene,
+        bodies=tuple(
+            replace(body, offset=-body.offset, eccentricity=-body.eccentricity)
+            for body in scene.bodies
+        ),
+        rotation=None if scene.rotation is None else -scene.rotation,
+        rate=-scene.rate,
+    )

@@ -1,0 +1,219 @@
+"""One step in time, and the first guard that falls through zero in it."""
+
+from typing import NamedTuple
+
+import numpy as np
+from reference_models.maximal.compiling import compiled
+from reference_models.maximal.excitation import ground
+from reference_models.maximal.runge_kutta import ERROR_WEIGHT, MATRIX, NODES, STAGES, WEIGHTS
+from reference_models.maximal.watching import LAPS, POINTS, SAMPLES, dip
+
+from .forces import accelerate, powers
+from .guards import evaluate
+from .scene import WORKS
+
+
+class Motion(NamedTuple):
+    """A motion of the ground, see `ground`."""
+
+    shape: np.ndarray
+    across: np.ndarray
+    upwards: np.ndarray
+
+
+class Path(NamedTuple):
+    """Arrays of one step: derivatives, states at its ends, and guards."""
+
+    slopes: np.ndarray
+    first: np.ndarray
+    last: np.ndarray
+    new: np.ndarray
+    trial: np.ndarray
+    scale: np.ndarray  # size of a tolerated error
+    guards: np.ndarray
+    noise: np.ndarray
+    armed: np.ndarray
+    samples: np.ndarray
+
+
+def path_of(states: int, guards: int) -> Path:
+    """Give room for a step."""
+    vectors = [np.zeros(states) for _ in range(5)]
+    return Path(
+        np.zeros((STAGES, states)), *vectors, np.zeros(guards), np.zeros(guards),
+        np.zeros(guards, dtype=np.bool_), np.zeros((SAMPLES + 1, guards)),
+    )  # fmt: skip
+
+
+@compiled
+def rates(t, z, piece, motion, stack, standing, room, slope):
+    """Fill in the derivative of the state: rates, accelerations and the powers of both works."""
+    gx, gy = ground(t, piece, motion.shape, motion.across, motion.upwards)
+    accelerate(z, gx, gy, stack, standing, room)
+    count = stack.inverse.size
+    for j in range(count):
+        slope[j], slope[count + j] = z[count + j], room.out[j]
+    slope[2 * count], slope[2 * count + 1] = powers(z, gx, gy, stack, standing, room)
+
+
+@compiled
+def step(t, h, z, piece, motion, stack, standing, room, path, new):
+    """Take one step; give the greatest difference of both orders over `path.scale`.
+
+    `path.first` is the derivative at the start; `new` is filled with the state at the end.
+    """
+    slopes = path.slopes
+    slopes[0] = path.first
+    for i in range(1, STAGES):
+        for j in range(z.size):
+            total = 0.0
+            for k in range(i):
+                total += MATRIX[i, k] * slopes[k, j]
+            new[j] = z[j] + h * total
+        rates(t + NODES[i] * h, new, piece, motion, stack, standing, room, slopes[i])
+    worst = 0.0
+    for j in range(z.size):
+        total = 0.0
+        for k in range(5, STAGES):
+            total += WEIGHTS[k] * slopes[k, j]
+        new[j] = z[j] + h * total
+        if j < z.size - WORKS:
+            off = slopes[0, j] + slopes[10, j] - slopes[11, j] - slopes[12, j]
+            worst = max(worst, abs(h * ERROR_WEIGHT * off) / path.scale[j])
+    return worst
+
+
+@compiled
+def sample_guards(t, h, z, piece, motion, stack, standing, room, path):
+    """Fill in the guards at equally spaced times of a step.
+
+    Between the ends places are the quintics through places, rates and accelerations of both, rates
+    the cubics through rates and accelerations. That only tells where to look: what is found there
+    is looked at again with steps of their own.
+    """
+    new, first, last, inner = path.new, path.first, path.last, path.trial
+    count = stack.inverse.size
+    for m in range(SAMPLES + 1):
+        u = m / SAMPLES
+        for j in range(count):
+            v = count + j
+            r = new[j] - z[j] - h * z[v] - 0.5 * h * h * first[v]
+            d, a0, a1 = new[v] - z[v], h * first[v], h * last[v]
+            q, w = h * (d - a0), h * (a1 - a0)
+            c3 = 10.0 * r - 4.0 * q + 0.5 * w
+            c4 = -15.0 * r + 7.0 * q - w
+            c5 = 6.0 * r - 3.0 * q + 0.5 * w
+            inner[j] = z[j] + u * h * (z[v] + 0.5 * u * a0) + u * u * u * (c3 + u * (c4 + u * c5))
+            inner[v] = z[v] + u * (a0 + u * (3.0 * d - 2.0 * a0 - a1 + u * (a0 + a1 - 2.0 * d)))
+        if m == SAMPLES:
+            inner[:] = new
+        gx, gy = ground(t + u * h, piece, motion.shape, motion.across, motion.upwards)
+        evaluate(inner, gx, gy, stack, standing, room, path.samples[m])
+
+
+@compiled
+def value_at(x, slot, t, z, piece, motion, stack, standing, room, path):
+    """Give a guard after a step of length x."""
+    step(t, x, z, piece, motion, stack, standing, room, path, path.trial)
+    gx, gy = ground(t + x, piece, motion.shape, motion.across, motion.upwards)
+    evaluate(path.trial, gx, gy, stack, standing, room, path.guards)
+    return path.guards[slot]
+
+
+@compiled
+def earliest(t, h, z, piece, motion, stack, standing, room, path):
+    """Find the first guard that falls through zero in a step.
+
+    Returns
+    -------
+    tuple
+        Guard and time from the start of the step; -1 if there is none; -2 and a guard if that guard
+        started at zero and is negative where it is looked at first.
+    """
+    samples, noise = path.samples, path.noise
+    best, when = -1, 2.0 * h
+    for k in range(noise.size):
+        start = 0
+        if not path.armed[k]:
+            start = -1
+            for m in range(1, SAMPLES + 1):
+                if samples[m, k] < -noise[k]:
+                    return -2, float(k)
+                if samples[m, k] > noise[k]:
+                    start = m
+                    break
+            if start < 0:
+                continue
+        for m in range(start, SAMPLES + 1):
+            root = -1.0
+            if m > start and samples[m, k] < 0.0:
+                low, high = h * (m - 1) / SAMPLES, h * m / SAMPLES
+                if low >= when:
+                    break
+                root = _root(low, high, k, t, z, piece, motion, stack, standing, room, path)
+            else:
+                left, right = dip(samples, k, m, start)
+                if right == left:
+                    continue
+                low, high = h * left / SAMPLES, h * right / SAMPLES
+                if low >= when:
+                    break
+                below = _hunt(low, high, k, t, z, piece, motion, stack, standing, room, path)
+                if below >= 0.0:
+                    root = _root(low, below, k, t, z, piece, motion, stack, standing, room, path)
+            if root >= 0.0:
+                if root < when:
+                    best, when = k, root
+                break
+    return best, when
+
+
+@compiled
+def _hunt(low, high, slot, t, z, piece, motion, stack, standing, room, path):
+    """Find where a guard is negative that is positive at both ends of an interval; else -1."""
+    best, place = 1e300, low
+    for _ in range(LAPS):
+        part = (high - low) / POINTS
+        for m in range(1, POINTS):
+            x = low + part * m
+            value = value_at(x, slot, t, z, piece, motion, stack, standing, room, path)
+            if value < -path.noise[slot]:
+                return x
+            if value < best:
+                best, place = value, x
+        low, high = max(low, place - part), min(high, place + part)
+    return -1.0
+
+
+@compiled
+def _root(low, high, slot, t, z, piece, motion, stack, standing, room, path):
+    """Find the length of the step at whose end a guard has fallen through zero; else -1."""
+    below = value_at(high, slot, t, z, piece, motion, stack, standing, room, path)
+    if below > 0.0:
+        return -1.0
+    above = value_at(low, slot, t, z, piece, motion, stack, standing, room, path)
+    while above <= 0.0:  # it fell before that
+        if low == 0.0:
+            return 0.0
+        low, high, below = max(0.0, 2.0 * low - high), low, above
+        above = value_at(low, slot, t, z, piece, motion, stack, standing, room, path)
+    kept = 0
+    for lap in range(80):
+        x = low + (high - low) * above / (above - below)
+        if not low < x < high or lap % 4 == 3:
+            x = 0.5 * (low + high)
+        if high - low <= 2e-17 * (t + high) or not low < x < high:
+            break
+        value = value_at(x, slot, t, z, piece, motion, stack, standing, room, path)
+        if abs(value) < 1e-15:
+            return x
+        # false position; a side that stays twice counts for half
+        if value > 0.0:
+            low, above = x, value
+            below = 0.5 * below if kept == 1 else below
+            kept = 1
+        else:
+            high, below = x, value
+            above = 0.5 * above if kept == -1 else above
+            kept = -1
+    return high
