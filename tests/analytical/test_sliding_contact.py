@@ -14,6 +14,7 @@ from rockframe.dynamics.base_numbers import bed_under, pads_under
 from rockframe.dynamics.events import EventKind
 from rockframe.dynamics.protocol import Start
 from rockframe.dynamics.restraint import CENTRE
+from rockframe.dynamics.sliding import is_lifted, speed_noise
 from rockframe.signals import Motion
 from rockframe.solve.accuracy import accuracy_of
 from rockframe.solve.integrate import integrate
@@ -259,3 +260,21 @@ def test_fixed_steps_are_cut_to_what_a_fast_pad_asks_for_while_a_corner_slides()
     assert fast.step_count > 1.5 * 50 * fast.substeps
     assert np.abs(fast.state - exact.state).max() < 2e-3
     assert fast.energy_residual < 1e-3
+
+
+def test_a_speed_that_is_rounding_is_none():
+    """An end stands still where the body moves as fast as it rotates, but for the last digits."""
+    rng = np.random.default_rng(4)
+    beside = 0
+    for speed, lever in rng.normal(size=(200, 2)).tolist():
+        rate = -speed / lever
+        noise = speed_noise(speed, lever, rate)
+        left = speed + lever * rate
+        beside += left != 0.0
+        assert is_lifted(left, left, noise)
+        assert noise < 1e-14 * abs(speed)
+        clearly = 1e-13 * abs(speed)
+        assert not is_lifted(clearly, clearly, noise)  # it rises by itself
+        assert not is_lifted(-clearly, -clearly, noise)  # it comes down all the same
+        assert is_lifted(-clearly, clearly, noise)
+    assert beside > 10
