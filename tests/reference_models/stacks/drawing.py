@@ -11,7 +11,12 @@ SOFTEST = 0.6
 """Greatest share of the weight that would tip the stack over on its pads."""
 
 
-def draw(rng: np.random.Generator, count: int = 3, offsets: bool = False) -> Scene:
+def draw(
+    rng: np.random.Generator,
+    count: int = 3,
+    offsets: bool = False,
+    slenderness: tuple[float, float] = (2.0, 6.0),
+) -> Scene:
     """Draw blocks on pads, one on the other, and a motion.
 
     Of three blocks on level ground about half uplift and some overturn. Widths are from 0.5 to
@@ -24,6 +29,8 @@ def draw(rng: np.random.Generator, count: int = 3, offsets: bool = False) -> Sce
         Number of blocks.
     offsets : bool
         Whether blocks stand beside the middle of those below.
+    slenderness : tuple of float
+        Range of height over width. Squat blocks fly, and slide as they come down.
 
     Returns
     -------
@@ -32,7 +39,7 @@ def draw(rng: np.random.Generator, count: int = 3, offsets: bool = False) -> Sce
     """
     rule = RULES[0] if rng.random() < 0.7 else RULES[1 + int(rng.integers(2))]
     while True:
-        bodies = _blocks(rng, count, offsets)
+        bodies = _blocks(rng, count, offsets, slenderness)
         bases = _pads(rng, bodies)
         if softness(bodies, bases) < SOFTEST:
             break
@@ -52,13 +59,15 @@ def draw(rng: np.random.Generator, count: int = 3, offsets: bool = False) -> Sce
     )  # fmt: skip
 
 
-def _blocks(rng: np.random.Generator, count: int, offsets: bool) -> list[Body]:
+def _blocks(
+    rng: np.random.Generator, count: int, offsets: bool, slenderness: tuple[float, float]
+) -> list[Body]:
     bodies: list[Body] = []
     width = float(rng.uniform(0.5, 2.0))
     for _ in range(count):
         if bodies:  # from the ground up
             width = float(rng.uniform(max(0.5, 0.6 * width), width))
-        height = width * float(rng.uniform(2.0, 6.0))
+        height = width * float(rng.uniform(*slenderness))
         mass = 2000.0 * width * height
         inertia = mass * (width**2 + height**2) / 12.0
         beside = 0.05 * width * float(rng.uniform(-1.0, 1.0)) if offsets and bodies else 0.0

@@ -96,7 +96,7 @@ def simulate(scene: Scene, motion: Excitation, tolerance: float = TOLERANCE) -> 
     states[0] = z
     begun = energy(z, stack, standing, room)
     course = Course(
-        np.array([0.0, 0.02 / stack.pace, 0.0]), stops, pieces, states,
+        np.array([0.0, 0.02 / stack.pace, 0.0, 0.0, 0.0]), stops, pieces, states,
         np.maximum(_typical_sizes(stack), np.abs(z)), motion.longest,
     )  # fmt: skip
     shaking = Motion(motion.shape, motion.across, motion.upwards)

@@ -13,7 +13,7 @@ CLEAR, RELAXING, TOUCHING, LEAVING, ENGAGING, SLIDES = 0, 1, 2, 3, 4, 5
 END_GUARDS, LEAD_GUARD, BASE_GUARDS = 3, 6, 7
 
 # how a run ended
-COMPLETED, OVERTURNED, CHATTER, TOO_SMALL, FIRED = 0, 1, 2, 3, 4
+COMPLETED, OVERTURNED, CHATTER, TOO_SMALL, FIRED, SUSPECT = range(6)
 
 LEAST_LEVER = 1e-7
 """Lever of the hold, over the size of the body, below which it cannot lift an end."""
