@@ -18,11 +18,10 @@ from rockframe.dynamics.pads import CONTACTS, CORNER_GUARDS, Pads, sunk_pads
 from rockframe.dynamics.protocol import Column
 from rockframe.results.variables.variable import TIME, Variable
 from rockframe.system.load import Load
-from rockframe.system.numeric_support import NumericSupport
 from rockframe.system.own_base import OwnBase
 from rockframe.system.pads import PadSupport, pads_under
 from rockframe.system.soil import BedSupport, bed_under
-from rockframe.system.support import BaseWords, Held, Support
+from rockframe.system.support import BaseWords, Support
 from rockframe.units import NOT_NEGATIVE, POSITIVE, UNIT_INTERVAL, Measure, Unit
 
 __all__ = [
@@ -48,10 +47,8 @@ __all__ = [
     "EndEvent",
     "EventKind",
     "Guards",
-    "Held",
     "Load",
     "Measure",
-    "NumericSupport",
     "OneOf",
     "OwnBase",
     "PadSupport",

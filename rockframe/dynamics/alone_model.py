@@ -15,6 +15,7 @@ from rockframe.dynamics.on_base import BODY_GUARDS, Mode, OnBase
 from rockframe.dynamics.pads import ROUNDING
 from rockframe.dynamics.protocol import BODY_COLUMNS, HELD_PLACE, MEMORY, ContactModel, Start
 from rockframe.dynamics.restraint import CENTRE
+from rockframe.dynamics.statics import link_of, settled
 
 
 def body_of(
@@ -76,7 +77,7 @@ def alone(
     mass : float
         Of the body [kg].
     rest_rotation : float
-        Of the body at rest, :func:`rockframe.dynamics.rest.rest_rotation` [rad].
+        Of the body at rest, :meth:`rockframe.dynamics.statics.Chain.rest` [rad].
 
     Returns
     -------
@@ -166,23 +167,21 @@ def starting_state(part: OnBase, start: Start, own: tuple[float, ...]) -> tuple[
     Unless the start says otherwise it is in vertical equilibrium.
     """
     body, base, rotation = part.body, part.base, start.rotation or 0.0
-    attitude = body.attitude(rotation)
     height = start.vertical_displacement
     if height is None:
-        lift = body.left * attitude.sine, -body.right * attitude.sine
-        height = base.resting_height(*lift, own) - attitude.rise
+        height = settled(link_of(part, own=own), rotation, body.gravity).state.vertical
     state = BodyState(rotation, height, 0.0, start.angular_velocity, start.vertical_velocity, 0.0)
     return state, part.standing(base.starting(body.base_line_at(state), own), state)
 
 
-def settled(start: Start, rest_rotation: float) -> Start:
+def placed(start: Start, rest_rotation: float) -> Start:
     """Give a start whose rotation is known: that at rest, unless it says otherwise."""
     return start if start.rotation is not None else replace(start, rotation=rest_rotation)
 
 
 def _starting(part: OnBase, rest_rotation: float) -> Callable[[Start], tuple[int, Vector, Vector]]:
     def initial(given: Start) -> tuple[int, Vector, Vector]:
-        start = settled(given, rest_rotation)
+        start = placed(given, rest_rotation)
         state = np.zeros(2 * DEGREES + part.base.variables())
         memory = np.zeros(len(MEMORY))
         body, mode = starting_state(part, start, part.base.read(state, 2 * DEGREES))

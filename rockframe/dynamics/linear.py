@@ -1,105 +1,122 @@
-"""Small motion about a rest that is not upright: derivatives of the accelerations.
+"""Small motion of bodies on one another about rest: M q'' + C q' + K q = 0.
 
-Upright, symmetric bodies have closed forms; one that leans has none that is shorter than its
-equations of motion, which are differentiated here.
+The forces of the bases are differentiated in the contacts that they are in, as the equations of
+motion take them, and so is what the weights do.
 """
 
-from collections.abc import Callable
+import math
 from typing import Final, NamedTuple
 
 import numpy as np
 
 from rockframe.compiled import Matrix, Vector
-from rockframe.dynamics.alone_model import starting_state
 from rockframe.dynamics.body import BodyState
-from rockframe.dynamics.coupled.model import StackRest, state_at
-from rockframe.dynamics.coupled.system import Coupled
-from rockframe.dynamics.on_base import OnBase
-from rockframe.dynamics.protocol import Start
-from rockframe.dynamics.rest import still
-from rockframe.dynamics.stacked import COORDINATES
+from rockframe.dynamics.statics import Chain, Link, Stand
+from rockframe.dynamics.trigonometry import sine_cosine
 
-STEP: Final = 1e-6
-"""Share of a coordinate's size by which it is moved."""
+STEP: Final = 1e-3
+"""By which coordinates are moved, over the settlement and over the rotation that it allows;
+rates, over these times the rate of a vibration that settles as much."""
+STENCIL: Final = ((1.0, 2.0 / 3.0), (2.0, -1.0 / 12.0))
+"""Steps to both sides, and weights of a first derivative that is exact to the fourth order."""
+PLACES: Final = ("rotation", "vertical")
+RATES: Final = ("angular_velocity", "vertical_velocity")
 
 
 class Linear(NamedTuple):
-    """Minus the derivatives of accelerations by velocities and by coordinates."""
+    """By rotation and height of each body on its base, from the top down; per unit mass."""
 
+    mass: Matrix
     damping: Matrix
     stiffness: Matrix
 
 
-def linear_alone(part: OnBase, rotation: float, along_gravity: float = 0.0) -> Linear:
-    """Give small motion of a body about a rest, by height and rotation.
+def linear(chain: Chain, stands: list[Stand]) -> Linear:
+    """Give small motion about rest.
 
     Parameters
     ----------
-    part : OnBase
-        The body and its base.
-    rotation : float
-        At rest [rad].
-    along_gravity : float
-        Acceleration that stands for gravity along the base, g sin i [m s^-2].
+    chain : Chain
+        The bodies.
+    stands : list of Stand
+        How they rest.
 
     Returns
     -------
     Linear
-        Shape (2, 2) each.
     """
-    own = part.base.read(np.zeros(part.base.variables()), 0)
-    rest, mode = starting_state(part, Start(rotation), own)
+    size = 2 * len(stands)
+    damping, stiffness = np.zeros((size, size)), np.zeros((size, size))
+    for k, (link, stand) in enumerate(zip(chain.links, stands, strict=True)):
+        own = slice(2 * k, 2 * k + 2)
+        damping[own, own] = np.array([of_base(link, stand, name) for name in RATES]).T
+        stiffness[own, own] = np.array([of_base(link, stand, name) for name in PLACES]).T
+        for i, name in enumerate(PLACES):
+            stiffness[:, 2 * k + i] += _of_weight(chain, stands, k, name)
+    return Linear(_mass(chain, stands), damping, stiffness)
 
-    def accelerations(moved: Vector, rates: Vector) -> Vector:
-        state = BodyState(
-            rest.rotation + moved[1], rest.vertical + moved[0], 0.0, rates[1], rates[0], 0.0
+
+def of_base(link: Link, stand: Stand, name: str) -> tuple[float, float]:
+    """Give minus the change of a base's moment and force with a coordinate or rate of its body."""
+    body, base = link.part
+    step = _step(link, name)
+    moment = upward = 0.0
+    for place, weight in STENCIL:
+        before, behind = (
+            base.force(stand.mode.contact, body.base_line_at(_moved(stand, name, by)), link.own)
+            for by in (place * step, -place * step)
         )
-        found = part.rates_in(mode, state, own, still(along_gravity))
-        return np.array([found.vertical, found.rotation])
-
-    return _derivatives(accelerations, np.array([part.body.size(), 1.0]))
-
-
-def linear_stack(system: Coupled, rest: StackRest, along_gravity: float = 0.0) -> Linear:
-    """Give small motion of a cap and of the block on it about a rest.
-
-    Parameters
-    ----------
-    system : Coupled
-        The equations of both.
-    rest : StackRest
-        Where they are at rest.
-    along_gravity : float
-        As for :func:`linear_alone`.
-
-    Returns
-    -------
-    Linear
-        By height and rotation of the cap, then of the block relative to it; shape (4, 4) each.
-    """
-    mode, _, _ = state_at(system, rest)
-    places = [3, 2, 1, 0]  # of these coordinates in the state
-
-    def accelerations(moved: Vector, rates: Vector) -> Vector:
-        there = StackRest(*(np.array(rest) + moved[places]))
-        _, state, _ = state_at(system, there)
-        for place, rate in zip(places, rates, strict=True):
-            state[COORDINATES + place] = rate
-        slope = np.array(system.accelerate(mode, state, still(along_gravity)))
-        return slope[places]
-
-    size = system.upper.body.size()
-    return _derivatives(accelerations, np.array([size, 1.0, size, 1.0]))
+        moment -= weight / step * (before.moment - behind.moment)
+        upward -= weight / step * (before.upward - behind.upward)
+    return moment, upward
 
 
-def _derivatives(accelerations: Callable[[Vector, Vector], Vector], sizes: Vector) -> Linear:
-    count = len(sizes)
-    still = np.zeros(count)
-    damping, stiffness = np.empty((count, count)), np.empty((count, count))
-    for i, size in enumerate(sizes):
-        step = still.copy()
-        step[i] = STEP * size
-        twice = 2.0 * STEP * size
-        stiffness[:, i] = (accelerations(-step, still) - accelerations(step, still)) / twice
-        damping[:, i] = (accelerations(still, -step) - accelerations(still, step)) / twice
-    return Linear(damping, stiffness)
+def _of_weight(chain: Chain, stands: list[Stand], k: int, name: str) -> Vector:
+    """Give minus the changes of the generalised forces of all weights."""
+    link, stand, step = chain.links[k], stands[k], _step(chain.links[k], name)
+
+    def weights(by: float) -> Vector:
+        state = _moved(stand, name, by)
+        reach, across = link.way(link.part.body.attitude(state.rotation), stand.mode.pivot)
+        moved = stand._replace(state=state, reach=reach, across=across)
+        return np.ravel(chain.weights([*stands[:k], moved, *stands[k + 1 :]]))
+
+    return sum(
+        (weight / step * (weights(-place * step) - weights(place * step))
+         for place, weight in STENCIL),
+        start=np.zeros(2 * len(stands)),
+    )  # fmt: skip
+
+
+def _step(link: Link, name: str) -> float:
+    size = link.allowed_rotation if name in (PLACES[0], RATES[0]) else link.settlement
+    rate = math.sqrt(link.part.body.gravity / link.settlement) if name in RATES else 1.0
+    return STEP * size * rate
+
+
+def _moved(stand: Stand, name: str, by: float) -> BodyState:
+    return stand.state._replace(**{name: getattr(stand.state, name) + by})
+
+
+def _mass(chain: Chain, stands: list[Stand]) -> Matrix:
+    """Give the mass matrix: all that stands on a base moves with its body."""
+    size = 2 * len(stands)
+    ways = np.zeros((len(stands), 3, size))  # of each body: to the right, up, rotation
+    places, place = np.zeros((len(stands), 2)), np.zeros(2)
+    turned = top = 0.0
+    for k in range(len(stands) - 1, -1, -1):
+        stand, arm = stands[k], top + chain.links[k].part.body.height + stands[k].state.vertical
+        sine, cosine = sine_cosine(turned)
+        axes = np.array([[cosine, -sine], [sine, cosine]])
+        place = places[k] = place + np.array([stand.across, arm]) @ axes
+        ways[: k + 1, :2, 2 * k] = stand.reach.rate * axes[0]
+        ways[: k + 1, 2, 2 * k] = 1.0
+        ways[: k + 1, :2, 2 * k + 1] = axes[1]
+        turned, top = turned + stand.state.rotation, chain.links[k].top
+    for k in range(1, len(stands)):  # about the centre of the body that rotates
+        x, y = (places[:k] - places[k]).T
+        ways[:k, :2, 2 * k] += np.column_stack((y, -x))
+    found = np.zeros((size, size))
+    for link, way in zip(chain.links, ways, strict=True):
+        found += way.T @ np.diag([link.mass, link.mass, link.part.body.inertia]) @ way
+    return found

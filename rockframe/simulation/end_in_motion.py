@@ -4,8 +4,7 @@ from typing import Final
 
 import numpy as np
 
-from rockframe.dynamics.protocol import Ending
-from rockframe.dynamics.rest import still
+from rockframe.dynamics.protocol import Ending, Ground
 from rockframe.solve.trajectory import Summary
 from rockframe.system.assembly import Assembly
 from rockframe.system.overturning_energy import stored_energy
@@ -55,7 +54,7 @@ def may_overturn_later(system: Assembly, summary: Summary) -> bool:
 def _kinetic_energy(system: Assembly, ending: Ending) -> float:
     """Give the kinetic energy of the body relative to the ground [J]."""
     model, body = system.model, system.setting.body
-    ground = still(system.options.slope.along_gravity)
+    ground = Ground(system.options.slope.along_gravity, 0.0)
     slope = model.system.accelerate(ending.mode, ending.state, ground)
     seen = model.system.observe(ending.mode, ending.state, slope, ground, ending.memory)
     found = dict(zip((column.name for column in model.columns), seen, strict=True))

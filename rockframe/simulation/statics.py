@@ -40,7 +40,7 @@ def equilibrium(system: Assembly) -> xr.Dataset:
 def moment_rotation(system: Assembly, angles: object) -> xr.Dataset:
     """Give the quasi-static moments at given rotations."""
     held_at = to_si_values(angles, ANGLE, owner="moment_rotation", name="angles")
-    states = [system.setting.statics(angle) for angle in held_at]
+    states = system.setting.held_at(held_at)
     values: dict[str, Generic] = {
         "angle": np.array(held_at),
         "restoring_moment": _column(state.restoring_moment for state in states),

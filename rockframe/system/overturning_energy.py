@@ -4,8 +4,6 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from rockframe.errors import SolverError
-
 if TYPE_CHECKING:
     from rockframe.system.setting import Setting
 
@@ -31,8 +29,7 @@ def stored_energy(setting: "Setting", rotation: float) -> float:
     -------
     float
     """
-    moments = ((_restoring_moment(setting, at * rotation), of) for at, of in _PLACES)
-    return rotation * sum(of * moment for moment, of in moments)
+    return rotation * sum(of * moment for of, moment in _moments(setting, rotation))
 
 
 def least_overturning_energy(setting: "Setting") -> float:
@@ -54,13 +51,11 @@ def least_overturning_energy(setting: "Setting") -> float:
 
 
 def _work_against(setting: "Setting", end: float) -> float:
-    moments = ((end * _restoring_moment(setting, at * end), of) for at, of in _PLACES)
-    return sum(of * max(moment, 0.0) for moment, of in moments)
+    return sum(of * max(end * moment, 0.0) for of, moment in _moments(setting, end))
 
 
-def _restoring_moment(setting: "Setting", rotation: float) -> float:
-    """Give what holds a body back at a rotation: nothing where its base gives way altogether."""
-    try:
-        return setting.statics(rotation).restoring_moment
-    except SolverError:
-        return 0.0
+def _moments(setting: "Setting", end: float) -> list[tuple[float, float]]:
+    """Give weights and what holds a body back: nothing where its base gives way altogether."""
+    states = setting.curve([at * end for at, _ in _PLACES])
+    moments = (0.0 if state is None else state.restoring_moment for state in states)
+    return [(of, moment) for (_, of), moment in zip(_PLACES, moments, strict=True)]

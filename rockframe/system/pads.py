@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from rockframe.components import TwoSpringSupport
 from rockframe.system.impact import Restitutions, resolve_restitution, restitution_cautions
 from rockframe.system.load import Load
-from rockframe.system.support import BaseWords, Held, Support
+from rockframe.system.support import BaseWords, Support
 from rockframe.system.words import uplift_words
 
 if TYPE_CHECKING:
@@ -38,11 +38,6 @@ class PadSupport(Support):
         """Name of the model."""
         return "two-spring"
 
-    @property
-    def settlement(self) -> float:
-        """Delta = mg/2k [m]."""
-        return 0.5 * self.load.weight / self.stiffness
-
     def cautions(self) -> list[str]:
         """Give warnings about restitution and stability."""
         found = restitution_cautions(self.restitution, self.load.body.maximum_restitution)
@@ -62,24 +57,6 @@ class PadSupport(Support):
             stiffness=self.stiffness / mass,
             damping=self.damping / mass,
             restitution=self.restitution,
-        )
-
-    def held(self, sine: float, cosine: float, press: float) -> Held:
-        """Give the equilibrium at a rotation under a vertical force, :eq:`eq-static-pads`."""
-        width, weight = self.load.body.half_width, self.load.weight
-        lift = width * sine
-        left = 0.5 * press - self.stiffness * lift
-        right = press - left
-        middle = 0.5 * (weight - press) / self.stiffness
-        if left < 0.0 or right < 0.0:
-            left, right = (0.0, press) if sine > 0.0 else (press, 0.0)
-            middle = abs(lift) - (press - 0.5 * weight) / self.stiffness
-        return Held(
-            rise=middle,
-            moment=(right - left) * width * cosine,
-            left=left > 0.0,
-            right=right > 0.0,
-            reactions={"left_reaction": left, "right_reaction": right},
         )
 
     def words(self) -> BaseWords:

@@ -1,6 +1,7 @@
 """The scene of a block on rigid ground: its numbers, its words and its model."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -103,7 +104,11 @@ class RigidGroundSetting(Setting):
             left, right, mass=body.mass, small_rotation=small, gravity=self.slope.normal_gravity
         )
 
-    def statics(self, rotation: float) -> Statics:
+    def curve(self, rotations: Sequence[float]) -> list[Statics | None]:
+        """Give the quasi-static states at rotations."""
+        return [self._held(rotation) for rotation in rotations]
+
+    def _held(self, rotation: float) -> Statics:
         """Give the equilibrium at a rotation: the bearing corner carries the weight."""
         body, weight, thrust = self.body, self.load.weight, self.load.thrust
         if rotation == 0.0:

@@ -1,6 +1,7 @@
 """What a scene is: its numbers in SI units, its words, and its model."""
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar
@@ -11,7 +12,7 @@ from rockframe.system.load import Load
 from rockframe.system.options import Options
 from rockframe.system.overturning_energy import least_overturning_energy
 from rockframe.system.small_motion import SmallMotion
-from rockframe.system.statics import Statics
+from rockframe.system.statics import Statics, carried
 from rockframe.system.support import Support
 from rockframe.system.words import Words
 
@@ -112,8 +113,16 @@ class Setting(ABC):
         return None
 
     @abstractmethod
+    def curve(self, rotations: Sequence[float]) -> list[Statics | None]:
+        """Give the quasi-static states at rotations [rad]; None where nothing holds the body."""
+
+    def held_at(self, rotations: Sequence[float]) -> list[Statics]:
+        """Give the quasi-static states at rotations [rad]; see :func:`carried`."""
+        return carried(rotations, self.curve(rotations))
+
     def statics(self, rotation: float) -> Statics:
         """Give the quasi-static state at a rotation [rad]."""
+        return self.held_at([rotation])[0]
 
     @abstractmethod
     def equilibrium(self) -> dict[str, float]:

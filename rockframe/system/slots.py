@@ -15,10 +15,8 @@ from rockframe.components import (
     WinklerSoil,
 )
 from rockframe.components.parameters import Declared
-from rockframe.errors import AssemblyError
 from rockframe.motion import GroundMotion
 from rockframe.system.load import Load
-from rockframe.system.numeric_support import disagreement
 from rockframe.system.own_base import OwnBase
 from rockframe.system.pads import pads_under
 from rockframe.system.soil import bed_under
@@ -94,37 +92,12 @@ def support_of(part: Component, load: Load) -> Support:
     Returns
     -------
     Support
-
-    Raises
-    ------
-    AssemblyError
-        The statics of a user's own base are not those of its law.
     """
     kind = known_kind(type(part))
     make = None if kind is None else _KINDS[kind].support
     if make is None:  # only bases are in the slots of bases
         raise TypeError
-    support = make(part, load)
-    if isinstance(part, OwnBase):
-        _refuse_other_statics(part, support)
-    return support
-
-
-def _refuse_other_statics(part: OwnBase, support: Support) -> None:
-    """Refuse a support that answers for a base which its law is not, as one derived may."""
-    found = disagreement(support)
-    if found is None:
-        return
-    own, derived = type(support), type(support).__mro__[1].__name__
-    remedy = f"class {own.__name__}(ext.NumericSupport, ext.{derived})"
-    if derived == Support.__name__:
-        remedy = f"class {own.__name__}(ext.NumericSupport)"
-    raise AssemblyError(
-        [
-            f"{type(part).__name__}: {found}; let the statics follow from the law, "
-            f"{remedy}, or give the support a method held() that is that of the law"
-        ]
-    )
+    return make(part, load)
 
 
 def beyond_models(part: object) -> list[str]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, ClassVar
 from rockframe.components import WinklerSoil
 from rockframe.components.soil import Separation
 from rockframe.system.load import Load
-from rockframe.system.support import BaseWords, Held, Support
+from rockframe.system.support import BaseWords, Support
 from rockframe.system.words import uplift_words
 
 if TYPE_CHECKING:
@@ -44,11 +44,6 @@ class BedSupport(Support):
         """Name of the model."""
         return "Winkler"
 
-    @property
-    def settlement(self) -> float:
-        """Delta = mg/(2 b k0) [m]."""
-        return 0.5 * self.load.weight / (self.load.body.half_width * self.stiffness)
-
     def cautions(self) -> list[str]:
         """Give warnings about stability."""
         if self.rocking_stiffness > 0.0:
@@ -68,33 +63,6 @@ class BedSupport(Support):
             damping=self.damping / mass,
             by_pressure=self.separation is Separation.PRESSURE,
             load=load_mass / mass,
-        )
-
-    def held(self, sine: float, cosine: float, press: float) -> Held:
-        """Give the equilibrium at a rotation under a vertical force, :eq:`eq-static-bed`."""
-        width = self.load.body.half_width
-        settlement = 0.5 * press / (width * self.stiffness)
-        rise = self.settlement - settlement
-        tilt = width * abs(sine)
-        length, sunk = 2.0 * width, settlement + tilt
-        if tilt <= settlement:
-            moment = self.stiffness * width**3 / 1.5 * sine * cosine
-        else:
-            length = 2.0 * math.sqrt(width * settlement / abs(sine))
-            sunk = length * abs(sine)
-            rise += settlement + tilt - 2.0 * math.sqrt(tilt * settlement)
-            moment = math.copysign(press * (width - length / 3.0), sine) * cosine
-        whole = length >= 2.0 * width
-        return Held(
-            rise=rise,
-            moment=moment,
-            left=whole or sine < 0.0,
-            right=whole or sine > 0.0,
-            reactions={
-                "soil_reaction": press,
-                "contact_length": length,
-                "toe_pressure": self.stiffness * sunk,
-            },
         )
 
     def words(self) -> BaseWords:

@@ -2,20 +2,21 @@
 
 import math
 from abc import abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
+from rockframe.dynamics.statics import Chain, Stand, link_of
 from rockframe.errors import AssemblyError
 from rockframe.system.alone import AloneSetting
 from rockframe.system.bodies import Cap
 from rockframe.system.restraints import restraint_words
 from rockframe.system.setting import Setting
 from rockframe.system.small_motion import SmallMotion
-from rockframe.system.stack_statics import stack_statics
-from rockframe.system.statics import Statics
+from rockframe.system.statics import Standing, Statics
 from rockframe.system.support import BaseWords, Support
 from rockframe.system.words import Words
 
@@ -88,79 +89,85 @@ class StackedSetting(Setting):
         return ["sliding", "elasticity of block and cap", *pads.left_out, *soil.left_out]
 
     def small_motion(self) -> SmallMotion:
-        """Give the equations of small motion of block and cap, :eq:`eq-coupled-small`."""
-        from rockframe.dynamics.coupled.stack import small_motion_matrices
-
-        stack = self.bodies()
-        mass, damping, stiffness = small_motion_matrices(stack)
-        if self.leans:
-            from rockframe.dynamics.coupled.model import system_of
-            from rockframe.dynamics.linear import linear_stack
-
-            linear = linear_stack(system_of(stack), self.rest, self.slope.along_gravity)
-            damping, stiffness = mass @ linear.damping, mass @ linear.stiffness
-        # from coordinates on the cap to displacements of the block
+        """Give the equations of small motion of block and cap about rest."""
         names = ("cap_vertical_displacement", "cap_rotation", "vertical_displacement", "rotation")
-        to_own = np.eye(4)
-        to_own[2, 0] = to_own[3, 1] = -1.0  # r = y - Y, psi = alpha - phi
-        turned = [to_own.T @ matrix @ to_own for matrix in (mass, damping, stiffness)]
-        return SmallMotion(names, *(self.body.mass * each for each in turned))
+        # from coordinates on the cap, psi = alpha - phi and r = y - Y, to those of the block
+        to_own = np.array([[0, -1, 0, 1], [-1, 0, 1, 0], [0, 1, 0, 0], [1, 0, 0, 0]], dtype=float)
+        matrices = self._moving.small_motion(self._rest)
+        return SmallMotion(names, *(to_own.T @ matrix @ to_own for matrix in matrices))
 
-    @cached_property
-    def rest(self) -> "StackRest":
-        """Where block and cap are at rest, as the coupled equations have it.
+    @property
+    def _rest(self) -> list[Stand]:
+        """How block and cap rest.
 
         Raises
         ------
         AssemblyError
             The bases are too soft, or too much inclined, to carry the block.
         """
-        from rockframe.dynamics.coupled.model import system_of
-        from rockframe.dynamics.rest import stack_rest
-
-        found = stack_rest(system_of(self.bodies()), self.slope.along_gravity)
+        found = self._moving.rest
         if found is None:
             raise AssemblyError(["the block and the cap under it find no rest under their weight"])
         return found
 
-    def statics(self, rotation: float) -> Statics:
-        """Give the equilibrium with the block held at a rotation."""
-        return stack_statics(self, rotation)
+    @property
+    def rest(self) -> "StackRest":
+        """Where block and cap are at rest, as the coupled equations have it."""
+        from rockframe.dynamics.coupled.model import UPRIGHT, StackRest
+
+        if not self.leans:
+            return UPRIGHT
+        block, cap = (stand.state for stand in self._rest)
+        return StackRest(block.rotation, block.vertical, cap.rotation, cap.vertical)
+
+    def curve(self, rotations: Sequence[float]) -> list[Statics | None]:
+        """Give the equilibria with the block held at rotations, :eq:`eq-static-stack`."""
+        return self._standing(self.cap.mass, self.cap.inertia).held(rotations)
 
     def equilibrium(self) -> dict[str, float]:
         """Give settlements and reactions at rest, by their names in the schema."""
-        soil = self.lower.upright()
+        soil = self.lower.equilibrium()
         soil["soil_uplift_moment"] = soil.pop("uplift_moment")
-        found = {**self.upper.upright(), **soil}
-        return found | self._reactions_at_rest() if self.leans else found
+        return {**self.upper.equilibrium(), **soil}
 
-    def _reactions_at_rest(self) -> dict[str, float]:
-        """Give what both bases show at rest, by their names in the schema."""
-        from rockframe.dynamics.protocol import Start
-        from rockframe.solve.observe import observe_states
+    @cached_property
+    def _moving(self) -> Standing:
+        """Block and cap, which is heavy enough to be moved."""
+        return self._standing(*self._moving_cap)
 
-        model = self.compile()
-        mode, state, memory = model.initial(Start())
-        felt = np.array([[self.slope.along_gravity, 0.0]])
-        only = np.zeros(1, dtype=np.int64)
-        shown = observe_states(model, np.array([mode]), state[None, :], memory[None, :], only, felt)
-        return {f"static_{name}": float(values[0]) for name, values in shown.items()}
+    def _standing(self, cap_mass: float, cap_inertia: float) -> Standing:
+        from rockframe.dynamics.alone_model import eccentricity_of
+        from rockframe.dynamics.on_base import OnBase
+
+        block, pads, plate, soil, share = self._stack(cap_mass, cap_inertia)
+        links = (
+            link_of(OnBase(block, pads.law), beside=eccentricity_of(block)),
+            link_of(OnBase(plate, soil.law), share, plate.height),
+        )
+        return Standing(Chain(links, self.slope.along_gravity), self.body.mass, (pads, soil))
+
+    @property
+    def _moving_cap(self) -> tuple[float, float]:
+        """Mass and inertia of the cap; of one that is too light, of a plate of the least mass."""
+        cap, least = self.cap, LEAST_CAP_SHARE * self.body.mass
+        if cap.mass >= least:
+            return cap.mass, cap.inertia
+        return least, least * cap.half_width**2 / 3.0
 
     def bodies(self) -> "Stack":
         """Give block, pads, cap and soil as the coupled equations take them."""
+        return self._stack(*self._moving_cap)
+
+    def _stack(self, cap_mass: float, cap_inertia: float) -> "Stack":
         from rockframe.dynamics.coupled.stack import Stack
 
-        (upper, lower), cap = self.supports, self.cap
-        mass = self.body.mass
-        least = LEAST_CAP_SHARE * mass
-        light = cap.mass < least
-        cap_mass = least if light else cap.mass
+        (upper, lower), cap, mass = self.supports, self.cap, self.body.mass
         block = self.load.law(mass)
         plate = block._replace(
             height=cap.half_height,
             left=cap.half_width,
             right=cap.half_width,
-            inertia=(least * cap.half_width**2 / 3.0 if light else cap.inertia) / mass,
+            inertia=cap_inertia / mass,
             angle=math.atan2(cap.half_width, cap.half_height),
         )
         return Stack(
@@ -206,6 +213,14 @@ class CoupledSetting(StackedSetting):
         from rockframe.dynamics.coupled.model import coupled
 
         return coupled(self.bodies(), self.body.mass, self.rest)
+
+    def equilibrium(self) -> dict[str, float]:
+        """Give settlements and reactions at rest, by their names in the schema."""
+        found = super().equilibrium()
+        if not self.leans:
+            return found
+        shown = self._moving.reactions(self._rest)
+        return found | {f"static_{name}": value for name, value in shown.items()}
 
     @property
     def cap_lean(self) -> float:

@@ -6,12 +6,12 @@ and its law is what the equations take.
 
 import math
 from abc import ABC, abstractmethod
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar
 
 from rockframe.system.load import Load
-from rockframe.system.statics import sine_cosine_rise
+from rockframe.system.statics import Standing, Statics, carried
 from rockframe.system.words import vibration_words
 
 if TYPE_CHECKING:
@@ -49,36 +49,6 @@ class BaseWords:
 
 
 @dataclass(frozen=True)
-class Held:
-    """A base under a body that is held at a rotation, in vertical equilibrium; SI units.
-
-    Parameters
-    ----------
-    rise : float
-        Of the middle of the base from rest [m].
-    moment : float
-        Of the base's reactions about its middle, against the rotation [N m].
-    left, right : bool
-        Whether the ends bear.
-    reactions : dict of str to float
-        Forces and lengths by their names in the schema of results.
-    """
-
-    rise: float
-    moment: float
-    left: bool
-    right: bool
-    reactions: dict[str, float] = field(default_factory=dict[str, float])
-
-    @property
-    def contact(self) -> str:
-        """Name of the contact state."""
-        if self.left and self.right:
-            return "full"
-        return "left" if self.left else "right"
-
-
-@dataclass(frozen=True)
 class Support(ABC):
     """A base under a body.
 
@@ -98,20 +68,16 @@ class Support(ABC):
         """Name of the model of a body on this base."""
 
     @property
-    @abstractmethod
     def settlement(self) -> float:
         """Delta, settlement under the weight [m]."""
+        return self.standing.chain.links[0].settlement
 
-    @property
+    @cached_property
     def uplift_angle(self) -> float:
-        """Rotation at which contact is first lost; NaN if it never is [rad].
+        """Rotation at which contact is first lost; NaN if it never is [rad]."""
+        from rockframe.dynamics.statics import uplift_rotation
 
-        Unless overridden, that at which an end has risen by the settlement.
-        """
-        ratio = self.settlement / self.load.body.half_width
-        if self.load.options.small:
-            return ratio
-        return math.asin(ratio) if ratio <= 1.0 else math.nan
+        return uplift_rotation(self.standing.chain.links[0], self.load.slope.normal_gravity)
 
     @abstractmethod
     def law(self, body: "BodyLaw", mass: float, load_mass: float) -> "BaseNumbers":
@@ -127,13 +93,9 @@ class Support(ABC):
             That rests on the base, with what stands on the body [kg].
         """
 
-    @abstractmethod
-    def held(self, sine: float, cosine: float, press: float) -> Held:
-        """Give the equilibrium of the base at a rotation under a vertical force [N]."""
-
     def at_rest(self) -> dict[str, float]:
         """Give settlement and what the base shows at rest, by their names in the schema."""
-        shown = self.held(0.0, 1.0, self.load.weight).reactions
+        shown = self.standing.reactions(self.standing.upright)
         return {
             self.settlement_name: self.settlement,
             **{f"static_{name}": value for name, value in shown.items()},
@@ -159,11 +121,21 @@ class Support(ABC):
         """
         return []
 
-    def held_at(self, rotation: float) -> Held:
+    def held_at(self, rotation: float) -> Statics:
         """Give the equilibrium under the weight at a rotation [rad]."""
-        height, rule = self.load.body.centre_height, self.load.options.rotation
-        sine, cosine, _ = sine_cosine_rise(height, rule, rotation)
-        return self.held(sine, cosine, self.load.weight)
+        return carried([rotation], self.standing.held([rotation]))[0]
+
+    @cached_property
+    def standing(self) -> Standing:
+        """Its body alone on it, by the law."""
+        from rockframe.dynamics.alone_model import eccentricity_of
+        from rockframe.dynamics.on_base import OnBase
+        from rockframe.dynamics.statics import Chain, link_of
+
+        body, numbers = self.load.own_law, self.own_law
+        link = link_of(OnBase(body, numbers.law), beside=eccentricity_of(body))
+        chain = Chain((link,), self.load.slope.along_gravity)
+        return Standing(chain, self.load.body.mass, (numbers,))
 
     @cached_property
     def own_law(self) -> "BaseNumbers":
@@ -171,25 +143,30 @@ class Support(ABC):
         mass = self.load.body.mass
         return self.law(self.load.own_law, mass, mass)
 
-    @property
+    @cached_property
     def rocking_stiffness(self) -> float:
         """Of small rotations in full contact, less what the raised weight takes [N m rad^-1]."""
-        body = self.load.body
-        raising = self.load.weight * body.centre_height
-        return body.mass * self.own_law.rotational_stiffness - raising
+        return self.load.body.mass * self._slopes("rotation")[0]
 
-    @property
+    @cached_property
     def vertical_frequency(self) -> float:
         """omega_v, of vertical vibration in full contact, Eqs. (7a) and (18a) [rad s^-1]."""
-        return math.sqrt(self.own_law.vertical_stiffness)
+        return math.sqrt(self._slopes("vertical")[1])
+
+    def _slopes(self, name: str) -> tuple[float, float]:
+        """Give how moment and force on the upright body fall with a coordinate or a rate."""
+        from rockframe.dynamics.linear import of_base
+
+        return of_base(self.standing.chain.links[0], self.standing.upright[0], name)
 
     def vibrations(self, vertical: str, rocking: str) -> list[tuple[str, str]]:
         """Tell vertical vibration, and rocking where the base holds the body, by these titles."""
-        law, body, rate = self.own_law, self.load.body, self.vertical_frequency
-        rows = [(vertical, vibration_words("omega_v", rate, 0.5 * law.damping_time * rate))]
+        body, rate = self.load.body, self.vertical_frequency
+        ratio = 0.5 * self._slopes("vertical_velocity")[1] / rate
+        rows = [(vertical, vibration_words("omega_v", rate, ratio))]
         if self.rocking_stiffness > 0.0:
             rate = math.sqrt(self.rocking_stiffness / body.base_inertia)
-            damping = law.damping_time * law.rotational_stiffness * body.mass
+            damping = body.mass * self._slopes("angular_velocity")[0]
             ratio = 0.5 * damping / (body.base_inertia * rate)
             rows.append((rocking, vibration_words("omega_r", rate, ratio)))
         return rows

@@ -69,7 +69,7 @@ def coupled(stack: Stack, mass: float, rest: StackRest) -> ContactModel:
     mass : float
         Of the block [kg].
     rest : StackRest
-        Where block and cap are at rest, :func:`rockframe.dynamics.rest.stack_rest`.
+        Where block and cap are at rest, :meth:`rockframe.dynamics.statics.Chain.rest`.
 
     Returns
     -------

@@ -1,0 +1,317 @@
+"""Statics from the forces of the equations: the closed forms, the energy, and chains of bodies."""
+
+import math
+from dataclasses import replace
+from itertools import pairwise, product
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+from scipy.optimize import minimize
+
+import rockframe as rf
+from rockframe import extension as ext
+from rockframe.dynamics.alone_model import body_of, eccentricity_of, starting_state
+from rockframe.dynamics.base_numbers import bed_under, pads_under
+from rockframe.dynamics.body import BodyState
+from rockframe.dynamics.coupled.model import state_at
+from rockframe.dynamics.coupled.model import system_of as coupled_of
+from rockframe.dynamics.coupled.stack import small_motion_matrices
+from rockframe.dynamics.linear import PLACES, RATES, linear, of_base
+from rockframe.dynamics.on_base import OnBase
+from rockframe.dynamics.protocol import Ground, Start
+from rockframe.dynamics.restraint import CENTRE
+from rockframe.dynamics.statics import Chain, link_of
+from rockframe.system.overturning_energy import stored_energy
+
+pytestmark = pytest.mark.analytical
+
+EXACT = 1e-11
+BLOCKS = {
+    "slender": rf.Block(width="2.4 m", height="9.6 m", mass="50 t"),
+    "squat": rf.Block(width="4 m", height="3 m", mass="20 t"),
+    "eccentric": rf.Block(
+        width="2.4 m", height="9.6 m", mass="50 t", centre_of_mass=("4 m", "0.3 m")
+    ),
+}
+BASES = {
+    "pads": rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1),
+    "soft pads": rf.TwoSpringSupport(frequency_ratio=9, damping_ratio=0.3),
+    "bed": rf.WinklerSoil(stiffness="30 MPa", damping_ratio=0.1),
+    "bed by pressure": rf.WinklerSoil(stiffness="30 MPa", damping_ratio=0.1, separation="pressure"),
+    "soft bed": rf.WinklerSoil(stiffness="9 MPa", damping_ratio=0.2),
+}
+CAP = rf.CushionCap(width="3.2 m", height="0.8 m", mass="15 t")
+ALONE = list(product(BLOCKS, BASES, ("finite", "small")))
+
+
+class Form(NamedTuple):
+    """What a closed form tells: rise and moment of the middle, ends that bear, what shows."""
+
+    rise: float
+    moment: float
+    contact: str
+    reactions: dict
+
+
+def closed(setting, rotation):
+    """Equations eq-static-pads and eq-static-bed."""
+    support, body, weight = setting.support, setting.body, setting.load.weight
+    b, delta = body.half_width, support.settlement
+    sine, cosine = math.sin(rotation), math.cos(rotation)
+    if setting.options.small:
+        sine, cosine = rotation, 1.0
+    lift = b * abs(sine)
+    side = "right" if rotation > 0.0 else "left"
+    contact = side if lift > delta else "full"
+    if isinstance(support, ext.PadSupport):
+        left, right = (0.5 * weight - sign * support.stiffness * b * sine for sign in (1.0, -1.0))
+        if contact != "full":
+            left, right = (0.0, weight) if rotation > 0.0 else (weight, 0.0)
+        rise = max(0.0, lift - delta)
+        shown = {"left_reaction": left, "right_reaction": right}
+        return Form(rise, (right - left) * b * cosine, contact, shown)
+    length, rise = 2.0 * b, 0.0
+    moment, sunk = support.stiffness * b**3 / 1.5 * sine * cosine, delta + lift
+    if contact != "full":
+        length = 2.0 * math.sqrt(b * delta / abs(sine))
+        rise, sunk = delta + lift - 2.0 * math.sqrt(lift * delta), length * abs(sine)
+        moment = math.copysign(weight * (b - length / 3.0), sine) * cosine
+    toe = support.stiffness * sunk
+    shown = {"soil_reaction": weight, "contact_length": length, "toe_pressure": toe}
+    return Form(rise, moment, contact, shown)
+
+
+@pytest.mark.parametrize(("block", "base", "rotation"), ALONE)
+def test_closed_forms_of_a_held_body(block, base, rotation):
+    setting = rf.System(BLOCKS[block], BASES[base], rotation=rotation).setting
+    body, weight, uplift = setting.body, setting.load.weight, setting.uplift_angle
+    ratio = setting.settlement / body.half_width
+    assert uplift == pytest.approx(ratio if rotation == "small" else math.asin(ratio), rel=1e-13)
+    for share in (0.0, 1e-9, 0.2, -0.7, 0.999, 1.001, -1.5, 3.0, -6.0):
+        angle = share * uplift
+        form, found = closed(setting, angle), setting.statics(angle)
+        small = rotation == "small"
+        sine, cosine = (angle, 1.0) if small else (math.sin(angle), math.cos(angle))
+        h, beside = body.centre_height, body.eccentricity
+        assert found.contact_state == form.contact
+        rounding = EXACT * weight * body.half_width
+        assert found.base_moment == pytest.approx(form.moment, rel=EXACT, abs=rounding)
+        back = form.moment - weight * (h * sine + beside * cosine)
+        assert found.restoring_moment == pytest.approx(back, rel=EXACT, abs=rounding)
+        rise = 0.5 * h * angle**2 if small else h * (1.0 - math.cos(angle))
+        height = form.rise - rise - beside * sine
+        assert found.vertical_displacement == pytest.approx(height, rel=EXACT, abs=1e-14)
+        assert found.reactions == pytest.approx(form.reactions, rel=EXACT, abs=1e-8)
+
+
+@pytest.mark.parametrize(("block", "base", "rotation"), ALONE)
+def test_slopes_of_the_forces_are_the_stiffnesses_that_bases_declare(block, base, rotation):
+    """Sizes and steps of runs are measured by these."""
+    support = rf.System(BLOCKS[block], BASES[base], rotation=rotation).setting.support
+    numbers, standing = support.own_law, support.standing
+    link, stand = standing.chain.links[0], standing.upright[0]
+    slopes = np.array([of_base(link, stand, name) for name in (*PLACES, *RATES)])
+    h, g = support.load.body.centre_height, support.load.slope.normal_gravity
+    vertical, turning = numbers.vertical_stiffness, numbers.rotational_stiffness
+    damping = numbers.damping_time
+    assert link.settlement == pytest.approx(numbers.settlement, rel=1e-14)
+    assert slopes[1, 1] == pytest.approx(vertical, rel=EXACT)
+    assert slopes[0, 0] == pytest.approx(turning - g * h, rel=EXACT)
+    assert slopes[3, 1] == pytest.approx(damping * vertical, rel=EXACT)
+    assert slopes[2, 0] == pytest.approx(damping * turning, rel=EXACT)
+    assert slopes[:2, ::-1].diagonal() == pytest.approx(slopes[0, 1], abs=EXACT * vertical)
+
+
+@pytest.mark.parametrize("rotation", ["finite", "small"])
+def test_small_motion_of_a_stack_has_the_printed_matrices(rotation):
+    """Equation eq-coupled-small, in the order Y, phi, r, psi."""
+    setting = rf.System(BLOCKS["slender"], BASES["pads"], CAP, BASES["bed"], rotation=rotation)
+    setting = setting.setting
+    order = [3, 2, 1, 0]
+    found = linear(setting._moving.chain, setting._rest)
+    mass, damping, stiffness = small_motion_matrices(setting.bodies())
+    for matrix, printed in zip(found, (mass, damping, stiffness), strict=True):
+        size = np.abs(printed).max()
+        assert matrix[np.ix_(order, order)] == pytest.approx(printed, rel=1e-10, abs=1e-11 * size)
+
+
+@pytest.mark.parametrize("rotation", ["finite", "small"])
+@pytest.mark.parametrize("restraint", ["contact-state", "leading-corner", "centre"])
+@pytest.mark.parametrize("inclination", ["0 deg", "0.8 deg", "-0.5 deg"])
+@pytest.mark.parametrize("block", ["slender", "eccentric"])
+def test_a_stack_at_rest_is_not_accelerated(block, inclination, restraint, rotation):
+    setting = rf.System(
+        BLOCKS[block], BASES["pads"], CAP, BASES["bed"], inclination=inclination,
+        restraint=restraint, rotation=rotation,
+    ).setting  # fmt: skip
+    system = coupled_of(setting.bodies())
+    mode, state, _ = state_at(system, setting.rest)
+    slope = system.accelerate(mode, state, Ground(setting.slope.along_gravity, 0.0))
+    assert np.abs(slope[:4]).max() < 1e-11 * setting.gravity
+    held = setting.statics(setting.rest_rotation)
+    size = setting.load.weight * setting.body.half_width
+    assert held.restoring_moment == pytest.approx(0.0, abs=1e-11 * size)
+    assert held.reactions["cap_rotation"] == pytest.approx(setting.rest.cap_rotation, abs=1e-14)
+
+
+@pytest.mark.parametrize("base", BASES)
+@pytest.mark.parametrize("block", BLOCKS)
+def test_work_on_a_held_body_is_its_energy(block, base):
+    setting = rf.System(BLOCKS[block], BASES[base]).setting
+    link = setting.support.standing.chain.links[0]
+    body, law = link.part
+    for share in (0.1, 0.3):
+        angle = share * setting.overturning_angle
+        ends = (setting.support.standing.chain.settled([each])[0] for each in (0.0, angle))
+        low, high = (law.energy(e.line, ())[0] + body.gravity * e.state.vertical for e in ends)
+        work = setting.body.mass * (high - low)
+        assert stored_energy(setting, angle) == pytest.approx(work, rel=5e-3)
+
+
+# three bodies -----------------------------------------------------------------------------------
+
+G = 9.8
+MASSES = (1.0, 0.7, 1.6)
+TOPS = (0.0, 0.9, 0.4)
+
+
+def bodies(beside=0.0, along=0.0):
+    """A block on pads on a block on pads on a plate on a bed; eccentric by a share."""
+    shapes = ((2.2, 0.55, 0.12), (0.9, 0.7, 0.05), (0.4, 1.1, 0.0))
+    links = []
+    for k, (height, half, off) in enumerate(shapes):
+        off *= beside
+        body = body_of(
+            left=half + off, right=half - off, height=height, inertia=MASSES[k] * 0.5,
+            restraint=CENTRE, small_rotation=False, gravity=G,
+        )  # fmt: skip
+        above = sum(MASSES[: k + 1])
+        if k == 2:
+            base = bed_under(body, stiffness=4500.0, damping=5.0, by_pressure=False, load=above)
+        else:
+            base = pads_under(body, stiffness=(900.0, 1500.0)[k], damping=1.0, restitution=(1, 1))
+            unloaded = 0.5 * above * G / base.law.stiffness
+            law = base.law._replace(left_settlement=unloaded, right_settlement=unloaded)
+            base = replace(base, law=law)
+        links.append(link_of(OnBase(body, base.law), MASSES[k], TOPS[k], eccentricity_of(body)))
+    return Chain(tuple(links), along)
+
+
+def potential(chain, places):
+    """Give the energy of all weights and bases, with bodies placed by rotation and height."""
+    point, turned, energy = np.zeros(2), 0.0, 0.0
+    top = 0.0
+    for link, (rotation, rise), mass, above in reversed(
+        list(zip(chain.links, places, MASSES, TOPS, strict=True))
+    ):
+        body, law = link.part
+        state = BodyState(rotation, rise, 0.0, 0.0, 0.0, 0.0)
+        energy += law.energy(body.base_line_at(state), ())[0]
+        middle = eccentricity_of(body)
+        along = body.height * math.sin(rotation) + middle * math.cos(rotation)
+        normal = top + body.height + rise
+        axes = np.array(
+            [[math.cos(turned), -math.sin(turned)], [math.sin(turned), math.cos(turned)]]
+        )
+        point = point + np.array([along, normal]) @ axes
+        energy += mass * (G * point[1] + chain.along_gravity * point[0])
+        turned, top = turned + rotation, above
+    return energy
+
+
+def least(chain, rotation=None):
+    """Give rotations and heights of least energy, with the highest body held or free."""
+    sizes = np.array([1e-3, 1e-3] * 3)
+
+    def places(scaled):
+        found = (scaled * sizes).reshape(3, 2)
+        if rotation is not None:
+            found[0, 0] = rotation - found[1:, 0].sum()
+        return found
+
+    start = np.zeros(6)
+    for method in ("BFGS", "Nelder-Mead", "BFGS"):
+        options = {"gtol": 1e-9} if method == "BFGS" else {"xatol": 1e-9, "fatol": 1e-15}
+        start = minimize(lambda x: potential(chain, places(x)), start, method=method,
+                         options=options | {"maxiter": 20000}).x  # fmt: skip
+    return places(start), potential(chain, places(start))
+
+
+def placed(stands):
+    return np.array([[stand.state.rotation, stand.state.vertical] for stand in stands])
+
+
+@pytest.mark.parametrize(("beside", "along"), [(0.0, 0.0), (1.0, 0.0), (0.0, 0.15), (1.0, -0.1)])
+def test_three_bodies_rest_where_their_energy_is_least(beside, along):
+    chain = bodies(beside, along)
+    stands = chain.rest()
+    found, energy = least(chain)
+    assert placed(stands) == pytest.approx(found, rel=1e-4, abs=1e-6)
+    assert potential(chain, placed(stands)) <= energy + 1e-12
+    assert chain.moments(stands) == pytest.approx([0.0] * 3, abs=1e-11)
+    stiffness = linear(chain, stands).stiffness
+    assert stiffness == pytest.approx(stiffness.T, abs=1e-6 * np.abs(stiffness).max())
+    assert np.linalg.eigvalsh(stiffness).min() > 0.0
+
+
+@pytest.mark.parametrize(("beside", "along"), [(0.0, 0.0), (1.0, -0.1)])
+def test_three_bodies_are_held_where_their_energy_is_least(beside, along):
+    chain = bodies(beside, along)
+    rotations = (0.004, 0.03, 0.08, -0.02, -0.1)
+    contacts = set()
+    for rotation, stands in zip(rotations, chain.curve(rotations), strict=True):
+        found, energy = least(chain, rotation)
+        assert placed(stands)[:, 0].sum() == pytest.approx(rotation, rel=1e-13)
+        assert placed(stands) == pytest.approx(found, rel=1e-4, abs=1e-6)
+        assert potential(chain, placed(stands)) <= energy + 1e-12
+        moments = chain.moments(stands)
+        assert moments == pytest.approx([moments[0]] * 3, abs=1e-11)
+        contacts.add(tuple(stand.mode.contact for stand in stands))
+    assert len(contacts) > 2
+
+
+def test_the_couple_on_three_bodies_is_the_slope_of_their_energy():
+    chain = bodies(1.0, -0.1)
+    rotations = np.linspace(0.0, 0.05, 401)
+    stands = chain.curve(rotations)
+    energies = [potential(chain, placed(each)) for each in stands]
+    couples = [-chain.moments(each)[0] for each in stands]
+    for (low, high), (before, behind) in zip(pairwise(energies), pairwise(couples), strict=True):
+        work = 0.5 * (before + behind) * (rotations[1] - rotations[0])
+        assert high - low == pytest.approx(work, rel=1e-3, abs=1e-6)
+
+
+# laws of one's own --------------------------------------------------------------------------------
+
+
+@ext.on_pads
+class PropLaw(NamedTuple):
+    """Pads and a spring under the middle, which carries a part of the weight."""
+
+    pads: ext.Pads
+    prop: float
+
+    @ext.inlined
+    def now(self, own):
+        return self.pads
+
+    @ext.inlined
+    def force(self, contact, line, own):
+        found = self.pads.force(contact, line, own)
+        middle = 0.5 * (line.left + line.right)
+        moment = found.moment - self.prop * middle * 0.5 * (line.left_lever + line.right_lever)
+        return ext.BaseForce(found.upward - self.prop * (middle - 0.01), moment, found.dissipated)
+
+
+def test_a_law_that_pushes_is_in_equilibrium_at_rest_and_at_the_start_of_a_run():
+    body = body_of(left=0.5, right=0.5, height=2.0, inertia=1.5, restraint=CENTRE,
+                   small_rotation=False, gravity=G)  # fmt: skip
+    pads = pads_under(body, stiffness=2000.0, damping=3.0, restitution=(0.9, 0.9)).law
+    part = OnBase(body, PropLaw(pads, 500.0))
+    for rotation in (0.0, 0.001, -0.02):
+        state, mode = starting_state(part, Start(rotation), ())
+        force = part.base.force(mode.contact, body.base_line_at(state), ())
+        assert force.upward == pytest.approx(G, rel=1e-12)
+    (stand,) = Chain((link_of(part),)).rest()
+    assert stand.state.vertical == pytest.approx(500.0 * 0.01 / 4500.0, rel=1e-12)
