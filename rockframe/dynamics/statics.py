@@ -148,7 +148,7 @@ class Chain(NamedTuple):
         return found
 
     def rest(self) -> list[Stand] | None:
-        """Give how the bodies rest under their weight; None if they fall by it.
+        """Give how the bodies rest under their weight, :eq:`eq-tilted-rest`; None if they fall.
 
         Eccentricity and slope grow from zero, and rest is followed from upright: a chain that
         leans has a second equilibrium, farther out, from which it falls.
