@@ -13,7 +13,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NamedTuple
 
-import numpy as np
 import xarray as xr
 
 import rockframe as rf
@@ -23,94 +22,74 @@ INSTANT = 1e-6  # times the time of a vibration
 YIELDING = 1  # state of a pad
 
 
-class Sets(NamedTuple):
-    """Plastic sets of the pads: variables of first order."""
+@ext.point_law
+class YieldingPad(NamedTuple):
+    """A bilinear spring beside a dashpot, per unit mass; its variable is the plastic set."""
 
-    left: float
-    right: float
+    stiffness: float
+    damping: float
+    strength: float  # force at which the pad yields at first
+    hardening: float  # stiffness of the yielding pad over its elastic stiffness
 
+    def variables(self):
+        return 1
 
-@ext.on_pads
-class YieldingLaw(NamedTuple):
-    """Two pads with bilinear springs, per unit mass; all else is as of elastic pads."""
-
-    pads: ext.Pads  # at the start
-    strength: float  # force at which a pad yields at first
-    hardening: float  # stiffness of a yielding pad over its elastic stiffness
-
-    @ext.kernel
     def states(self):
         return 2  # elastic, yielding
 
-    @ext.kernel
-    def variables(self):
-        return 2
+    def sunk(self, own):
+        return own[0]
 
-    @ext.inlined
-    def read(self, state, first):
-        return Sets(state[first], state[first + 1])
+    def rates(self, state, point, own):
+        return ((1.0 - self.hardening) * point.speed if state == YIELDING else 0.0,)
 
-    @ext.inlined
-    def now(self, own):
-        return ext.sunk_pads(self.pads, own.left, own.right)
+    def spring(self, point, own):
+        return self.stiffness * (point.pressed - own[0])
 
-    @ext.inlined
-    def set_rate(self, contact, left, line):
-        """Give the rate at which the set of a yielding pad follows its corner."""
-        speed = line.left_speed if left else line.right_speed
-        yields = self.state_of_end(contact, left) == YIELDING
-        return -(1.0 - self.hardening) * speed if yields else 0.0
+    def energy(self, point, own):
+        return 0.5 * self.spring(point, own) ** 2 / self.stiffness
 
-    @ext.inlined
-    def flow(self, contact, line, own):
-        return self.set_rate(contact, True, line), self.set_rate(contact, False, line)
+    def force(self, state, point, own):
+        return self.spring(point, own) + self.damping * point.speed
 
-    @ext.inlined
-    def force(self, contact, line, own):
-        """Give the force of the pads as they are; yielding dissipates, too."""
-        found = self.now(own).force(contact % ext.CONTACTS, line, ())
-        left = self.level(True, line, own) * self.set_rate(contact, True, line)
-        right = self.level(False, line, own) * self.set_rate(contact, False, line)
-        dissipated = found.dissipated + self.pads.stiffness * (left + right)
-        return ext.BaseForce(found.upward, found.moment, dissipated)
+    def force_rate(self, state, point, own):
+        (growth,) = self.rates(state, point, own)
+        return self.stiffness * (point.speed - growth) + self.damping * point.acceleration
 
-    @ext.kernel
-    def yielding_set(self, left, line, own):
-        """Give the set with which a pad's force would be on the hardening branch."""
-        pressed = self.level(left, line, own) + (own.left if left else own.right)
-        return (1.0 - self.hardening) * (pressed - self.strength / self.pads.stiffness)
+    def power(self, state, point, own):
+        """Give what dashpot and yielding dissipate."""
+        (growth,) = self.rates(state, point, own)
+        return self.damping * point.speed**2 + self.spring(point, own) * growth
 
-    @ext.inlined
-    def end_guard(self, contact, left, line, acceleration, own):
+    def return_rate(self):
+        return self.stiffness / self.damping if self.damping > 0.0 else 0.0
+
+    def yielding_set(self, point):
+        """Give the set with which the force would be on the hardening branch."""
+        return (1.0 - self.hardening) * (point.pressed - self.strength / self.stiffness)
+
+    def guard(self, state, point, own):
         """Guard the set that is left until yielding, or the sinking that goes on."""
-        speed = line.left_speed if left else line.right_speed
-        frequency = math.sqrt(2.0 * self.pads.stiffness)
-        if self.state_of_end(contact, left) == YIELDING:
-            scale = -frequency * self.pads.rest
-            return speed / scale, acceleration / scale
-        if not self.pads.touches(contact % ext.CONTACTS, left):
-            return 1.0, 0.0
-        sunk = own.left if left else own.right
+        instant = INSTANT / math.sqrt(2.0 * self.stiffness)
+        if state == YIELDING:
+            return instant * point.speed / point.settlement, (
+                instant * point.acceleration / point.settlement
+            )
         # where yielding has just ended the speed is rounding: the acceleration tells
-        soon = (1.0 - self.hardening) * (speed + INSTANT / frequency * acceleration)
-        left_over = sunk - self.yielding_set(left, line, own)
-        return left_over / self.pads.rest, soon / self.pads.rest
+        soon = (1.0 - self.hardening) * (point.speed + instant * point.acceleration)
+        return (own[0] - self.yielding_set(point)) / point.settlement, -soon / point.settlement
 
-    @ext.kernel
-    def variables_after(self, was, contact, line, own):
+    def settle(self, state, point, own):
         """Put a set that has been integrated beside the hardening branch back on it."""
-        left = max(own.left, self.yielding_set(True, line, own))
-        return Sets(left, max(own.right, self.yielding_set(False, line, own)))
+        own[0] = max(own[0], self.yielding_set(point))
 
-    @ext.kernel
-    def observed(self, contact, line, own):
-        left, right = self.now(own).observed(contact % ext.CONTACTS, line, ())
-        return left, right, own.left, own.right
+    def seen(self, state, point, own):
+        return (own[0],)
 
 
 @dataclass(frozen=True)
 class YieldingSupport(ext.PadSupport):
-    """Yielding pads under a block: their numbers, equations and words; elastic at rest."""
+    """Yielding pads under a block: their numbers, equations and words."""
 
     strength: float  # over the weight
     hardening: float
@@ -119,13 +98,10 @@ class YieldingSupport(ext.PadSupport):
     def law(self, body, mass, load_mass):
         elastic = super().law(body, mass, load_mass)
         strength = self.strength * self.load.weight / mass
-        return replace(
-            elastic,
-            law=YieldingLaw(elastic.law, strength, self.hardening),
-            columns=(*elastic.columns, ext.Column("left_set"), ext.Column("right_set")),
-            end_tolerance=np.append(elastic.end_tolerance, elastic.law.noise()),
-            variable_scales=np.full(2, elastic.settlement),
-        )
+        pad = YieldingPad(self.stiffness / mass, self.damping / mass, strength, self.hardening)
+        columns = ext.Column("left_set"), ext.Column("right_set")
+        scales = [elastic.settlement]
+        return ext.pads_over(pad, elastic, columns=columns, variable_scales=scales)
 
     def start_faults(self, rotation, has_vertical_start):
         most = max(self.held_at(rotation).reactions.values())

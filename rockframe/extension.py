@@ -1,20 +1,20 @@
 """What a file with a part of your own needs: declarations, supports, laws, and columns.
 
 A base of your own is a class derived from :class:`OwnBase`, a :class:`Support` that says how
-it carries a body, and a law: a named tuple of numbers with the methods of
-:class:`~rockframe.dynamics.base.Base`. :func:`rockframe.register` makes it known.
+it carries a body, and a law of a point, :func:`point_law`. :func:`rockframe.register`
+makes it known.
 """
 
 from rockframe.compiled import Vector, inlined, kernel
 from rockframe.components import Choice, Component, OneOf, Parameter, Ratio, Text
 from rockframe.components.damping import DampingRatio
 from rockframe.dynamics.base import Base, BaseForce, EndEvent, Guards
-from rockframe.dynamics.base_numbers import BaseNumbers
+from rockframe.dynamics.base_numbers import BaseNumbers, pads_over, springs_under
 from rockframe.dynamics.bed import Bed
 from rockframe.dynamics.body import BaseLine, Body
 from rockframe.dynamics.events import SILENT, EventKind
-from rockframe.dynamics.on_pads import on_pads
-from rockframe.dynamics.pads import CONTACTS, CORNER_GUARDS, Pads, sunk_pads
+from rockframe.dynamics.pads import Pads
+from rockframe.dynamics.point_law import FREE, Point, point_law
 from rockframe.dynamics.protocol import Column
 from rockframe.results.variables.variable import TIME, Variable
 from rockframe.system.load import Load
@@ -25,8 +25,7 @@ from rockframe.system.support import BaseWords, Support
 from rockframe.units import NOT_NEGATIVE, POSITIVE, UNIT_INTERVAL, Measure, Unit
 
 __all__ = [
-    "CONTACTS",
-    "CORNER_GUARDS",
+    "FREE",
     "NOT_NEGATIVE",
     "POSITIVE",
     "SILENT",
@@ -54,6 +53,7 @@ __all__ = [
     "PadSupport",
     "Pads",
     "Parameter",
+    "Point",
     "Ratio",
     "Support",
     "Text",
@@ -63,9 +63,10 @@ __all__ = [
     "bed_under",
     "inlined",
     "kernel",
-    "on_pads",
+    "pads_over",
     "pads_under",
-    "sunk_pads",
+    "point_law",
+    "springs_under",
 ]
 
 

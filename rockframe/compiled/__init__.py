@@ -32,3 +32,4 @@ from rockframe.compiled.tuples import constant as constant
 from rockframe.compiled.tuples import part_of as part_of
 from rockframe.compiled.tuples import put as put
 from rockframe.compiled.tuples import stretch as stretch
+from rockframe.compiled.tuples import with_numbers as with_numbers

@@ -116,7 +116,7 @@ def _stretch(_: Any, kept: Any, first: Any, count: Any) -> Any:
     def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
         given = cgutils.create_struct_proxy(kept)(context, builder, value=values[0])
         made = cgutils.create_struct_proxy(kept)(context, builder)
-        offset = values[1]
+        offset = builder.mul(values[1], context.get_constant(numba.intp, kept.stride))
         for i in range(1, kept.dimensions):
             offset = builder.mul(offset, builder.extract_value(given.shape, i))
         made.address = builder.gep(given.address, [offset])
@@ -124,6 +124,19 @@ def _stretch(_: Any, kept: Any, first: Any, count: Any) -> Any:
         return made._getvalue()
 
     return kept(kept, numba.intp, numba.intp), code
+
+
+@extending.intrinsic
+def _with_number(_: Any, numbers: Any, place: Any, number: Any) -> Any:
+    """Give a tuple with another number at a place, in compiled code."""
+
+    def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        room = cgutils.alloca_once_value(builder, values[0])
+        zero = context.get_constant(numba.intp, 0)
+        builder.store(values[2], builder.gep(room, [zero, values[1]]))
+        return builder.load(room)
+
+    return numbers(numbers, numba.intp, numbers.dtype), code
 
 
 @extending.intrinsic
@@ -229,6 +242,14 @@ def _constant(value: Any, like: Any) -> Callable[..., Any]:
     return _written("value, like", f"return ({'value, ' * len(like)})")
 
 
+@extending.overload(tuples.with_numbers, strict=False, jit_options=_INTO_CALLERS)
+def _with_numbers(numbers: Any, first: Any, others: Any) -> Callable[..., Any]:
+    made = "numbers"
+    for i in range(len(others)):
+        made = f"with_number({made}, first + {i}, others[{i}])"
+    return _written("numbers, first, others", f"return {made}")
+
+
 @extending.overload(tuples.put, strict=False, jit_options=_INTO_CALLERS)
 def _put(numbers: Any, first: Any, out: Any) -> Callable[..., Any]:
     lines = [f"out[first + {i}] = numbers[{i}]" for i in range(len(numbers))]
@@ -243,6 +264,6 @@ def _is_place(place: Any) -> bool:
 
 def _written(arguments: str, line: str) -> Callable[..., Any]:
     """Make a function of one line, as long as some tuple is."""
-    scope: dict[str, Any] = {}
+    scope: dict[str, Any] = {"with_number": _with_number}
     exec(f"def written({arguments}):\n    {line}\n", scope)  # noqa: S102
     return scope["written"]

@@ -52,6 +52,6 @@ def tuple_from(structure: tuple[Any, ...]) -> Callable[[Vector], Any]:
             else:
                 value, first = part(numbers[first]), first + 1
             taken.append(value)
-        return kind(*taken), first
+        return (tuple(taken) if kind is tuple else kind(*taken)), first
 
     return lambda numbers: made(structure[0], structure[1:], numbers, 0)[0]

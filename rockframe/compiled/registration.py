@@ -3,39 +3,36 @@
 Imported only where numba is.
 """
 
-import inspect
 from collections.abc import Callable
 from importlib import import_module
 from typing import Any, Final
 
-from rockframe.compiled.marks import KERNELS, METHODS, is_method
-from rockframe.compiled.sources import fields_of_package
+from rockframe.compiled.marks import KERNELS, is_method
 
 # numba's own annotations are partial
 numba: Final[Any] = import_module("numba")
 extending: Final[Any] = import_module("numba.extending")
+templates: Final[Any] = import_module("numba.core.typing.templates")
 
 OPTIONS: Final = {"error_model": "numpy"}
 HELPER: Final = OPTIONS | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 """Division by zero gives infinities and NaN, as numpy's, and is not checked for."""
 
-_known: Final[set[Any]] = set()
-"""Functions, and names of methods, that numba has been told of."""
+_known: Final[set[Callable[..., Any]]] = set()
+"""Functions and methods that numba has been told of."""
+_ANYTHING: Final = numba.types.VarArg(numba.types.Any)
+_methods: Final[dict[Callable[..., Any], Any]] = {}
+"""How numba finds the types of a method's call."""
 
 
 def register_kernels() -> None:
-    """Make all functions, and all names of methods, known that were marked since the last time."""
-    methods = method_names()
+    """Make all functions and methods known that were marked since the last time."""
     for function, into_caller in list(KERNELS.items()):
-        key = function.__name__ if is_method(function) else function
-        if key in _known or (is_method(function) and key not in methods):
-            continue
-        _known.add(key)
-        options = {**HELPER, "forceinline": into_caller}
-        if is_method(function):
-            _register_method(function.__name__, METHODS[function.__name__], options)
-        else:
-            extending.register_jitable(**options)(function)
+        if function not in _known:
+            _known.add(function)
+            extending.register_jitable(**HELPER, forceinline=into_caller)(function)
+            if is_method(function):
+                _register_method(function)
 
 
 def register_inlined(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -46,58 +43,36 @@ def register_inlined(function: Callable[..., Any]) -> Callable[..., Any]:
     return registered
 
 
-def method_names() -> set[str]:
-    """Give the names of methods that numba is told of.
+def _register_method(function: Callable[..., Any]) -> None:
+    """Let numba call a method as the function that it is, its object the first argument."""
+    name = f"{function.__module__}.{function.__qualname__}"
 
-    Those from outside the package give way to the fields of its named tuples, which numba
-    would take for them; see :func:`clashes_of`.
-    """
-    own = {function.__name__ for function in KERNELS if _is_own(function.__module__)}
-    foreign = METHODS.keys() - own
-    return (METHODS.keys() & own) | (foreign - fields_of_package() if foreign else set())
+    class Call(templates.AbstractTemplate):
+        key = (name, function)
 
+        def generic(self, arguments: Any, keywords: Any) -> Any:
+            kind = self.context.resolve_value_type(function)
+            found = kind.get_call_type(self.context, (self.this, *arguments), keywords)
+            return found and found.as_method()
 
-def clashes_of(kind: Any) -> set[str]:
-    """Give the names of a class of named tuples that numba would take for something else.
+    @extending.lower_builtin(Call.key, numba.types.BaseNamedTuple, _ANYTHING)
+    def call(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        kind = context.typing_context.resolve_value_type(function)
+        found = kind.get_call_type(context.typing_context, signature.args, {})
+        code = context.get_function(kind, found)
+        context.add_linking_libs(getattr(code, "libs", ()))
+        return code(builder, values)
 
-    Parameters
-    ----------
-    kind : type
-        Of named tuples.
-
-    Returns
-    -------
-    set of str
-        Fields that are called like a method, and methods like a field of the package.
-    """
-    known, fields = method_names(), set(kind._fields)
-    methods = {name for name in METHODS if name not in fields and hasattr(kind, name)}
-    return (known & fields) | (methods - known)
+    _methods[function] = Call
 
 
-def _is_own(module: str) -> bool:
-    return module.partition(".")[0] == __name__.partition(".")[0]
+@templates.infer_getattr
+class _MethodsOfTuples(templates.AttributeTemplate):
+    """Methods of a named tuple are those of its class; its fields come first."""
 
+    key = numba.types.BaseNamedTuple
 
-def _register_method(name: str, count: int, options: dict[str, Any]) -> None:
-    registered = extending.overload_method(
-        numba.types.BaseNamedTuple, name, strict=False, jit_options=options
-    )
-    registered(_chooser(name, count))
-
-
-def _chooser(name: str, count: int) -> Callable[..., Any]:
-    """Give the function by which numba finds the method of an object's class.
-
-    numba asks it with as many arguments as the method takes, and reads their number from
-    its signature.
-    """
-
-    def choose(self: Any, *_: Any) -> Callable[..., Any] | None:
-        return getattr(self.instance_class, name, None)
-
-    names = ["self", *(f"argument_{i}" for i in range(1, count))]
-    either = inspect.Parameter.POSITIONAL_OR_KEYWORD
-    arguments = [inspect.Parameter(name, either) for name in names]
-    choose.__signature__ = inspect.Signature(arguments)  # type: ignore[attr-defined]
-    return choose
+    def generic_resolve(self, kind: Any, name: str) -> Any:
+        found = None if name in kind.fields else getattr(kind.instance_class, name, None)
+        call = _methods.get(found) if callable(found) else None
+        return call and numba.types.BoundFunction(call, kind)

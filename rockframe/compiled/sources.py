@@ -53,31 +53,9 @@ def digest(*contents: bytes) -> str:
     return total.hexdigest()
 
 
-def _package_files() -> list[Path]:
-    return sorted(path for pattern in _SOURCES for path in PACKAGE.glob(pattern))
-
-
-@cache
-def fields_of_package() -> frozenset[str]:
-    """Give the names of all fields of named tuples in compiled code of the package."""
-    classes = (
-        node
-        for path in _package_files()
-        for node in ast.walk(ast.parse(path.read_bytes()))
-        if isinstance(node, ast.ClassDef)
-        and any(isinstance(base, ast.Name) and base.id == "NamedTuple" for base in node.bases)
-    )
-    return frozenset(
-        line.target.id
-        for node in classes
-        for line in node.body
-        if isinstance(line, ast.AnnAssign) and isinstance(line.target, ast.Name)
-    )
-
-
 @cache
 def _package_digest() -> bytes:
-    files = _package_files()
+    files = sorted(path for pattern in _SOURCES for path in PACKAGE.glob(pattern))
     parts = [part for path in files for part in (path.name.encode(), path.read_bytes())]
     return digest(*parts).encode()
 

@@ -20,6 +20,13 @@ def put(numbers: tuple[float, ...], first: int, out: Vector) -> None:
         out[first + i] = number
 
 
+def with_numbers(
+    numbers: tuple[float, ...], first: int, others: tuple[float, ...]
+) -> tuple[float, ...]:
+    """Give a tuple with others in place of some of its numbers, from an index on."""
+    return (*numbers[:first], *others, *numbers[first + len(others) :])
+
+
 def part_of(array: Vector, first: int) -> Vector:
     """Give an array from an index on; no copy."""
     return array[first:]

@@ -7,7 +7,7 @@ import numpy as np
 from rockframe.compiled.arrays import Integers, ReadOnlyMatrix, Vector
 from rockframe.compiled.buffers import BufferType
 from rockframe.compiled.calls import code_at
-from rockframe.compiled.registration import clashes_of, numba
+from rockframe.compiled.registration import numba
 
 VECTOR: Final = BufferType(numba.float64, 1, True)
 """Numba's type of a vector in compiled code."""
@@ -41,6 +41,8 @@ class Writer:
             self.kinds.append(part)
             number = f"numbers[{len(self.kinds) - 1}]"
             taken.append({bool: f"{number} != 0.0", int: f"int({number})"}.get(part, number))
+        if kind is tuple:
+            return f"({''.join(f'{part}, ' for part in taken)})"
         return f"{self._name(kind)}({', '.join(taken)})"
 
     def argument(self, structure: Any) -> str:
@@ -64,14 +66,6 @@ class Writer:
         return f"buffer_of({word})"
 
     def _name(self, kind: Any) -> str:
-        clashes = clashes_of(kind)
-        if clashes:
-            msg = (
-                f"{kind.__module__}.{kind.__qualname__} has a field, or a method, "
-                f"{min(clashes)!r}, which elsewhere is a method, or a field; numba would take one "
-                "for the other, so give it another name"
-            )
-            raise TypeError(msg)
         name = kind.__name__
         while self.scope.setdefault(name, kind) is not kind:
             name += "_"

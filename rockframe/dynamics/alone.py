@@ -147,13 +147,13 @@ class Alone(InState, OnePart):
         return state[DEGREES], state[DEGREES + 1], state[DEGREES + 2]
 
     @kernel
-    def end_acceleration(
-        self, k: int, left: bool, mode: int, state: Vector, ground: Ground
-    ) -> float:
-        """Give the acceleration of an end of the base in a mode, upwards."""
+    def end_accelerations(
+        self, k: int, mode: int, state: Vector, ground: Ground
+    ) -> tuple[float, float]:
+        """Give the accelerations of the ends of the base in a mode, upwards."""
         body, own = self.state_of(0, state), self.own_in(state)
         rates = self.part.rates_in(self.part.mode_of(mode), body, own, ground)
-        return self.part.end_rises(left, body, rates.vertical, rates.rotation)
+        return self.part.end_rises(body, rates.vertical, rates.rotation)
 
     @kernel
     def tendency(self, k: int, mode: int, state: Vector, ground: Ground) -> float:

@@ -1,18 +1,22 @@
 """What is known of a base before a run: its law, its sizes, and what it shows."""
 
 import math
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, Final
 
 import numpy as np
 
 from rockframe.compiled import Integers, Vector
-from rockframe.dynamics.base import Base
+from rockframe.dynamics.base import Base, root_above_zero
 from rockframe.dynamics.bed import Bed
-from rockframe.dynamics.body import Body
+from rockframe.dynamics.body import BaseLine, Body
 from rockframe.dynamics.events import ContactState
 from rockframe.dynamics.on_base import SLIDES, STANDINGS
-from rockframe.dynamics.pads import LEAVE, REENGAGE, ROUNDING, Pads
+from rockframe.dynamics.pads import LEAVE, REENGAGE, ROUNDING, ElasticPads, Pads
+from rockframe.dynamics.point_law import Point, Viscoelastic
 from rockframe.dynamics.protocol import Column
+from rockframe.dynamics.springs import GUARDS, Springs
 
 
 @dataclass(frozen=True)
@@ -67,11 +71,21 @@ def pads_under(
     """
     rest = 0.5 * body.gravity / stiffness
     size = math.hypot(0.5 * (body.left + body.right), body.height)
-    law = Pads(
-        stiffness, damping, rest, rest, rest, *restitution, gravity=body.gravity, body_size=size
+    noise = ROUNDING * (1.0 + size / rest)
+    law = ElasticPads(
+        Viscoelastic(stiffness, damping),
+        rest,
+        rest,
+        rest,
+        0.5 * stiffness * rest * rest,
+        math.sqrt(2.0 * stiffness),
+        2.0 * body.gravity * noise / damping if damping > 0.0 else 0.0,
+        *restitution,
+        gravity=body.gravity,
+        noise=noise,
     )
     tolerance = np.full(law.end_guards(), ROUNDING)
-    tolerance[[LEAVE, REENGAGE]] = law.noise()
+    tolerance[[LEAVE, REENGAGE]] = noise
     return BaseNumbers(
         law,
         (Column("left_reaction", per_mass=True), Column("right_reaction", per_mass=True)),
@@ -81,6 +95,120 @@ def pads_under(
         damping_time=damping / stiffness,
         end_tolerance=tolerance,
     )
+
+
+def pads_over(
+    law: Any,
+    elastic: BaseNumbers,
+    *,
+    columns: Sequence[Column] = (),
+    variable_scales: Sequence[float] = (),
+) -> BaseNumbers:
+    """Give pads over another law of a point; at rest they are as elastic ones.
+
+    Parameters
+    ----------
+    law : PointLaw
+        Of each pad, per unit mass.
+    elastic : BaseNumbers
+        Elastic pads, of :func:`pads_under`, of the stiffness and damping that the law begins with.
+    columns : sequence of Column, optional
+        What the law shows at the left pad, then at the right one.
+    variable_scales : sequence of float, optional
+        Typical sizes of the law's variables at one pad.
+
+    Returns
+    -------
+    BaseNumbers
+    """
+    pads: Any = elastic.law
+    guards = np.full(int(law.states() > 1), pads.noise)
+    return replace(
+        elastic,
+        law=Pads(law, *pads[1:]),
+        columns=(*elastic.columns, *columns),
+        end_tolerance=np.concatenate([elastic.end_tolerance, guards]),
+        variable_scales=np.tile(np.asarray(variable_scales, dtype=np.float64), 2),
+    )
+
+
+def springs_under(
+    body: Body,
+    law: Any,
+    places: Sequence[float],
+    lengths: Sequence[float],
+    *,
+    load: float = 1.0,
+    columns: Sequence[Column] = (),
+    variable_scales: Sequence[float] = (),
+) -> BaseNumbers:
+    """Give a bed of springs under a body.
+
+    Parameters
+    ----------
+    body : Body
+        The body on it.
+    law : PointLaw
+        Of each spring, per unit length of base and unit mass.
+    places : sequence of float
+        Of the springs, from the left, as shares of the way from the left end of the base to the
+        right one [1].
+    lengths : sequence of float
+        Of the base that each spring carries [m].
+    load : float
+        Mass on the bed over that mass that all is measured by [1].
+    columns : sequence of Column, optional
+        What the law shows at the leftmost spring, then at the rightmost one.
+    variable_scales : sequence of float, optional
+        Typical sizes of the law's variables at one spring.
+
+    Returns
+    -------
+    BaseNumbers
+    """
+    weight, width = load * body.gravity, body.left + body.right
+    count, of_law = len(places), law.variables()
+    still = BaseLine(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+    def point(pressed: float, speed: float) -> Point:
+        return Point(pressed, speed, 0.0, 0.0, pressed, 0.5, still)
+
+    def force(pressed: float, speed: float = 0.0) -> float:
+        return float(law.force(0, point(pressed, speed), np.zeros(of_law)))
+
+    pressure = weight / math.fsum(lengths)
+    settlement = root_above_zero(lambda depth: force(depth) - pressure, pressure / force(1.0))
+    stiffness = law.force_rate(0, point(settlement, 1.0), np.zeros(of_law))
+    damping = force(settlement, 1.0) - force(settlement)
+    levers = body.left - width * np.asarray(places)
+    noise = ROUNDING * (1.0 + math.hypot(0.5 * width, body.height) / settlement)
+    return BaseNumbers(
+        Springs(
+            law,
+            tuple(map(float, places)),
+            tuple(map(float, lengths)),
+            settlement,
+            law.energy(point(settlement, 0.0), np.zeros(of_law)),
+            weight,
+            pressure,
+            idle=(1.0,) * (GUARDS * (count - count // 2)),
+            steady=(0.0,) * (count * (1 + of_law)),
+        ),
+        (*_BED_COLUMNS, *columns),
+        settlement=settlement,
+        vertical_stiffness=stiffness * math.fsum(lengths),
+        rotational_stiffness=stiffness * float(np.dot(lengths, levers**2)),
+        damping_time=damping / stiffness,
+        end_tolerance=np.full(GUARDS * (count - count // 2), noise),
+        variable_scales=np.concatenate([np.ones(count), np.tile(variable_scales, count)]),
+    )
+
+
+_BED_COLUMNS: Final = (
+    Column("soil_reaction", per_mass=True),
+    Column("contact_length"),
+    Column("toe_pressure", per_mass=True),
+)
 
 
 def bed_under(
@@ -109,11 +237,7 @@ def bed_under(
     size = math.hypot(0.5 * width, body.height)
     return BaseNumbers(
         Bed(stiffness, damping, settlement, width, by_pressure),
-        (
-            Column("soil_reaction", per_mass=True),
-            Column("contact_length"),
-            Column("toe_pressure", per_mass=True),
-        ),
+        _BED_COLUMNS,
         settlement=settlement,
         vertical_stiffness=width * stiffness,
         rotational_stiffness=stiffness * (body.left**3 + body.right**3) / 3.0,

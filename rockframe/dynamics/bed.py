@@ -3,14 +3,13 @@
 Along the base everything is linear: the compression u = delta - w of the springs, its rate
 -v, the pressure p = k u - c v and the lever of a point. So each resultant is exact from the
 values at both ends of the bearing part, without a division by the rotation. A place on the
-base is its share of the way from the left end (0) to the right end (1). A
-:class:`rockframe.dynamics.base.Base`.
+base is its share of the way from the left end (0) to the right end (1).
 """
 
 from typing import Final, NamedTuple
 
-from rockframe.compiled import Vector, inlined, kernel
-from rockframe.dynamics.base import BaseForce, EndEvent, Guards, Variables
+from rockframe.compiled import inlined, kernel
+from rockframe.dynamics.base import SIMULTANEOUS, Base, BaseForce, EndEvent, Guards, Variables
 from rockframe.dynamics.body import BaseLine
 from rockframe.dynamics.events import REENGAGEMENT, SEPARATION
 
@@ -22,9 +21,6 @@ RAISED: Final = 1
 LEFT_BIT: Final = 1
 RIGHT_BIT: Final = 1
 CONTACTS: Final = 4
-
-SIMULTANEOUS: Final = 1e-9
-"""Share of the settlement within which both ends land, or both leave, together."""
 
 
 class Ends(NamedTuple):
@@ -88,7 +84,7 @@ def end_of(u: float) -> int:
     return DOWN if u > 0.0 else RAISED
 
 
-class Bed(NamedTuple):
+class BedNumbers(NamedTuple):
     """A bed, per unit length of base and unit mass of the body on it."""
 
     stiffness: float  # k0/m
@@ -96,6 +92,12 @@ class Bed(NamedTuple):
     settlement: float  # delta
     width: float  # of the base, B
     by_pressure: bool  # whether tension is cut off as well
+
+
+class Bed(Base, BedNumbers):
+    """A bed under a straight base: a :class:`rockframe.dynamics.base.Base`."""
+
+    __slots__ = ()
 
     @kernel
     def contacts(self) -> int:
@@ -107,35 +109,15 @@ class Bed(NamedTuple):
         """Give the number of guards of an end."""
         return 1
 
-    @kernel
-    def variables(self) -> int:
-        """Give 0: an elastic bed has no variables of its own."""
-        return 0
-
-    @kernel
-    def read(self, state: Vector, first: int) -> Variables:
-        """Give none."""
-        return ()
-
-    @kernel
-    def flow(self, contact: int, line: BaseLine, own: Variables) -> Variables:
-        """Give none."""
-        return ()
+    @inlined
+    def in_flight(self) -> int:
+        """Give the contact with both ends raised."""
+        return both_contacts(RAISED, RAISED)
 
     @inlined
     def is_held(self, contact: int, left: bool) -> bool:
         """Whether an end is down."""
         return end_contact(contact, left) == DOWN
-
-    @inlined
-    def touches(self, contact: int, left: bool) -> bool:
-        """Whether an end is down."""
-        return self.is_held(contact, left)
-
-    @kernel
-    def tilt(self, contact: int) -> float:
-        """Give the side of the end that is raised, as the other one is pressed upwards."""
-        return float(end_contact(contact, False) - end_contact(contact, True))
 
     @inlined
     def ends(self, line: BaseLine) -> Ends:
@@ -214,9 +196,7 @@ class Bed(NamedTuple):
         return stored, half * mean_product(u0 - delta, u1 - delta, u0 + delta, u1 + delta)
 
     @inlined
-    def guards_of(
-        self, contact: int, left: bool, line: BaseLine, acceleration: float, own: Variables
-    ) -> Guards:
+    def guards_of(self, contact: int, left: bool, line: BaseLine, own: Variables) -> Guards:
         """Give the guard of an end, its level above or below the unloaded bed, and its rate."""
         scale = (1.0 if self.is_held(contact, left) else -1.0) / self.settlement
         level = line.left if left else line.right
@@ -245,86 +225,9 @@ class Bed(NamedTuple):
         return EndEvent(both, REENGAGEMENT if end == DOWN else SEPARATION, True)
 
     @kernel
-    def variables_after(self, was: int, contact: int, line: BaseLine, own: Variables) -> Variables:
-        """Give none."""
-        return ()
-
-    @kernel
     def level(self, left: bool, line: BaseLine, own: Variables) -> float:
         """Give how much higher than an end the unloaded bed is."""
         return self.settlement - (line.left if left else line.right)
-
-    @kernel
-    def is_level(self, left: bool, line: BaseLine, own: Variables) -> bool:
-        """Give True: an end that slides is at the level of the unloaded bed."""
-        return True
-
-    @inlined
-    def follows(self, contact: int, left: bool) -> int:
-        """Give the contact in flight: an end that slides touches the unloaded bed only."""
-        return both_contacts(RAISED, RAISED)
-
-    @kernel
-    def following_speed(self, left: bool, line: BaseLine, own: Variables) -> float:
-        """Give 0: an unloaded bed is at its level."""
-        return 0.0
-
-    @inlined
-    def following_rate(self) -> float:
-        """Give 0: an unloaded bed is at its level."""
-        return 0.0
-
-    @kernel
-    def least_landing(self) -> float:
-        """Give 0: a bed answers a landing by its length in contact, from zero on."""
-        return 0.0
-
-    @kernel
-    def released(self, contact: int, left: bool, line: BaseLine, own: Variables) -> int:
-        """Give the contact in flight."""
-        return both_contacts(RAISED, RAISED)
-
-    @kernel
-    def presses(self, contact: int, left: bool, line: BaseLine, own: Variables) -> bool:
-        """Give False: an end that has left is above the bed."""
-        return False
-
-    @kernel
-    def will_press(self, left: bool, line: BaseLine, acceleration: float, own: Variables) -> bool:
-        """Give False: an end that has left is above the bed."""
-        return False
-
-    @kernel
-    def held(self, contact: int, left: bool) -> int:
-        """Give the contact with an end that is down."""
-        return (
-            both_contacts(DOWN, end_contact(contact, False)) if left else end_contact(contact, True)
-        )
-
-    @kernel
-    def waiting(self, contact: int, left: bool) -> int:
-        """Give the contact itself: nothing waits."""
-        return contact
-
-    @kernel
-    def unpressed(self, contact: int, left: bool) -> int:
-        """Give the contact itself."""
-        return contact
-
-    @kernel
-    def engaged(self, contact: int, left: bool, line: BaseLine, own: Variables) -> int:
-        """Give the contact itself."""
-        return contact
-
-    @kernel
-    def disturbed(self, contact: int) -> int:
-        """Give the contact itself: it follows from the levels alone."""
-        return contact
-
-    @kernel
-    def rebound(self, left: bool) -> float:
-        """Give 1: a bed has no impacts."""
-        return 1.0
 
     @kernel
     def starting(self, line: BaseLine, own: Variables) -> int:

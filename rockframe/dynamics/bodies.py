@@ -73,10 +73,10 @@ class Bodies(Protocol):
         """Take back all but a share of what has changed the velocities since."""
         ...
 
-    def end_acceleration(
-        self, k: int, left: bool, mode: int, state: Vector, ground: Ground
-    ) -> float:
-        """Give the acceleration of an end of its base in a mode, upwards."""
+    def end_accelerations(
+        self, k: int, mode: int, state: Vector, ground: Ground
+    ) -> tuple[float, float]:
+        """Give the accelerations of the ends of its base in a mode, upwards."""
         ...
 
     def tendency(self, k: int, mode: int, state: Vector, ground: Ground) -> float:

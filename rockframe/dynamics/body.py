@@ -36,7 +36,8 @@ class Attitude(NamedTuple):
 class BaseLine(NamedTuple):
     """Both ends of a base: heights above their places at rest, speeds upwards, levers.
 
-    A lever is the rate of an end's height with the rotation.
+    A lever is the rate of an end's height with the rotation. Guards know the accelerations of
+    the ends, too; forces come before them.
     """
 
     left: float
@@ -45,6 +46,17 @@ class BaseLine(NamedTuple):
     right_speed: float
     left_lever: float
     right_lever: float
+    left_acceleration: float = 0.0
+    right_acceleration: float = 0.0
+
+
+@inlined
+def accelerated(line: BaseLine, left: float, right: float) -> BaseLine:
+    """Give a base line with the accelerations of its ends."""
+    return BaseLine(
+        line.left, line.right, line.left_speed, line.right_speed, line.left_lever,
+        line.right_lever, left, right,
+    )  # fmt: skip
 
 
 class Reach(NamedTuple):
@@ -91,6 +103,8 @@ class Body(NamedTuple):
             state.vertical_velocity + right * state.angular_velocity,
             left,
             right,
+            0.0,
+            0.0,
         )
 
     @kernel

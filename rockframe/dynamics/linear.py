@@ -63,7 +63,7 @@ def of_base(link: Link, stand: Stand, name: str) -> tuple[float, float]:
     moment = upward = 0.0
     for place, weight in STENCIL:
         before, behind = (
-            base.force(stand.mode.contact, body.base_line_at(_moved(stand, name, by)), link.own)
+            base.force(stand.mode.contact, body.base_line_at(_moved(stand, name, by)), stand.own)
             for by in (place * step, -place * step)
         )
         moment -= weight / step * (before.moment - behind.moment)

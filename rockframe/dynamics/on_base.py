@@ -10,7 +10,7 @@ from typing import Any, Final, NamedTuple
 
 from rockframe.compiled import constant, inlined, kernel
 from rockframe.dynamics.base import Guards
-from rockframe.dynamics.body import Attitude, BaseLine, Body, BodyState
+from rockframe.dynamics.body import Attitude, BaseLine, Body, BodyState, accelerated
 from rockframe.dynamics.protocol import Ground
 from rockframe.dynamics.restraint import pivot_guard, pivot_of
 from rockframe.dynamics.sliding import NO_LEVER
@@ -168,11 +168,9 @@ class OnBase(NamedTuple):
         return Rates(angular, vertical, hold - ground.x, own_rates, dissipated, supplied)
 
     @inlined
-    def end_guards_in(
-        self, mode: Mode, left: bool, line: BaseLine, acceleration: float, own: Any
-    ) -> Guards:
+    def end_guards_in(self, mode: Mode, left: bool, line: BaseLine, own: Any) -> Guards:
         """Give the guards of an end of the base; those of an end that slides are idle."""
-        found = self.base.guards_of(mode.contact, left, line, acceleration, own)
+        found = self.base.guards_of(mode.contact, left, line, own)
         if mode.slides and self.base.is_held(mode.contact, left):
             return Guards(constant(1.0, found.values), constant(0.0, found.values))
         return found
@@ -197,12 +195,10 @@ class OnBase(NamedTuple):
         `vertical` and `angular` are the accelerations of vertical coordinate and rotation.
         """
         attitude = self.body.attitude(state.rotation)
-        line = self.body.base_line(state, attitude)
-        on_left, on_right = self.body.end_accelerations(
-            attitude, state.angular_velocity, vertical, angular
-        )
-        left = self.end_guards_in(mode, True, line, on_left, own)
-        right = self.end_guards_in(mode, False, line, on_right, own)
+        rises = self.body.end_accelerations(attitude, state.angular_velocity, vertical, angular)
+        line = accelerated(self.body.base_line(state, attitude), rises[0], rises[1])
+        left = self.end_guards_in(mode, True, line, own)
+        right = self.end_guards_in(mode, False, line, own)
         pivot, pivot_rate = self.pivot_guard_in(mode, state, angular)
         return Guards(
             left.values + right.values + (sliding.hold, sliding.slip, pivot),
@@ -246,12 +242,10 @@ class OnBase(NamedTuple):
         return held_at + self.body.about_pin(self.body.pin(mode.pivot), state.rotation)
 
     @kernel
-    def end_rises(self, left: bool, state: BodyState, vertical: float, angular: float) -> float:
-        """Give the acceleration of an end of the base, upwards, from those of the body."""
-        on_left, on_right = self.body.end_accelerations(
-            self.body.attitude(state.rotation), state.angular_velocity, vertical, angular
-        )
-        return on_left if left else on_right
+    def end_rises(self, state: BodyState, vertical: float, angular: float) -> tuple[float, float]:
+        """Give the accelerations of the base's ends, upwards, from those of the body."""
+        attitude = self.body.attitude(state.rotation)
+        return self.body.end_accelerations(attitude, state.angular_velocity, vertical, angular)
 
     @kernel
     def elastic_energy(self, state: BodyState, own: Any) -> tuple[float, float]:

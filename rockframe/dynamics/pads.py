@@ -1,17 +1,25 @@
-"""Two pads, one under each corner: reaction, guards, and the corners' contacts.
+"""Pads, one under each corner, over any law of a point: reaction, guards, the corners' contacts.
 
-Pad forces :eq:`eq-pad-force`, guards :eq:`eq-guards`, energies :eq:`eq-energy`. A
-:class:`rockframe.dynamics.base.Base`.
+Guards :eq:`eq-guards`, energies :eq:`eq-energy`. Elastic pads are those over the
+:class:`~rockframe.dynamics.point_law.Viscoelastic` law.
 """
 
-import math
 import sys
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
-from rockframe.compiled import Vector, inlined, kernel
-from rockframe.dynamics.base import BaseForce, EndEvent, Guards, Variables
+from rockframe.compiled import Vector, constant, inlined, kernel
+from rockframe.dynamics.base import (
+    SIMULTANEOUS,
+    Base,
+    BaseForce,
+    EndEvent,
+    Guards,
+    Variables,
+    height_under,
+)
 from rockframe.dynamics.body import BaseLine
 from rockframe.dynamics.events import IMPACT, REENGAGEMENT, SEPARATION, SILENT
+from rockframe.dynamics.point_law import FREE, Point
 
 # contact of a corner; it is held, and counts as bearing, below RELAXING
 TOUCHING: Final = 0
@@ -20,20 +28,19 @@ RELAXING: Final = 2  # free, but still below the pad's unloaded level
 CLEAR: Final = 3  # free, above it
 LEAVING: Final = 4  # free, though the re-pinning of its separation left it pressing
 
-# two corners' contacts in one integer: that of the left one in its lowest bits
+# two corners' contacts in one integer: that of the left one in its lowest bits; behind them the
+# states of the laws of both, the left one first
 CORNER_BITS: Final = 7
 RIGHT_BIT: Final = 3
 CORNER: Final = 1 << RIGHT_BIT
 CONTACTS: Final = CORNER * CORNER
 
-# guards of a corner
+# guards of a corner; those of its law's state stand behind them
 LEAVE: Final = 0  # the reaction of a touching corner; the gap of a free one
 REENGAGE: Final = 1  # a relaxing pad catches up with its corner; a leaving corner outruns its pad
 REVERSE: Final = 2  # a leaving corner stops rising; an engaging one is pressed
 CORNER_GUARDS: Final = 3
 
-SIMULTANEOUS: Final = 1e-9
-"""Share of the settlement within which both corners land together."""
 LEVEL_ROUNDING: Final = 1e-12
 """Share of the settlement within which a corner is at the pad's unloaded level."""
 ROUNDING: Final = 4.0 * sys.float_info.epsilon
@@ -43,15 +50,7 @@ ROUNDING: Final = 4.0 * sys.float_info.epsilon
 @inlined
 def corner_contact(contact: int, left: bool) -> int:
     """Give the contact of one corner."""
-    return contact & CORNER_BITS if left else contact >> RIGHT_BIT
-
-
-@inlined
-def with_corner(contact: int, left: bool, corner: int) -> int:
-    """Give both corners' contacts with another one of one corner."""
-    if left:
-        return corner + contact - (contact & CORNER_BITS)
-    return (contact & CORNER_BITS) + (corner << RIGHT_BIT)
+    return contact & CORNER_BITS if left else (contact >> RIGHT_BIT) & CORNER_BITS
 
 
 @inlined
@@ -66,43 +65,70 @@ def corner_speed(line: BaseLine, left: bool) -> float:
     return line.left_speed if left else line.right_speed
 
 
-class Pads(NamedTuple):
+class PadNumbers(NamedTuple):
     """Two pads, per unit mass of the body on them."""
 
-    stiffness: float  # k/m, of one pad
-    damping: float  # c/m
+    law: Any  # of each pad, a rockframe.dynamics.point_law.PointLaw
     left_settlement: float  # of the unloaded level above the corner's place at rest
     right_settlement: float
     rest: float  # settlement under half the weight
+    rest_energy: float  # of one pad
+    frequency: float  # of vertical vibration
+    least: float  # speed of a landing below which a dashpot's answer is rounding noise
     left_restitution: float  # eps, of an impact on the left pad
     right_restitution: float
     gravity: float  # g
-    body_size: float  # of the body: heights are differences of terms as large
+    noise: float  # rounding noise of a reaction over the weight
+
+
+class Pads(Base, PadNumbers):
+    """Two pads under the corners: a :class:`rockframe.dynamics.base.Base`."""
+
+    __slots__ = ()
 
     @kernel
     def contacts(self) -> int:
-        """Give the number of both corners' contacts."""
-        return CONTACTS
+        """Give the number of both corners' contacts, with the states of their laws."""
+        return CONTACTS * self.law.states() * self.law.states()
 
     @kernel
     def end_guards(self) -> int:
         """Give the number of guards of a corner."""
-        return CORNER_GUARDS
+        return CORNER_GUARDS + (1 if self.law.states() > 1 else 0)
 
-    @kernel
+    @inlined
     def variables(self) -> int:
-        """Give 0: elastic pads have no variables of their own."""
-        return 0
+        """Give the number of variables of both laws."""
+        return 2 * self.law.variables()
+
+    @inlined
+    def read(self, state: Vector, first: int) -> Any:
+        """Read the variables of the left law and of the right one."""
+        return self.law.read(state, first, 2)
+
+    @inlined
+    def of_corner(self, own: Any, left: bool) -> Any:
+        """Give the variables of one corner's law."""
+        return self.law.of_point(own, 0 if left else 1)
+
+    @inlined
+    def law_state(self, contact: int, left: bool) -> int:
+        """Give the state of a corner's law."""
+        both = contact // CONTACTS
+        return (both if left else both // self.law.states()) % self.law.states()
 
     @kernel
-    def read(self, state: Vector, first: int) -> Variables:
-        """Give none."""
-        return ()
+    def with_state(self, contact: int, left: bool, state: int) -> int:
+        """Give the contacts with another state of a corner's law."""
+        step = CONTACTS if left else CONTACTS * self.law.states()
+        return contact + step * (state - self.law_state(contact, left))
 
     @kernel
-    def flow(self, contact: int, line: BaseLine, own: Variables) -> Variables:
-        """Give none."""
-        return ()
+    def with_corner(self, contact: int, left: bool, corner: int) -> int:
+        """Give both corners' contacts with another one of one corner, its law in its state 0."""
+        step = 1 if left else CORNER
+        new = contact + step * (corner - corner_contact(contact, left))
+        return self.with_state(new, left, 0)
 
     @inlined
     def is_held(self, contact: int, left: bool) -> bool:
@@ -121,66 +147,102 @@ class Pads(NamedTuple):
 
     @inlined
     def settlement_of(self, left: bool) -> float:
-        """Give how far a pad's unloaded level stands above its corner's place at rest."""
+        """Give how far a pad's first unloaded level stands above its corner's place at rest."""
         return self.left_settlement if left else self.right_settlement
 
     @inlined
-    def reaction(self, left: bool, line: BaseLine) -> float:
-        """Give the reaction of a pad that touches its corner, :eq:`eq-pad-force`."""
-        pressed = self.settlement_of(left) - corner_level(line, left)
-        return self.stiffness * pressed - self.damping * corner_speed(line, left)
+    def unloaded(self, left: bool, own: Any) -> float:
+        """Give how far a pad's unloaded level stands above its corner's place at rest."""
+        return self.settlement_of(left) - self.law.sunk(self.of_corner(own, left))
 
     @inlined
-    def reaction_and_power(self, contact: int, left: bool, line: BaseLine) -> tuple[float, float]:
-        """Give a pad's reaction and what its dashpot dissipates, in its corner's contact."""
-        corner, speed = corner_contact(contact, left), corner_speed(line, left)
+    def level(self, left: bool, line: BaseLine, own: Any) -> float:
+        """Give how much higher than its corner a pad's unloaded level is."""
+        return self.unloaded(left, own) - corner_level(line, left)
+
+    @inlined
+    def corner(self, left: bool, line: BaseLine) -> Point:
+        """Give one corner as its law sees it."""
+        settlement, level = self.settlement_of(left), corner_level(line, left)
+        change = line.left_acceleration if left else line.right_acceleration
+        return Point(
+            settlement - level, -corner_speed(line, left), -change, level, settlement,
+            0.0 if left else 1.0, line,
+        )  # fmt: skip
+
+    @inlined
+    def reaction(self, contact: int, left: bool, line: BaseLine, own: Any) -> float:
+        """Give the reaction of a pad that touches its corner."""
+        state, point = self.law_state(contact, left), self.corner(left, line)
+        return self.law.force(state, point, self.of_corner(own, left))
+
+    @inlined
+    def reaction_and_power(
+        self, contact: int, left: bool, line: BaseLine, own: Any
+    ) -> tuple[float, float]:
+        """Give a pad's reaction and what it dissipates, in its corner's contact."""
+        corner, point = corner_contact(contact, left), self.corner(left, line)
+        mine = self.of_corner(own, left)
         if corner == TOUCHING:
-            return self.reaction(left, line), self.damping * speed * speed
+            state = self.law_state(contact, left)
+            return self.law.force(state, point, mine), self.law.power(state, point, mine)
         if corner != CLEAR:  # the pad follows its corner, and its spring feeds the dashpot
-            pressed = self.settlement_of(left) - corner_level(line, left)
-            return 0.0, self.stiffness * pressed * speed
+            return 0.0, -self.law.spring(point, mine) * point.speed
         return 0.0, 0.0
 
     @inlined
-    def force(self, contact: int, line: BaseLine, own: Variables) -> BaseForce:
+    def force(self, contact: int, line: BaseLine, own: Any) -> BaseForce:
         """Give the reactions of both pads together."""
-        left, by_left = self.reaction_and_power(contact, True, line)
-        right, by_right = self.reaction_and_power(contact, False, line)
+        left, by_left = self.reaction_and_power(contact, True, line, own)
+        right, by_right = self.reaction_and_power(contact, False, line, own)
         moment = left * line.left_lever + right * line.right_lever
         return BaseForce(left + right, moment, by_left + by_right)
 
-    @kernel
-    def pad_energy(self, left: bool, line: BaseLine) -> tuple[float, float]:
-        """Give the energy of a pad's spring, and that less the energy at rest."""
-        settlement, level = self.settlement_of(left), corner_level(line, left)
-        if level >= settlement:
-            return 0.0, -0.5 * self.stiffness * self.rest * self.rest
-        pressed = settlement - level
-        # as products, to all digits
-        change = level * (0.5 * level - settlement)
-        change += 0.5 * (settlement - self.rest) * (settlement + self.rest)
-        return 0.5 * self.stiffness * pressed * pressed, self.stiffness * change
+    @inlined
+    def state_if_touching(self, contact: int, left: bool) -> int:
+        """Give the state of a corner's law, or that of a point that does not touch."""
+        touches = corner_contact(contact, left) == TOUCHING
+        return self.law_state(contact, left) if touches else FREE
+
+    @inlined
+    def flow(self, contact: int, line: BaseLine, own: Any) -> Variables:
+        """Give the rates of both laws' variables."""
+        return self.rates(contact, True, line, own) + self.rates(contact, False, line, own)
+
+    @inlined
+    def rates(self, contact: int, left: bool, line: BaseLine, own: Any) -> Variables:
+        """Give the rates of the variables of one law."""
+        state, point = self.state_if_touching(contact, left), self.corner(left, line)
+        return self.law.rates(state, point, self.of_corner(own, left))
 
     @kernel
-    def energy(self, line: BaseLine, own: Variables) -> tuple[float, float]:
-        """Give the energy of both springs, and that less the energy at rest."""
-        left, left_change = self.pad_energy(True, line)
-        right, right_change = self.pad_energy(False, line)
+    def pad_energy(self, left: bool, line: BaseLine, own: Any) -> tuple[float, float]:
+        """Give the energy of a pad, and that less the energy at rest."""
+        if corner_level(line, left) >= self.unloaded(left, own):
+            return 0.0, -self.rest_energy
+        return self.law.energies(
+            self.corner(left, line), self.rest, self.rest_energy, self.of_corner(own, left)
+        )
+
+    @kernel
+    def energy(self, line: BaseLine, own: Any) -> tuple[float, float]:
+        """Give the energy of both pads, and that less the energy at rest."""
+        left, left_change = self.pad_energy(True, line, own)
+        right, right_change = self.pad_energy(False, line, own)
         return left + right, left_change + right_change
 
     @inlined
-    def guards_of(
-        self, contact: int, left: bool, line: BaseLine, acceleration: float, own: Variables
-    ) -> Guards:
-        """Give the three guards of a corner and their rates; idle ones are 1."""
-        corner, settlement = corner_contact(contact, left), self.settlement_of(left)
+    def guards_of(self, contact: int, left: bool, line: BaseLine, own: Any) -> Guards:
+        """Give the guards of a corner and their rates; idle ones are 1."""
+        corner, point = corner_contact(contact, left), self.corner(left, line)
+        state, mine = self.law_state(contact, left), self.of_corner(own, left)
         level, speed = corner_level(line, left), corner_speed(line, left)
         per_rest, per_weight = 1.0 / self.rest, 1.0 / self.gravity
-        gap, gap_rate = (level - settlement) * per_rest, speed * per_rest
+        gap, gap_rate = (level - self.unloaded(left, own)) * per_rest, speed * per_rest
         leave, leave_rate = -gap, -gap_rate
         again, again_rate, reverse, reverse_rate = 1.0, 0.0, 1.0, 0.0
-        reaction = self.reaction(left, line) * per_weight
-        change = -(self.stiffness * speed + self.damping * acceleration) * per_weight
+        reaction = self.law.force(state, point, mine) * per_weight
+        change = self.law.force_rate(state, point, mine) * per_weight
         if corner == TOUCHING:
             leave, leave_rate = reaction, change
         elif corner == ENGAGING:  # until it is pressed, only its height can take it off again
@@ -191,148 +253,155 @@ class Pads(NamedTuple):
             again, again_rate = -reaction, -change
         else:  # after its separation the pad must have let go before
             again, again_rate = reaction, change
-            scale = 1.0 / (self.rest * math.sqrt(2.0 * self.stiffness))
-            reverse, reverse_rate = scale * speed, scale * acceleration
-        return Guards((leave, again, reverse), (leave_rate, again_rate, reverse_rate))
+            scale = 1.0 / (self.rest * self.frequency)
+            reverse, reverse_rate = scale * speed, -scale * point.acceleration
+        of_law = self.law.guards(state, point, mine)
+        if corner != TOUCHING:
+            of_law = Guards(constant(1.0, of_law.values), constant(0.0, of_law.changes))
+        return Guards(
+            (leave, again, reverse) + of_law.values,
+            (leave_rate, again_rate, reverse_rate) + of_law.changes,
+        )
 
     @kernel
-    def released_corner(self, left: bool, line: BaseLine) -> int:
+    def released_corner(self, left: bool, line: BaseLine, own: Any) -> int:
         """Give the contact of a corner that has just left: relaxing, or clear at once."""
-        pressed = self.settlement_of(left) - corner_level(line, left)
-        if self.damping > 0.0 and pressed > LEVEL_ROUNDING * self.rest:
+        pressed = self.level(left, line, own)
+        if self.law.return_rate() > 0.0 and pressed > LEVEL_ROUNDING * self.rest:
             return RELAXING
         return CLEAR
 
     @kernel
-    def switch(
-        self, contact: int, left: bool, which: int, line: BaseLine, own: Variables
+    def switch(self, contact: int, left: bool, which: int, line: BaseLine, own: Any) -> EndEvent:
+        """Give the contacts and the event after a guard of a corner; settle the laws."""
+        if which == CORNER_GUARDS:
+            state = (self.law_state(contact, left) + 1) % self.law.states()
+            found = EndEvent(self.with_state(contact, left, state), SILENT, False)
+        else:
+            found = self.switch_corner(contact, left, which, line, own)
+        self.settle(found.contact, line, own)
+        return found
+
+    @kernel
+    def settle(self, contact: int, line: BaseLine, own: Any) -> None:
+        """Settle the variables of both laws."""
+        left, right = self.law_state(contact, True), self.law_state(contact, False)
+        self.law.settle(left, self.corner(True, line), self.of_corner(own, True))
+        self.law.settle(right, self.corner(False, line), self.of_corner(own, False))
+
+    @kernel
+    def switch_corner(
+        self, contact: int, left: bool, which: int, line: BaseLine, own: Any
     ) -> EndEvent:
-        """Give the contacts and the event after a guard of a corner.
+        """Give the contacts and the event after a guard of a corner's contact.
 
         A corner that lands together with the other one, or leaves together with it, takes it
         along.
         """
         corner, other = corner_contact(contact, left), corner_contact(contact, not left)
         if corner in (RELAXING, LEAVING) and which == LEAVE:
-            return EndEvent(with_corner(contact, left, CLEAR), SILENT, True)
+            return EndEvent(self.with_corner(contact, left, CLEAR), SILENT, True)
         if corner == LEAVING and which == REENGAGE:
-            return EndEvent(with_corner(contact, left, RELAXING), SILENT, False)
+            return EndEvent(self.with_corner(contact, left, RELAXING), SILENT, False)
         if corner == ENGAGING and which == REVERSE:
-            return EndEvent(with_corner(contact, left, TOUCHING), SILENT, False)
-        other_speed = corner_speed(line, not left)
+            return EndEvent(self.with_corner(contact, left, TOUCHING), SILENT, False)
+        was, other_speed = other, corner_speed(line, not left)
+        event, crossed = REENGAGEMENT, False
         if corner < RELAXING:
             # in a motion that is symmetric both reactions are the same, on either side of zero;
             # a corner that has just come down with the first one is on its way into its pad
-            reaction = self.reaction(not left, line)
+            reaction = self.reaction(contact, not left, line, own)
             leaves = reaction <= 0.0 and other_speed >= 0.0
-            if other == TOUCHING and (leaves or reaction == self.reaction(left, line)):
-                other = self.released_corner(not left, line)
+            if other == TOUCHING and (
+                leaves or reaction == self.reaction(contact, left, line, own)
+            ):
+                other = self.released_corner(not left, line, own)
             elif other in (ENGAGING, LEAVING):
                 other = RELAXING  # nothing is held any more; what waited is judged anew
-            corner = self.released_corner(left, line)
-            both = with_corner(with_corner(0, left, corner), not left, other)
-            return EndEvent(both, SEPARATION, corner == CLEAR)
-        event = REENGAGEMENT
-        if corner == CLEAR:
-            event = IMPACT
-            level = abs(corner_level(line, not left) - self.settlement_of(not left))
-            falls = other_speed < 0.0 or other_speed == corner_speed(line, left)
-            if other == CLEAR and level <= SIMULTANEOUS * self.rest and falls:
-                other = TOUCHING
-        if other == LEAVING:
-            other = RELAXING
-        both = with_corner(with_corner(0, left, TOUCHING), not left, other)
-        return EndEvent(both, event, event == IMPACT)
+            corner = self.released_corner(left, line, own)
+            event, crossed = SEPARATION, corner == CLEAR
+        else:
+            if corner == CLEAR:
+                event, crossed = IMPACT, True
+                level = abs(self.level(not left, line, own))
+                falls = other_speed < 0.0 or other_speed == corner_speed(line, left)
+                if other == CLEAR and level <= SIMULTANEOUS * self.rest and falls:
+                    other = TOUCHING
+            if other == LEAVING:
+                other = RELAXING
+            corner = TOUCHING
+        both = self.with_corner(contact, left, corner)
+        if other != was:
+            both = self.with_corner(both, not left, other)
+        return EndEvent(both, event, crossed)
 
     @kernel
-    def variables_after(self, was: int, contact: int, line: BaseLine, own: Variables) -> Variables:
-        """Give none."""
-        return ()
-
-    @kernel
-    def level(self, left: bool, line: BaseLine, own: Variables) -> float:
-        """Give how much higher than its corner a pad's unloaded level is."""
-        return self.settlement_of(left) - corner_level(line, left)
-
-    @kernel
-    def is_level(self, left: bool, line: BaseLine, own: Variables) -> bool:
+    def is_level(self, left: bool, line: BaseLine, own: Any) -> bool:
         """Whether a corner that follows its pad has come to the unloaded level."""
         return self.level(left, line, own) < SIMULTANEOUS * self.rest
 
     @inlined
     def follows(self, contact: int, left: bool) -> int:
         """Give the contact with a corner that its pad follows."""
-        return with_corner(contact, left, RELAXING)
+        return self.with_corner(contact, left, RELAXING)
 
     @inlined
     def following_rate(self) -> float:
-        """Give k/c, the rate at which an unloaded pad returns; 0 without a dashpot."""
-        return self.stiffness / self.damping if self.damping > 0.0 else 0.0
+        """Give the rate at which an unloaded pad returns; 0 without a dashpot."""
+        return self.law.return_rate()
 
-    @kernel
-    def following_speed(self, left: bool, line: BaseLine, own: Variables) -> float:
-        """Give the speed of a corner that follows its pad without a force, :eq:`eq-forceless`."""
-        return self.following_rate() * (self.settlement_of(left) - corner_level(line, left))
-
-    @kernel
-    def noise(self) -> float:
-        """Give the rounding noise of a reaction over the weight."""
-        return ROUNDING * (1.0 + self.body_size / self.rest)
-
-    @kernel
+    @inlined
     def least_landing(self) -> float:
         """Give the speed of a landing below which a dashpot's answer is rounding noise."""
-        if self.damping == 0.0:
-            return 0.0
-        return 2.0 * self.gravity * self.noise() / self.damping
+        return self.least
 
     @kernel
-    def released(self, contact: int, left: bool, line: BaseLine, own: Variables) -> int:
+    def released(self, contact: int, left: bool, line: BaseLine, own: Any) -> int:
         """Give the contact after a corner that slid has left."""
-        return with_corner(contact, left, self.released_corner(left, line))
+        return self.with_corner(contact, left, self.released_corner(left, line, own))
 
     @kernel
-    def presses(self, contact: int, left: bool, line: BaseLine, own: Variables) -> bool:
+    def presses(self, contact: int, left: bool, line: BaseLine, own: Any) -> bool:
         """Whether the pad still presses a corner that has just left and follows it."""
         if corner_contact(contact, left) != RELAXING:
             return False
-        return self.reaction(left, line) >= -self.noise() * self.gravity
+        return self.reaction(contact, left, line, own) >= -self.noise * self.gravity
 
     @kernel
-    def will_press(self, left: bool, line: BaseLine, acceleration: float, own: Variables) -> bool:
-        """Whether the pad force of :eq:`eq-pad-force` would rise."""
-        return self.stiffness * corner_speed(line, left) + self.damping * acceleration < 0.0
+    def will_press(self, left: bool, line: BaseLine, own: Any) -> bool:
+        """Whether the pad force would rise."""
+        return self.law.force_rate(0, self.corner(left, line), self.of_corner(own, left)) > 0.0
 
     @kernel
     def held(self, contact: int, left: bool) -> int:
         """Give the contact with a corner that touches."""
-        return with_corner(contact, left, TOUCHING)
+        return self.with_corner(contact, left, TOUCHING)
 
     @kernel
     def waiting(self, contact: int, left: bool) -> int:
         """Give the contact of a corner that has left while its pad still presses it."""
-        return with_corner(contact, left, LEAVING)
+        return self.with_corner(contact, left, LEAVING)
 
     @kernel
     def unpressed(self, contact: int, left: bool) -> int:
         """Give the contact of a corner that stays held though its pad has ceased to press it."""
-        return with_corner(contact, left, ENGAGING)
+        return self.with_corner(contact, left, ENGAGING)
 
     @kernel
-    def engaged(self, contact: int, left: bool, line: BaseLine, own: Variables) -> int:
+    def engaged(self, contact: int, left: bool, line: BaseLine, own: Any) -> int:
         """Give the contact after a corner has come back to its pad and been held."""
-        if self.reaction(left, line) < 0.0:
+        if self.reaction(contact, left, line, own) < 0.0:
             # re-pinning sped the corner up beyond its pad: let go, it would come back without end
-            return with_corner(contact, left, ENGAGING)
+            return self.with_corner(contact, left, ENGAGING)
         return contact
 
     @kernel
     def disturbed(self, contact: int) -> int:
         """Give the contact after something else changed the corners' speeds."""
         if corner_contact(contact, True) == LEAVING:
-            contact = with_corner(contact, True, RELAXING)
+            contact = self.with_corner(contact, True, RELAXING)
         if corner_contact(contact, False) == LEAVING:
-            contact = with_corner(contact, False, RELAXING)
+            contact = self.with_corner(contact, False, RELAXING)
         return contact
 
     @kernel
@@ -341,20 +410,46 @@ class Pads(NamedTuple):
         return self.left_restitution if left else self.right_restitution
 
     @kernel
-    def starting_corner(self, left: bool, line: BaseLine) -> int:
+    def starting_corner(self, left: bool, line: BaseLine, own: Any) -> int:
         """Give a corner's contact at the start of a run."""
-        if corner_level(line, left) >= self.settlement_of(left):
+        if self.level(left, line, own) <= 0.0:
             return CLEAR
-        return TOUCHING if self.reaction(left, line) > 0.0 else RELAXING
+        return TOUCHING if self.reaction(TOUCHING, left, line, own) > 0.0 else RELAXING
 
     @kernel
-    def starting(self, line: BaseLine, own: Variables) -> int:
+    def starting(self, line: BaseLine, own: Any) -> int:
         """Give the contact at the start of a run."""
-        right = self.starting_corner(False, line)
-        return self.starting_corner(True, line) + CORNER * right
+        self.law.reset(own)
+        self.settle(TOUCHING, line, own)
+        right = self.starting_corner(False, line, own)
+        return self.starting_corner(True, line, own) + CORNER * right
+
+    def resting_height(self, left: float, right: float, own: Any) -> float:
+        """Give the height at which the pads carry the weight."""
+        return height_under(self, self.gravity, 2.0 * self.rest, (left, right), own)
 
     @kernel
-    def resting_height(self, left: float, right: float, own: Variables) -> float:
+    def observed(self, contact: int, line: BaseLine, own: Any) -> Variables:
+        """Give the reactions of the left and of the right pad, and what their laws show."""
+        left, _ = self.reaction_and_power(contact, True, line, own)
+        right, _ = self.reaction_and_power(contact, False, line, own)
+        seen = self.seen(contact, True, line, own) + self.seen(contact, False, line, own)
+        return (left, right) + seen
+
+    @kernel
+    def seen(self, contact: int, left: bool, line: BaseLine, own: Any) -> Variables:
+        """Give what one law shows."""
+        state, point = self.state_if_touching(contact, left), self.corner(left, line)
+        return self.law.seen(state, point, self.of_corner(own, left))
+
+
+class ElasticPads(Pads):
+    """Two pads of linear springs and dashpots, of which the rest is known in closed form."""
+
+    __slots__ = ()
+
+    @kernel
+    def resting_height(self, left: float, right: float, own: Any) -> float:
         """Give the height at which both pads, or only the lower one, carry the weight."""
         sunk = (self.left_settlement - self.rest) + (self.right_settlement - self.rest)
         middle = 0.5 * (sunk - left - right)
@@ -363,19 +458,3 @@ class Pads(NamedTuple):
         if middle + right > self.right_settlement:
             return self.left_settlement - left - 2.0 * self.rest
         return middle
-
-    @kernel
-    def observed(self, contact: int, line: BaseLine, own: Variables) -> Variables:
-        """Give the reactions of the left and of the right pad."""
-        left, _ = self.reaction_and_power(contact, True, line)
-        right, _ = self.reaction_and_power(contact, False, line)
-        return left, right
-
-
-@inlined
-def sunk_pads(pads: Pads, left: float, right: float) -> Pads:
-    """Give pads whose unloaded levels have sunk for good."""
-    return Pads(
-        pads.stiffness, pads.damping, pads.left_settlement - left, pads.right_settlement - right,
-        pads.rest, pads.left_restitution, pads.right_restitution, pads.gravity, pads.body_size,
-    )  # fmt: skip

@@ -72,6 +72,7 @@ class Stand(NamedTuple):
     line: BaseLine
     force: BaseForce
     press: float  # what stands on its base, along the normal of that
+    own: Any  # variables of its base's own, as at a start there
 
 
 class Chain(NamedTuple):
@@ -223,7 +224,8 @@ def settled(link: Link, rotation: float, press: float) -> Stand:
     carries the weight is a first guess, which a secant between bounds refines.
     """
     body, base = link.part
-    own, attitude = link.own, body.attitude(rotation)
+    own = link.own if isinstance(link.own, tuple) else np.array(link.own)
+    attitude = body.attitude(rotation)
     lift = body.left * attitude.sine, -body.right * attitude.sine
     height = base.resting_height(*lift, own) - attitude.rise
     noise = ROUNDING * (link.settlement + abs(lift[0]) + abs(lift[1]) + abs(attitude.rise))
@@ -247,7 +249,7 @@ def settled(link: Link, rotation: float, press: float) -> Stand:
         if not low < height < high:
             height = 0.5 * (low + high)
     mode = link.part.standing(contact, state)
-    return Stand(state, mode, *link.way(attitude, mode.pivot), line, force, press)
+    return Stand(state, mode, *link.way(attitude, mode.pivot), line, force, press, own)
 
 
 def uplift_rotation(link: Link, press: float) -> float:
@@ -263,7 +265,8 @@ def uplift_rotation(link: Link, press: float) -> float:
 
     def spare(rotation: float) -> float:
         """Give how much lower the higher end is than where it parts, over the settlement."""
-        return base.level(True, settled(link, rotation, press).line, link.own) / link.settlement
+        stand = settled(link, rotation, press)
+        return base.level(True, stand.line, stand.own) / link.settlement
 
     most = math.inf if body.small else 0.5 * math.pi
     if not body.small and is_full(most):

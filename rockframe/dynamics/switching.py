@@ -6,9 +6,9 @@ in the system. Re-pinning :eq:`eq-repinning`, impact :eq:`eq-impact`, partial ho
 :eq:`eq-partial-hold`, leaving :eq:`eq-leaving-into-flight`.
 """
 
-from rockframe.compiled import Vector, kernel, put
+from rockframe.compiled import Vector, kernel
 from rockframe.dynamics.bodies import Bodies
-from rockframe.dynamics.body import BodyState
+from rockframe.dynamics.body import BodyState, accelerated
 from rockframe.dynamics.events import (
     IMPACT,
     PIVOT_CHANGE,
@@ -211,8 +211,8 @@ def after_separation(
         contact = part.base.unpressed(was.contact, left)
         return system.with_part(mode, k, Mode(contact, was.pivot, was.slides))
     if presses and flies and not part.base.touches(was.contact, not left):
-        acceleration = system.end_acceleration(k, left, new, state, ground)
-        if part.base.will_press(left, line, acceleration, own):
+        rises = system.end_accelerations(k, new, state, ground)
+        if part.base.will_press(left, accelerated(line, rises[0], rises[1]), own):
             contact = part.base.held(now.contact, left)
             return system.with_part(new, k, Mode(contact, was.pivot, True))
     elif presses and repins and not flies:
@@ -232,11 +232,9 @@ def switch_end(
     own = part.base.read(state, system.own_place(k))
     found = part.base.switch(was.contact, left, which, line, own)
     memory[LAST_EVENT] = found.event
-    after = part.base.variables_after(was.contact, found.contact, line, own)
-    put(after, system.own_place(k), state)
     if found.crossed:
         # the crossed level is set exactly, so that rounding cannot undo the switch
-        system.change(k, part.base.level(left, line, after), 0.0, state)
+        system.change(k, part.base.level(left, line, own), 0.0, state)
     if found.event == SILENT:
         return system.with_part(mode, k, Mode(found.contact, was.pivot, was.slides))
     now = part.standing(found.contact, system.state_of(k, state))
@@ -274,8 +272,8 @@ def change_pivot(
         tendency = body.angular_velocity
         if tendency == 0.0 and part.body.left != part.body.right:
             # its own weight rotates a body whose centre of mass is to the side
-            tendency = system.end_acceleration(k, True, mode, state, ground)
-            tendency -= system.end_acceleration(k, False, mode, state, ground)
+            rises = system.end_accelerations(k, mode, state, ground)
+            tendency = rises[0] - rises[1]
         elif tendency == 0.0:
             tendency = system.tendency(k, mode, state, ground)
         pivot = leading_pivot(body.rotation, tendency)

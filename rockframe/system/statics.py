@@ -134,7 +134,7 @@ class Standing:
         found = dict[str, float]()
         for link, stand, numbers in zip(self.chain.links, stands, self.bases, strict=True):
             base = link.part.base
-            shown = base.observed(stand.mode.contact, stand.line, link.own)
+            shown = base.observed(stand.mode.contact, stand.line, stand.own)
             for column, value in zip(numbers.columns, shown, strict=True):
                 found[column.name] = (self.mass if column.per_mass else 1.0) * value
         if len(stands) > 1:

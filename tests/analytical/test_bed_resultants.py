@@ -9,7 +9,7 @@ import pytest
 from rockframe.dynamics.alone_model import alone, body_of
 from rockframe.dynamics.base_numbers import bed_under
 from rockframe.dynamics.bed import Bed, Ends, both_contacts, end_of
-from rockframe.dynamics.body import BaseLine
+from rockframe.dynamics.body import BaseLine, accelerated
 from rockframe.dynamics.protocol import Ground, Start
 from rockframe.dynamics.restraint import CENTRE
 
@@ -329,9 +329,11 @@ def test_guards_change_as_their_rates_say():
             )
 
         size = (speed + 1.0) / SETTLEMENT
-        for left, acceleration in zip((True, False), accelerations, strict=True):
+        for left in (True, False):
             now, ahead, behind = (
-                bed.guards_of(contact, left, line_of(moved(t), bed), acceleration, ())
+                bed.guards_of(
+                    contact, left, accelerated(line_of(moved(t), bed), *accelerations), ()
+                )
                 for t in (0.0, step, -step)
             )
             slope = (ahead.values[0] - behind.values[0]) / (2.0 * step)

@@ -405,21 +405,42 @@ class Doubled(rf.TwoSpringSupport):
         return ext.pads_under(self.replace(frequency_ratio=40), load)
 
 
-@ext.on_pads
-class TiedLaw(NamedTuple):
-    """Pads and a spring against the rotation of the base."""
+@ext.point_law
+class TiedPad(NamedTuple):
+    """An elastic pad that knows the tie of its pair."""
 
-    pads: ext.Pads
+    stiffness: float
+    damping: float
     tie: float  # per unit mass, by the difference of the heights of both ends
 
-    @ext.inlined
-    def now(self, own):
-        return self.pads
+    def spring(self, point, own):
+        return self.stiffness * point.pressed
+
+    def energy(self, point, own):
+        return 0.5 * self.stiffness * point.pressed**2
+
+    def force(self, state, point, own):
+        return self.spring(point, own) + self.damping * point.speed
+
+    def force_rate(self, state, point, own):
+        return self.stiffness * point.speed + self.damping * point.acceleration
+
+    def return_rate(self):
+        return self.stiffness / self.damping
+
+
+of_pads = ext.Pads.force
+
+
+class TiedPair(ext.Pads):
+    """Pads and a spring against the rotation of the base, whether they touch or not."""
+
+    __slots__ = ()
 
     @ext.inlined
     def force(self, contact, line, own):
-        found = self.pads.force(contact, line, own)
-        moment = found.moment - self.tie * (line.left - line.right)
+        found = of_pads(self, contact, line, own)
+        moment = found.moment - self.law.tie * (line.left - line.right)
         return ext.BaseForce(found.upward, moment, found.dissipated)
 
 
@@ -431,7 +452,9 @@ class TiedSupport(ext.PadSupport):
 
     def law(self, body, mass, load_mass):
         pads = super().law(body, mass, load_mass)
-        return replace(pads, law=TiedLaw(pads.law, self.tie / mass))
+        tied = TiedPad(self.stiffness / mass, self.damping / mass, self.tie / mass)
+        found = ext.pads_over(tied, pads)
+        return replace(found, law=TiedPair(*found.law))
 
 
 class TiedPads(ext.OwnBase):

@@ -69,7 +69,7 @@ def free_forces(kind, model, run):
         for left in free[mode]:
             line = body.base_line_at(system.state_of(0, state))
             if corner_level(line, left) < pads.settlement_of(left):
-                found.append(pads.reaction(left, line) / gravity)
+                found.append(pads.reaction(RELAXING, left, line, ()) / gravity)
     return found
 
 

@@ -5,20 +5,17 @@ So all else is as without them, although modes go beyond sixteen bits. That stac
 variables are compiled to the same numbers is tested with the example of a base of one's own.
 """
 
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 import pytest
 from plainly import plainly
 
-from rockframe.compiled import inlined, kernel
 from rockframe.dynamics.alone_model import body_of
-from rockframe.dynamics.base_numbers import BaseNumbers, pads_under
+from rockframe.dynamics.base_numbers import BaseNumbers, pads_over, pads_under
 from rockframe.dynamics.coupled.model import StackRest, coupled
 from rockframe.dynamics.coupled.stack import Stack
-from rockframe.dynamics.on_pads import on_pads
-from rockframe.dynamics.pads import CONTACTS, Pads
+from rockframe.dynamics.point_law import Viscoelastic, point_law
 from rockframe.dynamics.protocol import Column, Start
 from rockframe.dynamics.restraint import LEADING_CORNER
 from rockframe.signals import Motion
@@ -31,54 +28,59 @@ RATES = (3.0, 5.0)
 CAP_MASS = 0.4
 
 
-class Age(NamedTuple):
-    """How long a base has stood, in a unit of its own."""
+@point_law
+class AgeingPad(NamedTuple):
+    """An elastic pad that remembers how long it has stood, in a unit of its own."""
 
-    age: float
-
-
-@on_pads
-class AgeingPads(NamedTuple):
-    """Pads that remember how long they have stood."""
-
-    pads: Pads
+    stiffness: float
+    damping: float
     rate: float
 
-    @kernel
+    def elastic(self):
+        return Viscoelastic(self.stiffness, self.damping)
+
     def states(self):
         return 3
 
-    @kernel
+    def guard(self, state, point, own):
+        return 1.0, 0.0
+
     def variables(self):
         return 1
 
-    @inlined
-    def read(self, state, first):
-        return Age(state[first])
-
-    @inlined
-    def flow(self, contact, line, own):
+    def rates(self, state, point, own):
         return (self.rate,)
 
-    @inlined
-    def now(self, own):
-        return self.pads
+    def spring(self, point, own):
+        return self.elastic().spring(point, ())
 
-    @kernel
-    def observed(self, contact, line, own):
-        left, right = self.pads.observed(contact % CONTACTS, line, ())
-        return left, right, own.age
+    def force(self, state, point, own):
+        return self.elastic().force(state, point, ())
+
+    def force_rate(self, state, point, own):
+        return self.elastic().force_rate(state, point, ())
+
+    def energy(self, point, own):
+        return self.elastic().energy(point, ())
+
+    def energies(self, point, rest, at_rest, own):
+        return self.elastic().energies(point, rest, at_rest, ())
+
+    def power(self, state, point, own):
+        return self.elastic().power(state, point, ())
+
+    def return_rate(self):
+        return self.elastic().return_rate()
+
+    def seen(self, state, point, own):
+        return (own[0],)
 
 
 def aged(base: BaseNumbers, name: str, rate: float) -> BaseNumbers:
     """Give pads that age."""
-    return replace(
-        base,
-        law=AgeingPads(base.law, rate),
-        columns=(*base.columns, Column(name)),
-        end_tolerance=np.append(base.end_tolerance, 1e-15),
-        variable_scales=np.ones(1),
-    )
+    law = AgeingPad(*base.law.law, rate)
+    columns = [Column(f"{side}_{name}") for side in ("left", "right")]
+    return pads_over(law, base, columns=columns, variable_scales=[1.0])
 
 
 def stack(above, below):
@@ -132,7 +134,8 @@ def test_each_base_has_its_own_variables_and_states():
             found[name], history, atol=1e-7 * (1e-9 + np.abs(history).max()), err_msg=name
         )
     for name, rate in zip(("age_above", "age_below"), RATES, strict=True):
-        np.testing.assert_allclose(found[name], rate * run.time, rtol=1e-12)
+        for side in ("left", "right"):
+            np.testing.assert_allclose(found[f"{side}_{name}"], rate * run.time, rtol=1e-12)
     assert run.mode.max() > np.iinfo(np.int16).max
     for table in ("contact", "soil_contact"):
         np.testing.assert_array_equal(

@@ -1,6 +1,6 @@
 """Parts as a user's own module defines them."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import rockframe as rf
@@ -38,20 +38,30 @@ class RoundedBlock(rf.Block):
 SHARES = {"pads": 1.0, 2: "which numba has no type for"}
 
 
-@ext.on_pads
-class TabulatedLaw(NamedTuple):
-    """Pads whose law reads a dictionary of mixed keys, which cannot be compiled."""
+@ext.point_law
+class TabulatedPad(NamedTuple):
+    """An elastic pad whose law reads a dictionary of mixed keys, which cannot be compiled."""
 
-    pads: ext.Pads
+    stiffness: float
+    damping: float
 
-    @ext.inlined
-    def now(self, own):
-        return self.pads
+    def spring(self, point, own):
+        return SHARES["pads"] * self.stiffness * point.pressed
 
-    @ext.inlined
-    def force(self, contact, line, own):
-        found = self.pads.force(contact, line, own)
-        return ext.BaseForce(SHARES["pads"] * found.upward, found.moment, found.dissipated)
+    def energy(self, point, own):
+        return 0.5 * self.stiffness * point.pressed**2
+
+    def force(self, state, point, own):
+        return self.spring(point, own) + self.damping * point.speed
+
+    def force_rate(self, state, point, own):
+        return self.stiffness * point.speed + self.damping * point.acceleration
+
+    def power(self, state, point, own):
+        return self.damping * point.speed**2
+
+    def return_rate(self):
+        return self.stiffness / self.damping
 
 
 @dataclass(frozen=True)
@@ -60,7 +70,7 @@ class TabulatedSupport(ext.PadSupport):
 
     def law(self, body, mass, load_mass):
         elastic = super().law(body, mass, load_mass)
-        return replace(elastic, law=TabulatedLaw(elastic.law))
+        return ext.pads_over(TabulatedPad(self.stiffness / mass, self.damping / mass), elastic)
 
 
 class TabulatedPads(ext.OwnBase):

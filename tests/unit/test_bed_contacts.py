@@ -26,8 +26,6 @@ def test_what_the_bed_says_of_a_contact(left, right):
     assert BED.is_held(contact, False) == (right == DOWN)
     # a body rotates towards the side that is raised from the bed, and away from one that bears
     assert BED.tilt(contact) == right - left
-    assert BED.held(contact, True) == both_contacts(DOWN, right)
-    assert BED.held(contact, False) == both_contacts(left, DOWN)
     assert BED.waiting(contact, True) == BED.disturbed(contact) == contact
     assert BED.follows(contact, True) == both_contacts(RAISED, RAISED)
 

@@ -45,7 +45,7 @@ def state_with(*, right_force):
     level = BODY.base_line_at(SYSTEM.state_of(0, state)).right
     state[VERTICAL] = 0.5 * PADS.rest - level
     # the force by the speed alone, without rotation
-    speed = (PADS.stiffness * 0.5 * PADS.rest - right_force) / PADS.damping
+    speed = (PADS.law.stiffness * 0.5 * PADS.rest - right_force) / PADS.law.damping
     state[DEGREES + VERTICAL] = speed
     return state
 

@@ -273,16 +273,16 @@ class Cascade(Stacked, Stages):
         return self.lower.response_in(modes.lower, attitude, press, moment, slip)
 
     @kernel
-    def end_acceleration(
-        self, k: int, left: bool, mode: int, state: Vector, ground: Ground
-    ) -> float:
-        """Give the acceleration of an end of a base; `ground` is what the body stands on."""
+    def end_accelerations(
+        self, k: int, mode: int, state: Vector, ground: Ground
+    ) -> tuple[float, float]:
+        """Give the accelerations of the ends of a base; `ground` is what the body stands on."""
         modes, body = self.modes_in(mode), self.state_of(k, state)
         if k == UPPER:
             rates = self.upper.rates_in(modes.upper, body, self.upper_own(state), ground)
-            return self.upper.end_rises(left, body, rates.vertical, rates.rotation)
+            return self.upper.end_rises(body, rates.vertical, rates.rotation)
         rates = self.lower_rates(mode, state, ground)
-        return self.lower.end_rises(left, body, rates.vertical, rates.rotation)
+        return self.lower.end_rises(body, rates.vertical, rates.rotation)
 
     @kernel
     def tendency(self, k: int, mode: int, state: Vector, ground: Ground) -> float:

@@ -290,16 +290,14 @@ class Coupled(Stacked, Pair):
             state[COORDINATES + HORIZONTAL] = held
 
     @kernel
-    def end_acceleration(
-        self, k: int, left: bool, mode: int, state: Vector, ground: Ground
-    ) -> float:
-        """Give the acceleration of an end of a base in a mode, upwards from what it stands on."""
+    def end_accelerations(
+        self, k: int, mode: int, state: Vector, ground: Ground
+    ) -> tuple[float, float]:
+        """Give the accelerations of the ends of a base in a mode, seen from what it stands on."""
         slope, states = self.accelerate(mode, state, ground), self.states_in(state)
         if k == UPPER:
-            return self.upper.end_rises(left, states.upper, slope[VERTICAL], slope[ROTATION])
-        return self.lower.end_rises(
-            left, states.lower, slope[LOWER_VERTICAL], slope[LOWER_ROTATION]
-        )
+            return self.upper.end_rises(states.upper, slope[VERTICAL], slope[ROTATION])
+        return self.lower.end_rises(states.lower, slope[LOWER_VERTICAL], slope[LOWER_ROTATION])
 
     @kernel
     def tendency(self, k: int, mode: int, state: Vector, ground: Ground) -> float:

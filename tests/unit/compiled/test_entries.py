@@ -2,7 +2,6 @@
 
 import importlib
 import os
-import pkgutil
 import subprocess
 import sys
 from typing import Any, NamedTuple
@@ -10,7 +9,6 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
-import rockframe
 from rockframe.compiled import (
     COMPILED,
     Codes,
@@ -27,8 +25,6 @@ from rockframe.compiled import (
     put,
     stretch,
 )
-from rockframe.compiled.marks import KERNELS, is_method
-from rockframe.compiled.sources import fields_of_package
 
 pytestmark = [
     pytest.mark.unit,
@@ -228,57 +224,37 @@ def test_what_cannot_be_compiled_runs_as_python_and_is_told_once(caplog, fallbac
     fallbacks.clear()
 
 
-def test_methods_of_one_name_take_equally_many_arguments():
+def test_methods_belong_to_their_classes(fallbacks):
+    """Neither fields nor other methods of their names, elsewhere, are taken for them."""
+
     class One(NamedTuple):
-        number: float
+        size: float  # a method of bodies
 
         @kernel
-        def raised_by(self, other: float) -> float:
-            return self.number + other
-
-    assert One(1.0).raised_by(2.0) == 3.0
-    with pytest.raises(TypeError, match=r"Other\.raised_by takes 3 arguments, .* take 2"):
-
-        class Other(NamedTuple):
-            number: float
-
-            @kernel
-            def raised_by(self, other: float, factor: float) -> float:
-                return self.number + factor * other
-
-
-def test_names_that_would_be_taken_for_one_another_are_refused(fallbacks):
-    class Law(NamedTuple):
-        number: float
-
-        @kernel
-        def state(self) -> float:  # a field of the integrator's named tuples
-            return self.number
+        def state(self, factor: float) -> float:  # a field of the integrator's named tuples
+            return factor * self.size
 
     class Other(NamedTuple):
-        coordinates: float  # a method of systems
+        state: float
+
+        @kernel
+        def size(self) -> float:
+            return 2.0 * self.state
+
+    class Derived(Other):
+        __slots__ = ()
+
+        @kernel
+        def size(self) -> float:
+            return 3.0 * self.state
 
     @entry
-    def of_law(law: Law) -> int:
-        return int(law.state())
-
-    @entry
-    def of_other(other: Other) -> int:
-        return int(other.coordinates)
+    def of_all(one: One, other: Other, derived: Derived) -> int:
+        return int(one.state(10.0) + one.size + other.size() + other.state + derived.size())
 
     importlib.import_module("rockframe.solve.workspace")
     importlib.import_module("rockframe.dynamics.alone")
-    assert of_law(Law(3.0)) == of_other(Other(3.0)) == 3
-    assert len(fallbacks) == 2
-    assert "Law has a field, or a method, 'state'" in fallbacks[0]
-    assert "Other has a field, or a method, 'coordinates'" in fallbacks[1]
-    fallbacks.clear()
-    # what has been refused does the package no harm
-    from rockframe.compiled.registration import clashes_of
-    from rockframe.solve.workspace import Output
-
-    assert "state" in Output._fields
-    assert clashes_of(Output) == set()
+    assert of_all(One(1.0), Other(100.0), Derived(1000.0)) == 10 + 1 + 200 + 100 + 3000
 
 
 def test_arrays_that_are_read_only_stay_so(fallbacks):
@@ -336,12 +312,3 @@ def test_compilation_can_be_turned_off():
         check=True,
     )
     assert done.stdout.strip() == "False True"
-
-
-def test_no_field_in_the_package_is_called_like_a_method():
-    for module in pkgutil.walk_packages(rockframe.__path__, "rockframe."):
-        importlib.import_module(module.name)
-    own = [marked for marked in KERNELS if marked.__module__.startswith("rockframe.")]
-    methods = {marked.__name__ for marked in own if is_method(marked)}
-    assert len(methods) > 50
-    assert not methods & fields_of_package()

@@ -188,10 +188,10 @@ def test_a_law_that_cannot_be_compiled_runs_in_plain_python(monkeypatch, fallbac
     rf.register(TabulatedPads)
     system = rf.System(BLOCK, TabulatedPads(frequency_ratio=20, damping_ratio=0.1))
     options = {"accuracy": "fast", "duration": "0.03 s"}
-    scales = np.linspace(2.0, 9.0, 520)
+    scales = np.linspace(2.0, 9.0, 600)
     runs = rf.sweep(system, MOTIONS[0], scale=scales, **options)
     assert runs.attrs["driver"] == "each case alone, in plain Python"
-    for scale in scales[::104]:
+    for scale in scales[::120]:
         alone = system.simulate(MOTIONS[0].scaled(scale), outputs=None, **options)
         picked = runs.sel(scale=scale).squeeze()
         for name in ("peak_rotation", "overturned", "energy_residual", "solver_steps"):
@@ -202,6 +202,22 @@ def test_a_law_that_cannot_be_compiled_runs_in_plain_python(monkeypatch, fallbac
     plain = rf.sweep(rf.System(BLOCK, PADS), MOTIONS[0], scale=scales, **options)
     assert plain.attrs["driver"] != runs.attrs["driver"]
     np.testing.assert_allclose(plain.peak_rotation, runs.peak_rotation, rtol=1e-9)
+
+
+def test_a_critical_scale_of_a_law_that_cannot_be_compiled(fallbacks):
+    rf.register(TabulatedPads)
+    pulse = rf.GroundMotion.sine_pulse("-6 m/s^2", "2 Hz")
+    found, elastic = (
+        rf.critical_scale(
+            rf.System(BLOCK, pads), pulse, largest=2.0, scales=4, runs=6, width=0.1,
+            accuracy="fast", duration="0.8 s",
+        )
+        for pads in (TabulatedPads(frequency_ratio=20, damping_ratio=0.1), PADS)
+    )  # fmt: skip
+    assert all("could not be compiled" in text for text in fallbacks)
+    fallbacks.clear()
+    for name in set(elastic.data_vars) & {"critical_scale", "overturns", "flip_scale"}:
+        np.testing.assert_allclose(found[name], elastic[name], rtol=1e-9)
 
 
 def test_chunks_of_a_law_that_cannot_be_compiled_are_small(monkeypatch, fallbacks):

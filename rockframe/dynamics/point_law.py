@@ -1,0 +1,257 @@
+"""What a base does to one of its points: a law, given once and used wherever the base has points.
+
+A base of points, be it two pads or a bed of many springs, knows itself when a point touches,
+follows its base without a force, or is clear of it. A law says what a point that touches is
+pressed by. It is a named tuple of numbers per unit mass with some of the methods of
+:class:`PointLaw`; :func:`point_law` gives it the others.
+
+All is told by the **compression** of the point: how far it is below the level of the base that
+has not been loaded yet. A law may have **states**, such as elastic and yielding, of which a
+guard tells the end, and **variables** of its own, all zero at the start.
+"""
+
+import inspect
+from typing import Any, Final, NamedTuple, TypeVar
+
+from rockframe.compiled import Vector, inlined, kernel, stretch
+from rockframe.dynamics.base import Variables
+from rockframe.dynamics.body import BaseLine
+from rockframe.dynamics.protocol import Guards
+
+Law = TypeVar("Law")
+FREE: Final = -1
+"""In place of the state of a point that does not touch."""
+NEEDED: Final = ("spring", "force_rate", "energy")
+"""Methods that a law must give."""
+
+
+class Point(NamedTuple):
+    """A point of a base line, and the motion of all of that."""
+
+    pressed: float  # compression
+    speed: float  # its rate
+    acceleration: float  # that of the rate; 0 where it is not known yet
+    rise: float  # height above the place at rest
+    settlement: float  # compression at that place
+    place: float  # share of the way from the left end of the base to the right one
+    line: BaseLine
+
+
+@inlined
+def point_at(line: BaseLine, place: float, settlement: float) -> Point:
+    """Give the point at a place between the ends."""
+    rise = line.left + place * (line.right - line.left)
+    speed = line.left_speed + place * (line.right_speed - line.left_speed)
+    change = line.left_acceleration + place * (line.right_acceleration - line.left_acceleration)
+    return Point(settlement - rise, -speed, -change, rise, settlement, place, line)
+
+
+class PointLaw:
+    """The methods of a law; the first three are to be given, the others where they differ.
+
+    `state` is the state of the law, `own` its variables at the point, by their indices.
+    """
+
+    __slots__ = ()
+
+    def spring(self, point: Point, own: Any) -> float:
+        """Give the elastic force, by which the stored energy grows with the compression."""
+        raise NotImplementedError
+
+    def force_rate(self, state: int, point: Point, own: Any) -> float:
+        """Give the rate of the force."""
+        raise NotImplementedError
+
+    def energy(self, point: Point, own: Any) -> float:
+        """Give the stored energy of a point below the unloaded level."""
+        raise NotImplementedError
+
+    @inlined
+    def force(self, state: int, point: Point, own: Any) -> float:
+        """Give the force on a point that touches; unless given, that of the spring alone."""
+        return self.spring(point, own)
+
+    @inlined
+    def power(self, state: int, point: Point, own: Any) -> float:
+        """Give the power that is dissipated at a point that touches."""
+        return 0.0
+
+    @inlined
+    def sunk(self, own: Any) -> float:
+        """Give how far the unloaded level has sunk for good."""
+        return 0.0
+
+    @inlined
+    def return_rate(self) -> float:
+        """Give the rate at which the base returns without a force; 0 if at once [s^-1]."""
+        return 0.0
+
+    @inlined
+    def variables(self) -> int:
+        """Give the number of variables."""
+        return 0
+
+    @inlined
+    def rates(self, state: int, point: Point, own: Any) -> Variables:
+        """Give the rates of the variables; the state is `FREE` where the point does not touch."""
+        return ()
+
+    @inlined
+    def states(self) -> int:
+        """Give the number of states, counted from 0."""
+        return 1
+
+    @inlined
+    def guard(self, state: int, point: Point, own: Any) -> tuple[float, float]:
+        """Give a function that falls through zero where the law goes on to its next state.
+
+        With its rate; asked of points that touch. Whatever else happens to a point puts it into
+        state 0.
+        """
+        return 1.0, 0.0
+
+    @kernel
+    def settle(self, state: int, point: Point, own: Any) -> None:
+        """Set variables that a switch, or the start of a run, finds beside what they can be."""
+
+    @inlined
+    def seen(self, state: int, point: Point, own: Any) -> Variables:
+        """Give what users see of the law besides the force."""
+        return ()
+
+    @inlined
+    def energies(self, point: Point, rest: float, at_rest: float, own: Any) -> tuple[float, float]:
+        """Give the stored energy, and that less the energy at rest, `at_rest`.
+
+        To be given where the difference can be had to all digits; `rest` is the compression at
+        rest.
+        """
+        stored = self.energy(point, own)
+        return stored, stored - at_rest
+
+    @inlined
+    def read(self, state: Vector, first: int, points: int) -> Any:
+        """Read the variables of some points from a state, from an index on."""
+        return ()
+
+    @inlined
+    def of_point(self, own: Any, i: int) -> Any:
+        """Give the variables of one of these points."""
+        return ()
+
+    @kernel
+    def reset(self, own: Any) -> None:
+        """Set the variables of some points to zero."""
+
+    @inlined
+    def guards(self, state: int, point: Point, own: Any) -> Guards:
+        """Give the guards of the law's state at a point that touches."""
+        return Guards((), ())
+
+
+class _WithVariables:
+    """For laws with variables."""
+
+    @inlined
+    def read(self: Any, state: Vector, first: int, points: int) -> Any:
+        return stretch(state, first, points * self.variables())
+
+    @inlined
+    def of_point(self: Any, own: Vector, i: int) -> Vector:
+        return stretch(own, i * self.variables(), self.variables())
+
+    @kernel
+    def reset(self: Any, own: Vector) -> None:
+        for i in range(len(own)):
+            own[i] = 0.0
+
+
+class _WithGuard:
+    """For laws with states."""
+
+    @inlined
+    def guards(self: Any, state: int, point: Point, own: Any) -> Guards:
+        value, change = self.guard(state, point, own)
+        return Guards((value,), (change,))
+
+
+def point_law(law: type[Law]) -> type[Law]:
+    """Make a named tuple a law: mark its methods for compiling, and give it those it lacks.
+
+    Parameters
+    ----------
+    law : type
+        A named tuple of numbers with some of the methods of :class:`PointLaw`.
+
+    Returns
+    -------
+    type
+        The same class.
+
+    Raises
+    ------
+    TypeError
+        It is no named tuple, lacks a method, or a field has the name of a method.
+    """
+    own = {name: each for name, each in vars(law).items() if inspect.isfunction(each)}
+    fields = getattr(law, "_fields", None)
+    faults = [] if fields is not None else [f"{law.__name__} is no NamedTuple"]
+    faults += [f"{law.__name__} has no method {name}" for name in NEEDED if name not in own]
+    if ("states" in own) != ("guard" in own) or ("variables" in own) != ("rates" in own):
+        faults.append(f"{law.__name__} has only one of states and guard, or variables and rates")
+    known = {name for name in vars(PointLaw) if not name.startswith("_")}
+    faults += [
+        f"{law.__name__} has a field {name!r}, which is a method of laws; give it another name"
+        for name in known.intersection(fields or ())
+    ]
+    if faults:
+        raise TypeError("; ".join(faults))
+    for name, method in own.items():
+        if not name.startswith("_"):
+            (kernel if name == "settle" else inlined)(method)
+    parts = {_WithVariables: "variables" in own, _WithGuard: "guard" in own, PointLaw: True}
+    for part in (part for part, wanted in parts.items() if wanted):
+        for name, method in vars(part).items():
+            if not name.startswith("_") and name not in vars(law):
+                setattr(law, name, method)
+    return law
+
+
+@point_law
+class Viscoelastic(NamedTuple):
+    """A linear spring beside a linear dashpot, :eq:`eq-pad-force`."""
+
+    stiffness: float  # k/m
+    damping: float  # c/m
+
+    def spring(self, point: Point, own: Variables) -> float:
+        """Give k u."""
+        return self.stiffness * point.pressed
+
+    def force(self, state: int, point: Point, own: Variables) -> float:
+        """Give k u + c u'."""
+        return self.stiffness * point.pressed + self.damping * point.speed
+
+    def force_rate(self, state: int, point: Point, own: Variables) -> float:
+        """Give k u' + c u''."""
+        return self.stiffness * point.speed + self.damping * point.acceleration
+
+    def power(self, state: int, point: Point, own: Variables) -> float:
+        """Give what the dashpot dissipates."""
+        return self.damping * point.speed * point.speed
+
+    def energy(self, point: Point, own: Variables) -> float:
+        """Give k u^2/2."""
+        return 0.5 * self.stiffness * point.pressed * point.pressed
+
+    def energies(
+        self, point: Point, rest: float, at_rest: float, own: Variables
+    ) -> tuple[float, float]:
+        """Give the energy of the spring, and that less the energy at rest, as products."""
+        change = point.rise * (0.5 * point.rise - point.settlement)
+        change += 0.5 * (point.settlement - rest) * (point.settlement + rest)
+        return self.energy(point, own), self.stiffness * change
+
+    def return_rate(self) -> float:
+        """Give k/c."""
+        return self.stiffness / self.damping if self.damping > 0.0 else 0.0

@@ -1,0 +1,271 @@
+"""A bed of springs that stand side by side under a straight base, over any law of a point.
+
+Each spring touches the base, follows it without a force, or is clear of it. That, with the
+state of its law, is a variable of the bed that changes at events alone: as many springs as one
+likes make no more contacts. An end is held as long as the outermost spring on its side is below
+its unloaded level; where only springs between them are, both are.
+"""
+
+from typing import Any, Final, NamedTuple
+
+from rockframe.compiled import Vector, constant, inlined, kernel, stretch, with_numbers
+from rockframe.dynamics.base import (
+    SIMULTANEOUS,
+    Base,
+    BaseForce,
+    EndEvent,
+    Guards,
+    Variables,
+    height_under,
+)
+from rockframe.dynamics.body import BaseLine
+from rockframe.dynamics.events import REENGAGEMENT, SEPARATION, SILENT
+from rockframe.dynamics.point_law import FREE, Point, point_at
+
+# a spring, and behind it, SPRING times larger, the state of its law
+TOUCHING: Final = 0
+RELAXING: Final = 1  # pulled by its dashpot alone, it follows the base without a force
+CLEAR: Final = 2
+SPRING: Final = 3
+
+# contacts: a bit for each end that is raised, or springs between the ends alone
+RIGHT_RAISED: Final = 2
+FLIGHT: Final = 3
+BETWEEN: Final = 4
+CONTACTS: Final = 5
+
+# guards of a spring
+CONTACT: Final = 0
+OTHER: Final = 1  # of the law's state where it touches, of its force where it relaxes
+GUARDS: Final = 2
+
+
+class SpringNumbers(NamedTuple):
+    """Springs, per unit mass of the body on them."""
+
+    law: Any  # of each, per unit length, a rockframe.dynamics.point_law.PointLaw
+    places: tuple[float, ...]  # from the left, as shares of the way from end to end
+    lengths: tuple[float, ...]  # of the base that each carries
+    settlement: float
+    rest_energy: float  # per unit length
+    weight: float
+    pressure: float  # under the weight
+    idle: tuple[float, ...]  # guards of one end, all 1
+    steady: tuple[float, ...]  # rates of all variables, all 0
+
+
+class Springs(Base, SpringNumbers):
+    """Springs under a straight base: a :class:`rockframe.dynamics.base.Base`."""
+
+    __slots__ = ()
+
+    @kernel
+    def contacts(self) -> int:
+        """Give the number of contacts."""
+        return CONTACTS
+
+    @kernel
+    def end_guards(self) -> int:
+        """Give the number of guards of the springs on one side."""
+        return len(self.idle)
+
+    @inlined
+    def in_flight(self) -> int:
+        """Give the contact with all springs clear."""
+        return FLIGHT
+
+    @inlined
+    def is_held(self, contact: int, left: bool) -> bool:
+        """Whether the outermost spring is not clear, or only springs between are not."""
+        return contact == BETWEEN or (contact & (1 if left else RIGHT_RAISED)) == 0
+
+    @inlined
+    def variables(self) -> int:
+        """Give the number of variables: the springs' contacts, then those of their laws."""
+        return len(self.steady)
+
+    @inlined
+    def read(self, state: Vector, first: int) -> Vector:
+        """Read the variables."""
+        return stretch(state, first, len(self.steady))
+
+    @inlined
+    def of_law(self, own: Vector, i: int) -> Any:
+        """Give the variables of the law of one spring."""
+        count = len(self.places)
+        return self.law.of_point(stretch(own, count, len(self.steady) - count), i)
+
+    @inlined
+    def point(self, i: int, line: BaseLine) -> Point:
+        """Give the base above one spring."""
+        return point_at(line, self.places[i], self.settlement)
+
+    @kernel
+    def contact_of(self, own: Vector) -> int:
+        """Give the contact by those of the springs."""
+        last = len(self.places) - 1
+        contact = 1 if int(own[0]) % SPRING == CLEAR else 0
+        contact += RIGHT_RAISED if int(own[last]) % SPRING == CLEAR else 0
+        if contact == FLIGHT:
+            for i in range(last):
+                if int(own[i]) % SPRING != CLEAR:
+                    return BETWEEN
+        return contact
+
+    @inlined
+    def force(self, contact: int, line: BaseLine, own: Vector) -> BaseForce:
+        """Give the forces of all springs together."""
+        upward = moment = dissipated = 0.0
+        if contact == FLIGHT:
+            return BaseForce(0.0, 0.0, 0.0)
+        for i in range(len(self.places)):
+            spring, state = int(own[i]) % SPRING, int(own[i]) // SPRING
+            point, mine, length = self.point(i, line), self.of_law(own, i), self.lengths[i]
+            if spring == TOUCHING:
+                force = length * self.law.force(state, point, mine)
+                upward += force
+                lever = line.left_lever + point.place * (line.right_lever - line.left_lever)
+                moment += force * lever
+                dissipated += length * self.law.power(state, point, mine)
+            elif spring == RELAXING:  # the spring feeds the dashpot
+                dissipated -= length * self.law.spring(point, mine) * point.speed
+        return BaseForce(upward, moment, dissipated)
+
+    @inlined
+    def flow(self, contact: int, line: BaseLine, own: Vector) -> Variables:
+        """Give the rates of the laws' variables; contacts change at events alone."""
+        rates = self.steady
+        each = self.law.variables()
+        for i in range(len(self.places)):
+            state = int(own[i]) // SPRING if int(own[i]) % SPRING == TOUCHING else FREE
+            found = self.law.rates(state, self.point(i, line), self.of_law(own, i))
+            rates = with_numbers(rates, len(self.places) + i * each, found)
+        return rates
+
+    @kernel
+    def energy(self, line: BaseLine, own: Vector) -> tuple[float, float]:
+        """Give the energy of all springs, and that less the energy at rest."""
+        stored = change = 0.0
+        for i in range(len(self.places)):
+            point, mine = self.point(i, line), self.of_law(own, i)
+            one, less = 0.0, -self.rest_energy
+            if point.pressed > self.law.sunk(mine):
+                one, less = self.law.energies(point, self.settlement, self.rest_energy, mine)
+            stored += self.lengths[i] * one
+            change += self.lengths[i] * less
+        return stored, change
+
+    @inlined
+    def spring_of(self, left: bool, which: int) -> int:
+        """Give the spring of a guard of an end; both ends count from the outside."""
+        return which // GUARDS if left else len(self.places) - 1 - which // GUARDS
+
+    @inlined
+    def guards_of(self, contact: int, left: bool, line: BaseLine, own: Vector) -> Guards:
+        """Give the guards of the springs on one side, and their rates."""
+        values, changes, count = self.idle, constant(0.0, self.idle), len(self.places)
+        per_rest, per_force = 1.0 / self.settlement, 1.0 / self.pressure
+        for k in range(len(self.idle) // GUARDS if left else count // 2):
+            i = self.spring_of(left, GUARDS * k)
+            spring, state = int(own[i]) % SPRING, int(own[i]) // SPRING
+            point, mine = self.point(i, line), self.of_law(own, i)
+            pressed = (point.pressed - self.law.sunk(mine)) * per_rest
+            value, change = pressed, point.speed * per_rest
+            other, other_change = 1.0, 0.0
+            if spring == CLEAR:
+                value, change = -value, -change
+            else:
+                force = self.law.force(state, point, mine) * per_force
+                rate = self.law.force_rate(state, point, mine) * per_force
+                if spring == RELAXING:
+                    other, other_change = -force, -rate
+                else:
+                    if self.law.return_rate() > 0.0:
+                        value, change = force, rate
+                    other, other_change = self.law.guard(state, point, mine)
+            values = with_numbers(values, GUARDS * k, (value, other))
+            changes = with_numbers(changes, GUARDS * k, (change, other_change))
+        return Guards(values, changes)
+
+    @kernel
+    def switch(self, contact: int, left: bool, which: int, line: BaseLine, own: Vector) -> EndEvent:
+        """Switch a spring, with all others that go the same way at the same instant."""
+        i = self.spring_of(left, which)
+        was, here = int(own[i]), self.point(i, line)
+        for j in range(len(self.places)):
+            there = self.point(j, line)
+            near = abs(there.pressed - here.pressed) <= SIMULTANEOUS * self.settlement
+            if j == i or (int(own[j]) == was and near and there.speed * here.speed >= 0.0):
+                own[j] = self.after(was, which % GUARDS, there, self.of_law(own, j))
+                self.law.settle(int(own[j]) // SPRING, there, self.of_law(own, j))
+        new, event = self.contact_of(own), SILENT
+        held_left, held_right = self.is_held(new, True), self.is_held(new, False)
+        was_left, was_right = self.is_held(contact, True), self.is_held(contact, False)
+        if (was_left and not held_left) or (was_right and not held_right):
+            event = SEPARATION
+        elif (held_left and not was_left) or (held_right and not was_right):
+            event = REENGAGEMENT
+        outermost = which < GUARDS
+        return EndEvent(new, event, outermost and event != SILENT)
+
+    @kernel
+    def after(self, was: int, guard: int, point: Point, own: Any) -> float:
+        """Give a spring after one of its guards has fallen."""
+        spring, state = was % SPRING, was // SPRING
+        if spring == TOUCHING and guard == OTHER:
+            return float(TOUCHING + SPRING * ((state + 1) % self.law.states()))
+        if spring == TOUCHING:
+            below = point.pressed - self.law.sunk(own) > SIMULTANEOUS * self.settlement
+            return float(RELAXING if below and self.law.return_rate() > 0.0 else CLEAR)
+        return float(CLEAR if spring == RELAXING and guard == CONTACT else TOUCHING)
+
+    @kernel
+    def level(self, left: bool, line: BaseLine, own: Vector) -> float:
+        """Give how much higher than an end the outermost spring's unloaded level is."""
+        i = 0 if left else len(self.places) - 1
+        return self.point(i, line).pressed - self.law.sunk(self.of_law(own, i))
+
+    @kernel
+    def released(self, contact: int, left: bool, line: BaseLine, own: Vector) -> int:
+        """Give the contact with all springs clear."""
+        for i in range(len(self.places)):
+            own[i] = float(CLEAR)
+        return FLIGHT
+
+    @kernel
+    def starting(self, line: BaseLine, own: Vector) -> int:
+        """Give the contact at the start of a run; springs pressed too much have yielded."""
+        count = len(self.places)
+        self.law.reset(stretch(own, count, len(self.steady) - count))
+        for i in range(count):
+            point, mine = self.point(i, line), self.of_law(own, i)
+            self.law.settle(0, point, mine)
+            own[i] = float(TOUCHING)
+            if point.pressed <= self.law.sunk(mine):
+                own[i] = float(CLEAR)
+            elif self.law.return_rate() > 0.0 and self.law.force(0, point, mine) <= 0.0:
+                own[i] = float(RELAXING)
+        return self.contact_of(own)
+
+    def resting_height(self, left: float, right: float, own: Any) -> float:
+        """Give the height at which the springs carry the weight."""
+        return height_under(self, self.weight, 2.0 * self.settlement, (left, right), own)
+
+    @kernel
+    def observed(self, contact: int, line: BaseLine, own: Vector) -> Variables:
+        """Give reaction, length in contact, greatest pressure, and what the outermost laws show."""
+        length = greatest = 0.0
+        last = len(self.places) - 1
+        for i in range(last + 1):
+            if int(own[i]) % SPRING == TOUCHING:
+                state, point = int(own[i]) // SPRING, self.point(i, line)
+                length += self.lengths[i]
+                greatest = max(greatest, self.law.force(state, point, self.of_law(own, i)))
+        seen = self.seen(0, line, own) + self.seen(last, line, own)
+        return (self.force(contact, line, own).upward, length, greatest) + seen
+
+    @kernel
+    def seen(self, i: int, line: BaseLine, own: Vector) -> Variables:
+        """Give what the law of one spring shows."""
+        state = int(own[i]) // SPRING if int(own[i]) % SPRING == TOUCHING else FREE
+        return self.law.seen(state, self.point(i, line), self.of_law(own, i))
