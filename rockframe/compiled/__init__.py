@@ -6,7 +6,6 @@ the environment keeps to plain Python; ``ROCKFRAME_CACHE_DIR`` names another fol
 machine code.
 """
 
-from rockframe.compiled.arrays import Codes as Codes
 from rockframe.compiled.arrays import IntegerMatrix as IntegerMatrix
 from rockframe.compiled.arrays import Integers as Integers
 from rockframe.compiled.arrays import Matrix as Matrix

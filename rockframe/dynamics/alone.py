@@ -39,6 +39,26 @@ class Alone(InState, OnePart):
         """Give the number of guards."""
         return self.part.guards()
 
+    @kernel
+    def modes(self) -> int:
+        """Give the number of modes."""
+        return self.part.modes()
+
+    @inlined
+    def moving_in(self, mode: int) -> int:
+        """Give how many coordinates move: all, or all but the one that is held."""
+        return DEGREES if self.part.is_free(self.part.mode_of(mode)) else HORIZONTAL
+
+    @inlined
+    def contact_state_of(self, mode: int, k: int) -> int:
+        """Give the contact state."""
+        return self.part.shown_contact(self.part.mode_of(mode))
+
+    @inlined
+    def relaxation_in(self, mode: int) -> float:
+        """Give the rate at which an end that slides follows the base."""
+        return self.part.relaxation_in(self.part.mode_of(mode))
+
     @inlined
     def own_place(self, k: int) -> int:
         """Give the place of the variables of the base's own in the state."""

@@ -1,4 +1,4 @@
-"""Assembly of the model of one body on a base: tables, sizes and initial state."""
+"""Assembly of the model of one body on a base: sizes and initial state."""
 
 import math
 from collections.abc import Callable
@@ -8,7 +8,7 @@ import numpy as np
 
 from rockframe.compiled import Vector
 from rockframe.dynamics.alone import HORIZONTAL, Alone
-from rockframe.dynamics.base_numbers import BaseNumbers, mode_table
+from rockframe.dynamics.base_numbers import BaseNumbers
 from rockframe.dynamics.bodies import DEGREES, ROTATION, VERTICAL
 from rockframe.dynamics.body import Body, BodyState
 from rockframe.dynamics.on_base import BODY_GUARDS, Mode, OnBase
@@ -84,16 +84,12 @@ def alone(
     ContactModel
     """
     part = OnBase(body, base.law)
-    table = mode_table(base.law)
     vertical = math.sqrt(base.vertical_stiffness)
     rocking = math.sqrt(base.rotational_stiffness / (body.inertia + body.height**2))
     fastest = max(vertical, rocking)
     return ContactModel(
         name=name,
         system=Alone(part),
-        active=np.where(table.free, 3, 2),
-        contact=table.contact,
-        relaxation=np.where(table.slides, base.law.following_rate(), 0.0),
         rotation_limits=(math.atan2(body.left, body.height), math.atan2(body.right, body.height)),
         rotation_weights=np.array([1.0, 0.0, 0.0]),
         scales=np.concatenate([*_sizes(body, base, vertical), base.variable_scales]),

@@ -7,12 +7,10 @@ from typing import Any, Final
 
 import numpy as np
 
-from rockframe.compiled import Integers, Vector
+from rockframe.compiled import Vector
 from rockframe.dynamics.base import Base, root_above_zero
 from rockframe.dynamics.bed import Bed
 from rockframe.dynamics.body import BaseLine, Body
-from rockframe.dynamics.events import ContactState
-from rockframe.dynamics.on_base import SLIDES, STANDINGS
 from rockframe.dynamics.pads import LEAVE, REENGAGE, ROUNDING, ElasticPads, Pads
 from rockframe.dynamics.point_law import Point, Viscoelastic
 from rockframe.dynamics.protocol import Column
@@ -244,42 +242,3 @@ def bed_under(
         damping_time=damping / stiffness,
         end_tolerance=np.array([ROUNDING * (1.0 + size / settlement)]),
     )
-
-
-@dataclass(frozen=True)
-class ModeTable:
-    """What the modes of a body on a base mean.
-
-    Parameters
-    ----------
-    contact : ndarray of int64, shape (modes,)
-        :class:`rockframe.dynamics.events.ContactState` of each.
-    slides : ndarray of bool, shape (modes,)
-        Whether an end slides.
-    """
-
-    contact: Integers
-    slides: Vector
-
-    @property
-    def free(self) -> Vector:
-        """Whether nothing holds the body horizontally, shape (modes,)."""
-        return self.slides | (self.contact == ContactState.FLIGHT)
-
-
-def mode_table(law: Base) -> ModeTable:
-    """Give the table of a base; it is that of its class."""
-    kind = type(law)
-    if kind not in _TABLES:
-        left = np.array([not law.is_held(contact, True) for contact in range(law.contacts())])
-        right = np.array([not law.is_held(contact, False) for contact in range(law.contacts())])
-        contact = np.full(law.contacts(), ContactState.FULL, dtype=np.int64)
-        contact[left] = ContactState.RIGHT
-        contact[right] = ContactState.LEFT
-        contact[left & right] = ContactState.FLIGHT
-        slides = np.arange(STANDINGS * law.contacts()) & SLIDES != 0
-        _TABLES[kind] = ModeTable(np.repeat(contact, STANDINGS), slides)
-    return _TABLES[kind]
-
-
-_TABLES: dict[type, ModeTable] = {}

@@ -32,6 +32,11 @@ class EventKind(IntEnum):
     SOIL_PIVOT_CHANGE = 11
 
 
+FULL: Final = int(ContactState.FULL)
+LEFT: Final = int(ContactState.LEFT)
+RIGHT: Final = int(ContactState.RIGHT)
+FLIGHT: Final = int(ContactState.FLIGHT)
+
 SILENT: Final = 0  # a change that users are not shown
 SEPARATION: Final = int(EventKind.SEPARATION)
 IMPACT: Final = int(EventKind.IMPACT)

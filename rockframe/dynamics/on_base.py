@@ -11,6 +11,7 @@ from typing import Any, Final, NamedTuple
 from rockframe.compiled import constant, inlined, kernel
 from rockframe.dynamics.base import Guards
 from rockframe.dynamics.body import Attitude, BaseLine, Body, BodyState, accelerated
+from rockframe.dynamics.events import FLIGHT, FULL, LEFT, RIGHT
 from rockframe.dynamics.protocol import Ground
 from rockframe.dynamics.restraint import pivot_guard, pivot_of
 from rockframe.dynamics.sliding import NO_LEVER
@@ -104,6 +105,21 @@ class OnBase(NamedTuple):
     def is_free(self, mode: Mode) -> bool:
         """Whether nothing holds the body horizontally."""
         return mode.slides or self.flies(mode.contact)
+
+    @inlined
+    def shown_contact(self, mode: Mode) -> int:
+        """Give the contact state that users see."""
+        left, right = self.base.is_held(mode.contact, True), self.base.is_held(mode.contact, False)
+        if left and right:
+            return FULL
+        if left:
+            return LEFT
+        return RIGHT if right else FLIGHT
+
+    @inlined
+    def relaxation_in(self, mode: Mode) -> float:
+        """Give the rate at which an end that slides follows the base, 0 where none does."""
+        return self.base.following_rate() if mode.slides else 0.0
 
     @kernel
     def standing(self, contact: int, state: BodyState) -> Mode:

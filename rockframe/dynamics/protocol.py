@@ -1,4 +1,4 @@
-"""What a contact model is to the integrator: equations of a system, a few tables and numbers.
+"""What a contact model is to the integrator: equations of a system, and a few numbers.
 
 The integrator knows nothing of blocks, pads or soil. A system is a named tuple of numbers
 whose methods are second-order equations ``q'' = f(mode, q, q', z, ground)`` with variables of
@@ -6,15 +6,18 @@ first order ``z' = g(...)``, *guards* (functions of the state that stay positive
 mode lasts), and a *switch* (what happens when a guard falls through zero).
 
 State vector: n coordinates, their n rates, then the variables of first order. All energies
-and powers are per unit mass. Modes are whole numbers, which the system packs and unpacks;
-``contact`` maps them to the contact states that users see.
+and powers are per unit mass. Modes are whole numbers, which the system packs and unpacks. There
+may be far more of them than a run ever meets: what one means is asked when it begins.
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final, NamedTuple, Protocol, TypeAlias
 
+import numpy as np
+
 from rockframe.compiled import Integers, Vector
+from rockframe.errors import AssemblyError
 
 Slope: TypeAlias = tuple[float, ...] | Vector
 """Accelerations, rates of the variables of first order, and powers, in this order."""
@@ -45,6 +48,9 @@ MEMORY: Final = (
 )  # fmt: skip
 """Names of what every system keeps."""
 
+MOST_MODES: Final = 2**63 - 1
+"""Modes that a system may have: each is a whole number of 64 bits, one of which is its sign."""
+
 POWERS: Final = 2
 """Powers that stand behind the accelerations: dissipated, and supplied by the ground."""
 
@@ -68,6 +74,10 @@ class Guards(NamedTuple):
 class System(Protocol):
     """The equations of a scene."""
 
+    def bodies(self) -> int:
+        """Give the number of bodies that move on their bases."""
+        ...
+
     def coordinates(self) -> int:
         """Give n, the number of coordinates."""
         ...
@@ -78,6 +88,28 @@ class System(Protocol):
 
     def guards(self) -> int:
         """Give the number of guards."""
+        ...
+
+    def modes(self) -> int:
+        """Give the number of modes, of which some have no meaning."""
+        ...
+
+    def moving_in(self, mode: int) -> int:
+        """Give the number of leading coordinates that move in a mode."""
+        ...
+
+    def contact_state_of(self, mode: int, k: int) -> int:
+        """Give the :class:`rockframe.dynamics.events.ContactState` of body `k` in a mode.
+
+        Body 0 is the one that the scene is about.
+        """
+        ...
+
+    def relaxation_in(self, mode: int) -> float:
+        """Give the rate at which a constraint of a mode decays, 0 where there is none [s^-1].
+
+        Fixed steps must be short beside it.
+        """
         ...
 
     def accelerate(self, mode: int, state: Vector, ground: Ground) -> tuple[float, ...]:
@@ -214,15 +246,6 @@ class ContactModel:
         Name of the model.
     system : System
         The equations: a named tuple of SI floats, per unit mass.
-    active : ndarray of int64, shape (modes,)
-        Number of leading coordinates that move in each mode.
-    contact : ndarray of int64, shape (modes,)
-        :class:`rockframe.dynamics.events.ContactState` of each mode.
-    soil_contact : ndarray of int64, shape (modes,), or None
-        The same of the cap on the soil, where `contact` is that of a block on a cap.
-    relaxation : ndarray, shape (modes,)
-        Rate at which a constraint of a mode decays, 0 where there is none; fixed steps must
-        be short beside it [s^-1].
     rotation_limits : tuple of float
         Rotations to the left and to the right at which the run stops or is marked [rad].
     rotation_weights : ndarray, shape (n,)
@@ -248,14 +271,15 @@ class ContactModel:
     rounding : callable or None
         ``rounding(rotation)``: noise of everything in the state in one step about a
         rotation, where the model's forces are differences of large terms.
+
+    Raises
+    ------
+    AssemblyError
+        There are more modes than whole numbers for them.
     """
 
     name: str
     system: System
-    active: Integers
-    contact: Integers
-    soil_contact: Integers | None = None
-    relaxation: Vector
     rotation_limits: tuple[float, float]
     rotation_weights: Vector
     scales: Vector
@@ -269,6 +293,34 @@ class ContactModel:
     initial: Callable[[Start], tuple[int, Vector, Vector]]
     rounding: Callable[[float], Vector] | None = None
 
+    def __post_init__(self) -> None:
+        count = self.system.modes()
+        if count > MOST_MODES:
+            msg = (
+                f"the contacts of its bases give the scene {count:.3g} modes, more than the "
+                f"{MOST_MODES:.3g} that can be numbered: give a base of your own fewer contacts"
+            )
+            raise AssemblyError([msg])
+
+    def moving(self, modes: Integers) -> Integers:
+        """Give the numbers of leading coordinates that move in modes."""
+        return _of_each(self.system.moving_in, modes)
+
+    def contact_states(self, modes: Integers, body: int = 0) -> Integers:
+        """Give the contact states of a body in modes."""
+        return _of_each(lambda mode: self.system.contact_state_of(mode, body), modes)
+
     def rotation_in(self, state: Vector) -> float:
         """Give the block's rotation in a state."""
         return float(self.rotation_weights @ state[: len(self.rotation_weights)])
+
+
+def _of_each(asked: Callable[[int], int], modes: Integers) -> Integers:
+    """Ask what modes mean, each once; most last for many samples."""
+    differs = np.ones(len(modes) + 1, dtype=np.bool_)  # at both ends, too
+    np.not_equal(modes[1:], modes[:-1], out=differs[1:-1])
+    changes = np.flatnonzero(differs)
+    met = modes[changes[:-1]].tolist()
+    meant = {mode: asked(mode) for mode in set(met)}
+    found = np.array([meant[mode] for mode in met], dtype=np.int64)
+    return np.repeat(found, changes[1:] - changes[:-1])

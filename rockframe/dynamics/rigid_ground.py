@@ -12,7 +12,7 @@ import numpy as np
 
 from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics.base import Guards
-from rockframe.dynamics.events import IMPACT, REST, UPLIFT, ContactState
+from rockframe.dynamics.events import FULL, IMPACT, LEFT, REST, RIGHT, UPLIFT
 from rockframe.dynamics.protocol import (
     BODY_COLUMNS,
     IMPACT_LOSS,
@@ -31,6 +31,7 @@ from rockframe.dynamics.trigonometry import sine_cosine
 RESTING: Final = 0
 ON_RIGHT: Final = 1
 ON_LEFT: Final = 2
+MODES: Final = 3
 
 # guards
 IMPACT_GUARD: Final = 0
@@ -67,6 +68,11 @@ class RigidGround(NamedTuple):
     gravity: float  # g
     small: bool  # whether sines and cosines are expanded
 
+    @inlined
+    def bodies(self) -> int:
+        """Give 1, the number of bodies."""
+        return 1
+
     @kernel
     def coordinates(self) -> int:
         """Give 1, the rotation."""
@@ -81,6 +87,28 @@ class RigidGround(NamedTuple):
     def guards(self) -> int:
         """Give the number of guards."""
         return GUARDS
+
+    @kernel
+    def modes(self) -> int:
+        """Give the number of modes."""
+        return MODES
+
+    @inlined
+    def moving_in(self, mode: int) -> int:
+        """Give 1 while the block rocks, 0 at rest."""
+        return 0 if mode == RESTING else 1
+
+    @inlined
+    def contact_state_of(self, mode: int, k: int) -> int:
+        """Give which corner bears, or that both do."""
+        if mode == RESTING:
+            return FULL
+        return RIGHT if mode == ON_RIGHT else LEFT
+
+    @inlined
+    def relaxation_in(self, mode: int) -> float:
+        """Give 0: nothing slides."""
+        return 0.0
 
     @inlined
     def corner(self, mode: int) -> Corner:
@@ -273,9 +301,6 @@ def rigid_ground(
     return ContactModel(
         name="rigid ground",
         system=RigidGround(left, right, gravity, small_rotation),
-        active=np.array([0, 1, 1]),
-        contact=np.array([ContactState.FULL, ContactState.RIGHT, ContactState.LEFT]),
-        relaxation=np.zeros(3),
         rotation_limits=(left.angle, right.angle),
         rotation_weights=np.ones(1),
         scales=least.angle * np.array([1.0, frequency]),

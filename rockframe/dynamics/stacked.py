@@ -79,6 +79,25 @@ class Stacked(InState):
         """Give the number of guards: of the upper body, then of the lower one."""
         return self.upper.guards() + self.lower.guards()
 
+    @kernel
+    def modes(self) -> int:
+        """Give the number of modes."""
+        return self.upper.modes() * self.lower.modes()
+
+    @inlined
+    def contact_state_of(self, mode: int, k: int) -> int:
+        """Give the contact state of a body."""
+        modes = self.modes_in(mode)
+        if k == UPPER:
+            return self.upper.shown_contact(modes.upper)
+        return self.lower.shown_contact(modes.lower)
+
+    @inlined
+    def relaxation_in(self, mode: int) -> float:
+        """Give the rate at which an end that slides follows its base, of the faster one."""
+        modes = self.modes_in(mode)
+        return max(self.upper.relaxation_in(modes.upper), self.lower.relaxation_in(modes.lower))
+
     @inlined
     def modes_in(self, mode: int) -> Modes:
         """Read a mode from its number."""

@@ -26,6 +26,9 @@ from rockframe.system.setting import Setting
 Generic = NDArray[Any]
 Values = Mapping[str, "Generic | float | int | bool"]
 
+_CONTACTS = ("contact_state", "soil_contact_state")
+"""Names in the schema of the contact states of both bodies of a stack, or of the only one."""
+
 
 class Peak(NamedTuple):
     """A peak rotation, its share of the overturning angle of its side, and that side."""
@@ -46,10 +49,10 @@ def peak_of(run: Summary, angles: OverturningAngles) -> Peak:
 
 def contact_histories(model: ContactModel, run: Trajectory) -> dict[str, Generic]:
     """Give the contact states at the output times, by their names in the schema."""
-    values: dict[str, Generic] = {"contact_state": model.contact[run.mode].astype(np.int8)}
-    if model.soil_contact is not None:
-        values["soil_contact_state"] = model.soil_contact[run.mode].astype(np.int8)
-    return values
+    return {
+        name: model.contact_states(run.mode, body).astype(np.int8)
+        for body, name in enumerate(_CONTACTS[: model.system.bodies()])
+    }
 
 
 def relative_histories(values: Mapping[str, Generic], setting: Setting) -> dict[str, Generic]:
@@ -123,18 +126,15 @@ def event_columns(model: ContactModel, run: Trajectory) -> dict[str, Generic]:
     """Give the table of events by its names in the schema."""
     events, size, weights = run.events, len(model.rotation_weights), model.rotation_weights
     shown = events.kind != SILENT
-    soil: dict[str, Generic] = {}
-    if model.soil_contact is not None:
-        soil = {
-            "soil_contact_state_before": model.soil_contact[events.mode_before[shown]],
-            "soil_contact_state_after": model.soil_contact[events.mode_after[shown]],
-        }
+    contacts: dict[str, Generic] = {
+        f"{name}_{when}": model.contact_states(modes[shown], body).astype(np.int8)
+        for body, name in enumerate(_CONTACTS[: model.system.bodies()])
+        for when, modes in (("before", events.mode_before), ("after", events.mode_after))
+    }
     return {
-        **soil,
         "event_time": events.time[shown],
         "event_kind": events.kind[shown].astype(np.int8),
-        "contact_state_before": model.contact[events.mode_before[shown]].astype(np.int8),
-        "contact_state_after": model.contact[events.mode_after[shown]].astype(np.int8),
+        **contacts,
         "event_rotation": events.state_after[shown, :size] @ weights,
         "angular_velocity_before": events.state_before[shown, size : 2 * size] @ weights,
         "angular_velocity_after": events.state_after[shown, size : 2 * size] @ weights,

@@ -146,7 +146,7 @@ def _everything_of(
     moved, felt = felt_ground(ground, system.options.slope)
     shown = _shown(
         system,
-        np.concatenate([run.mode.astype(np.int64), events.mode_before, events.mode_after]),
+        np.concatenate([run.mode, events.mode_before, events.mode_after]),
         np.concatenate([run.state, events.state_before, events.state_after]),
         memory,
         np.concatenate([row, before, before + 1]),

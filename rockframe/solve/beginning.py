@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 
 from rockframe.compiled import Integers, Vector
-from rockframe.dynamics.events import ContactState
+from rockframe.dynamics.events import FLIGHT, FULL
 from rockframe.dynamics.protocol import (
     IMPACT_LOSS,
     IMPULSIVE_INPUT,
@@ -20,7 +20,7 @@ from rockframe.solve import layout as at
 from rockframe.solve.accuracy import Accuracy
 from rockframe.solve.bookkeeping import ROUNDING
 from rockframe.solve.driver import FIXED_STEPS
-from rockframe.solve.substeps import STABLE, substeps_of
+from rockframe.solve.substeps import substeps_of
 
 FIRST_SCALE: Final = 1e-6
 """Share of its typical size that counts as a variable's size before it has moved."""
@@ -54,8 +54,6 @@ class Begun:
         Of the rotation, :mod:`rockframe.solve.guards`.
     tolerance : ndarray, shape (guards + 1,)
         Rounding noise of the guards.
-    longest : ndarray, shape (modes,)
-        Longest stable fixed step in each mode, where that is not for its vibrations [s].
     substeps : int
         Fixed steps in each interval, 0 for steps by tolerance.
     """
@@ -70,7 +68,6 @@ class Begun:
     reference: Vector
     limits: Vector
     tolerance: Vector
-    longest: Vector
     substeps: int
 
 
@@ -113,6 +110,7 @@ def begun(
         Steps of the length asked for would not be stable.
     """
     mode, state, memory = _state_of(model, start)
+    contact = model.system.contact_state_of(mode, 0)
     shortest_period = 2.0 * math.pi / model.fastest_frequency
     substeps = substeps_of(accuracy, model, interval)
     controls = np.zeros(at.CONTROLS)
@@ -129,7 +127,7 @@ def begun(
     clock[at.NEXT_STEP] = controls[at.MAX_STEP] if substeps else FIRST_STEP * shortest_period
     rotation = model.rotation_in(state)
     clock[at.PEAK_LEFT], clock[at.PEAK_RIGHT] = max(-rotation, 0.0), max(rotation, 0.0)
-    clock[at.FIRST_UPLIFT] = -1.0 if model.contact[mode] == ContactState.FULL else 0.0
+    clock[at.FIRST_UPLIFT] = -1.0 if contact == FULL else 0.0
     clock[at.OVERTURNING_TIME] = clock[at.EVENT_TIME] = -1.0
     clock[at.START_ENERGY] = clock[at.GROUND_X] = clock[at.GROUND_Y] = math.nan
     clock[at.LARGEST_TERM] = clock[at.LARGEST_MOVED] = ENERGY_NOISE * model.energy_scale
@@ -140,13 +138,12 @@ def begun(
     counters[at.LAST_INTERVAL] = NEVER
     counters[at.MAX_STEPS] = accuracy.max_steps
     counters[at.STOP_AT_OVERTURNING] = int(stop_at_overturning)
-    counters[at.FLIGHTS] = int(model.contact[mode] == ContactState.FLIGHT)
+    counters[at.FLIGHTS] = int(contact == FLIGHT)
     return Begun(
         mode, state, memory, memory.copy(), controls, clock, counters,
         reference=_sizes(model, accuracy, state, rotation),
         limits=np.array([*model.rotation_limits, *model.rotation_weights]),
         tolerance=np.append(model.guard_tolerance, ROUNDING),
-        longest=_longest_steps(model),
         substeps=substeps,
     )  # fmt: skip
 
@@ -167,10 +164,3 @@ def _sizes(model: ContactModel, accuracy: Accuracy, state: Vector, rotation: flo
         noise = model.rounding(abs(rotation))
         sizes = np.maximum(sizes, noise / (accuracy.rtol * accuracy.floor))
     return sizes
-
-
-def _longest_steps(model: ContactModel) -> Vector:
-    longest = np.full(len(model.relaxation), math.inf)
-    decays = model.relaxation > 0.0
-    longest[decays] = STABLE / model.relaxation[decays]
-    return longest

@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 
 from rockframe.compiled import Integers, Vector, inlined, kernel, table
-from rockframe.dynamics.events import IMPACT, OVERTURNING, REST, TOPPLED, ContactState
+from rockframe.dynamics.events import FLIGHT, FULL, IMPACT, OVERTURNING, REST, TOPPLED
 from rockframe.dynamics.protocol import (
     IMPACT_LOSS,
     IMPULSIVE_INPUT,
@@ -15,7 +15,7 @@ from rockframe.dynamics.protocol import (
     Ground,
 )
 from rockframe.solve import layout as at
-from rockframe.solve.equations import Equations, energies_at, slope_at
+from rockframe.solve.equations import Equations, KnownMode, energies_at, slope_at
 from rockframe.solve.ground import ground_in
 from rockframe.solve.guards import LEFT_LIMIT, RIGHT_LIMIT, WEIGHTS
 from rockframe.solve.hermite import extremum, interpolate
@@ -25,13 +25,10 @@ from rockframe.solve.workspace import (
     Output,
     Progress,
     Span,
-    Tables,
     Work,
     Workspace,
 )
 
-FULL: Final = int(ContactState.FULL)
-FLIGHT: Final = int(ContactState.FLIGHT)
 ROUNDING: Final = 4.0 * sys.float_info.epsilon
 """Share of a term by which it is rounded."""
 RIGHT_ANGLE: Final = 0.5 * math.pi
@@ -52,7 +49,7 @@ def audit(equations: Equations, mode: int, memory: Vector, clock: Vector, w: Wor
     The largest term is that of what moves: the elastic energy at rest, and the gravity energy
     that it takes over, say nothing of a quiet run.
     """
-    energies = energies_at(equations, mode, w.state, w.energy_room)
+    energies = energies_at(equations, mode, w.state, w.answers)
     stored = energies.gravity + energies.from_rest
     lost = clock[at.DISSIPATED] + memory[IMPACT_LOSS] + memory[REPINNING_LOSS]
     supplied = clock[at.SUPPLIED] + memory[IMPULSIVE_INPUT]
@@ -170,15 +167,13 @@ def follow_peak(equations: Equations, count: int, h: float, clock: Vector, w: Wo
 
 
 @kernel
-def reach_limit(
-    time: float, mode: int, tables: Tables, progress: Progress, w: Workspace
-) -> tuple[int, int]:
+def reach_limit(time: float, count: int, progress: Progress, w: Workspace) -> tuple[int, int]:
     """Mark overturning, or the fall that ends a run; give the event's kind and a status."""
     clock = progress.clock
     if clock[at.OVERTURNING_TIME] >= 0.0:
         return TOPPLED, at.FELL
     rotation = 0.0
-    for i in range(tables.active[mode]):
+    for i in range(count):
         rotation += w.limits[WEIGHTS + i] * w.state[i]
     clock[at.OVERTURNING_TIME] = time
     clock[at.OVERTURNING_SIDE] = math.copysign(1.0, rotation)
@@ -192,9 +187,8 @@ def reach_limit(
 def record_event(
     time: float,
     kind: int,
-    old_mode: int,
-    mode: int,
-    tables: Tables,
+    before: KnownMode,
+    after: KnownMode,
     memory: Vector,
     progress: Progress,
     events: EventTable,
@@ -210,14 +204,14 @@ def record_event(
     for i in range(len(memory)):
         events.values[row, 1 + 2 * width + i] = memory[i]
     events.codes[row, 0] = kind
-    events.codes[row, 1] = old_mode
-    events.codes[row, 2] = mode
+    events.codes[row, 1] = before.mode
+    events.codes[row, 2] = after.mode
     counters[at.EVENTS] += 1
     if kind in (IMPACT, REST):  # a block comes to rest by an impact
         counters[at.IMPACTS] += 1
-    if tables.contact[mode] == FLIGHT and tables.contact[old_mode] != FLIGHT:
+    if after.contact == FLIGHT and before.contact != FLIGHT:
         counters[at.FLIGHTS] += 1
-    if tables.contact[mode] != FULL and clock[at.FIRST_UPLIFT] < 0.0:
+    if after.contact != FULL and clock[at.FIRST_UPLIFT] < 0.0:
         clock[at.FIRST_UPLIFT] = time
     close = time - clock[at.EVENT_TIME] <= progress.controls[at.CHATTER_TIME]
     counters[at.CLOSE_EVENTS] = counters[at.CLOSE_EVENTS] + 1 if close else 0

@@ -3,11 +3,11 @@
 import math
 from typing import Final
 
-from rockframe.compiled import kernel
+from rockframe.compiled import Vector, kernel
 from rockframe.solve.equations import Equations, write_guards
 from rockframe.solve.guards import DIP_MARGIN, may_dip
 from rockframe.solve.hermite import interpolate
-from rockframe.solve.workspace import Span, Tables, Workspace
+from rockframe.solve.workspace import Span, Workspace
 
 ROOT_TOLERANCE: Final = 1e-13
 """Width of the bracket, as a share of the step, at which the search for a root ends."""
@@ -27,7 +27,7 @@ def earliest_crossing(
     mode: int,
     count: int,
     span: Span,
-    tables: Tables,
+    tolerance: Vector,
     w: Workspace,
 ) -> tuple[int, float, float]:
     """Give the guard that falls through zero first, where, and where it is negative then.
@@ -36,20 +36,22 @@ def earliest_crossing(
     however it begins, and at the step's end. Gives -1 if no guard crosses.
     """
     found, place, negative = -1, 2.0, 1.0
-    for i in range(len(tables.tolerance)):
-        end_change = span.h * w.after[len(tables.tolerance) + i]
-        c0, c1, c2, c3 = _cubic_of(i, span.h, tables, w)
+    for i in range(len(tolerance)):
+        end_change = span.h * w.after[len(tolerance) + i]
+        c0, c1, c2, c3 = _cubic_of(i, span.h, tolerance, w)
         if not may_dip(c0, c1, w.after[i], end_change):
             continue
         end = -1.0
         bottom, low, high = _dip(c1, c2, c3)
         depth = c0 + bottom * (c1 + bottom * (c2 + bottom * c3))
         if 0.0 < bottom < 1.0 and depth < DIP_MARGIN * (abs(c1) + abs(end_change)):
-            end = _point_below_zero(equations, i, bottom, low, high, mode, count, span, tables, w)
+            end = _point_below_zero(
+                equations, i, bottom, low, high, mode, count, span, tolerance, w
+            )
         if end < 0.0 and w.after[i] < 0.0:
             end = 1.0
         if end >= 0.0:
-            root = _first_root(equations, i, end, mode, count, span, tables, w)
+            root = _first_root(equations, i, end, mode, count, span, tolerance, w)
             if root < place:
                 found, place, negative = i, root, end
     return found, place, negative
@@ -57,10 +59,10 @@ def earliest_crossing(
 
 @kernel
 def _cubic_of(
-    which: int, h: float, tables: Tables, w: Workspace
+    which: int, h: float, tolerance: Vector, w: Workspace
 ) -> tuple[float, float, float, float]:
     """Give the coefficients of the cubic through a guard's values and rates at both ends."""
-    guards = len(tables.tolerance)
+    guards = len(tolerance)
     start, c1 = w.before[which], h * w.before[guards + which]
     rise, bend = w.after[which] - start - c1, h * w.after[guards + which] - c1
     return start, c1, 3.0 * rise - bend, bend - 2.0 * rise
@@ -97,7 +99,7 @@ def _guard_inside(
     mode: int,
     count: int,
     span: Span,
-    tables: Tables,
+    tolerance: Vector,
     w: Workspace,
 ) -> float:
     """Give a guard's value at a fraction of the step, from the dense solution."""
@@ -116,20 +118,20 @@ def _point_below_zero(
     mode: int,
     count: int,
     span: Span,
-    tables: Tables,
+    tolerance: Vector,
     w: Workspace,
 ) -> float:
     """Search a predicted dip for a negative value by the guard's rate; -1 if there is none.
 
     Of a guard that starts at zero, within its rounding noise, only what lies deeper is a dip.
     """
-    start, tolerance = w.before[which], tables.tolerance[which]
-    zero = 0.0 if start > tolerance else min(start, 0.0) - tolerance
+    start, noise = w.before[which], tolerance[which]
+    zero = 0.0 if start > noise else min(start, 0.0) - noise
     for _ in range(LOOKING):
-        g = _guard_inside(equations, which, bottom, mode, count, span, tables, w)
+        g = _guard_inside(equations, which, bottom, mode, count, span, tolerance, w)
         if g < zero:
             return bottom
-        rate = span.h * w.inside[len(tables.tolerance) + which]
+        rate = span.h * w.inside[len(tolerance) + which]
         if g - zero > abs(rate) * (high - low):  # it is convex there, and nowhere lower by more
             break
         if rate > 0.0:
@@ -164,7 +166,7 @@ def _first_root(
     mode: int,
     count: int,
     span: Span,
-    tables: Tables,
+    tolerance: Vector,
     w: Workspace,
 ) -> float:
     """Give the first root between the step's start and `end` (negative).
@@ -175,9 +177,9 @@ def _first_root(
     rise, of the cubic without its root at the start. A corner that has just left is not about
     to land.
     """
-    guards = len(tables.tolerance)
-    start, c1, c2, c3 = _cubic_of(which, span.h, tables, w)
-    if start > tables.tolerance[which]:
+    guards = len(tolerance)
+    start, c1, c2, c3 = _cubic_of(which, span.h, tolerance, w)
+    if start > tolerance[which]:
         place = _root_of_cubic(start, c1, c2, c3, end)
     elif c1 > 0.0:
         place = _root_of_cubic(c1, c2, c3, 0.0, end)
@@ -185,7 +187,7 @@ def _first_root(
         place = 0.5 * end
     low, high, last = 0.0, end, math.inf
     for _ in range(SEARCHING):
-        g = _guard_inside(equations, which, place, mode, count, span, tables, w)
+        g = _guard_inside(equations, which, place, mode, count, span, tolerance, w)
         if g > 0.0:
             low = place
         else:

@@ -9,10 +9,10 @@ import math
 from typing import Final
 
 from rockframe.compiled import Integers, Vector, entry, inlined, kernel
+from rockframe.dynamics.events import FLIGHT
 from rockframe.dynamics.protocol import LAST_EVENT, POWERS, Ground
 from rockframe.solve import layout as at
 from rockframe.solve.bookkeeping import (
-    FLIGHT,
     ON_SAMPLE,
     accept,
     audit,
@@ -22,7 +22,14 @@ from rockframe.solve.bookkeeping import (
     store_outputs,
 )
 from rockframe.solve.crossings import earliest_crossing
-from rockframe.solve.equations import Equations, energies_at, slope_at, write_guards
+from rockframe.solve.equations import (
+    Equations,
+    KnownMode,
+    energies_at,
+    known_mode,
+    slope_at,
+    write_guards,
+)
 from rockframe.solve.ground import ground_in, load_interval
 from rockframe.solve.march import (
     AT_END,
@@ -43,7 +50,6 @@ from rockframe.solve.workspace import (
     Progress,
     Span,
     StepTable,
-    Tables,
     Work,
     Workspace,
     has_no_room,
@@ -66,16 +72,16 @@ FIXED_STEPS: Final = 0.0
 
 
 @kernel
-def broken_guard(tables: Tables, now: float, w: Workspace) -> int:
+def broken_guard(tolerance: Vector, now: float, w: Workspace) -> int:
     """Give a guard that a mode breaks from its start, or -1.
 
     One that rises may lie below zero by what it changes within the rounding of time.
     """
-    guards = len(tables.tolerance)
+    guards = len(tolerance)
     for i in range(guards):
-        tolerance, rate = tables.tolerance[i], w.before[guards + i]
-        noise = tolerance + TIME_NOISE * now * abs(rate)
-        if w.before[i] < -noise or (w.before[i] <= tolerance and rate < 0.0):
+        rounding, rate = tolerance[i], w.before[guards + i]
+        noise = rounding + TIME_NOISE * now * abs(rate)
+        if w.before[i] < -noise or (w.before[i] <= rounding and rate < 0.0):
             return i
     return -1
 
@@ -110,13 +116,13 @@ def span_of(h: float, progress: Progress) -> Span:
 
 @inlined
 def march(
-    equations: Equations, mode: int, trial: float, tables: Tables, pieces: Pieces,
-    progress: Progress, steps: StepTable, w: Workspace,
+    equations: Equations, known: KnownMode, trial: float, pieces: Pieces, progress: Progress,
+    steps: StepTable, w: Workspace,
 ) -> int:  # fmt: skip
     """Make steps until something happens, or try one; see :mod:`rockframe.solve.march`."""
-    flies = int(tables.contact[mode] == FLIGHT)
+    mode, count, contact, longest = known
     return equations.march.call(
-        mode, int(tables.active[mode]), flies, tables.longest[mode], trial, pieces.x, pieces.y,
+        mode, count, int(contact == FLIGHT), longest, trial, pieces.x, pieces.y,
         w.both_ends, w.stages, w.works, w.reference, w.limits, w.ground, progress.controls,
         progress.clock, progress.counters, steps.values, steps.codes, equations.numbers,
     )  # fmt: skip
@@ -124,7 +130,7 @@ def march(
 
 @kernel
 def step_to_event(
-    equations: Equations, mode: int, whole: float, tables: Tables, pieces: Pieces,
+    equations: Equations, known: KnownMode, whole: float, tolerance: Vector, pieces: Pieces,
     progress: Progress, steps: StepTable, w: Workspace,
 ) -> tuple[float, int]:  # fmt: skip
     """Repeat a step up to the first crossing of a guard; give its length and the guard, or -1.
@@ -135,26 +141,27 @@ def step_to_event(
     guard that rises from zero and falls again from its first root, the start. A dip that the
     Runge-Kutta solution does not have is an event where it comes closest.
     """
-    count, span = int(tables.active[mode]), span_of(whole, progress)
-    crossed, place, negative = earliest_crossing(equations, mode, count, span, tables, w)
+    crossed, place, negative = earliest_crossing(
+        equations, known.mode, known.moving, span_of(whole, progress), tolerance, w
+    )
     if crossed < 0:
         return whole, -1
     now = time_of(progress)
     h, rates = place * whole, equations.guard_count + 1
-    tolerance, low, high = tables.tolerance[crossed], 0.0, negative * whole
-    begins_positive = w.before[crossed] > tolerance or w.before[rates + crossed] > 0.0
+    noise, low, high = tolerance[crossed], 0.0, negative * whole
+    begins_positive = w.before[crossed] > noise or w.before[rates + crossed] > 0.0
     has_root = h > 0.0 and begins_positive
     if has_root and negative < 1.0:
-        march(equations, mode, high, tables, pieces, progress, steps, w)
+        march(equations, known, high, pieces, progress, steps, w)
         has_root = w.after[crossed] < 0.0
     for correction in range(1 + MOST_POLISHING):
         if h > 0.0:
-            march(equations, mode, h, tables, pieces, progress, steps, w)
+            march(equations, known, h, pieces, progress, steps, w)
         else:
             stand_still(w)
         guard, fall = w.after[crossed], w.after[rates + crossed]
         ends = fall >= 0.0 and not has_root
-        if ends or abs(guard) <= tolerance or correction == MOST_POLISHING:
+        if ends or abs(guard) <= noise or correction == MOST_POLISHING:
             break
         if guard > 0.0:
             low = h
@@ -188,30 +195,30 @@ def carry_out(
     equations: Equations,
     crossed: int,
     time: float,
-    mode: int,
-    tables: Tables,
+    known: KnownMode,
     memory: Vector,
     progress: Progress,
     events: EventTable,
     w: Workspace,
-) -> tuple[int, int]:
+) -> tuple[KnownMode, int]:
     """Carry out the switch that a crossed guard calls for; give the new mode and a status."""
     clock = progress.clock
     row = progress.counters[at.EVENTS]
     for i in range(len(w.state)):
         events.values[row, 1 + i] = w.state[i]
-    new_mode = mode
+    after = known
     status = at.COMPLETED
     if crossed == equations.guard_count:
-        kind, status = reach_limit(time, mode, tables, progress, w)
+        kind, status = reach_limit(time, known.moving, progress, w)
     else:
         ground = Ground(clock[at.GROUND_X], clock[at.GROUND_Y])
         new_mode = equations.switching.call(
-            mode, crossed, w.state, ground.x, ground.y, memory, equations.numbers
+            known.mode, crossed, w.state, ground.x, ground.y, memory, equations.numbers
         )
+        after = known_mode(equations, new_mode, w.answers)
         kind = int(memory[LAST_EVENT])
-    chatter = record_event(time, kind, mode, new_mode, tables, memory, progress, events, w)
-    return new_mode, max(status, chatter)
+    chatter = record_event(time, kind, known, after, memory, progress, events, w)
+    return after, max(status, chatter)
 
 
 @inlined
@@ -239,7 +246,7 @@ def keep_start(mode: int, progress: Progress, steps: StepTable, w: Workspace) ->
 @kernel
 def run_on(
     equations: Equations,
-    tables: Tables,
+    tolerance: Vector,
     memory: Vector,
     pieces: Pieces,
     progress: Progress,
@@ -253,8 +260,8 @@ def run_on(
     ----------
     equations : Equations
         Of the scene.
-    tables : Tables
-        The model's tables.
+    tolerance : ndarray
+        Rounding noise of the system's guards, and of the limit of the rotation.
     memory : ndarray
         The model's memory; changed in place.
     pieces : Pieces
@@ -274,11 +281,11 @@ def run_on(
         A :class:`rockframe.solve.layout.Status`, ``MORE_ROOM`` or ``PAUSED``.
     """
     controls, clock, counters = progress.controls, progress.clock, progress.counters
-    mode = counters[at.MODE]
+    known = known_mode(equations, counters[at.MODE], w.answers)
     if math.isnan(clock[at.START_ENERGY]):
-        start = energies_at(equations, mode, w.state, w.energy_room)
+        start = energies_at(equations, known.mode, w.state, w.answers)
         clock[at.START_ENERGY] = start.kinetic + start.gravity + start.from_rest
-        audit(equations, mode, memory, clock, w)
+        audit(equations, known.mode, memory, clock, w)
     home, half = w, 0
     counters[at.HALF] = 0
     index = counters[at.INTERVAL]
@@ -294,28 +301,28 @@ def run_on(
             status = at.MORE_ROOM
             break
         if stale:
-            look_ahead(equations, mode, progress, w)
+            look_ahead(equations, known.mode, progress, w)
             stale, anew = False, True
             if crossed < 0:
-                crossed = broken_guard(tables, time_of(progress), w)
+                crossed = broken_guard(tolerance, time_of(progress), w)
         if crossed >= 0:
             if counters[at.EVENTS] >= len(events.codes):
                 status = at.MORE_ROOM
                 break
-            mode, status = carry_out(
-                equations, crossed, time_of(progress), mode, tables, memory, progress, events, w
+            known, status = carry_out(
+                equations, crossed, time_of(progress), known, memory, progress, events, w
             )
-            audit(equations, mode, memory, clock, w)
+            audit(equations, known.mode, memory, clock, w)
             crossed = -1
             stale = True
             if status != at.COMPLETED:
                 break
             continue
         if anew and len(steps.codes) > 0:
-            keep_start(mode, progress, steps, w)
+            keep_start(known.mode, progress, steps, w)
         anew = False
         clock[at.NEXT_OUTPUT] = next_output(controls, counters, output)
-        happened = march(equations, mode, 0.0, tables, pieces, progress, steps, w)
+        happened = march(equations, known, 0.0, pieces, progress, steps, w)
         if counters[at.HALF] != half:
             half = 1 - half
             w = swapped(w)
@@ -333,12 +340,14 @@ def run_on(
             break
         h = whole = clock[at.STEP]
         if happened == GUARDED:
-            h, crossed = step_to_event(equations, mode, whole, tables, pieces, progress, steps, w)
+            h, crossed = step_to_event(
+                equations, known, whole, tolerance, pieces, progress, steps, w
+            )
         if fixed:
             clock[at.NEXT_STEP] = rest_of(clock[at.ASKED], h, shortest, controls)
         elif crossed < 0:
             clock[at.NEXT_STEP] = adapted(whole, clock[at.NEXT_STEP], clock[at.EXCESS], controls)
-        count, span = int(tables.active[mode]), span_of(h, progress)
+        mode, count, span = known.mode, known.moving, span_of(h, progress)
         work, ground = Work(w.works[0], w.works[1]), ground_in(1.0, span, w.ground)
         clock[at.INTO_INTERVAL] += h
         store_outputs(equations, time_of(progress), span, mode, count, work, progress, output, w)
@@ -349,14 +358,14 @@ def run_on(
                     time_of(progress), h, mode, ground, len(w.new), len(w.last) - POWERS, w.new,
                     w.last, counters, steps.values, steps.codes,
                 )  # fmt: skip
-        if tables.contact[mode] == FLIGHT:
+        if known.contact == FLIGHT:
             clock[at.FLIGHT_TIME] += h
         accept(fixed, work, ground, clock, counters, w)
         half = 1 - half
         counters[at.HALF] = half
         w = swapped(w)
     if status not in (at.PAUSED, at.MORE_ROOM):
-        audit(equations, mode, memory, clock, w)
+        audit(equations, known.mode, memory, clock, w)
     if half == 1:  # where the caller looks for it
         for i in range(len(home.state)):
             home.state[i] = w.state[i]
@@ -366,7 +375,7 @@ def run_on(
             home.before[i] = w.before[i]
     counters[at.STALE] = int(stale)
     clock[at.TIME] = time_of(progress)
-    counters[at.MODE] = mode
+    counters[at.MODE] = known.mode
     counters[at.PENDING] = crossed
     return status
 
@@ -374,7 +383,7 @@ def run_on(
 @entry
 def advance(
     equations: Equations,
-    tables: Tables,
+    tolerance: Vector,
     memory: Vector,
     pieces: Pieces,
     progress: Progress,
@@ -383,4 +392,4 @@ def advance(
     w: Workspace,
 ) -> int:
     """Integrate one run, see :func:`run_on`."""
-    return run_on(equations, tables, memory, pieces, progress, output, events, w)
+    return run_on(equations, tolerance, memory, pieces, progress, output, events, w)

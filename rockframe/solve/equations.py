@@ -4,6 +4,7 @@ So one integrator, compiled once, serves every system: it knows these functions 
 addresses, and the system's numbers as a vector.
 """
 
+import math
 from typing import Final, NamedTuple
 
 from rockframe.compiled import (
@@ -20,6 +21,7 @@ from rockframe.dynamics.protocol import BODY_COLUMNS, BODY_FORCES, Energies, Gro
 from rockframe.solve.ground import ground_in
 from rockframe.solve.guards import guards_at
 from rockframe.solve.march import march_by_tolerance, march_fixed
+from rockframe.solve.substeps import STABLE
 from rockframe.solve.workspace import Span, Workspace
 
 
@@ -47,6 +49,14 @@ def switched(
 ) -> int:  # fmt: skip
     """Carry out what the fall of a guard calls for; give the new mode."""
     return system.switch(mode, guard, state, Ground(ground_x, ground_y), memory)
+
+
+@kernel
+def meaning(system: System, mode: int, out: Vector) -> None:
+    """Write how many coordinates move in a mode, the contact state, and a rate of decay."""
+    out[0] = system.moving_in(mode)
+    out[1] = system.contact_state_of(mode, 0)
+    out[2] = system.relaxation_in(mode)
 
 
 @kernel
@@ -90,6 +100,7 @@ class Equations(NamedTuple):
     observing: Bound
     march: Bound
     stored: Bound
+    meaning: Bound
     numbers: Vector
     coordinate_count: int
     variable_count: int
@@ -111,7 +122,9 @@ def equations_of(system: System, *, fixed_steps: bool) -> Equations:
     Equations
     """
     march = march_fixed if fixed_steps else march_by_tolerance
-    functions = bound((switched, slope, guards_of_state, observed, march, energies), system)
+    functions = bound(
+        (switched, slope, guards_of_state, observed, march, energies, meaning), system
+    )
     return Equations(
         *functions,  # type: ignore[call-arg]
         numbers=numbers_in(system),
@@ -124,6 +137,26 @@ def equations_of(system: System, *, fixed_steps: bool) -> Equations:
 def runs_as_python(equations: Equations) -> bool:
     """Whether runs of a system are those of plain Python: its equations could not be compiled."""
     return not COMPILED or any(one.source.failed for one in equations if isinstance(one, Bound))
+
+
+class KnownMode(NamedTuple):
+    """A mode, and what it means for steps: asked for when it begins, and kept as long as it lasts.
+
+    The contact state is that of the body that the scene is about.
+    """
+
+    mode: int
+    moving: int  # leading coordinates that move
+    contact: int  # rockframe.dynamics.events.ContactState
+    longest: float  # stable fixed step, where that is not for vibrations [s]
+
+
+@inlined
+def known_mode(equations: Equations, mode: int, room: Vector) -> KnownMode:
+    """Ask what a mode means; `room` is for three numbers."""
+    equations.meaning.call(mode, room, equations.numbers)
+    longest = STABLE / room[2] if room[2] > 0.0 else math.inf
+    return KnownMode(mode, int(room[0]), int(room[1]), longest)
 
 
 @inlined

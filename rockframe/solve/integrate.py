@@ -25,7 +25,6 @@ from rockframe.solve.workspace import (
     Pieces,
     Progress,
     StepTable,
-    Tables,
     has_no_room,
     make_workspace,
     no_steps,
@@ -88,7 +87,7 @@ def integrate(
     rows = 0 if output_step is None else 1 + math.floor(duration / output_step * (1.0 + 1e-12))
     width = len(state)
     out_state = np.empty((rows, width))
-    out_mode = np.empty(rows, dtype=np.int32)
+    out_mode = np.empty(rows, dtype=np.int64)
     out_work = np.zeros((rows if with_work else 0, 2))
     if rows:
         out_state[0], out_mode[0] = state, mode
@@ -105,7 +104,6 @@ def integrate(
         np.empty((EVENT_ROOM, 1 + 2 * width + len(memory))),
         np.empty((EVENT_ROOM, 3), dtype=np.int64),
     )
-    tables = Tables(model.active, model.contact, run.longest, run.tolerance)
     pieces = pieces_of(motion)
     equations = equations_of(model.system, fixed_steps=accuracy.rtol is None)
     workspace = make_workspace(equations, state, run.reference, run.limits)
@@ -113,7 +111,7 @@ def integrate(
     while True:
         result = advance(
             equations,
-            tables,
+            run.tolerance,
             memory,
             pieces,
             progress,
@@ -139,7 +137,7 @@ def integrate(
         # the instant at which the run ended belongs to its history
         time = np.concatenate([time, np.array([end])])
         out_state = np.vstack([out_state, workspace.state])
-        out_mode = np.append(out_mode, np.int32(counters[at.MODE]))
+        out_mode = np.append(out_mode, counters[at.MODE])
         if with_work:
             out_work = np.vstack([out_work, [clock[at.DISSIPATED], clock[at.SUPPLIED]]])
     return Trajectory(

@@ -7,7 +7,6 @@ import numpy as np
 
 from rockframe.compiled import (
     Bound,
-    Codes,
     IntegerMatrix,
     Integers,
     Matrix,
@@ -137,7 +136,7 @@ def memory_at_outputs(trajectory: Trajectory) -> tuple[Matrix, Integers]:
 
 def observe_states(
     model: ContactModel,
-    mode: Codes | Integers,
+    mode: Integers,
     state: Matrix,
     memory: Matrix,
     memory_row: Integers,
@@ -149,7 +148,7 @@ def observe_states(
     ----------
     model : ContactModel
         The equations.
-    mode : ndarray of int, shape (states,)
+    mode : ndarray of int64, shape (states,)
         Modes of the model.
     state : ndarray, shape (states, 2 n + variables)
         As the system has them.
@@ -170,7 +169,7 @@ def observe_states(
     observe_rows(
         _of(model.system, slope),
         _of(model.system, observed),
-        mode.astype(np.int64),
+        mode,
         np.ascontiguousarray(state),
         memory,
         memory_row.astype(np.int64),
@@ -253,7 +252,7 @@ def energies_of(model: ContactModel, trajectory: Trajectory) -> Matrix:
     out = np.empty((len(trajectory.time), 4))
     energy_rows(
         _of(model.system, energies),
-        trajectory.mode.astype(np.int64),
+        trajectory.mode,
         np.ascontiguousarray(trajectory.state),
         np.zeros(trajectory.state.shape[1]),
         np.zeros(4),

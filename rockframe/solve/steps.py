@@ -110,7 +110,7 @@ class Steps:
         value, _ = _cubic(
             state[..., w], h * first[..., rates], new[..., w], h * last[..., rates], u
         )
-        moves = np.arange(size) < model.active[self.mode[which], None, None]
+        moves = np.arange(size) < model.moving(self.mode[which])[:, None, None]
         place = np.where(moves, place, state[..., x])
         return np.concatenate([place, np.where(moves, speed, state[..., v]), value], axis=-1)
 

@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from rockframe.compiled import Codes, Integers, Matrix, Vector
+from rockframe.compiled import Integers, Matrix, Vector
 from rockframe.dynamics.protocol import Ending
 from rockframe.solve import layout as at
 from rockframe.solve.layout import Status
@@ -117,7 +117,7 @@ class Trajectory(Summary):
         Output times [s].
     state : ndarray, shape (samples, 2 n)
         Coordinates, then their rates.
-    mode : ndarray of int32, shape (samples,)
+    mode : ndarray of int64, shape (samples,)
         Modes of the model.
     work : ndarray, shape (samples, 2) or (0, 2)
         Energies dissipated by dashpots and put in by the ground, if asked for.
@@ -137,7 +137,7 @@ class Trajectory(Summary):
 
     time: Vector
     state: Matrix
-    mode: Codes
+    mode: Integers
     work: Matrix
     start_mode: int
     start_memory: Vector

@@ -5,7 +5,6 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from rockframe.compiled import (
-    Codes,
     IntegerMatrix,
     Integers,
     Matrix,
@@ -30,15 +29,6 @@ CODES: Final = 2
 
 ERRORS: Final = 3
 """Place of the errors of the state behind the works of a step."""
-
-
-class Tables(NamedTuple):
-    """A model's tables, see :class:`rockframe.dynamics.protocol.ContactModel`."""
-
-    active: Integers
-    contact: Integers
-    longest: Vector
-    tolerance: Vector  # of the system's guards, and of the limit of the rotation
 
 
 class Pieces(NamedTuple):
@@ -73,7 +63,7 @@ class Output(NamedTuple):
     """Samples at the output times; `work` may have no rows."""
 
     state: Matrix
-    mode: Codes
+    mode: Integers
     work: Matrix
     steps: StepTable
 
@@ -107,7 +97,7 @@ class Workspace(NamedTuple):
     inside: Vector  # guards in between
     powers: Vector  # another slope in between
     ground: Vector  # coefficients of the ground motion in this interval
-    energy_room: Vector
+    answers: Vector  # room for a few numbers that the system gives
 
 
 def no_steps() -> StepTable:
@@ -145,7 +135,7 @@ def swapped(w: Workspace) -> Workspace:
     return Workspace(
         w.both_ends, w.new, w.last, w.after, w.state, w.first, w.before, w.stages, w.works,
         w.reference,
-        w.limits, w.scratch, w.scratch_rates, w.inside, w.powers, w.ground, w.energy_room,
+        w.limits, w.scratch, w.scratch_rates, w.inside, w.powers, w.ground, w.answers,
     )  # fmt: skip
 
 
@@ -208,5 +198,5 @@ def make_workspace(
         inside=np.zeros(guards),
         powers=np.zeros(slope),
         ground=np.zeros(2 * TERMS),
-        energy_room=np.zeros(4),
+        answers=np.zeros(4),
     )

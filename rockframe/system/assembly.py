@@ -17,6 +17,7 @@ from rockframe.system.options import (
     read_measured,
     read_option,
 )
+from rockframe.system.own_base import OwnBase
 from rockframe.system.parts import Parts, sort_parts
 from rockframe.system.scenes import SCENES, Scene
 from rockframe.system.setting import Setting
@@ -157,4 +158,7 @@ def joined(
     scene = next((scene for scene in SCENES if scene.fits(given, options.coupling)), None)
     if faults or scene is None:
         raise AssemblyError(faults, supported)
-    return Assembly(given, options, scene)
+    made = Assembly(given, options, scene)
+    if any(isinstance(part, OwnBase) for part in given.structural()):
+        made.model  # noqa: B018 - refuses bases with more contacts than can be numbered
+    return made

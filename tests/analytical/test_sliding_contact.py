@@ -130,7 +130,7 @@ def test_a_corner_that_slides_keeps_its_level_and_dissipates(model, restraint):
     run = drop(one)
     sliding = slides(one, run.mode)
     assert sliding.sum() > 5
-    assert (one.active[run.mode[sliding]] == 3).all()
+    assert (one.moving(run.mode[sliding]) == 3).all()
     alpha, y, _, spin, speed, _ = run.state[sliding].T
     assert np.abs(level(alpha, y, -1.0) - DELTA).max() < 1e-9
     assert np.abs(speed + lever(alpha, -1.0) * spin).max() < 1e-9

@@ -137,7 +137,7 @@ def test_each_base_has_its_own_variables_and_states():
         for side in ("left", "right"):
             np.testing.assert_allclose(found[f"{side}_{name}"], rate * run.time, rtol=1e-12)
     assert run.mode.max() > np.iinfo(np.int16).max
-    for table in ("contact", "soil_contact"):
+    for body in range(2):
         np.testing.assert_array_equal(
-            getattr(model, table)[run.mode], getattr(plain, table)[expected.mode]
+            model.contact_states(run.mode, body), plain.contact_states(expected.mode, body)
         )

@@ -10,7 +10,6 @@ from rockframe.dynamics.alone import Alone
 from rockframe.dynamics.cascade.system import COLUMNS, Cascade
 from rockframe.dynamics.on_base import OnBase
 from rockframe.dynamics.protocol import BODY_COLUMNS, HELD_PLACE, MEMORY, ContactModel, Start
-from rockframe.dynamics.stacked import COORDINATES
 
 
 def cascade(
@@ -43,8 +42,6 @@ def cascade(
     """
     ratio = first.mass / second.mass
     system = Cascade(_part_of(second), _part_of(first), ratio, top, cap_centre, beside)
-    count = len(first.contact)
-    sways = np.maximum(np.repeat(first.active, len(second.active)), np.tile(second.active, count))
     shown = len(BODY_COLUMNS)
     under = tuple(replace(column, mass_ratio=ratio) for column in first.columns[shown:])
 
@@ -59,12 +56,6 @@ def cascade(
     return ContactModel(
         name="cascade",
         system=system,
-        active=np.where(sways > 2, COORDINATES, COORDINATES - 2),
-        contact=np.tile(second.contact, count),
-        soil_contact=np.repeat(first.contact, len(second.contact)),
-        relaxation=np.maximum(
-            np.tile(second.relaxation, count), np.repeat(first.relaxation, len(second.relaxation))
-        ),
         rotation_limits=second.rotation_limits,
         rotation_weights=np.array([1.0, 0.0, 1.0, 0.0, 0.0, 0.0]),
         scales=_in_turn(second.scales, first.scales),

@@ -68,6 +68,13 @@ class Cascade(Stacked, Stages):
     __slots__ = ()
 
     @inlined
+    def moving_in(self, mode: int) -> int:
+        """Give how many coordinates move: all, or none of the horizontal ones."""
+        modes = self.modes_in(mode)
+        free = self.upper.is_free(modes.upper) or self.lower.is_free(modes.lower)
+        return COORDINATES if free else HORIZONTAL
+
+    @inlined
     def carried(
         self, mode: Mode, state: BodyState, angular: float, vertical: float, horizontal: float
     ) -> PointMotion:

@@ -16,7 +16,6 @@ from rockframe.dynamics.alone_model import (
     rounding_at,
     starting_state,
 )
-from rockframe.dynamics.base_numbers import mode_table
 from rockframe.dynamics.bodies import ROTATION, VERTICAL
 from rockframe.dynamics.body import BodyState
 from rockframe.dynamics.coupled.stack import Stack, fastest_vibration
@@ -77,19 +76,10 @@ def coupled(stack: Stack, mass: float, rest: StackRest) -> ContactModel:
     """
     block, pads, soil = stack.block, stack.pads, stack.soil
     system = system_of(stack)
-    upper, lower = mode_table(pads.law), mode_table(soil.law)
-    count = len(lower.contact)
     fastest, damping_rate = fastest_vibration(stack)
-    slides = np.tile(np.where(upper.slides, pads.law.following_rate(), 0.0), count)
-    cap_slides = np.repeat(np.where(lower.slides, soil.law.following_rate(), 0.0),
-                           len(upper.contact))  # fmt: skip
     return ContactModel(
         name="coupled",
         system=system,
-        active=np.where(np.repeat(lower.free, len(upper.contact)), COORDINATES, COORDINATES - 1),
-        contact=np.tile(upper.contact, count),
-        soil_contact=np.repeat(lower.contact, len(upper.contact)),
-        relaxation=np.maximum(slides, cap_slides),
         rotation_limits=(
             math.atan2(block.left, block.height),
             math.atan2(block.right, block.height),

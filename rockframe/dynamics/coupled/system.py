@@ -56,6 +56,11 @@ class Coupled(Stacked, Pair):
     __slots__ = ()
 
     @inlined
+    def moving_in(self, mode: int) -> int:
+        """Give how many coordinates move: all, or all but that of a cap that is held."""
+        return COORDINATES if self.lower.is_free(self.modes_in(mode).lower) else LOWER_HORIZONTAL
+
+    @inlined
     def attitudes(self, states: States) -> tuple[Attitude, Attitude]:
         """Give the attitudes of block and cap on their bases."""
         upper = self.upper.body.attitude(states.upper.rotation)

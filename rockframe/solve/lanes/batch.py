@@ -19,10 +19,10 @@ from rockframe.compiled import (
     lane_of,
     stretch,
 )
+from rockframe.dynamics.events import FLIGHT
 from rockframe.solve import layout as at
-from rockframe.solve.bookkeeping import FLIGHT
 from rockframe.solve.driver import run_on
-from rockframe.solve.equations import Equations
+from rockframe.solve.equations import Equations, known_mode
 from rockframe.solve.guards import WEIGHTS
 from rockframe.solve.lanes import fields
 from rockframe.solve.lanes.intervals import is_at_end
@@ -33,7 +33,6 @@ from rockframe.solve.workspace import (
     Output,
     Pieces,
     Progress,
-    Tables,
     Workspace,
 )
 
@@ -48,7 +47,6 @@ class Shape(NamedTuple):
     numbers: int  # place of a system's numbers
     number_count: int  # of these
     memory: int  # number of memory's elements
-    mode_count: int
 
 
 class Batch(NamedTuple):
@@ -59,9 +57,6 @@ class Batch(NamedTuple):
     room: Vector  # of the lanes
     taken: Integers  # the row of each lane, and the next one to take up
     pieces: Pieces  # of all motions
-    active: Integers
-    contact: Integers
-    longest: Vector  # stable steps in each mode, of each kind of system
     equations: Equations  # of one of the systems; all are of one class
     output: Output  # without rows
     events: EventTable  # room for events, which are not kept
@@ -85,16 +80,25 @@ def copy_to_row(batch: Batch, row: Vector, lane: int, first: int, count: int) ->
 
 
 @inlined
+def equations_in(batch: Batch, row: Vector) -> Equations:
+    """Give the equations of a row's system."""
+    one, shape = batch.equations, batch.shape
+    return Equations(
+        one.switching, one.slope, one.guarding, one.observing, one.march, one.stored, one.meaning,
+        stretch(row, shape.numbers, shape.number_count),
+        one.coordinate_count, one.variable_count, one.guard_count,
+    )  # fmt: skip
+
+
+@inlined
 def note_mode(batch: Batch, row: Vector) -> None:
     """Note what a run's mode means for its steps."""
     counters = as_integers(stretch(row, fields.COUNTERS, at.COUNTERS))
     whole = as_integers(stretch(row, fields.OWN_WHOLE, fields.WHOLES))
-    mode = counters[at.MODE]
-    whole[fields.ACTIVE] = batch.active[mode]
-    whole[fields.FLIES] = int(batch.contact[mode] == FLIGHT)
-    row[fields.OWN + fields.LONGEST] = batch.longest[
-        whole[fields.KIND] * batch.shape.mode_count + mode
-    ]
+    known = known_mode(equations_in(batch, row), counters[at.MODE], batch.w.answers)
+    whole[fields.ACTIVE] = known.moving
+    whole[fields.FLIES] = int(known.contact == FLIGHT)
+    row[fields.OWN + fields.LONGEST] = known.longest
 
 
 @inlined
@@ -168,18 +172,9 @@ def run_alone(batch: Batch, row: Vector) -> int:
         stretch(row, new + width + slope, guards),
         w.stages, w.works, stretch(row, state - width, width),
         stretch(row, fields.LIMITS, WEIGHTS + size), w.scratch,
-        w.scratch_rates, w.inside, w.powers, w.ground, w.energy_room,
+        w.scratch_rates, w.inside, w.powers, w.ground, w.answers,
     )  # fmt: skip
-    bound = Equations(
-        equations.switching, equations.slope, equations.guarding, equations.observing,
-        equations.march, equations.stored, stretch(row, shape.numbers, shape.number_count),
-        equations.coordinate_count, equations.variable_count, equations.guard_count,
-    )  # fmt: skip
-    tables = Tables(
-        batch.active, batch.contact,
-        stretch(batch.longest, whole[fields.KIND] * shape.mode_count, shape.mode_count),
-        stretch(row, behind + shape.memory, equations.guard_count + 1),
-    )  # fmt: skip
+    tolerance = stretch(row, behind + shape.memory, equations.guard_count + 1)
     pieces = Pieces(
         stretch(batch.pieces.x, whole[fields.FIRST_X], whole[fields.COUNT_X]),
         stretch(batch.pieces.y, whole[fields.FIRST_Y], whole[fields.COUNT_Y]),
@@ -192,8 +187,8 @@ def run_alone(batch: Batch, row: Vector) -> int:
     while result == at.MORE_ROOM:  # events are counted, and not kept
         counters[at.EVENTS] = 0
         result = run_on(
-            bound, tables, stretch(row, behind, shape.memory), pieces, progress, batch.output,
-            batch.events, own,
+            equations_in(batch, row), tolerance, stretch(row, behind, shape.memory), pieces,
+            progress, batch.output, batch.events, own,
         )  # fmt: skip
     return result
 

@@ -33,12 +33,11 @@ FIRST_X: Final = 4  # row of the first interval in the polynomials of all motion
 COUNT_X: Final = 5  # intervals of the motion
 FIRST_Y: Final = 6
 COUNT_Y: Final = 7
-KIND: Final = 8  # which of the tables of longest steps
-STATUS: Final = 9
-TAKEN: Final = 10  # all bits where the last step is taken, none where not
-ENTERS: Final = 11  # whether the lane comes to its next interval
-REFUSED: Final = 12  # whether the error of the last step was too large
-WHOLES: Final = 13
+STATUS: Final = 8
+TAKEN: Final = 9  # all bits where the last step is taken, none where not
+ENTERS: Final = 10  # whether the lane comes to its next interval
+REFUSED: Final = 11  # whether the error of the last step was too large
+WHOLES: Final = 12
 
 # what a step in all lanes has found
 ALL_QUIET: Final = 0

@@ -74,7 +74,7 @@ class Outcomes:
 
 def kind_of(model: ContactModel) -> Any:
     """Give what models must have in common to run side by side."""
-    return structure_of(model.system), len(model.memory), len(model.active)
+    return structure_of(model.system), len(model.memory)
 
 
 def lanes_compiled(run: LaneRun, patience: float) -> bool:
@@ -156,7 +156,6 @@ class _Rows:
 
     def __init__(self, runs: Sequence[LaneRun]) -> None:
         model, first = runs[0].model, runs[0].begun
-        self._model = model
         self._places = there = places_of(model.system)
         fixed = first.substeps > 0
         self._equations = equations_of(model.system, fixed_steps=fixed)
@@ -165,7 +164,6 @@ class _Rows:
         self._memory = len(first.memory)
         width = there.numbers + self._count + self._memory + len(first.tolerance)
         self._rows = np.zeros((len(runs), width))
-        self._longest = np.concatenate([one.begun.longest for one in runs])
         for k, one in enumerate(runs):
             self._write(k, one)
 
@@ -183,7 +181,6 @@ class _Rows:
         row[behind : behind + self._memory] = begun.memory
         row[behind + self._memory :] = begun.tolerance
         whole[fields.OWN_WHOLE + fields.BUSY] = 1
-        whole[fields.OWN_WHOLE + fields.KIND] = k
 
     def endings(self, rows: Matrix) -> list[Ending]:
         """Give where runs ended, from their rows."""
@@ -204,16 +201,15 @@ class _Rows:
         y, own[:, fields.FIRST_Y], own[:, fields.COUNT_Y] = _stacked(
             [one.y for one in both], motion_of
         )
-        there, model = self._places, self._model
+        there = self._places
         shape = Shape(
             rows=len(rows), width=rows.shape[1], state=there.state, half=there.new - there.state,
             numbers=there.numbers, number_count=self._count, memory=self._memory,
-            mode_count=len(model.active),
         )  # fmt: skip
         return Batch(
             shape, rows.reshape(-1), np.zeros((there.numbers + self._count) * LANES),
-            np.zeros(LANES + 1, dtype=np.int64), Pieces(x, y), model.active, model.contact,
-            self._longest, self._equations, *_scratch(self._equations, there, self._memory),
+            np.zeros(LANES + 1, dtype=np.int64), Pieces(x, y), self._equations,
+            *_scratch(self._equations, there, self._memory),
         )  # fmt: skip
 
 
@@ -222,7 +218,7 @@ def _scratch(
 ) -> tuple[Output, EventTable, Workspace]:
     """Give room for a single run: no outputs, events that are not kept, a step."""
     width = there.first - there.state
-    output = Output(np.empty((0, width)), np.empty(0, dtype=np.int32), np.empty((0, 2)), no_steps())
+    output = Output(np.empty((0, width)), np.empty(0, dtype=np.int64), np.empty((0, 2)), no_steps())
     events = EventTable(
         np.empty((EVENT_ROOM, 1 + 2 * width + memory)), np.empty((EVENT_ROOM, 3), dtype=np.int64)
     )

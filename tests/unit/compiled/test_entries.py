@@ -11,7 +11,6 @@ import pytest
 
 from rockframe.compiled import (
     COMPILED,
-    Codes,
     Integers,
     Matrix,
     Vector,
@@ -97,7 +96,9 @@ PAIRS = (
 
 
 @entry
-def tabulate(pair: Pair, given: Matrix, row: int, arrays: Arrays, codes: Codes, out: Vector) -> int:
+def tabulate(
+    pair: Pair, given: Matrix, row: int, arrays: Arrays, codes: Integers, out: Vector
+) -> int:
     found = 0
     for i in range(given.shape[1]):
         arrays.values[i] += pair.total_at(given[row, i])
