@@ -15,13 +15,16 @@ from rockframe.compiled.lanes import tuple_from
 
 
 def numbers_in(bundle: Any) -> Vector:
-    """Give the numbers of a tuple and of the tuples in it, one after the other."""
+    """Give the numbers of a tuple and of the tuples in it, one after the other.
+
+    An array, with which a tuple may end, is copied: each run works in its own.
+    """
     return np.array(list(_flat(bundle)), dtype=np.float64)
 
 
 def _flat(bundle: Any) -> Iterator[float]:
     for value in bundle:
-        if isinstance(value, tuple):
+        if isinstance(value, tuple | np.ndarray):
             yield from _flat(value)
         else:
             yield float(value)
@@ -101,7 +104,7 @@ class Bound:
 
     def __init__(self, source: Source, bundle: Any) -> None:
         self.source = source
-        self._bundle = bundle
+        self._bundle = _own(bundle)
 
     def call(self, *arguments: Any) -> Any:
         """Call the function with the tuple in place of its numbers, the last argument."""
@@ -147,6 +150,13 @@ def bound_in_lanes(function: Callable[..., Any], bundle: Any) -> Bound:
     """
     structure = structure_of(bundle)
     return Bound(_source(function, structure, True), tuple_from(structure))
+
+
+def _own(bundle: Any) -> Any:
+    """Give a tuple with an array of its own, if it ends with one."""
+    if isinstance(bundle, tuple) and isinstance(bundle[-1], np.ndarray):
+        return type(bundle)(*bundle[:-1], bundle[-1].copy())  # type: ignore[call-arg]
+    return bundle
 
 
 @cache

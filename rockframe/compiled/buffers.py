@@ -252,6 +252,10 @@ def _with_numbers(numbers: Any, first: Any, others: Any) -> Callable[..., Any]:
 
 @extending.overload(tuples.put, strict=False, jit_options=_INTO_CALLERS)
 def _put(numbers: Any, first: Any, out: Any) -> Callable[..., Any]:
+    if isinstance(numbers, BufferType):
+        return _written(
+            "numbers, first, out", "for i in range(len(numbers)): out[first + i] = numbers[i]"
+        )
     lines = [f"out[first + {i}] = numbers[{i}]" for i in range(len(numbers))]
     return _written("numbers, first, out", "; ".join(lines) or "pass")
 

@@ -14,8 +14,8 @@ def constant(value: float, like: tuple[float, ...]) -> tuple[float, ...]:
     return (value,) * len(like)
 
 
-def put(numbers: tuple[float, ...], first: int, out: Vector) -> None:
-    """Write a tuple into an array, from an index on."""
+def put(numbers: tuple[float, ...] | Vector, first: int, out: Vector) -> None:
+    """Write a tuple, or an array, into an array, from an index on."""
     for i, number in enumerate(numbers):
         out[first + i] = number
 

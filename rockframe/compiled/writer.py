@@ -8,6 +8,7 @@ from rockframe.compiled.arrays import Integers, ReadOnlyMatrix, Vector
 from rockframe.compiled.buffers import BufferType
 from rockframe.compiled.calls import code_at
 from rockframe.compiled.registration import numba
+from rockframe.compiled.tuples import part_of
 
 VECTOR: Final = BufferType(numba.float64, 1, True)
 """Numba's type of a vector in compiled code."""
@@ -31,7 +32,10 @@ class Writer:
         self.notes: list[str] = []  # what the text depends on and does not show
 
     def tuple_of(self, structure: tuple[Any, ...]) -> str:
-        """Give the expression that makes a tuple of the elements of ``numbers``."""
+        """Give the expression that makes a tuple of the elements of ``numbers``.
+
+        An array takes all that are left.
+        """
         kind, *parts = structure
         taken: list[str] = []
         for part in parts:
@@ -39,6 +43,9 @@ class Writer:
                 taken.append(self.tuple_of(part))
                 continue
             self.kinds.append(part)
+            if part is np.ndarray:
+                taken.append(f"{self._name(part_of)}(numbers, {len(self.kinds) - 1})")
+                continue
             number = f"numbers[{len(self.kinds) - 1}]"
             taken.append({bool: f"{number} != 0.0", int: f"int({number})"}.get(part, number))
         if kind is tuple:
