@@ -50,7 +50,12 @@ class BaseNumbers:
 
 
 def pads_under(
-    body: Body, *, stiffness: float, damping: float, restitution: tuple[float, float]
+    body: Body,
+    *,
+    stiffness: float,
+    damping: float,
+    restitution: tuple[float, float],
+    load: float = 1.0,
 ) -> BaseNumbers:
     """Give the pads under a body.
 
@@ -59,15 +64,17 @@ def pads_under(
     body : Body
         The body on them.
     stiffness, damping : float
-        k and c of one pad over the body's mass [s^-2], [s^-1].
+        k and c of one pad over the mass that all is measured by [s^-2], [s^-1].
     restitution : tuple of float
         eps of a corner that lands on the left and on the right pad [1].
+    load : float
+        Mass on the pads over that mass [1].
 
     Returns
     -------
     BaseNumbers
     """
-    rest = 0.5 * body.gravity / stiffness
+    rest = 0.5 * load * body.gravity / stiffness
     size = math.hypot(0.5 * (body.left + body.right), body.height)
     noise = ROUNDING * (1.0 + size / rest)
     law = ElasticPads(

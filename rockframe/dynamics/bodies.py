@@ -65,11 +65,13 @@ class Bodies(Protocol):
         """Change the velocities."""
         ...
 
-    def velocities(self, state: Vector) -> tuple[float, ...]:
+    def velocities(self, state: Vector) -> tuple[float, ...] | Vector:
         """Give all velocities."""
         ...
 
-    def blend_velocities(self, before: tuple[float, ...], share: float, state: Vector) -> None:
+    def blend_velocities(
+        self, before: tuple[float, ...] | Vector, share: float, state: Vector
+    ) -> None:
         """Take back all but a share of what has changed the velocities since."""
         ...
 
@@ -139,7 +141,9 @@ class InState:
         state[i + VERTICAL] += response.vertical
 
     @kernel
-    def blend_velocities(self, before: tuple[float, ...], share: float, state: Vector) -> None:
+    def blend_velocities(
+        self, before: tuple[float, ...] | Vector, share: float, state: Vector
+    ) -> None:
         """Take back all but a share of what has changed the velocities since."""
         n = self.coordinates()
         for i in range(n):

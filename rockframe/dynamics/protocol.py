@@ -11,7 +11,7 @@ may be far more of them than a run ever meets: what one means is asked when it b
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Final, NamedTuple, Protocol, TypeAlias
 
 import numpy as np
@@ -19,7 +19,9 @@ import numpy as np
 from rockframe.compiled import Integers, Vector
 from rockframe.errors import AssemblyError
 
-Slope: TypeAlias = tuple[float, ...] | Vector
+Numbers: TypeAlias = tuple[float, ...] | Vector
+"""As many as a system has; in an array where that is known only when it runs."""
+Slope: TypeAlias = Numbers
 """Accelerations, rates of the variables of first order, and powers, in this order."""
 
 
@@ -67,8 +69,8 @@ class Energies(NamedTuple):
 class Guards(NamedTuple):
     """Functions of the state that stay positive as long as a mode lasts, and their rates."""
 
-    values: tuple[float, ...]
-    changes: tuple[float, ...]
+    values: Numbers
+    changes: Numbers
 
 
 class System(Protocol):
@@ -112,7 +114,7 @@ class System(Protocol):
         """
         ...
 
-    def accelerate(self, mode: int, state: Vector, ground: Ground) -> tuple[float, ...]:
+    def accelerate(self, mode: int, state: Vector, ground: Ground) -> Numbers:
         """Give accelerations, rates of the variables of first order, and powers.
 
         The powers are that dissipated and that put in by the ground. Coordinates that do
@@ -148,7 +150,7 @@ class System(Protocol):
 
     def observe(
         self, mode: int, state: Vector, slope: Slope, ground: Ground, memory: Vector
-    ) -> tuple[float, ...]:
+    ) -> Numbers:
         """Give the columns that the model names; `slope` is what :meth:`accelerate` gave."""
         ...
 
@@ -193,6 +195,11 @@ reactions are those of the body's own base, along and normal to what that stands
 """
 BODY_FORCES: Final = ("base_shear", "horizontal_reaction", "vertical_reaction")
 """Those of them that friction depends on."""
+
+
+def column_of(name: str, body: int) -> str:
+    """Give the name of a column of a body other than the first."""
+    return name if body == 0 else f"{name}_of_{body}"
 
 
 @dataclass(frozen=True)
@@ -250,6 +257,12 @@ class ContactModel:
         Rotations to the left and to the right at which the run stops or is marked [rad].
     rotation_weights : ndarray, shape (n,)
         The block's rotation as a sum of coordinates.
+    contacts : tuple of str
+        Names, in the results' schema, of the contact states of the first bodies.
+    shows_bodies : bool
+        Whether results have the motion of each body.
+    other_limits : ndarray, shape (others * (2 + n),)
+        Of other bodies that overturn: of each both limits and the weights of its rotation.
     scales : ndarray, shape (2 n + variables,)
         Typical size of everything in the state.
     guard_tolerance : ndarray, shape (guards,)
@@ -292,6 +305,9 @@ class ContactModel:
     energy_scale: float
     initial: Callable[[Start], tuple[int, Vector, Vector]]
     rounding: Callable[[float], Vector] | None = None
+    contacts: tuple[str, ...] = ("contact_state",)
+    shows_bodies: bool = False
+    other_limits: Vector = field(default_factory=lambda: np.zeros(0))
 
     def __post_init__(self) -> None:
         count = self.system.modes()

@@ -43,6 +43,10 @@ COLUMNS: Final = (
 )
 
 
+CONTACTS: Final = ("contact_state", "soil_contact_state")
+"""Names of the contact states of both bodies."""
+
+
 class Modes(NamedTuple):
     """How both bodies stand."""
 

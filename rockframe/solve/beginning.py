@@ -50,7 +50,7 @@ class Begun:
         Laid out in :mod:`rockframe.solve.layout`.
     reference : ndarray, shape (2 n + variables,)
         Largest size so far of each variable.
-    limits : ndarray, shape (2 + n,)
+    limits : ndarray, shape ((1 + others) * (2 + n),)
         Of the rotation, :mod:`rockframe.solve.guards`.
     tolerance : ndarray, shape (guards + 1,)
         Rounding noise of the guards.
@@ -142,7 +142,7 @@ def begun(
     return Begun(
         mode, state, memory, memory.copy(), controls, clock, counters,
         reference=_sizes(model, accuracy, state, rotation),
-        limits=np.array([*model.rotation_limits, *model.rotation_weights]),
+        limits=np.array([*model.rotation_limits, *model.rotation_weights, *model.other_limits]),
         tolerance=np.append(model.guard_tolerance, ROUNDING),
         substeps=substeps,
     )  # fmt: skip

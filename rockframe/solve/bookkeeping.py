@@ -167,17 +167,18 @@ def follow_peak(equations: Equations, count: int, h: float, clock: Vector, w: Wo
 
 
 @kernel
-def reach_limit(time: float, count: int, progress: Progress, w: Workspace) -> tuple[int, int]:
+def reach_limit(time: float, size: int, progress: Progress, w: Workspace) -> tuple[int, int]:
     """Mark overturning, or the fall that ends a run; give the event's kind and a status."""
     clock = progress.clock
     if clock[at.OVERTURNING_TIME] >= 0.0:
         return TOPPLED, at.FELL
     rotation = 0.0
-    for i in range(count):
+    for i in range(size):
         rotation += w.limits[WEIGHTS + i] * w.state[i]
     clock[at.OVERTURNING_TIME] = time
     clock[at.OVERTURNING_SIDE] = math.copysign(1.0, rotation)
-    w.limits[LEFT_LIMIT] = w.limits[RIGHT_LIMIT] = RIGHT_ANGLE
+    for row in range(0, len(w.limits), WEIGHTS + size):
+        w.limits[row + LEFT_LIMIT] = w.limits[row + RIGHT_LIMIT] = RIGHT_ANGLE
     if progress.counters[at.STOP_AT_OVERTURNING] == 1:
         return OVERTURNING, at.OVERTURNED
     return OVERTURNING, at.COMPLETED

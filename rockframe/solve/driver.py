@@ -209,7 +209,7 @@ def carry_out(
     after = known
     status = at.COMPLETED
     if crossed == equations.guard_count:
-        kind, status = reach_limit(time, known.moving, progress, w)
+        kind, status = reach_limit(time, equations.coordinate_count, progress, w)
     else:
         ground = Ground(clock[at.GROUND_X], clock[at.GROUND_Y])
         new_mode = equations.switching.call(

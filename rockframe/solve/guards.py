@@ -7,7 +7,8 @@ from rockframe.dynamics.protocol import Ground, Guards, System
 
 LEFT_LIMIT: Final = 0
 RIGHT_LIMIT: Final = 1
-"""Places of the limits of the rotation; the weights of the coordinates in it stand behind."""
+"""Places of the limits of the rotation; the weights of the coordinates in it stand behind, then
+the same of other rotations that have limits."""
 WEIGHTS: Final = 2
 
 
@@ -23,8 +24,22 @@ def guards_at(
     system: System, mode: int, state: Vector, slope: Vector, ground: Ground, limits: Vector,
     out: Vector,
 ) -> None:  # fmt: skip
-    """Write the guards of a state, see :func:`write_guards`."""
+    """Write the guards of a state, see :func:`write_guards`; of several limits the nearest."""
     write_guards(system, system.guards_in(mode, state, slope, ground), state, limits, out)
+    size, last = system.coordinates(), system.guards()
+    row = WEIGHTS + size
+    while row < len(limits):
+        rotation = rate = 0.0
+        for i in range(size):
+            rotation += limits[row + WEIGHTS + i] * state[i]
+            rate += limits[row + WEIGHTS + i] * state[size + i]
+        left = rotation <= 0.0
+        apart = (
+            limits[row + LEFT_LIMIT] + rotation if left else limits[row + RIGHT_LIMIT] - rotation
+        )
+        if apart < out[last]:
+            out[last], out[2 * last + 1] = apart, rate if left else -rate
+        row += WEIGHTS + size
 
 
 @inlined

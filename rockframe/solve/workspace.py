@@ -167,7 +167,7 @@ def make_workspace(
         Of the scene.
     state, reference : ndarray, shape (2 n + variables,)
         State vector; largest size so far of each variable.
-    limits : ndarray, shape (2 + n,)
+    limits : ndarray, shape ((1 + others) * (2 + n),)
         Of the rotation, and weights of the coordinates in it.
 
     Returns

@@ -10,6 +10,7 @@ from rockframe.dynamics.alone import Alone
 from rockframe.dynamics.cascade.system import COLUMNS, Cascade
 from rockframe.dynamics.on_base import OnBase
 from rockframe.dynamics.protocol import BODY_COLUMNS, HELD_PLACE, MEMORY, ContactModel, Start
+from rockframe.dynamics.stacked import CONTACTS
 
 
 def cascade(
@@ -61,6 +62,7 @@ def cascade(
         scales=_in_turn(second.scales, first.scales),
         guard_tolerance=np.concatenate([second.guard_tolerance, first.guard_tolerance]),
         columns=(*COLUMNS, *second.columns[shown:], *under),
+        contacts=CONTACTS,
         memory=(*MEMORY, "held_place_of_first"),
         mass=second.mass,
         fastest_frequency=max(first.fastest_frequency, second.fastest_frequency),

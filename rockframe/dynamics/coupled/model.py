@@ -24,6 +24,7 @@ from rockframe.dynamics.on_base import OnBase
 from rockframe.dynamics.protocol import HELD_PLACE, MEMORY, ContactModel, Start
 from rockframe.dynamics.stacked import (
     COLUMNS,
+    CONTACTS,
     COORDINATES,
     HORIZONTAL,
     LOWER,
@@ -88,6 +89,7 @@ def coupled(stack: Stack, mass: float, rest: StackRest) -> ContactModel:
         scales=_scales(stack),
         guard_tolerance=np.concatenate([part_tolerance(pads), part_tolerance(soil)]),
         columns=(*COLUMNS, *pads.columns, *soil.columns),
+        contacts=CONTACTS,
         memory=(*MEMORY, "held_place_of_cap"),
         mass=mass,
         fastest_frequency=fastest,

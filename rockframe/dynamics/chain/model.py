@@ -1,0 +1,268 @@
+"""Assembly of the model of a chain of bodies: sizes, bounds of its frequencies, initial state."""
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from rockframe.compiled import Matrix, Vector
+from rockframe.dynamics.alone_model import (
+    part_tolerance,
+    radius_of,
+    rocking_rate,
+    rounding_at,
+)
+from rockframe.dynamics.base_numbers import BaseNumbers
+from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, DEGREES, ROTATION, VERTICAL
+from rockframe.dynamics.body import Body, BodyState
+from rockframe.dynamics.chain import rows as at
+from rockframe.dynamics.chain.rows import GUARDS, OBSERVED, lists_of, row_of
+from rockframe.dynamics.chain.system import Chain
+from rockframe.dynamics.pads import CORNER_GUARDS, ROUNDING
+from rockframe.dynamics.protocol import (
+    BODY_COLUMNS,
+    HELD_PLACE,
+    MEMORY,
+    Column,
+    ContactModel,
+    Start,
+    column_of,
+)
+
+
+class ChainBody(NamedTuple):
+    """A body of a chain and the base under it, per unit of the mass that all is measured by."""
+
+    body: Body
+    base: BaseNumbers
+    mass: float
+    top: float  # of the body above its centre of mass
+    beside: float  # of its centre of mass to the right of that of the body below, upright
+
+
+class Placement(NamedTuple):
+    """Where a body is, relative to what it stands on."""
+
+    rotation: float
+    vertical: float
+
+
+def chain_of(links: Sequence[ChainBody]) -> Chain:
+    """Give the equations of bodies upon one another, from the top down."""
+    return Chain(*lists_of([
+        row_of(one.body, one.base, one.mass, one.top, one.beside) for one in links
+    ]))  # fmt: skip
+
+
+def chain(
+    links: Sequence[ChainBody],
+    mass: float,
+    rest: Sequence[Placement] | None = None,
+    limits: Sequence[tuple[float, float]] = (),
+) -> ContactModel:
+    """Assemble the model of bodies upon one another.
+
+    Parameters
+    ----------
+    links : sequence of ChainBody
+        From the top down.
+    mass : float
+        That all is measured by [kg].
+    rest : sequence of Placement, or None
+        Where the bodies are at rest; None where they all stand upright.
+    limits : sequence of tuple of float
+        Rotations to the left and to the right at which each body but the first overturns, with
+        all above it; none are looked at unless given [rad].
+
+    Returns
+    -------
+    ContactModel
+    """
+    top, count = links[0].body, len(links)
+    system = chain_of(links)
+    fastest, damping_rate = fastest_vibration(links)
+    return ContactModel(
+        name="stack",
+        system=system,
+        rotation_limits=(math.atan2(top.left, top.height), math.atan2(top.right, top.height)),
+        rotation_weights=_weights(count, 0),
+        scales=_scales(links),
+        guard_tolerance=np.concatenate([_tolerance(one.base) for one in links]),
+        columns=tuple(column for k in range(count) for column in _columns(links[k].base, k)),
+        memory=(*MEMORY, *(f"held_place_of_{k}" for k in range(1, count)), "body_of_event"),
+        shows_bodies=True,
+        mass=mass,
+        fastest_frequency=fastest,
+        damping_rate=damping_rate,
+        energy_scale=sum(
+            one.mass * one.body.gravity * radius_of(one.body) * one.body.angle for one in links
+        ),
+        initial=lambda start: _initial(system, links, rest, start),
+        rounding=rounding_at(
+            sum(radius_of(one.body) for one in links),
+            sum(one.base.settlement for one in links),
+            _answers(links), fastest, 0,
+        ),
+        other_limits=np.array(
+            [each for k, both in enumerate(limits, 1) for each in (*both, *_weights(count, k))]
+        ),
+    )  # fmt: skip
+
+
+def _weights(count: int, k: int) -> Vector:
+    """Give the rotation of body `k` as a sum of coordinates: of its own and of those below."""
+    weights = np.zeros(DEGREES * count)
+    first = BEFORE_HORIZONTAL * k + ROTATION
+    weights[first : BEFORE_HORIZONTAL * count : BEFORE_HORIZONTAL] = 1.0
+    return weights
+
+
+def _tolerance(base: BaseNumbers) -> Vector:
+    """Give the rounding noise of a body's guards, of which those of a bed's ends are fewer."""
+    found = part_tolerance(base)
+    ends = len(base.end_tolerance)
+    if ends == CORNER_GUARDS:
+        return found
+    all_of_them = np.full(GUARDS, ROUNDING)
+    all_of_them[[0, CORNER_GUARDS]] = base.end_tolerance[0]
+    return all_of_them
+
+
+def _columns(base: BaseNumbers, k: int) -> tuple[Column, ...]:
+    """Name the columns of body `k`: those of the first one as of any scene."""
+    own = (*BODY_COLUMNS, Column("rotation_on_base"), Column("vertical_displacement_on_base"))
+    unused = tuple(Column(f"unused_{i}") for i in range(OBSERVED - len(base.columns)))
+    return tuple(
+        Column(column_of(one.name, k), one.per_mass, one.mass_ratio)
+        for one in (*own, *base.columns, *unused)
+    )
+
+
+def _scales(links: Sequence[ChainBody]) -> Vector:
+    places, sways, place_rates, sway_rates, carried = [], [], [], [], 0.0
+    for one in links:
+        carried += one.mass
+        sway, rate = radius_of(one.body) * one.body.angle, rocking_rate(_per_own_mass(one))
+        places += [one.body.angle, one.base.settlement]
+        place_rates += [rate, math.sqrt(one.base.vertical_stiffness / carried)]
+        sways.append(sway)
+        sway_rates.append(rate)
+    sizes, rates = np.array([*places, *sways]), np.array([*place_rates, *sway_rates])
+    return np.concatenate([sizes, sizes * rates])
+
+
+def _per_own_mass(link: ChainBody) -> Body:
+    return link.body._replace(inertia=link.body.inertia / link.mass)
+
+
+def _answers(links: Sequence[ChainBody]) -> Vector:
+    places = []
+    for one in links:
+        body = _per_own_mass(one)
+        places += [0.5 * (body.left + body.right) / (body.inertia + body.height**2), 1.0]
+    return np.array([*places, *np.ones(len(links))])
+
+
+def fastest_vibration(links: Sequence[ChainBody]) -> tuple[float, float]:
+    """Give bounds of angular frequency and damping rate, whichever of the bodies fly."""
+    fastest = damping = 0.0
+    for first in range(len(links)):
+        some = links[first:]
+        for stands in (True, False):
+            mass, stiffness, damped = small_motion_matrices(some, stands=stands)
+            fastest = max(fastest, _largest(mass, stiffness))
+            damping = max(damping, _largest(mass, damped))
+    return math.sqrt(fastest), damping
+
+
+def _largest(mass: Matrix, matrix: Matrix) -> float:
+    return float(np.linalg.eigvals(np.linalg.solve(mass, matrix)).real.max())
+
+
+def small_motion_matrices(
+    links: Sequence[ChainBody], *, stands: bool = True
+) -> tuple[Matrix, Matrix, Matrix]:
+    """Give mass, stiffness of the bases and damping of small motion of upright bodies.
+
+    In the order of rotation and height of each body relative to what it stands on, from the top
+    down; the lowest one stands on the ground, or on nothing.
+    """
+    count = len(links)
+    x, y, turn = (np.zeros((count, 2 * count)) for _ in range(3))
+    below_x, below_y, below_turn = (np.zeros(2 * count) for _ in range(3))
+    deck = 0.0
+    for k in range(count - 1, -1, -1):
+        one = links[k]
+        arm = 0.0 if k == count - 1 else deck + one.body.height
+        beside = 0.0 if k == count - 1 else one.beside
+        own, up = np.zeros(2 * count), np.zeros(2 * count)
+        own[2 * k], up[2 * k + 1] = 1.0, 1.0
+        x[k] = below_x + arm * below_turn + one.body.height * own
+        y[k] = below_y - beside * below_turn + up
+        turn[k] = below_turn + own
+        below_x, below_y, below_turn, deck = x[k], y[k], turn[k], one.top
+    mass = sum(
+        one.mass * (np.outer(x[k], x[k]) + np.outer(y[k], y[k]))
+        + one.body.inertia * np.outer(turn[k], turn[k])
+        for k, one in enumerate(links)
+    )
+    springs = np.array(
+        [
+            each
+            for one in links
+            for each in (one.base.rotational_stiffness, one.base.vertical_stiffness)
+        ]
+    )
+    times = np.repeat([one.base.damping_time for one in links], 2)
+    if not stands:
+        springs[-2:] = 0.0
+    return np.asarray(mass), np.diag(springs), np.diag(springs * times)
+
+
+def _initial(
+    system: Chain, links: Sequence[ChainBody], rest: Sequence[Placement] | None, start: Start
+) -> tuple[int, Vector, Vector]:
+    """Start a run: all at rest but the first body, which is as told."""
+    count = len(links)
+    n = DEGREES * count
+    placed = list(rest or [Placement(0.0, 0.0)] * count)
+    below = sum(one.rotation for one in placed[1:])
+    first, part = placed[0], system.on_base(0)
+    if start.rotation is not None or start.vertical_displacement is not None:
+        rotation = first.rotation if start.rotation is None else start.rotation - below
+        attitude = part.body.attitude(rotation)
+        height = start.vertical_displacement
+        if height is None:
+            lift = part.body.left * attitude.sine, -part.body.right * attitude.sine
+            height = part.base.resting_height(*lift, ()) - attitude.rise
+        placed[0] = Placement(rotation, height)
+    state, memory, mode = np.zeros(2 * n), np.zeros(len(MEMORY) + count), 0
+    for k, one in enumerate(placed):
+        part, moving = system.on_base(k), k == 0
+        body = BodyState(
+            one.rotation, one.vertical, 0.0, start.angular_velocity if moving else 0.0,
+            start.vertical_velocity if moving else 0.0, 0.0,
+        )  # fmt: skip
+        i, x = BEFORE_HORIZONTAL * k, system.horizontal_of(k)
+        contact = part.base.starting(part.body.base_line_at(body), ())
+        # upright and at rest a body leans nowhere yet; it follows the one above
+        leaning = body
+        if body.rotation == 0.0 and k > 0:
+            leaning = body._replace(rotation=placed[k - 1].rotation)
+        standing = part.standing(contact, leaning)
+        pin = part.body.pin(standing.pivot)
+        offset = system.number(k, at.BESIDE) if k + 1 < count else 0.0
+        state[i + ROTATION], state[i + VERTICAL] = body.rotation, body.vertical
+        state[n + i + ROTATION], state[n + i + VERTICAL] = (
+            body.angular_velocity, body.vertical_velocity,
+        )  # fmt: skip
+        memory[HELD_PLACE + k] = pin + offset
+        free = part.is_free(standing)
+        if k + 1 < count or free:
+            state[x] = pin + offset + part.body.about_pin(pin, body.rotation)
+        if k + 1 < count and not free:
+            reach = part.body.reach(pin, part.body.attitude(body.rotation))
+            state[n + x] = reach.rate * body.angular_velocity
+        mode = system.with_part(mode, k, standing)
+    return mode, state, memory

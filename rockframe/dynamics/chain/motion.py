@@ -1,0 +1,235 @@
+"""How the bodies of a chain lie and accelerate under loads and constraints, :eq:`eq-chain`.
+
+Newton's and Euler's equations of each body in the axes of the ground, with one unknown force for
+each constraint: of a held point, of a corner on a rigid surface, of an end that slides. A
+constraint touches its own body and the one below, so that the cost grows with the number of bodies
+alone. What holds for accelerations under forces holds for changes of velocities under impulses.
+"""
+
+from typing import Final
+
+from rockframe.compiled import Vector, inlined, kernel
+from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, ROTATION, VERTICAL
+from rockframe.dynamics.chain import rows as at
+from rockframe.dynamics.chain.rows import CONSTRAINT, MOST_CONSTRAINTS, PLACES, Rows
+from rockframe.dynamics.trigonometry import sine_cosine
+
+FREE: Final = 0.0
+HELD: Final = 1.0
+
+
+@kernel
+def place_bodies(system: Rows, mode: int, state: Vector, room: Vector) -> None:
+    """Write how all bodies lie and move relative to what they stand on, and their velocities."""
+    count, angle, rate, speed_x, speed_y = system.body_count, 0.0, 0.0, 0.0, 0.0
+    below = 0.0  # top of the body below above its centre of mass
+    for k in range(count - 1, -1, -1):
+        i = k * PLACES
+        part, body = system.on_base(k), system.state_of(k, state)
+        standing = system.part_mode(mode, k)
+        attitude = part.body.attitude(body.rotation)
+        reach = part.body.reach(part.body.pin(standing.pivot), attitude)
+        free = part.is_free(standing)
+        sine, cosine = sine_cosine(angle)
+        sway = body.horizontal_velocity if free else reach.rate * body.angular_velocity
+        lowest = k == count - 1
+        across = 0.0 if lowest else body.horizontal
+        arm = 0.0 if lowest else below + part.body.height + body.vertical
+        along, normal = sway + arm * rate, body.vertical_velocity - across * rate
+        speed_x, speed_y = (
+            speed_x + along * cosine + normal * sine,
+            speed_y - along * sine + normal * cosine,
+        )
+        room[i + at.SINE], room[i + at.COSINE] = sine, cosine
+        room[i + at.ACROSS], room[i + at.ARM] = across, arm
+        room[i + at.SWAY], room[i + at.RISE] = sway, body.vertical_velocity
+        room[i + at.REACH] = reach.rate
+        room[i + at.FRAME_RATE], room[i + at.RATE] = rate, body.angular_velocity
+        room[i + at.HELD] = FREE if free else HELD
+        room[i + at.DRIFT] = reach.bend * body.angular_velocity * body.angular_velocity
+        room[i + at.SPEED_X], room[i + at.SPEED_Y] = speed_x, speed_y
+        angle += body.rotation
+        rate += body.angular_velocity
+        below = system.number(k, at.TOP)
+
+
+@inlined
+def load_bodies(system: Rows, x: float, y: float, room: Vector) -> None:
+    """Load all bodies by accelerations that their masses resist."""
+    for k in range(system.body_count):
+        i, mass = k * PLACES, system.number(k, at.MASS)
+        room[i + at.LOAD_X], room[i + at.LOAD_Y] = -mass * x, -mass * y
+        room[i + at.LOAD_MOMENT] = 0.0
+
+
+@inlined
+def press_at(system: Rows, k: int, press: float, moment: float, room: Vector) -> None:
+    """Add the force of a base along its normal and the moment on its body, and the reaction."""
+    i = k * PLACES
+    sine, cosine = room[i + at.SINE], room[i + at.COSINE]
+    room[i + at.LOAD_X] += press * sine
+    room[i + at.LOAD_Y] += press * cosine
+    room[i + at.LOAD_MOMENT] += moment
+    if k + 1 < system.body_count:
+        j = i + PLACES
+        room[j + at.LOAD_X] -= press * sine
+        room[j + at.LOAD_Y] -= press * cosine
+        room[j + at.LOAD_MOMENT] += room[i + at.ACROSS] * press - moment
+
+
+@inlined
+def coriolis_along(i: int, room: Vector) -> float:
+    """Give what the rotation of the body below adds to the acceleration along it."""
+    rate = room[i + at.FRAME_RATE]
+    return 2.0 * room[i + at.RISE] * rate - room[i + at.ACROSS] * rate * rate
+
+
+@inlined
+def coriolis_normal(i: int, room: Vector) -> float:
+    """Give what it takes from the acceleration along its normal."""
+    rate = room[i + at.FRAME_RATE]
+    return (2.0 * room[i + at.SWAY] + room[i + at.ARM] * rate) * rate
+
+
+@kernel
+def write_direction(
+    system: Rows, k: int, along: float, normal: float, rotation: float, first: int, room: Vector,
+    rows: Vector,
+) -> None:  # fmt: skip
+    """Write a combination of a body's relative accelerations as one of those in the ground's axes.
+
+    Of the body, then of the one below. As a force it is what acts on both.
+    """
+    i = k * PLACES
+    sine, cosine = room[i + at.SINE], room[i + at.COSINE]
+    x, y = along * cosine + normal * sine, normal * cosine - along * sine
+    rows[first], rows[first + 1], rows[first + 2] = x, y, rotation
+    if k + 1 < system.body_count:
+        turning = normal * room[i + at.ACROSS] - along * room[i + at.ARM] - rotation
+        rows[first + 3], rows[first + 4], rows[first + 5] = -x, -y, turning
+
+
+@kernel
+def write_relative(system: Rows, room: Vector, out: Vector) -> None:
+    """Write the accelerations of all coordinates from those of the bodies."""
+    for k in range(system.body_count):
+        i, first = k * PLACES, BEFORE_HORIZONTAL * k
+        sine, cosine = room[i + at.SINE], room[i + at.COSINE]
+        x, y, turning, below = room[i + at.X], room[i + at.Y], room[i + at.ROTATION], 0.0
+        if k + 1 < system.body_count:
+            j = i + PLACES
+            x, y, below = x - room[j + at.X], y - room[j + at.Y], room[j + at.ROTATION]
+        along = cosine * x - sine * y - room[i + at.ARM] * below
+        normal = sine * x + cosine * y + room[i + at.ACROSS] * below
+        out[first + ROTATION] = turning - below
+        out[first + VERTICAL] = normal + coriolis_normal(i, room)
+        out[system.horizontal_of(k)] = along - coriolis_along(i, room)
+
+
+@inlined
+def add_constraint(
+    system: Rows, which: int, k: int, along: float, normal: float, rotation: float, wanted: float,
+    room: Vector, rows: Vector,
+) -> None:  # fmt: skip
+    """Add a constraint: what it keeps at a value, and by a force in the same direction."""
+    first = which * CONSTRAINT
+    rows[first + at.BODY], rows[first + at.VALUE] = k, wanted
+    write_direction(system, k, along, normal, rotation, first + at.KEEPS, room, rows)
+    for i in range(6):
+        rows[first + at.HOLDS + i] = rows[first + at.KEEPS + i]
+
+
+@inlined
+def of_both(system: Rows, k: int, direction: int, room: Vector, rows: Vector) -> float:
+    """Give a combination of the accelerations of a body and of the one below."""
+    i = k * PLACES
+    found = (
+        rows[direction] * room[i + at.X]
+        + rows[direction + 1] * room[i + at.Y]
+        + rows[direction + 2] * room[i + at.ROTATION]
+    )
+    if k + 1 < system.body_count:
+        j = i + PLACES
+        found += (
+            rows[direction + 3] * room[j + at.X]
+            + rows[direction + 4] * room[j + at.Y]
+            + rows[direction + 5] * room[j + at.ROTATION]
+        )
+    return found
+
+
+@inlined
+def through(system: Rows, k: int, one: int, other: int, rows: Vector) -> float:
+    """Give what a force on a body does to what is kept of it, by its mass and inertia."""
+    per_mass, per_inertia = system.number(k, at.PER_MASS), system.number(k, at.PER_INERTIA)
+    moved = rows[one] * rows[other] + rows[one + 1] * rows[other + 1]
+    return per_mass * moved + per_inertia * rows[one + 2] * rows[other + 2]
+
+
+@inlined
+def answer(system: Rows, kept: int, force: int, rows: Vector) -> float:
+    """Give what a unit force of one constraint does to what another keeps; 0 if far apart."""
+    a, b = kept * CONSTRAINT, force * CONSTRAINT
+    one, other = int(rows[a + at.BODY]), int(rows[b + at.BODY])
+    keeps, holds, found = a + at.KEEPS, b + at.HOLDS, 0.0
+    if one == other:
+        found = through(system, one, keeps, holds, rows)
+        if one + 1 < system.body_count:
+            found += through(system, one + 1, keeps + 3, holds + 3, rows)
+    elif one == other + 1:
+        found = through(system, one, keeps, holds + 3, rows)
+    elif one + 1 == other:
+        found = through(system, other, keeps + 3, holds, rows)
+    return found
+
+
+@inlined
+def push(system: Rows, which: int, room: Vector, rows: Vector) -> None:
+    """Add what a constraint's force does to the accelerations."""
+    first = which * CONSTRAINT
+    k, force, holds = int(rows[first + at.BODY]), rows[first + at.FORCE], first + at.HOLDS
+    for body in range(k, min(k + 2, system.body_count)):
+        i, per_mass = body * PLACES, force * system.number(body, at.PER_MASS)
+        room[i + at.X] += rows[holds] * per_mass
+        room[i + at.Y] += rows[holds + 1] * per_mass
+        room[i + at.ROTATION] += rows[holds + 2] * force * system.number(body, at.PER_INERTIA)
+        holds += 3
+
+
+@kernel
+def solve_motion(
+    system: Rows, count: int, band: int, room: Vector, rows: Vector, matrix: Vector
+) -> None:
+    """Write the forces of `count` constraints, sorted by body, and the accelerations of all bodies.
+
+    Elimination in the band about the diagonal, on which there is no zero.
+    """
+    for k in range(system.body_count):
+        i = k * PLACES
+        per_mass = system.number(k, at.PER_MASS)
+        room[i + at.X], room[i + at.Y] = (
+            room[i + at.LOAD_X] * per_mass, room[i + at.LOAD_Y] * per_mass,
+        )  # fmt: skip
+        room[i + at.ROTATION] = room[i + at.LOAD_MOMENT] * system.number(k, at.PER_INERTIA)
+    stride = MOST_CONSTRAINTS * system.body_count
+    for r in range(count):
+        first = r * CONSTRAINT
+        k = int(rows[first + at.BODY])
+        left = rows[first + at.VALUE] - of_both(system, k, first + at.KEEPS, room, rows)
+        rows[first + at.FORCE] = left
+        for c in range(max(0, r - band), min(count, r + band + 1)):
+            matrix[r * stride + c] = answer(system, r, c, rows)
+    for c in range(count):
+        for r in range(c + 1, min(count, c + band + 1)):
+            ratio = matrix[r * stride + c] / matrix[c * stride + c]
+            if ratio != 0.0:
+                for i in range(c + 1, min(count, c + band + 1)):
+                    matrix[r * stride + i] -= ratio * matrix[c * stride + i]
+                rows[r * CONSTRAINT + at.FORCE] -= ratio * rows[c * CONSTRAINT + at.FORCE]
+    for r in range(count - 1, -1, -1):
+        known = rows[r * CONSTRAINT + at.FORCE]
+        for c in range(r + 1, min(count, r + band + 1)):
+            known -= matrix[r * stride + c] * rows[c * CONSTRAINT + at.FORCE]
+        rows[r * CONSTRAINT + at.FORCE] = known / matrix[r * stride + r]
+    for r in range(count):
+        push(system, r, room, rows)

@@ -1,0 +1,459 @@
+"""The lists of a chain as numbers: a row for each body with its base, and room to work in.
+
+Bodies are counted from the top down. One machine code serves all chains, whatever their length and
+their bases, since it reads both from here.
+"""
+
+from collections.abc import Sequence
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from rockframe.compiled import Vector, inlined, kernel, numbers_in, part_of, stretch
+from rockframe.dynamics.base import Base, BaseForce, EndEvent, Guards, Variables
+from rockframe.dynamics.base_numbers import BaseNumbers
+from rockframe.dynamics.bed import Bed
+from rockframe.dynamics.bodies import DEGREES, InState
+from rockframe.dynamics.body import BaseLine, Body
+from rockframe.dynamics.on_base import BODY_GUARDS, Mode, OnBase
+from rockframe.dynamics.pads import CORNER, CORNER_GUARDS, ElasticPads
+from rockframe.dynamics.point_law import Viscoelastic
+from rockframe.dynamics.protocol import POWERS
+
+# a row: the body's numbers in their order in `Body`, among them
+INERTIA: Final = 3
+GRAVITY: Final = 4
+# then
+MASS: Final = 8  # over the mass that all is measured by
+TOP: Final = 9  # of the body above its centre of mass; what stands on it stands there
+BESIDE: Final = 10  # of the body's centre of mass from the axis of the one below, at rest
+PER_MASS: Final = 11
+PER_INERTIA: Final = 12
+PLACE_VALUE: Final = 13  # of its mode in that of the chain
+LAW: Final = 14  # which law its base has
+BASE: Final = 15  # numbers of that law
+BASE_NUMBERS: Final = 12
+ROW: Final = BASE + BASE_NUMBERS
+
+# laws
+ON_PADS: Final = 0
+ON_BED: Final = 1
+
+OBSERVED: Final = 3
+"""Columns of a base, of which pads have two."""
+
+# room to work in, behind the rows, for each body: geometry and rates of its contact
+SINE: Final = 0  # of the rotation of what it stands on
+COSINE: Final = 1
+ACROSS: Final = 2  # its centre of mass along that, from the centre of mass of the body below
+ARM: Final = 3  # and normal to it
+SWAY: Final = 4  # rate of the former
+RISE: Final = 5  # and of the latter
+REACH: Final = 6  # of its centre of mass about the held point
+DRIFT: Final = 7  # what that adds to the acceleration along what it stands on
+FRAME_RATE: Final = 8  # angular velocity of what it stands on
+RATE: Final = 9  # its own, relative to that
+HELD: Final = 10  # whether a point is held
+# velocity of its centre of mass, loads, and accelerations, in the axes of the ground
+SPEED_X: Final = 11
+SPEED_Y: Final = 12
+LOAD_X: Final = 13
+LOAD_Y: Final = 14
+LOAD_MOMENT: Final = 15
+X: Final = 16
+Y: Final = 17
+ROTATION: Final = 18
+# forces of its base along and normal to what it stands on
+THRUST: Final = 19
+PRESS: Final = 20
+PLACES: Final = 21
+
+# constraints, at most so many of each body; of each
+MOST_CONSTRAINTS: Final = 3
+BODY: Final = 0  # the body
+VALUE: Final = 1  # what is kept
+FORCE: Final = 2
+KEEPS: Final = 3  # the combination of accelerations, of the body and of the one below
+HOLDS: Final = 9  # that of forces
+CONSTRAINT: Final = 15
+# then their matrix, slopes, guards and their rates, velocities, and columns
+
+GUARDS: Final = 2 * CORNER_GUARDS + BODY_GUARDS
+"""Guards of each body."""
+COLUMNS: Final = 14 + OBSERVED
+"""What users see of each body and its base."""
+
+CORNERS: Final = 5
+"""States of a corner on its pad; an end on a bed has fewer."""
+PIVOTS: Final = 3
+MODES: Final = 2 * PIVOTS * CORNERS * CORNERS
+"""Modes of each body."""
+MOST_BODIES: Final = 8
+"""More than that would have more modes than whole numbers of 64 bits can tell apart."""
+
+
+class LawNumbers(NamedTuple):
+    """Which law a base has, and its numbers."""
+
+    which: int
+    n0: float
+    n1: float
+    n2: float
+    n3: float
+    n4: float
+    n5: float
+    n6: float
+    n7: float
+    n8: float
+    n9: float
+    n10: float
+    n11: float
+
+
+class AnyBase(Base, LawNumbers):
+    """A base whose law is known when it runs."""
+
+    __slots__ = ()
+
+    @inlined
+    def pads(self) -> ElasticPads:
+        """Give the pads."""
+        return ElasticPads(
+            Viscoelastic(self.n0, self.n1), self.n2, self.n3, self.n4, self.n5, self.n6, self.n7,
+            self.n8, self.n9, self.n10, self.n11,
+        )  # fmt: skip
+
+    @inlined
+    def bed(self) -> Bed:
+        """Give the bed."""
+        return Bed(self.n0, self.n1, self.n2, self.n3, self.n4 != 0.0)
+
+    @kernel
+    def contacts(self) -> int:
+        """Give the number of contacts, of either law."""
+        return max(self.pads().contacts(), self.bed().contacts())
+
+    @kernel
+    def end_guards(self) -> int:
+        """Give the number of guards of an end, of either law."""
+        return CORNER_GUARDS
+
+    @inlined
+    def guards_of(self, contact: int, left: bool, line: BaseLine, own: Variables) -> Guards:
+        """Give the guards of an end, and their rates; those that a bed has not are idle."""
+        if self.which == ON_PADS:
+            return self.pads().guards_of(contact, left, line, own)
+        found = self.bed().guards_of(contact, left, line, own)
+        return Guards((found.values[0], 1.0, 1.0), (found.changes[0], 0.0, 0.0))
+
+    @inlined
+    def in_flight(self) -> int:
+        """Give the contact of a bed in which no end is held."""
+        return self.bed().in_flight()
+
+    @kernel
+    def observed(self, contact: int, line: BaseLine, own: Variables) -> Variables:
+        """Give what users see of the base."""
+        if self.which == ON_PADS:
+            left, right = self.pads().observed(contact, line, own)
+            return left, right, 0.0
+        return self.bed().observed(contact, line, own)
+
+    @inlined
+    def is_held(self, contact: int, left: bool) -> bool:
+        """Whether an end is held."""
+        if self.which == ON_PADS:
+            return self.pads().is_held(contact, left)
+        return self.bed().is_held(contact, left)
+
+    @inlined
+    def touches(self, contact: int, left: bool) -> bool:
+        """Whether an end is held and its force counts as long as it presses."""
+        if self.which == ON_PADS:
+            return self.pads().touches(contact, left)
+        return self.bed().touches(contact, left)
+
+    @kernel
+    def tilt(self, contact: int) -> float:
+        """Give the side to which the contact will rotate a body that is upright and at rest."""
+        if self.which == ON_PADS:
+            return self.pads().tilt(contact)
+        return self.bed().tilt(contact)
+
+    @inlined
+    def force(self, contact: int, line: BaseLine, own: Variables) -> BaseForce:
+        """Give force, moment and dissipated power."""
+        if self.which == ON_PADS:
+            return self.pads().force(contact, line, own)
+        return self.bed().force(contact, line, own)
+
+    @kernel
+    def energy(self, line: BaseLine, own: Variables) -> tuple[float, float]:
+        """Give the stored energy, and that less the energy at rest."""
+        if self.which == ON_PADS:
+            return self.pads().energy(line, own)
+        return self.bed().energy(line, own)
+
+    @kernel
+    def switch(
+        self, contact: int, left: bool, which: int, line: BaseLine, own: Variables
+    ) -> EndEvent:
+        """Give what happens when a guard of an end, by its number, falls through zero."""
+        if self.which == ON_PADS:
+            return self.pads().switch(contact, left, which, line, own)
+        return self.bed().switch(contact, left, which, line, own)
+
+    @kernel
+    def level(self, left: bool, line: BaseLine, own: Variables) -> float:
+        """Give how much higher than an end the level is at which it parts from the base."""
+        if self.which == ON_PADS:
+            return self.pads().level(left, line, own)
+        return self.bed().level(left, line, own)
+
+    @kernel
+    def is_level(self, left: bool, line: BaseLine, own: Variables) -> bool:
+        """Whether an end that slides has come to that level, but for rounding."""
+        if self.which == ON_PADS:
+            return self.pads().is_level(left, line, own)
+        return self.bed().is_level(left, line, own)
+
+    @inlined
+    def follows(self, contact: int, left: bool) -> int:
+        """Give the contact in which an end that slides takes part: it touches without force."""
+        if self.which == ON_PADS:
+            return self.pads().follows(contact, left)
+        return self.bed().follows(contact, left)
+
+    @inlined
+    def following_rate(self) -> float:
+        """Give the rate at which a base without force returns to its level [s^-1]."""
+        if self.which == ON_PADS:
+            return self.pads().following_rate()
+        return self.bed().following_rate()
+
+    @kernel
+    def least_landing(self) -> float:
+        """Give the speed of a landing below which the base's answer is rounding noise."""
+        if self.which == ON_PADS:
+            return self.pads().least_landing()
+        return self.bed().least_landing()
+
+    @kernel
+    def released(self, contact: int, left: bool, line: BaseLine, own: Variables) -> int:
+        """Give the contact after an end that touched without force has left."""
+        if self.which == ON_PADS:
+            return self.pads().released(contact, left, line, own)
+        return self.bed().released(contact, left, line, own)
+
+    @kernel
+    def presses(self, contact: int, left: bool, line: BaseLine, own: Variables) -> bool:
+        """Whether the base still presses an end that has just left."""
+        if self.which == ON_PADS:
+            return self.pads().presses(contact, left, line, own)
+        return self.bed().presses(contact, left, line, own)
+
+    @kernel
+    def will_press(self, left: bool, line: BaseLine, own: Variables) -> bool:
+        """Whether the force of the base on an end would rise with an acceleration."""
+        if self.which == ON_PADS:
+            return self.pads().will_press(left, line, own)
+        return self.bed().will_press(left, line, own)
+
+    @kernel
+    def held(self, contact: int, left: bool) -> int:
+        """Give the contact with an end that touches."""
+        if self.which == ON_PADS:
+            return self.pads().held(contact, left)
+        return self.bed().held(contact, left)
+
+    @kernel
+    def waiting(self, contact: int, left: bool) -> int:
+        """Give the contact of an end that has left while the base still presses it."""
+        if self.which == ON_PADS:
+            return self.pads().waiting(contact, left)
+        return self.bed().waiting(contact, left)
+
+    @kernel
+    def unpressed(self, contact: int, left: bool) -> int:
+        """Give the contact of an end that stays held though the base has ceased to press it."""
+        if self.which == ON_PADS:
+            return self.pads().unpressed(contact, left)
+        return self.bed().unpressed(contact, left)
+
+    @kernel
+    def engaged(self, contact: int, left: bool, line: BaseLine, own: Variables) -> int:
+        """Give the contact after an end has come back and its body has been held."""
+        if self.which == ON_PADS:
+            return self.pads().engaged(contact, left, line, own)
+        return self.bed().engaged(contact, left, line, own)
+
+    @kernel
+    def disturbed(self, contact: int) -> int:
+        """Give the contact after something else than an event of its own changed the speeds."""
+        if self.which == ON_PADS:
+            return self.pads().disturbed(contact)
+        return self.bed().disturbed(contact)
+
+    @kernel
+    def rebound(self, left: bool) -> float:
+        """Give the restitution of an end that lands with an impact."""
+        if self.which == ON_PADS:
+            return self.pads().rebound(left)
+        return self.bed().rebound(left)
+
+    @kernel
+    def starting(self, line: BaseLine, own: Variables) -> int:
+        """Give the contact at the start of a run."""
+        if self.which == ON_PADS:
+            return self.pads().starting(line, own)
+        return self.bed().starting(line, own)
+
+    @kernel
+    def resting_height(self, left: float, right: float, own: Variables) -> float:
+        """Give the height at which the base carries the body at rest."""
+        if self.which == ON_PADS:
+            return self.pads().resting_height(left, right, own)
+        return self.bed().resting_height(left, right, own)
+
+
+class Lists(NamedTuple):
+    """The numbers of a chain."""
+
+    body_count: int
+    rows: Vector  # of all bodies; then room to work in
+
+
+class Rows(InState, Lists):
+    """What stands in the lists. A mixin of systems."""
+
+    __slots__ = ()
+
+    @inlined
+    def bodies(self) -> int:
+        """Give the number of bodies."""
+        return self.body_count
+
+    @inlined
+    def number(self, k: int, which: int) -> float:
+        """Give a number of a body's row."""
+        return float(self.rows[k * ROW + which])
+
+    @inlined
+    def places(self) -> Vector:
+        """Give the room for the places and forces of all bodies."""
+        return stretch(self.rows, self.body_count * ROW, self.body_count * PLACES)
+
+    @inlined
+    def constraints(self) -> Vector:
+        """Give the room for constraints."""
+        width = MOST_CONSTRAINTS * CONSTRAINT
+        return stretch(self.rows, self.body_count * (ROW + PLACES), self.body_count * width)
+
+    @inlined
+    def slopes(self) -> Vector:
+        """Give the room for accelerations and powers."""
+        return stretch(self.rows, self.after_constraints(), DEGREES * self.body_count + POWERS)
+
+    @inlined
+    def after_constraints(self) -> int:
+        """Give the place behind the constraints."""
+        return self.body_count * (ROW + PLACES + MOST_CONSTRAINTS * CONSTRAINT)
+
+    @inlined
+    def guard_room(self, which: int) -> Vector:
+        """Give the room for guards (0) or their rates (1)."""
+        first = self.after_constraints() + self.body_count * (DEGREES + which * GUARDS) + POWERS
+        return stretch(self.rows, first, GUARDS * self.body_count)
+
+    @inlined
+    def velocity_room(self) -> Vector:
+        """Give the room for velocities."""
+        first = self.after_constraints() + self.body_count * (DEGREES + 2 * GUARDS) + POWERS
+        return stretch(self.rows, first, DEGREES * self.body_count)
+
+    @inlined
+    def column_room(self) -> Vector:
+        """Give the room for columns."""
+        first = self.after_constraints() + self.body_count * (2 * DEGREES + 2 * GUARDS) + POWERS
+        return stretch(self.rows, first, COLUMNS * self.body_count)
+
+    @inlined
+    def matrix(self) -> Vector:
+        """Give the room for what constraints do to one another."""
+        room = 2 * DEGREES + 2 * GUARDS + COLUMNS
+        first = self.after_constraints() + self.body_count * room + POWERS
+        return stretch(self.rows, first, (MOST_CONSTRAINTS * self.body_count) ** 2)
+
+    @inlined
+    def on_base(self, k: int) -> OnBase:
+        """Give a body on its base."""
+        r = part_of(self.rows, k * ROW)
+        body = Body(r[0], r[1], r[2], r[3], r[4], r[5], int(r[6]), r[7] != 0.0)
+        n = part_of(r, BASE)
+        base = AnyBase(
+            int(r[LAW]), n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7], n[8], n[9], n[10], n[11],
+        )  # fmt: skip
+        return OnBase(body, base)
+
+    @inlined
+    def place_value(self, k: int) -> int:
+        """Give what the mode of a body is multiplied by in that of the chain."""
+        return int(self.rows[k * ROW + PLACE_VALUE])
+
+    @kernel
+    def part_mode(self, mode: int, k: int) -> Mode:
+        """Give how a body stands."""
+        both, standing = divmod(mode // self.place_value(k) % MODES, 2 * PIVOTS)
+        contact = both % CORNERS + CORNER * (both // CORNERS)
+        return Mode(contact, standing % PIVOTS, standing >= PIVOTS)
+
+    @kernel
+    def with_part(self, mode: int, k: int, part: Mode) -> int:
+        """Give the mode in which a body stands otherwise."""
+        value = self.place_value(k)
+        both = part.contact % CORNER + CORNERS * (part.contact // CORNER)
+        number = part.pivot + (PIVOTS if part.slides else 0) + 2 * PIVOTS * both
+        return mode + value * (number - mode // value % MODES)
+
+
+def row_of(body: Body, base: BaseNumbers, mass: float, top: float, beside: float) -> Vector:
+    """Give a body's row.
+
+    Raises
+    ------
+    TypeError
+        The law of its base is none of those that a chain knows.
+    """
+    if isinstance(base.law, ElasticPads) and isinstance(base.law.law, Viscoelastic):
+        law = ON_PADS
+    elif isinstance(base.law, Bed):
+        law = ON_BED
+    else:
+        msg = f"a chain of bodies stands on pads or on a bed, got {type(base.law).__name__}"
+        raise TypeError(msg)
+    row = np.zeros(ROW)
+    row[: len(body)] = body
+    row[[MASS, TOP, BESIDE, LAW]] = mass, top, beside, law
+    row[[PER_MASS, PER_INERTIA]] = 1.0 / mass, 1.0 / body.inertia
+    numbers = numbers_in(base.law)
+    row[BASE : BASE + len(numbers)] = numbers
+    return row
+
+
+def lists_of(rows: Sequence[Vector]) -> Lists:
+    """Give the lists of bodies, from the top down, with room to work in.
+
+    Raises
+    ------
+    ValueError
+        There are more bodies than a mode can tell of.
+    """
+    if len(rows) > MOST_BODIES:
+        msg = f"a chain has at most {MOST_BODIES} bodies, got {len(rows)}"
+        raise ValueError(msg)
+    count = len(rows)
+    for k, row in enumerate(rows):
+        row[PLACE_VALUE] = MODES**k
+    room = PLACES + MOST_CONSTRAINTS * CONSTRAINT + 2 * DEGREES + 2 * GUARDS + COLUMNS
+    size = count * room + POWERS + (MOST_CONSTRAINTS * count) ** 2
+    return Lists(count, np.concatenate([*rows, np.zeros(size)]))

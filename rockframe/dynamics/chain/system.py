@@ -1,0 +1,364 @@
+"""A chain of bodies as a system: what the integrator and the switches of contact ask of it.
+
+Equations :eq:`eq-chain`; per unit of a mass that all others are measured by.
+"""
+
+from rockframe.compiled import Vector, inlined, kernel, put
+from rockframe.dynamics.base import Guards
+from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, DEGREES, ROTATION, VERTICAL
+from rockframe.dynamics.chain import rows as at
+from rockframe.dynamics.chain.motion import (
+    FREE,
+    add_constraint,
+    coriolis_along,
+    coriolis_normal,
+    load_bodies,
+    place_bodies,
+    press_at,
+    solve_motion,
+    write_direction,
+    write_relative,
+)
+from rockframe.dynamics.chain.rows import (
+    COLUMNS,
+    CONSTRAINT,
+    GUARDS,
+    MODES,
+    OBSERVED,
+    PLACES,
+    Rows,
+)
+from rockframe.dynamics.on_base import IDLE, Mode, Response
+from rockframe.dynamics.protocol import HELD_PLACE, Energies, Ground, Slope
+from rockframe.dynamics.switching import checked_sliding, disturbed, lift_by_slip, switch_part
+
+
+class Chain(Rows):
+    """Bodies upon one another, from the top down: a system."""
+
+    __slots__ = ()
+
+    @kernel
+    def variables(self) -> int:
+        """Give 0: pads and beds have no variables of their own."""
+        return 0
+
+    @kernel
+    def guards(self) -> int:
+        """Give the number of guards, of each body in turn."""
+        return GUARDS * self.body_count
+
+    @kernel
+    def modes(self) -> int:
+        """Give the number of modes, of which some have no meaning."""
+        return MODES**self.body_count
+
+    @kernel
+    def moving_in(self, mode: int) -> int:
+        """Give the number of coordinates that move: all but the lowest body's where it is held."""
+        lowest = self.body_count - 1
+        free = self.on_base(lowest).is_free(self.part_mode(mode, lowest))
+        return DEGREES * self.body_count - (0 if free else 1)
+
+    @kernel
+    def contact_state_of(self, mode: int, k: int) -> int:
+        """Give the contact state of a body."""
+        return self.on_base(k).shown_contact(self.part_mode(mode, k))
+
+    @kernel
+    def relaxation_in(self, mode: int) -> float:
+        """Give the rate at which an end that slides returns to its level."""
+        fastest = 0.0
+        for k in range(self.body_count):
+            fastest = max(fastest, self.on_base(k).relaxation_in(self.part_mode(mode, k)))
+        return fastest
+
+    @inlined
+    def own_place(self, k: int) -> int:
+        """Give the place of the variables of a base's own in the state."""
+        return 2 * DEGREES * self.body_count
+
+    @kernel
+    def constrain(self, mode: int, state: Vector, room: Vector) -> int:
+        """Write the constraints of a mode; give how many there are."""
+        count, rows = 0, self.constraints()
+        for k in range(self.body_count):
+            i, standing = k * PLACES, self.part_mode(mode, k)
+            room[i + at.THRUST] = 0.0
+            if room[i + at.HELD] != FREE:
+                wanted = coriolis_along(i, room) + room[i + at.DRIFT]
+                reach = room[i + at.REACH]
+                add_constraint(self, count, k, 1.0, 0.0, -reach, wanted, room, rows)
+                count += 1
+            elif standing.slides:
+                self.let_slide(k, count, standing, state, room, rows)
+                count += 1
+        return count
+
+    @kernel
+    def let_slide(
+        self, k: int, which: int, standing: Mode, state: Vector, room: Vector, rows: Vector
+    ) -> None:
+        """Keep the end that slides at the level of its base, :eq:`eq-sliding-contact`."""
+        i, part, body = k * PLACES, self.on_base(k), self.state_of(k, state)
+        attitude = part.body.attitude(body.rotation)
+        line = part.body.base_line(body, attitude)
+        left = part.base.is_held(standing.contact, True)
+        on_left, on_right = part.body.end_accelerations(attitude, body.angular_velocity, 0.0, 0.0)
+        bend, speed = (on_left, line.left_speed) if left else (on_right, line.right_speed)
+        lever = line.left_lever if left else line.right_lever
+        sinking = bend + part.base.following_rate() * speed
+        wanted = -coriolis_normal(i, room) - sinking
+        add_constraint(self, which, k, 0.0, 1.0, lever, wanted, room, rows)
+        holds = which * CONSTRAINT + at.HOLDS
+        write_direction(self, k, 1.0, 0.0, -room[i + at.REACH], holds, room, rows)
+
+    @kernel
+    def solve(self, count: int, room: Vector) -> None:
+        """Write forces and accelerations, in the ground's axes and of all coordinates."""
+        rows = self.constraints()
+        solve_motion(self, count, 1, room, rows, self.matrix())
+        for which in range(count):
+            first = which * CONSTRAINT
+            room[int(rows[first + at.BODY]) * PLACES + at.THRUST] = rows[first + at.FORCE]
+        write_relative(self, room, self.slopes())
+
+    @kernel
+    def accelerate(self, mode: int, state: Vector, ground: Ground) -> Vector:
+        """Give the accelerations of all coordinates, and the powers."""
+        room, out = self.places(), self.slopes()
+        place_bodies(self, mode, state, room)
+        load_bodies(self, ground.x, self.number(0, at.GRAVITY) + ground.y, room)
+        dissipated = supplied = 0.0
+        for k in range(self.body_count):
+            i, mass = k * PLACES, self.number(k, at.MASS)
+            part, body = self.on_base(k), self.state_of(k, state)
+            contact = part.contact_with_force(self.part_mode(mode, k))
+            line = part.body.base_line_at(body)
+            base = part.base.force(contact, line, ())
+            dissipated += base.dissipated
+            press_at(self, k, base.upward, base.moment, room)
+            room[i + at.PRESS] = base.upward
+            supplied -= mass * (ground.x * room[i + at.SPEED_X] + ground.y * room[i + at.SPEED_Y])
+        self.solve(self.constrain(mode, state, room), room)
+        for k in range(self.body_count):
+            i = k * PLACES
+            if self.part_mode(mode, k).slides:
+                slip = room[i + at.SWAY] - room[i + at.REACH] * room[i + at.RATE]
+                dissipated -= room[i + at.THRUST] * slip
+        out[DEGREES * self.body_count] = dissipated
+        out[DEGREES * self.body_count + 1] = supplied
+        return out
+
+    @kernel
+    def some_end_slides(self, mode: int) -> bool:
+        """Whether an end of some body slides."""
+        found = False
+        for k in range(self.body_count):
+            found |= self.part_mode(mode, k).slides
+        return found
+
+    @kernel
+    def without_sliding(self, mode: int) -> int:
+        """Give the mode itself: nothing is compiled for it."""
+        return mode
+
+    @kernel
+    def forces_from(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> None:
+        """Write the bodies' accelerations and the forces at their bases, from a slope.
+
+        What rests has no acceleration of its own: that of the lowest body follows from its
+        rotation where it is held.
+        """
+        room = self.places()
+        place_bodies(self, mode, state, room)
+        x = y = angular = 0.0
+        for k in range(self.body_count - 1, -1, -1):
+            i, first = k * PLACES, BEFORE_HORIZONTAL * k
+            along = slope[self.horizontal_of(k)]
+            if room[i + at.HELD] != FREE:
+                along = room[i + at.REACH] * slope[first + ROTATION] + room[i + at.DRIFT]
+            along += coriolis_along(i, room) + room[i + at.ARM] * angular
+            normal = slope[first + VERTICAL] - coriolis_normal(i, room)
+            normal -= room[i + at.ACROSS] * angular
+            sine, cosine = room[i + at.SINE], room[i + at.COSINE]
+            x, y = x + along * cosine + normal * sine, y - along * sine + normal * cosine
+            angular += slope[first + ROTATION]
+            room[i + at.X], room[i + at.Y], room[i + at.ROTATION] = x, y, angular
+        force_x = force_y = 0.0
+        for k in range(self.body_count):
+            i, mass = k * PLACES, self.number(k, at.MASS)
+            force_x += mass * (room[i + at.X] + ground.x)
+            force_y += mass * (room[i + at.Y] + self.number(k, at.GRAVITY) + ground.y)
+            sine, cosine = room[i + at.SINE], room[i + at.COSINE]
+            room[i + at.THRUST] = cosine * force_x - sine * force_y
+            room[i + at.PRESS] = sine * force_x + cosine * force_y
+
+    @kernel
+    def guards_in(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
+        """Give the guards of each body in turn, and their rates."""
+        values, changes = self.guard_room(0), self.guard_room(1)
+        slides = self.some_end_slides(mode)
+        for k in range(self.body_count):
+            part, standing, body = self.on_base(k), self.part_mode(mode, k), self.state_of(k, state)
+            first, sliding = BEFORE_HORIZONTAL * k, IDLE
+            vertical, angular = slope[first + VERTICAL], slope[first + ROTATION]
+            if slides and standing.slides:
+                rise = lift_by_slip(self, part, k, mode, state)
+                self.forces_from(mode, state, slope, ground)
+                push = self.places()[k * PLACES + at.THRUST]
+                horizontal = slope[self.horizontal_of(k)]
+                sliding = part.sliding_guards(standing, body, angular, horizontal, push, rise)
+            found = part.guards_with(standing, body, (), vertical, angular, sliding)
+            put(found.values, GUARDS * k, values)
+            put(found.changes, GUARDS * k, changes)
+        return Guards(values, changes)
+
+    @kernel
+    def switch(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:
+        """Carry out the switch that a guard calls for; give the new mode."""
+        k = guard // GUARDS
+        new = switch_part(self, self.on_base(k), k, guard - k * GUARDS, mode, state, ground, memory)
+        for above in range(k):
+            new = disturbed(self, self.on_base(above), above, new, state)
+        for below in range(k + 1, self.body_count):
+            new = checked_sliding(self, self.on_base(below), below, new, state)
+        memory[HELD_PLACE + self.body_count] = k + 1.0
+        return new
+
+    @kernel
+    def energies(self, mode: int, state: Vector) -> Energies:
+        """Give the energies of all bodies and bases."""
+        room = self.places()
+        place_bodies(self, mode, state, room)
+        kinetic = gravity = elastic = change = rise = rate = 0.0
+        for k in range(self.body_count - 1, -1, -1):
+            i, mass = k * PLACES, self.number(k, at.MASS)
+            body = self.state_of(k, state)
+            x, y = room[i + at.SPEED_X], room[i + at.SPEED_Y]
+            rate += body.angular_velocity
+            kinetic += 0.5 * (mass * (x * x + y * y) + self.number(k, at.INERTIA) * rate * rate)
+            rise = self.rise_of(k, rise, state, room)
+            gravity += mass * self.number(k, at.GRAVITY) * rise
+            stored, more = self.on_base(k).elastic_energy(body, ())
+            elastic += stored
+            change += more
+        return Energies(kinetic, gravity, elastic, change)
+
+    @inlined
+    def rise_of(self, k: int, below: float, state: Vector, room: Vector) -> float:
+        """Give the rise of a body's centre of mass from rest, to all digits, from that below."""
+        i, vertical = k * PLACES, state[BEFORE_HORIZONTAL * k + VERTICAL]
+        sine, cosine = room[i + at.SINE], room[i + at.COSINE]
+        versine = sine * sine / (1.0 + cosine) if cosine > 0.0 else 1.0 - cosine
+        fixed = room[i + at.ARM] - vertical if k + 1 < self.body_count else 0.0
+        return below + vertical * cosine - room[i + at.ACROSS] * sine - fixed * versine
+
+    @kernel
+    def observe(
+        self, mode: int, state: Vector, slope: Slope, ground: Ground, memory: Vector
+    ) -> Vector:
+        """Give motion and forces of each body in turn, from the top down, and of its base."""
+        out = self.column_room()
+        self.forces_from(mode, state, slope, ground)
+        room = self.places()
+        shear = room[(self.body_count - 1) * PLACES + at.THRUST]
+        rotation = rate = rise = x = 0.0
+        for k in range(self.body_count - 1, -1, -1):
+            i, j, body = k * PLACES, COLUMNS * k, self.state_of(k, state)
+            rotation += body.rotation
+            rate += body.angular_velocity
+            rise = self.rise_of(k, rise, state, room)
+            sine, cosine = room[i + at.SINE], room[i + at.COSINE]
+            if k + 1 < self.body_count:
+                x += room[i + at.ARM] * sine + room[i + at.ACROSS] * cosine
+                x -= self.number(k, at.BESIDE)
+            else:
+                x = self.place(k, mode, state, memory)
+            out[j], out[j + 1], out[j + 2], out[j + 3] = rotation, rate, rise, room[i + at.SPEED_Y]
+            out[j + 4], out[j + 5], out[j + 6] = x, shear, room[i + at.SPEED_X]
+            out[j + 7], out[j + 8], out[j + 9] = (
+                room[i + at.ROTATION], room[i + at.X], room[i + at.Y],
+            )  # fmt: skip
+            out[j + 10], out[j + 11] = room[i + at.THRUST], room[i + at.PRESS]
+            out[j + 12], out[j + 13] = body.rotation, body.vertical
+            shown = self.on_base(k).observed_base(self.part_mode(mode, k), body, ())
+            put(shown, j + COLUMNS - OBSERVED, out)
+        return out
+
+    @kernel
+    def place(self, k: int, mode: int, state: Vector, memory: Vector) -> float:
+        """Give the horizontal place of a centre of mass: along the body below, or on the ground."""
+        if k + 1 < self.body_count:
+            return state[self.horizontal_of(k)]
+        body = self.state_of(k, state)
+        return self.on_base(k).horizontal_place(
+            self.part_mode(mode, k), body, memory[HELD_PLACE + k]
+        )
+
+    @kernel
+    def response(
+        self, k: int, mode: int, press: float, moment: float, slip: float, state: Vector
+    ) -> Response:
+        """Give how velocities change by an impulse, or as a hold stops a slip.
+
+        The changes of all velocities stand in the room for slopes until the next ones.
+        """
+        room, out = self.places(), self.slopes()
+        place_bodies(self, mode, state, room)
+        load_bodies(self, 0.0, 0.0, room)
+        press_at(self, k, press, moment, room)
+        count, rows = 0, self.constraints()
+        for j in range(self.body_count):
+            i = j * PLACES
+            room[i + at.RISE] = room[i + at.SWAY] = room[i + at.FRAME_RATE] = 0.0
+            if room[i + at.HELD] != FREE:
+                wanted = -slip if j == k else 0.0
+                add_constraint(self, count, j, 1.0, 0.0, -room[i + at.REACH], wanted, room, rows)
+                count += 1
+            else:
+                room[i + at.THRUST] = 0.0
+        self.solve(count, room)
+        first = BEFORE_HORIZONTAL * k
+        thrust = room[k * PLACES + at.THRUST]
+        return Response(out[first + ROTATION], out[first + VERTICAL], thrust, ())
+
+    @kernel
+    def respond(self, k: int, mode: int, response: Response, state: Vector) -> None:
+        """Change the velocities by the last response."""
+        out, room, n = self.slopes(), self.places(), self.coordinates()
+        for i in range(n):
+            state[n + i] += out[i]
+        for j in range(self.body_count):
+            if room[j * PLACES + at.HELD] != FREE:
+                rate = room[j * PLACES + at.REACH] * state[n + BEFORE_HORIZONTAL * j + ROTATION]
+                state[n + self.horizontal_of(j)] = rate
+
+    @kernel
+    def velocities(self, state: Vector) -> Vector:
+        """Give all velocities, which stand in a room of their own until the next ones."""
+        out, n = self.velocity_room(), self.coordinates()
+        for i in range(n):
+            out[i] = state[n + i]
+        return out
+
+    @kernel
+    def end_accelerations(
+        self, k: int, mode: int, state: Vector, ground: Ground
+    ) -> tuple[float, float]:
+        """Give the accelerations of the ends of a base in a mode, seen from what it stands on."""
+        slope, first = self.accelerate(mode, state, ground), BEFORE_HORIZONTAL * k
+        body = self.state_of(k, state)
+        return self.on_base(k).end_rises(body, slope[first + VERTICAL], slope[first + ROTATION])
+
+    @kernel
+    def tendency(self, k: int, mode: int, state: Vector, ground: Ground) -> float:
+        """Give the side to which a body will rotate; a first guess will do at rest."""
+        if ground.x != 0.0:
+            return -ground.x
+        if self.body_count == 1:
+            return self.on_base(k).base.tilt(self.part_mode(mode, k).contact)
+        other = state[BEFORE_HORIZONTAL * (k - 1) + ROTATION] if k > 0 else 0.0
+        if k == 0:
+            other = -state[self.coordinates() + BEFORE_HORIZONTAL + ROTATION]
+        return other if other != 0.0 else 1.0

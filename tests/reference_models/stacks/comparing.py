@@ -1,0 +1,96 @@
+"""Run a scene by the reference model and by the package's chain of bodies."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from reference_models.maximal.motions import both
+
+from rockframe.dynamics.alone_model import body_of
+from rockframe.dynamics.base_numbers import bed_under, pads_under
+from rockframe.dynamics.chain.model import ChainBody, chain
+from rockframe.dynamics.protocol import ContactModel, Start, column_of
+from rockframe.dynamics.restraint import BY_CONTACT, CENTRE, LEADING_CORNER
+from rockframe.signals import Motion
+from rockframe.solve.accuracy import accuracy_of
+from rockframe.solve.integrate import integrate
+from rockframe.solve.observe import memory_at_outputs, observe_states
+from rockframe.solve.trajectory import Trajectory
+
+from .scene import GRAVITY, Bed, Scene
+from .simulate import History, simulate
+
+RULES = {"contact-state": BY_CONTACT, "leading-corner": LEADING_CORNER, "centre": CENTRE}
+
+
+@dataclass(frozen=True)
+class Compared:
+    """Both runs of a scene, up to the end of the shorter one; the package's also to its own end."""
+
+    reference: History
+    run: Trajectory
+    rotation: np.ndarray  # of all bodies, by the package
+
+    @property
+    def difference(self) -> float:
+        """Greatest difference of a rotation, over the largest one."""
+        count = min(len(self.rotation), len(self.reference.time))
+        ours, theirs = self.rotation[:count], self.reference.rotation[:count]
+        return float(np.abs(ours - theirs).max() / np.abs(theirs).max())
+
+
+def model_of(scene: Scene) -> ContactModel:
+    """Give the package's model of a scene whose bodies stand upright at rest."""
+    links, measure, carried = [], scene.bodies[0].mass, 0.0
+    below = [*(one.eccentricity for one in scene.bodies[1:]), 0.0]
+    for given, base, lower in zip(scene.bodies, scene.bases, below, strict=True):
+        carried += given.mass
+        beside = given.offset + given.eccentricity - lower
+        body = body_of(
+            left=given.half_width + given.eccentricity,
+            right=given.half_width - given.eccentricity,
+            height=given.height,
+            inertia=given.inertia / measure,
+            restraint=RULES[scene.rule],
+            small_rotation=False,
+            gravity=GRAVITY,
+        )
+        numbers = {
+            "stiffness": base.stiffness / measure,
+            "damping": base.damping / measure,
+            "load": carried / measure,
+        }
+        if isinstance(base, Bed):
+            under = bed_under(body, by_pressure=False, **numbers)
+        else:
+            both_sides = base.restitution
+            eps = both_sides if isinstance(both_sides, tuple) else (both_sides, both_sides)
+            under = pads_under(body, restitution=eps, **numbers)
+        links.append(ChainBody(body, under, given.mass / measure, given.top, beside))
+    return chain(links, measure)
+
+
+def run_chain(scene: Scene, motion: Motion | None, accuracy: str, step: float) -> Trajectory:
+    """Run a scene by the package."""
+    shaken = 0.0 if motion is None else motion.duration
+    return integrate(
+        model_of(scene), Start(scene.rotation, scene.rate), motion, accuracy_of(accuracy),
+        duration=shaken + scene.free, output_step=step,
+    )  # fmt: skip
+
+
+def rotations(model: ContactModel, run: Trajectory) -> np.ndarray:
+    """Give the rotations of all bodies at the output times, shape (samples, bodies)."""
+    memory, row = memory_at_outputs(run)
+    still = np.zeros((len(run.time), 2))
+    shown = observe_states(model, run.mode, run.state, memory, row, still)
+    names = [column_of("rotation", k) for k in range(model.system.bodies())]
+    return np.column_stack([shown[name] for name in names])
+
+
+def compared(scene: Scene, accuracy: str = "reference") -> Compared:
+    """Run a scene by both; its motion is one for `maximal.motions.both`."""
+    given, excitation = both(scene.motion)
+    reference = simulate(scene, excitation)
+    step = float(reference.time[1] - reference.time[0])
+    run = run_chain(scene, None if given is None else given.si, accuracy, step)
+    return Compared(reference, run, rotations(model_of(scene), run))

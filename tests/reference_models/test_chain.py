@@ -1,0 +1,172 @@
+"""Chains of bodies: beside two bodies solved by hand, and the reference model of stacks."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from reference_models.stacks.scene import mirrored
+
+import rockframe as rf
+from rockframe.compiled import COMPILED
+from rockframe.dynamics.chain.model import ChainBody, chain_of
+from rockframe.dynamics.chain.rows import COLUMNS, GUARDS, OBSERVED, lists_of, row_of
+from rockframe.dynamics.coupled.model import system_of
+from rockframe.dynamics.on_base import Mode
+from rockframe.dynamics.pads import CORNER, CORNER_GUARDS
+from rockframe.dynamics.protocol import Ground
+from rockframe.system.assembly import assemble
+
+pytestmark = pytest.mark.reference_models
+
+DATA = Path(__file__).resolve().parents[2] / "docs" / "data" / "chain_oracle.json"
+STATES = 60
+OF_UPPER = np.array([.1, .01, .1, .01, .05, .05, .5, .1, .5, .1, .3, .3])  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def pair():
+    """A block on pads on a cap on soil, as solved by hand and as a chain."""
+    parts = (
+        rf.Block(width="1 m", height="4 m", mass="4 t"),
+        rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1),
+        rf.CushionCap(height="0.9 m", mass="3 t"),
+        rf.WinklerSoil(stiffness="9 MPa", damping_ratio=0.2),
+    )
+    stack = assemble(parts).setting.bodies()
+    links = [
+        ChainBody(stack.block, stack.pads, 1.0, 0.0, 0.0),
+        ChainBody(stack.cap, stack.soil, stack.cap_mass, stack.cap.height, 0.0),
+    ]
+    return system_of(stack), chain_of(links)
+
+
+def standing(rng, base, corners: int, size: int) -> Mode:
+    contact = int(rng.integers(corners)) + size * int(rng.integers(corners))
+    one_end = base.is_held(contact, True) != base.is_held(contact, False)
+    return Mode(contact, int(rng.integers(3)), bool(one_end and rng.random() < 0.4))
+
+
+def close(ours, theirs, share: float) -> bool:
+    ours, theirs = np.array(ours), np.array(theirs)
+    return bool(np.abs(ours - theirs).max() <= share * np.abs(theirs).max())
+
+
+def states(pair):
+    """Draw states, modes and ground accelerations."""
+    by_hand, chain = pair
+    rng = np.random.default_rng(3)
+    for _ in range(STATES):
+        upper = standing(rng, by_hand.upper.base, 5, CORNER)
+        lower = standing(rng, by_hand.lower.base, 2, 2)
+        mode = by_hand.with_part(by_hand.with_part(0, 0, upper), 1, lower)
+        ours = chain.with_part(chain.with_part(0, 0, upper), 1, lower)
+        assert (chain.part_mode(ours, 0), chain.part_mode(ours, 1)) == (upper, lower)
+        ground = Ground(*rng.normal(size=2) * 3.0)
+        yield rng.normal(size=12) * OF_UPPER, mode, ours, ground
+
+
+def test_accelerations_are_those_solved_by_hand(pair):
+    by_hand, chain = pair
+    for state, mode, ours, ground in states(pair):
+        slope = by_hand.accelerate(mode, state, ground)
+        assert close(chain.accelerate(ours, state, ground), slope, 1e-12)
+        assert close(chain.energies(ours, state), by_hand.energies(mode, state), 1e-12)
+
+
+def test_guards_are_those_of_both_bodies(pair):
+    by_hand, chain = pair
+    # those of the cap, whose ends have one each
+    lower = [0, CORNER_GUARDS, *range(2 * CORNER_GUARDS, GUARDS)]
+    places = np.array([*range(GUARDS), *(GUARDS + one for one in lower)])
+    for state, mode, ours, ground in states(pair):
+        slope = by_hand.accelerate(mode, state, ground)
+        theirs = by_hand.guards_in(mode, state, slope, ground)
+        found = chain.guards_in(ours, state, slope, ground)
+        assert np.allclose(np.array(found.values)[places], theirs.values, rtol=1e-10, atol=1e-10)
+        assert np.allclose(np.array(found.changes)[places], theirs.changes, rtol=1e-9, atol=1e-9)
+
+
+def test_velocities_answer_impulses_as_solved_by_hand(pair):
+    by_hand, chain = pair
+    rng = np.random.default_rng(4)
+    for state, mode, ours, _ in states(pair):
+        for k in (0, 1):
+            if k == 1 and by_hand.lower.is_free(by_hand.part_mode(mode, 1)):
+                continue  # there are no impulses of a base that does not touch
+            given = rng.normal(size=3)
+            one, other = state.copy(), state.copy()
+            theirs = by_hand.response(k, mode, *given, one)
+            found = chain.response(k, ours, *given, other)
+            assert close(found[:3], theirs[:3], 1e-11)
+            by_hand.respond(k, mode, theirs, one)
+            chain.respond(k, ours, found, other)
+            assert close(other[:-1], one[:-1], 1e-11)  # a cap that is held has no sway of its own
+
+
+def test_what_is_observed_is_what_two_bodies_show(pair):
+    by_hand, chain = pair
+    memory = np.random.default_rng(5).normal(size=6)
+    # motion and forces of the block, the cap's motion, the block on the cap, then the bases
+    cap = COLUMNS + np.arange(4)
+    bases = [*range(COLUMNS - OBSERVED, COLUMNS - 1), *range(2 * COLUMNS - OBSERVED, 2 * COLUMNS)]
+    places = np.array([*range(12), *cap, 12, 13, *bases])
+    for state, mode, ours, ground in states(pair):
+        slope = by_hand.accelerate(mode, state, ground)
+        theirs = by_hand.observe(mode, state, slope, ground, memory)
+        assert close(
+            np.array(chain.observe(ours, state, slope, ground, memory))[places], theirs, 1e-10
+        )
+
+
+def test_a_chain_tells_what_it_cannot_carry(pair):
+    by_hand, _ = pair
+    row = np.zeros(3)
+    with pytest.raises(ValueError, match="at most 8 bodies, got 9"):
+        lists_of([row] * 9)
+    body, numbers = (
+        by_hand.upper.body,
+        assemble(
+            (
+                rf.Block(width="1 m", height="4 m", mass="4 t"),
+                rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1),
+            )
+        ).setting.support.own_law,
+    )
+    with pytest.raises(TypeError, match="stands on pads or on a bed, got tuple"):
+        row_of(body, replace(numbers, law=(1.0,)), 1.0, 0.0, 0.0)
+
+
+if COMPILED:
+    from reference_models.stacks.comparing import compared, model_of, rotations, run_chain
+    from reference_models.stacks.drawing import draw
+
+    @pytest.mark.parametrize(("bodies", "scenes"), [(1, 3), (2, 3), (3, 8), (5, 2), (8, 1)])
+    def test_random_stacks_move_as_in_the_reference_model(bodies, scenes):
+        for one in range(scenes):
+            found = compared(draw(np.random.default_rng([5, bodies, one]), bodies))
+            assert found.difference < 1e-6, one
+            assert found.run.energy_residual < 1e-8, one
+
+    def test_runs_of_a_mirrored_stack_are_mirrored():
+        scene = replace(draw(np.random.default_rng([77, 3, 5]), 3), rotation=0.05)
+        ours = run_chain(scene, None, "standard", 0.01)
+        mirror = run_chain(mirrored(scene), None, "standard", 0.01)
+        model, other = model_of(scene), model_of(mirrored(scene))
+        assert len(ours.events.time) > 4
+        assert np.abs(rotations(model, ours) + rotations(other, mirror)).max() < 1e-12
+
+    def test_fast_steps_come_near():
+        scene = draw(np.random.default_rng([77, 3, 5]), 3)
+        assert compared(scene, "fast").difference < 1e-2
+        assert compared(scene, "standard").difference < 1e-5
+
+
+def test_the_comparison_that_the_manual_shows_is_what_was_found():
+    tables = json.loads(DATA.read_text())
+    page = (DATA.parents[1] / "validation_scenes.md").read_text()
+    for table in tables:
+        row = f"| {table['bodies']} | {table['scenes']} | {table['agree']} | "
+        assert row in page
+        assert table["agree"] >= 0.99 * table["scenes"]
