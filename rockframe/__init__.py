@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from rockframe.components import Member as Member
     from rockframe.components import RegularFrame as RegularFrame
     from rockframe.components import RigidGround as RigidGround
+    from rockframe.components import Stack as Stack
     from rockframe.components import TwoSpringSupport as TwoSpringSupport
     from rockframe.components import WinklerSoil as WinklerSoil
     from rockframe.errors import AssemblyError as AssemblyError
@@ -108,6 +109,8 @@ _HOMES = {
         "Member",
         "RegularFrame",
         "RigidGround",
+        "Stack",
+        "Stack",
         "TwoSpringSupport",
         "WinklerSoil",
     ),

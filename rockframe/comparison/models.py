@@ -21,6 +21,10 @@ _BED = (
     ("{soil}", ("block", "soil"), Coupling.COUPLED),
     ("cap and {soil}", ("block", "cap", "soil"), Coupling.COUPLED),
 )
+_UPON: Final = (
+    ("stack on {two pads}", ("stack", "pads"), Coupling.COUPLED),
+    ("stack on {soil}", ("stack", "soil"), Coupling.COUPLED),
+)
 _WORDS: Final = {"two pads": "pads", "pads": "pads", "soil": "soil"}
 """Words of rungs, and the slots of the bases that they name."""
 
@@ -70,6 +74,7 @@ def model_ladder(system: System) -> dict[str, System]:
     given = vars(system.parts)
     present = system.parts.signature
     rows = _STACK if {"pads", "cap"} <= present or "soil" not in present else _BED
+    rows = _UPON if "stack" in present else rows
     options: dict[str, Any] = {
         "restraint": system.restraint, "gravity": system.gravity, "inclination": system.inclination
     }  # fmt: skip

@@ -13,6 +13,7 @@ from rockframe.components.pads import TwoSpringSupport
 from rockframe.components.parameters import DERIVED, Choice, Parameter, Ratio, Text
 from rockframe.components.registry import component_from_dict
 from rockframe.components.soil import Separation, WinklerSoil
+from rockframe.components.stack import Stack
 
 __all__ = [
     "DERIVED",
@@ -29,6 +30,7 @@ __all__ = [
     "RegularFrame",
     "RigidGround",
     "Separation",
+    "Stack",
     "Text",
     "TwoSpringSupport",
     "WinklerSoil",

@@ -49,7 +49,7 @@ class SceneArtist:
     def frame(self, shown: Iterable[Placement]) -> None:
         """Set limits that hold the scene at all instants."""
         found = [self.drawer.lay_out(at) for at in shown]
-        corners = np.vstack([np.vstack([one.block, one.ground]) for one in found])
+        corners = np.vstack([np.vstack([one.block, one.ground, *one.lower]) for one in found])
         low, high = corners.min(axis=0), corners.max(axis=0)
         widest = float(max(-low[0], high[0]))
         if widest > self.drawer.reach:
@@ -76,6 +76,8 @@ class SceneArtist:
         self._ground(found)
         if found.cap is not None:
             self._polygon("cap", found.cap, ORANGE, 3)
+        for number, body in enumerate(found.lower):
+            self._polygon(f"stack {number}", body, ORANGE, 3, alpha=0.22)
         for number, (pad, bears) in enumerate(zip(found.pads, found.pads_bear, strict=True)):
             artist = self._polygon(f"pads {number}", pad, GREY, 3)
             artist.set(facecolor=CONTACT if bears else GREY, alpha=0.75)
@@ -163,8 +165,10 @@ class SceneArtist:
 def labels_of(parts: Parts, geometry: Geometry) -> dict[str, str]:
     """Give what the parts of a scene are called, with their numbers, by their slots."""
     found: dict[str, str] = {}
-    for slot in ("block", "pads", "cap", "soil"):
-        part = getattr(parts, slot)
+    lower = () if parts.stack is None else parts.stack.bodies
+    named = {slot: getattr(parts, slot) for slot in ("block", "pads", "cap", "soil")}
+    named |= {f"stack {k - 1}" if k else "block": body for k, body in enumerate(lower)}
+    for slot, part in named.items():
         if part is not None:
             numbers = [f"{name} {value}" for name, value in in_words(part.to_dict()).items()]
             found[slot] = "\n   ".join([type(part).__name__, *numbers])

@@ -1,6 +1,7 @@
 """What is drawn of a scene at an instant: polygons, pads, soil and points of contact."""
 
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Final
 
 import numpy as np
@@ -41,6 +42,8 @@ class Layout:
         Where contact is: points, shape (1, 2), and lines.
     ground : ndarray, shape (2, 2)
         Surface of rigid ground, where there is no soil.
+    lower : tuple of ndarray
+        Outlines of the bodies of a stack beneath the block.
     """
 
     block: Array
@@ -52,6 +55,7 @@ class Layout:
     soil: Array | None
     touching: tuple[Array, ...]
     ground: Array
+    lower: tuple[Array, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -94,7 +98,7 @@ class Drawer:
         """Lay out a scene at an instant."""
         geometry, lift = self.geometry, self._lift(at)
         block = self._moved(at.block, geometry.block) + lift
-        level = np.array([0.0, geometry.level])
+        level = geometry.place
         members = tuple(self._moved(at.block, one + level) + lift for one in geometry.members)
         centre = self._moved(at.block, np.array([geometry.centre]) + level)[0] + lift
         outline = geometry.cap_outline
@@ -109,12 +113,16 @@ class Drawer:
         floor = 0.0 if geometry.stacked else -self.pad_thickness
         ground = np.array([(-self.reach, floor), (self.reach, floor)])
         found = Layout(block, cap, members, centre, pads, bear, soil, touching, ground)
-        return self._inclined(found)
+        lower = tuple(
+            self._moved(partial(at.lower, k), one.outline) for k, one in enumerate(geometry.lower)
+        )
+        return self._inclined(replace(found, lower=lower))
 
     def points(self, at: Placement, places: Array) -> Array:
         """Lay out points of the body that results are of, from the middle of its base."""
-        below = self.geometry.level if self.geometry.stacked else 0.0
-        drawn = self._moved(at.block, places + np.array([0.0, below])) + self._lift(at)
+        geometry = self.geometry
+        below = geometry.place if geometry.stacked or geometry.lower else np.zeros(2)
+        drawn = self._moved(at.block, places + below) + self._lift(at)
         return self._turned(drawn)
 
     def _moved(self, place: object, points: Array) -> Array:
@@ -161,6 +169,8 @@ class Drawer:
         half, free = geometry.base_half_width, self.magnify * geometry.bed_sinks
         ends = np.array([(-half, 0.0), (half, 0.0)])
         place = at.block if geometry.cap is None else at.cap
+        if geometry.lower:
+            place = partial(at.lower, len(geometry.lower) - 1)
         left, right = self._moved(place, ends)
         share = np.linspace(0.0, 1.0, _SPRINGS)[:, None]
         base = left + share * (right - left)
@@ -193,6 +203,7 @@ class Drawer:
             soil=None if found.soil is None else turn(found.soil),
             touching=tuple(turn(one) for one in found.touching),
             ground=turn(found.ground),
+            lower=tuple(turn(one) for one in found.lower),
         )
 
 

@@ -34,6 +34,10 @@ _FOLLOWED: Final = (
     "soil_contact_state",
 )
 """What the place of a scene's parts follows from; of the cap, where there is one."""
+_OF_BODIES: Final = (
+    "body_rotation", "body_horizontal_displacement", "body_vertical_displacement",
+)  # fmt: skip
+"""The same of all bodies of a stack."""
 
 
 def scene(
@@ -212,7 +216,13 @@ class Moving:
     def at(self, place: int) -> Placement:
         """Give the scene at a sample."""
         values = {name: float(column[place]) for name, column in self._columns.items()}
-        return Placement(self.geometry, values, self.system.restraint)
+        return Placement(self.geometry, values, self.system.restraint, self._bodies_at(place))
+
+    def _bodies_at(self, place: int) -> "Array | None":
+        """Give rotation and displacements of all bodies of a stack at a sample."""
+        if not self.geometry.lower:
+            return None
+        return np.column_stack([self.run[name].to_numpy()[:, place] for name in _OF_BODIES])
 
     def nearest(self, time: object) -> int:
         """Find the sample nearest to a time, or that of the largest rotation."""

@@ -8,13 +8,16 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from rockframe.dynamics.events import SILENT
+from rockframe.dynamics.events import OVERTURNING, SILENT, TOPPLED
 from rockframe.dynamics.protocol import (
     IMPACT_LOSS,
     IMPULSIVE_INPUT,
     REPINNING_LOSS,
     ContactModel,
+    column_of,
 )
+from rockframe.results.schema import SCHEMA
+from rockframe.results.variables.bodies import OF_EACH
 from rockframe.results.variables.runs import Direction
 from rockframe.signals.arrays import Array
 from rockframe.solve.layout import Status
@@ -25,9 +28,6 @@ from rockframe.system.setting import Setting
 
 Generic = NDArray[Any]
 Values = Mapping[str, "Generic | float | int | bool"]
-
-_CONTACTS = ("contact_state", "soil_contact_state")
-"""Names in the schema of the contact states of both bodies of a stack, or of the only one."""
 
 
 class Peak(NamedTuple):
@@ -51,8 +51,41 @@ def contact_histories(model: ContactModel, run: Trajectory) -> dict[str, Generic
     """Give the contact states at the output times, by their names in the schema."""
     return {
         name: model.contact_states(run.mode, body).astype(np.int8)
-        for body, name in enumerate(_CONTACTS[: model.system.bodies()])
+        for body, name in enumerate(model.contacts)
     }
+
+
+def body_histories(
+    model: ContactModel, run: Trajectory, values: Mapping[str, Generic]
+) -> dict[str, Generic]:
+    """Give histories with the motion of all bodies in one array each, where there are several.
+
+    Parameters
+    ----------
+    model : ContactModel
+        The equations.
+    run : Trajectory
+        The run.
+    values : mapping of str to ndarray
+        Histories, among them the model's columns.
+
+    Returns
+    -------
+    dict of str to ndarray
+        All of them, or without the columns that the arrays are made of.
+    """
+    if not model.shows_bodies:
+        return dict(values)
+    bodies = range(model.system.bodies())
+    found: dict[str, Generic] = {
+        name: np.array([values[column_of(one, k)] for k in bodies]) for name, one in OF_EACH.items()
+    }
+    found["body_contact_state"] = np.array(
+        [model.contact_states(run.mode, k) for k in bodies], dtype=np.int8
+    )
+    found["body"] = np.array(bodies) + 1
+    kept = {name: each for name, each in values.items() if name in SCHEMA}
+    return kept | found
 
 
 def relative_histories(values: Mapping[str, Generic], setting: Setting) -> dict[str, Generic]:
@@ -128,9 +161,12 @@ def event_columns(model: ContactModel, run: Trajectory) -> dict[str, Generic]:
     shown = events.kind != SILENT
     contacts: dict[str, Generic] = {
         f"{name}_{when}": model.contact_states(modes[shown], body).astype(np.int8)
-        for body, name in enumerate(_CONTACTS[: model.system.bodies()])
+        for body, name in enumerate(model.contacts)
         for when, modes in (("before", events.mode_before), ("after", events.mode_after))
     }
+    if model.shows_bodies:
+        highest = np.isin(events.kind, (OVERTURNING, TOPPLED))
+        contacts["event_body"] = np.where(highest, 1, events.memory[:, -1]).astype(int)[shown]
     return {
         "event_time": events.time[shown],
         "event_kind": events.kind[shown].astype(np.int8),

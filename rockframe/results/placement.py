@@ -34,11 +34,14 @@ class Placement:
         Of the instant, by their names in the schema.
     restraint : Restraint
         Which point of the base is held horizontally.
+    bodies : ndarray, shape (bodies, 3), or None
+        Of all bodies of a stack rotation and both displacements; None at rest.
     """
 
     geometry: Geometry
     values: Mapping[str, float]
     restraint: Restraint
+    bodies: Array | None = None
 
     def block(self, points: Array) -> Array:
         """Give where points of the block are, and of all that it is one body with.
@@ -56,6 +59,11 @@ class Placement:
         values = self.values
         moves = values["horizontal_displacement"], values["vertical_displacement"]
         return self._moved(points, self.geometry.moved, values["rotation"], moves)
+
+    def lower(self, k: int, points: Array) -> Array:
+        """Give where points of a body of a stack are, the `k`-th beneath the block."""
+        rotation, right, up = np.zeros(3) if self.bodies is None else self.bodies[k + 1]
+        return self._moved(points, self.geometry.lower[k].centre, float(rotation), (right, up))
 
     def cap(self, points: Array) -> Array:
         """Give where points of the cap are, as :meth:`block` does."""

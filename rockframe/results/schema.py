@@ -12,6 +12,7 @@ from rockframe.results.variables.analyses import (
     SEQUENCES,
     SPECTRA,
 )
+from rockframe.results.variables.bodies import BODIES
 from rockframe.results.variables.comparison import COMPARISON
 from rockframe.results.variables.directions import DIRECTIONS
 from rockframe.results.variables.identification import FREE_DECAY
@@ -41,6 +42,7 @@ _TABLES: Final = (
     HISTORIES,
     MOTION_AFTER_END,
     ENERGY_HISTORIES,
+    BODIES,
     ACCELERATIONS,
     REACTIONS,
     OTHERS,
@@ -105,6 +107,7 @@ COORDINATES: Final = (
     "point",
     "point_x",
     "point_y",
+    "body",
     "scale",
     CASE,
     MOTION,

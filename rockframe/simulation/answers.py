@@ -6,7 +6,7 @@ import numpy as np
 
 from rockframe.compiled import Integers
 from rockframe.dynamics.events import IMPACT, SILENT
-from rockframe.dynamics.protocol import BODY_FORCES
+from rockframe.dynamics.protocol import BODY_FORCES, column_of
 from rockframe.motion import GroundMotion
 from rockframe.results.along_steps import FRACTIONS, AlongSteps
 from rockframe.results.forces import (
@@ -20,6 +20,7 @@ from rockframe.results.forces import (
 )
 from rockframe.results.outcome import (
     Generic,
+    body_histories,
     cap_histories,
     contact_histories,
     energy_histories,
@@ -90,6 +91,7 @@ def answers_of(system: Assembly, plan: Plan, run: Trajectory) -> Answers:
         values |= force_histories(values, moved[:count], load)
     values |= contact_histories(system.model, run)
     values |= cap_histories(values, setting)
+    values = body_histories(system.model, run, values)
     values |= relative_histories(values, setting)
     vertical = plan.motion is not None and plan.motion.si.vertical is not None
     values |= ground_histories(ground[:count], has_vertical_motion=vertical)
@@ -104,6 +106,8 @@ def answers_of(system: Assembly, plan: Plan, run: Trajectory) -> Answers:
         **sliding_scalars(found),
         **residuals(values, load),
     }
+    if system.model.shows_bodies:
+        told["peak_body_rotation"] = _peak_rotations(system, along)
     places: dict[str, Generic] = {}
     if plan.points:
         told |= point_peaks(plan.points, along, load)
@@ -184,6 +188,8 @@ def _along(system: Assembly, plan: Plan, run: Trajectory) -> AlongSteps:
         names = BODY_FORCES
         if system.setting.stacked:
             names += OF_SOIL_FRICTION
+        if system.model.shows_bodies:
+            names += rotations_of(system.model.system.bodies())
         shown: dict[str, Generic] = {**observe_steps(system.model, steps, memory, names)}
         shown |= friction_demands(shown, load)
 
@@ -203,6 +209,17 @@ def _along(system: Assembly, plan: Plan, run: Trajectory) -> AlongSteps:
         return found | force_histories(found, moved, load)
 
     return AlongSteps(steps, shown, inside)
+
+
+def rotations_of(bodies: int) -> tuple[str, ...]:
+    """Name the columns of the rotations of all bodies."""
+    return tuple(column_of("rotation", k) for k in range(bodies))
+
+
+def _peak_rotations(system: Assembly, along: AlongSteps) -> Array:
+    """Give the greatest rotation of each body."""
+    names = rotations_of(system.model.system.bodies())
+    return along.largest(lambda shown: np.abs([shown[name] for name in names]))[0]
 
 
 def _events_in(shown_at: dict[str, Generic], run: Trajectory) -> EventStates:

@@ -73,8 +73,9 @@ def lacking(system: Assembly, names: Iterable[str]) -> list[str]:
     if not depend:
         return []
     columns = {column.name for column in system.model.columns}
+    of_stack = " and no Stack" if system.model.shows_bodies else ""
     return [
-        f"there is no {name!r} in this scene; it needs {NEEDED[name][1]}"
+        f"there is no {name!r} in this scene; it needs {NEEDED[name][1]}{of_stack}"
         for name in depend
         if not columns.issuperset(NEEDED[name][0])
     ]

@@ -201,7 +201,7 @@ def run(
     -------
     xarray.Dataset
     """
-    for column in system.model.columns:
+    for column in () if system.model.shows_bodies else system.model.columns:
         row_of(column.name)  # before the run
     response = respond(system, plan)
     summary, missing = response.trajectory, response.missing

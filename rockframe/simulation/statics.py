@@ -80,8 +80,12 @@ def frequencies(system: Assembly) -> xr.Dataset:
         "period": 2.0 * math.pi / rate,
         "damping_ratio": np.array([mode.damping_ratio for mode in modes]),
     }
-    for row, name in enumerate(motion.coordinates):
-        values[f"{name}_shape"] = np.array([mode.shape[row] for mode in modes])
+    shapes = np.array([mode.shape for mode in modes])
+    if motion.bodies:
+        values["body"] = np.arange(1, motion.bodies + 1)
+    names = list(dict.fromkeys(motion.coordinates))
+    for row, name in enumerate(names):
+        values[f"{name}_shape"] = shapes[:, row :: len(names)] if motion.bodies else shapes[:, row]
     return build_dataset(
         values, _about(system), title="Modes of small motion", source="eigenvalues"
     )

@@ -46,6 +46,7 @@ def shapes_of(geometry: Geometry) -> list[Shape]:
     found = [("ground" if geometry.bed_sinks is None else "soil", band)]
     if geometry.cap_outline is not None:
         found.append(("cap", geometry.cap_outline))
+    found += [("cap", one.outline) for one in geometry.lower]
     raised = lift if geometry.stacked else np.zeros(2)
     if pad:
         level = geometry.level if geometry.stacked else -pad
@@ -53,7 +54,7 @@ def shapes_of(geometry: Geometry) -> list[Shape]:
             place = side * geometry.half_width
             found.append(("pad", rectangle(0.17 * geometry.half_width, pad, place, level)))
     found.append(("block", geometry.block + raised))
-    level_up = np.array([0.0, geometry.level])
+    level_up = geometry.place
     found += [("member", member + level_up + raised) for member in geometry.members]
     centre = np.array([geometry.centre]) + level_up + raised
     return [

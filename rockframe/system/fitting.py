@@ -2,11 +2,14 @@
 
 import math
 
-from rockframe.components import Component
+from rockframe.components import Component, Stack
 from rockframe.system.own_base import OwnBase
 from rockframe.system.parts import Parts
+from rockframe.system.slots import slot_of
 
 _ROUNDING = 1e-12
+BASES = ("pads", "soil")
+"""Slots of bases that give way."""
 _ROUNDING_OF_DEPTHS = 1e-9
 
 
@@ -25,7 +28,9 @@ def misfits(parts: Parts) -> list[str]:
     """
     block, pads, cap, soil = parts.block, parts.pads, parts.cap, parts.soil
     faults: list[str] = []
-    if block is None:
+    if parts.stack is not None:
+        faults += _misfits_of_stack(parts.stack, parts)
+    elif block is None:
         faults.append("no Block is given")
     if parts.ground is not None:
         others = [type(part).__name__ for part in (pads, cap, soil) if part is not None]
@@ -36,7 +41,7 @@ def misfits(parts: Parts) -> list[str]:
             )
     if cap is not None and soil is None:
         faults.append("a CushionCap is given without a WinklerSoil for it to stand on")
-    if pads is not None and soil is not None and cap is None:
+    if pads is not None and soil is not None and cap is None and parts.stack is None:
         faults.append(
             f"a {type(pads).__name__} and a {type(soil).__name__} are given without a CushionCap; "
             "the cap carries the pads and spreads their reactions over the soil"
@@ -45,6 +50,32 @@ def misfits(parts: Parts) -> list[str]:
     for part in given.values():
         if isinstance(part, OwnBase):
             faults += part.misfits(given)
+    return faults
+
+
+def _misfits_of_stack(stack: Stack, parts: Parts) -> list[str]:
+    """Give the faults of a stack with other parts."""
+    faults: list[str] = []
+    if parts.block is not None:
+        name = type(parts.block).__name__
+        faults.append(f"a Stack and a {name} are both given; the {name} is one of its bodies")
+    if parts.cap is not None:
+        faults.append("a Stack and a CushionCap are both given; give the cap as its lowest body")
+    bases = [one for one in (parts.pads, parts.soil) if one is not None]
+    if parts.cap is None and len(bases) != 1:
+        faults.append("a Stack stands on a TwoSpringSupport or on a WinklerSoil: give one of them")
+    for one in (*stack.interfaces, *bases):
+        if slot_of(one) not in BASES or isinstance(one, OwnBase):
+            faults.append(
+                f"the bodies of a Stack stand on TwoSpringSupport or WinklerSoil, not on "
+                f"{type(one).__name__}"
+            )
+    for base in (*stack.interfaces, *bases):
+        if getattr(base.si, "friction", None) is not None:
+            faults.append(
+                f"{type(base).__name__}: friction is not looked at in a Stack, whose bodies are "
+                "held on what they stand on"
+            )
     return faults
 
 

@@ -1,12 +1,20 @@
 """Where the parts of a scene are, upright and at rest: what a drawing of it shows."""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
-from rockframe.components import FrameEquivalent
+from rockframe.components import FrameEquivalent, Stack
 from rockframe.signals.arrays import Array
 from rockframe.system.assembly import Assembly
+
+
+class LowerBody(NamedTuple):
+    """A body of a stack, from the middle of the lowest base [m]."""
+
+    outline: Array
+    centre: tuple[float, float]
 
 
 @dataclass(frozen=True)
@@ -38,6 +46,8 @@ class Geometry:
         By which the base line rises to the right [rad].
     small_rotation : bool
         Whether the kinematics are expanded in the rotation.
+    lower : tuple of LowerBody
+        Bodies of a stack beneath the block, from the top down.
     """
 
     outline: Array
@@ -51,11 +61,20 @@ class Geometry:
     stacked: bool
     inclination: float
     small_rotation: bool
+    lower: tuple[LowerBody, ...] = ()
 
     @property
     def level(self) -> float:
         """Height of the block's base above the lowest base [m]."""
+        if self.lower:
+            return float(self.lower[0].outline[:, 1].max())
         return 0.0 if self.cap is None else self.cap[1]
+
+    @property
+    def place(self) -> Array:
+        """The middle of the block's base, shape (2,) [m]."""
+        beside = self.moved[0] - self.centre[0] if self.lower else 0.0
+        return np.array([beside, self.level])
 
     @property
     def height(self) -> float:
@@ -65,12 +84,14 @@ class Geometry:
     @property
     def base_half_width(self) -> float:
         """Of the lowest base [m]."""
+        if self.lower:
+            return float(self.lower[-1].outline[:, 0].max())
         return self.half_width if self.cap is None else self.cap[0]
 
     @property
     def block(self) -> Array:
         """Outline of the block, from the middle of the lowest base [m]."""
-        return self.outline + np.array([0.0, self.level])
+        return self.outline + self.place
 
     @property
     def cap_outline(self) -> Array | None:
@@ -97,6 +118,8 @@ def geometry_of(scene: Assembly) -> Geometry:
     Geometry
     """
     parts, setting = scene.parts, scene.setting
+    if parts.stack is not None:
+        return _of_stack(parts.stack, scene)
     block = parts.the_block
     cap = None if parts.cap is None else parts.the_cap
     body, sinks = setting.body, [each.settlement for each in setting.supports]
@@ -113,6 +136,34 @@ def geometry_of(scene: Assembly) -> Geometry:
         stacked=setting.stacked,
         inclination=scene.options.inclination,
         small_rotation=scene.options.small,
+    )
+
+
+def _of_stack(stack: Stack, scene: Assembly) -> Geometry:
+    """Give the geometry of a stack; bases between its bodies are not drawn."""
+    lower: list[LowerBody] = []
+    beside = level = 0.0
+    bodies, offsets = stack.si.bodies, stack.si.offsets
+    for body, offset in zip(bodies[:0:-1], offsets[:0:-1], strict=True):
+        beside += offset
+        centre = (beside + body.eccentricity, level + body.centre_height)
+        lower.insert(0, LowerBody(rectangle(body.half_width, body.height, beside, level), centre))
+        level += body.height
+    block = bodies[0]
+    beside += offsets[0]
+    return Geometry(
+        outline=rectangle(block.half_width, block.height),
+        members=(),
+        half_width=block.half_width,
+        centre=(block.eccentricity, block.centre_height),
+        moved=(beside + block.eccentricity, level + block.centre_height),
+        cap=None,
+        pads_sink=None,
+        bed_sinks=None if scene.parts.soil is None else scene.setting.supports[-1].settlement,
+        stacked=False,
+        inclination=0.0,
+        small_rotation=scene.options.small,
+        lower=tuple(lower),
     )
 
 

@@ -57,6 +57,7 @@ class PadSupport(Support):
             stiffness=self.stiffness / mass,
             damping=self.damping / mass,
             restitution=self.restitution,
+            load=load_mass / mass,
         )
 
     def words(self) -> BaseWords:

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from rockframe.components import Block, Component, CushionCap, RigidGround
+from rockframe.components import Block, Component, CushionCap, RigidGround, Stack
 from rockframe.components.block_numbers import BlockSI
 from rockframe.errors import shown
 from rockframe.motion import GroundMotion
@@ -21,10 +21,12 @@ class Parts:
     soil: Component | None = None
     ground: RigidGround | None = None
     motion: GroundMotion | None = None
+    stack: Stack | None = None
 
     def given(self) -> list[Component | GroundMotion]:
         """Give the parts that are there, in a fixed order."""
-        return [part for part in vars(self).values() if part is not None]
+        order = [self.stack, self.block, self.pads, self.cap, self.soil, self.ground, self.motion]
+        return [part for part in order if part is not None]
 
     def structural(self) -> list[Component]:
         """Give the parts that are no motion, in a fixed order."""
@@ -32,7 +34,9 @@ class Parts:
 
     @property
     def the_block(self) -> BlockSI:
-        """The numbers of the block, which every scene has."""
+        """The numbers of the block, the highest one of a stack, which every scene has."""
+        if self.stack is not None:
+            return self.stack.si.bodies[0]
         if self.block is None:
             raise TypeError
         return self.block.si

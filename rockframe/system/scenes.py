@@ -13,6 +13,7 @@ from rockframe.system.parts import Parts
 from rockframe.system.rigid_ground import rigid_ground_setting
 from rockframe.system.setting import Setting
 from rockframe.system.slots import support_of
+from rockframe.system.stack import StackSetting, stack_setting
 from rockframe.system.stacked import CascadeSetting, CoupledSetting, StackedSetting
 
 
@@ -74,6 +75,13 @@ def _stacked(kind: type[StackedSetting], parts: Parts, options: Options) -> Stac
     return kind(upper.load, upper, lower, cap)
 
 
+def _upon_one_another(slot: str, parts: Parts, options: Options) -> StackSetting:
+    """Put a stack on the base in a slot."""
+    if parts.stack is None:
+        raise TypeError
+    return stack_setting(parts.stack, parts.base(slot), options)
+
+
 _STACK = frozenset({"block", "pads", "cap", "soil"})
 
 SCENES: tuple[Scene, ...] = (
@@ -101,4 +109,10 @@ SCENES: tuple[Scene, ...] = (
         partial(_stacked, CascadeSetting),
         Coupling.CASCADE,
     ),
+    Scene(
+        "Stack + TwoSpringSupport",
+        frozenset({"stack", "pads"}),
+        partial(_upon_one_another, "pads"),
+    ),
+    Scene("Stack + WinklerSoil", frozenset({"stack", "soil"}), partial(_upon_one_another, "soil")),
 )

@@ -11,6 +11,7 @@ from rockframe.components import (
     CushionCap,
     FrameEquivalent,
     RigidGround,
+    Stack,
     TwoSpringSupport,
     WinklerSoil,
 )
@@ -42,6 +43,7 @@ class Kind:
 _KINDS: Final[dict[type, Kind]] = {
     Block: Kind("block"),
     FrameEquivalent: Kind("block"),
+    Stack: Kind("stack"),
     TwoSpringSupport: Kind("pads", pads_under),
     CushionCap: Kind("cap"),
     WinklerSoil: Kind("soil", bed_under),

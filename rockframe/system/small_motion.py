@@ -2,7 +2,7 @@
 
 import itertools
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,12 +20,15 @@ class SmallMotion:
         Names of the coordinates.
     mass, damping, stiffness : ndarray, shape (n, n)
         SI units.
+    bodies : int
+        Of a stack, whose coordinates are those of each body in turn; 0 of other scenes.
     """
 
     coordinates: tuple[str, ...]
     mass: Array
     damping: Array
     stiffness: Array
+    bodies: int = field(default=0, kw_only=True)
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,8 @@ from rockframe.dynamics.events import ContactState
 from rockframe.results.variables.variable import ANGLE, MODE, Variable, flag, number
 from rockframe.units import Unit
 
+MODE_BODY: Final = ("mode", "body")
+
 HELD: Final = (
     Variable("angle", ANGLE, Unit.RADIAN, "rotation at which the body is held"),
     Variable(
@@ -65,5 +67,17 @@ MODES: Final = (
     Variable("rotation_shape", MODE, Unit.ONE, "share of the rotation [rad]"),
     Variable("cap_vertical_displacement_shape", MODE, Unit.ONE, "share of the cap's rise [m]"),
     Variable("cap_rotation_shape", MODE, Unit.ONE, "share of the cap's rotation [rad]"),
+    Variable(
+        "body_rotation_shape",
+        MODE_BODY,
+        Unit.ONE,
+        "share of each body's rotation on its base [rad]",
+    ),
+    Variable(
+        "body_vertical_displacement_shape",
+        MODE_BODY,
+        Unit.ONE,
+        "share of each body's rise on its base [m]",
+    ),
 )
 """Modes of small motion."""

@@ -180,6 +180,8 @@ def _prepared(cases: CasesOfJob, case: int, vertical: bool) -> _Scene | None:
         return None  # samples are looked at, for friction
     if not system.options.slope.level or (vertical and system.setting.settlement is None):
         return None  # the ground is another one for each scene; or a block may leave it
+    if system.model.shows_bodies:
+        return None  # its equations work in lists, for which there are no lanes
     interval = STILL_INTERVAL if plan.motion is None else plan.motion.si.time_step
     begin = begun(
         system.model, start_of(plan.initial), plan.accuracy, interval=interval,

@@ -1,0 +1,203 @@
+"""Bodies upon one another."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar, Final, Self
+
+from rockframe.components.base import Component
+from rockframe.components.block import Block
+from rockframe.components.block_numbers import BlockSI
+from rockframe.components.registry import component_from_dict
+from rockframe.components.values import SIValues
+from rockframe.errors import ComponentError, shown
+from rockframe.units import LENGTH, QuantityLike, to_si
+
+MOST_BODIES: Final = 8
+"""Bodies of a stack: of more, contacts have more combinations than can be numbered."""
+
+
+@dataclass(frozen=True)
+class StackSI:
+    """A stack in SI units, from the top down.
+
+    Parameters
+    ----------
+    bodies : tuple of BlockSI
+        The bodies.
+    offsets : tuple of float
+        How far the middle of each body's base is to the right of that of the body below; zero
+        of the lowest [m].
+    """
+
+    bodies: tuple[BlockSI, ...]
+    offsets: tuple[float, ...]
+
+
+class Stack(Component):
+    """Blocks upon one another, each on a base of its own on the top of the block below.
+
+    Parameters
+    ----------
+    *bodies : Block
+        From the top down, two at least: statue and plinth, drums of a column.
+    interfaces : sequence of Component
+        The bases between them, from the top down, one less than bodies: each a
+        :class:`TwoSpringSupport` or a :class:`WinklerSoil`. What the lowest body stands on is a
+        part of the system. Frequency and damping ratios of a base are those of all that it
+        carries, as one body.
+    offsets : sequence of str or pint.Quantity, optional
+        How far the middle of the base of each body but the lowest is to the right of that of the
+        body below [m]; none unless given.
+
+    Raises
+    ------
+    ComponentError
+        There are too few or too many bodies, not one interface between each two of them, or a
+        base or an offset reaches beyond the top of the body below.
+    UnitsError
+        An offset has the wrong unit, or none.
+
+    Examples
+    --------
+    >>> statue = Block(width="0.5 m", height="1.8 m", mass="900 kg")
+    >>> plinth = Block(width="0.9 m", height="1 m", mass="2200 kg")
+    >>> joint = TwoSpringSupport(frequency_ratio=60, damping_ratio=0.1)
+    >>> Stack(statue, plinth, interfaces=[joint]).bodies[1] == plinth
+    True
+    """
+
+    si: StackSI
+    noun: ClassVar[str] = "stack"
+
+    def __init__(
+        self,
+        *bodies: Block,
+        interfaces: Sequence[Component],
+        offsets: Sequence[QuantityLike] | None = None,
+    ) -> None:
+        self._keep(bodies, interfaces, offsets)
+        self._warn()
+
+    def _keep(
+        self,
+        bodies: Sequence[Any],
+        interfaces: Sequence[Any],
+        offsets: Sequence[QuantityLike] | None,
+    ) -> None:
+        """Check what is given, and keep it."""
+        faults = [
+            f"a body of a stack is a Block, got {shown(one)}"
+            for one in bodies
+            if not isinstance(one, Block)
+        ]
+        faults += [
+            f"an interface is a base such as TwoSpringSupport, got {shown(one)}"
+            for one in interfaces
+            if not isinstance(one, Component) or isinstance(one, Block)
+        ]
+        if not 2 <= len(bodies) <= MOST_BODIES:
+            faults.append(f"it has 2 to {MOST_BODIES} bodies, got {len(bodies)}")
+        if len(interfaces) != len(bodies) - 1:
+            faults.append(
+                f"{len(bodies)} bodies have {max(len(bodies) - 1, 0)} interfaces between them, got "
+                f"{len(interfaces)}; what the lowest body stands on is a part of the system"
+            )
+        if offsets is not None and len(offsets) != len(bodies) - 1:
+            faults.append(
+                f"offsets are those of all bodies but the lowest: {max(len(bodies) - 1, 0)}, got "
+                f"{len(offsets)}"
+            )
+        if faults:
+            raise ComponentError(f"Stack: {'; '.join(faults)}")
+        beside = [0.0] * (len(bodies) - 1) if offsets is None else [
+            to_si(one, LENGTH, owner="Stack", name=f"offsets[{i}]") for i, one in enumerate(offsets)
+        ]  # fmt: skip
+        _refuse_overhang([one.si for one in bodies], beside)
+        given = SIValues(bodies=tuple(bodies), interfaces=tuple(interfaces), offsets=tuple(beside))
+        object.__setattr__(self, "given", given)
+        object.__setattr__(self, "si", StackSI(tuple(one.si for one in bodies), (*beside, 0.0)))
+
+    @property
+    def bodies(self) -> tuple[Block, ...]:
+        """The bodies, from the top down."""
+        found: tuple[Block, ...] = self.given.bodies
+        return found
+
+    @property
+    def interfaces(self) -> tuple[Component, ...]:
+        """The bases between them, from the top down."""
+        found: tuple[Component, ...] = self.given.interfaces
+        return found
+
+    @property
+    def offsets(self) -> tuple[float, ...]:
+        """How far each body but the lowest stands to the right of the body below [m]."""
+        found: tuple[float, ...] = self.given.offsets
+        return found
+
+    def cautions(self) -> list[str]:
+        """Say what is unusual about bodies and interfaces.
+
+        Returns
+        -------
+        list of str
+        """
+        return [text for one in (*self.bodies, *self.interfaces) for text in one.cautions()]
+
+    def _arguments(self) -> dict[str, Any]:
+        return {
+            "bodies": [one.to_dict() for one in self.bodies],
+            "interfaces": [one.to_dict() for one in self.interfaces],
+            "offsets": [f"{one!r} m" for one in self.offsets],
+        }
+
+    def __hash__(self) -> int:
+        return hash((type(self), self.bodies, self.interfaces, self.offsets))
+
+    def __repr__(self) -> str:
+        bodies = ", ".join(map(repr, self.bodies))
+        offsets = f", offsets={self._arguments()['offsets']}" if any(self.offsets) else ""
+        return f"Stack({bodies}, interfaces={list(self.interfaces)!r}{offsets})"
+
+    def _repr_html_(self) -> str:
+        return f"<pre>{self!r}</pre>"
+
+    @classmethod
+    def from_dict(cls, arguments: Mapping[str, Any]) -> Self:
+        """Build the stack that :meth:`to_dict` described, without warnings.
+
+        Parameters
+        ----------
+        arguments : mapping
+            Bodies and interfaces as they describe themselves, and offsets.
+
+        Returns
+        -------
+        Stack
+
+        Raises
+        ------
+        SchemaError, ComponentError, UnitsError
+            As those of its parts, and as the constructor.
+        """
+        described = cls._described(arguments)
+        part = object.__new__(cls)
+        bodies, interfaces = (
+            [component_from_dict(one) for one in described.get(name, ())]
+            for name in ("bodies", "interfaces")
+        )
+        part._keep(bodies, interfaces, described.get("offsets"))
+        return part
+
+
+def _refuse_overhang(bodies: Sequence[BlockSI], offsets: Sequence[float]) -> None:
+    """Refuse a base that is not on the top of the body below."""
+    for i, (offset, upper, lower) in enumerate(zip(offsets, bodies, bodies[1:], strict=False)):
+        reach = abs(offset) + upper.half_width
+        if reach > lower.half_width * (1.0 + 1e-12) or not math.isfinite(reach):
+            msg = (
+                f"Stack: the base of body {i + 1} from the top reaches {reach:.6g} m from the "
+                f"middle of the body below, whose top ends at {lower.half_width:.6g} m"
+            )
+            raise ComponentError(msg)

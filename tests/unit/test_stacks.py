@@ -1,0 +1,166 @@
+"""Stacks: the part, its scenes, and what a run shows of its bodies."""
+
+import pickle
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import rockframe as rf
+from rockframe.dynamics.events import ContactState
+
+STATUE = rf.Block(width="0.5 m", height="1.8 m", mass="900 kg")
+PLINTH = rf.Block(width="0.9 m", height="1 m", mass="2200 kg")
+JOINT = rf.TwoSpringSupport(frequency_ratio=40, damping_ratio=0.1)
+GROUND = rf.TwoSpringSupport(frequency_ratio=30, damping_ratio=0.1)
+SOIL = rf.WinklerSoil(stiffness="20 MPa", damping_ratio=0.2)
+PULSE = rf.GroundMotion.sine_pulse(amplitude="-3 m/s^2", frequency="1.5 Hz")
+STACK = rf.Stack(STATUE, PLINTH, interfaces=[JOINT])
+PLAN = {"free_vibration": "1 s", "accuracy": "fast", "second_look": False}
+
+
+@pytest.fixture(scope="module")
+def run():
+    plan = PLAN | {"accuracy": "standard"}
+    return rf.System(STACK, GROUND).simulate(PULSE, outputs=["energy"], **plan)
+
+
+def test_a_stack_gives_back_what_it_was_made_of():
+    stack = rf.Stack(STATUE, PLINTH, interfaces=[JOINT], offsets=["2 cm"])
+    assert stack.bodies == (STATUE, PLINTH)
+    assert stack.interfaces == (JOINT,)
+    assert stack.offsets == (0.02,)
+    assert rf.Stack.from_dict(stack.to_dict()) == stack
+    assert pickle.loads(pickle.dumps(stack)) == stack  # noqa: S301
+    assert stack != STACK
+    assert len({stack, STACK, rf.Stack(STATUE, PLINTH, interfaces=[JOINT])}) == 2
+    assert "offsets=['0.02 m']" in repr(stack)
+    with pytest.raises(AttributeError, match="immutable"):
+        stack.bodies = ()
+
+
+@pytest.mark.parametrize(
+    ("bodies", "given", "words"),
+    [
+        ((STATUE,), {"interfaces": []}, "2 to 8 bodies, got 1"),
+        ((STATUE, PLINTH), {"interfaces": []}, "1 interfaces between them, got 0"),
+        ((STATUE, JOINT), {"interfaces": [JOINT]}, "a body of a stack is a Block, got Two"),
+        ((STATUE, PLINTH), {"interfaces": [PLINTH]}, "an interface is a base"),
+        ((STATUE, PLINTH), {"interfaces": [JOINT], "offsets": []}, "all bodies but the lowest"),
+        ((PLINTH, STATUE), {"interfaces": [JOINT]}, "base of body 1 from the top reaches 0.45 m"),
+        ((STATUE, PLINTH), {"interfaces": [JOINT], "offsets": ["0.21 m"]}, "reaches 0.46 m"),
+    ],
+)
+def test_what_makes_no_stack_is_refused(bodies, given, words):
+    with pytest.raises(rf.ComponentError, match=words):
+        rf.Stack(*bodies, **given)
+
+
+@pytest.mark.parametrize(
+    ("parts", "words"),
+    [
+        ((STACK,), "stands on a TwoSpringSupport or on a WinklerSoil"),
+        ((STACK, GROUND, SOIL), "give one of them"),
+        ((STACK, STATUE, GROUND), "a Stack and a Block are both given"),
+        ((STACK, rf.CushionCap(height="1 m", mass="1 t"), SOIL), "as its lowest body"),
+        ((STACK, JOINT.replace(friction=0.5)), "friction is not looked at in a Stack"),
+        ((rf.Stack(STATUE, PLINTH, interfaces=[rf.RigidGround()]), GROUND), "not on RigidGround"),
+    ],
+)
+def test_parts_that_do_not_fit_a_stack_are_refused(parts, words):
+    with pytest.raises(rf.AssemblyError, match=words):
+        rf.System(*parts)
+
+
+def test_no_slope_under_a_stack():
+    with pytest.raises(rf.AssemblyError, match="level ground"):
+        rf.System(STACK, GROUND, inclination="2 deg").describe()
+
+
+def test_a_run_shows_all_bodies(run, tmp_path):
+    assert run.sizes["body"] == 2
+    assert run.body.to_numpy().tolist() == [1, 2]
+    for name in ("rotation", "horizontal_displacement", "vertical_displacement"):
+        assert (run[f"body_{name}"][0] == run[name]).all()
+    assert (run.body_contact_state[0] == run.contact_state).all()
+    relative = run.body_rotation[0] - run.body_rotation[1]
+    assert np.allclose(relative, run.body_rotation_on_base[0], atol=1e-15)
+    assert np.allclose(run.body_rotation[1], run.body_rotation_on_base[1], atol=1e-15)
+    weights = 9.80665 * np.array([900.0, 3100.0])
+    assert np.allclose(run.body_vertical_reaction[:, 0], weights, rtol=1e-9)
+    peaks = np.abs(run.body_rotation).max("time")
+    assert (run.peak_body_rotation >= peaks - 1e-15).all()
+    assert float(run.peak_body_rotation[0]) == pytest.approx(float(run.peak_rotation), rel=1e-4)
+    assert set(run.event_body.to_numpy()) == {1, 2}
+    run.to_netcdf(tmp_path / "stack.nc")
+    with xr.open_dataset(tmp_path / "stack.nc") as stored:
+        again = rf.System.from_dataset(stored)
+    assert again.parts.stack == STACK
+    assert float(run.energy_residual) < 1e-6
+
+
+def test_the_body_of_an_event_is_that_whose_contact_changes(run):
+    contacts = run.body_contact_state.to_numpy()
+    for when in run.event_time.to_numpy():
+        after = int(np.searchsorted(run.time, when))
+        if 1 <= after < run.sizes["time"] - 1 and contacts[1, after - 1] != contacts[1, after]:
+            near = np.abs(run.event_time.to_numpy() - when) <= float(run.time[1])
+            assert 2 in run.event_body.to_numpy()[near]
+            return
+    pytest.fail("the plinth's contact never changed")
+
+
+def test_a_stack_overturns_where_a_lower_body_does():
+    # a slender column under a squat block: that would need a far greater rotation itself
+    squat = rf.Block(width="1 m", height="0.8 m", mass="2 t")
+    column = rf.Block(width="1 m", height="6 m", mass="9 t")
+    system = rf.System(rf.Stack(squat, column, interfaces=[JOINT]), GROUND)
+    run = system.simulate(PULSE.scaled(3.0), free_vibration="4 s", second_look=False)
+    assert bool(run.overturned)
+    at_end = np.abs(run.body_rotation[:, -1].to_numpy())
+    assert at_end[0] < 0.5 * float(run.overturning_angle)
+    assert run.event_body[-1] == 1
+
+
+def test_offsets_lean_a_stack_at_rest():
+    leaning = rf.System(rf.Stack(STATUE, PLINTH, interfaces=[JOINT], offsets=["5 cm"]), GROUND)
+    rest = float(leaning.equilibrium().rest_rotation)
+    assert rest > 0.0
+    still = leaning.simulate(None, duration="0.5 s", accuracy="reference")
+    assert np.abs(still.rotation - rest).max() < 1e-12
+    mirror = rf.System(rf.Stack(STATUE, PLINTH, interfaces=[JOINT], offsets=["-5 cm"]), GROUND)
+    assert float(mirror.equilibrium().rest_rotation) == pytest.approx(-rest, rel=1e-12)
+
+
+def test_modes_of_a_stack():
+    modes = rf.System(STACK, SOIL).frequencies()
+    assert modes.body_rotation_shape.dims == ("mode", "body")
+    assert modes.sizes["mode"] == 4
+    assert (modes.frequency > 0.0).all()
+    held = rf.System(STACK, GROUND).moment_rotation(["0.001 rad", "0.01 rad"])
+    assert (held.restoring_moment > 0.0).all()
+
+
+def test_sweeps_of_stacks():
+    system = rf.System(STACK, GROUND)
+    plan = {name: PLAN[name] for name in ("free_vibration", "accuracy")}
+    runs = rf.sweep(system, motions=[PULSE], damping_ratio=[0.1, 0.2], **plan)
+    alone = [
+        rf.System(STACK, GROUND.replace(damping_ratio=xi)).simulate(PULSE, **PLAN)
+        for xi in (0.1, 0.2)
+    ]
+    found = runs.peak_rotation.to_numpy().ravel().tolist()
+    assert found == [float(one.peak_rotation) for one in alone]
+
+
+def test_models_of_a_stack():
+    ladder = rf.model_ladder(rf.System(STACK, SOIL))
+    assert list(ladder) == ["stack on soil, small rotations", "stack on soil"]
+
+
+def test_contact_states_of_a_run_in_flight():
+    hop = rf.GroundMotion.sine_pulse(amplitude="2 m/s^2", frequency="4 Hz").with_vertical(
+        rf.GroundMotion.sine_pulse(amplitude="-25 m/s^2", frequency="4 Hz")
+    )
+    run = rf.System(STACK, GROUND).simulate(hop, **PLAN)
+    assert (run.body_contact_state == int(ContactState.FLIGHT)).any("time").any()
