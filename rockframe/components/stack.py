@@ -109,7 +109,8 @@ class Stack(Component):
                 f"{len(offsets)}"
             )
         if faults:
-            raise ComponentError(f"Stack: {'; '.join(faults)}")
+            msg = f"Stack: {'; '.join(faults)}"
+            raise ComponentError(msg)
         beside = [0.0] * (len(bodies) - 1) if offsets is None else [
             to_si(one, LENGTH, owner="Stack", name=f"offsets[{i}]") for i, one in enumerate(offsets)
         ]  # fmt: skip

@@ -64,18 +64,19 @@ def _misfits_of_stack(stack: Stack, parts: Parts) -> list[str]:
     bases = [one for one in (parts.pads, parts.soil) if one is not None]
     if parts.cap is None and len(bases) != 1:
         faults.append("a Stack stands on a TwoSpringSupport or on a WinklerSoil: give one of them")
-    for one in (*stack.interfaces, *bases):
-        if slot_of(one) not in BASES or isinstance(one, OwnBase):
-            faults.append(
-                f"the bodies of a Stack stand on TwoSpringSupport or WinklerSoil, not on "
-                f"{type(one).__name__}"
-            )
-    for base in (*stack.interfaces, *bases):
-        if getattr(base.si, "friction", None) is not None:
-            faults.append(
-                f"{type(base).__name__}: friction is not looked at in a Stack, whose bodies are "
-                "held on what they stand on"
-            )
+    standing = (*stack.interfaces, *bases)
+    faults += [
+        "the bodies of a Stack stand on TwoSpringSupport or WinklerSoil, not on "
+        f"{type(one).__name__}"
+        for one in standing
+        if slot_of(one) not in BASES or isinstance(one, OwnBase)
+    ]
+    faults += [
+        f"{type(one).__name__}: friction is not looked at in a Stack, whose bodies are held on "
+        "what they stand on"
+        for one in standing
+        if getattr(one.si, "friction", None) is not None
+    ]
     return faults
 
 
