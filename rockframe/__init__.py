@@ -55,6 +55,7 @@ if TYPE_CHECKING:
     from rockframe.motion import GroundMotion as GroundMotion
     from rockframe.motion import HorizontalPair as HorizontalPair
     from rockframe.reports import report as report
+    from rockframe.results.diagnostics import Diagnostic as Diagnostic
     from rockframe.results.joining import concat as concat
     from rockframe.results.table import table as table
     from rockframe.simulation.certification import Certification as Certification
@@ -142,6 +143,7 @@ _HOMES = {
     ),
     "rockframe.motion": ("GroundMotion", "HorizontalPair"),
     "rockframe.reports": ("report",),
+    "rockframe.results.diagnostics": ("Diagnostic",),
     "rockframe.results.joining": ("concat",),
     "rockframe.results.table": ("table",),
     "rockframe.simulation.certification": ("Certification",),
@@ -185,6 +187,7 @@ __all__ = [
     "Certification",
     "ComponentError",
     "CushionCap",
+    "Diagnostic",
     "FileError",
     "FrameEquivalent",
     "GroundMotion",

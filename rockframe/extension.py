@@ -1,31 +1,55 @@
-"""What a file with a part of your own needs: declarations, supports, laws, and columns.
+"""What a file with parts or equations of your own needs: declarations, supports, laws, columns.
 
 A base of your own is a class derived from :class:`OwnBase`, a :class:`Support` that says how
-it carries a body, and a law of a point, :func:`point_law`. :func:`rockframe.register`
-makes it known.
+it carries a body, and a law of a point, :func:`point_law`. A scene of your own is a class
+derived from :class:`OwnScene` and a :class:`System`: a named tuple of numbers with the methods
+of :class:`~rockframe.dynamics.protocol.System`, in a :class:`ContactModel`.
+:func:`rockframe.register` makes either known.
 """
 
 from rockframe.compiled import Vector, inlined, kernel
 from rockframe.components import Choice, Component, OneOf, Parameter, Ratio, Text
 from rockframe.components.damping import DampingRatio
-from rockframe.dynamics.base import Base, BaseForce, EndEvent, Guards
+from rockframe.dynamics.base import Base, BaseForce, EndEvent
 from rockframe.dynamics.base_numbers import BaseNumbers, pads_over, springs_under
 from rockframe.dynamics.bed import Bed
 from rockframe.dynamics.body import BaseLine, Body
-from rockframe.dynamics.events import SILENT, EventKind
+from rockframe.dynamics.events import SILENT, ContactState, EventKind
 from rockframe.dynamics.pads import Pads
 from rockframe.dynamics.point_law import FREE, Point, point_law
-from rockframe.dynamics.protocol import Column
-from rockframe.results.variables.variable import TIME, Variable
+from rockframe.dynamics.protocol import (
+    BODY_COLUMNS,
+    IMPACT_LOSS,
+    IMPULSIVE_INPUT,
+    LAST_EVENT,
+    MEMORY,
+    Column,
+    ContactModel,
+    Energies,
+    Ground,
+    Guards,
+    Start,
+    System,
+)
+from rockframe.results.variables.variable import EVENT, TIME, Variable
 from rockframe.system.load import Load
 from rockframe.system.own_base import OwnBase
+from rockframe.system.own_scene import OwnScene
 from rockframe.system.pads import PadSupport, pads_under
 from rockframe.system.soil import BedSupport, bed_under
+from rockframe.system.statics import Statics
 from rockframe.system.support import BaseWords, Support
+from rockframe.system.words import Words
 from rockframe.units import NOT_NEGATIVE, POSITIVE, UNIT_INTERVAL, Measure, Unit
 
 __all__ = [
+    "BODY_COLUMNS",
+    "EVENT",
     "FREE",
+    "IMPACT_LOSS",
+    "IMPULSIVE_INPUT",
+    "LAST_EVENT",
+    "MEMORY",
     "NOT_NEGATIVE",
     "POSITIVE",
     "SILENT",
@@ -42,24 +66,33 @@ __all__ = [
     "Choice",
     "Column",
     "Component",
+    "ContactModel",
+    "ContactState",
     "DampingRatio",
     "EndEvent",
+    "Energies",
     "EventKind",
+    "Ground",
     "Guards",
     "Load",
     "Measure",
     "OneOf",
     "OwnBase",
+    "OwnScene",
     "PadSupport",
     "Pads",
     "Parameter",
     "Point",
     "Ratio",
+    "Start",
+    "Statics",
     "Support",
+    "System",
     "Text",
     "Unit",
     "Variable",
     "Vector",
+    "Words",
     "bed_under",
     "inlined",
     "kernel",

@@ -71,10 +71,12 @@ def model_ladder(system: System) -> dict[str, System]:
     two pads
     """
     check_system(system, "model_ladder")
-    given = vars(system.parts)
+    given = system.parts.components()
     present = system.parts.signature
     rows = _STACK if {"pads", "cap"} <= present or "soil" not in present else _BED
     rows = _UPON if "stack" in present else rows
+    if system.parts.own():
+        rows = _STACK[:1]
     options: dict[str, Any] = {
         "restraint": system.restraint, "gravity": system.gravity, "inclination": system.inclination
     }  # fmt: skip
@@ -87,7 +89,7 @@ def model_ladder(system: System) -> dict[str, System]:
                 continue
             for bases in _bases(given, slots):
                 parts = {**{slot: given[slot] for slot in slots}, **bases}
-                if slots == ("block",) and given["ground"] is not None:
+                if slots == ("block",) and "ground" in given:
                     parts["ground"] = given["ground"]
                 words = name.format(**_named(bases))
                 for rotation in Rotation.SMALL, Rotation.FINITE:
@@ -97,6 +99,8 @@ def model_ladder(system: System) -> dict[str, System]:
                     models[rung] = System(
                         *parts.values(), rotation=rotation, coupling=coupling, **options
                     )
+    if system.parts.own():
+        models[system.setting.model] = System(*given.values(), rotation=system.rotation, **options)
     return models
 
 

@@ -166,7 +166,7 @@ def labels_of(parts: Parts, geometry: Geometry) -> dict[str, str]:
     """Give what the parts of a scene are called, with their numbers, by their slots."""
     found: dict[str, str] = {}
     lower = () if parts.stack is None else parts.stack.bodies
-    named = {slot: getattr(parts, slot) for slot in ("block", "pads", "cap", "soil")}
+    named = {slot: parts.components().get(slot) for slot in ("block", "pads", "cap", "soil")}
     named |= {f"stack {k - 1}" if k else "block": body for k, body in enumerate(lower)}
     for slot, part in named.items():
         if part is not None:

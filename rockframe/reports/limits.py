@@ -28,7 +28,7 @@ class Limit:
 
 
 def _on_rigid_ground(parts: Parts) -> bool:
-    return parts.pads is None and parts.soil is None
+    return parts.pads is None and parts.soil is None and not parts.own()
 
 
 LIMITS: Final = (
@@ -36,6 +36,7 @@ LIMITS: Final = (
         "Sliding",
         "The base does not slide while it presses. The verdict holds only where the friction is "
         "at least what it says is needed.",
+        lambda parts: not parts.own(),
     ),
     Limit(
         "Deformation",
@@ -64,7 +65,7 @@ LIMITS: Final = (
     Limit(
         "Soft pads, soft soil",
         "Where pads or soil are so soft that the upright position is unstable, the run warns.",
-        lambda parts: not _on_rigid_ground(parts),
+        lambda parts: parts.pads is not None or parts.soil is not None,
     ),
     Limit(
         "Soil",

@@ -59,7 +59,9 @@ def build_dataset(
             raise SchemaError(msg)
         variables[name] = (dims, data)
         labels[name] = row.attributes("float64" if gaps else None)
-    coordinates = {name: variables.pop(name) for name in COORDINATES if name in variables}
+    own = [name for name in variables if row_of(name).dims == (name,)]  # labels
+    names = dict.fromkeys((*COORDINATES, *own))
+    coordinates = {name: variables.pop(name) for name in names if name in variables}
     dataset = xr.Dataset(
         variables, coords=coordinates, attrs=_attributes(attributes, title, source)
     )
@@ -70,6 +72,35 @@ def build_dataset(
         # a coordinate has no missing values, so it needs no fill value (CF 2.5.1)
         dataset.variables[name].encoding["_FillValue"] = None
     return dataset
+
+
+def fitting(values: Mapping[str, Any], sizes: Mapping[str, int]) -> dict[str, NDArray[Any]]:
+    """Give values that users' own functions gave, where their shapes are those of the schema.
+
+    Parameters
+    ----------
+    values : mapping
+        By their names in the schema.
+    sizes : mapping of str to int
+        Of dimensions that are known.
+
+    Returns
+    -------
+    dict of str to ndarray
+
+    Raises
+    ------
+    SchemaError
+        A name is not in the schema, or a shape does not fit its dimensions or the others.
+    """
+    sizes, found = dict(sizes), {name: np.asarray(value) for name, value in values.items()}
+    for name, data in found.items():
+        dims = row_of(name).dims
+        wanted = tuple(sizes.setdefault(*each) for each in zip(dims, data.shape, strict=False))
+        if data.ndim != len(dims) or data.shape != wanted:
+            msg = f"{name!r} over {dims} has the shape {data.shape}"
+            raise SchemaError(f"{msg}, expected {wanted}" if len(wanted) == len(dims) else msg)
+    return found
 
 
 def dated(done: str) -> str:

@@ -132,7 +132,10 @@ class EventStates:
 
     def until(self, time: float) -> "EventStates":
         """Give the events up to a time [s]."""
-        kept = self.time <= time
+        return self.those(self.time <= time)
+
+    def those(self, kept: NDArray[np.bool_]) -> "EventStates":
+        """Give some of the events."""
         before, after = (
             {name: values[kept] for name, values in side.items()}
             for side in (self.before, self.after)

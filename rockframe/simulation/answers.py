@@ -1,14 +1,17 @@
 """Histories, forces and points of a run, as far as they are asked for."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from rockframe.compiled import Integers
 from rockframe.dynamics.events import IMPACT, SILENT
 from rockframe.dynamics.protocol import BODY_FORCES, column_of
+from rockframe.errors import attempted
 from rockframe.motion import GroundMotion
 from rockframe.results.along_steps import FRACTIONS, AlongSteps
+from rockframe.results.dataset import fitting
+from rockframe.results.diagnostics import Diagnostic
 from rockframe.results.forces import (
     DERIVED,
     OF_SOIL_FRICTION,
@@ -28,14 +31,17 @@ from rockframe.results.outcome import (
     relative_histories,
 )
 from rockframe.results.points import point_histories, point_labels, point_peaks
-from rockframe.results.schema import ON_REQUEST
+from rockframe.results.schema import ON_REQUEST, SCHEMA
 from rockframe.results.slope import energies_on_slope, felt_ground, without_gravity
+from rockframe.results.variables.variable import EVENT, TIME
 from rockframe.signals.arrays import Array
+from rockframe.signals.slope import Slope
 from rockframe.simulation.friction import Sliding, sliding_scalars, slidings
 from rockframe.simulation.plan import Plan
 from rockframe.solve.observe import memory_at_outputs, observe_states, observe_steps
 from rockframe.solve.trajectory import Trajectory
 from rockframe.system.assembly import Assembly
+from rockframe.system.own_answers import OwnAnswers
 
 
 @dataclass(frozen=True)
@@ -68,7 +74,7 @@ def ground_at(motion: GroundMotion | None, time: Array) -> Array:
     return np.column_stack(found or [still, still])
 
 
-def answers_of(system: Assembly, plan: Plan, run: Trajectory) -> Answers:
+def answers_of(system: Assembly, plan: Plan, run: Trajectory, missing: list[str]) -> Answers:
     """Give what the samples of a run tell: histories, if they are kept, peaks and points.
 
     Parameters
@@ -79,6 +85,8 @@ def answers_of(system: Assembly, plan: Plan, run: Trajectory) -> Answers:
         The checked arguments.
     run : Trajectory
         The run.
+    missing : list of str
+        Takes up what users' own functions failed to give, and why.
 
     Returns
     -------
@@ -87,7 +95,7 @@ def answers_of(system: Assembly, plan: Plan, run: Trajectory) -> Answers:
     setting, load, count = system.setting, system.setting.load, len(run.time)
     shown_at, ground, moved = _everything_of(system, plan, run)
     values = {name: each[:count] for name, each in shown_at.items()}
-    if plan.points or not set(DERIVED).isdisjoint(plan.requested):
+    if _everything(plan) or not set(DERIVED).isdisjoint(plan.requested):
         values |= force_histories(values, moved[:count], load)
     values |= contact_histories(system.model, run)
     values |= cap_histories(values, setting)
@@ -116,12 +124,50 @@ def answers_of(system: Assembly, plan: Plan, run: Trajectory) -> Answers:
     shown = run.events.kind != SILENT
     impulses = {name: each[shown] for name, each in events.impulses(load.body.mass).items()}
     everything = values | impulses | _energies(system, plan, run, values)
+    if plan.histories:
+        own = _told_by_users(system, everything, events.those(shown), missing)
+        told |= {name: each for name, each in own.items() if not SCHEMA[name].dims}
+        everything |= {name: each for name, each in own.items() if SCHEMA[name].dims}
+    for one in plan.diagnostics:
+        state = _state_of(values, run.time, ground[:count])
+        history_and_peak = attempted(
+            lambda one=one, state=state: (one.of(state), _peak_of(one, along)),
+            None, f"the diagnostic {one.name!r}", missing,
+        )  # fmt: skip
+        if history_and_peak is not None:
+            everything[one.name], told[one.rows[1].name] = history_and_peak
     kept = {
         name: each
         for name, each in everything.items()
         if name not in ON_REQUEST or name in plan.requested
     }
     return Answers(kept if plan.histories else {}, told, places, found)
+
+
+def _everything(plan: Plan) -> bool:
+    """Whether a run needs all that its system shows along its steps."""
+    return bool(plan.points or plan.diagnostics)
+
+
+def _told_by_users(
+    system: Assembly, values: dict[str, Generic], events: EventStates, missing: list[str]
+) -> dict[str, Generic]:
+    """Give what bases and scenes of users' own tell beside what their equations show."""
+    sides = [{**side, "time": events.time} for side in (events.before, events.after)]
+    sizes = {TIME[0]: len(values["time"]), EVENT[0]: len(events.time)}
+    found: dict[str, Generic] = {}
+    for own in (system.setting, *system.parts.structural()):
+        if isinstance(own, OwnAnswers):
+            what = f"what {type(own).__name__} tells of the run"
+            found |= attempted(
+                lambda own=own: fitting(own.answers(values, *sides), sizes), {}, what, missing
+            )
+    return found
+
+
+def _peak_of(one: Diagnostic, along: AlongSteps) -> float:
+    """Give the largest absolute value of a diagnostic along the steps."""
+    return along.largest(lambda state: np.abs(one.of(state))[None])[0].item()
 
 
 def _energies(
@@ -180,10 +226,11 @@ def _along(system: Assembly, plan: Plan, run: Trajectory) -> AlongSteps:
     slope, load, memory = system.options.slope, system.setting.load, memory_at_outputs(run)[0]
     until = run.overturning_time if run.overturning_time <= run.end_time else np.inf
     steps = run.steps.until(until)
-    if plan.points:
+    if _everything(plan):
         shown = without_gravity(observe_steps(system.model, steps, memory, None), slope)
         moved = steps.ground - np.array([slope.along_gravity, 0.0])
         shown |= force_histories(shown, moved, load)
+        shown |= _state_of(shown, steps.time, _level(moved, slope))
     else:
         names = BODY_FORCES
         if system.setting.stacked:
@@ -197,7 +244,9 @@ def _along(system: Assembly, plan: Plan, run: Trajectory) -> AlongSteps:
         places, length = len(FRACTIONS), steps.length[which]
         time = (steps.time[which] - length)[:, None] + length[:, None] * FRACTIONS
         states = steps.inside(which, system.model, FRACTIONS)
-        moved, felt = felt_ground(ground_at(plan.motion, time.ravel()), slope)
+        time = time.ravel()
+        ground = ground_at(plan.motion, time)
+        moved, felt = felt_ground(ground, slope)
         found = _shown(
             system,
             np.repeat(steps.mode[which], places),
@@ -206,7 +255,8 @@ def _along(system: Assembly, plan: Plan, run: Trajectory) -> AlongSteps:
             np.repeat(steps.memory_row[which], places),
             felt,
         )
-        return found | force_histories(found, moved, load)
+        found |= force_histories(found, moved, load)
+        return found | _state_of(found, time, ground)
 
     return AlongSteps(steps, shown, inside)
 
@@ -220,6 +270,22 @@ def _peak_rotations(system: Assembly, along: AlongSteps) -> Array:
     """Give the greatest rotation of each body."""
     names = rotations_of(system.model.system.bodies())
     return along.largest(lambda shown: np.abs([shown[name] for name in names]))[0]
+
+
+def _state_of(values: dict[str, Generic], time: Array, ground: Array) -> dict[str, Generic]:
+    """Give what diagnostics may follow from: what is known at some times, and the ground there."""
+    known = {name: each for name, each in values.items() if name in SCHEMA}
+    return {
+        **{name: each for name, each in known.items() if SCHEMA[name].dims == TIME},
+        "time": time,
+        **ground_histories(ground, has_vertical_motion=True),
+    }
+
+
+def _level(moved: Array, slope: Slope) -> Array:
+    """Give horizontal and vertical components of those along and normal to the base."""
+    back = replace(slope, inclination=-slope.inclination)
+    return np.column_stack(back.turned(moved[:, 0], moved[:, 1]))
 
 
 def _events_in(shown_at: dict[str, Generic], run: Trajectory) -> EventStates:

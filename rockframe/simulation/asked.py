@@ -4,6 +4,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any, Final, cast
 
 from rockframe.errors import RockframeError, shown
+from rockframe.results.diagnostics import DIAGNOSTICS, Diagnostic
 from rockframe.results.forces import OF_SOIL_FRICTION
 from rockframe.results.points import Point
 from rockframe.results.schema import GROUPS, ON_REQUEST, SCHEMA
@@ -46,14 +47,22 @@ def names_of(outputs: object, points: object, faults: list[str]) -> tuple[str, .
                 faults.append(f"{name!r} is of points, and there are none; give {EXAMPLE}")
         elif isinstance(name, str) and name in GROUPS:
             wanted.update(GROUPS[name])
+        elif isinstance(name, str) and name in DIAGNOSTICS:
+            continue  # see diagnostics_of
         elif isinstance(name, str) and (name in ON_REQUEST or _has_dimensions(name, TIME)):
             wanted.add(name)
         else:
-            known = ", ".join(repr(other) for other in (*GROUPS, *ON_REQUEST))
+            known = ", ".join(repr(other) for other in (*GROUPS, *ON_REQUEST, *DIAGNOSTICS))
             faults.append(
                 f"outputs has no {shown(name)}; every run has its response, and on request {known}"
             )
     return tuple(name for name in ON_REQUEST if name in wanted)
+
+
+def diagnostics_of(outputs: object) -> tuple[Diagnostic, ...]:
+    """Give the diagnostics that the argument ``outputs`` names, in the order of registration."""
+    named = [name for name in listed(outputs) if isinstance(name, str)]
+    return tuple(one for name, one in DIAGNOSTICS.items() if name in named)
 
 
 def _has_dimensions(name: str, dims: tuple[str, ...]) -> bool:

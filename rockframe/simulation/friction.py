@@ -160,6 +160,8 @@ def _counts(would_slide: Generic) -> tuple[int, int]:
 def _frictions(system: Assembly) -> Iterator[tuple[str, float, str]]:
     """Give the coefficients of friction that were given, and which demand each must bear."""
     parts = system.parts
+    if system.setting.slides:
+        return
     under = (
         (parts.ground, _BLOCK),
         (parts.pads, _BLOCK),

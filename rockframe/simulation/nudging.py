@@ -49,7 +49,7 @@ def parameters(system: Assembly) -> Iterator[tuple[str, SceneAt]]:
 
     for place, part in enumerate(parts):
         for name in part.parameters():
-            if name == "friction":  # it changes no motion
+            if name == "friction" and not system.setting.slides:  # it changes no motion
                 continue
             yield f"{name.replace('_', ' ')} of the {part.noun}", changed(place, name)
 

@@ -10,9 +10,10 @@ import xarray as xr
 from rockframe.components import InitialState
 from rockframe.errors import AssemblyError, shown
 from rockframe.motion import GroundMotion
+from rockframe.results.diagnostics import Diagnostic
 from rockframe.results.points import Point
 from rockframe.results.schema import ENERGIES
-from rockframe.simulation.asked import lacking, names_of, points_of
+from rockframe.simulation.asked import diagnostics_of, lacking, names_of, points_of
 from rockframe.simulation.beginning import Beginning, continuation_of, described
 from rockframe.simulation.friction import has_limit
 from rockframe.simulation.run_arguments import RunArguments
@@ -37,6 +38,7 @@ class _Asked:
     output_step: float | None
     histories: bool
     requested: tuple[str, ...]
+    diagnostics: tuple[Diagnostic, ...]
     points: tuple[Point, ...]
     stop_at_overturning: bool
 
@@ -45,7 +47,9 @@ class _Asked:
         return {
             "accuracy": vars(self.accuracy),
             "output_step": _time(self.output_step),
-            "outputs": list(self.requested) if self.histories else None,
+            "outputs": [*self.requested, *(one.name for one in self.diagnostics)]
+            if self.histories
+            else None,
             "points": {
                 point.name: [f"{each!r} {LENGTH.unit}" for each in (point.x, point.y)]
                 for point in self.points
@@ -93,7 +97,7 @@ class Plan(_Asked):
 
     def bare(self) -> "Plan":
         """Give the same run without samples."""
-        return replace(self, output_step=None, requested=(), points=())
+        return replace(self, output_step=None, requested=(), diagnostics=(), points=())
 
     def to_json(self) -> str:
         """Give the plan as JSON, without the motion."""
@@ -175,6 +179,7 @@ def read_arguments(faults: list[str], **asked: Unpack[RunArguments]) -> Argument
         output_step=output_step,
         histories=outputs is not None,
         requested=names_of(outputs, points, faults),
+        diagnostics=diagnostics_of(outputs),
         points=points_of(points, faults),
         stop_at_overturning=course is Overturning.STOP,
     )

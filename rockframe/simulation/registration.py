@@ -1,50 +1,127 @@
-"""Making a user's own base known: where it belongs, and what it shows."""
+"""Making known what users bring: bases, whole scenes, the columns that they show, diagnostics."""
 
-from collections.abc import Sequence
-from typing import Any, Final
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, Final, cast
 
 import pint
 
+from rockframe.components import Block, Component
 from rockframe.errors import ComponentError, shown
-from rockframe.results.schema import SCHEMA
-from rockframe.results.variables.variable import TIME, Variable
+from rockframe.results.diagnostics import DIAGNOSTICS, Diagnostic, add_diagnostic
+from rockframe.results.schema import GROUPS, SCHEMA
+from rockframe.results.variables.variable import EVENT, TIME, Variable
+from rockframe.system.own_answers import OwnAnswers
 from rockframe.system.own_base import OwnBase
-from rockframe.system.slots import add_kind
+from rockframe.system.own_scene import OwnScene
+from rockframe.system.scenes import add_scene, twin_of
+from rockframe.system.slots import SHIPPED, add_base, add_part, slot_of_kind
 from rockframe.units import Unit
 
 _OWNER: Final = "register"
 SLOTS: Final = ("pads", "soil")
 """Slots that bases of users' own can fill."""
+_OF_A_RUN: Final = (*TIME, *EVENT)
+"""Dimensions that every run has."""
 
 
-def register(kind: type[OwnBase], *, columns: Sequence[Variable] = ()) -> None:
-    """Make a base of your own known, so that it stands in scenes as pads or soil do.
+def register(
+    kind: "type[OwnBase] | type[OwnScene] | Diagnostic | Callable[..., Any]",
+    *,
+    columns: Sequence[Variable] = (),
+    name: str | None = None,
+    unit: Unit | str | None = None,
+    long_name: str | None = None,
+) -> None:
+    """Make something of your own known: a base, a scene, or a diagnostic.
 
     Parameters
     ----------
-    kind : type of OwnBase
-        Its class, with ``slot`` and ``support``.
+    kind : type of OwnBase, type of OwnScene, Diagnostic or callable
+        The class of a base, with ``slot`` and ``support``, which stands in scenes as pads or
+        soil do; that of a scene, with the parts that make it and equations of its own; or a
+        function of the state, which gives a :class:`~rockframe.Diagnostic`.
     columns : sequence of Variable, optional
-        Histories that it shows and that no other base has, over ``time``.
+        What a base or a scene shows and no other does: over ``time``, over ``event``, over
+        dimensions of its own, for each of which there is a column of its name with labels, or
+        over none.
+    name, unit, long_name : str, optional
+        Of a function: its name in results unless it is that of the function; the unit of what
+        it gives; and what that is, unless the first line of its docstring says it.
 
     Raises
     ------
     ComponentError
         What is not as it must be, every fault at once; nothing is registered then.
     """
-    faults = [*_faults_of(kind), *(fault for row in columns for fault in _faults_in(row))]
+    if isinstance(kind, Diagnostic) or (callable(kind) and not isinstance(kind, type)):
+        _register_diagnostic(kind, columns, name, unit, long_name)
+        return
+    faults = [*_faults_of(kind), *(fault for row in columns for fault in _faults_in(row, columns))]
     names = [getattr(row, "name", None) for row in columns]
     faults += [f"two columns are called {name!r}" for name in {*names} if names.count(name) > 1]
-    if faults:
-        msg = f"{_OWNER}: {'; '.join(faults)}"
-        raise ComponentError(msg)
-    add_kind(kind)
+    faults += [
+        f"{what} is for functions of the state"
+        for what, given in (("name", name), ("unit", unit), ("long_name", long_name))
+        if given is not None
+    ]
+    rows = [row for row in cast("Sequence[Any]", columns) if isinstance(row, Variable)]
+    told = [row.name for row in rows if row.dims != TIME]
+    if told and getattr(kind, "answers", None) is OwnAnswers.answers:
+        faults.append(
+            f"{kind.__name__} has no method answers(histories, before, after), which gives "
+            f"{' and '.join(map(repr, told))}"
+        )
+    _refuse(faults)
+    if issubclass(kind, OwnBase):
+        add_base(kind)
+    else:
+        add_scene(kind)
+        for slot, part in kind.made_of.items():
+            if slot not in SHIPPED:
+                add_part(part, slot)
     SCHEMA.update({row.name: row for row in columns})
 
 
+def _register_diagnostic(
+    given: "Diagnostic | Callable[..., Any]",
+    columns: Sequence[Variable],
+    name: str | None,
+    unit: Unit | str | None,
+    long_name: str | None,
+) -> None:
+    faults = ["columns are for bases and scenes"] if columns else []
+    if isinstance(given, Diagnostic):
+        if (name, unit, long_name) != (None, None, None):
+            faults.append("a Diagnostic has its name, unit and long_name itself")
+    else:
+        words = (given.__doc__ or "").strip().split("\n")[0].rstrip(".")
+        called = name if name is not None else getattr(given, "__name__", "")
+        given = Diagnostic(
+            given, called, cast("str", unit), words if long_name is None else long_name
+        )
+    faults += _faults_in_diagnostic(given)
+    _refuse(faults)
+    add_diagnostic(given)
+
+
+def _refuse(faults: list[str]) -> None:
+    if faults:
+        msg = f"{_OWNER}: {'; '.join(faults)}"
+        raise ComponentError(msg)
+
+
 def _faults_of(kind: Any) -> list[str]:
-    if not (isinstance(kind, type) and issubclass(kind, OwnBase)):
-        return [f"expected a class derived from OwnBase, got {shown(kind)}"]
+    if isinstance(kind, type) and issubclass(kind, OwnBase):
+        return _faults_of_base(kind)
+    if isinstance(kind, type) and issubclass(kind, OwnScene):
+        return _faults_of_scene(kind)
+    return [
+        "expected a class derived from OwnBase or OwnScene, a Diagnostic or a function, got "
+        f"{shown(kind)}"
+    ]
+
+
+def _faults_of_base(kind: type[OwnBase]) -> list[str]:
     faults: list[str] = []
     if kind.slot not in SLOTS:
         known = " or ".join(repr(slot) for slot in SLOTS)
@@ -54,19 +131,104 @@ def _faults_of(kind: Any) -> list[str]:
     return faults
 
 
-def _faults_in(row: Any) -> list[str]:
+def _faults_of_scene(kind: type[OwnScene]) -> list[str]:
+    missing = cast("frozenset[str]", getattr(kind, "__abstractmethods__", frozenset()))
+    faults = [f"{kind.__name__} has no {_ASKED[name]}" for name in _ASKED if name in missing]
+    made_of: Any = kind.made_of
+    if not (isinstance(made_of, Mapping) and made_of):
+        return [
+            *faults,
+            f"{kind.__name__}.made_of must name slots and classes of parts, such as "
+            f"{{'block': Block, 'floor': Floor}}, got {shown(made_of)}",
+        ]
+    rows = cast("Mapping[Any, Any]", made_of)
+    of_parts = [fault for row in rows.items() for fault in _faults_of_part(kind.__name__, *row)]
+    if of_parts:
+        return [*faults, *of_parts]
+    if not any(issubclass(part, Block) for part in rows.values()):
+        faults.append(f"{kind.__name__} has no Block among its parts, of which the response is")
+    if not set(rows) - set(SHIPPED):
+        faults.append(
+            f"{kind.__name__} is made of rockframe's own parts alone, and so could not be told "
+            "from its scenes; add a part of your own"
+        )
+    twin = twin_of(kind)
+    if twin is not None:
+        faults.append(f"{kind.__name__} is made of the same parts as {twin}")
+    return faults
+
+
+_ASKED: Final = {
+    "model": "name model, such as model = 'slide-rock'",
+    "contact_model": "method contact_model(), which gives its equations",
+    "words": "method words(), which describe() tells",
+}
+"""What a scene must have."""
+
+
+def _faults_of_part(owner: str, slot: Any, part: Any) -> list[str]:
+    """Tell what is wrong with a part of a scene and its slot."""
+    where = f"{owner}.made_of[{slot!r}]"
+    if not (isinstance(slot, str) and slot.isidentifier()):
+        return [f"{where}: a slot is called by a name such as 'floor'"]
+    if not (isinstance(part, type) and issubclass(part, Component)):
+        return [f"{where} must be a class of components, got {shown(part)}"]
+    fills = slot_of_kind(part)
+    if fills is not None and fills != slot:
+        return [f"{where}: {part.__name__} fills the slot {fills!r}"]
+    if fills is None and slot in SHIPPED:
+        return [f"{where}: the slot is one of rockframe's own parts; give {part.__name__} another"]
+    return []
+
+
+def _faults_in(row: Any, columns: Sequence[Any]) -> list[str]:
     if not isinstance(row, Variable):
         return [f"columns must be Variables, got {shown(row)}"]
-    faults: list[str] = []
-    if not row.name.isidentifier():
-        faults.append(f"a column is called {row.name!r}; expected a name such as 'left_set'")
-    if row.dims != TIME:
-        faults.append(f"column {row.name!r} needs the dimensions {TIME}, got {row.dims}")
+    faults = _faults_in_name(row.name, "a column")
+    labels = {one.name for one in columns if isinstance(one, Variable) and one.dims == (one.name,)}
+    faults += [
+        f"column {row.name!r} over {row.dims}: nothing labels {dim!r}; declare a column {dim!r} "
+        f"over ({dim!r},)"
+        for dim in row.dims
+        if dim not in _OF_A_RUN and dim not in labels
+    ]
     if SCHEMA.get(row.name, row) != row:
         faults.append(f"there is a variable {row.name!r} of another meaning")
-    if row.unit is not None and not isinstance(row.unit, Unit):
-        try:
-            pint.get_application_registry().parse_units(row.unit)
-        except Exception:  # whatever pint makes of it
-            faults.append(f"column {row.name!r} has the unit {row.unit!r}, which pint cannot read")
-    return faults
+    return [*faults, *_faults_in_unit(row.unit, f"column {row.name!r}")]
+
+
+def _faults_in_diagnostic(given: Diagnostic) -> list[str]:
+    name = cast("Any", given.name)
+    if not isinstance(name, str):
+        return [f"the name of a diagnostic must be a word, got {shown(name)}"]
+    faults = _faults_in_name(name, "a diagnostic")
+    if not callable(given.function):
+        faults.append(f"diagnostic {name!r} needs a function, got {shown(given.function)}")
+    if not given.long_name:
+        faults.append(f"diagnostic {name!r} needs a long_name, or a docstring")
+    if cast("Any", given.unit) is None:
+        faults.append(f"diagnostic {name!r} needs a unit, such as 'm', or '1'")
+    taken = (
+        [row.name for row in given.rows if row.name in SCHEMA] if name not in DIAGNOSTICS else []
+    )
+    taken += [name] if name in GROUPS else []
+    faults += [f"there is a variable {one!r} of another meaning" for one in taken]
+    return [*faults, *_faults_in_unit(given.unit, f"diagnostic {name!r}")]
+
+
+def _faults_in_name(name: str, what: str) -> list[str]:
+    return (
+        []
+        if name.isidentifier()
+        else [f"{what} is called {name!r}; expected one such as 'left_set'"]
+    )
+
+
+def _faults_in_unit(unit: Any, owner: str) -> list[str]:
+    if unit is None or isinstance(unit, Unit):
+        return []
+    try:
+        pint.get_application_registry().parse_units(unit)
+    except Exception:  # whatever pint makes of it
+        return [f"{owner} has the unit {unit!r}, which pint cannot read"]
+    return []

@@ -207,7 +207,7 @@ def run(
     summary, missing = response.trajectory, response.missing
     attributes = _attributes(system, plan, summary, missing)
     attributes |= end_attributes(summary.ending)
-    if summary.status.finished:
+    if summary.status.finished and not system.setting.slides:
         answers = response.answers
         friction = attempted(
             lambda: friction_words(answers.scalars, answers.slidings), "", _FRICTION, missing
@@ -319,7 +319,7 @@ def respond(system: Assembly, plan: Plan) -> Response:
         )  # fmt: skip
         if sampled:
             answers = attempted(
-                lambda: answers_of(system, plan, trajectory), answers, _SAMPLES, missing
+                lambda: answers_of(system, plan, trajectory, missing), answers, _SAMPLES, missing
             )
     return Response(system, plan, trajectory, answers, missing)
 
@@ -370,7 +370,7 @@ def _unfinished(system: Assembly, summary: Summary) -> Iterator[Caution]:
 
 def _lost_weight(system: Assembly, motion: GroundMotion | None) -> Iterator[Caution]:
     slope = system.options.slope
-    if system.setting.settlement is not None or motion is None:
+    if system.setting.flies or motion is None:
         return
     if slope.level and motion.si.vertical is None:
         return
@@ -385,7 +385,7 @@ def _lost_weight(system: Assembly, motion: GroundMotion | None) -> Iterator[Caut
 def _pulling(
     system: Assembly, values: Mapping[str, Generic], overturning_time: float
 ) -> Iterator[Caution]:
-    if system.setting.settlement is not None or "left_reaction" not in values:
+    if system.setting.flies or "left_reaction" not in values:
         return
     stands = ~(values["time"] > overturning_time)  # how a block falls is another matter
     reaction = (values["left_reaction"] + values["right_reaction"])[stands]

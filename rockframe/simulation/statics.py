@@ -66,11 +66,7 @@ def frequencies(system: Assembly) -> xr.Dataset:
     """Give the modes of small motion about rest."""
     motion = system.setting.small_motion()
     if motion is None:
-        msg = (
-            "a block on rigid ground has no small motion: it stands still or rocks, with a "
-            "period that grows with the amplitude; put it on pads or soil"
-        )
-        raise AssemblyError([msg])
+        raise AssemblyError([system.setting.without_small_motion()])
     modes = modes_of(motion)
     rate = np.array([mode.angular_frequency for mode in modes])
     values: dict[str, Generic] = {

@@ -54,7 +54,8 @@ class AloneSetting(Setting):
             left_out=["sliding", f"elasticity of the {base.body}", *base.left_out],
         )
 
-    def _contact_model(self) -> "ContactModel":
+    def contact_model(self) -> "ContactModel":
+        """Give the equations of a body on its base."""
         from rockframe.dynamics.alone_model import alone
 
         body, base = self.load.own_law, self.support.own_law

@@ -19,7 +19,7 @@ from rockframe.system.options import (
 )
 from rockframe.system.own_base import OwnBase
 from rockframe.system.parts import Parts, sort_parts
-from rockframe.system.scenes import SCENES, Scene
+from rockframe.system.scenes import Scene, scenes
 from rockframe.system.setting import Setting
 
 if TYPE_CHECKING:
@@ -152,13 +152,16 @@ def joined(
         combine.
     """
     faults = [*faults, *misfits(given)]
+    scene = next((scene for scene in scenes() if scene.fits(given, options.coupling)), None)
+    if scene is None and not faults:
+        names = " and ".join(type(part).__name__ for part in given.structural())
+        faults.append(f"no scene is made of {names} together")
     # the scenes are of use to one whose parts make none, not to one with a wrong option
-    supported = [scene.title for scene in SCENES] if faults else []
+    supported = [scene.title for scene in scenes()] if faults else []
     faults += [*missizes(given), *wrong]
-    scene = next((scene for scene in SCENES if scene.fits(given, options.coupling)), None)
     if faults or scene is None:
         raise AssemblyError(faults, supported)
     made = Assembly(given, options, scene)
-    if any(isinstance(part, OwnBase) for part in given.structural()):
-        made.model  # noqa: B018 - refuses bases with more contacts than can be numbered
+    if given.own() or any(isinstance(part, OwnBase) for part in given.structural()):
+        made.model  # noqa: B018 - refuses more contacts than can be numbered, and wrong sizes
     return made

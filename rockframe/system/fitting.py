@@ -2,7 +2,7 @@
 
 import math
 
-from rockframe.components import Component, Stack
+from rockframe.components import Stack
 from rockframe.system.own_base import OwnBase
 from rockframe.system.parts import Parts
 from rockframe.system.slots import slot_of
@@ -28,10 +28,13 @@ def misfits(parts: Parts) -> list[str]:
     """
     block, pads, cap, soil = parts.block, parts.pads, parts.cap, parts.soil
     faults: list[str] = []
+    if parts.own():  # of a user's own scene, which says itself what goes together
+        return ["no Block is given"] if block is None else []
     if parts.stack is not None:
         faults += _misfits_of_stack(parts.stack, parts)
     elif block is None:
         faults.append("no Block is given")
+    given = parts.components()
     if parts.ground is not None:
         others = [type(part).__name__ for part in (pads, cap, soil) if part is not None]
         if others:
@@ -46,7 +49,6 @@ def misfits(parts: Parts) -> list[str]:
             f"a {type(pads).__name__} and a {type(soil).__name__} are given without a CushionCap; "
             "the cap carries the pads and spreads their reactions over the soil"
         )
-    given = {slot: part for slot, part in vars(parts).items() if isinstance(part, Component)}
     for part in given.values():
         if isinstance(part, OwnBase):
             faults += part.misfits(given)

@@ -5,10 +5,11 @@ from typing import ClassVar
 
 from rockframe.components import Component
 from rockframe.system.load import Load
+from rockframe.system.own_answers import OwnAnswers
 from rockframe.system.support import Support
 
 
-class OwnBase(Component):
+class OwnBase(OwnAnswers, Component):
     """A component that carries a body, from a user's own file.
 
     A subclass declares its parameters as all components do, says in ``slot`` whose place it

@@ -1,36 +1,96 @@
 """Sorting a system's parts, whatever their order."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any, cast
 
 from rockframe.components import Block, Component, CushionCap, RigidGround, Stack
 from rockframe.components.block_numbers import BlockSI
 from rockframe.errors import shown
 from rockframe.motion import GroundMotion
 from rockframe.system.bodies import Cap, cap_under
-from rockframe.system.slots import beyond_models, hint_for, slot_of
+from rockframe.system.slots import SHIPPED, beyond_models, hint_for, slot_of, slots
 
 
 @dataclass(frozen=True)
 class Parts:
-    """The parts of a scene, by what they are; absent ones are None."""
+    """The parts of a scene, by what they are.
 
-    block: Block | None = None
-    pads: Component | None = None
-    cap: CushionCap | None = None
-    soil: Component | None = None
-    ground: RigidGround | None = None
-    motion: GroundMotion | None = None
-    stack: Stack | None = None
+    Parameters
+    ----------
+    filled : tuple of (str, Component or GroundMotion)
+        Slots and what fills them, in the order of all slots.
+    """
+
+    filled: tuple[tuple[str, Component | GroundMotion], ...] = ()
+
+    @classmethod
+    def of(cls, by_slot: Mapping[str, Component | GroundMotion | None]) -> "Parts":
+        """Give parts by their slots, in whatever order; None fills none."""
+        rows = [(slot, by_slot.get(slot)) for slot in slots()]
+        return cls(tuple((slot, part) for slot, part in rows if part is not None))
+
+    def __getitem__(self, slot: str) -> Component:
+        """Give the part in a slot, in a scene that has it."""
+        return cast("Component", dict(self.filled)[slot])
+
+    def changed(self, **by_slot: Component | GroundMotion | None) -> "Parts":
+        """Give the parts with others in some slots."""
+        return Parts.of({**dict(self.filled), **by_slot})
+
+    def _in(self, slot: str) -> Any:
+        return dict(self.filled).get(slot)
+
+    @property
+    def block(self) -> Block | None:
+        """The block."""
+        return self._in("block")
+
+    @property
+    def stack(self) -> Stack | None:
+        """Blocks upon one another."""
+        return self._in("stack")
+
+    @property
+    def pads(self) -> Component | None:
+        """The pads under it."""
+        return self._in("pads")
+
+    @property
+    def cap(self) -> CushionCap | None:
+        """The cap under block or pads."""
+        return self._in("cap")
+
+    @property
+    def soil(self) -> Component | None:
+        """The soil under block or cap."""
+        return self._in("soil")
+
+    @property
+    def ground(self) -> RigidGround | None:
+        """The rigid ground under a block."""
+        return self._in("ground")
+
+    @property
+    def motion(self) -> GroundMotion | None:
+        """The motion of the ground."""
+        return self._in("motion")
 
     def given(self) -> list[Component | GroundMotion]:
         """Give the parts that are there, in a fixed order."""
-        order = [self.stack, self.block, self.pads, self.cap, self.soil, self.ground, self.motion]
-        return [part for part in order if part is not None]
+        return [part for _, part in self.filled]
 
     def structural(self) -> list[Component]:
         """Give the parts that are no motion, in a fixed order."""
-        return [part for part in self.given() if not isinstance(part, GroundMotion)]
+        return list(self.components().values())
+
+    def components(self) -> dict[str, Component]:
+        """Give the same by their slots."""
+        return {slot: part for slot, part in self.filled if isinstance(part, Component)}
+
+    def own(self) -> dict[str, Component]:
+        """Give the parts in slots that scenes of users' own have, by these."""
+        return {slot: part for slot, part in self.components().items() if slot not in SHIPPED}
 
     @property
     def the_block(self) -> BlockSI:
@@ -48,18 +108,10 @@ class Parts:
             raise TypeError
         return cap_under(self.the_block, self.cap.si)
 
-    def base(self, slot: str) -> Component:
-        """Give the base in a slot, in a scene that has one."""
-        part = self.pads if slot == "pads" else self.soil
-        if part is None:
-            raise TypeError
-        return part
-
     @property
     def signature(self) -> frozenset[str]:
         """Names of the structural parts that are there; rigid ground goes without saying."""
-        names = {name for name, part in vars(self).items() if part is not None}
-        return frozenset(names - {"motion", "ground"})
+        return frozenset(self.components().keys() - {"ground"})
 
 
 def sort_parts(given: Sequence[object], faults: list[str]) -> Parts:
@@ -76,7 +128,7 @@ def sort_parts(given: Sequence[object], faults: list[str]) -> Parts:
     -------
     Parts
     """
-    found: dict[str, object] = {}
+    found: dict[str, Any] = {}
     for part in given:
         slot = slot_of(part)
         if slot is None:
@@ -87,4 +139,4 @@ def sort_parts(given: Sequence[object], faults: list[str]) -> Parts:
         else:
             found[slot] = part
             faults += beyond_models(part)
-    return Parts(**found)  # type: ignore[arg-type]
+    return Parts.of(found)

@@ -34,6 +34,7 @@ class RigidGroundSetting(Setting):
     """
 
     restitution: Restitutions
+    flies = False
 
     @property
     def model(self) -> str:
@@ -86,7 +87,8 @@ class RigidGroundSetting(Setting):
             ]
         return []
 
-    def _contact_model(self) -> "ContactModel":
+    def contact_model(self) -> "ContactModel":
+        """Give Housner's equations."""
         from rockframe.dynamics.rigid_ground import corner_of, rigid_ground
 
         body, small = self.body, self.options.small

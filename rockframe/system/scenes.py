@@ -1,14 +1,17 @@
 """The table of scenes: which slots make which scene."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
+from typing import Final
 
+from rockframe.components import Component
 from rockframe.errors import AssemblyError
 from rockframe.system.alone import AloneSetting
 from rockframe.system.bodies import one_body
 from rockframe.system.load import Load, load_of
 from rockframe.system.options import Coupling, Options
+from rockframe.system.own_scene import OwnScene
 from rockframe.system.parts import Parts
 from rockframe.system.rigid_ground import rigid_ground_setting
 from rockframe.system.setting import Setting
@@ -31,22 +34,30 @@ class Scene:
         From parts and options to the scene's setting.
     coupling : Coupling, optional
         The option that picks this one of two models of the same parts.
+    made_of : mapping of str to type, optional
+        Slots and classes of the parts of a user's own scene.
     """
 
     title: str
     signature: frozenset[str]
     make_setting: Callable[[Parts, Options], Setting]
     coupling: Coupling | None = None
+    made_of: Mapping[str, type[Component]] | None = None
 
     def fits(self, parts: Parts, coupling: Coupling) -> bool:
         """Whether the scene is that of the parts."""
-        return self.signature == parts.signature and self.coupling in (None, coupling)
+        if self.made_of is None:
+            return self.signature == parts.signature and self.coupling in (None, coupling)
+        given, kinds = parts.components(), self.made_of
+        return given.keys() == kinds.keys() and all(
+            isinstance(part, kinds[slot]) for slot, part in given.items()
+        )
 
 
 def _alone(slot: str, parts: Parts, options: Options) -> AloneSetting:
     """Put a block on the base in a slot."""
     load = load_of(parts.the_block, options)
-    return AloneSetting(load, support_of(parts.base(slot), load))
+    return AloneSetting(load, support_of(parts[slot], load))
 
 
 def _with_cap(parts: Parts, options: Options) -> AloneSetting:
@@ -54,7 +65,7 @@ def _with_cap(parts: Parts, options: Options) -> AloneSetting:
     cap = parts.the_cap
     load = Load(one_body(parts.the_block, cap), options)
     offset = cap.half_height - load.body.centre_height
-    return AloneSetting(load, support_of(parts.base("soil"), load), cap_offset=offset)
+    return AloneSetting(load, support_of(parts["soil"], load), cap_offset=offset)
 
 
 def _refuse_twins(parts: Parts, upper: AloneSetting, lower: AloneSetting) -> None:
@@ -62,7 +73,7 @@ def _refuse_twins(parts: Parts, upper: AloneSetting, lower: AloneSetting) -> Non
     shown = [{column.name for column in each.support.own_law.columns} for each in (upper, lower)]
     twins = sorted(shown[0] & shown[1])
     if twins:
-        pads, soil = (type(parts.base(slot)).__name__ for slot in ("pads", "soil"))
+        pads, soil = (type(parts[slot]).__name__ for slot in ("pads", "soil"))
         fault = f"{pads} and {soil} both show {' and '.join(twins)}; give those of one other names"
         raise AssemblyError([fault])
 
@@ -79,12 +90,12 @@ def _upon_one_another(slot: str, parts: Parts, options: Options) -> StackSetting
     """Put a stack on the base in a slot."""
     if parts.stack is None:
         raise TypeError
-    return stack_setting(parts.stack, parts.base(slot), options)
+    return stack_setting(parts.stack, parts[slot], options)
 
 
 _STACK = frozenset({"block", "pads", "cap", "soil"})
 
-SCENES: tuple[Scene, ...] = (
+_SHIPPED: Final = (
     Scene(
         "Block (on rigid ground; RigidGround(restitution=...) to choose its restitution)",
         frozenset({"block"}),
@@ -116,3 +127,44 @@ SCENES: tuple[Scene, ...] = (
     ),
     Scene("Stack + WinklerSoil", frozenset({"stack", "soil"}), partial(_upon_one_another, "soil")),
 )
+
+
+_OWN: Final[dict[str, Scene]] = {}
+"""Scenes of users' own, by the full names of their classes."""
+
+
+def scenes() -> tuple[Scene, ...]:
+    """Give all scenes, those of users' own last."""
+    return (*_SHIPPED, *_OWN.values())
+
+
+def add_scene(kind: type[OwnScene]) -> None:
+    """Make a user's own scene known; it takes the place of one whose class had its full name."""
+    title = " + ".join(part.__name__ for part in kind.made_of.values())
+    name = f"{kind.__module__}.{kind.__qualname__}"
+    _OWN[name] = Scene(
+        f"{title} ({kind.__name__})",
+        frozenset(kind.made_of),
+        partial(_own, kind),
+        made_of=kind.made_of,
+    )
+
+
+def twin_of(kind: type[OwnScene]) -> str | None:
+    """Give the title of another scene that is made of the same parts, if there is one."""
+    own = f"{kind.__module__}.{kind.__qualname__}"
+    titles = (
+        scene.title
+        for name, scene in _OWN.items()
+        if name != own and scene.made_of == dict(kind.made_of)
+    )
+    return next(titles, None)
+
+
+def _own(kind: type[OwnScene], parts: Parts, options: Options) -> OwnScene:
+    """Make the setting of a user's own scene."""
+    found = kind(load_of(parts.the_block, options), parts)
+    faults = found.misfits()
+    if faults:
+        raise AssemblyError(faults)
+    return found

@@ -39,6 +39,10 @@ class Setting(ABC):
     cap_offset: float | None = field(default=None, kw_only=True)
     stacked: ClassVar[bool] = False
     """Whether the body stands on pads on a cap on soil."""
+    flies: ClassVar[bool] = True
+    """Whether the equations follow a body that leaves its base."""
+    slides: ClassVar[bool] = False
+    """Whether in the equations a body slides on its base, so that its friction is that of these."""
 
     @property
     def body(self) -> Body:
@@ -112,6 +116,13 @@ class Setting(ABC):
         """Give the linear equations of small motion about rest; a rigid base leaves none."""
         return None
 
+    def without_small_motion(self) -> str:
+        """Say why there are no such equations."""
+        return (
+            "a block on rigid ground has no small motion: it stands still or rocks, with a "
+            "period that grows with the amplitude; put it on pads or soil"
+        )
+
     @abstractmethod
     def curve(self, rotations: Sequence[float]) -> list[Statics | None]:
         """Give the quasi-static states at rotations [rad]; None where nothing holds the body."""
@@ -160,9 +171,9 @@ class Setting(ABC):
         ]
 
     @abstractmethod
-    def _contact_model(self) -> "ContactModel":
+    def contact_model(self) -> "ContactModel":
         """Give the equations, with limits of the rotation as of a level base."""
 
     def compile(self) -> "ContactModel":
         """Give the equations, ready for the integrator."""
-        return replace(self._contact_model(), rotation_limits=self.overturning_angles)
+        return replace(self.contact_model(), rotation_limits=self.overturning_angles)

@@ -51,13 +51,24 @@ _KINDS: Final[dict[type, Kind]] = {
     GroundMotion: Kind("motion"),
 }
 
-SLOTS: Final = tuple(dict.fromkeys(kind.slot for kind in _KINDS.values()))
-"""All slots, in a fixed order."""
+SHIPPED: Final = tuple(dict.fromkeys(kind.slot for kind in _KINDS.values()))
+"""Slots of the package's own parts, in a fixed order; that of the motion is the last."""
 
 
-def add_kind(kind: type[OwnBase]) -> None:
+def slots() -> tuple[str, ...]:
+    """Give all slots, in a fixed order: those of scenes of users' own stand before the motion."""
+    own = sorted({kind.slot for kind in _KINDS.values()} - set(SHIPPED))
+    return (*SHIPPED[:-1], *own, SHIPPED[-1])
+
+
+def add_base(kind: type[OwnBase]) -> None:
     """Make a user's own base known."""
     _KINDS[kind] = Kind(kind.slot, kind.support)
+
+
+def add_part(kind: type[Component], slot: str) -> None:
+    """Make a part of a user's own scene known."""
+    _KINDS[kind] = Kind(slot)
 
 
 def known_kind(of: type) -> type | None:
@@ -133,6 +144,8 @@ def hint_for(part: object) -> str:
         return "; it is the class itself: call it with its values"
     if isinstance(part, OwnBase):
         return f"; it {_to_register(type(part))}"
+    if isinstance(part, Component):
+        return "; no scene that is registered is made of it"
     return ""
 
 

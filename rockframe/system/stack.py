@@ -159,7 +159,8 @@ class StackSetting(Setting):
         """Give nothing beside the rotation at rest: each base has a settlement of its own."""
         return {}
 
-    def _contact_model(self) -> "ContactModel":
+    def contact_model(self) -> "ContactModel":
+        """Give the equations of bodies upon one another."""
         from rockframe.dynamics.chain.model import Placement, chain
 
         rest = [Placement(one.state.rotation, one.state.vertical) for one in self._rest]

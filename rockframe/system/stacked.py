@@ -209,7 +209,8 @@ class CoupledSetting(StackedSetting):
             ("cap: flight", "no soil force; block and cap fall together or apart"),
         ]  # fmt: skip
 
-    def _contact_model(self) -> "ContactModel":
+    def contact_model(self) -> "ContactModel":
+        """Give the coupled equations."""
         from rockframe.dynamics.coupled.model import coupled
 
         return coupled(self.bodies(), self.body.mass, self.rest)
@@ -257,7 +258,8 @@ class CascadeSetting(StackedSetting):
             "the cap's inclination, for the block",
         ]
 
-    def _contact_model(self) -> "ContactModel":
+    def contact_model(self) -> "ContactModel":
+        """Give the equations of both stages."""
         from rockframe.dynamics.cascade.model import cascade
 
         body = self.lower.body

@@ -6,14 +6,13 @@ import math
 import os
 import subprocess
 import sys
-from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 import pytest
 import xarray as xr
-from own_example import FILE, NAME, example
+from own_example import FILE, NAME, as_before, example
 from plainly import plainly
 
 import rockframe as rf
@@ -339,18 +338,6 @@ def test_code_is_kept_for_each_name_of_a_module(tmp_path, monkeypatch):
     assert files[0] != files[1]
 
 
-@contextmanager
-def as_before():
-    """Take back all registrations at the end."""
-    rows, kinds = dict(SCHEMA), dict(slots._KINDS)
-    try:
-        yield
-    finally:
-        for table, was in ((SCHEMA, rows), (slots._KINDS, kinds)):
-            table.clear()
-            table.update(was)
-
-
 class Bare(ext.OwnBase):
     """A base that does not say how it carries a body."""
 
@@ -495,11 +482,11 @@ class TestRegistration:
 
     @pytest.mark.parametrize("kind", [rf.TwoSpringSupport, rf.Block, int, 3, "pads", None])
     def test_what_is_no_base_is_refused(self, kind):
-        with pytest.raises(rf.ComponentError, match="a class derived from OwnBase, got"):
+        with pytest.raises(rf.ComponentError, match=r"OwnBase or OwnScene, .* got"):
             rf.register(kind)
 
     def test_an_instance_is_refused(self):
-        with pytest.raises(rf.ComponentError, match="a class derived from OwnBase, got Copied"):
+        with pytest.raises(rf.ComponentError, match=r"OwnBase or .*, got Copied"):
             rf.register(Copied(frequency_ratio=20))
 
     def test_a_wrong_slot_is_refused(self):
@@ -517,8 +504,9 @@ class TestRegistration:
         [
             ("wear", "columns must be Variables, got 'wear'"),
             (column(name="the wear"), "a column is called 'the wear'"),
-            (column(dims=("event",)), r"'wear' needs the dimensions \('time',\), got \('event',\)"),
-            (column(dims=()), r"'wear' needs the dimensions \('time',\), got \(\)"),
+            (column(dims=("event",)), r"Copied has no method answers\(.*, which gives 'wear'"),
+            (column(dims=()), r"Copied has no method answers\(.*, which gives 'wear'"),
+            (column(dims=("layer",)), r"'wear' over \('layer',\): nothing labels 'layer'"),
             (column(name="rotation"), "there is a variable 'rotation' of another meaning"),
             (column(name="left_set"), "there is a variable 'left_set' of another meaning"),
             (column(unit="metros"), "'wear' has the unit 'metros', which pint cannot read"),

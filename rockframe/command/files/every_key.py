@@ -10,9 +10,9 @@ from rockframe.command.files.calls import arguments_of
 from rockframe.command.files.motions import motion_keys
 from rockframe.command.files.scenes import (
     CONSTRUCTOR,
-    PART_SLOTS,
     constructors,
     kinds_in,
+    part_slots,
     run_keys,
 )
 from rockframe.command.files.studies import sweep_keys
@@ -50,7 +50,7 @@ def every_key() -> str:
 
 def _lines() -> Iterator[str]:
     yield from _HEAD.splitlines()
-    for slot in PART_SLOTS:
+    for slot in part_slots():
         for name, kind in kinds_in(slot).items():
             yield from _of_part(slot, name, kind)
     yield from _of_function("system", "options of the system", System.__init__, of=System)

@@ -23,7 +23,7 @@ from rockframe.simulation.plan import read_arguments
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import Accuracy, AccuracyLevel
 from rockframe.system.options import Overturning
-from rockframe.system.slots import SLOTS, slot_of_kind, usual_kind
+from rockframe.system.slots import slot_of_kind, slots, usual_kind
 
 TYPE: Final = "type"
 CONSTRUCTOR: Final = "constructor"
@@ -31,12 +31,18 @@ MODULES: Final = "modules"
 OPTIONS: Final = "system"
 MOTION: Final = "motion"
 RUN: Final = "run"
-PART_SLOTS: Final = tuple(slot for slot in SLOTS if slot != MOTION)
-"""Tables of parts."""
-KEYS: Final = (MODULES, *PART_SLOTS, OPTIONS, MOTION, RUN)
-"""What a file of a scene may hold."""
 _OF_ALL: Final = ("from_dict", "declared")
 """Class methods of all components, which are no way to describe one."""
+
+
+def part_slots() -> tuple[str, ...]:
+    """Give the tables of parts."""
+    return tuple(slot for slot in slots() if slot != MOTION)
+
+
+def keys() -> tuple[str, ...]:
+    """Give what a file of a scene may hold."""
+    return (MODULES, *part_slots(), OPTIONS, MOTION, RUN)
 
 
 @dataclass(frozen=True)
@@ -79,8 +85,9 @@ def read_scene(path: str | Path) -> Described:
         With every fault found.
     """
     file = TomlFile.read(path)
+    import_modules(file)  # whose parts may have tables of their own
     for name in file.values:
-        if name not in KEYS:
+        if name not in keys():
             _unknown_table(file, name)
     found = described(file)
     file.check()
@@ -102,9 +109,8 @@ def described(file: TomlFile) -> Described | None:
     Described or None
         None where a fault was found.
     """
-    _import_modules(file)
     given = file.values
-    parts = [part_of(file, slot, given[slot]) for slot in PART_SLOTS if slot in given]
+    parts = [part_of(file, slot, given[slot]) for slot in part_slots() if slot in given]
     motion = motion_of(file, (MOTION,), given[MOTION]) if MOTION in given else None
     run = _run_of(file, given[RUN]) if RUN in given else {}
     options = file.table((OPTIONS,), given.get(OPTIONS, {}))
@@ -303,13 +309,13 @@ def _unknown_table(file: TomlFile, name: str) -> None:
     kind = kinds().get(name)
     slot = None if kind is None else slot_of_kind(kind)
     if slot is None:
-        file.unknown((), name, KEYS)
+        file.unknown((), name, keys())
     else:
         words = f'a {name} is written [{slot}] with type = "{name}"'
         file.fault((name,), f"unknown key {name!r}; {words}")
 
 
-def _import_modules(file: TomlFile) -> None:
+def import_modules(file: TomlFile) -> None:
     """Import the files in which users declare their own parts."""
     given = file.values.get(MODULES, [])
     if not isinstance(given, list):

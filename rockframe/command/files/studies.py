@@ -10,8 +10,14 @@ import pandas as pd
 
 from rockframe.command.files.calls import arguments_of, checked, made
 from rockframe.command.files.motions import motion_of
-from rockframe.command.files.scenes import KEYS as SCENE_KEYS
-from rockframe.command.files.scenes import Described, described, read_scene, run_arguments
+from rockframe.command.files.scenes import (
+    Described,
+    described,
+    import_modules,
+    read_scene,
+    run_arguments,
+)
+from rockframe.command.files.scenes import keys as scene_keys
 from rockframe.command.files.tables import TomlFile
 from rockframe.errors import FileError, RockframeError, shown
 from rockframe.motion import GroundMotion
@@ -82,9 +88,10 @@ def read_study(path: str | Path) -> DescribedStudy:
         With every fault found.
     """
     file = TomlFile.read(path)
+    import_modules(file)  # whose parts may have tables of their own
     for name in file.values:
-        if name not in (*KEYS, *SCENE_KEYS):
-            file.unknown((), name, (*KEYS, *SCENE_KEYS))
+        if name not in (*KEYS, *scene_keys()):
+            file.unknown((), name, (*KEYS, *scene_keys()))
     scene = _scene_of(file)
     motions = _motions_of(file)
     arguments = _sweep_of(file) | _axes_of(file)
@@ -109,7 +116,7 @@ def _scene_of(file: TomlFile) -> Described | None:
     name = file.values.get(SCENE)
     if name is None:
         return described(file)
-    inner = [key for key in file.values if key in SCENE_KEYS]
+    inner = [key for key in file.values if key in scene_keys()]
     for key in inner:
         file.fault((key,), f"[{key}] and scene = {shown(name)} are both given; one of them does")
     if not isinstance(name, str):

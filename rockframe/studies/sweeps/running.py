@@ -24,6 +24,7 @@ from rockframe.studies.sweeps.store import Store, begin_with
 from rockframe.studies.sweeps.study import Study, worker_count
 from rockframe.studies.sweeps.telling import say_what_is_missing
 from rockframe.system.own_base import OwnBase
+from rockframe.system.own_scene import OwnScene
 
 _LARGEST_CHUNK: Final = 1_000_000
 _GLIMPSE: Final = 1e-3
@@ -80,7 +81,8 @@ def _runs_as_python(study: Study) -> bool:
         return True
     try:
         system, _, plan = CasesOfJob(study.job(range(1))).planned(0)
-        if not any(isinstance(part, OwnBase) for part in system.parts.structural()):
+        own = any(isinstance(part, OwnBase) for part in system.parts.structural())
+        if not own and not isinstance(system.setting, OwnScene):
             return False
         glimpse = replace(plan.bare(), duration=_GLIMPSE * plan.duration)
         return respond(system, glimpse).trajectory.as_python

@@ -89,7 +89,7 @@ class SystemScene:
             return _of_option(name, parameter, given)
         found = [
             (slot, part, part.declared()[parameter])
-            for slot, part in self._parts().items()
+            for slot, part in self.assembly.parts.components().items()
             if parameter in part.declared() and kind in ("", *_names(part))
         ]
         if len(found) != 1:
@@ -116,7 +116,7 @@ class SystemScene:
             if what in seen:
                 found.append(f"{seen[what]!r} and {axis.name!r} are the same parameter")
             seen[what] = axis.name
-        for slot, part in self._parts().items():
+        for slot, part in self.assembly.parts.components().items():
             given = {
                 parameter: name for (_, place, parameter), name in seen.items() if place == slot
             }
@@ -138,7 +138,7 @@ class SystemScene:
         for axis, value in values.items():
             if axis.changes is Changes.PART:
                 by_slot.setdefault(axis.slot, {})[axis.parameter] = value
-        changed = {slot: getattr(parts, slot).with_si(each) for slot, each in by_slot.items()}
+        changed = {slot: parts[slot].with_si(each) for slot, each in by_slot.items()}
         other = {
             axis.parameter: _option(axis.parameter, value)
             for axis, value in values.items()
@@ -146,14 +146,10 @@ class SystemScene:
         }
         # options that no axis changes stay the same object, by which loads are shared
         options = replace(options, **other) if other else options
-        found = joined(replace(parts, **changed, motion=None), options)
+        found = joined(parts.changed(**changed, motion=None), options)
         for caution in found.setting.cautions():
             warn(caution, ModelWarning)
         return found
-
-    def _parts(self) -> dict[str, Component]:
-        parts = vars(self.assembly.parts)
-        return {slot: part for slot, part in parts.items() if isinstance(part, Component)}
 
     def _not_one(self, name: str, parameter: str, having: list[Component]) -> str:
         if having:
@@ -164,7 +160,7 @@ class SystemScene:
                 f"axes={{...}}: {ways}"
             )
         known = [*TARGETS, *_OPTIONS, *STARTS]
-        known += [one for part in self._parts().values() for one in part.declared()]
+        known += [one for part in self.assembly.parts.structural() for one in part.declared()]
         listed = ", ".join(dict.fromkeys(known))
         question = meant(parameter, [*known, *OF_A_SWEEP])
         return f"axis {name!r} names no parameter{question} There are {listed}"

@@ -178,7 +178,7 @@ def _prepared(cases: CasesOfJob, case: int, vertical: bool) -> _Scene | None:
     system, said, plan = cases.planned(case)
     if plan.output_step is not None:
         return None  # samples are looked at, for friction
-    if not system.options.slope.level or (vertical and system.setting.settlement is None):
+    if not system.options.slope.level or (vertical and not system.setting.flies):
         return None  # the ground is another one for each scene; or a block may leave it
     if system.model.shows_bodies:
         return None  # its equations work in lists, for which there are no lanes

@@ -1,0 +1,112 @@
+"""Diagnostics: functions of the state that users register, and what a run tells by them."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+
+from rockframe.errors import SchemaError
+from rockframe.results.outcome import Generic
+from rockframe.results.schema import SCHEMA
+from rockframe.results.variables.variable import TIME, Variable
+from rockframe.signals.arrays import Array
+from rockframe.units import Unit
+
+State = Mapping[str, Generic]
+"""Arrays over instants, by their names in the schema, in SI units."""
+
+
+@dataclass(frozen=True)
+class Diagnostic:
+    """A function of the state, to be had of any scene by its name among the outputs.
+
+    Parameters
+    ----------
+    function : callable
+        Takes a mapping of arrays by their names in results, in SI units, and returns an array
+        of as many numbers. There are ``time``, the response (``rotation``,
+        ``angular_velocity``, ``horizontal_displacement``, ...), accelerations, reactions,
+        ``friction_demand``, ``ground_acceleration`` and ``vertical_ground_acceleration``, and
+        what else the scene's equations show of the block, the highest of a stack. Each number
+        must follow from those of its own instant: the instants are those of the histories, or
+        those at which a peak is sought.
+    name : str
+        Its name among the outputs and in results.
+    unit : str
+        Unit of what it gives; ``"1"`` for a ratio.
+    long_name : str
+        What it is.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import rockframe as rf
+    >>> roof = rf.Diagnostic(
+    ...     lambda state: state["horizontal_displacement"] + 2.0 * np.sin(state["rotation"]),
+    ...     "lean_of_roof",
+    ...     "m",
+    ...     "how far the middle of the roof moves to the right",
+    ... )
+    >>> state = {
+    ...     "time": np.zeros(1),
+    ...     "rotation": np.zeros(1),
+    ...     "horizontal_displacement": np.ones(1),
+    ... }
+    >>> roof.of(state)
+    array([1.])
+    """
+
+    function: Callable[[State], Any]
+    name: str
+    unit: Unit | str
+    long_name: str
+
+    @property
+    def rows(self) -> tuple[Variable, Variable]:
+        """Its history and its peak, as rows of the schema."""
+        return (
+            Variable(self.name, TIME, self.unit, self.long_name),
+            Variable(
+                f"peak_{self.name}",
+                (),
+                self.unit,
+                f"largest absolute value up to overturning: {self.long_name}",
+            ),
+        )
+
+    def of(self, state: State) -> Array:
+        """Give its values at instants.
+
+        Parameters
+        ----------
+        state : mapping of str to ndarray, shape (instants,)
+            By their names in results, in SI units.
+
+        Returns
+        -------
+        ndarray, shape (instants,)
+
+        Raises
+        ------
+        SchemaError
+            There are not as many as instants.
+        """
+        found = np.asarray(self.function(state), dtype=np.float64)
+        if found.shape != state["time"].shape:
+            msg = (
+                f"the diagnostic {self.name!r} gave an array of shape {found.shape}, for "
+                f"{len(state['time'])} instants"
+            )
+            raise SchemaError(msg)
+        return found
+
+
+DIAGNOSTICS: Final[dict[str, Diagnostic]] = {}
+"""Those that users have registered, by their names."""
+
+
+def add_diagnostic(one: Diagnostic) -> None:
+    """Make a diagnostic known; it takes the place of one of its name."""
+    DIAGNOSTICS[one.name] = one
+    SCHEMA.update({row.name: row for row in one.rows})

@@ -1,0 +1,137 @@
+"""Scenes of a user's own: what a class declares whose equations are its own."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, ClassVar, NoReturn
+
+from rockframe.components import Component
+from rockframe.errors import AssemblyError
+from rockframe.system.overturning_energy import least_overturning_energy
+from rockframe.system.own_answers import OwnAnswers
+from rockframe.system.parts import Parts
+from rockframe.system.setting import Setting
+from rockframe.system.statics import Statics
+
+if TYPE_CHECKING:
+    from rockframe.dynamics.protocol import ContactModel
+
+
+@dataclass(frozen=True)
+class OwnScene(OwnAnswers, Setting):
+    """A scene with equations of its own, from a user's own file.
+
+    A subclass says in ``made_of`` which parts make it, in ``model`` what its model is called,
+    and has the methods ``contact_model``, the equations, and ``words``, what `describe()`
+    tells. All else has a default; what a scene does not tell is refused where it is asked for.
+    :func:`rockframe.register` makes it known.
+
+    Parameters
+    ----------
+    load : Load
+        The block, with the options of its system.
+    parts : Parts
+        The parts, by their slots: ``self.parts["block"]``.
+    """
+
+    parts: Parts
+    made_of: ClassVar[Mapping[str, type[Component]]] = {}
+    """Slots and classes of the parts; shipped parts, of which one is a block, in their slots."""
+
+    def misfits(self) -> list[str]:
+        """Give the faults of parts and options; none unless overridden.
+
+        Returns
+        -------
+        list of str
+            Each names what does not fit, and what would mend it.
+        """
+        return []
+
+    @cached_property
+    def uplift_angle(self) -> float:
+        """Rotation at which full contact is lost; NaN, not told, unless overridden [rad]."""
+        return math.nan
+
+    @cached_property
+    def overturning_energy(self) -> float:
+        """Energy that it takes to overturn the body; 0, not told, without quasi-static states [J].
+
+        Then no run warns that its end may not be that of the motion.
+        """
+        if type(self).curve is OwnScene.curve:
+            return 0.0
+        return least_overturning_energy(self)
+
+    def curve(self, rotations: Sequence[float]) -> list[Statics | None]:
+        """Give the quasi-static states at rotations [rad]; refused unless overridden."""
+        self._lacks("tells no quasi-static states", "curve(rotations)")
+
+    def equilibrium(self) -> dict[str, float]:
+        """Give settlements and reactions at rest; refused unless overridden."""
+        self._lacks("tells nothing of rest", "equilibrium()")
+
+    def without_small_motion(self) -> str:
+        """Say that the scene tells no equations of small motion."""
+        return f"{self.model} tells no small motion; it is for its class to give small_motion()"
+
+    def start_faults(self, rotation: float, has_vertical_start: bool) -> list[str]:
+        """Refuse a vertical start, unless overridden."""
+        if not has_vertical_start:
+            return []
+        told = "InitialState: vertical_displacement and vertical_velocity are no start of "
+        return [f"{told}{self.model}"]
+
+    def _lacks(self, words: str, method: str) -> NoReturn:
+        raise AssemblyError([f"{self.model} {words}; it is for its class to give {method}"])
+
+    def compile(self) -> "ContactModel":
+        """Give the equations, ready for the integrator.
+
+        Raises
+        ------
+        AssemblyError
+            Sizes and tables are not those of the system, with every fault found.
+        """
+        model = super().compile()
+        faults = _faults_of(model)
+        if faults:
+            raise AssemblyError([f"{type(self).__name__}: {fault}" for fault in faults])
+        return model
+
+
+def _faults_of(model: "ContactModel") -> list[str]:
+    """Compare the sizes of a model's tables with what its system gives at the start."""
+    from rockframe.dynamics.protocol import BODY_COLUMNS, POWERS, Ground, Start
+
+    system, size, still = model.system, model.system.coordinates(), Ground(0.0, 0.0)
+    width = 2 * size + system.variables()
+    mode, state, memory = model.initial(Start())
+    faults: list[str] = []
+    if model.columns[: len(BODY_COLUMNS)] != BODY_COLUMNS:
+        faults.append("columns must begin with BODY_COLUMNS, of the block")
+    counts = [
+        ("the state of initial(start)", len(state), width),
+        ("memory of initial(start)", len(memory), len(model.memory)),
+        ("scales", len(model.scales), width),
+        ("rotation_weights", len(model.rotation_weights), size),
+        ("guard_tolerance", len(model.guard_tolerance), system.guards()),
+    ]
+    if not any(found != wanted for _, found, wanted in counts[:2]):
+        slope = system.accelerate(mode, state, still)
+        counts.append(("accelerate", len(slope), width - size + POWERS))
+        if len(slope) == width - size + POWERS:
+            guards = system.guards_in(mode, state, slope, still)
+            shown = system.observe(mode, state, slope, still, memory)
+            counts += [
+                ("guards_in: values", len(guards.values), system.guards()),
+                ("guards_in: changes", len(guards.changes), system.guards()),
+                ("observe", len(shown), len(model.columns)),
+            ]
+    faults += [
+        f"{what} has {found} numbers, but there must be {wanted}"
+        for what, found, wanted in counts
+        if found != wanted
+    ]
+    return faults
