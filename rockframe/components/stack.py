@@ -60,10 +60,11 @@ class Stack(Component):
 
     Examples
     --------
-    >>> statue = Block(width="0.5 m", height="1.8 m", mass="900 kg")
-    >>> plinth = Block(width="0.9 m", height="1 m", mass="2200 kg")
-    >>> joint = TwoSpringSupport(frequency_ratio=60, damping_ratio=0.1)
-    >>> Stack(statue, plinth, interfaces=[joint]).bodies[1] == plinth
+    >>> import rockframe as rf
+    >>> statue = rf.Block(width="0.5 m", height="1.8 m", mass="900 kg")
+    >>> plinth = rf.Block(width="0.9 m", height="1 m", mass="2200 kg")
+    >>> joint = rf.TwoSpringSupport(frequency_ratio=60, damping_ratio=0.1)
+    >>> rf.Stack(statue, plinth, interfaces=[joint]).bodies[1] == plinth
     True
     """
 

@@ -111,7 +111,7 @@ def write_direction(
 
 @kernel
 def write_relative(system: Rows, room: Vector, out: Vector) -> None:
-    """Write the accelerations of all coordinates from those of the bodies."""
+    """Write the accelerations of all coordinates by :eq:`eq-chain-kinematics`."""
     for k in range(system.body_count):
         i, first = k * PLACES, BEFORE_HORIZONTAL * k
         sine, cosine = room[i + at.SINE], room[i + at.COSINE]
@@ -201,6 +201,8 @@ def solve_motion(
     system: Rows, count: int, band: int, room: Vector, rows: Vector, matrix: Vector
 ) -> None:
     """Write the forces of `count` constraints, sorted by body, and the accelerations of all bodies.
+
+    Equation :eq:`eq-chain-solution`.
 
     Elimination in the band about the diagonal, on which there is no zero.
     """
