@@ -22,6 +22,7 @@ FULL, RIGHT, LEFT = 0, 1, 2  # what bears: a mode is 3 * this + the slip
 HELD, TO_RIGHT, TO_LEFT = 0, 1, 2  # the slip of what bears
 TO_IMPACT, TO_STICK, ON_RIGHT, ON_LEFT, SLIP_RIGHT, SLIP_LEFT = range(6)  # guards
 GUARDS = 6
+ROUNDING = 1e-12  # of accelerations, over gravity
 INSTANT = 1e-10  # rotation, over that which overturns, that a rebound must reach
 
 
@@ -146,7 +147,8 @@ class SlideRock(NamedTuple):
         if mode // 3 != FULL:
             landing, falling = side * state[1], side * state[3]
         if sense != 0.0:
-            stopping, slowing = sense * state[2], sense * slope[0]
+            # a slip that starts is not stopped by rounding
+            stopping, slowing = sense * state[2], sense * slope[0] + ROUNDING * self.gravity
         else:
             moved = self.motion(mode, state, ground)
             most = self.static * moved.normal
@@ -176,9 +178,9 @@ class SlideRock(NamedTuple):
             return 3 * (RIGHT if guard == ON_RIGHT else LEFT)
         if guard in (SLIP_RIGHT, SLIP_LEFT):
             slips = 3 * bears + (TO_RIGHT if guard == SLIP_RIGHT else TO_LEFT)
-            # found too early by rounding, it would stick again
-            starts = self.sense(slips) * self.motion(slips, state, ground).slip > 0.0
-            return slips if starts else mode
+            # found too early, it would stick again
+            starts = self.sense(slips) * self.motion(slips, state, ground).slip
+            return slips if starts > -ROUNDING * self.gravity else mode
         state[2] = 0.0
         held = self.motion(3 * bears, state, ground)
         if abs(held.along) <= self.static * held.normal:

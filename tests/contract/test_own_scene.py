@@ -1,6 +1,7 @@
 """A scene of a user's own, from the example's file: all that holds for scenes holds for it."""
 
 import json
+import math
 import os
 import subprocess
 import sys
@@ -16,8 +17,9 @@ from plainly import plainly
 import rockframe as rf
 from rockframe import extension as ext
 from rockframe.command.files.scenes import read_scene
+from rockframe.compiled import COMPILED
 from rockframe.results.schema import SCHEMA
-from rockframe.studies.sweeps.study import FEWEST_IN_LANES
+from rockframe.studies.sweeps import study
 
 BLOCK = rf.Block(width="1 m", height="4 m", mass="10 t")
 PULSE = rf.GroundMotion.sine_pulse(amplitude="-3.5 m/s^2", frequency="1 Hz")
@@ -187,10 +189,14 @@ class TestStudies:
         alone = scene(0.26).simulate(PULSE, **RUN)
         assert float(runs.peak_rotation[1, 0]) == float(alone.peak_rotation) > 0.0
 
-    def test_many_cases_are_as_one(self, system):
-        """Side by side in lanes where it can be compiled."""
-        frictions = np.linspace(0.255, 0.4, 2 * FEWEST_IN_LANES)
+    def test_many_cases_are_as_one(self, system, monkeypatch):
+        """Side by side in lanes where it can be compiled; each comes to an end."""
+        monkeypatch.setattr(study, "WORTH", math.inf)
+        frictions = np.linspace(0.255, 0.4, 2 * study.FEWEST_IN_LANES if COMPILED else 50)
         runs = rf.sweep(system, PULSE, friction=frictions, accuracy="fast", progress=False)
+        assert ("side by side" in runs.attrs["driver"]) == COMPILED
+        assert int(runs.overturned.sum()) == 0
+        assert int(runs.overturned.count()) == len(frictions)
         for k in 0, 5, len(frictions) - 1:
             alone = rf.case(runs, friction=frictions[k]).simulate(second_look=False)
             assert float(runs.peak_rotation[k, 0]) == float(alone.peak_rotation)
