@@ -1,7 +1,6 @@
 """Statics from the forces of the equations: the closed forms, the energy, and chains of bodies."""
 
 import math
-from dataclasses import replace
 from itertools import pairwise, product
 from typing import NamedTuple
 
@@ -19,6 +18,7 @@ from rockframe.dynamics.coupled.model import system_of as coupled_of
 from rockframe.dynamics.coupled.stack import small_motion_matrices
 from rockframe.dynamics.linear import PLACES, RATES, linear, of_base
 from rockframe.dynamics.on_base import OnBase
+from rockframe.dynamics.pads import ElasticPads
 from rockframe.dynamics.protocol import Ground, Start
 from rockframe.dynamics.restraint import CENTRE
 from rockframe.dynamics.statics import Chain, link_of
@@ -190,10 +190,9 @@ def bodies(beside=0.0, along=0.0):
         if k == 2:
             base = bed_under(body, stiffness=4500.0, damping=5.0, by_pressure=False, load=above)
         else:
-            base = pads_under(body, stiffness=(900.0, 1500.0)[k], damping=1.0, restitution=(1, 1))
-            unloaded = 0.5 * above * G / base.law.stiffness
-            law = base.law._replace(left_settlement=unloaded, right_settlement=unloaded)
-            base = replace(base, law=law)
+            base = pads_under(
+                body, stiffness=(900.0, 1500.0)[k], damping=1.0, restitution=(1, 1), load=above
+            )
         links.append(link_of(OnBase(body, base.law), MASSES[k], TOPS[k], eccentricity_of(body)))
     return Chain(tuple(links), along)
 
@@ -285,33 +284,29 @@ def test_the_couple_on_three_bodies_is_the_slope_of_their_energy():
 # laws of one's own --------------------------------------------------------------------------------
 
 
-@ext.on_pads
-class PropLaw(NamedTuple):
+PROP = 500.0
+
+
+class ProppedPads(ElasticPads):
     """Pads and a spring under the middle, which carries a part of the weight."""
 
-    pads: ext.Pads
-    prop: float
+    __slots__ = ()
 
-    @ext.inlined
-    def now(self, own):
-        return self.pads
-
-    @ext.inlined
     def force(self, contact, line, own):
-        found = self.pads.force(contact, line, own)
+        found = super().force(contact, line, own)
         middle = 0.5 * (line.left + line.right)
-        moment = found.moment - self.prop * middle * 0.5 * (line.left_lever + line.right_lever)
-        return ext.BaseForce(found.upward - self.prop * (middle - 0.01), moment, found.dissipated)
+        moment = found.moment - PROP * middle * 0.5 * (line.left_lever + line.right_lever)
+        return ext.BaseForce(found.upward - PROP * (middle - 0.01), moment, found.dissipated)
 
 
 def test_a_law_that_pushes_is_in_equilibrium_at_rest_and_at_the_start_of_a_run():
     body = body_of(left=0.5, right=0.5, height=2.0, inertia=1.5, restraint=CENTRE,
                    small_rotation=False, gravity=G)  # fmt: skip
     pads = pads_under(body, stiffness=2000.0, damping=3.0, restitution=(0.9, 0.9)).law
-    part = OnBase(body, PropLaw(pads, 500.0))
+    part = OnBase(body, ProppedPads(*pads))
     for rotation in (0.0, 0.001, -0.02):
         state, mode = starting_state(part, Start(rotation), ())
         force = part.base.force(mode.contact, body.base_line_at(state), ())
         assert force.upward == pytest.approx(G, rel=1e-12)
     (stand,) = Chain((link_of(part),)).rest()
-    assert stand.state.vertical == pytest.approx(500.0 * 0.01 / 4500.0, rel=1e-12)
+    assert stand.state.vertical == pytest.approx(PROP * 0.01 / 4500.0, rel=1e-12)
