@@ -46,7 +46,7 @@ from rockframe.results.variables.studies import CRITICAL_SCALE, SWEEP, Outcome
 from rockframe.results.variables.variable import EVENT, Variable
 from rockframe.solve.accuracy import LEVELS
 from rockframe.system.options import Restraint, Rotation
-from rockframe.system.scenes import SCENES
+from rockframe.system.scenes import scenes
 from rockframe.units import Unit
 
 Rows = Iterable[tuple[str, ...]]
@@ -57,6 +57,7 @@ _PARTS = {
     "cap": rf.CushionCap(height="0.5 m", mass="5 t"),
     "soil": rf.WinklerSoil(stiffness="20 MPa", damping_ratio=0.2),
 }
+_PARTS["stack"] = rf.Stack(_PARTS["block"], _PARTS["block"], interfaces=[_PARTS["pads"]])
 
 
 def _variables(rows: Iterable[Variable], dims: tuple[str, ...] | None = None) -> Rows:
@@ -74,7 +75,7 @@ def _flags(kind: type) -> Rows:
 
 def _scenes() -> Rows:
     yield "parts", "model"
-    for scene in SCENES:
+    for scene in scenes():
         coupling = {} if scene.coupling is None else {"coupling": scene.coupling}
         system = rf.System(*(_PARTS[slot] for slot in scene.signature), **coupling)
         yield scene.title, system.setting.model
