@@ -11,7 +11,7 @@ import numpy as np
 
 from rockframe.compiled import Matrix, Vector
 from rockframe.dynamics.body import BodyState
-from rockframe.dynamics.statics import Chain, Link, Stand
+from rockframe.dynamics.statics import Stand, StandingBody, StandingChain
 from rockframe.dynamics.trigonometry import sine_cosine
 
 STEP: Final = 1e-3
@@ -31,12 +31,12 @@ class Linear(NamedTuple):
     stiffness: Matrix
 
 
-def linear(chain: Chain, stands: list[Stand]) -> Linear:
+def linear(chain: StandingChain, stands: list[Stand]) -> Linear:
     """Give small motion about rest.
 
     Parameters
     ----------
-    chain : Chain
+    chain : StandingChain
         The bodies.
     stands : list of Stand
         How they rest.
@@ -56,7 +56,7 @@ def linear(chain: Chain, stands: list[Stand]) -> Linear:
     return Linear(_mass(chain, stands), damping, stiffness)
 
 
-def of_base(link: Link, stand: Stand, name: str) -> tuple[float, float]:
+def of_base(link: StandingBody, stand: Stand, name: str) -> tuple[float, float]:
     """Give minus the change of a base's moment and force with a coordinate or rate of its body."""
     body, base = link.part
     step = _step(link, name)
@@ -71,7 +71,7 @@ def of_base(link: Link, stand: Stand, name: str) -> tuple[float, float]:
     return moment, upward
 
 
-def _of_weight(chain: Chain, stands: list[Stand], k: int, name: str) -> Vector:
+def _of_weight(chain: StandingChain, stands: list[Stand], k: int, name: str) -> Vector:
     """Give minus the changes of the generalised forces of all weights."""
     link, stand, step = chain.links[k], stands[k], _step(chain.links[k], name)
 
@@ -88,7 +88,7 @@ def _of_weight(chain: Chain, stands: list[Stand], k: int, name: str) -> Vector:
     )  # fmt: skip
 
 
-def _step(link: Link, name: str) -> float:
+def _step(link: StandingBody, name: str) -> float:
     size = link.allowed_rotation if name in (PLACES[0], RATES[0]) else link.settlement
     rate = math.sqrt(link.part.body.gravity / link.settlement) if name in RATES else 1.0
     return STEP * size * rate
@@ -98,7 +98,7 @@ def _moved(stand: Stand, name: str, by: float) -> BodyState:
     return stand.state._replace(**{name: getattr(stand.state, name) + by})
 
 
-def _mass(chain: Chain, stands: list[Stand]) -> Matrix:
+def _mass(chain: StandingChain, stands: list[Stand]) -> Matrix:
     """Give the mass matrix: all that stands on a base moves with its body."""
     size = 2 * len(stands)
     ways = np.zeros((len(stands), 3, size))  # of each body: to the right, up, rotation

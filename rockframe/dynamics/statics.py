@@ -30,7 +30,7 @@ HALVINGS: Final = 60
 """Of the rotation at which contact is first lost, where the levels of the ends do not tell it."""
 
 
-class Link(NamedTuple):
+class StandingBody(NamedTuple):
     """A body on its base, in a chain of bodies."""
 
     part: OnBase
@@ -52,7 +52,7 @@ class Link(NamedTuple):
         across = self.beside + pin + (body.height * attitude.sine - pin * attitude.cosine)
         return body.reach(pin, attitude), across
 
-    def with_share(self, share: float) -> "Link":
+    def with_share(self, share: float) -> "StandingBody":
         """Give the body with a share of its eccentricity."""
         body = self.part.body
         if self.beside == 0.0 and body.left == body.right:
@@ -75,10 +75,10 @@ class Stand(NamedTuple):
     own: Any  # variables of its base's own, as at a start there
 
 
-class Chain(NamedTuple):
+class StandingChain(NamedTuple):
     """Bodies that stand on one another, from the top down, and gravity along the lowest base."""
 
-    links: tuple[Link, ...]
+    links: tuple[StandingBody, ...]
     along_gravity: float = 0.0
 
     @property
@@ -86,12 +86,12 @@ class Chain(NamedTuple):
         """Whether nothing turns the bodies from where they stand upright."""
         return self.along_gravity == 0.0 and all(link.beside == 0.0 for link in self.links)
 
-    def with_share(self, share: float) -> "Chain":
+    def with_share(self, share: float) -> "StandingChain":
         """Give the chain with a share of its slope and of the eccentricity of its bodies."""
         if share == 1.0:
             return self
         links = tuple(link.with_share(share) for link in self.links)
-        return Chain(links, share * self.along_gravity)
+        return StandingChain(links, share * self.along_gravity)
 
     def frames(self, rotations: Sequence[float]) -> list[tuple[float, float]]:
         """Give gravity normal to the deck under each body, and along it."""
@@ -197,7 +197,7 @@ class Chain(NamedTuple):
         found = self._turning(share, [rotation - sum(lower), *lower])
         return None if found is None else [moment - found[0] for moment in found[1:]]
 
-    def _sizes(self, links: Sequence[Link]) -> Sizes:
+    def _sizes(self, links: Sequence[StandingBody]) -> Sizes:
         body, mass = links[-1].part.body, sum(link.mass for link in self.links)
         rounding = BALANCED * body.gravity * mass * body.size()
         return Sizes(np.array([link.allowed_rotation for link in links]), rounding)
@@ -205,7 +205,7 @@ class Chain(NamedTuple):
 
 def link_of(
     part: OnBase, mass: float = 1.0, top: float = 0.0, beside: float = 0.0, own: Any = None
-) -> Link:
+) -> StandingBody:
     """Give a body on its base; the arguments are those of a link.
 
     Without variables of its own the base is as before any run.
@@ -214,10 +214,10 @@ def link_of(
     if own is None:
         own = base.read(np.zeros(base.variables()), 0)
     rest = body.base_line_at(BodyState(0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
-    return Link(part, mass, top, beside, base.level(True, rest, own), own)
+    return StandingBody(part, mass, top, beside, base.level(True, rest, own), own)
 
 
-def settled(link: Link, rotation: float, press: float) -> Stand:
+def settled(link: StandingBody, rotation: float, press: float) -> Stand:
     """Give how a body stands at a rotation on its base, which carries a force.
 
     The force of a base falls with the height of the body on it. The height at which the base
@@ -252,7 +252,7 @@ def settled(link: Link, rotation: float, press: float) -> Stand:
     return Stand(state, mode, *link.way(attitude, mode.pivot), line, force, press, own)
 
 
-def uplift_rotation(link: Link, press: float) -> float:
+def uplift_rotation(link: StandingBody, press: float) -> float:
     """Give the least rotation to the right at which a base is no longer in full contact.
 
     NaN where it is up to a right angle.

@@ -41,7 +41,7 @@ from rockframe.simulation.plan import Plan
 from rockframe.solve.observe import memory_at_outputs, observe_states, observe_steps
 from rockframe.solve.trajectory import Trajectory
 from rockframe.system.assembly import Assembly
-from rockframe.system.own_answers import OwnAnswers
+from rockframe.system.own_base import OwnAnswers
 
 
 @dataclass(frozen=True)

@@ -10,8 +10,7 @@ from rockframe.errors import ComponentError, shown
 from rockframe.results.diagnostics import DIAGNOSTICS, Diagnostic, add_diagnostic
 from rockframe.results.schema import GROUPS, SCHEMA
 from rockframe.results.variables.variable import EVENT, TIME, Variable
-from rockframe.system.own_answers import OwnAnswers
-from rockframe.system.own_base import OwnBase
+from rockframe.system.own_base import OwnAnswers, OwnBase
 from rockframe.system.own_scene import OwnScene
 from rockframe.system.scenes import add_scene, twin_of
 from rockframe.system.slots import SHIPPED, add_base, add_part, slot_of_kind

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, ClassVar, NoReturn
 from rockframe.components import Component
 from rockframe.errors import AssemblyError
 from rockframe.system.overturning_energy import least_overturning_energy
-from rockframe.system.own_answers import OwnAnswers
+from rockframe.system.own_base import OwnAnswers
 from rockframe.system.parts import Parts
 from rockframe.system.setting import Setting
 from rockframe.system.statics import Statics

@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Final
 
 from rockframe.components import Component, Stack
-from rockframe.dynamics.statics import Chain, Stand, link_of
+from rockframe.dynamics.statics import Stand, StandingChain, link_of
 from rockframe.errors import AssemblyError
 from rockframe.system.bodies import Body, body_of
 from rockframe.system.load import Load
@@ -123,7 +123,7 @@ class StackSetting(Setting):
             link_of(OnBase(one.body, one.base.law), one.mass, one.top, one.beside)
             for one in self.links
         )
-        chain = Chain(links, self.slope.along_gravity)
+        chain = StandingChain(links, self.slope.along_gravity)
         return Standing(chain, self.body.mass, tuple(one.base for one in self.links))
 
     @cached_property
@@ -161,9 +161,9 @@ class StackSetting(Setting):
 
     def contact_model(self) -> "ContactModel":
         """Give the equations of bodies upon one another."""
-        from rockframe.dynamics.chain.model import Placement, chain
+        from rockframe.dynamics.chain.model import AtRest, chain
 
-        rest = [Placement(one.state.rotation, one.state.vertical) for one in self._rest]
+        rest = [AtRest(one.state.rotation, one.state.vertical) for one in self._rest]
         limits = [
             together(self.bodies[: k + 1], self.tops, self.offsets).overturning_angles
             for k in range(1, len(self.bodies))

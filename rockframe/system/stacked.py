@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from rockframe.dynamics.statics import Chain, Stand, link_of
+from rockframe.dynamics.statics import Stand, StandingChain, link_of
 from rockframe.errors import AssemblyError
 from rockframe.system.alone import AloneSetting
 from rockframe.system.bodies import Cap
@@ -22,7 +22,7 @@ from rockframe.system.words import Words
 
 if TYPE_CHECKING:
     from rockframe.dynamics.coupled.model import StackRest
-    from rockframe.dynamics.coupled.stack import Stack
+    from rockframe.dynamics.coupled.stack import BlockOnCap
     from rockframe.dynamics.protocol import ContactModel
 
 LEAST_CAP_SHARE = 1e-3
@@ -144,7 +144,9 @@ class StackedSetting(Setting):
             link_of(OnBase(block, pads.law), beside=eccentricity_of(block)),
             link_of(OnBase(plate, soil.law), share, plate.height),
         )
-        return Standing(Chain(links, self.slope.along_gravity), self.body.mass, (pads, soil))
+        return Standing(
+            StandingChain(links, self.slope.along_gravity), self.body.mass, (pads, soil)
+        )
 
     @property
     def _moving_cap(self) -> tuple[float, float]:
@@ -154,12 +156,12 @@ class StackedSetting(Setting):
             return cap.mass, cap.inertia
         return least, least * cap.half_width**2 / 3.0
 
-    def bodies(self) -> "Stack":
+    def bodies(self) -> "BlockOnCap":
         """Give block, pads, cap and soil as the coupled equations take them."""
         return self._stack(*self._moving_cap)
 
-    def _stack(self, cap_mass: float, cap_inertia: float) -> "Stack":
-        from rockframe.dynamics.coupled.stack import Stack
+    def _stack(self, cap_mass: float, cap_inertia: float) -> "BlockOnCap":
+        from rockframe.dynamics.coupled.stack import BlockOnCap
 
         (upper, lower), cap, mass = self.supports, self.cap, self.body.mass
         block = self.load.law(mass)
@@ -170,7 +172,7 @@ class StackedSetting(Setting):
             inertia=cap_inertia / mass,
             angle=math.atan2(cap.half_width, cap.half_height),
         )
-        return Stack(
+        return BlockOnCap(
             block,
             upper.law(block, mass, mass),
             plate,

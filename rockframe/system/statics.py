@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Final
 
-from rockframe.dynamics.statics import Chain, Stand
+from rockframe.dynamics.statics import Stand, StandingChain
 from rockframe.errors import SolverError
 
 if TYPE_CHECKING:
@@ -72,7 +72,7 @@ class Standing:
 
     Parameters
     ----------
-    chain : Chain
+    chain : StandingChain
         The bodies on their bases, as the equations take them.
     mass : float
         That the chain is measured by, that of its highest body [kg].
@@ -80,7 +80,7 @@ class Standing:
         Under each body, from the top down.
     """
 
-    chain: Chain
+    chain: StandingChain
     mass: float
     bases: "tuple[BaseNumbers, ...]"
 

@@ -130,11 +130,11 @@ class Support(ABC):
         """Its body alone on it, by the law."""
         from rockframe.dynamics.alone_model import eccentricity_of
         from rockframe.dynamics.on_base import OnBase
-        from rockframe.dynamics.statics import Chain, link_of
+        from rockframe.dynamics.statics import StandingChain, link_of
 
         body, numbers = self.load.own_law, self.own_law
         link = link_of(OnBase(body, numbers.law), beside=eccentricity_of(body))
-        chain = Chain((link,), self.load.slope.along_gravity)
+        chain = StandingChain((link,), self.load.slope.along_gravity)
         return Standing(chain, self.load.body.mass, (numbers,))
 
     @cached_property

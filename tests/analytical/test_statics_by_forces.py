@@ -21,7 +21,7 @@ from rockframe.dynamics.on_base import OnBase
 from rockframe.dynamics.pads import ElasticPads
 from rockframe.dynamics.protocol import Ground, Start
 from rockframe.dynamics.restraint import CENTRE
-from rockframe.dynamics.statics import Chain, link_of
+from rockframe.dynamics.statics import StandingChain, link_of
 from rockframe.system.overturning_energy import stored_energy
 
 pytestmark = pytest.mark.analytical
@@ -194,7 +194,7 @@ def bodies(beside=0.0, along=0.0):
                 body, stiffness=(900.0, 1500.0)[k], damping=1.0, restitution=(1, 1), load=above
             )
         links.append(link_of(OnBase(body, base.law), MASSES[k], TOPS[k], eccentricity_of(body)))
-    return Chain(tuple(links), along)
+    return StandingChain(tuple(links), along)
 
 
 def potential(chain, places):
@@ -308,5 +308,5 @@ def test_a_law_that_pushes_is_in_equilibrium_at_rest_and_at_the_start_of_a_run()
         state, mode = starting_state(part, Start(rotation), ())
         force = part.base.force(mode.contact, body.base_line_at(state), ())
         assert force.upward == pytest.approx(G, rel=1e-12)
-    (stand,) = Chain((link_of(part),)).rest()
+    (stand,) = StandingChain((link_of(part),)).rest()
     assert stand.state.vertical == pytest.approx(PROP * 0.01 / 4500.0, rel=1e-12)

@@ -169,4 +169,5 @@ def test_the_comparison_that_the_manual_shows_is_what_was_found():
     for table in tables:
         row = f"| {table['bodies']} | {table['scenes']} | {table['agree']} | "
         assert row in page
+        assert f"| {table['uplifting']} | {table['overturning']} | {table['events']} |" in page
         assert table["agree"] >= 0.99 * table["scenes"]

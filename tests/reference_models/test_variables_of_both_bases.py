@@ -14,7 +14,7 @@ from plainly import plainly
 from rockframe.dynamics.alone_model import body_of
 from rockframe.dynamics.base_numbers import BaseNumbers, pads_over, pads_under
 from rockframe.dynamics.coupled.model import StackRest, coupled
-from rockframe.dynamics.coupled.stack import Stack
+from rockframe.dynamics.coupled.stack import BlockOnCap
 from rockframe.dynamics.point_law import Viscoelastic, point_law
 from rockframe.dynamics.protocol import Column, Start
 from rockframe.dynamics.restraint import LEADING_CORNER
@@ -100,7 +100,9 @@ def stack(above, below):
     pads = pads_under(block, stiffness=4e3, damping=20.0, restitution=(0.9, 0.9))
     soil = pads_under(cap, stiffness=2e3, damping=30.0, restitution=(1.0, 1.0))
     return coupled(
-        Stack(block, above(pads), cap, below(soil), CAP_MASS), 1e4, StackRest(0.0, 0.0, 0.0, 0.0)
+        BlockOnCap(block, above(pads), cap, below(soil), CAP_MASS),
+        1e4,
+        StackRest(0.0, 0.0, 0.0, 0.0),
     )
 
 

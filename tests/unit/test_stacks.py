@@ -7,6 +7,8 @@ import pytest
 import xarray as xr
 
 import rockframe as rf
+from rockframe.components import stack
+from rockframe.dynamics.chain import rows
 from rockframe.dynamics.events import ContactState
 
 STATUE = rf.Block(width="0.5 m", height="1.8 m", mass="900 kg")
@@ -26,17 +28,17 @@ def run():
 
 
 def test_a_stack_gives_back_what_it_was_made_of():
-    stack = rf.Stack(STATUE, PLINTH, interfaces=[JOINT], offsets=["2 cm"])
-    assert stack.bodies == (STATUE, PLINTH)
-    assert stack.interfaces == (JOINT,)
-    assert stack.offsets == (0.02,)
-    assert rf.Stack.from_dict(stack.to_dict()) == stack
-    assert pickle.loads(pickle.dumps(stack)) == stack  # noqa: S301
-    assert stack != STACK
-    assert len({stack, STACK, rf.Stack(STATUE, PLINTH, interfaces=[JOINT])}) == 2
-    assert "offsets=['0.02 m']" in repr(stack)
+    made = rf.Stack(STATUE, PLINTH, interfaces=[JOINT], offsets=["2 cm"])
+    assert made.bodies == (STATUE, PLINTH)
+    assert made.interfaces == (JOINT,)
+    assert made.offsets == (0.02,)
+    assert rf.Stack.from_dict(made.to_dict()) == made
+    assert pickle.loads(pickle.dumps(made)) == made  # noqa: S301
+    assert made != STACK
+    assert len({made, STACK, rf.Stack(STATUE, PLINTH, interfaces=[JOINT])}) == 2
+    assert "offsets=['0.02 m']" in repr(made)
     with pytest.raises(AttributeError, match="immutable"):
-        stack.bodies = ()
+        made.bodies = ()
 
 
 @pytest.mark.parametrize(
@@ -70,6 +72,10 @@ def test_what_makes_no_stack_is_refused(bodies, given, words):
 def test_parts_that_do_not_fit_a_stack_are_refused(parts, words):
     with pytest.raises(rf.AssemblyError, match=words):
         rf.System(*parts)
+
+
+def test_a_stack_has_as_many_bodies_as_its_modes_can_tell_apart():
+    assert stack.MOST_BODIES == rows.MOST_BODIES
 
 
 def test_no_slope_under_a_stack():

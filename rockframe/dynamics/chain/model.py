@@ -41,7 +41,7 @@ class ChainBody(NamedTuple):
     beside: float  # of its centre of mass to the right of that of the body below, upright
 
 
-class Placement(NamedTuple):
+class AtRest(NamedTuple):
     """Where a body is, relative to what it stands on."""
 
     rotation: float
@@ -58,7 +58,7 @@ def chain_of(links: Sequence[ChainBody]) -> Chain:
 def chain(
     links: Sequence[ChainBody],
     mass: float,
-    rest: Sequence[Placement] | None = None,
+    rest: Sequence[AtRest] | None = None,
     limits: Sequence[tuple[float, float]] = (),
 ) -> ContactModel:
     """Assemble the model of bodies upon one another.
@@ -69,7 +69,7 @@ def chain(
         From the top down.
     mass : float
         That all is measured by [kg].
-    rest : sequence of Placement, or None
+    rest : sequence of AtRest, or None
         Where the bodies are at rest; None where they all stand upright.
     limits : sequence of tuple of float
         Rotations to the left and to the right at which each body but the first overturns, with
@@ -221,12 +221,12 @@ def small_motion_matrices(
 
 
 def _initial(
-    system: Chain, links: Sequence[ChainBody], rest: Sequence[Placement] | None, start: Start
+    system: Chain, links: Sequence[ChainBody], rest: Sequence[AtRest] | None, start: Start
 ) -> tuple[int, Vector, Vector]:
     """Start a run: all at rest but the first body, which is as told."""
     count = len(links)
     n = DEGREES * count
-    placed = list(rest or [Placement(0.0, 0.0)] * count)
+    placed = list(rest or [AtRest(0.0, 0.0)] * count)
     below = sum(one.rotation for one in placed[1:])
     first, part = placed[0], system.on_base(0)
     if start.rotation is not None or start.vertical_displacement is not None:
@@ -236,7 +236,7 @@ def _initial(
         if height is None:
             lift = part.body.left * attitude.sine, -part.body.right * attitude.sine
             height = part.base.resting_height(*lift, ()) - attitude.rise
-        placed[0] = Placement(rotation, height)
+        placed[0] = AtRest(rotation, height)
     state, memory, mode = np.zeros(2 * n), np.zeros(len(MEMORY) + count), 0
     for k, one in enumerate(placed):
         part, moving = system.on_base(k), k == 0

@@ -4,6 +4,7 @@ Bodies are counted from the top down. One machine code serves all chains, whatev
 their bases, since it reads both from here.
 """
 
+import math
 from collections.abc import Sequence
 from typing import Final, NamedTuple
 
@@ -18,7 +19,7 @@ from rockframe.dynamics.body import BaseLine, Body
 from rockframe.dynamics.on_base import BODY_GUARDS, Mode, OnBase
 from rockframe.dynamics.pads import CORNER, CORNER_GUARDS, ElasticPads
 from rockframe.dynamics.point_law import Viscoelastic
-from rockframe.dynamics.protocol import POWERS
+from rockframe.dynamics.protocol import MOST_MODES, POWERS
 
 # a row: the body's numbers in their order in `Body`, among them
 INERTIA: Final = 3
@@ -26,7 +27,7 @@ GRAVITY: Final = 4
 # then
 MASS: Final = 8  # over the mass that all is measured by
 TOP: Final = 9  # of the body above its centre of mass; what stands on it stands there
-BESIDE: Final = 10  # of the body's centre of mass from the axis of the one below, at rest
+BESIDE: Final = 10  # of the body's centre of mass from that of the one below, upright
 PER_MASS: Final = 11
 PER_INERTIA: Final = 12
 PLACE_VALUE: Final = 13  # of its mode in that of the chain
@@ -88,8 +89,8 @@ CORNERS: Final = 5
 PIVOTS: Final = 3
 MODES: Final = 2 * PIVOTS * CORNERS * CORNERS
 """Modes of each body."""
-MOST_BODIES: Final = 8
-"""More than that would have more modes than whole numbers of 64 bits can tell apart."""
+MOST_BODIES: Final = int(math.log(MOST_MODES, MODES))
+"""More would have more modes than can be numbered."""
 
 
 class LawNumbers(NamedTuple):

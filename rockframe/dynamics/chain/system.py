@@ -138,7 +138,6 @@ class Chain(Rows):
             base = part.base.force(contact, line, ())
             dissipated += base.dissipated
             press_at(self, k, base.upward, base.moment, room)
-            room[i + at.PRESS] = base.upward
             supplied -= mass * (ground.x * room[i + at.SPEED_X] + ground.y * room[i + at.SPEED_Y])
         self.solve(self.constrain(mode, state, room), room)
         for k in range(self.body_count):

@@ -18,7 +18,7 @@ from rockframe.dynamics.alone_model import (
 )
 from rockframe.dynamics.bodies import ROTATION, VERTICAL
 from rockframe.dynamics.body import BodyState
-from rockframe.dynamics.coupled.stack import Stack, fastest_vibration
+from rockframe.dynamics.coupled.stack import BlockOnCap, fastest_vibration
 from rockframe.dynamics.coupled.system import Coupled
 from rockframe.dynamics.on_base import OnBase
 from rockframe.dynamics.protocol import HELD_PLACE, MEMORY, ContactModel, Start
@@ -48,7 +48,7 @@ UPRIGHT: Final = StackRest(0.0, 0.0, 0.0, 0.0)
 """Where symmetric bodies rest on a level base."""
 
 
-def system_of(stack: Stack) -> Coupled:
+def system_of(stack: BlockOnCap) -> Coupled:
     """Give the equations of a stack."""
     return Coupled(
         OnBase(stack.block, stack.pads.law),
@@ -59,12 +59,12 @@ def system_of(stack: Stack) -> Coupled:
     )
 
 
-def coupled(stack: Stack, mass: float, rest: StackRest) -> ContactModel:
+def coupled(stack: BlockOnCap, mass: float, rest: StackRest) -> ContactModel:
     """Assemble the model of a block on a base on a cap on a base.
 
     Parameters
     ----------
-    stack : Stack
+    stack : BlockOnCap
         Its parts.
     mass : float
         Of the block [kg].
@@ -100,7 +100,7 @@ def coupled(stack: Stack, mass: float, rest: StackRest) -> ContactModel:
     )
 
 
-def _scales(stack: Stack) -> Vector:
+def _scales(stack: BlockOnCap) -> Vector:
     block, pads, _, soil, cap_mass = stack
     sway, rocking = radius_of(block) * block.angle, rocking_rate(block)
     on_pads = math.sqrt(pads.vertical_stiffness)
@@ -110,7 +110,7 @@ def _scales(stack: Stack) -> Vector:
     return np.concatenate([sizes, sizes * rates, pads.variable_scales, soil.variable_scales])
 
 
-def _rounding(stack: Stack, fastest: float) -> Callable[[float], Vector]:
+def _rounding(stack: BlockOnCap, fastest: float) -> Callable[[float], Vector]:
     """Estimate the rounding noise of everything in the state, as of a body on its base."""
     block, pads, cap, soil, _ = stack
     rotating = 0.5 * (block.left + block.right) / (block.inertia + block.height**2)

@@ -10,7 +10,7 @@ from rockframe.dynamics.base_numbers import BaseNumbers
 from rockframe.dynamics.body import Body
 
 
-class Stack(NamedTuple):
+class BlockOnCap(NamedTuple):
     """Block, pads, cap and soil, per unit mass of the block.
 
     The cap's top is as high above its centre as the centre above its base.
@@ -23,7 +23,7 @@ class Stack(NamedTuple):
     cap_mass: float  # over that of the block
 
 
-def small_motion_matrices(stack: Stack) -> tuple[Matrix, Matrix, Matrix]:
+def small_motion_matrices(stack: BlockOnCap) -> tuple[Matrix, Matrix, Matrix]:
     """Give mass, damping and stiffness of small motion about rest, in full contact.
 
     In the order Y, phi, r, psi, per unit mass of the block, :eq:`eq-coupled-small`.
@@ -56,7 +56,7 @@ def small_motion_matrices(stack: Stack) -> tuple[Matrix, Matrix, Matrix]:
     return mass, np.diag(np.array(springs) * times), stiffness
 
 
-def fastest_vibration(stack: Stack) -> tuple[float, float]:
+def fastest_vibration(stack: BlockOnCap) -> tuple[float, float]:
     """Give bounds of angular frequency and damping rate, of both together or the cap alone."""
     mass, damping, stiffness = small_motion_matrices(stack)
     _, _, cap, soil, cap_mass = stack
