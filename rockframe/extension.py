@@ -3,7 +3,7 @@
 A base of your own is a class derived from :class:`OwnBase`, a :class:`Support` that says how
 it carries a body, and a law of a point, :func:`point_law`. A scene of your own is a class
 derived from :class:`OwnScene` and a :class:`System`: a named tuple of numbers with the methods
-of :class:`~rockframe.dynamics.protocol.System`, in a :class:`ContactModel`.
+of :class:`~rockframe.dynamics.protocol.Equations`, in a :class:`ContactModel`.
 :func:`rockframe.register` makes either known.
 """
 
@@ -29,8 +29,8 @@ from rockframe.dynamics.protocol import (
     Ground,
     Guards,
     Start,
-    System,
 )
+from rockframe.dynamics.protocol import Equations as System
 from rockframe.results.variables.variable import EVENT, TIME, Variable
 from rockframe.system.load import Load
 from rockframe.system.own_base import OwnBase

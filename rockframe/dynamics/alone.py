@@ -5,7 +5,7 @@ from typing import Any, Final, NamedTuple
 from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics.base import Guards
 from rockframe.dynamics.bodies import DEGREES, ROTATION, VERTICAL, InState
-from rockframe.dynamics.on_base import IDLE, SLIDES, Mode, OnBase, Response
+from rockframe.dynamics.on_base import IDLE, SLIDES, Mode, OnBase, VelocityChange
 from rockframe.dynamics.protocol import HELD_PLACE, Energies, Ground, Slope
 from rockframe.dynamics.switching import lift_by_slip, switch_part
 
@@ -156,7 +156,7 @@ class Alone(InState, OnePart):
     @kernel
     def response(
         self, k: int, mode: int, press: float, moment: float, slip: float, state: Vector
-    ) -> Response:
+    ) -> VelocityChange:
         """Give how the velocities change by an impulse, or as the hold stops a slip."""
         attitude = self.part.body.attitude(state[ROTATION])
         return self.part.response_in(self.part.mode_of(mode), attitude, press, moment, slip)

@@ -18,7 +18,7 @@ from rockframe.dynamics.restraint import CENTRE
 from rockframe.dynamics.statics import link_of, settled
 
 
-def body_of(
+def rigid_body(
     *,
     left: float,
     right: float,
@@ -170,14 +170,14 @@ def starting_state(part: OnBase, start: Start, own: tuple[float, ...]) -> tuple[
     return state, part.standing(base.starting(body.base_line_at(state), own), state)
 
 
-def placed(start: Start, rest_rotation: float) -> Start:
+def at_rotation(start: Start, rest_rotation: float) -> Start:
     """Give a start whose rotation is known: that at rest, unless it says otherwise."""
     return start if start.rotation is not None else replace(start, rotation=rest_rotation)
 
 
 def _starting(part: OnBase, rest_rotation: float) -> Callable[[Start], tuple[int, Vector, Vector]]:
     def initial(given: Start) -> tuple[int, Vector, Vector]:
-        start = placed(given, rest_rotation)
+        start = at_rotation(given, rest_rotation)
         state = np.zeros(2 * DEGREES + part.base.variables())
         memory = np.zeros(len(MEMORY))
         body, mode = starting_state(part, start, part.base.read(state, 2 * DEGREES))

@@ -49,7 +49,7 @@ class BaseNumbers:
     variable_scales: Vector = field(default_factory=lambda: np.zeros(0))
 
 
-def pads_under(
+def pads_numbers(
     body: Body,
     *,
     stiffness: float,
@@ -116,7 +116,7 @@ def pads_over(
     law : PointLaw
         Of each pad, per unit mass.
     elastic : BaseNumbers
-        Elastic pads, of :func:`pads_under`, of the stiffness and damping that the law begins with.
+        Those of :func:`pads_numbers` of the stiffness and damping that the law begins with.
     columns : sequence of Column, optional
         What the law shows at the left pad, then at the right one.
     variable_scales : sequence of float, optional
@@ -216,7 +216,7 @@ _BED_COLUMNS: Final = (
 )
 
 
-def bed_under(
+def bed_numbers(
     body: Body, *, stiffness: float, damping: float, by_pressure: bool, load: float = 1.0
 ) -> BaseNumbers:
     """Give the bed under a body.

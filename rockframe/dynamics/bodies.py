@@ -8,7 +8,7 @@ from typing import Final, Protocol
 
 from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics.body import BodyState
-from rockframe.dynamics.on_base import Mode, Response
+from rockframe.dynamics.on_base import Mode, VelocityChange
 from rockframe.dynamics.protocol import Ground
 from rockframe.dynamics.sliding import blend
 
@@ -57,11 +57,11 @@ class Bodies(Protocol):
 
     def response(
         self, k: int, mode: int, press: float, moment: float, slip: float, state: Vector
-    ) -> Response:
+    ) -> VelocityChange:
         """Give how velocities change by an impulse of its base, or as the hold stops a slip."""
         ...
 
-    def respond(self, k: int, mode: int, response: Response, state: Vector) -> None:
+    def respond(self, k: int, mode: int, response: VelocityChange, state: Vector) -> None:
         """Change the velocities."""
         ...
 
@@ -134,7 +134,7 @@ class InState:
         state[self.coordinates() + i] = velocity
 
     @kernel
-    def respond(self, k: int, mode: int, response: Response, state: Vector) -> None:
+    def respond(self, k: int, mode: int, response: VelocityChange, state: Vector) -> None:
         """Change the velocities of body `k`, which alone answers."""
         i = self.coordinates() + BEFORE_HORIZONTAL * k
         state[i + ROTATION] += response.rotation

@@ -49,7 +49,7 @@ class Rates(NamedTuple):
     supplied: float  # by the ground
 
 
-class Response(NamedTuple):
+class VelocityChange(NamedTuple):
     """Changes of a body's velocities by impulses, and the impulse of its restraint."""
 
     rotation: float
@@ -277,10 +277,10 @@ class OnBase(NamedTuple):
     @inlined
     def response_in(
         self, mode: Mode, attitude: Attitude, press: float, moment: float, slip: float
-    ) -> Response:
+    ) -> VelocityChange:
         """Give how velocities change by an impulse of the base, or as the hold stops a slip."""
         if self.is_free(mode):
-            return Response(moment / self.body.inertia, press, 0.0, ())
+            return VelocityChange(moment / self.body.inertia, press, 0.0, ())
         reach = self.body.reach(self.body.pin(mode.pivot), attitude).rate
         angular = (moment + reach * slip) / (self.body.inertia + reach * reach)
-        return Response(angular, press, reach * angular - slip, ())
+        return VelocityChange(angular, press, reach * angular - slip, ())

@@ -73,7 +73,7 @@ class Guards(NamedTuple):
     changes: Numbers
 
 
-class System(Protocol):
+class Equations(Protocol):
     """The equations of a scene."""
 
     def bodies(self) -> int:
@@ -251,7 +251,7 @@ class ContactModel:
     ----------
     name : str
         Name of the model.
-    system : System
+    system : Equations
         The equations: a named tuple of SI floats, per unit mass.
     rotation_limits : tuple of float
         Rotations to the left and to the right at which the run stops or is marked [rad].
@@ -292,7 +292,7 @@ class ContactModel:
     """
 
     name: str
-    system: System
+    system: Equations
     rotation_limits: tuple[float, float]
     rotation_weights: Vector
     scales: Vector

@@ -50,7 +50,7 @@ COLUMNS: Final = (
 )
 
 
-class Corner(NamedTuple):
+class RockingCorner(NamedTuple):
     """A corner that a block rotates about, seen from its centre of mass."""
 
     angle: float  # theta, of the line to the corner with the vertical
@@ -60,11 +60,11 @@ class Corner(NamedTuple):
     restitution: float  # eps, of the angular velocity in an impact on it
 
 
-class RigidGround(NamedTuple):
+class BlockOnRigidGround(NamedTuple):
     """A block on rigid ground, per unit mass: a system."""
 
-    left: Corner
-    right: Corner
+    left: RockingCorner
+    right: RockingCorner
     gravity: float  # g
     small: bool  # whether sines and cosines are expanded
 
@@ -111,7 +111,7 @@ class RigidGround(NamedTuple):
         return 0.0
 
     @inlined
-    def corner(self, mode: int) -> Corner:
+    def corner(self, mode: int) -> RockingCorner:
         """Give the corner that bears in a mode; the right one at rest."""
         return self.left if mode == ON_LEFT else self.right
 
@@ -246,7 +246,7 @@ def corner_of(
     inertia: float,
     restitution: float,
     small_rotation: bool,
-) -> Corner:
+) -> RockingCorner:
     """Give a corner that a block rotates about.
 
     Parameters
@@ -262,21 +262,21 @@ def corner_of(
 
     Returns
     -------
-    Corner
+    RockingCorner
     """
     angle = math.atan2(distance, height)
     tangent = angle if small_rotation else math.tan(angle)
-    return Corner(angle, math.hypot(distance, height), inertia, tangent, restitution)
+    return RockingCorner(angle, math.hypot(distance, height), inertia, tangent, restitution)
 
 
 def rigid_ground(
-    left: Corner, right: Corner, *, mass: float, small_rotation: bool, gravity: float
+    left: RockingCorner, right: RockingCorner, *, mass: float, small_rotation: bool, gravity: float
 ) -> ContactModel:
     """Assemble the model of a block on rigid ground.
 
     Parameters
     ----------
-    left, right : Corner
+    left, right : RockingCorner
         Of the block.
     mass : float
         Mass of the block [kg].
@@ -300,7 +300,7 @@ def rigid_ground(
 
     return ContactModel(
         name="rigid ground",
-        system=RigidGround(left, right, gravity, small_rotation),
+        system=BlockOnRigidGround(left, right, gravity, small_rotation),
         rotation_limits=(left.angle, right.angle),
         rotation_weights=np.ones(1),
         scales=least.angle * np.array([1.0, frequency]),

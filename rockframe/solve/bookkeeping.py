@@ -15,7 +15,7 @@ from rockframe.dynamics.protocol import (
     Ground,
 )
 from rockframe.solve import layout as at
-from rockframe.solve.equations import Equations, KnownMode, energies_at, slope_at
+from rockframe.solve.equations import BoundEquations, KnownMode, energies_at, slope_at
 from rockframe.solve.ground import ground_in
 from rockframe.solve.guards import LEFT_LIMIT, RIGHT_LIMIT, WEIGHTS
 from rockframe.solve.hermite import extremum, interpolate
@@ -43,7 +43,9 @@ GAUSS_WEIGHTS: Final = table(0.5 * _WEIGHTS)
 
 
 @kernel
-def audit(equations: Equations, mode: int, memory: Vector, clock: Vector, w: Workspace) -> None:
+def audit(
+    equations: BoundEquations, mode: int, memory: Vector, clock: Vector, w: Workspace
+) -> None:
     """Compare the energy now with its start and all that came and went, :eq:`eq-audit`.
 
     The largest term is that of what moves: the elastic energy at rest, and the gravity energy
@@ -65,7 +67,13 @@ def audit(equations: Equations, mode: int, memory: Vector, clock: Vector, w: Wor
 
 @kernel
 def work_between(
-    equations: Equations, start: float, end: float, mode: int, count: int, span: Span, w: Workspace
+    equations: BoundEquations,
+    start: float,
+    end: float,
+    mode: int,
+    count: int,
+    span: Span,
+    w: Workspace,
 ) -> Work:
     """Integrate the dashpots' and the ground's power over a part of a step, by Gauss' rule."""
     powers = equations.coordinate_count + equations.variable_count
@@ -82,7 +90,7 @@ def work_between(
 
 @kernel
 def work_until(
-    equations: Equations,
+    equations: BoundEquations,
     fraction: float,
     work: Work,
     mode: int,
@@ -104,7 +112,7 @@ def work_until(
 
 @inlined
 def store_outputs(
-    equations: Equations,
+    equations: BoundEquations,
     end: float,
     span: Span,
     mode: int,
@@ -140,7 +148,9 @@ def store_outputs(
 
 
 @inlined
-def follow_peak(equations: Equations, count: int, h: float, clock: Vector, w: Workspace) -> None:
+def follow_peak(
+    equations: BoundEquations, count: int, h: float, clock: Vector, w: Workspace
+) -> None:
     """Raise the peaks of the rotation to both sides by what the step holds, to its inside."""
     size = equations.coordinate_count
     r0 = v0 = r1 = v1 = 0.0

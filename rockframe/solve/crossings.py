@@ -4,7 +4,7 @@ import math
 from typing import Final
 
 from rockframe.compiled import Vector, kernel
-from rockframe.solve.equations import Equations, write_guards
+from rockframe.solve.equations import BoundEquations, write_guards
 from rockframe.solve.guards import DIP_MARGIN, may_dip
 from rockframe.solve.hermite import interpolate
 from rockframe.solve.workspace import Span, Workspace
@@ -23,7 +23,7 @@ CONVERGED: Final = 1e-7
 
 @kernel
 def earliest_crossing(
-    equations: Equations,
+    equations: BoundEquations,
     mode: int,
     count: int,
     span: Span,
@@ -93,7 +93,7 @@ def _dip(c1: float, c2: float, c3: float) -> tuple[float, float, float]:
 
 @kernel
 def _guard_inside(
-    equations: Equations,
+    equations: BoundEquations,
     which: int,
     fraction: float,
     mode: int,
@@ -110,7 +110,7 @@ def _guard_inside(
 
 @kernel
 def _point_below_zero(
-    equations: Equations,
+    equations: BoundEquations,
     which: int,
     bottom: float,
     low: float,
@@ -160,7 +160,7 @@ def _root_of_cubic(c0: float, c1: float, c2: float, c3: float, end: float) -> fl
 
 @kernel
 def _first_root(
-    equations: Equations,
+    equations: BoundEquations,
     which: int,
     end: float,
     mode: int,

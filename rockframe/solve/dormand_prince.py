@@ -3,7 +3,7 @@
 from typing import TypeAlias
 
 from rockframe.compiled import Vector, inlined, put
-from rockframe.dynamics.protocol import POWERS, System
+from rockframe.dynamics.protocol import POWERS, Equations
 from rockframe.solve.dormand_prince_tableau import (
     ERROR_WEIGHTS,
     NODES,
@@ -19,7 +19,7 @@ Weights: TypeAlias = Vector | tuple[float, ...]
 
 
 @inlined
-def begin_stages(system: System, state: Vector, first: Vector, stages: Vector) -> None:
+def begin_stages(system: Equations, state: Vector, first: Vector, stages: Vector) -> None:
     """Write the first stage: velocities and slope at the start of a step."""
     size = system.coordinates()
     slope, rates = size + system.variables() + POWERS, STAGES * size
@@ -31,7 +31,7 @@ def begin_stages(system: System, state: Vector, first: Vector, stages: Vector) -
 
 @inlined
 def stage_places(
-    system: System, count: int, h: float, weights: Weights, state: Vector, stages: Vector,
+    system: Equations, count: int, h: float, weights: Weights, state: Vector, stages: Vector,
     new: Vector,
 ) -> None:  # fmt: skip
     """Write the coordinates of a stage from the velocities of the stages before."""
@@ -46,7 +46,7 @@ def stage_places(
 
 @inlined
 def stage_rates(
-    system: System, count: int, h: float, weights: Weights, state: Vector, stages: Vector,
+    system: Equations, count: int, h: float, weights: Weights, state: Vector, stages: Vector,
     new: Vector,
 ) -> None:  # fmt: skip
     """Write the velocities and variables of a stage from the slopes of the stages before."""
@@ -64,7 +64,7 @@ def stage_rates(
 
 
 @inlined
-def end_works(system: System, h: float, stages: Vector, last: Vector, works: Vector) -> None:
+def end_works(system: Equations, h: float, stages: Vector, last: Vector, works: Vector) -> None:
     """Write the slope at the end of a step, and the works in it with their error."""
     size = system.coordinates()
     powers = size + system.variables()
@@ -81,7 +81,7 @@ def end_works(system: System, h: float, stages: Vector, last: Vector, works: Vec
 
 
 @inlined
-def errors_of_places(system: System, h: float, stages: Vector, works: Vector) -> None:
+def errors_of_places(system: Equations, h: float, stages: Vector, works: Vector) -> None:
     """Write the errors of the coordinates."""
     size = system.coordinates()
     for i in range(size):
@@ -92,7 +92,7 @@ def errors_of_places(system: System, h: float, stages: Vector, works: Vector) ->
 
 
 @inlined
-def errors_of_rates(system: System, h: float, stages: Vector, works: Vector) -> None:
+def errors_of_rates(system: Equations, h: float, stages: Vector, works: Vector) -> None:
     """Write the errors of velocities and variables."""
     size = system.coordinates()
     powers = size + system.variables()
@@ -106,7 +106,7 @@ def errors_of_rates(system: System, h: float, stages: Vector, works: Vector) -> 
 
 @inlined
 def runge_kutta_step(
-    system: System, mode: int, count: int, span: Span, ground: Vector, state: Vector,
+    system: Equations, mode: int, count: int, span: Span, ground: Vector, state: Vector,
     first: Vector, new: Vector, last: Vector, stages: Vector, works: Vector,
 ) -> None:  # fmt: skip
     """Step the first `count` coordinates and all variables of first order.

@@ -1,8 +1,8 @@
 """The event-driven integration of any contact model, page "Numerics" of the manual.
 
 Written once: compiled where numba is installed, plain Python where not. The driver knows a
-scene only by its :class:`rockframe.solve.equations.Equations`. It can be left for want of room in
-the event table and entered again.
+scene only by its :class:`rockframe.solve.equations.BoundEquations`. It can be left for want
+of room in the event table and entered again.
 """
 
 import math
@@ -23,7 +23,7 @@ from rockframe.solve.bookkeeping import (
 )
 from rockframe.solve.crossings import earliest_crossing
 from rockframe.solve.equations import (
-    Equations,
+    BoundEquations,
     KnownMode,
     energies_at,
     known_mode,
@@ -94,7 +94,7 @@ def time_of(progress: Progress) -> float:
 
 
 @kernel
-def look_ahead(equations: Equations, mode: int, progress: Progress, w: Workspace) -> None:
+def look_ahead(equations: BoundEquations, mode: int, progress: Progress, w: Workspace) -> None:
     """Evaluate accelerations and guards anew, after a switch or a jump of the ground."""
     clock, here = progress.clock, span_of(0.0, progress)
     ground = ground_in(0.0, here, w.ground)
@@ -116,7 +116,7 @@ def span_of(h: float, progress: Progress) -> Span:
 
 @inlined
 def march(
-    equations: Equations, known: KnownMode, trial: float, pieces: Pieces, progress: Progress,
+    equations: BoundEquations, known: KnownMode, trial: float, pieces: Pieces, progress: Progress,
     steps: StepTable, w: Workspace,
 ) -> int:  # fmt: skip
     """Make steps until something happens, or try one; see :mod:`rockframe.solve.march`."""
@@ -130,7 +130,7 @@ def march(
 
 @kernel
 def step_to_event(
-    equations: Equations, known: KnownMode, whole: float, tolerance: Vector, pieces: Pieces,
+    equations: BoundEquations, known: KnownMode, whole: float, tolerance: Vector, pieces: Pieces,
     progress: Progress, steps: StepTable, w: Workspace,
 ) -> tuple[float, int]:  # fmt: skip
     """Repeat a step up to the first crossing of a guard; give its length and the guard, or -1.
@@ -192,7 +192,7 @@ def stand_still(w: Workspace) -> None:
 
 @kernel
 def carry_out(
-    equations: Equations,
+    equations: BoundEquations,
     crossed: int,
     time: float,
     known: KnownMode,
@@ -245,7 +245,7 @@ def keep_start(mode: int, progress: Progress, steps: StepTable, w: Workspace) ->
 
 @kernel
 def run_on(
-    equations: Equations,
+    equations: BoundEquations,
     tolerance: Vector,
     memory: Vector,
     pieces: Pieces,
@@ -258,7 +258,7 @@ def run_on(
 
     Parameters
     ----------
-    equations : Equations
+    equations : BoundEquations
         Of the scene.
     tolerance : ndarray
         Rounding noise of the system's guards, and of the limit of the rotation.
@@ -382,7 +382,7 @@ def run_on(
 
 @entry
 def advance(
-    equations: Equations,
+    equations: BoundEquations,
     tolerance: Vector,
     memory: Vector,
     pieces: Pieces,

@@ -17,7 +17,7 @@ from rockframe.compiled import (
     numbers_in,
     put,
 )
-from rockframe.dynamics.protocol import BODY_COLUMNS, BODY_FORCES, Energies, Ground, System
+from rockframe.dynamics.protocol import BODY_COLUMNS, BODY_FORCES, Energies, Equations, Ground
 from rockframe.solve.ground import ground_in
 from rockframe.solve.guards import guards_at
 from rockframe.solve.march import march_by_tolerance, march_fixed
@@ -27,7 +27,7 @@ from rockframe.solve.workspace import Span, Workspace
 
 @kernel
 def slope(
-    system: System, mode: int, state: Vector, ground_x: float, ground_y: float, out: Vector
+    system: Equations, mode: int, state: Vector, ground_x: float, ground_y: float, out: Vector
 ) -> None:
     """Write accelerations, rates of variables of first order, and powers."""
     put(system.accelerate(mode, state, Ground(ground_x, ground_y)), 0, out)
@@ -35,7 +35,7 @@ def slope(
 
 @kernel
 def guards_of_state(
-    system: System, mode: int, state: Vector, slope: Vector, ground_x: float, ground_y: float,
+    system: Equations, mode: int, state: Vector, slope: Vector, ground_x: float, ground_y: float,
     limits: Vector, out: Vector,
 ) -> None:  # fmt: skip
     """Write the guards of a state and their rates."""
@@ -44,7 +44,7 @@ def guards_of_state(
 
 @kernel
 def switched(
-    system: System, mode: int, guard: int, state: Vector, ground_x: float, ground_y: float,
+    system: Equations, mode: int, guard: int, state: Vector, ground_x: float, ground_y: float,
     memory: Vector,
 ) -> int:  # fmt: skip
     """Carry out what the fall of a guard calls for; give the new mode."""
@@ -52,7 +52,7 @@ def switched(
 
 
 @kernel
-def meaning(system: System, mode: int, out: Vector) -> None:
+def meaning(system: Equations, mode: int, out: Vector) -> None:
     """Write how many coordinates move in a mode, the contact state, and a rate of decay."""
     out[0] = system.moving_in(mode)
     out[1] = system.contact_state_of(mode, 0)
@@ -60,14 +60,14 @@ def meaning(system: System, mode: int, out: Vector) -> None:
 
 
 @kernel
-def energies(system: System, mode: int, state: Vector, out: Vector) -> None:
+def energies(system: Equations, mode: int, state: Vector, out: Vector) -> None:
     """Write the energies of a state."""
     put(system.energies(mode, state), 0, out)
 
 
 @kernel
 def observed(
-    system: System, mode: int, state: Vector, slope: Vector, ground_x: float, ground_y: float,
+    system: Equations, mode: int, state: Vector, slope: Vector, ground_x: float, ground_y: float,
     memory: Vector, out: Vector,
 ) -> None:  # fmt: skip
     """Write the columns of a state."""
@@ -80,7 +80,7 @@ SHEAR, THRUST, PRESS = (_BODY.index(name) for name in BODY_FORCES)
 
 @kernel
 def forces(
-    system: System, mode: int, state: Vector, slope: Vector, ground_x: float, ground_y: float,
+    system: Equations, mode: int, state: Vector, slope: Vector, ground_x: float, ground_y: float,
     memory: Vector, out: Vector,
 ) -> None:  # fmt: skip
     """Write `BODY_FORCES` alone, so that nothing else is computed."""
@@ -88,7 +88,7 @@ def forces(
     out[0], out[1], out[2] = columns[SHEAR], columns[THRUST], columns[PRESS]
 
 
-class Equations(NamedTuple):
+class BoundEquations(NamedTuple):
     """A system, bound: its functions, its numbers, and how many there are of everything.
 
     Two processes compile the functions from both ends, those that take longest first.
@@ -107,25 +107,25 @@ class Equations(NamedTuple):
     guard_count: int
 
 
-def equations_of(system: System, *, fixed_steps: bool) -> Equations:
+def equations_of(system: Equations, *, fixed_steps: bool) -> BoundEquations:
     """Bind a system's equations for the integrator.
 
     Parameters
     ----------
-    system : System
+    system : Equations
         A named tuple.
     fixed_steps : bool
         Whether steps are of fixed length, else by a tolerance.
 
     Returns
     -------
-    Equations
+    BoundEquations
     """
     march = march_fixed if fixed_steps else march_by_tolerance
     functions = bound(
         (switched, slope, guards_of_state, observed, march, energies, meaning), system
     )
-    return Equations(
+    return BoundEquations(
         *functions,  # type: ignore[call-arg]
         numbers=numbers_in(system),
         coordinate_count=system.coordinates(),
@@ -134,7 +134,7 @@ def equations_of(system: System, *, fixed_steps: bool) -> Equations:
     )
 
 
-def runs_as_python(equations: Equations) -> bool:
+def runs_as_python(equations: BoundEquations) -> bool:
     """Whether runs of a system are those of plain Python: its equations could not be compiled."""
     return not COMPILED or any(one.source.failed for one in equations if isinstance(one, Bound))
 
@@ -152,7 +152,7 @@ class KnownMode(NamedTuple):
 
 
 @inlined
-def known_mode(equations: Equations, mode: int, room: Vector) -> KnownMode:
+def known_mode(equations: BoundEquations, mode: int, room: Vector) -> KnownMode:
     """Ask what a mode means; `room` is for three numbers."""
     equations.meaning.call(mode, room, equations.numbers)
     longest = STABLE / room[2] if room[2] > 0.0 else math.inf
@@ -160,13 +160,15 @@ def known_mode(equations: Equations, mode: int, room: Vector) -> KnownMode:
 
 
 @inlined
-def slope_at(equations: Equations, mode: int, state: Vector, ground: Ground, out: Vector) -> None:
+def slope_at(
+    equations: BoundEquations, mode: int, state: Vector, ground: Ground, out: Vector
+) -> None:
     """Write the slope of a state."""
     equations.slope.call(mode, state, ground.x, ground.y, out, equations.numbers)
 
 
 @inlined
-def energies_at(equations: Equations, mode: int, state: Vector, room: Vector) -> Energies:
+def energies_at(equations: BoundEquations, mode: int, state: Vector, room: Vector) -> Energies:
     """Give the energies of a state; `room` is for four numbers."""
     equations.stored.call(mode, state, room, equations.numbers)
     return Energies(room[0], room[1], room[2], room[3])
@@ -174,7 +176,7 @@ def energies_at(equations: Equations, mode: int, state: Vector, room: Vector) ->
 
 @inlined
 def write_guards(
-    equations: Equations, mode: int, state: Vector, slope: Vector, fraction: float, span: Span,
+    equations: BoundEquations, mode: int, state: Vector, slope: Vector, fraction: float, span: Span,
     out: Vector, w: Workspace,
 ) -> None:  # fmt: skip
     """Write the guards of a state at a fraction of a step, and their rates."""

@@ -6,12 +6,12 @@ Equations :eq:`eq-fixed-stages` and :eq:`eq-fixed-step`.
 import math
 
 from rockframe.compiled import Vector, inlined, put
-from rockframe.dynamics.protocol import Ground, System
+from rockframe.dynamics.protocol import Equations, Ground
 
 
 @inlined
 def fixed_step(
-    system: System, mode: int, count: int, h: float, in_middle: Ground, at_end: Ground,
+    system: Equations, mode: int, count: int, h: float, in_middle: Ground, at_end: Ground,
     state: Vector, first: Vector, new: Vector, last: Vector, stage: Vector, works: Vector,
 ) -> bool:  # fmt: skip
     """Step the first `count` coordinates and all variables of first order.

@@ -3,7 +3,7 @@
 from typing import Final
 
 from rockframe.compiled import Vector, inlined, put
-from rockframe.dynamics.protocol import Ground, Guards, System
+from rockframe.dynamics.protocol import Equations, Ground, Guards
 
 LEFT_LIMIT: Final = 0
 RIGHT_LIMIT: Final = 1
@@ -21,7 +21,7 @@ THIRD: Final = 1.0 / 3.0
 
 @inlined
 def guards_at(
-    system: System, mode: int, state: Vector, slope: Vector, ground: Ground, limits: Vector,
+    system: Equations, mode: int, state: Vector, slope: Vector, ground: Ground, limits: Vector,
     out: Vector,
 ) -> None:  # fmt: skip
     """Write the guards of a state, see :func:`write_guards`; of several limits the nearest."""
@@ -43,7 +43,9 @@ def guards_at(
 
 
 @inlined
-def write_guards(system: System, found: Guards, state: Vector, limits: Vector, out: Vector) -> None:
+def write_guards(
+    system: Equations, found: Guards, state: Vector, limits: Vector, out: Vector
+) -> None:
     """Write guards, then their rates; the last is the distance of the rotation from its limit."""
     size, last = system.coordinates(), system.guards()
     rotation = rate = 0.0
@@ -70,7 +72,7 @@ def may_dip(start: float, change: float, end: float, end_change: float) -> bool:
 
 
 @inlined
-def may_fall(system: System, h: float, before: Vector, after: Vector) -> bool:
+def may_fall(system: Equations, h: float, before: Vector, after: Vector) -> bool:
     """Whether some guard is negative after a step, or may have dipped below zero inside it."""
     found, guards = False, system.guards() + 1
     for i in range(guards):

@@ -5,7 +5,7 @@ variables of first order follow the cubic through value and rate.
 """
 
 from rockframe.compiled import kernel
-from rockframe.solve.equations import Equations
+from rockframe.solve.equations import BoundEquations
 from rockframe.solve.workspace import Workspace
 
 
@@ -36,7 +36,9 @@ def cubic(x0: float, v0: float, x1: float, v1: float, u: float) -> tuple[float, 
 
 
 @kernel
-def interpolate(equations: Equations, count: int, fraction: float, h: float, w: Workspace) -> None:
+def interpolate(
+    equations: BoundEquations, count: int, fraction: float, h: float, w: Workspace
+) -> None:
     """Fill the scratch state and accelerations at a fraction of a step of length h.
 
     Coordinates beyond the first `count` do not move and are copied.

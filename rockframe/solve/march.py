@@ -7,7 +7,7 @@ the driver calls it by its address, and sees to all that is not a quiet step.
 from typing import Final, TypeAlias
 
 from rockframe.compiled import Integers, ReadOnlyMatrix, Vector, inlined, kernel, part_of
-from rockframe.dynamics.protocol import POWERS, System
+from rockframe.dynamics.protocol import POWERS, Equations
 from rockframe.solve import layout as at
 from rockframe.solve.ground import ground_in, load_interval
 from rockframe.solve.guards import guards_at, may_fall
@@ -58,7 +58,7 @@ def length_of(index: int, intervals: int, controls: Vector) -> float:
 
 @inlined
 def march(
-    scheme: Scheme, system: System, mode: int, count: int, flies: int, trial: float,
+    scheme: Scheme, system: Equations, mode: int, count: int, flies: int, trial: float,
     pieces_x: ReadOnlyMatrix, pieces_y: ReadOnlyMatrix, ends: Vector, stages: Vector, works: Vector,
     reference: Vector, limits: Vector, ground: Vector, controls: Vector, clock: Vector,
     counters: Integers, kept: Vector, codes: Integers,
@@ -69,7 +69,7 @@ def march(
     ----------
     scheme : Scheme
         Way to step.
-    system : System
+    system : Equations
         The equations.
     mode, count, flies : int
         Contact mode, how many leading coordinates move in it, and whether it is flight.
@@ -188,7 +188,7 @@ def march(
 
 @kernel
 def march_fixed(
-    system: System, mode: int, count: int, flies: int, longest: float, trial: float,
+    system: Equations, mode: int, count: int, flies: int, longest: float, trial: float,
     pieces_x: ReadOnlyMatrix, pieces_y: ReadOnlyMatrix, ends: Vector, stages: Vector, works: Vector,
     reference: Vector, limits: Vector, ground: Vector, controls: Vector, clock: Vector,
     counters: Integers, kept: Vector, codes: Integers,
@@ -202,7 +202,7 @@ def march_fixed(
 
 @kernel
 def march_by_tolerance(
-    system: System, mode: int, count: int, flies: int, longest: float, trial: float,
+    system: Equations, mode: int, count: int, flies: int, longest: float, trial: float,
     pieces_x: ReadOnlyMatrix, pieces_y: ReadOnlyMatrix, ends: Vector, stages: Vector, works: Vector,
     reference: Vector, limits: Vector, ground: Vector, controls: Vector, clock: Vector,
     counters: Integers, kept: Vector, codes: Integers,

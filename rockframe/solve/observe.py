@@ -16,7 +16,7 @@ from rockframe.compiled import (
     kernel,
     numbers_in,
 )
-from rockframe.dynamics.protocol import BODY_FORCES, POWERS, Column, ContactModel, System
+from rockframe.dynamics.protocol import BODY_FORCES, POWERS, Column, ContactModel, Equations
 from rockframe.solve.equations import energies, forces, observed, slope
 from rockframe.solve.steps import Steps
 from rockframe.solve.trajectory import Trajectory
@@ -46,7 +46,7 @@ class OfSystem(NamedTuple):
     numbers: Vector
 
 
-def _of(system: System, function: Callable[..., None]) -> OfSystem:
+def _of(system: Equations, function: Callable[..., None]) -> OfSystem:
     return OfSystem(bound((function,), system)[0], numbers_in(system))
 
 

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from rockframe.compiled import Vector, inlined
-from rockframe.dynamics.protocol import System
+from rockframe.dynamics.protocol import Equations
 from rockframe.solve.guards import WEIGHTS
 
 
@@ -36,7 +36,9 @@ class RotationInStep(NamedTuple):
 
 
 @inlined
-def rotation_in_step(system: System, limits: Vector, state: Vector, new: Vector) -> RotationInStep:
+def rotation_in_step(
+    system: Equations, limits: Vector, state: Vector, new: Vector
+) -> RotationInStep:
     """Give the rotation at both ends of a step, the weighted sum of the coordinates."""
     size = system.coordinates()
     r0 = v0 = r1 = v1 = 0.0

@@ -4,7 +4,7 @@ import math
 from typing import NamedTuple
 
 from rockframe.compiled import Vector, inlined
-from rockframe.dynamics.protocol import System
+from rockframe.dynamics.protocol import Equations
 from rockframe.solve import layout as at
 from rockframe.solve.dormand_prince import runge_kutta_step
 from rockframe.solve.fixed_step import fixed_step
@@ -40,7 +40,7 @@ class FixedSteps(NamedTuple):
 
     @inlined
     def make_step(
-        self, system: System, mode: int, count: int, span: Span, ground: Vector, state: Vector,
+        self, system: Equations, mode: int, count: int, span: Span, ground: Vector, state: Vector,
         first: Vector, new: Vector, last: Vector, stages: Vector, works: Vector,
     ) -> bool:  # fmt: skip
         """Make a step; give whether it has ended in numbers."""
@@ -51,7 +51,7 @@ class FixedSteps(NamedTuple):
 
     @inlined
     def excess_of(
-        self, system: System, count: int, done: bool, scale: float, new: Vector, works: Vector,
+        self, system: Equations, count: int, done: bool, scale: float, new: Vector, works: Vector,
         reference: Vector, controls: Vector,
     ) -> float:  # fmt: skip
         """Give 0, or infinity where the step has not ended in numbers."""
@@ -66,7 +66,7 @@ class FixedSteps(NamedTuple):
         return rest_of(asked, h, shortest, controls)
 
     @inlined
-    def keep_sizes(self, system: System, new: Vector, reference: Vector) -> None:
+    def keep_sizes(self, system: Equations, new: Vector, reference: Vector) -> None:
         """Do nothing: no error is measured."""
 
 
@@ -82,7 +82,7 @@ class StepsByTolerance(NamedTuple):
 
     @inlined
     def make_step(
-        self, system: System, mode: int, count: int, span: Span, ground: Vector, state: Vector,
+        self, system: Equations, mode: int, count: int, span: Span, ground: Vector, state: Vector,
         first: Vector, new: Vector, last: Vector, stages: Vector, works: Vector,
     ) -> bool:  # fmt: skip
         """Make a step; its errors tell whether it has ended in numbers."""
@@ -91,7 +91,7 @@ class StepsByTolerance(NamedTuple):
 
     @inlined
     def excess_of(
-        self, system: System, count: int, done: bool, scale: float, new: Vector, works: Vector,
+        self, system: Equations, count: int, done: bool, scale: float, new: Vector, works: Vector,
         reference: Vector, controls: Vector,
     ) -> float:  # fmt: skip
         """Give the largest error over the error allowed."""
@@ -106,7 +106,7 @@ class StepsByTolerance(NamedTuple):
         return adapted(h, h_next, excess, controls)
 
     @inlined
-    def keep_sizes(self, system: System, new: Vector, reference: Vector) -> None:
+    def keep_sizes(self, system: Equations, new: Vector, reference: Vector) -> None:
         """Raise the largest size so far of each variable."""
         for i in range(2 * system.coordinates() + system.variables()):
             reference[i] = max(reference[i], abs(new[i]))

@@ -4,7 +4,7 @@ import math
 from typing import Final
 
 from rockframe.compiled import Vector, inlined, kernel
-from rockframe.dynamics.protocol import System
+from rockframe.dynamics.protocol import Equations
 from rockframe.solve import layout as at
 from rockframe.solve.dormand_prince_tableau import ORDER
 from rockframe.solve.workspace import ERRORS
@@ -20,7 +20,7 @@ EASY: Final = 0.5
 
 @inlined
 def excess_error(
-    system: System, count: int, imbalance: float, new: Vector, works: Vector, reference: Vector,
+    system: Equations, count: int, imbalance: float, new: Vector, works: Vector, reference: Vector,
     controls: Vector,
 ) -> float:  # fmt: skip
     """Give the largest error of a step, of the state or of its works, over the error allowed.

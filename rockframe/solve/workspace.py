@@ -17,7 +17,7 @@ from rockframe.solve import layout as at
 from rockframe.solve.dormand_prince_tableau import STAGES
 
 if TYPE_CHECKING:
-    from rockframe.solve.equations import Equations
+    from rockframe.solve.equations import BoundEquations
 
 TERMS: Final = 6
 """Most coefficients per direction and interval; a record needs two, an analytic pulse six."""
@@ -157,13 +157,13 @@ class Work(NamedTuple):
 
 
 def make_workspace(
-    equations: "Equations", state: Vector, reference: Vector, limits: Vector
+    equations: "BoundEquations", state: Vector, reference: Vector, limits: Vector
 ) -> Workspace:
     """Allocate the arrays beside those that a run begins with.
 
     Parameters
     ----------
-    equations : Equations
+    equations : BoundEquations
         Of the scene.
     state, reference : ndarray, shape (2 n + variables,)
         State vector; largest size so far of each variable.

@@ -12,7 +12,7 @@ from rockframe.system.impact import Restitutions
 
 
 @dataclass(frozen=True)
-class Body(Standing):
+class SupportedBody(Standing):
     """A rigid body with a straight base, in SI units."""
 
     half_width: float  # of the base, b
@@ -84,9 +84,9 @@ class Cap:
     inertia: float
 
 
-def body_of(block: BlockSI) -> Body:
+def body_of_block(block: BlockSI) -> SupportedBody:
     """Give a block as a body."""
-    return Body(
+    return SupportedBody(
         block.half_width, block.centre_height, block.mass, block.inertia, block.shape_factor,
         block.eccentricity,
     )  # fmt: skip
@@ -98,7 +98,7 @@ def cap_under(block: BlockSI, cap: CushionCapSI) -> Cap:
     return Cap(0.5 * width, 0.5 * cap.height, cap.mass_at(width), cap.inertia_at(width))
 
 
-def one_body(block: BlockSI, cap: Cap) -> Body:
+def one_body(block: BlockSI, cap: Cap) -> SupportedBody:
     """Give block and cap as one body, :eq:`eq-one-body`."""
     mass = block.mass + cap.mass
     block_height = 2.0 * cap.half_height + block.centre_height
@@ -111,4 +111,4 @@ def one_body(block: BlockSI, cap: Cap) -> Body:
         + cap.mass * ((height - cap.half_height) ** 2 + beside**2)
     )
     shape_factor = mass * (cap.half_width**2 + height**2) / inertia
-    return Body(cap.half_width, height, mass, inertia, shape_factor, beside)
+    return SupportedBody(cap.half_width, height, mass, inertia, shape_factor, beside)

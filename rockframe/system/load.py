@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Final
 
 from rockframe.components.block_numbers import BlockSI
 from rockframe.signals.slope import Slope
-from rockframe.system.bodies import Body, OverturningAngles, body_of
+from rockframe.system.bodies import OverturningAngles, SupportedBody, body_of_block
 from rockframe.system.options import Options
 from rockframe.system.restraints import restraint_code
 
 if TYPE_CHECKING:
-    from rockframe.dynamics.body import Body as BodyLaw
+    from rockframe.dynamics.body import Body
 
 
 _KEPT: Final = 64
@@ -24,13 +24,13 @@ class Load:
 
     Parameters
     ----------
-    body : Body
+    body : SupportedBody
         In SI units.
     options : Options
         Restraint, kinematics, and gravity.
     """
 
-    body: Body
+    body: SupportedBody
     options: Options
 
     @property
@@ -59,15 +59,15 @@ class Load:
         return self.body.overturning_angles.on_slope(self.slope, small=self.options.small)
 
     @cached_property
-    def own_law(self) -> "BodyLaw":
+    def own_law(self) -> "Body":
         """The body as the equations take it, per unit of its own mass."""
         return self.law(self.body.mass)
 
-    def law(self, mass: float) -> "BodyLaw":
+    def law(self, mass: float) -> "Body":
         """Give the body as the equations take it, per unit of some mass [kg]."""
-        from rockframe.dynamics.alone_model import body_of
+        from rockframe.dynamics.alone_model import rigid_body
 
-        return body_of(
+        return rigid_body(
             left=self.body.left,
             right=self.body.right,
             height=self.body.centre_height,
@@ -93,4 +93,4 @@ def load_of(block: BlockSI, options: Options) -> Load:
     -------
     Load
     """
-    return Load(body_of(block), options)
+    return Load(body_of_block(block), options)

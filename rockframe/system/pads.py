@@ -12,7 +12,7 @@ from rockframe.system.words import uplift_words
 
 if TYPE_CHECKING:
     from rockframe.dynamics.base_numbers import BaseNumbers
-    from rockframe.dynamics.body import Body as BodyLaw
+    from rockframe.dynamics.body import Body
 
 
 @dataclass(frozen=True)
@@ -48,11 +48,11 @@ class PadSupport(Support):
             )
         return found
 
-    def law(self, body: "BodyLaw", mass: float, load_mass: float) -> "BaseNumbers":
+    def law(self, body: "Body", mass: float, load_mass: float) -> "BaseNumbers":
         """Give the pads as the equations take them."""
-        from rockframe.dynamics.base_numbers import pads_under
+        from rockframe.dynamics.base_numbers import pads_numbers
 
-        return pads_under(
+        return pads_numbers(
             body,
             stiffness=self.stiffness / mass,
             damping=self.damping / mass,

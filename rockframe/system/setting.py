@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar
 
 from rockframe.signals.slope import Slope
-from rockframe.system.bodies import Body, OverturningAngles
+from rockframe.system.bodies import OverturningAngles, SupportedBody
 from rockframe.system.load import Load
 from rockframe.system.options import Options
 from rockframe.system.overturning_energy import least_overturning_energy
@@ -45,7 +45,7 @@ class Setting(ABC):
     """Whether in the equations a body slides on its base, so that its friction is that of these."""
 
     @property
-    def body(self) -> Body:
+    def body(self) -> SupportedBody:
         """The body that the response is of."""
         return self.load.body
 

@@ -32,7 +32,7 @@ class SmallMotion:
 
 
 @dataclass(frozen=True)
-class Mode:
+class VibrationMode:
     """A mode: frequency without damping, damping ratio, and shape.
 
     The frequency and the damping ratio of a mode that does not return are NaN.
@@ -43,7 +43,7 @@ class Mode:
     shape: Array
 
 
-def modes_of(motion: SmallMotion) -> list[Mode]:
+def modes_of(motion: SmallMotion) -> list[VibrationMode]:
     """Give the modes, from slow to fast.
 
     Parameters
@@ -53,7 +53,7 @@ def modes_of(motion: SmallMotion) -> list[Mode]:
 
     Returns
     -------
-    list of Mode
+    list of VibrationMode
         A pair of real rates s1, s2 of like shapes counts as one overdamped mode, of the
         frequency sqrt(s1 s2); unstable pairs stand first.
     """
@@ -68,12 +68,14 @@ def modes_of(motion: SmallMotion) -> list[Mode]:
         ]
     )
     rates, vectors = np.linalg.eig(transition)
-    modes: list[Mode] = []
+    modes: list[VibrationMode] = []
     real: list[int] = []
     for i, rate in enumerate(rates):
         if rate.imag > 0.0:
             frequency = abs(rate)
-            modes.append(Mode(frequency, -rate.real / frequency, _shape(vectors[:size, i])))
+            modes.append(
+                VibrationMode(frequency, -rate.real / frequency, _shape(vectors[:size, i]))
+            )
         elif rate.imag == 0.0:
             real.append(i)
     real.sort(key=lambda i: float(rates[i].real), reverse=True)
@@ -81,10 +83,10 @@ def modes_of(motion: SmallMotion) -> list[Mode]:
         shape = _shape(vectors[:size, first])
         slow, quick = float(rates[first].real), float(rates[second].real)
         if slow * quick <= 0.0:
-            modes.append(Mode(math.nan, math.nan, shape))
+            modes.append(VibrationMode(math.nan, math.nan, shape))
             continue
         frequency = math.sqrt(slow * quick)
-        modes.append(Mode(frequency, -0.5 * (slow + quick) / frequency, shape))
+        modes.append(VibrationMode(frequency, -0.5 * (slow + quick) / frequency, shape))
     return sorted(modes, key=lambda mode: (not math.isnan(mode.angular_frequency),
                                            mode.angular_frequency))  # fmt: skip
 

@@ -12,7 +12,7 @@ from rockframe.system.words import uplift_words
 
 if TYPE_CHECKING:
     from rockframe.dynamics.base_numbers import BaseNumbers
-    from rockframe.dynamics.body import Body as BodyLaw
+    from rockframe.dynamics.body import Body
 
 _SEPARATION = {
     Separation.DISPLACEMENT: "above the level of the unloaded bed",
@@ -53,11 +53,11 @@ class BedSupport(Support):
             "that the smallest disturbance overturns it"
         ]
 
-    def law(self, body: "BodyLaw", mass: float, load_mass: float) -> "BaseNumbers":
+    def law(self, body: "Body", mass: float, load_mass: float) -> "BaseNumbers":
         """Give the bed as the equations take it."""
-        from rockframe.dynamics.base_numbers import bed_under
+        from rockframe.dynamics.base_numbers import bed_numbers
 
-        return bed_under(
+        return bed_numbers(
             body,
             stiffness=self.stiffness / mass,
             damping=self.damping / mass,

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 from rockframe.components import Component, Stack
 from rockframe.dynamics.statics import Stand, StandingChain, link_of
 from rockframe.errors import AssemblyError
-from rockframe.system.bodies import Body, body_of
+from rockframe.system.bodies import SupportedBody, body_of_block
 from rockframe.system.load import Load
 from rockframe.system.options import Options
 from rockframe.system.restraints import restraint_words
@@ -35,7 +35,7 @@ class StackSetting(Setting):
     ----------
     load : Load
         The highest body, with the options of its system.
-    bodies : tuple of Body
+    bodies : tuple of SupportedBody
         All of them, from the top down.
     tops : tuple of float
         Height of the top of each above its centre of mass [m].
@@ -45,7 +45,7 @@ class StackSetting(Setting):
         What each stands on, under all that it carries.
     """
 
-    bodies: tuple[Body, ...]
+    bodies: tuple[SupportedBody, ...]
     tops: tuple[float, ...]
     offsets: tuple[float, ...]
     bases: tuple[Support, ...]
@@ -171,7 +171,9 @@ class StackSetting(Setting):
         return chain(self.links, self.body.mass, rest if self.leans else None, limits)
 
 
-def together(bodies: Sequence[Body], tops: Sequence[float], offsets: Sequence[float]) -> Body:
+def together(
+    bodies: Sequence[SupportedBody], tops: Sequence[float], offsets: Sequence[float]
+) -> SupportedBody:
     """Give bodies upon one another, from the top down, as one upright body.
 
     `offsets` are those of all but the lowest, whose base is that of the whole.
@@ -190,7 +192,7 @@ def together(bodies: Sequence[Body], tops: Sequence[float], offsets: Sequence[fl
         for body, level, x in places
     )
     shape_factor = mass * (lowest.half_width**2 + height**2) / inertia
-    return Body(lowest.half_width, height, mass, inertia, shape_factor, across)
+    return SupportedBody(lowest.half_width, height, mass, inertia, shape_factor, across)
 
 
 def stack_setting(stack: Stack, base: Component, options: Options) -> StackSetting:
@@ -203,7 +205,7 @@ def stack_setting(stack: Stack, base: Component, options: Options) -> StackSetti
     """
     if options.inclination != 0.0:
         raise AssemblyError(["a Stack stands on level ground: inclination must be zero"])
-    bodies = tuple(body_of(one) for one in stack.si.bodies)
+    bodies = tuple(body_of_block(one) for one in stack.si.bodies)
     tops = tuple(one.height - one.centre_height for one in stack.si.bodies)
     offsets = stack.si.offsets
     bases = tuple(

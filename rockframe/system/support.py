@@ -16,7 +16,7 @@ from rockframe.system.words import vibration_words
 
 if TYPE_CHECKING:
     from rockframe.dynamics.base_numbers import BaseNumbers
-    from rockframe.dynamics.body import Body as BodyLaw
+    from rockframe.dynamics.body import Body
 
 
 @dataclass(frozen=True)
@@ -80,7 +80,7 @@ class Support(ABC):
         return uplift_rotation(self.standing.chain.links[0], self.load.slope.normal_gravity)
 
     @abstractmethod
-    def law(self, body: "BodyLaw", mass: float, load_mass: float) -> "BaseNumbers":
+    def law(self, body: "Body", mass: float, load_mass: float) -> "BaseNumbers":
         """Give the base as the equations take it.
 
         Parameters

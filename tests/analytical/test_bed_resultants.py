@@ -6,8 +6,8 @@ import math
 import numpy as np
 import pytest
 
-from rockframe.dynamics.alone_model import alone, body_of
-from rockframe.dynamics.base_numbers import bed_under
+from rockframe.dynamics.alone_model import alone, rigid_body
+from rockframe.dynamics.base_numbers import bed_numbers
 from rockframe.dynamics.bed import Bed, Ends, both_contacts, end_of
 from rockframe.dynamics.body import BaseLine, accelerated
 from rockframe.dynamics.protocol import Ground, Start
@@ -167,7 +167,7 @@ def test_work_of_the_bed_is_what_its_springs_and_dashpots_take(damping, by_press
 
 
 def shape(*, small):
-    return body_of(
+    return rigid_body(
         left=0.5 * WIDTH,
         right=0.5 * WIDTH,
         height=HEIGHT,
@@ -181,7 +181,7 @@ def shape(*, small):
 def body(alpha, y, spin, speed, *, small, damping=45.0, by_pressure=False):
     """Give a model, its state and the mode that belongs to it."""
     block = shape(small=small)
-    bed = bed_under(block, stiffness=STIFFNESS, damping=damping, by_pressure=by_pressure)
+    bed = bed_numbers(block, stiffness=STIFFNESS, damping=damping, by_pressure=by_pressure)
     model = alone("Winkler", block, bed, mass=1.0)
     mode, state, _ = model.initial(Start(alpha, spin, y, speed))
     return model, mode, state

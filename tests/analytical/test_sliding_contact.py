@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from rockframe.dynamics.alone_model import alone, body_of
-from rockframe.dynamics.base_numbers import bed_under, pads_under
+from rockframe.dynamics.alone_model import alone, rigid_body
+from rockframe.dynamics.base_numbers import bed_numbers, pads_numbers
 from rockframe.dynamics.events import EventKind
 from rockframe.dynamics.protocol import Start
 from rockframe.dynamics.restraint import CENTRE
@@ -39,7 +39,7 @@ def level(alpha, y, side):
 
 
 def block(half_width, height, restraint):
-    return body_of(
+    return rigid_body(
         left=half_width,
         right=half_width,
         height=height,
@@ -51,7 +51,7 @@ def block(half_width, height, restraint):
 
 
 def on_pads(body, stiffness, damping):
-    base = pads_under(body, stiffness=stiffness, damping=damping, restitution=(0.9, 0.9))
+    base = pads_numbers(body, stiffness=stiffness, damping=damping, restitution=(0.9, 0.9))
     return alone("two-spring", body, base, mass=1.0)
 
 
@@ -61,7 +61,7 @@ def pads(restraint=0):
 
 def bed(restraint=0):
     body = block(B, H, restraint)
-    base = bed_under(body, stiffness=K / B, damping=C / B, by_pressure=False)
+    base = bed_numbers(body, stiffness=K / B, damping=C / B, by_pressure=False)
     return alone("Winkler", body, base, mass=1.0)
 
 

@@ -10,8 +10,8 @@ from scipy.optimize import minimize
 
 import rockframe as rf
 from rockframe import extension as ext
-from rockframe.dynamics.alone_model import body_of, eccentricity_of, starting_state
-from rockframe.dynamics.base_numbers import bed_under, pads_under
+from rockframe.dynamics.alone_model import eccentricity_of, rigid_body, starting_state
+from rockframe.dynamics.base_numbers import bed_numbers, pads_numbers
 from rockframe.dynamics.body import BodyState
 from rockframe.dynamics.coupled.model import state_at
 from rockframe.dynamics.coupled.model import system_of as coupled_of
@@ -182,15 +182,15 @@ def bodies(beside=0.0, along=0.0):
     links = []
     for k, (height, half, off) in enumerate(shapes):
         off *= beside
-        body = body_of(
+        body = rigid_body(
             left=half + off, right=half - off, height=height, inertia=MASSES[k] * 0.5,
             restraint=CENTRE, small_rotation=False, gravity=G,
         )  # fmt: skip
         above = sum(MASSES[: k + 1])
         if k == 2:
-            base = bed_under(body, stiffness=4500.0, damping=5.0, by_pressure=False, load=above)
+            base = bed_numbers(body, stiffness=4500.0, damping=5.0, by_pressure=False, load=above)
         else:
-            base = pads_under(
+            base = pads_numbers(
                 body, stiffness=(900.0, 1500.0)[k], damping=1.0, restitution=(1, 1), load=above
             )
         links.append(link_of(OnBase(body, base.law), MASSES[k], TOPS[k], eccentricity_of(body)))
@@ -300,9 +300,9 @@ class ProppedPads(ElasticPads):
 
 
 def test_a_law_that_pushes_is_in_equilibrium_at_rest_and_at_the_start_of_a_run():
-    body = body_of(left=0.5, right=0.5, height=2.0, inertia=1.5, restraint=CENTRE,
+    body = rigid_body(left=0.5, right=0.5, height=2.0, inertia=1.5, restraint=CENTRE,
                    small_rotation=False, gravity=G)  # fmt: skip
-    pads = pads_under(body, stiffness=2000.0, damping=3.0, restitution=(0.9, 0.9)).law
+    pads = pads_numbers(body, stiffness=2000.0, damping=3.0, restitution=(0.9, 0.9)).law
     part = OnBase(body, ProppedPads(*pads))
     for rotation in (0.0, 0.001, -0.02):
         state, mode = starting_state(part, Start(rotation), ())

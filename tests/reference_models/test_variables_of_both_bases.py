@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from plainly import plainly
 
-from rockframe.dynamics.alone_model import body_of
-from rockframe.dynamics.base_numbers import BaseNumbers, pads_over, pads_under
+from rockframe.dynamics.alone_model import rigid_body
+from rockframe.dynamics.base_numbers import BaseNumbers, pads_numbers, pads_over
 from rockframe.dynamics.coupled.model import StackRest, coupled
 from rockframe.dynamics.coupled.stack import BlockOnCap
 from rockframe.dynamics.point_law import Viscoelastic, point_law
@@ -86,7 +86,7 @@ def aged(base: BaseNumbers, name: str, rate: float) -> BaseNumbers:
 def stack(above, below):
     """Give the model of a block on a cap; `above` and `below` make bases of pads."""
     block, cap = (
-        body_of(
+        rigid_body(
             left=half_width,
             right=half_width,
             height=height,
@@ -97,8 +97,8 @@ def stack(above, below):
         )
         for half_width, height, mass in ((0.5, 2.0, 1.0), (0.5, 0.25, CAP_MASS))
     )
-    pads = pads_under(block, stiffness=4e3, damping=20.0, restitution=(0.9, 0.9))
-    soil = pads_under(cap, stiffness=2e3, damping=30.0, restitution=(1.0, 1.0))
+    pads = pads_numbers(block, stiffness=4e3, damping=20.0, restitution=(0.9, 0.9))
+    soil = pads_numbers(cap, stiffness=2e3, damping=30.0, restitution=(1.0, 1.0))
     return coupled(
         BlockOnCap(block, above(pads), cap, below(soil), CAP_MASS),
         1e4,

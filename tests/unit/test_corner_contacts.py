@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from rockframe.dynamics.alone_model import alone, body_of
-from rockframe.dynamics.base_numbers import pads_under
+from rockframe.dynamics.alone_model import alone, rigid_body
+from rockframe.dynamics.base_numbers import pads_numbers
 from rockframe.dynamics.bodies import DEGREES, ROTATION, VERTICAL
 from rockframe.dynamics.on_base import Mode
 from rockframe.dynamics.pads import (
@@ -24,14 +24,14 @@ from rockframe.dynamics.restraint import BY_CONTACT, PIVOT_RIGHT
 from rockframe.dynamics.switching import disturbed
 
 G = 9.81
-BODY = body_of(
+BODY = rigid_body(
     left=0.5, right=0.5, height=2.0, inertia=4.25 / 3.0, restraint=BY_CONTACT, small_rotation=False,
     gravity=G,
 )  # fmt: skip
 SYSTEM = alone(
     "two-spring",
     BODY,
-    pads_under(BODY, stiffness=4e3, damping=60.0, restitution=(0.9, 0.9)),
+    pads_numbers(BODY, stiffness=4e3, damping=60.0, restitution=(0.9, 0.9)),
     mass=1.0,
 ).system
 PADS = SYSTEM.part.base

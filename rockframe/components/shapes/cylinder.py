@@ -6,14 +6,14 @@ from typing import Final
 
 from rockframe.components.alternatives import OneOf
 from rockframe.components.shapes.masses import PlaneMass
-from rockframe.components.shapes.standing import Stance, StandingBody, standing_body
+from rockframe.components.shapes.standing import ShapedBody, Stance, shaped_body
 from rockframe.errors import ComponentError
 from rockframe.units import DENSITY, LENGTH, MASS, POSITIVE, THICKNESS, Measure, to_si
 
 _MASS_WAYS: Final = OneOf("mass", "density")
 
 
-def cylinder_body(given: Mapping[str, object], owner: str) -> StandingBody:
+def cylinder_body(given: Mapping[str, object], owner: str) -> ShapedBody:
     """Find mass and inertia of a cylinder, :eq:`eq-cylinder-inertia`.
 
     Parameters
@@ -25,7 +25,7 @@ def cylinder_body(given: Mapping[str, object], owner: str) -> StandingBody:
 
     Returns
     -------
-    StandingBody
+    ShapedBody
 
     Raises
     ------
@@ -54,4 +54,4 @@ def cylinder_body(given: Mapping[str, object], owner: str) -> StandingBody:
         mass = positive("density", DENSITY) * (area * height)
     inertia = mass * (3.0 * (outer * outer + inner * inner) + height * height) / 12.0
     whole = PlaneMass(mass, 0.0, 0.5 * height, inertia)
-    return standing_body(whole, Stance(-outer, outer, 0.0), height, (), owner)
+    return shaped_body(whole, Stance(-outer, outer, 0.0), height, (), owner)

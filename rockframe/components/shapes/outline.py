@@ -16,16 +16,16 @@ from rockframe.components.shapes.polygon import (
 from rockframe.components.shapes.reading import read_mass, read_points
 from rockframe.components.shapes.standing import (
     ROUNDING,
-    Corner,
+    OutlineCorner,
+    ShapedBody,
     Stance,
-    StandingBody,
-    standing_body,
+    shaped_body,
 )
 from rockframe.errors import ComponentError
 from rockframe.signals.arrays import Array
 
 
-def outline_body(points: object, given: Mapping[str, object], owner: str) -> StandingBody:
+def outline_body(points: object, given: Mapping[str, object], owner: str) -> ShapedBody:
     """Find how a body of a given outline stands.
 
     Parameters
@@ -39,7 +39,7 @@ def outline_body(points: object, given: Mapping[str, object], owner: str) -> Sta
 
     Returns
     -------
-    StandingBody
+    ShapedBody
 
     Raises
     ------
@@ -54,12 +54,12 @@ def outline_body(points: object, given: Mapping[str, object], owner: str) -> Sta
         _refuse_single(corners, owner)
     top = max(corner.y for corner in corners)
     stance = Stance(min(lowest), max(lowest), ground)
-    return standing_body(whole, stance, top, corners, owner)
+    return shaped_body(whole, stance, top, corners, owner)
 
 
 def outline_mass(
     points: object, given: Mapping[str, object], owner: str, name: str
-) -> tuple[PlaneMass, list[Corner]]:
+) -> tuple[PlaneMass, list[OutlineCorner]]:
     """Read an outline, check that it is a simple polygon, and give its mass and corners.
 
     Parameters
@@ -83,14 +83,14 @@ def outline_mass(
     read = read_points(points, owner=owner, name=name)
     # a point that repeats the one before, as the last may repeat the first, is no corner
     kept = [k for k in range(len(read)) if (read[k] != read[k - 1]).any()]
-    corners = [Corner(f"{name}[{k}]", float(read[k, 0]), float(read[k, 1])) for k in kept]
+    corners = [OutlineCorner(f"{name}[{k}]", float(read[k, 0]), float(read[k, 1])) for k in kept]
     _check_simple(read[kept], corners, owner)
     inside = region(read[kept])
     mass = read_mass(given, inside.area, owner=owner)
     return PlaneMass(mass, inside.x, inside.y, mass * inside.mean_square), corners
 
 
-def _check_simple(points: Array, corners: Sequence[Corner], owner: str) -> None:
+def _check_simple(points: Array, corners: Sequence[OutlineCorner], owner: str) -> None:
     if len(points) < 3:
         msg = f"{owner}: an outline needs three different points or more, got {len(points)}"
         raise ComponentError(msg)
@@ -114,7 +114,7 @@ def _check_simple(points: Array, corners: Sequence[Corner], owner: str) -> None:
         raise ComponentError(msg)
 
 
-def _refuse_single(corners: Sequence[Corner], owner: str) -> None:
+def _refuse_single(corners: Sequence[OutlineCorner], owner: str) -> None:
     heights = np.array([corner.y for corner in corners])
     first, second = (int(k) for k in np.argsort(heights, kind="stable")[:2])
     low, next_low = corners[first], corners[second]
@@ -133,9 +133,9 @@ def _refuse_single(corners: Sequence[Corner], owner: str) -> None:
     raise ComponentError(msg)
 
 
-def _at(corner: Corner) -> str:
+def _at(corner: OutlineCorner) -> str:
     return f"{corner.words} ({corner.x:.6g} m, {corner.y:.6g} m)"
 
 
-def _size(corners: Sequence[Corner]) -> float:
+def _size(corners: Sequence[OutlineCorner]) -> float:
     return size_of(np.array([(corner.x, corner.y) for corner in corners]))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final, TypedDict
 from rockframe.components.shapes.masses import PlaneMass
 from rockframe.components.shapes.outline import outline_mass
 from rockframe.components.shapes.reading import Place, Points, read_mass, read_place
-from rockframe.components.shapes.standing import Corner
+from rockframe.components.shapes.standing import OutlineCorner
 from rockframe.errors import ComponentError, shown
 from rockframe.units import (
     INERTIA,
@@ -55,7 +55,7 @@ class PlacedPart:
 
     name: str
     mass: PlaneMass
-    corners: tuple[Corner, ...]
+    corners: tuple[OutlineCorner, ...]
     top: float
     stands: bool = True
     """Whether it may stand on the ground; a point does not."""
@@ -117,7 +117,7 @@ def _rectangle(
     about = mass * (width * width + height * height) / 12.0
     ends = ((x - half, y), (x + half, y), (x + half, top), (x - half, top))
     words = f"a corner of part {name!r}"
-    corners = tuple(Corner(words, *end) for end in ends)
+    corners = tuple(OutlineCorner(words, *end) for end in ends)
     return PlacedPart(name, PlaneMass(mass, x, y + 0.5 * height, about), corners, top)
 
 
@@ -125,7 +125,8 @@ def _outline(name: str, told: Mapping[str, Any], at: tuple[float, float], owner:
     mass, corners = outline_mass(told["outline"], told, owner, "outline")
     x, y = at
     moved = tuple(
-        Corner(f"{corner.words} of part {name!r}", corner.x + x, corner.y + y) for corner in corners
+        OutlineCorner(f"{corner.words} of part {name!r}", corner.x + x, corner.y + y)
+        for corner in corners
     )
     there = PlaneMass(mass.mass, mass.x + x, mass.y + y, mass.inertia)
     return PlacedPart(name, there, moved, max(corner.y for corner in moved))
@@ -140,7 +141,10 @@ def _body(name: str, told: Mapping[str, Any], at: tuple[float, float], owner: st
     (x, y), si = at, block.si
     there = PlaneMass(si.mass, x + si.eccentricity, y + si.centre_height, si.inertia)
     words = f"an end of the base of part {name!r}"
-    corners = (Corner(words, x - si.half_width, y), Corner(words, x + si.half_width, y))
+    corners = (
+        OutlineCorner(words, x - si.half_width, y),
+        OutlineCorner(words, x + si.half_width, y),
+    )
     return PlacedPart(name, there, corners, y + si.height)
 
 
@@ -149,7 +153,7 @@ def _point(name: str, told: Mapping[str, Any], at: tuple[float, float], owner: s
     about = 0.0
     if "inertia" in told:
         about = to_si(told["inertia"], INERTIA, owner=owner, name="inertia", condition=NOT_NEGATIVE)
-    corner = Corner(f"part {name!r}", *at)
+    corner = OutlineCorner(f"part {name!r}", *at)
     return PlacedPart(name, PlaneMass(mass, *at, about), (corner,), at[1], stands=False)
 
 

@@ -6,11 +6,11 @@ from typing import Any, cast
 from rockframe.components.shapes.masses import together
 from rockframe.components.shapes.part import PlacedPart, read_part
 from rockframe.components.shapes.reading import read_place
-from rockframe.components.shapes.standing import ROUNDING, Stance, StandingBody, standing_body
+from rockframe.components.shapes.standing import ROUNDING, ShapedBody, Stance, shaped_body
 from rockframe.errors import ComponentError, shown
 
 
-def body_of_parts(given: object, base: object, owner: str) -> StandingBody:
+def body_of_parts(given: object, base: object, owner: str) -> ShapedBody:
     """Find how parts stand that are fixed to one another.
 
     Parameters
@@ -24,7 +24,7 @@ def body_of_parts(given: object, base: object, owner: str) -> StandingBody:
 
     Returns
     -------
-    StandingBody
+    ShapedBody
 
     Raises
     ------
@@ -52,7 +52,7 @@ def body_of_parts(given: object, base: object, owner: str) -> StandingBody:
     if not whole.inertia > 0.0:
         msg = f"{owner}: all mass is in one point, so that the body has no inertia"
         raise ComponentError(msg)
-    return standing_body(whole, stance, top, corners, owner)
+    return shaped_body(whole, stance, top, corners, owner)
 
 
 def _read(given: object, owner: str) -> list[PlacedPart]:

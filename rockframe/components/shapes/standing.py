@@ -18,7 +18,7 @@ Made = TypeVar("Made")
 
 
 @dataclass(frozen=True)
-class Corner:
+class OutlineCorner:
     """A point of a body that may touch the ground, and what it is called."""
 
     words: str
@@ -39,7 +39,7 @@ class Stance:
         """Between the ends [m]."""
         return 0.5 * (self.left + self.right)
 
-    def touching_angle(self, corner: Corner, side: float) -> float:
+    def touching_angle(self, corner: OutlineCorner, side: float) -> float:
         """Give the rotation at which a corner comes down, :eq:`eq-touching-angle` [rad].
 
         That is for a corner beyond the end of the base about which the body rocks; no other
@@ -47,7 +47,7 @@ class Stance:
 
         Parameters
         ----------
-        corner : Corner
+        corner : OutlineCorner
             Of the body.
         side : float
             1 for rocking about the right end of the base, -1 about the left one.
@@ -69,7 +69,7 @@ class Stance:
 
 
 @dataclass(frozen=True)
-class StandingBody:
+class ShapedBody:
     """A body that stands: the arguments of a block, and what a user should know."""
 
     owner: str
@@ -95,9 +95,9 @@ class StandingBody:
         return made
 
 
-def standing_body(
-    whole: PlaneMass, stance: Stance, top: float, corners: Iterable[Corner], owner: str
-) -> StandingBody:
+def shaped_body(
+    whole: PlaneMass, stance: Stance, top: float, corners: Iterable[OutlineCorner], owner: str
+) -> ShapedBody:
     """Put mass and base together.
 
     Parameters
@@ -108,14 +108,14 @@ def standing_body(
         Where it stands.
     top : float
         Height of the highest point, in the same coordinates [m].
-    corners : iterable of Corner
+    corners : iterable of OutlineCorner
         What may touch the ground beside the base.
     owner : str
         For messages.
 
     Returns
     -------
-    StandingBody
+    ShapedBody
 
     Raises
     ------
@@ -138,10 +138,10 @@ def standing_body(
     }
     if abs(beside) > CENTRED * width:
         arguments["eccentricity"] = _written(beside, LENGTH)
-    return StandingBody(owner, arguments, tuple(_touching(whole, stance, list(corners))))
+    return ShapedBody(owner, arguments, tuple(_touching(whole, stance, list(corners))))
 
 
-def _touching(whole: PlaneMass, stance: Stance, corners: list[Corner]) -> Iterable[str]:
+def _touching(whole: PlaneMass, stance: Stance, corners: list[OutlineCorner]) -> Iterable[str]:
     for side, word in ((1.0, "right"), (-1.0, "left")):
         limit = stance.overturning_angle(whole, side)
         corner = min(corners, key=lambda one: stance.touching_angle(one, side), default=None)

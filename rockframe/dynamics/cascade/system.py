@@ -11,7 +11,7 @@ from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics.base import Guards
 from rockframe.dynamics.bodies import ROTATION, VERTICAL
 from rockframe.dynamics.body import BodyState
-from rockframe.dynamics.on_base import IDLE, Mode, OnBase, Rates, Response
+from rockframe.dynamics.on_base import IDLE, Mode, OnBase, Rates, VelocityChange
 from rockframe.dynamics.protocol import (
     HELD_PLACE,
     IMPACT_LOSS,
@@ -270,7 +270,7 @@ class Cascade(Stacked, Stages):
     @kernel
     def response(
         self, k: int, mode: int, press: float, moment: float, slip: float, state: Vector
-    ) -> Response:
+    ) -> VelocityChange:
         """Give how the velocities of a body change by an impulse, or as its hold stops a slip."""
         modes, rotation = self.modes_in(mode), self.state_of(k, state).rotation
         if k == UPPER:

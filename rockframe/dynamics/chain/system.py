@@ -28,7 +28,7 @@ from rockframe.dynamics.chain.rows import (
     PLACES,
     Rows,
 )
-from rockframe.dynamics.on_base import IDLE, Mode, Response
+from rockframe.dynamics.on_base import IDLE, Mode, VelocityChange
 from rockframe.dynamics.protocol import HELD_PLACE, Energies, Ground, Slope
 from rockframe.dynamics.switching import checked_sliding, disturbed, lift_by_slip, switch_part
 
@@ -298,7 +298,7 @@ class Chain(Rows):
     @kernel
     def response(
         self, k: int, mode: int, press: float, moment: float, slip: float, state: Vector
-    ) -> Response:
+    ) -> VelocityChange:
         """Give how velocities change by an impulse, or as a hold stops a slip.
 
         The changes of all velocities stand in the room for slopes until the next ones.
@@ -320,10 +320,10 @@ class Chain(Rows):
         self.solve(count, room)
         first = BEFORE_HORIZONTAL * k
         thrust = room[k * PLACES + at.THRUST]
-        return Response(out[first + ROTATION], out[first + VERTICAL], thrust, ())
+        return VelocityChange(out[first + ROTATION], out[first + VERTICAL], thrust, ())
 
     @kernel
-    def respond(self, k: int, mode: int, response: Response, state: Vector) -> None:
+    def respond(self, k: int, mode: int, response: VelocityChange, state: Vector) -> None:
         """Change the velocities by the last response."""
         out, room, n = self.slopes(), self.places(), self.coordinates()
         for i in range(n):

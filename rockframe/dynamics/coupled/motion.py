@@ -51,7 +51,7 @@ class Forces(NamedTuple):
     soil_moment: float
 
 
-class Given(NamedTuple):
+class KnownTerms(NamedTuple):
     """What accelerates the bodies beside forces.
 
     `swing` and `drift` are the parts of the cap's horizontal acceleration and of the block's
@@ -65,7 +65,7 @@ class Given(NamedTuple):
     load_y: float
 
 
-class Motion(NamedTuple):
+class CoupledMotion(NamedTuple):
     """Accelerations, or changes of velocities, and the force of the cap on the block."""
 
     cap_horizontal: float
@@ -80,14 +80,14 @@ def configuration(
     pair: Pair, modes: Modes, states: States, upper: Attitude, lower: Attitude
 ) -> Configuration:
     """Give the geometry of states, in the restraints of modes."""
-    return placed(
+    return configuration_with(
         pair, modes, states, upper, lower,
         pair.upper.is_free(modes.upper), pair.lower.is_free(modes.lower),
     )  # fmt: skip
 
 
 @inlined
-def placed(
+def configuration_with(
     pair: Pair, modes: Modes, states: States, upper: Attitude, lower: Attitude, block_free: bool,
     cap_free: bool,
 ) -> Configuration:  # fmt: skip
@@ -147,7 +147,9 @@ def block_height(place: Configuration, states: States) -> float:
 
 
 @inlined
-def solve_motion(pair: Pair, place: Configuration, forces: Forces, given: Given) -> Motion:
+def solve_motion(
+    pair: Pair, place: Configuration, forces: Forces, given: KnownTerms
+) -> CoupledMotion:
     """Solve the equations of motion, or of impulsive motion, :eq:`eq-coupled-solution`."""
     s, c = place.sine, place.cosine
     i, i_c, mass = pair.upper.body.inertia, pair.lower.body.inertia, pair.cap_mass
@@ -183,11 +185,11 @@ def solve_motion(pair: Pair, place: Configuration, forces: Forces, given: Given)
         y = (a11 * b2 - a12 * b1) / determinant
         x = reach * angular + given.swing
         thrust = share * (reaching * angular - s * y) + known
-    return Motion(x, y, angular, (moment - slide * thrust) / i - angular, thrust)
+    return CoupledMotion(x, y, angular, (moment - slide * thrust) / i - angular, thrust)
 
 
 @inlined
-def normal_change(place: Configuration, motion: Motion) -> float:
+def normal_change(place: Configuration, motion: CoupledMotion) -> float:
     """Give what the cap's motion takes from the block's acceleration along the cap's normal."""
     s, c = place.sine, place.cosine
     lift = s * motion.cap_horizontal + c * motion.cap_vertical

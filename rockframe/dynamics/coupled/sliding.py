@@ -6,9 +6,9 @@ from rockframe.compiled import kernel
 from rockframe.dynamics.body import Attitude, BaseLine
 from rockframe.dynamics.coupled.motion import (
     Configuration,
+    CoupledMotion,
     Forces,
-    Given,
-    Motion,
+    KnownTerms,
     Pair,
     normal_change,
     solve_motion,
@@ -54,7 +54,7 @@ def sliding_end(part: OnBase, mode: Mode, attitude: Attitude, line: BaseLine) ->
 
 @kernel
 def rises(
-    place: Configuration, motion: Motion, press: float, block: SlidingEnd, cap: SlidingEnd
+    place: Configuration, motion: CoupledMotion, press: float, block: SlidingEnd, cap: SlidingEnd
 ) -> Rises:
     """Give what a motion adds to the accelerations of both ends."""
     normal = press + normal_change(place, motion)
@@ -66,7 +66,7 @@ def rises(
 @kernel
 def slide_both(
     pair: Pair, modes: Modes, states: States, place: Configuration, block: SlidingEnd,
-    cap: SlidingEnd, forces: Forces, given: Given, normal: float,
+    cap: SlidingEnd, forces: Forces, given: KnownTerms, normal: float,
 ) -> Slips:  # fmt: skip
     """Give the slips that keep what slides at its level, :eq:`eq-sliding-contact`.
 
@@ -83,10 +83,10 @@ def slide_both(
     of_cap = found.cap + cap.bend * cap_rate * cap_rate
     of_cap += pair.lower.base.following_rate() * cap.speed
     by_block = rises(
-        place, solve_motion(pair, place, NOTHING, Given(0.0, 1.0, 0.0, 0.0)), 0.0, block, cap
+        place, solve_motion(pair, place, NOTHING, KnownTerms(0.0, 1.0, 0.0, 0.0)), 0.0, block, cap
     )
     by_cap = rises(
-        place, solve_motion(pair, place, NOTHING, Given(1.0, 0.0, 0.0, 0.0)), 0.0, block, cap
+        place, solve_motion(pair, place, NOTHING, KnownTerms(1.0, 0.0, 0.0, 0.0)), 0.0, block, cap
     )
     if not modes.upper.slides:
         drift, swing = 0.0, -of_cap / by_cap.cap
@@ -96,7 +96,7 @@ def slide_both(
         determinant = by_block.block * by_cap.cap - by_cap.block * by_block.cap
         drift = (by_cap.block * of_cap - by_cap.cap * of_block) / determinant
         swing = (by_block.cap * of_block - by_block.block * of_cap) / determinant
-    with_slips = Given(given.swing + swing, given.drift + drift, given.load_x, given.load_y)
+    with_slips = KnownTerms(given.swing + swing, given.drift + drift, given.load_x, given.load_y)
     motion = solve_motion(pair, place, forces, with_slips)
     power = 0.0
     if modes.upper.slides:

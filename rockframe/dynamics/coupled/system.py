@@ -13,19 +13,19 @@ from rockframe.dynamics.body import Attitude
 from rockframe.dynamics.coupled.motion import (
     Configuration,
     Forces,
-    Given,
+    KnownTerms,
     Pair,
     along_rate,
     block_height,
     block_velocity,
     cap_sway,
     configuration,
+    configuration_with,
     normal_change,
-    placed,
     solve_motion,
 )
 from rockframe.dynamics.coupled.sliding import slide_both, sliding_end
-from rockframe.dynamics.on_base import IDLE, Response
+from rockframe.dynamics.on_base import IDLE, VelocityChange
 from rockframe.dynamics.protocol import HELD_PLACE, Energies, Ground, Slope
 from rockframe.dynamics.stacked import (
     COORDINATES,
@@ -101,7 +101,7 @@ class Coupled(Stacked, Pair):
         swing = place.cap_reach.bend * cap_rate * cap_rate
         drift = place.block_reach.bend * block_rate * block_rate
         if modes.upper.slides or modes.lower.slides:
-            place = placed(
+            place = configuration_with(
                 self, modes, states, upper, lower,
                 place.block_free and not modes.upper.slides,
                 place.cap_free and not modes.lower.slides,
@@ -110,13 +110,13 @@ class Coupled(Stacked, Pair):
                 self, modes, states, place,
                 sliding_end(self.upper, modes.upper, upper, block_line),
                 sliding_end(self.lower, modes.lower, lower, cap_line),
-                forces, Given(swing, drift + coriolis + load_along, ground.x, load_y), normal,
+                forces, KnownTerms(swing, drift + coriolis + load_along, ground.x, load_y), normal,
             )  # fmt: skip
             swing += slips.swing
             drift += slips.drift
             dissipated -= slips.power
         motion = solve_motion(
-            self, place, forces, Given(swing, drift + coriolis + load_along, ground.x, load_y)
+            self, place, forces, KnownTerms(swing, drift + coriolis + load_along, ground.x, load_y)
         )
         cap_along = c * motion.cap_horizontal - s * motion.cap_vertical
         lift = forces.press + normal + normal_change(place, motion)
@@ -257,14 +257,14 @@ class Coupled(Stacked, Pair):
     @kernel
     def response(
         self, k: int, mode: int, press: float, moment: float, slip: float, state: Vector
-    ) -> Response:
+    ) -> VelocityChange:
         """Give how velocities change by an impulse, or as a hold stops a slip."""
         states = self.states_in(state)
         place = self.place_in(mode, states)
         if k == UPPER:
-            forces, given = Forces(press, moment, 0.0, 0.0), Given(0.0, -slip, 0.0, 0.0)
+            forces, given = Forces(press, moment, 0.0, 0.0), KnownTerms(0.0, -slip, 0.0, 0.0)
         else:
-            forces, given = Forces(0.0, 0.0, press, moment), Given(-slip, 0.0, 0.0, 0.0)
+            forces, given = Forces(0.0, 0.0, press, moment), KnownTerms(-slip, 0.0, 0.0, 0.0)
         motion = solve_motion(self, place, forces, given)
         s, c = place.sine, place.cosine
         normal = forces.press + normal_change(place, motion)
@@ -282,10 +282,10 @@ class Coupled(Stacked, Pair):
             cap_rate, lift = motion.cap_angular, motion.cap_vertical
         sway = motion.cap_horizontal if place.cap_free else 0.0
         others = (motion.angular, normal, motion.cap_angular, motion.cap_vertical, along, sway)
-        return Response(cap_rate, lift, restraint, others)
+        return VelocityChange(cap_rate, lift, restraint, others)
 
     @kernel
-    def respond(self, k: int, mode: int, response: Response, state: Vector) -> None:
+    def respond(self, k: int, mode: int, response: VelocityChange, state: Vector) -> None:
         """Change the velocities."""
         for i in range(COORDINATES):
             state[COORDINATES + i] += response.others[i]

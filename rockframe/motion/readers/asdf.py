@@ -42,13 +42,13 @@ from rockframe.motion.readers.source import (
     Request,
     Source,
 )
-from rockframe.motion.readers.station_xml import Responses, response_in
+from rockframe.motion.readers.station_xml import InstrumentResponses, response_in
 from rockframe.motion.readers.traces import codes_of
 
 if TYPE_CHECKING:
     from collections.abc import Generator
 
-    from rockframe.motion.readers.station_xml import Response
+    from rockframe.motion.readers.station_xml import InstrumentResponse
     from rockframe.signals.arrays import Array
 
 NAME: Final = "asdf"
@@ -247,9 +247,9 @@ def _stated_unit(file: Any, one: _Waveform) -> str | None:
 
 def _response(
     source: Source, request: Request, file: Any, one: _Waveform, start: datetime
-) -> Response | None:
+) -> InstrumentResponse | None:
     if request.response is not None:
-        return Responses(source, request).of(one.codes, start)
+        return InstrumentResponses(source, request).of(one.codes, start)
     variable = file.groups["Waveforms"].groups[one.group].variables.get("StationXML")
     if variable is None or math.prod(map(int, variable.shape)) > _LARGEST_TEXT:
         return None

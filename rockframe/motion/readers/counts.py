@@ -9,7 +9,7 @@ from rockframe.motion.readers.source import Metadata, Record, Source
 
 if TYPE_CHECKING:
     from rockframe.motion.readers.source import Request
-    from rockframe.motion.readers.station_xml import Response
+    from rockframe.motion.readers.station_xml import InstrumentResponse
     from rockframe.signals.arrays import Array
 
 
@@ -19,7 +19,7 @@ def record_of_counts(
     values: Array,
     time_step: float,
     metadata: Metadata,
-    response: Response | None,
+    response: InstrumentResponse | None,
 ) -> Record:
     """Build the record of one channel of a file that states no unit.
 
@@ -35,7 +35,7 @@ def record_of_counts(
         [s]
     metadata : dict
         What the file says about itself.
-    response : Response or None
+    response : InstrumentResponse or None
         Of the instrument.
 
     Returns

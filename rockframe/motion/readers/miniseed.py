@@ -35,7 +35,7 @@ from rockframe.motion.readers.source import (
     Request,
     Source,
 )
-from rockframe.motion.readers.station_xml import Response, Responses
+from rockframe.motion.readers.station_xml import InstrumentResponse, InstrumentResponses
 from rockframe.motion.readers.traces import by_channel, codes_of, joined
 
 if TYPE_CHECKING:
@@ -93,7 +93,7 @@ def read(source: Source, request: Request) -> Record:
         found = "the arguments unit and response"
         raise source.refuse(found=found, expected="one of them: accelerations, or counts")
     channels = _channels(source)
-    responses = None if request.unit is not None else Responses(source, request)
+    responses = None if request.unit is not None else InstrumentResponses(source, request)
     stations = {name.rsplit(".", 2)[0] for name in channels}
     components = [
         _component(source, request, name, traces, responses, several=len(stations) > 1)
@@ -211,7 +211,7 @@ def _component(
     request: Request,
     name: str,
     traces: list[Any],
-    responses: Responses | None,
+    responses: InstrumentResponses | None,
     *,
     several: bool,
 ) -> Component:
@@ -240,7 +240,7 @@ def _samples(
     source: Source,
     request: Request,
     traces: list[Any],
-    response: Response | None,
+    response: InstrumentResponse | None,
     metadata: Metadata,
 ) -> Record:
     counts, time_step, start = joined(source, traces)

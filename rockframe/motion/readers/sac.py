@@ -37,7 +37,7 @@ from rockframe.motion.readers.source import (
     Request,
     Source,
 )
-from rockframe.motion.readers.station_xml import Responses
+from rockframe.motion.readers.station_xml import InstrumentResponses
 from rockframe.motion.readers.traces import location_code
 
 if TYPE_CHECKING:
@@ -174,7 +174,7 @@ def _samples(source: Source, request: Request, header: _Header, name: str) -> Re
     response = None
     if request.unit is None and start is not None:
         codes = (header.word(_NETWORK), header.word(_STATION), header.word(_LOCATION), name)
-        response = Responses(source, request).of(".".join(codes), start)
+        response = InstrumentResponses(source, request).of(".".join(codes), start)
     if request.unit is None and response is None:
         raise source.refuse(
             found="samples without a unit, of which SAC has none",

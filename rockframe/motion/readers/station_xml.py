@@ -45,7 +45,7 @@ _UPRIGHT: Final = 85.0
 
 
 @dataclass(frozen=True)
-class Response:
+class InstrumentResponse:
     """What turns the counts of one channel into accelerations.
 
     Parameters
@@ -67,7 +67,7 @@ class Response:
     sha256: str
 
 
-class Responses:
+class InstrumentResponses:
     """The responses that go with one record; each file is read once.
 
     Parameters
@@ -95,7 +95,7 @@ class Responses:
         self._left = _LARGEST  # bytes, of all files together
         self._read: dict[Path, _Inventory | None] = {}
 
-    def of(self, name: str, time: datetime) -> Response | None:
+    def of(self, name: str, time: datetime) -> InstrumentResponse | None:
         """Find the response of a channel.
 
         Parameters
@@ -107,7 +107,7 @@ class Responses:
 
         Returns
         -------
-        Response or None
+        InstrumentResponse or None
             None if no file was given and none beside the record describes the channel.
 
         Raises
@@ -124,7 +124,7 @@ class Responses:
             return found
         station = ".".join(name.split(".")[:2])
         stem = Path(self._source.path).stem
-        beside: dict[str, Response] = {}
+        beside: dict[str, InstrumentResponse] = {}
         for path in self._files:
             if path.name.startswith(f"{stem}.") or station in path.name:
                 inventory = self._inventory(path)
@@ -164,13 +164,13 @@ class _Inventory:
     file: Source
     channels: Mapping[str, list[Any]]
 
-    def response(self, name: str, time: datetime) -> Response | None:
+    def response(self, name: str, time: datetime) -> InstrumentResponse | None:
         epochs = self.channels.get(".".join(codes_of(name)), [])[:_MOST_EPOCHS]
         channel = next((epoch for epoch in epochs if _in_use(epoch, time)), None)
         return None if channel is None else _response(self.file, channel, name)
 
 
-def response_in(file: Source, name: str, time: datetime) -> Response | None:
+def response_in(file: Source, name: str, time: datetime) -> InstrumentResponse | None:
     """Find the response of a channel in one StationXML, as :meth:`Responses.of` does."""
     inventory = _inventory(file) if len(file.data) <= _LARGEST else None
     return None if inventory is None else inventory.response(name, time)
@@ -213,7 +213,7 @@ def _inventory(file: Source) -> _Inventory | None:
     return _Inventory(file, channels)
 
 
-def _response(file: Source, channel: Any, name: str) -> Response | None:
+def _response(file: Source, channel: Any, name: str) -> InstrumentResponse | None:
     sensitivity = channel.find(_SENSITIVITY)
     if sensitivity is None:
         return None
@@ -232,7 +232,7 @@ def _response(file: Source, channel: Any, name: str) -> Response | None:
     if not counts or value is None or math.isclose(value, 0.0):
         found = f"{name} with a sensitivity of {_text(sensitivity, '{*}Value')} {output}"
         raise file.refuse(found=found, expected="counts per acceleration, not zero", line=line)
-    return Response(value, unit, _orientation(channel), base_name(file.path), file.sha256)
+    return InstrumentResponse(value, unit, _orientation(channel), base_name(file.path), file.sha256)
 
 
 def _in_use(channel: Any, time: datetime) -> bool:

@@ -22,7 +22,7 @@ from rockframe.compiled import (
 from rockframe.dynamics.events import FLIGHT
 from rockframe.solve import layout as at
 from rockframe.solve.driver import run_on
-from rockframe.solve.equations import Equations, known_mode
+from rockframe.solve.equations import BoundEquations, known_mode
 from rockframe.solve.guards import WEIGHTS
 from rockframe.solve.lanes import fields
 from rockframe.solve.lanes.intervals import is_at_end
@@ -57,7 +57,7 @@ class Batch(NamedTuple):
     room: Vector  # of the lanes
     taken: Integers  # the row of each lane, and the next one to take up
     pieces: Pieces  # of all motions
-    equations: Equations  # of one of the systems; all are of one class
+    equations: BoundEquations  # of one of the systems; all are of one class
     output: Output  # without rows
     events: EventTable  # room for events, which are not kept
     w: Workspace  # room for a step of a single run
@@ -80,10 +80,10 @@ def copy_to_row(batch: Batch, row: Vector, lane: int, first: int, count: int) ->
 
 
 @inlined
-def equations_in(batch: Batch, row: Vector) -> Equations:
+def equations_in(batch: Batch, row: Vector) -> BoundEquations:
     """Give the equations of a row's system."""
     one, shape = batch.equations, batch.shape
-    return Equations(
+    return BoundEquations(
         one.switching, one.slope, one.guarding, one.observing, one.march, one.stored, one.meaning,
         stretch(row, shape.numbers, shape.number_count),
         one.coordinate_count, one.variable_count, one.guard_count,

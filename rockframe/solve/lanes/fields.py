@@ -7,7 +7,7 @@ on it as it stands. A lane holds the same fields between those of its neighbours
 from typing import Final, NamedTuple
 
 from rockframe.compiled import inlined
-from rockframe.dynamics.protocol import POWERS, System
+from rockframe.dynamics.protocol import POWERS, Equations
 from rockframe.solve import layout as at
 from rockframe.solve.dormand_prince_tableau import STAGES
 from rockframe.solve.guards import WEIGHTS
@@ -72,7 +72,7 @@ class Places(NamedTuple):
 
 
 @inlined
-def places_of(system: System) -> Places:
+def places_of(system: Equations) -> Places:
     """Give where the fields of a system are."""
     size, variables, guards = system.coordinates(), system.variables(), system.guards() + 1
     width, slope = 2 * size + variables, size + variables + POWERS

@@ -16,7 +16,7 @@ from rockframe.compiled import (
     lane_of,
     widest_registers,
 )
-from rockframe.dynamics.protocol import Ground, System
+from rockframe.dynamics.protocol import Equations, Ground
 from rockframe.solve import layout as at
 from rockframe.solve.fixed_step import fixed_step
 from rockframe.solve.lanes import fields
@@ -46,7 +46,7 @@ def choose_step(room: Vector, lane: int) -> None:
 
 
 @inlined
-def make_step(system: System, room: Vector, lane: int) -> bool:
+def make_step(system: Equations, room: Vector, lane: int) -> bool:
     """Take one lane to the end of its step; give whether that ended in numbers."""
     there = places_of(system)
     own, whole = lane_of(room, fields.OWN, lane), as_integers(room)
@@ -63,7 +63,7 @@ def make_step(system: System, room: Vector, lane: int) -> bool:
 
 
 @inlined
-def account_for_rest(system: System, room: Vector, lane: int) -> None:
+def account_for_rest(system: Equations, room: Vector, lane: int) -> None:
     """Write what a step changes in the account of its run, with what is left of the sub-step."""
     clock, controls = lane_of(room, fields.CLOCK, lane), lane_of(room, fields.CONTROLS, lane)
     h = lane_of(room, fields.OWN, lane)[fields.STEP]
@@ -74,7 +74,7 @@ def account_for_rest(system: System, room: Vector, lane: int) -> None:
 
 @inlined
 def step_lanes(
-    system_of: Callable[[Vector], System], lanes: int, room: Vector, pieces_x: ReadOnlyMatrix,
+    system_of: Callable[[Vector], Equations], lanes: int, room: Vector, pieces_x: ReadOnlyMatrix,
     pieces_y: ReadOnlyMatrix,
 ) -> int:  # fmt: skip
     """Take all lanes that are at the end of an interval to the next, and make a step in all.

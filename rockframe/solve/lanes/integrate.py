@@ -13,7 +13,7 @@ from rockframe.dynamics.protocol import ContactModel, Ending
 from rockframe.signals import Motion
 from rockframe.solve import layout as at
 from rockframe.solve.beginning import Begun
-from rockframe.solve.equations import Equations, equations_of
+from rockframe.solve.equations import BoundEquations, equations_of
 from rockframe.solve.integrate import EVENT_ROOM, pieces_of
 from rockframe.solve.lanes import fields
 from rockframe.solve.lanes.batch import Batch, Shape, advance_batch
@@ -214,7 +214,7 @@ class _Rows:
 
 
 def _scratch(
-    equations: Equations, there: Places, memory: int
+    equations: BoundEquations, there: Places, memory: int
 ) -> tuple[Output, EventTable, Workspace]:
     """Give room for a single run: no outputs, events that are not kept, a step."""
     width = there.first - there.state

@@ -18,7 +18,7 @@ from rockframe.compiled import (
     put,
     widest_registers,
 )
-from rockframe.dynamics.protocol import POWERS, Ground, System
+from rockframe.dynamics.protocol import POWERS, Equations, Ground
 from rockframe.solve import layout as at
 from rockframe.solve.dormand_prince import (
     begin_stages,
@@ -56,7 +56,7 @@ from rockframe.solve.step_control import excess_error, next_step
 
 
 @inlined
-def begin_step(system: System, room: Vector, lane: int) -> None:
+def begin_step(system: Equations, room: Vector, lane: int) -> None:
     """Choose the length of a lane's step, and write its first stage."""
     there, own = places_of(system), lane_of(room, fields.OWN, lane)
     clock, controls = lane_of(room, fields.CLOCK, lane), lane_of(room, fields.CONTROLS, lane)
@@ -71,7 +71,7 @@ def begin_step(system: System, room: Vector, lane: int) -> None:
 
 
 @inlined
-def write_places(system: System, room: Vector, lane: int, weights: tuple[float, ...]) -> None:
+def write_places(system: Equations, room: Vector, lane: int, weights: tuple[float, ...]) -> None:
     """Write the coordinates of a lane's stage."""
     there = places_of(system)
     stage_places(
@@ -82,7 +82,7 @@ def write_places(system: System, room: Vector, lane: int, weights: tuple[float, 
 
 
 @inlined
-def write_rates(system: System, room: Vector, lane: int, weights: tuple[float, ...]) -> None:
+def write_rates(system: Equations, room: Vector, lane: int, weights: tuple[float, ...]) -> None:
     """Write the velocities and variables of a lane's stage."""
     there = places_of(system)
     stage_rates(
@@ -93,7 +93,7 @@ def write_rates(system: System, room: Vector, lane: int, weights: tuple[float, .
 
 
 @inlined
-def evaluate_stage(system: System, room: Vector, lane: int) -> None:
+def evaluate_stage(system: Equations, room: Vector, lane: int) -> None:
     """Write the slope of a lane's stage."""
     there, own = places_of(system), lane_of(room, fields.OWN, lane)
     mode = lane_of(as_integers(room), fields.COUNTERS, lane)[at.MODE]
@@ -106,7 +106,7 @@ def evaluate_stage(system: System, room: Vector, lane: int) -> None:
 
 @kernel
 def evaluate_stages(
-    system_of: Callable[[Vector], System], lanes: int, room: Vector, pieces_x: ReadOnlyMatrix,
+    system_of: Callable[[Vector], Equations], lanes: int, room: Vector, pieces_x: ReadOnlyMatrix,
     pieces_y: ReadOnlyMatrix, s: int,
 ) -> None:  # fmt: skip
     """Write the slopes of a stage in all lanes: the equations, which are compiled once."""
@@ -123,7 +123,7 @@ def evaluate_stages(
 
 @inlined
 def make_stage(
-    system_of: Callable[[Vector], System], lanes: int, room: Vector, pieces_x: ReadOnlyMatrix,
+    system_of: Callable[[Vector], Equations], lanes: int, room: Vector, pieces_x: ReadOnlyMatrix,
     pieces_y: ReadOnlyMatrix, weights: tuple[float, ...],
 ) -> None:  # fmt: skip
     """Make the stage of some weights in all lanes."""
@@ -136,7 +136,7 @@ def make_stage(
 
 
 @inlined
-def write_errors_of_places(system: System, room: Vector, lane: int) -> None:
+def write_errors_of_places(system: Equations, room: Vector, lane: int) -> None:
     """Write the errors of a lane's coordinates."""
     there, h = places_of(system), lane_of(room, fields.OWN, lane)[fields.STEP]
     stages, works = lane_of(room, there.stages, lane), lane_of(room, there.works, lane)
@@ -144,7 +144,7 @@ def write_errors_of_places(system: System, room: Vector, lane: int) -> None:
 
 
 @inlined
-def write_errors_of_rates(system: System, room: Vector, lane: int) -> None:
+def write_errors_of_rates(system: Equations, room: Vector, lane: int) -> None:
     """Write the errors of a lane's velocities and variables."""
     there, h = places_of(system), lane_of(room, fields.OWN, lane)[fields.STEP]
     stages, works = lane_of(room, there.stages, lane), lane_of(room, there.works, lane)
@@ -152,7 +152,7 @@ def write_errors_of_rates(system: System, room: Vector, lane: int) -> None:
 
 
 @inlined
-def end_step(system: System, room: Vector, lane: int) -> None:
+def end_step(system: Equations, room: Vector, lane: int) -> None:
     """Write the works of a lane's step, and its largest error over the error allowed."""
     there, own = places_of(system), lane_of(room, fields.OWN, lane)
     clock, works = lane_of(room, fields.CLOCK, lane), lane_of(room, there.works, lane)
@@ -186,7 +186,7 @@ def judge(room: Vector, lane: int) -> int:
 
 
 @inlined
-def keep_sizes(system: System, room: Vector, lane: int) -> None:
+def keep_sizes(system: Equations, room: Vector, lane: int) -> None:
     """Raise the largest size so far of each variable, where the step is taken."""
     there = places_of(system)
     taken = lane_of(as_integers(room), fields.OWN_WHOLE, lane)[fields.TAKEN] != 0
@@ -217,7 +217,7 @@ def choose_next(room: Vector, lane: int, there: Places) -> int:
 
 @inlined
 def step_lanes_by_tolerance(
-    system_of: Callable[[Vector], System], lanes: int, room: Vector, pieces_x: ReadOnlyMatrix,
+    system_of: Callable[[Vector], Equations], lanes: int, room: Vector, pieces_x: ReadOnlyMatrix,
     pieces_y: ReadOnlyMatrix,
 ) -> int:  # fmt: skip
     """Try a step in all lanes, see :func:`rockframe.solve.lanes.fixed_steps.step_lanes`."""

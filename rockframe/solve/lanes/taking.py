@@ -1,7 +1,7 @@
 """Whether the steps of lanes are quiet, and how their ends become the starts of the next ones."""
 
 from rockframe.compiled import Vector, as_integers, inlined, lane_of
-from rockframe.dynamics.protocol import Ground, System
+from rockframe.dynamics.protocol import Equations, Ground
 from rockframe.solve import layout as at
 from rockframe.solve.guards import may_fall, write_guards
 from rockframe.solve.lanes import fields
@@ -10,13 +10,13 @@ from rockframe.solve.peaks import rotation_in_step
 
 
 @inlined
-def slides(system: System, room: Vector, lane: int) -> bool:
+def slides(system: Equations, room: Vector, lane: int) -> bool:
     """Whether an end slides in a lane."""
     return system.some_end_slides(lane_of(as_integers(room), fields.COUNTERS, lane)[at.MODE])
 
 
 @inlined
-def is_quiet(system: System, room: Vector, lane: int) -> bool:
+def is_quiet(system: Equations, room: Vector, lane: int) -> bool:
     """Whether nothing happens in a lane's step but motion; its guards are written."""
     there = places_of(system)
     own, whole = lane_of(room, fields.OWN, lane), as_integers(room)
@@ -42,7 +42,7 @@ def is_spent(room: Vector, lane: int) -> bool:
 
 
 @inlined
-def account_for(system: System, room: Vector, lane: int) -> None:
+def account_for(system: Equations, room: Vector, lane: int) -> None:
     """Write what a step that is taken changes in the account of its run, but the next step."""
     there = places_of(system)
     own, whole = lane_of(room, fields.OWN, lane), as_integers(room)
@@ -78,7 +78,7 @@ def take_steps(lanes: int, room: Vector, there: Places) -> None:
 
 
 @inlined
-def take_step_if_quiet(system: System, room: Vector, lane: int) -> None:
+def take_step_if_quiet(system: Equations, room: Vector, lane: int) -> None:
     """Make the end of a step the start of the next one where it is taken.
 
     Bit by bit: numbers that are written under a condition take their time on processors

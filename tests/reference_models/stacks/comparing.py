@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from reference_models.maximal.motions import both
 
-from rockframe.dynamics.alone_model import body_of
-from rockframe.dynamics.base_numbers import bed_under, pads_under
+from rockframe.dynamics.alone_model import rigid_body
+from rockframe.dynamics.base_numbers import bed_numbers, pads_numbers
 from rockframe.dynamics.chain.model import ChainBody, chain
 from rockframe.dynamics.protocol import ContactModel, Start, column_of
 from rockframe.dynamics.restraint import BY_CONTACT, CENTRE, LEADING_CORNER
@@ -45,7 +45,7 @@ def model_of(scene: Scene) -> ContactModel:
     for given, base, lower in zip(scene.bodies, scene.bases, below, strict=True):
         carried += given.mass
         beside = given.offset + given.eccentricity - lower
-        body = body_of(
+        body = rigid_body(
             left=given.half_width + given.eccentricity,
             right=given.half_width - given.eccentricity,
             height=given.height,
@@ -60,11 +60,11 @@ def model_of(scene: Scene) -> ContactModel:
             "load": carried / measure,
         }
         if isinstance(base, Bed):
-            under = bed_under(body, by_pressure=False, **numbers)
+            under = bed_numbers(body, by_pressure=False, **numbers)
         else:
             both_sides = base.restitution
             eps = both_sides if isinstance(both_sides, tuple) else (both_sides, both_sides)
-            under = pads_under(body, restitution=eps, **numbers)
+            under = pads_numbers(body, restitution=eps, **numbers)
         links.append(ChainBody(body, under, given.mass / measure, given.top, beside))
     return chain(links, measure)
 
