@@ -23,7 +23,7 @@ TABLE: Final = "border-collapse:collapse;color:inherit;margin:0;font-size:inheri
 CELL: Final = "text-align:left;padding:1px 12px 1px 0;background:transparent;border:none"
 
 
-class Shape(NamedTuple):
+class Polygon(NamedTuple):
     """A polygon, or a dot where it has but one point."""
 
     tone: str
@@ -79,12 +79,12 @@ def card(title: str, rows: Mapping[str, str], drawing: str = "", more: str = "")
     )
 
 
-def drawing(shapes: Iterable[Shape], *, size: float = 130.0) -> str:
+def drawing(shapes: Iterable[Polygon], *, size: float = 130.0) -> str:
     """Draw polygons to scale.
 
     Parameters
     ----------
-    shapes : iterable of Shape
+    shapes : iterable of Polygon
         From back to front, y upwards.
     size : float
         Of the longer side [px].
@@ -149,7 +149,7 @@ def _svg(width: float, height: float, drawn: str) -> str:
     )
 
 
-def _element(shape: Shape, points: Sequence[tuple[float, float]]) -> str:
+def _element(shape: Polygon, points: Sequence[tuple[float, float]]) -> str:
     if len(points) == 1:
         ((x, y),) = points
         return f'<circle cx="{x:.1f}" cy="{y:.1f}" r="2.5" {_INK}/>'

@@ -3,7 +3,7 @@
 import argparse
 from typing import Final
 
-from rockframe.command.parser import COMMANDS, Argument, Command
+from rockframe.command.parser import COMMANDS, Command, CommandArgument
 
 _BASH: Final = """\
 _rockframe() {
@@ -61,7 +61,7 @@ def script(shell: str) -> str:
     return {"bash": _bash, "zsh": _zsh, "fish": _fish}[shell]()
 
 
-def _options(command: Command) -> list[tuple[Argument, str]]:
+def _options(command: Command) -> list[tuple[CommandArgument, str]]:
     """Give the options of a command, each by its long name."""
     return [(one, one.names[-1]) for one in command.arguments if one.names[0].startswith("-")]
 
@@ -90,7 +90,7 @@ def _zsh() -> str:
     return _ZSH.replace("@COMMANDS@", names).replace("@CASES@", "\n".join(cases))
 
 
-def _value(one: Argument) -> str:
+def _value(one: CommandArgument) -> str:
     if "action" in one.settings:
         return ""
     return ":file:_files" if one.of_files else ":value:"
@@ -115,7 +115,7 @@ def _fish() -> str:
     return "\n".join(lines) + "\n"
 
 
-def _quoted(one: Argument) -> str:
+def _quoted(one: CommandArgument) -> str:
     """Give the words of an option without the marks that shells read."""
     words = str(one.settings.get("help", ""))
     for mark in "'[]:":

@@ -18,7 +18,7 @@ PICTURES: Final = "a picture; its ending tells the format: .png, .svg, .pdf"
 
 
 @dataclass(frozen=True)
-class Argument:
+class CommandArgument:
     """One argument of a command.
 
     Parameters
@@ -36,12 +36,12 @@ class Argument:
     of_files: bool = False
 
 
-def _path(*names: str, **settings: Any) -> Argument:
-    return Argument(names, settings, of_files=True)
+def _path(*names: str, **settings: Any) -> CommandArgument:
+    return CommandArgument(names, settings, of_files=True)
 
 
-def _word(*names: str, **settings: Any) -> Argument:
-    return Argument(names, settings)
+def _word(*names: str, **settings: Any) -> CommandArgument:
+    return CommandArgument(names, settings)
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ class Command:
         What it does, for those who ask for help.
     examples : str
         Lines to copy.
-    arguments : tuple of Argument
+    arguments : tuple of CommandArgument
         What it takes.
     """
 
@@ -66,7 +66,7 @@ class Command:
     words: str
     story: str
     examples: str
-    arguments: Sequence[Argument]
+    arguments: Sequence[CommandArgument]
 
 
 _SCENE: Final = _path("scene", metavar="scene.toml", help="the scene; 'template' writes one")

@@ -11,7 +11,7 @@ from rockframe.components.parameters import DERIVED, REQUIRED, Declared
 from rockframe.components.registry import register
 from rockframe.components.values import SIValues
 from rockframe.errors import ComponentError, ModelWarning, shown, warn
-from rockframe.notebook import Shape, card, drawing, in_words
+from rockframe.notebook import Polygon, card, drawing, in_words
 
 
 class Component:
@@ -149,7 +149,7 @@ class Component:
         given = ", ".join(f"{name}={value!r}" for name, value in self._arguments().items())
         return f"{type(self).__name__}({given})"
 
-    def _shapes(self) -> list[Shape]:
+    def _shapes(self) -> list[Polygon]:
         """Give what notebooks draw of the component, to scale; nothing unless it has a shape."""
         return []
 

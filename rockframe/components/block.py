@@ -21,7 +21,7 @@ from rockframe.components.shapes.parts import body_of_parts
 from rockframe.components.shapes.reading import Place, Points
 from rockframe.components.values import SIProperty, SIValues
 from rockframe.errors import ComponentError, ModelWarning, shown, warn
-from rockframe.notebook import Shape
+from rockframe.notebook import Polygon
 from rockframe.units import (
     ANGLE,
     ANGULAR_VELOCITY,
@@ -242,10 +242,10 @@ class Block(Component):
         told = self.given.shape_factor is not None or self.given.inertia is not None
         return unphysical_inertia(self.si) if told else []
 
-    def _shapes(self) -> list[Shape]:
+    def _shapes(self) -> list[Polygon]:
         half, si = self.si.half_width, self.si
         outline = [(-half, 0.0), (half, 0.0), (half, si.height), (-half, si.height)]
-        return [Shape("block", outline), Shape("block", [(si.eccentricity, si.centre_height)])]
+        return [Polygon("block", outline), Polygon("block", [(si.eccentricity, si.centre_height)])]
 
     @classmethod
     def from_density(

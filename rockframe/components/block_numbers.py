@@ -40,7 +40,7 @@ class Shape(Protocol):
         ...
 
 
-class Standing:
+class BodyGeometry:
     """What follows from where the centre of mass of a body is above its base."""
 
     @property
@@ -65,7 +65,7 @@ class Standing:
 
 
 @dataclass(frozen=True)
-class BlockSI(Standing):
+class BlockSI(BodyGeometry):
     """Geometry and mass of a block in SI units, :eq:`eq-eccentric-body`.
 
     The centre of mass stands `centre_height` above the base and `eccentricity` to the right of

@@ -8,7 +8,7 @@ from rockframe.components.alternatives import OneOf
 from rockframe.components.base import Component
 from rockframe.components.parameters import Parameter
 from rockframe.components.values import SIValues
-from rockframe.notebook import Shape
+from rockframe.notebook import Polygon
 from rockframe.units import (
     DENSITY,
     LENGTH,
@@ -87,12 +87,12 @@ class CushionCap(Component):
     ) -> None:
         super().__init__(height=height, mass=mass, width=width, density=density, depth=depth)
 
-    def _shapes(self) -> list[Shape]:
+    def _shapes(self) -> list[Polygon]:
         si = self.si
         if si.width is None:
             return []
         half = 0.5 * si.width
-        return [Shape("cap", [(-half, 0.0), (half, 0.0), (half, si.height), (-half, si.height)])]
+        return [Polygon("cap", [(-half, 0.0), (half, 0.0), (half, si.height), (-half, si.height)])]
 
     def _numbers(self, given: SIValues) -> CushionCapSI:
         by_density = given.density is not None

@@ -14,7 +14,7 @@ from rockframe.components.frame_regular import INFILL_THICKNESS, SLAB_THICKNESS,
 from rockframe.components.frame_table import members_table
 from rockframe.components.parameters import DERIVED, Ratio
 from rockframe.errors import ComponentError, SchemaError, shown
-from rockframe.notebook import Shape
+from rockframe.notebook import Polygon
 from rockframe.units import LENGTH, POSITIVE, Quantity, QuantityLike, RatioLike, quantity
 
 _LEAST_SHAPE_FACTOR = 1.0 - 1e-9  # a shape factor derived from an inertia is rounded
@@ -267,9 +267,9 @@ class FrameEquivalent(Block):
         """Members that the frame was built from; none if it was built from its parameters."""
         return () if self._building is None else self._building.members
 
-    def _shapes(self) -> list[Shape]:
+    def _shapes(self) -> list[Polygon]:
         members = [
-            Shape("member", [(si.x + a * si.width, si.y + b * si.height) for a, b in _CORNERS])
+            Polygon("member", [(si.x + a * si.width, si.y + b * si.height) for a, b in _CORNERS])
             for si in (member.si for member in self.members)
             if si.width is not None and si.height is not None
         ]

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from rockframe.identification.least_squares import Solution, minimize
-from rockframe.identification.measured import History, Peaks
+from rockframe.identification.measured import History, MeasuredPeaks
 from rockframe.identification.prediction import Prediction
 from rockframe.identification.swings import Swings
 from rockframe.identification.unknowns import Circumstance, Unknown, started_at
@@ -79,7 +79,9 @@ def fit_history(
     return minimize(residuals, started_at(unknowns, best.values))
 
 
-def fit_peaks(prediction: Prediction, measured: Peaks, unknowns: Sequence[Unknown]) -> Solution:
+def fit_peaks(
+    prediction: Prediction, measured: MeasuredPeaks, unknowns: Sequence[Unknown]
+) -> Solution:
     """Fit peaks, each with that of the same number.
 
     Rotations and times, where there are times, are weighted by the noise that their residuals
@@ -89,7 +91,7 @@ def fit_peaks(prediction: Prediction, measured: Peaks, unknowns: Sequence[Unknow
     ----------
     prediction : Prediction
         Of what is measured.
-    measured : Peaks
+    measured : MeasuredPeaks
         With times or without.
     unknowns : sequence of Unknown
         With start values.
@@ -125,7 +127,7 @@ def _fit_roughly(residuals: Callable[[Array], Array], unknowns: Sequence[Unknown
     return minimize(residuals, started_at(unknowns, values), tolerance=_ROUGH)
 
 
-def _first_weights(measured: Peaks) -> Weights:
+def _first_weights(measured: MeasuredPeaks) -> Weights:
     swing = 1.0
     if measured.time is not None:
         swing = float(np.mean(np.diff(measured.time[np.isfinite(measured.time)])))
@@ -133,7 +135,7 @@ def _first_weights(measured: Peaks) -> Weights:
 
 
 def _misfit_of(
-    prediction: Prediction, measured: Peaks, weights: Weights
+    prediction: Prediction, measured: MeasuredPeaks, weights: Weights
 ) -> Callable[[Array], Array]:
     """Give the residuals of the peaks over their weights, as a function of the unknowns."""
 
@@ -148,7 +150,9 @@ def _misfit_of(
     return misfit
 
 
-def _reweighted(solution: Solution, weights: Weights, measured: Peaks, sizes: Weights) -> Weights:
+def _reweighted(
+    solution: Solution, weights: Weights, measured: MeasuredPeaks, sizes: Weights
+) -> Weights:
     """Estimate the noise of rotations and of times from their residuals."""
     count = measured.rotation.size
     # each of both bears its share of the unknowns

@@ -10,7 +10,7 @@ from rockframe.errors import ComponentError, shown
 from rockframe.identification.fitting import fit_history, fit_peaks
 from rockframe.identification.measured import (
     History,
-    Peaks,
+    MeasuredPeaks,
     check_below_overturning,
     read_history,
     read_peaks,
@@ -19,7 +19,7 @@ from rockframe.identification.prediction import Prediction
 from rockframe.identification.report import report
 from rockframe.identification.starts import starts_of
 from rockframe.identification.swings import swings_of
-from rockframe.identification.unknowns import Circumstance, Trials
+from rockframe.identification.unknowns import Circumstance, TrialSystems
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import AccuracyLevel, accuracy_of
 from rockframe.system.words import angle_words
@@ -128,7 +128,7 @@ def fit_free_decay(
         confidence, owner=_OWNER, name="confidence", condition=_CONFIDENCE, example="0.95"
     )
     settings = accuracy_of(accuracy)
-    trials = Trials(system, names, _OWNER)
+    trials = TrialSystems(system, names, _OWNER)
     data = read_history(measured, _OWNER) if peaks is None else read_peaks(peaks, _OWNER)
     check_below_overturning(data, system.setting.overturning_angle, _OWNER)
     sought = _sought(circumstances, data)
@@ -144,7 +144,7 @@ def fit_free_decay(
     known = {str(name): starts[name].start for name in Circumstance if name not in sought}
     prediction = Prediction(trials, unknown, known, settings)
     chosen = [starts[name] for name in unknown]
-    if isinstance(data, Peaks):
+    if isinstance(data, MeasuredPeaks):
         fit = fit_peaks(prediction, data, chosen)
     else:
         fit = fit_history(prediction, data, swings_of(data, _OWNER), chosen)
@@ -177,7 +177,9 @@ def _names(parameters: Sequence[str] | str) -> tuple[str, ...]:
     raise ComponentError(msg)
 
 
-def _sought(given: Sequence[str] | str | None, data: History | Peaks) -> tuple[Circumstance, ...]:
+def _sought(
+    given: Sequence[str] | str | None, data: History | MeasuredPeaks
+) -> tuple[Circumstance, ...]:
     """Give the circumstances that are to be found; refuse what the data cannot tell."""
     told = [Circumstance.INITIAL_ROTATION]
     if isinstance(data, History) or data.time is not None:
@@ -186,7 +188,7 @@ def _sought(given: Sequence[str] | str | None, data: History | Peaks) -> tuple[C
         told.append(Circumstance.GAUGE_OFFSET)
     if given is None:
         return tuple(told)
-    if isinstance(data, Peaks) and data.signed:
+    if isinstance(data, MeasuredPeaks) and data.signed:
         told.append(Circumstance.GAUGE_OFFSET)
     listed = (given,) if isinstance(given, str) else given
     names = [one_of_words(Circumstance, one, owner=_OWNER, name="circumstances") for one in listed]

@@ -47,7 +47,7 @@ class History:
 
 
 @dataclass(frozen=True)
-class Peaks:
+class MeasuredPeaks:
     """Successive peaks of a rotation, the first one at the release or after it.
 
     Parameters
@@ -114,7 +114,7 @@ def read_history(given: object, owner: str) -> History:
     return _history(time, _values(pair[1], ANGLE, owner, "rotation"), owner)
 
 
-def read_peaks(given: object, owner: str) -> Peaks:
+def read_peaks(given: object, owner: str) -> MeasuredPeaks:
     """Read successive peaks.
 
     Parameters
@@ -126,7 +126,7 @@ def read_peaks(given: object, owner: str) -> Peaks:
 
     Returns
     -------
-    Peaks
+    MeasuredPeaks
 
     Raises
     ------
@@ -141,10 +141,10 @@ def read_peaks(given: object, owner: str) -> Peaks:
         times = _values(pair[0], TIME, owner, "time")
         rotation = _values(pair[1], ANGLE, owner, "rotation")
         _check_times(times, rotation, owner)
-        peaks = Peaks(rotation, np.sign(rotation), times)
+        peaks = MeasuredPeaks(rotation, np.sign(rotation), times)
     elif isinstance(given, tuple | pint.Quantity):
         rotation = _values(cast("object", given), ANGLE, owner, "peaks")
-        peaks = Peaks(rotation, np.sign(rotation))
+        peaks = MeasuredPeaks(rotation, np.sign(rotation))
     else:
         msg = f"{owner}: peaks needs rotations with a unit, got {shown(given)}; {_PEAKS}"
         raise UnitsError(msg)
@@ -158,12 +158,12 @@ def read_peaks(given: object, owner: str) -> Peaks:
     return peaks
 
 
-def check_below_overturning(measured: History | Peaks, theta: float, owner: str) -> None:
+def check_below_overturning(measured: History | MeasuredPeaks, theta: float, owner: str) -> None:
     """Refuse a rotation from which no block comes back.
 
     Parameters
     ----------
-    measured : History or Peaks
+    measured : History or MeasuredPeaks
         What was measured.
     theta : float
         Overturning angle of the system [rad].
@@ -255,7 +255,7 @@ def _check_times(time: Array, rotation: Array, owner: str) -> None:
         raise ComponentError(msg)
 
 
-def _place(measured: History | Peaks, index: int) -> str:
+def _place(measured: History | MeasuredPeaks, index: int) -> str:
     if isinstance(measured, History):
         return f"the rotation measured at {measured.time[index]:.6g} s"
     return f"peak {index + 1}"

@@ -8,8 +8,8 @@ from typing import Final
 import numpy as np
 
 from rockframe.identification.free_motion import FreeMotion, first_peaks, let_go
-from rockframe.identification.measured import History, Peaks
-from rockframe.identification.unknowns import Circumstance, Trials
+from rockframe.identification.measured import History, MeasuredPeaks
+from rockframe.identification.unknowns import Circumstance, TrialSystems
 from rockframe.signals.arrays import Array
 from rockframe.solve.accuracy import Accuracy
 
@@ -24,7 +24,7 @@ class Prediction:
 
     Parameters
     ----------
-    trials : Trials
+    trials : TrialSystems
         Systems with other parameters.
     names : sequence of str
         The unknowns: parameters and circumstances.
@@ -36,7 +36,7 @@ class Prediction:
 
     def __init__(
         self,
-        trials: Trials,
+        trials: TrialSystems,
         names: Sequence[str],
         known: Mapping[str, float],
         accuracy: Accuracy,
@@ -59,7 +59,7 @@ class Prediction:
         since = measured.time - values[Circumstance.RELEASE_TIME]
         return values[Circumstance.GAUGE_OFFSET] + motion.at(since)
 
-    def peaks(self, found: Array, measured: Peaks) -> tuple[Array, Array]:
+    def peaks(self, found: Array, measured: MeasuredPeaks) -> tuple[Array, Array]:
         """Give times and rotations of the peaks as a gauge would have shown them [s], [rad]."""
         values = self.values(found)
         count = measured.rotation.size
@@ -86,7 +86,7 @@ class Prediction:
         system = self.trials.assembly(self._named(parameters))
         return first_peaks(system, rotation, count, duration, self._accuracy)
 
-    def _length(self, measured: Peaks) -> float:
+    def _length(self, measured: MeasuredPeaks) -> float:
         """Give the length of a run that is likely to have all peaks [s]."""
         if measured.time is not None:
             return 1.5 * float(measured.time[-1] - np.nanmin(measured.time))

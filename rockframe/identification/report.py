@@ -9,7 +9,7 @@ import xarray as xr
 
 from rockframe.errors import ModelWarning, warn
 from rockframe.identification.least_squares import Solution, uncertainty_of
-from rockframe.identification.measured import History, Peaks
+from rockframe.identification.measured import History, MeasuredPeaks
 from rockframe.identification.prediction import Prediction
 from rockframe.identification.unknowns import Circumstance
 from rockframe.identification.words import cautions_of, verdict_of
@@ -21,7 +21,7 @@ _TIME: Final = "time of the record"
 
 def report(
     prediction: Prediction,
-    measured: History | Peaks,
+    measured: History | MeasuredPeaks,
     solution: Solution,
     confidence: float,
     accuracy: str,
@@ -32,7 +32,7 @@ def report(
     ----------
     prediction : Prediction
         Of what was measured.
-    measured : History or Peaks
+    measured : History or MeasuredPeaks
         What was measured.
     solution : Solution
         Of the fit.
@@ -96,7 +96,7 @@ def report(
 
 
 def _compared(
-    prediction: Prediction, measured: History | Peaks, found: Array
+    prediction: Prediction, measured: History | MeasuredPeaks, found: Array
 ) -> Mapping[str, Array | float]:
     """Give what was measured beside what was fitted, by names in the schema."""
     if isinstance(measured, History):

@@ -5,10 +5,10 @@ from collections.abc import Collection
 from typing import Final
 
 from rockframe.identification.free_motion import let_go
-from rockframe.identification.measured import History, Peaks
+from rockframe.identification.measured import History, MeasuredPeaks
 from rockframe.identification.prediction import EARLIER
 from rockframe.identification.swings import Swings, restitution_of
-from rockframe.identification.unknowns import Circumstance, Trials, Unknown
+from rockframe.identification.unknowns import Circumstance, TrialSystems, Unknown
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import Accuracy
 from rockframe.system.options import Rotation
@@ -19,8 +19,8 @@ _LARGEST: Final = 1.0 - 1e-6
 
 def starts_of(
     system: System,
-    trials: Trials,
-    measured: History | Peaks,
+    trials: TrialSystems,
+    measured: History | MeasuredPeaks,
     swings: Swings | None,
     sought: Collection[Circumstance],
     accuracy: Accuracy,
@@ -32,9 +32,9 @@ def starts_of(
     system : System
         Its parameters are where they start; but on rigid ground the restitution follows from
         the peaks.
-    trials : Trials
+    trials : TrialSystems
         Of the system.
-    measured : History or Peaks
+    measured : History or MeasuredPeaks
         What was measured.
     swings : Swings or None
         Of a history.
@@ -47,7 +47,13 @@ def starts_of(
     -------
     dict of str to Unknown
     """
-    peaks = measured if isinstance(measured, Peaks) else None if swings is None else swings.peaks
+    peaks = (
+        measured
+        if isinstance(measured, MeasuredPeaks)
+        else None
+        if swings is None
+        else swings.peaks
+    )
     offset = 0.0
     if swings is not None and Circumstance.GAUGE_OFFSET in sought:
         offset = swings.offset

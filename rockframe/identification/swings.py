@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 
 from rockframe.errors import ComponentError
-from rockframe.identification.measured import History, Peaks
+from rockframe.identification.measured import History, MeasuredPeaks
 from rockframe.signals.arrays import Array
 
 _LEVEL: Final = 0.1
@@ -24,7 +24,7 @@ class Swings:
 
     Parameters
     ----------
-    peaks : Peaks
+    peaks : MeasuredPeaks
         The release and the peak of every complete swing after it. That of the release has no
         time: it stands in a plateau, or at the first sample.
     crossing : float
@@ -33,7 +33,7 @@ class Swings:
         Median after that, which a rotation that dies out has where the gauge reads zero [rad].
     """
 
-    peaks: Peaks
+    peaks: MeasuredPeaks
     crossing: float
     offset: float
 
@@ -82,7 +82,9 @@ def swings_of(history: History, owner: str) -> Swings:
         times.append(when)
         sizes.append(size + offset)
     rotation = np.array(sizes)
-    return Swings(Peaks(rotation, np.sign(rotation - offset), np.array(times)), crossing, offset)
+    return Swings(
+        MeasuredPeaks(rotation, np.sign(rotation - offset), np.array(times)), crossing, offset
+    )
 
 
 def restitution_of(peaks: Array, theta: float, *, small_rotation: bool) -> float:

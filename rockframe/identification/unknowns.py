@@ -62,7 +62,7 @@ def started_at(unknowns: Sequence[Unknown], values: NDArray[np.float64]) -> list
 
 
 @dataclass(frozen=True)
-class Place:
+class PartParameter:
     """A parameter of a part.
 
     Parameters
@@ -89,7 +89,7 @@ class Place:
         return Unknown(name, self.start, scale, lower, upper).started_at(self.start)
 
 
-class Trials:
+class TrialSystems:
     """Systems that differ in some parameters from the one that was given.
 
     Parameters
@@ -124,7 +124,7 @@ class Trials:
         known = dict(self._ratios(system))
         self.places = {name: _place_of(name, known, owner) for name in names}
 
-    def _ratios(self, system: System) -> Iterator[tuple[str, Place | None]]:
+    def _ratios(self, system: System) -> Iterator[tuple[str, PartParameter | None]]:
         """Find the pure ratios of all parts; None where one was not given as such."""
         usual = {"restitution": system.parts.the_block.maximum_restitution}
         for index, part in enumerate(self._parts):
@@ -133,7 +133,10 @@ class Trials:
                 condition = declared.condition
                 bounds = (-math.inf, math.inf) if condition is None else condition.bounds
                 name = f"{type(part).__name__}.{argument}"
-                yield name, None if value is None else Place(index, argument, float(value), bounds)
+                yield (
+                    name,
+                    None if value is None else PartParameter(index, argument, float(value), bounds),
+                )
 
     def _with(self, values: Mapping[str, float]) -> list[Component]:
         """Give the parts with other values of the parameters."""
@@ -163,7 +166,7 @@ def _declared_ratios(part: Component) -> Iterator[tuple[str, Ratio[Any]]]:
             yield name, cast("Ratio[Any]", declared)
 
 
-def _place_of(name: object, known: Mapping[str, Place | None], owner: str) -> Place:
+def _place_of(name: object, known: Mapping[str, PartParameter | None], owner: str) -> PartParameter:
     matches = [full for full in known if name in (full, full.partition(".")[2])]
     if len(matches) == 1:
         place = known[matches[0]]

@@ -13,7 +13,7 @@ from rockframe.system.load import Load
 
 
 @dataclass(frozen=True)
-class Point:
+class BodyPoint:
     """A point of a body.
 
     Parameters
@@ -57,7 +57,7 @@ def carried(
     return up * sine - right * rise, -right * sine - up * rise
 
 
-def point_labels(points: Sequence[Point]) -> dict[str, Generic]:
+def point_labels(points: Sequence[BodyPoint]) -> dict[str, Generic]:
     """Give names and places of points, by their names in the schema."""
     return {
         "point": np.array([point.name for point in points]),
@@ -67,13 +67,13 @@ def point_labels(points: Sequence[Point]) -> dict[str, Generic]:
 
 
 def point_histories(
-    points: Sequence[Point], values: Mapping[str, Generic], load: Load
+    points: Sequence[BodyPoint], values: Mapping[str, Generic], load: Load
 ) -> dict[str, Generic]:
     """Give displacements and absolute accelerations of points.
 
     Parameters
     ----------
-    points : sequence of Point
+    points : sequence of BodyPoint
         Of the body.
     values : mapping of str to ndarray
         Histories of the body with absolute accelerations, by their names in the schema.
@@ -110,12 +110,12 @@ def point_histories(
     }
 
 
-def point_peaks(points: Sequence[Point], along: AlongSteps, load: Load) -> dict[str, Generic]:
+def point_peaks(points: Sequence[BodyPoint], along: AlongSteps, load: Load) -> dict[str, Generic]:
     """Give peaks of displacements and absolute accelerations of points.
 
     Parameters
     ----------
-    points : sequence of Point
+    points : sequence of BodyPoint
         Of the body.
     along : AlongSteps
         As for :func:`point_histories`, up to overturning.

@@ -6,7 +6,7 @@ from typing import Any, Final, cast
 from rockframe.errors import RockframeError, shown
 from rockframe.results.diagnostics import DIAGNOSTICS, Diagnostic
 from rockframe.results.forces import OF_SOIL_FRICTION
-from rockframe.results.points import Point
+from rockframe.results.points import BodyPoint
 from rockframe.results.schema import GROUPS, ON_REQUEST, SCHEMA
 from rockframe.results.variables.requests import POINT_TIME
 from rockframe.results.variables.variable import TIME
@@ -90,7 +90,7 @@ def lacking(system: Assembly, names: Iterable[str]) -> list[str]:
     ]
 
 
-def points_of(given: object, faults: list[str]) -> tuple[Point, ...]:
+def points_of(given: object, faults: list[str]) -> tuple[BodyPoint, ...]:
     """Read the argument ``points``: names and places on the body; note what is wrong.
 
     Parameters
@@ -102,14 +102,14 @@ def points_of(given: object, faults: list[str]) -> tuple[Point, ...]:
 
     Returns
     -------
-    tuple of Point
+    tuple of BodyPoint
     """
     if given is None:
         return ()
     if not isinstance(given, Mapping):
         faults.append(f"points must name places, such as {EXAMPLE}, got {shown(given)}")
         return ()
-    points: list[Point] = []
+    points: list[BodyPoint] = []
     for name, place in cast("Mapping[Any, Any]", given).items():
         if not (isinstance(name, str) and name.strip()):
             faults.append(f"points needs names, such as {EXAMPLE}, got {shown(name)}")
@@ -124,7 +124,7 @@ def points_of(given: object, faults: list[str]) -> tuple[Point, ...]:
                     to_si(each, LENGTH, owner="simulate", name=f"points[{name!r}]")
                     for each in cast("tuple[Any, Any]", place)
                 )
-                points.append(Point(name, x, y))
+                points.append(BodyPoint(name, x, y))
             except RockframeError as problem:
                 faults.append(str(problem))
     return tuple(points)

@@ -11,7 +11,7 @@ from rockframe.components import InitialState
 from rockframe.errors import AssemblyError, shown
 from rockframe.motion import GroundMotion
 from rockframe.results.diagnostics import Diagnostic
-from rockframe.results.points import Point
+from rockframe.results.points import BodyPoint
 from rockframe.results.schema import ENERGIES
 from rockframe.simulation.asked import diagnostics_of, lacking, names_of, points_of
 from rockframe.simulation.beginning import Beginning, continuation_of, described
@@ -39,7 +39,7 @@ class _Asked:
     histories: bool
     requested: tuple[str, ...]
     diagnostics: tuple[Diagnostic, ...]
-    points: tuple[Point, ...]
+    points: tuple[BodyPoint, ...]
     stop_at_overturning: bool
 
     def _described(self) -> dict[str, Any]:
@@ -61,7 +61,7 @@ class _Asked:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Arguments(_Asked):
+class RunRequest(_Asked):
     """What a run is asked for, whatever its system and motion; numbers in SI units."""
 
     duration: float | None
@@ -142,7 +142,7 @@ def plan_run(system: Assembly, motion: GroundMotion | None, **asked: Unpack[RunA
     return plan
 
 
-def read_arguments(faults: list[str], **asked: Unpack[RunArguments]) -> Arguments:
+def read_arguments(faults: list[str], **asked: Unpack[RunArguments]) -> RunRequest:
     """Read the arguments of a run, as far as that needs neither system nor motion.
 
     Parameters
@@ -154,7 +154,7 @@ def read_arguments(faults: list[str], **asked: Unpack[RunArguments]) -> Argument
 
     Returns
     -------
-    Arguments
+    RunRequest
 
     Raises
     ------
@@ -170,7 +170,7 @@ def read_arguments(faults: list[str], **asked: Unpack[RunArguments]) -> Argument
     accuracy = asked.get("accuracy", AccuracyLevel.STANDARD)
     verdict = asked.get("overturning", Overturning.STOP)
     course = read_option(Overturning, verdict, "overturning", faults)
-    return Arguments(
+    return RunRequest(
         duration=duration,
         free_vibration=free_vibration,
         initial=_initial(asked.get("initial"), faults),
@@ -186,13 +186,13 @@ def read_arguments(faults: list[str], **asked: Unpack[RunArguments]) -> Argument
 
 
 def fitted(
-    arguments: Arguments, system: Assembly, motion: GroundMotion | None, faults: list[str]
+    arguments: RunRequest, system: Assembly, motion: GroundMotion | None, faults: list[str]
 ) -> Plan:
     """Fit the arguments of a run to its system and its motion.
 
     Parameters
     ----------
-    arguments : Arguments
+    arguments : RunRequest
         As read.
     system : Assembly
         The checked scene.
@@ -278,7 +278,7 @@ def _beginning(
     return given
 
 
-def length_of(arguments: Arguments, motion: GroundMotion | None) -> float:
+def length_of(arguments: RunRequest, motion: GroundMotion | None) -> float:
     """Give the length of a run under a motion; zero where neither tells it [s]."""
     if arguments.duration is not None:
         return arguments.duration

@@ -28,7 +28,7 @@ from rockframe.studies.flip_words import least_overturning, sentence, unfinished
 from rockframe.studies.flips import Followed, Look, follow
 from rockframe.studies.intensities import of_study
 from rockframe.studies.scaled_intensity import ScaledIntensity
-from rockframe.studies.sweeps.progress import Progress, bar_of
+from rockframe.studies.sweeps.progress import ProgressBar, bar_of
 from rockframe.system.rigid_ground import RigidGroundSetting
 from rockframe.units import POSITIVE, Condition, to_ratio
 
@@ -206,7 +206,7 @@ def critical_scale(
     return dataset.assign_attrs(of_study(measure.name, measure.period))
 
 
-def _counted(look: Look, bar: Progress, first: int) -> Look:
+def _counted(look: Look, bar: ProgressBar, first: int) -> Look:
     """Let a bar count the runs: those that come first, and as many more as there will be."""
     bar.expect(first)
     looks = itertools.count()

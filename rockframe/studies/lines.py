@@ -28,7 +28,7 @@ from rockframe.studies.sweeps.arguments import ExecutionArguments, SweepArgument
 from rockframe.studies.sweeps.axes import numbers_of
 from rockframe.studies.sweeps.motions import TARGETS
 from rockframe.studies.sweeps.planning import plan_study
-from rockframe.studies.sweeps.progress import Progress, bar_of
+from rockframe.studies.sweeps.progress import ProgressBar, bar_of
 from rockframe.studies.sweeps.running import run_study
 from rockframe.units import Condition, Unit, to_ratio
 
@@ -114,7 +114,7 @@ class _Runner:
 
     lines: Lines
     store: Path | None
-    bar: Progress
+    bar: ProgressBar
 
     def scan(self, scales: Array) -> xr.Dataset:
         """Run all rows and motions at all scales."""

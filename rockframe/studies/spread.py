@@ -10,7 +10,7 @@ import numpy as np
 from rockframe.errors import ComponentError, RockframeError, StudyError, heard, shown
 from rockframe.signals.arrays import Array
 from rockframe.studies.sweeps.axes import Axis
-from rockframe.studies.sweeps.scenes import Scene
+from rockframe.studies.sweeps.scenes import SweptScene
 from rockframe.units import POSITIVE, Measure, Unit, to_ratio, to_si
 
 
@@ -48,7 +48,7 @@ class Spread:
     distribution: Any
 
 
-def read_spread(given: object, scene: Scene, *, owner: str) -> tuple[Spread, ...]:
+def read_spread(given: object, scene: SweptScene, *, owner: str) -> tuple[Spread, ...]:
     """Read the argument ``spread``.
 
     Raises
@@ -88,7 +88,7 @@ def drawn(spreads: tuple[Spread, ...], count: int, sampling: Sampling, seed: int
     return np.asarray(engine(size, rng=rng).random(count), dtype=np.float64)
 
 
-def _read(name: str, given: Any, scene: Scene, owner: str) -> Spread:
+def _read(name: str, given: Any, scene: SweptScene, owner: str) -> Spread:
     from scipy import stats
 
     parts = list(given) if isinstance(given, tuple | list) else [given]
@@ -120,7 +120,7 @@ def _read(name: str, given: Any, scene: Scene, owner: str) -> Spread:
     raise ComponentError(msg)
 
 
-def _frozen(name: str, parts: list[Any], scene: Scene, owner: str) -> Spread:
+def _frozen(name: str, parts: list[Any], scene: SweptScene, owner: str) -> Spread:
     """Read a distribution of scipy.stats, with the unit of its values."""
     distribution, unit = parts[0], (parts[1] if len(parts) > 1 else "")
     middle = float(distribution.ppf(0.5))
@@ -134,7 +134,7 @@ def _frozen(name: str, parts: list[Any], scene: Scene, owner: str) -> Spread:
     return Spread(name, str(axis.unit), distribution)
 
 
-def _axis(scene: Scene, name: str, value: Any, owner: str) -> Axis:
+def _axis(scene: SweptScene, name: str, value: Any, owner: str) -> Axis:
     """Read one value as the axis of its name does."""
     with heard():  # a width of a distribution is no unusual value
         axis = scene.axis(name, [value])

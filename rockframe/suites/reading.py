@@ -10,7 +10,7 @@ from rockframe.motion.readers.reading import Reading, read_components
 from rockframe.motion.readers.source import Request, Source
 from rockframe.suites.files import Unread, files_of, unread
 from rockframe.suites.peer_table import Known, is_peer_table, read_peer_table
-from rockframe.suites.records import Component, assign_records, number_in_name
+from rockframe.suites.records import RecordedComponent, assign_records, number_in_name
 from rockframe.suites.stored import is_stored_suite, stored_suite
 from rockframe.suites.suite import MotionSuite
 from rockframe.units import POSITIVE, TIME_STEP, to_si
@@ -119,7 +119,7 @@ class _Found:
     """What was found so far."""
 
     def __init__(self) -> None:
-        self.components: list[Component] = []
+        self.components: list[RecordedComponent] = []
         self.left: list[Unread] = []
         self.remarks: list[str] = []
         self._tables: dict[str, Known] = {}
@@ -161,7 +161,7 @@ class _Found:
                 history=reading.history,
                 recipe=reading.recipe,
             )
-            component = Component(label, motion, reading.vertical, file.path)
+            component = RecordedComponent(label, motion, reading.vertical, file.path)
             number = number_in_name(reading.file)
             if number is not None:
                 component.known["record_sequence_number"] = number

@@ -26,7 +26,7 @@ _INSTRUMENT: Final = re.compile(r"(?:^|\.)([FGDCESHBML][NLGH])[A-Z0-9](?:\s|$)")
 
 
 @dataclass
-class Component:
+class RecordedComponent:
     """A component that was read, on its way into a suite.
 
     Parameters
@@ -69,12 +69,12 @@ def number_in_name(file: str) -> int | None:
     return None if found is None else int(found.group(1))
 
 
-def assign_records(components: Iterable[Component]) -> list[str]:
+def assign_records(components: Iterable[RecordedComponent]) -> list[str]:
     """Say of each component with which others it was recorded, and along which axis.
 
     Parameters
     ----------
-    components : iterable of Component
+    components : iterable of RecordedComponent
         In order; ``record`` and ``axis`` are added to what is known of them.
 
     Returns
@@ -92,7 +92,7 @@ def assign_records(components: Iterable[Component]) -> list[str]:
     held = list(components)
     remarks: list[str] = []
     names: set[str] = set()
-    lonely: list[Component] = []
+    lonely: list[RecordedComponent] = []
     for members in _together(held, _record_of):
         for part in [members] if _is_one(members) else _together(members, _instrument):
             record = unique = _name_of(part[0])
@@ -140,21 +140,21 @@ def pairs_of(
 
 
 def _together(
-    components: Iterable[Component], key: Callable[[Component], tuple[str, ...]]
-) -> list[list[Component]]:
+    components: Iterable[RecordedComponent], key: Callable[[RecordedComponent], tuple[str, ...]]
+) -> list[list[RecordedComponent]]:
     """Sort components by a key, and those of known starts by times that overlap."""
-    sorted_: dict[tuple[str, ...], list[Component]] = {}
+    sorted_: dict[tuple[str, ...], list[RecordedComponent]] = {}
     for component in components:
         sorted_.setdefault(key(component), []).append(component)
     return [part for members in sorted_.values() for part in _at_one_time(members)]
 
 
-def _at_one_time(members: list[Component]) -> list[list[Component]]:
+def _at_one_time(members: list[RecordedComponent]) -> list[list[RecordedComponent]]:
     starts = [_start(one) for one in members]
     known = [start for start in starts if start is not None]
     if len(known) < len(members):
         return [members]
-    parts: list[list[Component]] = []
+    parts: list[list[RecordedComponent]] = []
     end = -math.inf
     for start, place in sorted(zip(known, range(len(members)), strict=True)):
         if start > end:
@@ -167,7 +167,7 @@ def _at_one_time(members: list[Component]) -> list[list[Component]]:
     return sorted(parts, key=lambda part: members.index(part[0]))
 
 
-def _start(component: Component) -> float | None:
+def _start(component: RecordedComponent) -> float | None:
     """Give when a component starts [s], where nothing else tells its earthquake."""
     about = component.about
     if not _named_by_station(about) or any(about.get(key) for key in _WHEN):
@@ -180,7 +180,7 @@ def _named_by_station(about: Mapping[str, Any]) -> bool:
     return bool(told) and "record_sequence_number" not in about
 
 
-def _record_of(component: Component) -> tuple[str, ...]:
+def _record_of(component: RecordedComponent) -> tuple[str, ...]:
     about = component.about
     if "record_sequence_number" in about:
         return (f"RSN{about['record_sequence_number']}",)
@@ -191,12 +191,12 @@ def _record_of(component: Component) -> tuple[str, ...]:
     return (*_event(component), *map(str, where))
 
 
-def _name_of(component: Component) -> str:
+def _name_of(component: RecordedComponent) -> str:
     start = [] if _start(component) is None else [str(component.about[_START])]
     return ", ".join((*start, *_record_of(component)))
 
 
-def _event(component: Component) -> tuple[str, ...]:
+def _event(component: RecordedComponent) -> tuple[str, ...]:
     about = component.about
     when = next((about[key] for key in _WHEN if about.get(key)), None)
     if when is None and _start(component) is None:
@@ -206,7 +206,7 @@ def _event(component: Component) -> tuple[str, ...]:
     return tuple(str(part) for part in told if part)
 
 
-def _event_and_station(component: Component) -> tuple[str, ...]:
+def _event_and_station(component: RecordedComponent) -> tuple[str, ...]:
     about = component.about
     if not _named_by_station(about):
         return _record_of(component)
@@ -214,19 +214,19 @@ def _event_and_station(component: Component) -> tuple[str, ...]:
     return (*_event(component), str(about.get("network", "")), str(station))
 
 
-def _instrument(component: Component) -> tuple[str, ...]:
+def _instrument(component: RecordedComponent) -> tuple[str, ...]:
     """Give the codes of band and instrument, and the processing, as far as they are known."""
     about = component.about
     found = _INSTRUMENT.search(str(about.get("component", "")))
     return ("" if found is None else found.group(1), str(about.get("processing", "")))
 
 
-def _is_one(members: list[Component]) -> bool:
+def _is_one(members: list[RecordedComponent]) -> bool:
     upwards = sum(one.vertical for one in members)
     return upwards <= 1 and len(members) - upwards <= len(HORIZONTAL)
 
 
-def _why_apart(members: list[Component]) -> list[str]:
+def _why_apart(members: list[RecordedComponent]) -> list[str]:
     """Say why components of one station and time are no pair."""
     if len(members) < len(HORIZONTAL):
         return []
@@ -243,7 +243,7 @@ def _why_apart(members: list[Component]) -> list[str]:
     return [f"{labels}: of one station and time, but not put together ({apart})"]
 
 
-def _assign(record: str, members: list[Component]) -> list[str]:
+def _assign(record: str, members: list[RecordedComponent]) -> list[str]:
     level = [one for one in members if not one.vertical]
     upwards = [one for one in members if one.vertical]
     for one in upwards:

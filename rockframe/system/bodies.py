@@ -5,14 +5,14 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
-from rockframe.components.block_numbers import BlockSI, Standing, greatest_restitutions
+from rockframe.components.block_numbers import BlockSI, BodyGeometry, greatest_restitutions
 from rockframe.components.cap import CushionCapSI
 from rockframe.signals.slope import Slope
 from rockframe.system.impact import Restitutions
 
 
 @dataclass(frozen=True)
-class SupportedBody(Standing):
+class SupportedBody(BodyGeometry):
     """A rigid body with a straight base, in SI units."""
 
     half_width: float  # of the base, b

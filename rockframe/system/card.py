@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from rockframe.notebook import Shape, card, drawing, in_words
+from rockframe.notebook import Polygon, card, drawing, in_words
 from rockframe.signals.arrays import Array
 from rockframe.system.geometry import Geometry, geometry_of, rectangle
 
@@ -35,7 +35,7 @@ def system_card(scene: "Assembly", name: str) -> str:
     return card(name, rows, drawing(shapes_of(geometry_of(scene))))
 
 
-def shapes_of(geometry: Geometry) -> list[Shape]:
+def shapes_of(geometry: Geometry) -> list[Polygon]:
     """Give the parts of a scene, upright and at rest, from back to front."""
     half, width = geometry.base_half_width, 2.0 * geometry.half_width
     pad = 0.0 if geometry.pads_sink is None else _PAD * width
@@ -58,7 +58,7 @@ def shapes_of(geometry: Geometry) -> list[Shape]:
     found += [("member", member + level_up + raised) for member in geometry.members]
     centre = np.array([geometry.centre]) + level_up + raised
     return [
-        Shape(tone, [(float(x), float(y)) for x, y in _turned(points, geometry)])
+        Polygon(tone, [(float(x), float(y)) for x, y in _turned(points, geometry)])
         for tone, points in (*found, ("block", centre))
     ]
 

@@ -16,7 +16,7 @@ from rockframe.system.restraints import restraint_words
 from rockframe.system.setting import Setting
 from rockframe.system.slots import support_of
 from rockframe.system.small_motion import SmallMotion
-from rockframe.system.statics import Standing, Statics
+from rockframe.system.statics import StandingBodies, Statics
 from rockframe.system.support import Support
 from rockframe.system.words import Words
 
@@ -116,7 +116,7 @@ class StackSetting(Setting):
         return tuple(found)
 
     @cached_property
-    def _standing(self) -> Standing:
+    def _standing(self) -> StandingBodies:
         from rockframe.dynamics.on_base import OnBase
 
         links = tuple(
@@ -124,7 +124,7 @@ class StackSetting(Setting):
             for one in self.links
         )
         chain = StandingChain(links, self.slope.along_gravity)
-        return Standing(chain, self.body.mass, tuple(one.base for one in self.links))
+        return StandingBodies(chain, self.body.mass, tuple(one.base for one in self.links))
 
     @cached_property
     def _rest(self) -> list[Stand]:

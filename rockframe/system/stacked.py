@@ -16,7 +16,7 @@ from rockframe.system.bodies import Cap
 from rockframe.system.restraints import restraint_words
 from rockframe.system.setting import Setting
 from rockframe.system.small_motion import SmallMotion
-from rockframe.system.statics import Standing, Statics
+from rockframe.system.statics import StandingBodies, Statics
 from rockframe.system.support import BaseWords, Support
 from rockframe.system.words import Words
 
@@ -131,11 +131,11 @@ class StackedSetting(Setting):
         return {**self.upper.equilibrium(), **soil}
 
     @cached_property
-    def _moving(self) -> Standing:
+    def _moving(self) -> StandingBodies:
         """Block and cap, which is heavy enough to be moved."""
         return self._standing(*self._moving_cap)
 
-    def _standing(self, cap_mass: float, cap_inertia: float) -> Standing:
+    def _standing(self, cap_mass: float, cap_inertia: float) -> StandingBodies:
         from rockframe.dynamics.alone_model import eccentricity_of
         from rockframe.dynamics.on_base import OnBase
 
@@ -144,7 +144,7 @@ class StackedSetting(Setting):
             link_of(OnBase(block, pads.law), beside=eccentricity_of(block)),
             link_of(OnBase(plate, soil.law), share, plate.height),
         )
-        return Standing(
+        return StandingBodies(
             StandingChain(links, self.slope.along_gravity), self.body.mass, (pads, soil)
         )
 

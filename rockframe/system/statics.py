@@ -67,7 +67,7 @@ def carried(rotations: Sequence[float], states: Sequence[Statics | None]) -> lis
 
 
 @dataclass(frozen=True)
-class Standing:
+class StandingBodies:
     """Bodies that stand on one another, in SI units.
 
     Parameters

@@ -11,7 +11,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar
 
 from rockframe.system.load import Load
-from rockframe.system.statics import Standing, Statics, carried
+from rockframe.system.statics import StandingBodies, Statics, carried
 from rockframe.system.words import vibration_words
 
 if TYPE_CHECKING:
@@ -126,7 +126,7 @@ class Support(ABC):
         return carried([rotation], self.standing.held([rotation]))[0]
 
     @cached_property
-    def standing(self) -> Standing:
+    def standing(self) -> StandingBodies:
         """Its body alone on it, by the law."""
         from rockframe.dynamics.alone_model import eccentricity_of
         from rockframe.dynamics.on_base import OnBase
@@ -135,7 +135,7 @@ class Support(ABC):
         body, numbers = self.load.own_law, self.own_law
         link = link_of(OnBase(body, numbers.law), beside=eccentricity_of(body))
         chain = StandingChain((link,), self.load.slope.along_gravity)
-        return Standing(chain, self.load.body.mass, (numbers,))
+        return StandingBodies(chain, self.load.body.mass, (numbers,))
 
     @cached_property
     def own_law(self) -> "BaseNumbers":

@@ -30,7 +30,7 @@ _FOREIGN: Final = re.compile(r"[^\s\w*/^()%‰°·.+⁻-]")
 
 
 @dataclass(frozen=True)
-class Written:
+class WrittenQuantity:
     """A text that is one number and a unit.
 
     Parameters
@@ -68,7 +68,7 @@ def number_and_unit(text: str) -> tuple[str, str] | None:
     return None if parts is None else (parts["number"], parts["unit"])
 
 
-def read(text: str) -> Written | None:
+def read(text: str) -> WrittenQuantity | None:
     """Read a text as one number and a unit.
 
     Parameters
@@ -78,13 +78,13 @@ def read(text: str) -> Written | None:
 
     Returns
     -------
-    Written or None
+    WrittenQuantity or None
         None of a text that is anything else.
     """
     parts = number_and_unit(text)
     if parts is None or not _is_unit(parts[1]):
         return None
-    return Written(float(parts[0]), parts[1])
+    return WrittenQuantity(float(parts[0]), parts[1])
 
 
 def foreign_sign(text: str) -> str | None:

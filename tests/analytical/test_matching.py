@@ -6,7 +6,7 @@ from scipy import integrate, signal
 
 import rockframe as rf
 from rockframe.motion.matching.adjustment import adjustment_of
-from rockframe.motion.matching.oscillators import Oscillators, Peaks
+from rockframe.motion.matching.oscillators import OscillatorPeaks, Oscillators
 from rockframe.motion.matching.wavelets import lead_of, wavelet_at, width_of
 from rockframe.signals.spectra import spectral_peaks
 
@@ -132,7 +132,7 @@ def test_the_influence_of_a_sample_is_the_response_to_its_hat(damping):
     oscillators = Oscillators(PERIODS, damping, STEP)
     times = (np.linspace(200, 3100, PERIODS.size).round() + 0.37) * STEP
     which = np.arange(PERIODS.size)
-    peaks = Peaks(which, np.ones(PERIODS.size), times, np.zeros(PERIODS.size, dtype=int))
+    peaks = OscillatorPeaks(which, np.ones(PERIODS.size), times, np.zeros(PERIODS.size, dtype=int))
     influences = oscillators.influences(peaks, COUNT)
     parts = 100
     for place, (period, time) in enumerate(zip(PERIODS, times, strict=True)):
@@ -172,7 +172,7 @@ def test_amplitudes_bring_the_peaks_where_they_are_to_be():
     histories = oscillators.histories(samples)
     peaks = oscillators.peaks(samples, histories)
     target = np.array([1.01 * peaks.spectrum[0]])
-    alone = Peaks(*(values[:1] for values in peaks))
+    alone = OscillatorPeaks(*(values[:1] for values in peaks))
     made = adjustment_of(oscillators, alone, target, COUNT)
     changed = samples + made.wavelets @ made.amplitudes(1e-12)
     at = np.interp(

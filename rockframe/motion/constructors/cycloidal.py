@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Final
 
-from rockframe.motion.pulses.arguments import Arguments
+from rockframe.motion.pulses.arguments import ArgumentReader
 from rockframe.motion.pulses.harmonics import sine, type_c_phase
 from rockframe.units import ACCELERATION, FREQUENCY, PERIOD, POSITIVE, VELOCITY
 
@@ -46,7 +46,7 @@ def sine_pulse(
     ComponentError
         Not finite, or a frequency or length that is not positive.
     """
-    given = Arguments(kind, "sine_pulse", "sine pulse")
+    given = ArgumentReader(kind, "sine_pulse", "sine pulse")
     si = sine(
         amplitude=given.quantity("amplitude", amplitude, ACCELERATION),
         frequency=given.quantity("frequency", frequency, FREQUENCY, POSITIVE),
@@ -86,7 +86,7 @@ def cosine_pulse(
     --------
     type_b_pulse : One cycle, given by its velocity.
     """
-    given = Arguments(kind, "cosine_pulse", "cosine pulse")
+    given = ArgumentReader(kind, "cosine_pulse", "cosine pulse")
     si = sine(
         amplitude=given.quantity("amplitude", amplitude, ACCELERATION),
         frequency=given.quantity("frequency", frequency, FREQUENCY, POSITIVE),
@@ -120,7 +120,7 @@ def half_sine_pulse(kind: type[Made], amplitude: QuantityLike, duration: Quantit
     ComponentError
         Not finite, or a duration that is not positive.
     """
-    given = Arguments(kind, "half_sine_pulse", "half-sine pulse")
+    given = ArgumentReader(kind, "half_sine_pulse", "half-sine pulse")
     peak = given.quantity("amplitude", amplitude, ACCELERATION)
     length = given.quantity("duration", duration, PERIOD, POSITIVE)
     si = sine(amplitude=peak, frequency=0.5 / length, cycles=0.5, owner=given.owner)
@@ -159,7 +159,7 @@ def harmonic(
     ComponentError
         Not finite, or a frequency or duration that is not positive.
     """
-    given = Arguments(kind, "harmonic", "harmonic motion")
+    given = ArgumentReader(kind, "harmonic", "harmonic motion")
     peak = given.quantity("amplitude", amplitude, ACCELERATION)
     hertz = given.quantity("frequency", frequency, FREQUENCY, POSITIVE)
     length = given.quantity("duration", duration, PERIOD, POSITIVE)
@@ -199,7 +199,7 @@ def type_a_pulse(kind: type[Made], velocity: QuantityLike, period: QuantityLike)
     -----
     Type A of Makris and Chang (2000), :eq:`eq-type-a`.
     """
-    given = Arguments(kind, "type_a_pulse", "type A pulse")
+    given = ArgumentReader(kind, "type_a_pulse", "type A pulse")
     peak = given.quantity("velocity", velocity, VELOCITY)
     length = given.quantity("period", period, PERIOD, POSITIVE)
     si = sine(
@@ -237,7 +237,7 @@ def type_b_pulse(kind: type[Made], velocity: QuantityLike, period: QuantityLike)
     -----
     Type B of Makris and Chang (2000), :eq:`eq-type-b`.
     """
-    given = Arguments(kind, "type_b_pulse", "type B pulse")
+    given = ArgumentReader(kind, "type_b_pulse", "type B pulse")
     peak = given.quantity("velocity", velocity, VELOCITY)
     length = given.quantity("period", period, PERIOD, POSITIVE)
     si = sine(
@@ -283,7 +283,7 @@ def type_c_pulse(
     Type C_n of Makris and Chang (2000), :eq:`eq-type-c`, with the phase phi of
     :eq:`eq-type-c-phase`.
     """
-    given = Arguments(kind, "type_c_pulse", "type C pulse")
+    given = ArgumentReader(kind, "type_c_pulse", "type C pulse")
     peak = given.quantity("velocity", velocity, VELOCITY)
     length = given.quantity("period", period, PERIOD, POSITIVE)
     number = given.whole("order", order, _HIGHEST_ORDER)

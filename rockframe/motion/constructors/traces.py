@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final, cast
 from rockframe.errors import ComponentError, RecordWarning, shown
 from rockframe.motion.quantities import argument_unit
 from rockframe.motion.readers.checks import check_time_step, choose_unit
-from rockframe.motion.readers.components import Component, choose_component, component_names
+from rockframe.motion.readers.components import FileComponent, choose_component, component_names
 from rockframe.motion.readers.orientation import orientation_of
 from rockframe.motion.readers.reading import to_motion
 from rockframe.motion.readers.source import Metadata, Record, Request, Source
@@ -118,7 +118,7 @@ def _listed(stream: Any, owner: str) -> list[Any]:
 
 def _component(
     source: Source, request: Request, code: str, traces: list[Any], *, several: bool
-) -> Component:
+) -> FileComponent:
     network, station, location, channel = codes_of(code)
     about = {"network": network, "station": station, "sensor_location": location}
 
@@ -131,7 +131,7 @@ def _component(
         return Record(time_step, values, unit, metadata, warnings=tuple(said))
 
     aliases = (code, channel)
-    return Component(
+    return FileComponent(
         code if several else channel, samples, orientation_of(channel), aliases=aliases
     )
 

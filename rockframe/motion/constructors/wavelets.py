@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from rockframe.motion.pulses.arguments import Arguments
+from rockframe.motion.pulses.arguments import ArgumentReader
 from rockframe.motion.pulses.harmonics import mavroeidis_papageorgiou
 from rockframe.motion.pulses.impulses import impulse_duration, opposite_impulses
 from rockframe.motion.pulses.wavelets import ricker
@@ -53,7 +53,7 @@ def ricker_wavelet(
     :eq:`eq-ricker-symmetric` and :eq:`eq-ricker-antisymmetric`; its velocity and
     displacement are :eq:`eq-ricker-path`.
     """
-    given = Arguments(kind, "ricker_wavelet", "Ricker wavelet")
+    given = ArgumentReader(kind, "ricker_wavelet", "Ricker wavelet")
     si = ricker(
         amplitude=given.quantity("amplitude", amplitude, ACCELERATION),
         period=given.quantity("period", period, PERIOD, POSITIVE),
@@ -102,7 +102,9 @@ def mavroeidis_papageorgiou_pulse(
     Pulse of Mavroeidis and Papageorgiou (2003), :eq:`eq-mp-velocity` and
     :eq:`eq-mp-acceleration`. It leaves the ground at :eq:`eq-mp-offset`.
     """
-    given = Arguments(kind, "mavroeidis_papageorgiou_pulse", "pulse of Mavroeidis and Papageorgiou")
+    given = ArgumentReader(
+        kind, "mavroeidis_papageorgiou_pulse", "pulse of Mavroeidis and Papageorgiou"
+    )
     si = mavroeidis_papageorgiou(
         velocity=given.quantity("velocity", velocity, VELOCITY),
         frequency=given.quantity("frequency", frequency, FREQUENCY, POSITIVE),
@@ -153,7 +155,7 @@ def double_impulse(
     of the angular frequency omega takes the impulses for weaker by
     ``(omega pulse_duration)^2/56``, as long as that is small.
     """
-    given = Arguments(kind, "double_impulse", "double impulse")
+    given = ArgumentReader(kind, "double_impulse", "double impulse")
     speed = given.quantity("velocity", velocity, VELOCITY)
     apart = given.quantity("interval", interval, PERIOD, POSITIVE, label="interval")
     longest = _SHORT * apart

@@ -7,7 +7,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rockframe.motion.matching.oscillators import Oscillators, Peaks
+from rockframe.motion.matching.oscillators import OscillatorPeaks, Oscillators
 from rockframe.motion.matching.wavelets import wavelet_at
 from rockframe.signals.arrays import Array
 
@@ -78,14 +78,16 @@ class Adjustment(NamedTuple):
         return found
 
 
-def adjustment_of(oscillators: Oscillators, peaks: Peaks, targets: Array, count: int) -> Adjustment:
+def adjustment_of(
+    oscillators: Oscillators, peaks: OscillatorPeaks, targets: Array, count: int
+) -> Adjustment:
     """Make the wavelets of all peaks, and the matrix of what they do, :eq:`eq-matching-matrix`.
 
     Parameters
     ----------
     oscillators : Oscillators
         The oscillators.
-    peaks : Peaks
+    peaks : OscillatorPeaks
         Their peaks, of some or of all.
     targets : ndarray, shape (k,)
         Pseudo-acceleration that each oscillator is to reach [m s^-2].

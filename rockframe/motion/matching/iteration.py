@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from rockframe.motion.matching.adjustment import adjustment_of
-from rockframe.motion.matching.oscillators import Oscillators, Peaks
+from rockframe.motion.matching.oscillators import OscillatorPeaks, Oscillators
 from rockframe.signals import Signal
 from rockframe.signals.spectra import pseudo_spectra, spectral_peaks
 
@@ -240,10 +240,10 @@ class _Run:
             self._regularisation *= _STRONGER
         return False
 
-    def _ratios(self, peaks: Peaks, chosen: NDArray[np.bool_]) -> Array:
+    def _ratios(self, peaks: OscillatorPeaks, chosen: NDArray[np.bool_]) -> Array:
         return np.abs(peaks.spectrum[chosen] / self._targets[chosen] - 1.0)
 
-    def _size(self, peaks: Peaks, chosen: NDArray[np.bool_]) -> float:
+    def _size(self, peaks: OscillatorPeaks, chosen: NDArray[np.bool_]) -> float:
         """Give the mean fourth power of the logarithms of the spectrum over the target."""
         logarithms = np.log(peaks.spectrum[chosen] / self._targets[chosen])
         return float((np.abs(logarithms) ** _POWER).mean())

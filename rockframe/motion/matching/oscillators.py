@@ -22,7 +22,7 @@ _MOST: Final = 10
 """Peaks of an oscillator that are looked at if they exceed its target."""
 
 
-class Peaks(NamedTuple):
+class OscillatorPeaks(NamedTuple):
     """The greatest peaks of oscillators.
 
     Parameters
@@ -52,7 +52,7 @@ class Peaks(NamedTuple):
         """The greatest pseudo-acceleration of each oscillator, shape (k,) [m s^-2]."""
         return np.abs(self.values[self.greatest])
 
-    def looked_at(self, chosen: NDArray[np.bool_], targets: Array) -> Peaks:
+    def looked_at(self, chosen: NDArray[np.bool_], targets: Array) -> OscillatorPeaks:
         """Keep the greatest peaks of some oscillators, and those that exceed the target.
 
         Parameters
@@ -64,11 +64,13 @@ class Peaks(NamedTuple):
 
         Returns
         -------
-        Peaks
+        OscillatorPeaks
         """
         exceeding = np.abs(self.values) > targets[self.oscillators]
         kept = chosen[self.oscillators] & (exceeding | (self.ranks < _FEW))
-        return Peaks(self.oscillators[kept], self.values[kept], self.times[kept], self.ranks[kept])
+        return OscillatorPeaks(
+            self.oscillators[kept], self.values[kept], self.times[kept], self.ranks[kept]
+        )
 
 
 class Oscillators:
@@ -124,7 +126,7 @@ class Oscillators:
             found[row, 1:] = (2.0 * math.pi / period) ** 2 * history
         return found
 
-    def peaks(self, samples: Array, histories: Array) -> Peaks:
+    def peaks(self, samples: Array, histories: Array) -> OscillatorPeaks:
         """Find the greatest peaks of all oscillators, between the samples too.
 
         Parameters
@@ -136,7 +138,7 @@ class Oscillators:
 
         Returns
         -------
-        Peaks
+        OscillatorPeaks
             Up to ten of each oscillator, the greatest first.
         """
         size = np.abs(histories)
@@ -152,14 +154,14 @@ class Oscillators:
         rank = np.arange(which.size) - first[which]
         few = rank < _MOST
         kept = order[few]
-        return Peaks(which[kept], values[kept], times[kept], rank[few])
+        return OscillatorPeaks(which[kept], values[kept], times[kept], rank[few])
 
-    def influences(self, peaks: Peaks, count: int) -> Array:
+    def influences(self, peaks: OscillatorPeaks, count: int) -> Array:
         """Compute what every sample adds to the peaks, :eq:`eq-sample-influence`.
 
         Parameters
         ----------
-        peaks : Peaks
+        peaks : OscillatorPeaks
             Oscillators and times.
         count : int
             Samples of the motion.

@@ -9,7 +9,7 @@ import numpy as np
 
 from rockframe.arguments import whole_number
 from rockframe.errors import ComponentError, shown
-from rockframe.motion.processing.floors import Modes
+from rockframe.motion.processing.floors import FloorModes
 from rockframe.motion.processing.shear_buildings import building_modes, uniform_modes
 from rockframe.signals.spectra import DAMPING_RATIO
 from rockframe.units import (
@@ -41,15 +41,15 @@ _WAYS: Final = (
 )
 
 
-class Building(NamedTuple):
+class BuildingModes(NamedTuple):
     """A building's modes, what it is in words, and the arguments that describe it."""
 
-    modes: Modes
+    modes: FloorModes
     words: str
     arguments: dict[str, Any]
 
 
-def read_building(given: Mapping[str, Any], damping_ratio: object, *, owner: str) -> Building:
+def read_building(given: Mapping[str, Any], damping_ratio: object, *, owner: str) -> BuildingModes:
     """Read one of the three ways in which a building is described.
 
     Parameters
@@ -64,7 +64,7 @@ def read_building(given: Mapping[str, Any], damping_ratio: object, *, owner: str
 
     Returns
     -------
-    Building
+    BuildingModes
 
     Raises
     ------
@@ -91,7 +91,7 @@ def read_building(given: Mapping[str, Any], damping_ratio: object, *, owner: str
         arguments["modes"] = kept
     ratios = _damping_ratios(damping_ratio, periods.size, owner)
     arguments["damping_ratio"] = ratios if len(set(ratios)) > 1 else ratios[0]
-    return Building(Modes(periods, np.array(ratios), participations), words, arguments)
+    return BuildingModes(FloorModes(periods, np.array(ratios), participations), words, arguments)
 
 
 def _listed(names: tuple[str, ...]) -> str:

@@ -23,7 +23,7 @@ from rockframe.units import NOT_NEGATIVE, POSITIVE, TIME, TIME_STEP, to_si
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from rockframe.motion.processing.floors import Modes
+    from rockframe.motion.processing.floors import FloorModes
     from rockframe.motion.quantities import ArrayLike
     from rockframe.motion.value import Made
     from rockframe.signals import Signal
@@ -198,7 +198,7 @@ class _Floor(NamedTuple):
     """From straight lines, amid the samples, as a share of the peak."""
 
 
-def _floor(ground: Signal, modes: Modes, parts: int) -> _Floor:
+def _floor(ground: Signal, modes: FloorModes, parts: int) -> _Floor:
     halves = divided(ground, 2 * parts)
     rigid = modes.rigid_share * divided(ground, parts).samples
     added = passed_on(halves.pieces, halves.time_step, modes.moving)
@@ -210,7 +210,7 @@ def _floor(ground: Signal, modes: Modes, parts: int) -> _Floor:
     return _Floor(replace(ground, time_step=step, samples=samples, polynomials=None), deviation)
 
 
-def _still_time(given: QuantityLike | None, moving: Modes, owner: str) -> float:
+def _still_time(given: QuantityLike | None, moving: FloorModes, owner: str) -> float:
     if given is not None:
         return to_si(given, TIME, owner=owner, name="free_vibration", condition=NOT_NEGATIVE)
     needed = decay_time(moving)
@@ -236,7 +236,7 @@ def _parts(given: QuantityLike | None, own: float, owner: str) -> int:
     return math.ceil(min(own / step * (1.0 - _SNAP), float(MAXIMUM_SAMPLES)))
 
 
-def _check_size(si: Motion, moving: Modes, still: float, parts: int, owner: str) -> None:
+def _check_size(si: Motion, moving: FloorModes, still: float, parts: int, owner: str) -> None:
     if (si.duration + still) / si.time_step * parts > MAXIMUM_SAMPLES:
         msg = (
             f"{owner}: {si.duration + still:.6g} s in steps of {si.time_step / parts:.6g} s "
@@ -252,7 +252,7 @@ def _check_size(si: Motion, moving: Modes, still: float, parts: int, owner: str)
         raise ComponentError(msg)
 
 
-def _told(modes: Modes) -> str:
+def _told(modes: FloorModes) -> str:
     rows = np.column_stack(modes).tolist()
     each = [
         f"period {period:.9g} s, damping ratio {damping:.9g}, participation {participation:.9g}"

@@ -24,7 +24,7 @@ _PER_LINE: Final = 5
 _USUAL_DECIMALS: Final = 4
 
 
-class Written(StrEnum):
+class WrittenComponent(StrEnum):
     """Which component of a motion is written."""
 
     HORIZONTAL = "horizontal"
@@ -34,7 +34,7 @@ class Written(StrEnum):
 def to_at2(
     motion: MotionValue,
     path: str | os.PathLike[str],
-    component: Written | str = Written.HORIZONTAL,
+    component: WrittenComponent | str = WrittenComponent.HORIZONTAL,
     *,
     overwrite: bool = False,
 ) -> None:
@@ -66,10 +66,10 @@ def to_at2(
     an analytic motion the samples are written, not the function between them.
     """
     owner = f"{type(motion).__name__}.to_at2"
-    which = one_of_words(Written, component, owner=owner, name="component")
+    which = one_of_words(WrittenComponent, component, owner=owner, name="component")
     signal = motion.si.horizontal
     named = str(motion.metadata.get("component", ""))
-    if which is Written.VERTICAL:
+    if which is WrittenComponent.VERTICAL:
         if motion.si.vertical is None:
             msg = f"{owner}: the motion has no vertical component"
             raise ComponentError(msg)

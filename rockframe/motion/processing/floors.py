@@ -15,7 +15,7 @@ DECAYED: Final = 0.01
 """Share of its amplitude to which a free vibration is followed unless told otherwise."""
 
 
-class Modes(NamedTuple):
+class FloorModes(NamedTuple):
     """Modes of vibration of a building, as one of its floors feels them.
 
     Parameters
@@ -33,10 +33,10 @@ class Modes(NamedTuple):
     participations: Array
 
     @property
-    def moving(self) -> Modes:
+    def moving(self) -> FloorModes:
         """Those that are not rigid and that the floor feels."""
         kept = (self.periods > 0.0) & (self.participations != 0.0)
-        return Modes(*(values[kept] for values in self))
+        return FloorModes(*(values[kept] for values in self))
 
     @property
     def rigid_share(self) -> float:
@@ -82,7 +82,7 @@ def interval_matrix(time_step: float, period: float, damping: float, powers: int
     return whole
 
 
-def passed_on(pieces: Array, time_step: float, modes: Modes) -> Array:
+def passed_on(pieces: Array, time_step: float, modes: FloorModes) -> Array:
     """Compute what the modes add to a floor's absolute acceleration, from rest.
 
     Parameters
@@ -91,7 +91,7 @@ def passed_on(pieces: Array, time_step: float, modes: Modes) -> Array:
         Acceleration of the ground in every interval [m s^-2].
     time_step : float
         Length of an interval [s].
-    modes : Modes
+    modes : FloorModes
         Those that move.
 
     Returns
@@ -105,12 +105,12 @@ def passed_on(pieces: Array, time_step: float, modes: Modes) -> Array:
     return total
 
 
-def decay_time(modes: Modes) -> float:
+def decay_time(modes: FloorModes) -> float:
     """Give the time in which all modes come to rest, :eq:`eq-floor-decay`.
 
     Parameters
     ----------
-    modes : Modes
+    modes : FloorModes
         Those that move.
 
     Returns

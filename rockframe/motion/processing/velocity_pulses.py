@@ -33,7 +33,7 @@ MOTION_SHARE: Final = 0.2
 _REFINEMENT: Final = 10
 
 
-class Place(NamedTuple):
+class WaveletPeak(NamedTuple):
     """Where the wavelet transform is greatest.
 
     Parameters
@@ -79,7 +79,7 @@ def periods_between(shortest: float, longest: float) -> Array:
     return np.geomspace(shortest, longest, max(count, 2))
 
 
-def strongest(velocities: Array, dt: float, periods: Array) -> Place:
+def strongest(velocities: Array, dt: float, periods: Array) -> WaveletPeak:
     """Find where the wavelet transform is greatest, :eq:`eq-wavelet-coefficient`.
 
     Parameters
@@ -94,7 +94,7 @@ def strongest(velocities: Array, dt: float, periods: Array) -> Place:
 
     Returns
     -------
-    Place
+    WaveletPeak
         The period is that of the greatest coefficient between the periods given, in ten steps.
     """
     from scipy import fft
@@ -119,10 +119,10 @@ def strongest(velocities: Array, dt: float, periods: Array) -> Place:
     found = np.array([_at(velocities, sample, wavelet_of(one, dt)) for one in near.tolist()])
     best = int(np.argmax(np.sum(found**2, axis=1)))
     direction = math.atan2(found[best, 1], found[best, 0]) if len(velocities) == 2 else 0.0
-    return Place(float(near[best]), sample, direction % math.pi)
+    return WaveletPeak(float(near[best]), sample, direction % math.pi)
 
 
-def extracted(velocity: Array, dt: float, place: Place) -> list[tuple[int, float]]:
+def extracted(velocity: Array, dt: float, place: WaveletPeak) -> list[tuple[int, float]]:
     """Take the strongest wavelets about a place, one after the other, out of a velocity.
 
     Parameters
@@ -131,7 +131,7 @@ def extracted(velocity: Array, dt: float, place: Place) -> list[tuple[int, float
         [m s^-1]
     dt : float
         Time step [s].
-    place : Place
+    place : WaveletPeak
         Of the first one, and the period of all.
 
     Returns

@@ -17,7 +17,7 @@ _SPELLED: Final = {
 }
 
 
-class Labels(TypedDict):
+class MotionLabels(TypedDict):
     """What a motion is told about itself besides its samples."""
 
     name: str
@@ -25,7 +25,7 @@ class Labels(TypedDict):
     recipe: dict[str, Any]
 
 
-class Arguments:
+class ArgumentReader:
     """Reader of the arguments of one constructor; remembers what it read.
 
     Parameters
@@ -121,12 +121,12 @@ class Arguments:
         self._remember(name, value, words, words)
         return value
 
-    def labels(self) -> Labels:
+    def labels(self) -> MotionLabels:
         """Tell what was read.
 
         Returns
         -------
-        Labels
+        MotionLabels
             Keyword arguments of the motion: a name with rounded numbers, a sentence
             for its history and the recipe with exact ones.
         """

@@ -4,7 +4,7 @@ What a reader of another format needs is here, too; see :func:`register`.
 """
 
 from rockframe.motion.readers.checks import choose_unit as choose_unit
-from rockframe.motion.readers.components import Component as Component
+from rockframe.motion.readers.components import FileComponent as FileComponent
 from rockframe.motion.readers.components import choose_component as choose_component
 from rockframe.motion.readers.orientation import orientation_of as orientation_of
 from rockframe.motion.readers.reading import read_record as read_record
@@ -16,3 +16,6 @@ from rockframe.motion.readers.registry import unregister as unregister
 from rockframe.motion.readers.source import Record as Record
 from rockframe.motion.readers.source import Request as Request
 from rockframe.motion.readers.source import Source as Source
+
+Component = FileComponent
+"""The same, as readers of users' own have called it before."""

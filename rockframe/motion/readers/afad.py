@@ -18,7 +18,7 @@ import re
 from typing import TYPE_CHECKING, Final
 
 from rockframe.motion.readers.checks import choose_unit
-from rockframe.motion.readers.components import Component, choose_component
+from rockframe.motion.readers.components import FileComponent, choose_component
 from rockframe.motion.readers.declared import settle_count
 from rockframe.motion.readers.keys import Keys, kept, needed_count, needed_step, read_keys
 from rockframe.motion.readers.numbers import (
@@ -106,7 +106,7 @@ def read(source: Source, request: Request) -> Record:
         return Record(time_step, values, unit, {**about, **counts}, warnings=said)
 
     components = [
-        Component(name, lambda place=place: samples(place), orientation_of(name), line=first)
+        FileComponent(name, lambda place=place: samples(place), orientation_of(name), line=first)
         for place, name in enumerate(names)
     ]
     return choose_component(source, request, components)

@@ -51,7 +51,7 @@ _DRIVE: Final = re.compile(r"[A-Za-z]:")
 
 
 @dataclass(frozen=True)
-class Member:
+class ArchiveMember:
     """A file in an archive.
 
     Parameters
@@ -130,7 +130,7 @@ def check_unpackable(name: str, start: bytes) -> None:
             raise RecordError(name, found=words, expected=_EXPECTED)
 
 
-def members(file: IO[bytes], name: str, size: int) -> Iterator[Member]:
+def members(file: IO[bytes], name: str, size: int) -> Iterator[ArchiveMember]:
     """Unpack an archive file by file.
 
     Parameters
@@ -144,7 +144,7 @@ def members(file: IO[bytes], name: str, size: int) -> Iterator[Member]:
 
     Yields
     ------
-    Member
+    ArchiveMember
         Each file, those of archives in the archive too, unpacked or with the reason why it was not.
 
     Raises
@@ -165,17 +165,17 @@ def members(file: IO[bytes], name: str, size: int) -> Iterator[Member]:
         except RecordError as problem:  # the others may be sound
             if budget.spent:
                 raise
-            yield Member(member.name, None, problem.found)
+            yield ArchiveMember(member.name, None, problem.found)
 
 
-def _single(member: Member) -> Member:
+def _single(member: ArchiveMember) -> ArchiveMember:
     """Refuse what is packed once more."""
     if member.data is not None and (is_archive(member.data) or is_gzip(member.data)):
-        return Member(member.name, None, _PACKED)
+        return ArchiveMember(member.name, None, _PACKED)
     return member
 
 
-def _unpacked(file: IO[bytes], name: str, budget: _Budget) -> Iterator[Member]:
+def _unpacked(file: IO[bytes], name: str, budget: _Budget) -> Iterator[ArchiveMember]:
     start = file.read(_START)
     file.seek(0)
     unpack = _of_zip if start.startswith(_ZIP) else _of_tar
@@ -215,7 +215,7 @@ class _Budget:
             raise _too_many(self.name)
 
 
-def _of_zip(file: IO[bytes], name: str, budget: _Budget) -> Iterator[Member]:
+def _of_zip(file: IO[bytes], name: str, budget: _Budget) -> Iterator[ArchiveMember]:
     _check_directory(file, name)
     with zipfile.ZipFile(file) as archive:
         for info in archive.infolist():
@@ -223,13 +223,13 @@ def _of_zip(file: IO[bytes], name: str, budget: _Budget) -> Iterator[Member]:
                 continue
             reason = _misnamed(info.filename) or _zip_fault(info)
             if reason:
-                yield Member(_printable(info.filename), None, reason)
+                yield ArchiveMember(_printable(info.filename), None, reason)
                 continue
             try:
                 with archive.open(info) as stream:
                     data = stream.read(MAXIMUM_BYTES + 1)
             except Exception as problem:  # as above; the others may be sound
-                yield Member(info.filename, None, _damaged(problem))
+                yield ArchiveMember(info.filename, None, _damaged(problem))
                 continue
             budget.take(len(data))
             yield _member(info.filename, data)
@@ -263,7 +263,7 @@ def _zip_fault(info: zipfile.ZipInfo) -> str:
     return "a link" if kind == 0o120000 else ""
 
 
-def _of_tar(file: IO[bytes], name: str, budget: _Budget) -> Iterator[Member]:
+def _of_tar(file: IO[bytes], name: str, budget: _Budget) -> Iterator[ArchiveMember]:
     packed = is_gzip(file.read(len(_GZIP)))
     file.seek(0)
     stream = cast("IO[bytes]", gzip.GzipFile(fileobj=file)) if packed else file
@@ -274,7 +274,7 @@ def _of_tar(file: IO[bytes], name: str, budget: _Budget) -> Iterator[Member]:
                 continue
             reason = _misnamed(info.name) or _tar_fault(info)
             if reason:
-                yield Member(_printable(info.name), None, reason)
+                yield ArchiveMember(_printable(info.name), None, reason)
                 continue
             inner = archive.extractfile(info)
             data = b"" if inner is None else inner.read(MAXIMUM_BYTES + 1)
@@ -321,10 +321,10 @@ def _tar_fault(info: tarfile.TarInfo) -> str:
     return f"more than {MAXIMUM_BYTES // 2**20} MiB" if info.size > MAXIMUM_BYTES else ""
 
 
-def _member(name: str, data: bytes) -> Member:
+def _member(name: str, data: bytes) -> ArchiveMember:
     if len(data) > MAXIMUM_BYTES:
-        return Member(name, None, f"more than {MAXIMUM_BYTES // 2**20} MiB")
-    return Member(name, data)
+        return ArchiveMember(name, None, f"more than {MAXIMUM_BYTES // 2**20} MiB")
+    return ArchiveMember(name, data)
 
 
 def _misnamed(name: str) -> str:

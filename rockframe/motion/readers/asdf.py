@@ -32,7 +32,7 @@ from rockframe.motion.readers.checks import (
     check_time_step,
     choose_unit,
 )
-from rockframe.motion.readers.components import Component, choose_component
+from rockframe.motion.readers.components import FileComponent, choose_component
 from rockframe.motion.readers.counts import record_of_counts
 from rockframe.motion.readers.orientation import orientation_of
 from rockframe.motion.readers.source import (
@@ -145,7 +145,7 @@ def _sound(source: Source) -> Generator[None]:
         raise source.refuse(found=found, expected=_EXPECTED) from problem
 
 
-def _components(source: Source, request: Request, file: Any) -> list[Component]:
+def _components(source: Source, request: Request, file: Any) -> list[FileComponent]:
     held = [
         _Waveform(name, match.group(1), match.group(4), station)
         for station, group in file.groups["Waveforms"].groups.items()
@@ -157,14 +157,14 @@ def _components(source: Source, request: Request, file: Any) -> list[Component]:
     stations = {one.group for one in held}
     tags = {one.tag for one in held}
 
-    def component(one: _Waveform) -> Component:
+    def component(one: _Waveform) -> FileComponent:
         short = one.channel if len(stations) == 1 else one.codes
 
         def samples() -> Record:
             with _sound(source):
                 return _samples(source, request, file, one)
 
-        return Component(
+        return FileComponent(
             short if len(tags) == 1 else f"{short} {one.tag}",
             samples,
             orientation_of(one.channel),

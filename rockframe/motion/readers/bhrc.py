@@ -17,7 +17,7 @@ from rockframe.motion.readers.checks import (
     check_time_step,
     choose_unit,
 )
-from rockframe.motion.readers.components import Component, choose_component
+from rockframe.motion.readers.components import FileComponent, choose_component
 from rockframe.motion.readers.fixed import cell, fixed_width
 from rockframe.motion.readers.numbers import number
 from rockframe.motion.readers.orientation import UNKNOWN, Orientation, azimuth_of, orientation_of
@@ -89,7 +89,7 @@ def read(source: Source, request: Request) -> Record:
     )
 
 
-def _component(source: Source, request: Request, first: int) -> Component:
+def _component(source: Source, request: Request, first: int) -> FileComponent:
     text = source.top(_TEXT_LINES, first)
     found = next(((k, m) for k, line in enumerate(text) if (m := _COMPONENT.match(line))), None)
     if found is None:
@@ -100,7 +100,7 @@ def _component(source: Source, request: Request, first: int) -> Component:
     def samples() -> Record:
         return _samples(source, request, first, text)
 
-    return Component(
+    return FileComponent(
         name,
         samples,
         _orientation(name, text),

@@ -34,7 +34,7 @@ _LISTED: Final = 40
 
 
 @dataclass(frozen=True)
-class Component:
+class FileComponent:
     """A component that a file holds, not read yet.
 
     Parameters
@@ -77,11 +77,11 @@ class EveryComponentError(RecordError):
     ----------
     path : str
         The file.
-    components : sequence of Component
+    components : sequence of FileComponent
         What it holds.
     """
 
-    def __init__(self, path: str, components: Sequence[Component]) -> None:
+    def __init__(self, path: str, components: Sequence[FileComponent]) -> None:
         self.components = tuple(components)
         super().__init__(path, found=_listed(components), expected="one component at a time")
 
@@ -121,7 +121,9 @@ def component_names(given: object, *, owner: str) -> tuple[str | None, str | Non
     raise ComponentError(msg)
 
 
-def choose_component(source: Source, request: Request, components: Sequence[Component]) -> Record:
+def choose_component(
+    source: Source, request: Request, components: Sequence[FileComponent]
+) -> Record:
     """Read the component that was asked for, or the only one that can be meant.
 
     Parameters
@@ -130,7 +132,7 @@ def choose_component(source: Source, request: Request, components: Sequence[Comp
         File.
     request : Request
         What the caller asked for.
-    components : sequence of Component
+    components : sequence of FileComponent
         What the file holds; at least one.
 
     Returns
@@ -177,7 +179,7 @@ def choose_component(source: Source, request: Request, components: Sequence[Comp
     return _pair(source, chosen, upwards)
 
 
-def named(source: Source, component: Component) -> Record:
+def named(source: Source, component: FileComponent) -> Record:
     """Read a component as it is, a vertical one upwards, with its name in the metadata."""
     record = component.read()
     done: tuple[str, ...] = ()
@@ -192,7 +194,7 @@ def named(source: Source, component: Component) -> Record:
     )
 
 
-def _across(source: Source, request: Request, components: Sequence[Component]) -> Component:
+def _across(source: Source, request: Request, components: Sequence[FileComponent]) -> FileComponent:
     if request.component is not None:
         return _named(source, request.component, components)
     if len(components) == 1:
@@ -204,7 +206,7 @@ def _across(source: Source, request: Request, components: Sequence[Component]) -
 
 
 def _alone(
-    source: Source, request: Request, chosen: Component, components: Sequence[Component]
+    source: Source, request: Request, chosen: FileComponent, components: Sequence[FileComponent]
 ) -> Record:
     record = chosen.read()
     metadata: Metadata = {**record.metadata, **_about(chosen)}
@@ -232,7 +234,7 @@ def _alone(
     return replace(record, metadata=metadata, history=history, warnings=warnings)
 
 
-def _pair(source: Source, across: Component, upwards: Component) -> Record:
+def _pair(source: Source, across: FileComponent, upwards: FileComponent) -> Record:
     level, raised = across.read(), upwards.read()
     if not math.isclose(level.time_step, raised.time_step, rel_tol=_ROUNDING):
         found = f"time steps of {level.time_step!r} s and {raised.time_step!r} s"
@@ -281,7 +283,7 @@ def _pair(source: Source, across: Component, upwards: Component) -> Record:
 
 
 def _upwards(
-    source: Source, record: Record, component: Component
+    source: Source, record: Record, component: FileComponent
 ) -> tuple[Record, tuple[str, ...], tuple[str, ...]]:
     sense = component.orientation.vertical
     if sense == DOWNWARDS:
@@ -296,7 +298,7 @@ def _upwards(
     return record, (), ()
 
 
-def _about(component: Component) -> Metadata:
+def _about(component: FileComponent) -> Metadata:
     about: Metadata = {}
     if component.name is not None:
         about["component"] = component.name
@@ -307,11 +309,11 @@ def _about(component: Component) -> Metadata:
     return about
 
 
-def _named(source: Source, asked: str, components: Sequence[Component]) -> Component:
+def _named(source: Source, asked: str, components: Sequence[FileComponent]) -> FileComponent:
     direction = orientation_of(asked)
     number = _CHANNEL.fullmatch(asked.strip().casefold())
     channel = None if number is None else int(number.group(1))
-    tiers: tuple[Callable[[Component], bool], ...] = (
+    tiers: tuple[Callable[[FileComponent], bool], ...] = (
         lambda entry: _has_name(asked, entry),
         lambda entry: entry.orientation.matches(direction),
         lambda entry: channel is not None and entry.channel == channel,
@@ -328,7 +330,7 @@ def _named(source: Source, asked: str, components: Sequence[Component]) -> Compo
     raise _missing(source, asked, components)
 
 
-def _missing(source: Source, asked: str, components: Sequence[Component]) -> RecordError:
+def _missing(source: Source, asked: str, components: Sequence[FileComponent]) -> RecordError:
     expected = f"the component {asked!r}"
     if len(components) > 1:
         return source.refuse(found=_listed(components), expected=expected)
@@ -338,7 +340,7 @@ def _missing(source: Source, asked: str, components: Sequence[Component]) -> Rec
     return source.refuse(found=f"the component {only.name!r}", expected=expected, line=only.line)
 
 
-def _has_name(asked: str, component: Component) -> bool:
+def _has_name(asked: str, component: FileComponent) -> bool:
     names = [name for name in (component.name, *component.aliases) if name is not None]
     return _key(asked) in map(_key, names)
 
@@ -348,16 +350,16 @@ def _key(name: str) -> str:
     return key.lstrip("0") or "0" if key.isdigit() else key
 
 
-def _labels(components: Sequence[Component]) -> str:
+def _labels(components: Sequence[FileComponent]) -> str:
     listed = ", ".join(entry.label for entry in components[:_LISTED])
     return listed if len(components) <= _LISTED else f"{listed}, ..."
 
 
-def _listed(components: Sequence[Component]) -> str:
+def _listed(components: Sequence[FileComponent]) -> str:
     return f"{len(components)} components: {_labels(components)}"
 
 
-def _example(components: Sequence[Component]) -> str:
+def _example(components: Sequence[FileComponent]) -> str:
     level = [entry for entry in components if entry.orientation.vertical is None]
     upwards = [entry for entry in components if entry.orientation.vertical is not None]
     names = [entry.name for entry in components]

@@ -19,7 +19,7 @@ from rockframe.motion.readers.checks import (
     check_time_step,
     choose_unit,
 )
-from rockframe.motion.readers.components import Component, choose_component
+from rockframe.motion.readers.components import FileComponent, choose_component
 from rockframe.motion.readers.cosmos_header import Header, read_header
 from rockframe.motion.readers.cosmos_tables import (
     ACCELERATION,
@@ -123,7 +123,7 @@ def _blocks(source: Source) -> list[_Block]:
     ]
 
 
-def _component(source: Source, request: Request, block: _Block) -> Component:
+def _component(source: Source, request: Request, block: _Block) -> FileComponent:
     header = read_header(source, block.index, block.end, block.text_lines)
     channel, direction = _channel(header)
     code = _SCNL.search("\n".join(header.comments))
@@ -135,7 +135,7 @@ def _component(source: Source, request: Request, block: _Block) -> Component:
     def samples() -> Record:
         return _samples(source, request, header)
 
-    return Component(
+    return FileComponent(
         name,
         samples,
         _orientation(header, direction, code.group(2) if code else ""),

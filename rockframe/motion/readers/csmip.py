@@ -30,7 +30,7 @@ from rockframe.motion.readers.checks import (
     check_time_step,
     choose_unit,
 )
-from rockframe.motion.readers.components import Component, choose_component
+from rockframe.motion.readers.components import FileComponent, choose_component
 from rockframe.motion.readers.csmip_header import (
     FIRST_LINE,
     channel_of,
@@ -151,16 +151,16 @@ def _too_many(source: Source, line: int) -> RecordError:
     return source.refuse(found="more channels", expected=expected, line=line)
 
 
-def _component(source: Source, request: Request, block: _Block) -> Component:
+def _component(source: Source, request: Request, block: _Block) -> FileComponent:
     def samples() -> Record:
         return _samples(source, request, block)
 
     return _named(block.header, block.first, samples)
 
 
-def _named(header: list[str], first: int, samples: Callable[[], Record]) -> Component:
+def _named(header: list[str], first: int, samples: Callable[[], Record]) -> FileComponent:
     channel, name, line = channel_of(header, first)
-    return Component(
+    return FileComponent(
         name or (None if channel is None else f"channel {channel}"),
         samples,
         orientation_of(name) if name else Orientation(),
@@ -211,8 +211,8 @@ def _doubts(
     return doubts
 
 
-def _components_of_pairs(source: Source, request: Request) -> list[Component]:
-    components: list[Component] = []
+def _components_of_pairs(source: Source, request: Request) -> list[FileComponent]:
+    components: list[FileComponent] = []
     last = -2
     for index, line in enumerate(source.lines):
         if "accelerogram" not in line[:60].casefold() or FIRST_LINE.match(line[:200]) is None:
@@ -226,7 +226,9 @@ def _components_of_pairs(source: Source, request: Request) -> list[Component]:
     return components
 
 
-def _component_of_pairs(source: Source, request: Request, first: int, pairs: Pairs) -> Component:
+def _component_of_pairs(
+    source: Source, request: Request, first: int, pairs: Pairs
+) -> FileComponent:
     header = source.top(min(pairs.data_at - first, _LONGEST_HEADER), first)
 
     def samples() -> Record:

@@ -20,7 +20,7 @@ from rockframe.motion.readers.checks import (
     check_time_step,
     choose_unit,
 )
-from rockframe.motion.readers.components import Component, choose_component
+from rockframe.motion.readers.components import FileComponent, choose_component
 from rockframe.motion.readers.declared import settle_count
 from rockframe.motion.readers.numbers import (
     NUMBER,
@@ -129,7 +129,7 @@ def read(source: Source, request: Request) -> Record:
         return Record(time_step, values, unit, {**metadata, **counts}, warnings=(*warnings, *said))
 
     direction = UNKNOWN if name is None else orientation_of(name)
-    component = Component(name, samples, direction, line=name_line)
+    component = FileComponent(name, samples, direction, line=name_line)
     return choose_component(source, request, [component])
 
 

@@ -26,7 +26,7 @@ from rockframe.motion.readers.checks import (
     check_time_step,
     choose_unit,
 )
-from rockframe.motion.readers.components import Component, choose_component
+from rockframe.motion.readers.components import FileComponent, choose_component
 from rockframe.motion.readers.declared import settle_count
 from rockframe.motion.readers.fixed import fixed_width
 from rockframe.motion.readers.keys import Keys, kept, needed, needed_rate
@@ -115,7 +115,7 @@ def read(source: Source, request: Request) -> Record:
         return Record(time_step, values[:, place].copy(), unit, about, warnings=said)
 
     components = [
-        Component(
+        FileComponent(
             name,
             lambda place=place: reader(place),
             direction,

@@ -14,7 +14,7 @@ import re
 from typing import Final
 
 from rockframe.motion.readers.checks import choose_unit
-from rockframe.motion.readers.components import Component, choose_component
+from rockframe.motion.readers.components import FileComponent, choose_component
 from rockframe.motion.readers.declared import settle_count
 from rockframe.motion.readers.keys import Keys, kept, needed_count, needed_step
 from rockframe.motion.readers.numbers import (
@@ -106,7 +106,7 @@ def read(source: Source, request: Request) -> Record:
         said = (*warnings, *differing, *doubts)
         return Record(time_step, values, unit, {**metadata, **counts}, warnings=said)
 
-    component = Component(name or None, samples, orientation_of(name), line=name_line or None)
+    component = FileComponent(name or None, samples, orientation_of(name), line=name_line or None)
     return choose_component(source, request, [component])
 
 

@@ -21,7 +21,7 @@ from rockframe.motion.readers.checks import (
     check_time_step,
     choose_unit,
 )
-from rockframe.motion.readers.components import Component, choose_component
+from rockframe.motion.readers.components import FileComponent, choose_component
 from rockframe.motion.readers.fixed import cell, fixed_width, header_count, header_number, whole
 from rockframe.motion.readers.orientation import (
     UNKNOWN,
@@ -165,7 +165,7 @@ def _quantity(source: Source, block: _Block, place: int, what: str) -> int:
     return count
 
 
-def _component(source: Source, request: Request, block: _Block) -> Component:
+def _component(source: Source, request: Request, block: _Block) -> FileComponent:
     text = source.top(_TEXT_LINES, block.index)
     line = block.index + 13
     found = next(
@@ -185,7 +185,7 @@ def _component(source: Source, request: Request, block: _Block) -> Component:
     def samples() -> Record:
         return _samples(source, request, block)
 
-    return Component(name, samples, direction, line=line)
+    return FileComponent(name, samples, direction, line=line)
 
 
 def _samples(source: Source, request: Request, block: _Block) -> Record:

@@ -24,7 +24,7 @@ from rockframe.motion.readers.checks import (
     check_time_step,
     choose_unit,
 )
-from rockframe.motion.readers.components import Component, choose_component
+from rockframe.motion.readers.components import FileComponent, choose_component
 from rockframe.motion.readers.declared import settle_count
 from rockframe.motion.readers.keys import Keys, needed, needed_rate
 from rockframe.motion.readers.numbers import NUMBER, free_format, last_fields, number
@@ -124,7 +124,7 @@ def read(source: Source, request: Request) -> Record:
         )
         return Record(time_step, values, unit, about, history, (*warnings, *differing, *words))
 
-    component = Component(
+    component = FileComponent(
         name,
         samples,
         orientation_of(name.rstrip("12") if place else name),

@@ -26,7 +26,7 @@ from rockframe.motion.readers.checks import (
     check_asked_time_step,
     check_time_step,
 )
-from rockframe.motion.readers.components import Component, choose_component
+from rockframe.motion.readers.components import FileComponent, choose_component
 from rockframe.motion.readers.counts import record_of_counts
 from rockframe.motion.readers.orientation import UNKNOWN, Orientation, orientation_of
 from rockframe.motion.readers.source import (
@@ -214,7 +214,7 @@ def _component(
     responses: InstrumentResponses | None,
     *,
     several: bool,
-) -> Component:
+) -> FileComponent:
     network, station, location, channel = codes_of(name)
     first = min(traces, key=lambda trace: trace.stats.starttime)
     response = problem = None
@@ -233,7 +233,7 @@ def _component(
             raise problem
         return _samples(source, request, traces, response, metadata)
 
-    return Component(name if several else channel, samples, direction, aliases=(name, channel))
+    return FileComponent(name if several else channel, samples, direction, aliases=(name, channel))
 
 
 def _samples(

@@ -16,7 +16,7 @@ import xarray as xr
 
 from rockframe.errors import RecordError
 from rockframe.motion.readers.checks import check_asked_time_step
-from rockframe.motion.readers.components import Component, choose_component
+from rockframe.motion.readers.components import FileComponent, choose_component
 from rockframe.motion.readers.orientation import UNKNOWN, orientation_of
 from rockframe.motion.readers.source import Record, Request, Source, StoredMotion
 from rockframe.motion.unit_names import RecordUnit
@@ -157,9 +157,9 @@ def _compare(source: Source, request: Request, stored: StoredMotion) -> None:
     choose_component(source, request, components)
 
 
-def _placeholder(stored: StoredMotion, key: str) -> Component:
+def _placeholder(stored: StoredMotion, key: str) -> FileComponent:
     given = stored.metadata.get(key)
     name = None if given is None else str(given)
     record = Record(stored.si.time_step, np.zeros(2), _SI, {})
     direction = UNKNOWN if name is None else orientation_of(name)
-    return Component(name, lambda: record, direction)
+    return FileComponent(name, lambda: record, direction)

@@ -22,7 +22,7 @@ from rockframe.motion.readers.checks import (
     check_time_step,
     choose_unit,
 )
-from rockframe.motion.readers.components import Component, choose_component
+from rockframe.motion.readers.components import FileComponent, choose_component
 from rockframe.motion.readers.declared import settle_count
 from rockframe.motion.readers.numbers import (
     NUMBER,
@@ -109,7 +109,7 @@ def read(source: Source, request: Request) -> Record:
         return Record(time_step, values, unit, {**metadata, **counts}, warnings=said)
 
     direction = _by_file_name(source) if name is None else orientation_of(name)
-    return choose_component(source, request, [Component(name, samples, direction)])
+    return choose_component(source, request, [FileComponent(name, samples, direction)])
 
 
 def _by_file_name(source: Source) -> Orientation:

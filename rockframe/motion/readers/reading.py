@@ -34,7 +34,7 @@ from rockframe.signals import Motion
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from rockframe.motion.readers.components import Component
+    from rockframe.motion.readers.components import FileComponent
     from rockframe.motion.readers.registry import Format
     from rockframe.signals.arrays import Array
 
@@ -145,7 +145,7 @@ def read_components(
     return held
 
 
-def _one_of(entry: Format, source: Source, component: Component) -> Reading | RecordError:
+def _one_of(entry: Format, source: Source, component: FileComponent) -> Reading | RecordError:
     """Read a component, or say why not."""
     try:
         reading = _reading(entry, source, named(source, component))

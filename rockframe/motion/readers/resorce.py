@@ -17,7 +17,7 @@ import re
 from typing import Final
 
 from rockframe.motion.readers.checks import choose_unit
-from rockframe.motion.readers.components import Component, choose_component
+from rockframe.motion.readers.components import FileComponent, choose_component
 from rockframe.motion.readers.fixed import fixed_width
 from rockframe.motion.readers.keys import kept, needed_count, needed_step, read_keys
 from rockframe.motion.readers.orientation import orientation_of
@@ -96,7 +96,7 @@ def read(source: Source, request: Request) -> Record:
                 )
         return Record(time_step, values, unit, metadata, warnings=tuple(said))
 
-    component = Component(name or None, samples, orientation_of(name), line=name_line or None)
+    component = FileComponent(name or None, samples, orientation_of(name), line=name_line or None)
     return choose_component(source, request, [component])
 
 

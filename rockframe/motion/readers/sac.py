@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from rockframe.motion.readers.checks import check_asked_time_step, check_time_step
-from rockframe.motion.readers.components import Component, choose_component
+from rockframe.motion.readers.components import FileComponent, choose_component
 from rockframe.motion.readers.counts import record_of_counts
 from rockframe.motion.readers.orientation import (
     DOWNWARDS,
@@ -134,7 +134,7 @@ def read(source: Source, request: Request) -> Record:
     def samples() -> Record:
         return _samples(source, request, header, name or "")
 
-    component = Component(name, samples, _orientation(header, name or ""))
+    component = FileComponent(name, samples, _orientation(header, name or ""))
     return choose_component(source, request, [component])
 
 

@@ -20,7 +20,7 @@ from rockframe.motion.readers.checks import (
     check_time_step,
     choose_unit,
 )
-from rockframe.motion.readers.components import Component, choose_component
+from rockframe.motion.readers.components import FileComponent, choose_component
 from rockframe.motion.readers.fixed import (
     cell,
     fixed_width,
@@ -108,7 +108,7 @@ def read(source: Source, request: Request) -> Record:
     def samples() -> Record:
         return _samples(source, request)
 
-    component = Component(name, samples, direction, aliases=_aliases(direction), line=6)
+    component = FileComponent(name, samples, direction, aliases=_aliases(direction), line=6)
     return choose_component(source, request, [component])
 
 

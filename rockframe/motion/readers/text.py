@@ -15,7 +15,7 @@ from rockframe.motion.readers.checks import (
     choose_unit,
 )
 from rockframe.motion.readers.columns import HEADER_LINES, Table, check_last_row, read_table
-from rockframe.motion.readers.components import Component, choose_component
+from rockframe.motion.readers.components import FileComponent, choose_component
 from rockframe.motion.readers.declared import settle_count
 from rockframe.motion.readers.numbers import (
     ends_inside_number,
@@ -38,7 +38,7 @@ from rockframe.motion.readers.text_first_lines import (
     looks_like_step,
 )
 from rockframe.motion.readers.text_header import (
-    Column,
+    TextColumn,
     acceleration_columns,
     column_names,
     has_times,
@@ -131,15 +131,15 @@ def read(source: Source, request: Request) -> Record:
         time_step = _step_without_times(source, request, table)
         first, warnings = _first_sample(source, request, table)
 
-    def samples(column: Column) -> Record:
+    def samples(column: TextColumn) -> Record:
         values = table.values[first:, column.place].copy()
         return _record(source, request, table, column, time_step, values, metadata, warnings)
 
     if len(held) == 1 and columns <= 2:
-        only = Component(None, lambda: samples(held[0]))
+        only = FileComponent(None, lambda: samples(held[0]))
         return choose_component(source, request, [only])
     components = [
-        Component(
+        FileComponent(
             column.name,
             lambda column=column: samples(column),
             column.orientation,
@@ -170,18 +170,18 @@ def _row_by_row(source: Source, request: Request, table: Table, metadata: Metada
     single = replace(table, values=values[:, np.newaxis], rest=[])
 
     def samples() -> Record:
-        only = Column(0, "")
+        only = TextColumn(0, "")
         record = _record(source, request, single, only, time_step, values, metadata, [])
         return replace(record, history=(*record.history, f"{words}, read row by row"))
 
-    return choose_component(source, request, [Component(None, samples, aliases=(BY_ROWS,))])
+    return choose_component(source, request, [FileComponent(None, samples, aliases=(BY_ROWS,))])
 
 
 def _record(
     source: Source,
     request: Request,
     table: Table,
-    column: Column,
+    column: TextColumn,
     time_step: float,
     values: Array,
     metadata: Metadata,
@@ -226,7 +226,7 @@ def _counted(source: Source, request: Request, head: FirstLines) -> Record:
             head.time_step, values, unit, metadata, history, warnings=(*warnings, *differing)
         )
 
-    return choose_component(source, request, [Component(None, samples)])
+    return choose_component(source, request, [FileComponent(None, samples)])
 
 
 def _step_without_times(source: Source, request: Request, table: Table) -> float:

@@ -40,7 +40,7 @@ _WORDS: Final = re.compile(r"[^\W_]+")
 
 
 @dataclass(frozen=True)
-class Column:
+class TextColumn:
     """A column of accelerations.
 
     Parameters
@@ -167,7 +167,7 @@ def is_direction(name: str) -> bool:
 
 def acceleration_columns(
     source: Source, table: Table, names: list[str], line: int, *, timed: bool
-) -> list[Column]:
+) -> list[TextColumn]:
     """List the columns of accelerations; velocities and displacements beside them are left out.
 
     Parameters
@@ -185,7 +185,7 @@ def acceleration_columns(
 
     Returns
     -------
-    list of Column
+    list of TextColumn
 
     Raises
     ------
@@ -196,16 +196,16 @@ def acceleration_columns(
     places = range(1 if timed else 0, columns)
     if not names or len(places) == 1:
         # of a single one the header as a whole tells the unit
-        return [Column(place, f"column {place + 1}") for place in places]
+        return [TextColumn(place, f"column {place + 1}") for place in places]
     units = _unit_row(table, columns)
-    found: list[Column] = []
+    found: list[TextColumn] = []
     for place in places:
         own = [*in_brackets(names[place])[-1:], *units[place : place + 1]]
         if _is_other(names[place]) or any(map(other_quantity, own)):
             continue
         known = next((unit for unit in own if acceleration_unit(unit) is not None), None)
         plain = _BRACKETED.sub("", names[place]).strip() or names[place]
-        found.append(Column(place, plain, _direction(plain), known))
+        found.append(TextColumn(place, plain, _direction(plain), known))
     if not found:
         names_found = ", ".join(names[:6])
         raise source.refuse(found=f"the columns {names_found}", expected="accelerations", line=line)

@@ -24,7 +24,7 @@ from rockframe.motion.readers.checks import (
     check_time_step,
     choose_unit,
 )
-from rockframe.motion.readers.components import Component, choose_component
+from rockframe.motion.readers.components import FileComponent, choose_component
 from rockframe.motion.readers.declared import settle_count
 from rockframe.motion.readers.fixed import fixed_width, whole
 from rockframe.motion.readers.keys import Keys, kept, needed, read_keys
@@ -128,11 +128,11 @@ def read(source: Source, request: Request) -> Record:
         values = tables[0][:, place].copy()
         return _samples(source, request, header, lists, place, values, metadata)
 
-    components: list[Component] = []
+    components: list[FileComponent] = []
     for place, (said, line) in enumerate(lists.directions[:channels]):
         name, direction = _direction(said)
         components.append(
-            Component(
+            FileComponent(
                 name or f"channel {place + 1}",
                 lambda place=place: samples(place),
                 direction,

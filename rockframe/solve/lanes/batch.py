@@ -37,7 +37,7 @@ from rockframe.solve.workspace import (
 )
 
 
-class Shape(NamedTuple):
+class BatchSizes(NamedTuple):
     """Sizes of the rows of a batch."""
 
     rows: int
@@ -52,7 +52,7 @@ class Shape(NamedTuple):
 class Batch(NamedTuple):
     """Runs that are to be made, and what they share."""
 
-    shape: Shape
+    shape: BatchSizes
     rows: Vector
     room: Vector  # of the lanes
     taken: Integers  # the row of each lane, and the next one to take up

@@ -16,7 +16,7 @@ from rockframe.solve.beginning import Begun
 from rockframe.solve.equations import BoundEquations, equations_of
 from rockframe.solve.integrate import EVENT_ROOM, pieces_of
 from rockframe.solve.lanes import fields
-from rockframe.solve.lanes.batch import Batch, Shape, advance_batch
+from rockframe.solve.lanes.batch import Batch, BatchSizes, advance_batch
 from rockframe.solve.lanes.fields import Places, places_of
 from rockframe.solve.lanes.fixed_steps import step_lanes
 from rockframe.solve.lanes.steps_by_tolerance import step_lanes_by_tolerance
@@ -202,7 +202,7 @@ class _Rows:
             [one.y for one in both], motion_of
         )
         there = self._places
-        shape = Shape(
+        shape = BatchSizes(
             rows=len(rows), width=rows.shape[1], state=there.state, half=there.new - there.state,
             numbers=there.numbers, number_count=self._count, memory=self._memory,
         )  # fmt: skip

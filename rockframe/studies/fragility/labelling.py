@@ -34,7 +34,7 @@ Labels = tuple[str, dict[str, Any]]
 
 
 @dataclass(frozen=True)
-class Layout:
+class Arrangement:
     """How numbers of structures and limit states are arranged.
 
     Parameters
@@ -146,7 +146,7 @@ def labelled(
     xarray.Dataset
     """
     every = [_Fitted.of(one, means) for one in found]
-    layout = Layout(tuple(over), tuple(over.values()))
+    layout = Arrangement(tuple(over), tuple(over.values()))
     counts = {
         "fragility_status": [one.fit.status for one in every],
         "trial_count": [one.trials.weight.sum() for one in found],
@@ -177,7 +177,7 @@ def labelled(
 
 
 def _with_parameters(
-    dataset: xr.Dataset, every: Sequence[_Fitted], layout: Layout, means: Means
+    dataset: xr.Dataset, every: Sequence[_Fitted], layout: Arrangement, means: Means
 ) -> xr.Dataset:
     """Add medians and dispersions."""
     rows = [_parameters(each, means) for each in every]
@@ -228,7 +228,7 @@ def _extremes(edge: Array) -> Array:
 
 
 def _with_curves(
-    dataset: xr.Dataset, every: Sequence[_Fitted], layout: Layout, labels: Labels, means: Means
+    dataset: xr.Dataset, every: Sequence[_Fitted], layout: Arrangement, labels: Labels, means: Means
 ) -> xr.Dataset:
     """Add exceedance probabilities over the intensity."""
     name, attributes = labels
@@ -264,7 +264,7 @@ def _with_errors(each: _Fitted, rows: Array, means: Means) -> Array:
 def _with_surface(
     dataset: xr.Dataset,
     every: Sequence[_Fitted],
-    layout: Layout,
+    layout: Arrangement,
     measures: Sequence[Labels],
     means: Means,
 ) -> xr.Dataset:
@@ -283,7 +283,7 @@ def _with_surface(
 
 
 def _with_coefficients(
-    dataset: xr.Dataset, every: Sequence[_Fitted], layout: Layout, measures: Sequence[Labels]
+    dataset: xr.Dataset, every: Sequence[_Fitted], layout: Arrangement, measures: Sequence[Labels]
 ) -> xr.Dataset:
     """Add the coefficients of fits over several measures."""
     names = ["intercept", *(name for name, _ in measures)]
@@ -302,7 +302,7 @@ def _with_coefficients(
     return dataset.assign(added.data_vars).assign_coords(labels.coords)
 
 
-def _probabilities(etas: Array, layout: Layout, *measures: str) -> dict[str, xr.Variable]:
+def _probabilities(etas: Array, layout: Arrangement, *measures: str) -> dict[str, xr.Variable]:
     """Label probabilities from eta and its bounds; shape (fits, 3, intensities...)."""
     from scipy.special import ndtr
 
@@ -315,7 +315,7 @@ def _probabilities(etas: Array, layout: Layout, *measures: str) -> dict[str, xr.
 
 
 def _with_stripes(
-    dataset: xr.Dataset, counted: Sequence[tuple[Array, Array]], layout: Layout, means: Means
+    dataset: xr.Dataset, counted: Sequence[tuple[Array, Array]], layout: Arrangement, means: Means
 ) -> xr.Dataset:
     """Add how many exceeded, by groups of intensities, with the bounds of Clopper and Pearson."""
     every = np.concatenate([columns[:, 0] for columns, _ in counted])

@@ -21,7 +21,7 @@ from rockframe.simulation.system import System
 from rockframe.solve.accuracy import LEVELS, Accuracy
 from rockframe.studies.sweeps.axes import OF_SCENES, Axis, Changes
 from rockframe.studies.sweeps.motions import motion_number, motions_of, scaled
-from rockframe.studies.sweeps.scenes import FunctionScene, Scene, SystemScene, scene_of
+from rockframe.studies.sweeps.scenes import FunctionScene, SweptScene, SystemScene, scene_of
 from rockframe.studies.sweeps.screening import AGAIN
 from rockframe.studies.sweeps.starts import started
 from rockframe.studies.sweeps.store import Store
@@ -232,7 +232,7 @@ def _values(
     return found
 
 
-def _scene(given: object, attributes: Mapping[str, Any], known: Study | None) -> Scene:
+def _scene(given: object, attributes: Mapping[str, Any], known: Study | None) -> SweptScene:
     if "system_json" in attributes:
         system = System.from_dict(json.loads(attributes["system_json"]))
         return SystemScene(system.assembly)
@@ -244,7 +244,7 @@ def _scene(given: object, attributes: Mapping[str, Any], known: Study | None) ->
     raise StudyError(msg)
 
 
-def _system(scene: Scene, values: dict[Axis, Any]) -> System:
+def _system(scene: SweptScene, values: dict[Axis, Any]) -> System:
     if isinstance(scene, FunctionScene):
         return scene.system(values)
     return _of_assembly(scene.assembled(values))

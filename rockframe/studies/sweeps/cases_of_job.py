@@ -11,7 +11,7 @@ from rockframe.simulation.plan import Plan, fitted
 from rockframe.studies.sweeps.axes import OF_SCENES, Changes
 from rockframe.studies.sweeps.motions import scaled
 from rockframe.studies.sweeps.starts import started
-from rockframe.studies.sweeps.study import Job
+from rockframe.studies.sweeps.study import SweepJob
 from rockframe.system.assembly import Assembly
 
 Change: TypeAlias = Callable[[Assembly, Plan], Plan]
@@ -23,13 +23,13 @@ class CasesOfJob:
 
     Parameters
     ----------
-    job : Job
+    job : SweepJob
         The cases.
     change : callable, optional
         Gives from a scene and its plan the plan that is run.
     """
 
-    def __init__(self, job: Job, change: Change | None = None) -> None:
+    def __init__(self, job: SweepJob, change: Change | None = None) -> None:
         self.job = job
         self._change = change
         axes = [(axis, each.tolist()) for axis, each in job.axes]

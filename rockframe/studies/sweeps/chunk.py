@@ -21,7 +21,7 @@ from rockframe.studies.sweeps.cases_of_job import CasesOfJob
 from rockframe.studies.sweeps.runs import each_run
 from rockframe.studies.sweeps.screening import in_doubt, look_at_case, repeated
 from rockframe.studies.sweeps.side_by_side import Failed, Finished
-from rockframe.studies.sweeps.study import FEWEST_IN_LANES, Histories, Job
+from rockframe.studies.sweeps.study import FEWEST_IN_LANES, Histories, SweepJob
 
 NO_TEXT: Final = 0
 """Place of the text that says nothing, in the texts of a chunk."""
@@ -39,7 +39,7 @@ class Driver(IntEnum):
 
 
 @dataclass(frozen=True, eq=False)
-class Rows:
+class CaseResults:
     """What the cases of a chunk showed, in their order.
 
     Parameters
@@ -63,7 +63,7 @@ class Rows:
     texts: tuple[str, ...]
 
 
-def run_chunk(job: Job, stopped: Callable[[], bool] = lambda: False) -> Rows | None:
+def run_chunk(job: SweepJob, stopped: Callable[[], bool] = lambda: False) -> CaseResults | None:
     """Run the cases of a job: side by side where they can, else one after the other.
 
     What a case shows depends on that case alone, and is what
@@ -71,14 +71,14 @@ def run_chunk(job: Job, stopped: Callable[[], bool] = lambda: False) -> Rows | N
 
     Parameters
     ----------
-    job : Job
+    job : SweepJob
         The cases.
     stopped : callable
         Whether to leave off; asked between cases.
 
     Returns
     -------
-    Rows or None
+    CaseResults or None
         None where it was left off.
     """
     cases = CasesOfJob(job)
@@ -198,10 +198,10 @@ class _Telling:
         for column in (*self._scalars.values(), *self._histories.values()):
             column[case] = np.nan
 
-    def rows(self) -> Rows:
+    def rows(self) -> CaseResults:
         """Give what has been collected."""
         texts = tuple(self._texts)
-        return Rows(self._status, self._scalars, self._histories, self._message, texts)
+        return CaseResults(self._status, self._scalars, self._histories, self._message, texts)
 
     def _say(self, case: int, text: str) -> None:
         self._message[case] = self._texts.setdefault(text, len(self._texts))

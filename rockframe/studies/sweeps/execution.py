@@ -18,8 +18,8 @@ from typing import Final
 
 from rockframe.errors import ComponentError, RockframeError, StudyError, shown
 from rockframe.studies.sweeps.axes import OWNER
-from rockframe.studies.sweeps.chunk import Rows, run_chunk
-from rockframe.studies.sweeps.study import Job, worker_count
+from rockframe.studies.sweeps.chunk import CaseResults, run_chunk
+from rockframe.studies.sweeps.study import SweepJob, worker_count
 
 IN_FLIGHT: Final = 256
 """Most chunks that are handed out at once; their jobs have to be held meanwhile."""
@@ -37,8 +37,8 @@ class Chunk:
 
 def carry_out(
     chunks: Iterable[Chunk],
-    job_of: Callable[[Chunk], Job],
-    take: Callable[[Chunk, Rows], None],
+    job_of: Callable[[Chunk], SweepJob],
+    take: Callable[[Chunk, CaseResults], None],
     executor: Executor | None,
 ) -> bool:
     """Run chunks, and hand on what they showed as they are done.
@@ -72,7 +72,7 @@ def carry_out(
         raise ComponentError(msg)
     stop = Event()
     waiting = iter(chunks)
-    going: dict[Future[Rows | None], Chunk] = {}
+    going: dict[Future[CaseResults | None], Chunk] = {}
     with _own_threads() if executor is None else _of_the_user(executor) as pool:
         run = partial(run_chunk, stopped=stop.is_set) if executor is None else run_chunk
         try:
@@ -97,9 +97,9 @@ def carry_out(
 
 
 def _take_all(
-    done: Iterable[Future[Rows | None]],
-    going: dict[Future[Rows | None], Chunk],
-    take: Callable[[Chunk, Rows], None],
+    done: Iterable[Future[CaseResults | None]],
+    going: dict[Future[CaseResults | None], Chunk],
+    take: Callable[[Chunk, CaseResults], None],
 ) -> None:
     for one in done:
         try:

@@ -15,19 +15,19 @@ from rockframe.results.variables.runs import EVENTS_AND_SCALARS, HISTORIES
 from rockframe.results.variables.studies import SWEEP
 from rockframe.results.variables.variable import TIME
 from rockframe.simulation.asked import listed
-from rockframe.simulation.plan import STILL_GROUND_OUTPUT_STEP, Arguments, length_of
-from rockframe.studies.sweeps.scenes import FunctionScene, Scene
+from rockframe.simulation.plan import STILL_GROUND_OUTPUT_STEP, RunRequest, length_of
+from rockframe.studies.sweeps.scenes import FunctionScene, SweptScene
 from rockframe.studies.sweeps.study import Histories
 
 
 def numbers_of_case(
-    arguments: Arguments, kept: Histories | None, *, screened: bool
+    arguments: RunRequest, kept: Histories | None, *, screened: bool
 ) -> dict[str, float]:
     """Tell how many numbers are kept of a case, by what they are.
 
     Parameters
     ----------
-    arguments : Arguments
+    arguments : RunRequest
         Of every run.
     kept : Histories or None
         What is kept beside scalars.
@@ -51,20 +51,20 @@ def numbers_of_case(
 
 
 def kept_histories(
-    scene: Scene,
+    scene: SweptScene,
     motions: Mapping[str, GroundMotion | None],
-    arguments: Arguments,
+    arguments: RunRequest,
     outputs: object,
 ) -> Histories | None:
     """Find the histories that are kept, and the times that those of all cases have.
 
     Parameters
     ----------
-    scene : Scene
+    scene : SweptScene
         What is simulated.
     motions : mapping of str to GroundMotion or None
         By their names.
-    arguments : Arguments
+    arguments : RunRequest
         Of every run.
     outputs : object
         As the user gave them, and as they have been read.

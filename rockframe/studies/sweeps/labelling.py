@@ -11,7 +11,7 @@ import xarray as xr
 from rockframe.results.dataset import build_dataset
 from rockframe.results.joining import CASE_COUNT
 from rockframe.results.outcome import Generic
-from rockframe.results.points import Point, point_labels
+from rockframe.results.points import BodyPoint, point_labels
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.requests import POINT_PEAKS
 from rockframe.results.variables.runs import EVENTS_AND_SCALARS, RunStatus
@@ -19,7 +19,7 @@ from rockframe.results.variables.studies import CASE, MESSAGE, MOTION
 from rockframe.results.variables.variable import TIME
 from rockframe.simulation.run import NONE
 from rockframe.studies.sweeps.axes import Axis
-from rockframe.studies.sweeps.chunk import DRIVER, Driver, Rows
+from rockframe.studies.sweeps.chunk import DRIVER, CaseResults, Driver
 from rockframe.studies.sweeps.grid import Grid
 from rockframe.studies.sweeps.scenes import FunctionScene, SystemScene
 from rockframe.studies.sweeps.screening import SCREEN
@@ -51,7 +51,7 @@ class Labels:
         Names.
     histories : Histories or None
         What is kept beside scalars.
-    points : tuple of Point
+    points : tuple of BodyPoint
         At which there are peaks, and histories if they are kept.
     attributes : mapping
         Of the dataset.
@@ -60,7 +60,7 @@ class Labels:
     grid: Grid
     motions: tuple[str, ...]
     histories: Histories | None
-    points: tuple[Point, ...]
+    points: tuple[BodyPoint, ...]
     attributes: Mapping[str, str | float | int]
 
 
@@ -93,14 +93,14 @@ def every_axis(grid: Grid) -> tuple[Axis, ...]:
     return (*grid.axes, *grid.columns)
 
 
-def labelled(labels: Labels, found: Iterable[tuple[range, Rows]]) -> xr.Dataset:
+def labelled(labels: Labels, found: Iterable[tuple[range, CaseResults]]) -> xr.Dataset:
     """Label what has been found.
 
     Parameters
     ----------
     labels : Labels
         Of the sweep.
-    found : iterable of (range, Rows)
+    found : iterable of (range, CaseResults)
         Cases, and what they showed, in the order of running; those that are not there have
         not been run.
 
@@ -155,7 +155,7 @@ def labelled(labels: Labels, found: Iterable[tuple[range, Rows]]) -> xr.Dataset:
     return dataset
 
 
-def _joined(count: int, found: Iterable[tuple[range, Rows]]) -> Rows:
+def _joined(count: int, found: Iterable[tuple[range, CaseResults]]) -> CaseResults:
     """Put chunks together, in the order of running, with gaps where there are none."""
     scalars: dict[str, Generic] = {}
     histories: dict[str, Generic] = {}
@@ -176,7 +176,7 @@ def _joined(count: int, found: Iterable[tuple[range, Rows]]) -> Rows:
                     kept[name] = np.full((count, *values.shape[1:]), np.nan)
                 kept[name][here] = values
     few, message = summed_up(list(texts), message)
-    return Rows(status, scalars, histories, message, few)
+    return CaseResults(status, scalars, histories, message, few)
 
 
 def _coordinates(labels: Labels) -> dict[str, xr.Variable]:

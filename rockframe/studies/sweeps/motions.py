@@ -23,7 +23,7 @@ _FEW: Final = 6
 
 
 @dataclass(frozen=True)
-class Target:
+class MotionAxis:
     """An axis that scales the motion.
 
     Parameters
@@ -40,10 +40,10 @@ class Target:
 
 SPECTRAL: Final = "pseudo_spectral_acceleration"
 TARGETS: Final = {
-    "scale": Target("factor", Measure("a pure ratio", Unit.ONE, "2")),
-    "peak_ground_acceleration": Target("peak", ACCELERATION),
-    "peak_ground_velocity": Target("peak_velocity", VELOCITY),
-    SPECTRAL: Target("spectral_acceleration", ACCELERATION),
+    "scale": MotionAxis("factor", Measure("a pure ratio", Unit.ONE, "2")),
+    "peak_ground_acceleration": MotionAxis("peak", ACCELERATION),
+    "peak_ground_velocity": MotionAxis("peak_velocity", VELOCITY),
+    SPECTRAL: MotionAxis("spectral_acceleration", ACCELERATION),
 }
 """Axes that change the motion, by their names."""
 

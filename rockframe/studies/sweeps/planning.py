@@ -20,7 +20,7 @@ from rockframe.results.variables.requests import (
 from rockframe.results.variables.runs import ENERGY_HISTORIES, EVENTS_AND_SCALARS, HISTORIES
 from rockframe.results.variables.studies import MOTION, SWEEP
 from rockframe.results.variables.variable import EVENT, TIME
-from rockframe.simulation.plan import Arguments, read_arguments
+from rockframe.simulation.plan import RunRequest, read_arguments
 from rockframe.studies.sweeps.axes import OWNER, Axis, Changes
 from rockframe.studies.sweeps.grid import MOST_CASES, Grid
 from rockframe.studies.sweeps.kept import kept_histories, numbers_of_case
@@ -32,7 +32,7 @@ from rockframe.studies.sweeps.motions import (
     motion_number,
     motions_of,
 )
-from rockframe.studies.sweeps.scenes import FunctionScene, Scene, own_motion, scene_of
+from rockframe.studies.sweeps.scenes import FunctionScene, SweptScene, own_motion, scene_of
 from rockframe.studies.sweeps.screening import FIRST, SCREEN
 from rockframe.studies.sweeps.study import Histories, Study
 from rockframe.units import PERIOD, POSITIVE, QuantityLike, to_si
@@ -132,7 +132,7 @@ def plan_study(
     return Study(made, grid, given, arguments, seconds, kept, screened=screened)
 
 
-def _remedies(arguments: Arguments, kept: Histories | None) -> str:
+def _remedies(arguments: RunRequest, kept: Histories | None) -> str:
     """Say what would need less memory."""
     ways = ["run fewer cases"]
     ways += ["name fewer points"] if arguments.points else []
@@ -141,7 +141,7 @@ def _remedies(arguments: Arguments, kept: Histories | None) -> str:
     return f"{', '.join(ways[:-1])} or {ways[-1]}" if len(ways) > 1 else ways[0]
 
 
-def _motions(given: object, scene: Scene) -> dict[str, GroundMotion | None]:
+def _motions(given: object, scene: SweptScene) -> dict[str, GroundMotion | None]:
     if given is not None:
         return dict(motions_of(given))
     own = own_motion(scene)
@@ -178,7 +178,7 @@ def _motion_column(column: Any, names: list[str]) -> Generic:
 
 
 def _read(
-    scene: Scene,
+    scene: SweptScene,
     given: Mapping[str, object],
     faults: list[str],
     tried: Callable[..., Any],
@@ -239,7 +239,7 @@ def _period(given: QuantityLike | None, axes: Iterable[Axis]) -> float | None:
 
 
 def _without_length(
-    scene: Scene, motions: Mapping[str, GroundMotion | None], arguments: Arguments
+    scene: SweptScene, motions: Mapping[str, GroundMotion | None], arguments: RunRequest
 ) -> list[str]:
     none = [motion for motion in motions.values() if motion is None]
     if none and arguments.duration is None and not isinstance(scene, FunctionScene):

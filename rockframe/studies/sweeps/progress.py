@@ -13,7 +13,7 @@ _GROWS: Final = "total grows"
 """What is said where more cases are to come than are known by now."""
 
 
-class Progress(Protocol):
+class ProgressBar(Protocol):
     """A bar over the cases of one sweep, or of several that follow one another."""
 
     def name(self, part: str) -> None:
@@ -82,7 +82,7 @@ class _Bar:
 
 
 @contextmanager
-def bar_of(given: object, *, owner: str, unit: str = "case") -> Generator[Progress]:
+def bar_of(given: object, *, owner: str, unit: str = "case") -> Generator[ProgressBar]:
     """Show a bar while something is done.
 
     Parameters
@@ -96,7 +96,7 @@ def bar_of(given: object, *, owner: str, unit: str = "case") -> Generator[Progre
 
     Yields
     ------
-    Progress
+    ProgressBar
 
     Raises
     ------

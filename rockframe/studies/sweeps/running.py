@@ -15,11 +15,11 @@ from rockframe.simulation.run import respond
 from rockframe.studies.sweeps.axes import OWNER
 from rockframe.studies.sweeps.case import remember
 from rockframe.studies.sweeps.cases_of_job import CasesOfJob
-from rockframe.studies.sweeps.chunk import Rows
+from rockframe.studies.sweeps.chunk import CaseResults
 from rockframe.studies.sweeps.execution import Chunk, carry_out
 from rockframe.studies.sweeps.grid import chunks_of
 from rockframe.studies.sweeps.labelling import labelled, labels_of
-from rockframe.studies.sweeps.progress import Progress
+from rockframe.studies.sweeps.progress import ProgressBar
 from rockframe.studies.sweeps.store import Store, begin_with
 from rockframe.studies.sweeps.study import Study, worker_count
 from rockframe.studies.sweeps.telling import say_what_is_missing
@@ -33,7 +33,7 @@ _GLIMPSE: Final = 1e-3
 
 def run_study(
     study: Study,
-    bar: Progress,
+    bar: ProgressBar,
     *,
     store: "str | PathLike[str] | None" = None,
     executor: Executor | None = None,
@@ -45,7 +45,7 @@ def run_study(
     ----------
     study : Study
         As planned.
-    bar : Progress
+    bar : ProgressBar
         Is told of the cases.
     store, executor, chunk : optional
         As for :func:`rockframe.sweep`.
@@ -91,13 +91,13 @@ def _runs_as_python(study: Study) -> bool:
 
 
 def _in_memory(
-    study: Study, size: int, executor: Executor | None, bar: Progress
+    study: Study, size: int, executor: Executor | None, bar: ProgressBar
 ) -> tuple[xr.Dataset, bool]:
     chunks = [Chunk(k, cases) for k, cases in enumerate(chunks_of(study.grid.count, size))]
-    found: list[tuple[range, Rows]] = []
+    found: list[tuple[range, CaseResults]] = []
     bar.expect(study.grid.count)
 
-    def take(one: Chunk, rows: Rows) -> None:
+    def take(one: Chunk, rows: CaseResults) -> None:
         found.append((one.cases, rows))
         bar.update(len(one.cases))
 
@@ -106,7 +106,7 @@ def _in_memory(
 
 
 def _kept(
-    study: Study, folder: Path, size: int, executor: Executor | None, bar: Progress
+    study: Study, folder: Path, size: int, executor: Executor | None, bar: ProgressBar
 ) -> tuple[xr.Dataset, bool]:
     kept = Store.of_study(folder, study, size)
     every = kept.chunks()
@@ -127,7 +127,7 @@ def _kept(
             else:
                 yield one
 
-    def take(one: Chunk, rows: Rows) -> None:
+    def take(one: Chunk, rows: CaseResults) -> None:
         kept.put(one, rows)
         bar.update(len(one.cases))
 

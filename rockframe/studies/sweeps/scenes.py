@@ -42,7 +42,7 @@ _OPTIONS: Final = (*_CHOICES, *MEASURED)
 _SYSTEM: Final = System.__name__
 
 
-class Scene(Protocol):
+class SweptScene(Protocol):
     """What is simulated at the values of a case."""
 
     def axis(self, name: str, given: object) -> Axis:
@@ -234,7 +234,7 @@ class FunctionScene:
         return {n for n, one in self._signature().parameters.items() if one.kind in kinds}
 
 
-def scene_of(given: object) -> Scene:
+def scene_of(given: object) -> SweptScene:
     """Read the argument ``scene``.
 
     Raises
@@ -250,7 +250,7 @@ def scene_of(given: object) -> Scene:
     raise StudyError(msg)
 
 
-def own_motion(scene: Scene) -> GroundMotion | None:
+def own_motion(scene: SweptScene) -> GroundMotion | None:
     """Give the motion among a system's parts."""
     return scene.assembly.parts.motion if isinstance(scene, SystemScene) else None
 

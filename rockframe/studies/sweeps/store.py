@@ -20,7 +20,7 @@ from rockframe.errors import StudyError
 from rockframe.motion import GroundMotion
 from rockframe.results.dataset import dated
 from rockframe.results.outcome import Generic
-from rockframe.results.points import Point
+from rockframe.results.points import BodyPoint
 from rockframe.studies.sweeps.arrays_file import (
     read_arrays,
     try_to_write,
@@ -28,7 +28,7 @@ from rockframe.studies.sweeps.arrays_file import (
     write_whole,
 )
 from rockframe.studies.sweeps.axes import Axis
-from rockframe.studies.sweeps.chunk import Rows
+from rockframe.studies.sweeps.chunk import CaseResults
 from rockframe.studies.sweeps.execution import Chunk
 from rockframe.studies.sweeps.grid import Grid, chunks_of
 from rockframe.studies.sweeps.identity import difference
@@ -131,7 +131,7 @@ class Store:
         """Whether a chunk has been run."""
         return self._file(chunk).exists()
 
-    def put(self, chunk: Chunk, rows: Rows) -> None:
+    def put(self, chunk: Chunk, rows: CaseResults) -> None:
         """Keep what a chunk showed.
 
         Raises
@@ -167,7 +167,7 @@ class Store:
         except OSError as problem:
             raise _cannot_be_kept(self.folder, problem) from problem
 
-    def get(self, chunk: Chunk) -> Rows:
+    def get(self, chunk: Chunk) -> CaseResults:
         """Read what a chunk showed.
 
         Raises
@@ -194,9 +194,9 @@ class Store:
             }
             for kind in (_SCALAR, _HISTORY)
         )
-        return Rows(status, scalars, histories, message, tuple(texts))
+        return CaseResults(status, scalars, histories, message, tuple(texts))
 
-    def found(self) -> Iterator[tuple[range, Rows]]:
+    def found(self) -> Iterator[tuple[range, CaseResults]]:
         """Give all that is there."""
         for chunk in self.chunks():
             if self.has(chunk):
@@ -219,7 +219,7 @@ class Store:
         if kept is not None:
             which = None if kept["names"] is None else tuple(kept["names"])
             histories = Histories(which, kept["step"], kept["count"])
-        points = tuple(Point(**one) for one in described["points"])
+        points = tuple(BodyPoint(**one) for one in described["points"])
         return Labels(grid, names, histories, points, described["attributes"])
 
     def motions(self) -> dict[str, GroundMotion | None]:

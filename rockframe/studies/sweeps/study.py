@@ -11,11 +11,11 @@ from rockframe.compiled import COMPILED
 from rockframe.errors import heard
 from rockframe.motion import GroundMotion
 from rockframe.results.outcome import Generic
-from rockframe.simulation.plan import STILL_GROUND_OUTPUT_STEP, Arguments, length_of
+from rockframe.simulation.plan import STILL_GROUND_OUTPUT_STEP, RunRequest, length_of
 from rockframe.studies.sweeps.axes import OF_SCENES, Axis
 from rockframe.studies.sweeps.grid import Grid
 from rockframe.studies.sweeps.identity import digest_of, told
-from rockframe.studies.sweeps.scenes import FunctionScene, Scene
+from rockframe.studies.sweeps.scenes import FunctionScene, SweptScene
 from rockframe.version import __version__
 
 LONG_ENOUGH: Final = 1.0
@@ -68,12 +68,12 @@ class Histories:
 
 
 @dataclass(frozen=True, eq=False)
-class Job:
+class SweepJob:
     """Some cases, with all that is needed to run them, also in another process.
 
     Parameters
     ----------
-    scene : Scene
+    scene : SweptScene
         What is simulated.
     axes : tuple of (Axis, ndarray)
         What varies, and its value in each case.
@@ -81,7 +81,7 @@ class Job:
         Those of the cases; None leaves it to the scene.
     motion_of_case : ndarray of int
         Which of them each case has.
-    arguments : Arguments
+    arguments : RunRequest
         Of every run.
     period : float or None
         Of the oscillator, where spectral values are a target [s].
@@ -93,11 +93,11 @@ class Job:
         Whether each is run twice, and again by tolerance where its verdict is in doubt.
     """
 
-    scene: Scene
+    scene: SweptScene
     axes: tuple[tuple[Axis, Generic], ...]
     motions: tuple[GroundMotion | None, ...]
     motion_of_case: Generic
-    arguments: Arguments
+    arguments: RunRequest
     period: float | None
     histories: Histories | None
     patience: float | None
@@ -110,13 +110,13 @@ class Study:
 
     Parameters
     ----------
-    scene : Scene
+    scene : SweptScene
         What is simulated.
     grid : Grid
         The cases.
     motions : dict of str to GroundMotion or None
         By their names.
-    arguments : Arguments
+    arguments : RunRequest
         Of every run.
     period : float or None
         Of the oscillator, where spectral values are a target [s].
@@ -126,20 +126,20 @@ class Study:
         Whether each case is run twice, and again by tolerance where its verdict is in doubt.
     """
 
-    scene: Scene
+    scene: SweptScene
     grid: Grid
     motions: dict[str, GroundMotion | None]
-    arguments: Arguments
+    arguments: RunRequest
     period: float | None = None
     histories: Histories | None = None
     screened: bool = False
 
-    def job(self, cases: range) -> Job:
+    def job(self, cases: range) -> SweepJob:
         """Give the job of some cases."""
         number = self.grid.motions_of(cases.start, cases.stop)
         used, place = np.unique(number, return_inverse=True)
         every = list(self.motions.values())
-        return Job(
+        return SweepJob(
             self.scene,
             self.grid.of_cases(cases.start, cases.stop),
             tuple(every[k] for k in used),

@@ -6,7 +6,7 @@ from pages import table
 from scipy import optimize, stats
 
 import rockframe as rf
-from rockframe.studies.fragility.labelling import Found, Layout, Means, labelled
+from rockframe.studies.fragility.labelling import Arrangement, Found, Means, labelled
 from rockframe.studies.fragility.likelihood import Bands, FragilityStatus, Trials, fit
 from rockframe.studies.fragility.words import COVERAGE, bounded, words_of_bounds
 
@@ -151,7 +151,7 @@ def test_what_bounds_are_is_said():
 
 
 def test_layouts_arrange_the_last_dimension_fastest():
-    layout = Layout(("width", "limit_state"), (3, 2))
+    layout = Arrangement(("width", "limit_state"), (3, 2))
     assert layout.arranged(np.arange(6)).tolist() == [[0, 1], [2, 3], [4, 5]]
     assert layout.arranged(np.zeros((6, 4))).shape == (3, 2, 4)
 

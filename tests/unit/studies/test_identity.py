@@ -13,7 +13,7 @@ import rockframe as rf
 from rockframe.errors import StudyError
 from rockframe.studies.sweeps.identity import _written, digest_of, told
 from rockframe.studies.sweeps.planning import plan_study
-from rockframe.studies.sweeps.study import Job, Study
+from rockframe.studies.sweeps.study import Study, SweepJob
 
 pytestmark = [
     pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning"),
@@ -206,13 +206,13 @@ def test_every_field_of_a_study_and_of_what_it_is_made_of_is_told():
 
     study = studied()
     walked(study, study.to_dict())
-    assert {"Study", "SystemScene", "Assembly", "Parts", "Options", "Grid", "Arguments",
+    assert {"Study", "SystemScene", "Assembly", "Parts", "Options", "Grid", "RunRequest",
             "Accuracy", "Histories"} <= set(seen)  # fmt: skip
     assert not [name for name in seen if name.startswith("_")]
     # a job has nothing that its study does not tell: two are of the grid, and in lanes, for which
     # it waits as long as they save, cases have the same numbers to the last bit
     told_of = {one.name for one in fields(Study)} | {"axes", "motion_of_case", "patience"}
-    assert {one.name for one in fields(Job)} <= told_of
+    assert {one.name for one in fields(SweepJob)} <= told_of
 
 
 def test_the_samples_of_a_motion_are_told():
