@@ -159,7 +159,8 @@ def complementary(seats, masses, place, speed, touching: Touching):
     """
     names, rows = normal_rows(seats, place, touching)
     slips = tangent_rows(seats, place, touching)
-    best = None
+    best, quick = None, 1e-6 * float(np.max(np.abs(rows) @ np.abs(speed))) + 1e-300
+    quick += float(np.max(np.abs(rows @ speed)))
     for count in range(len(names) + 1):
         for active in combinations(range(len(names)), count):
             holds = np.vstack([slips, rows[list(active)]])
@@ -167,11 +168,9 @@ def complementary(seats, masses, place, speed, touching: Touching):
             impulses = np.linalg.solve(holds @ answer.T, -holds @ speed)
             after = speed + answer.T @ impulses
             pushes = impulses[len(slips) :]
-            size = 1e-300 + np.max(np.abs(impulses), initial=0.0)
-            fault = -min(
-                pushes.min(initial=0.0) / size,
-                (rows @ after).min(initial=0.0) / (1e-300 + np.max(np.abs(rows @ speed))),
-            )
+            size = quick * masses[[0, 3]].min()
+            size += float(np.max(np.abs(impulses), initial=0.0))
+            fault = -min(pushes.min(initial=0.0) / size, (rows @ after).min(initial=0.0) / quick)
             if best is None or fault < best[0] - 1e-12:
                 best = fault, active, after
     fault, active, after = best

@@ -15,6 +15,8 @@ from .pair import ENDS, SIGN, Pair, Pattern, Phase, turned
 
 RESTING = 1e-6
 """A contact that reopens more slowly stays closed if it presses, in sqrt(g / size)."""
+LEVEL = 1e-9
+"""A base that lands at less than this angle, and hardly turning, lands with both ends [rad]."""
 LOOKS = 4
 """How often guards are looked at within a step."""
 MOST_EVENTS = 20000
@@ -71,6 +73,7 @@ class _Running:
         self.now, self.step = 0.0, 0.01 * pair.slowness
         self.longest = longest
         self.slow = RESTING / pair.slowness
+        self.floor: dict = {}  # of gaps that begin at zero but for rounding
         self.pulled: set = set()  # hinges that are held although they do not press
         self.run = Run(output, np.full((output.size, 6), np.nan))
         self.shown = 0
@@ -138,6 +141,9 @@ class _Running:
             found["gap", "joint", phase.pattern.joint] = SIGN[phase.pattern.joint] * relative
         elif phase.pattern.joint == "none":
             found.update(gaps(self.pair, place))
+        for name in found:
+            if name[0] == "gap":
+                found[name] -= self.floor.setdefault(name, max(-1e-9, min(found[name], 0.0)))
         for name, angle, (left, right) in zip(
             ("lower", "upper"), (tilt, place[5]), self.pair.limits, strict=True
         ):
@@ -173,7 +179,7 @@ class _Running:
             seat = turned(self.place[2], *self.phase.seats.ground[end])
             anchor = self.place[0] + seat[0] - SIGN[end] * self.pair.lower.half_width
         self.phase = Phase(self.pair, pattern, shift, anchor)
-        self.pulled = set()
+        self.pulled, self.floor = set(), {}
 
     def settle(self, apart=None):
         """Let contacts open that the forces do not hold, as the accelerations demand."""
@@ -202,9 +208,11 @@ class _Running:
         if key == "joint" and before.joint == "none":
             kind, end = end.split()
             shift = shift_after(self.pair, self.place, kind, end)
-            touching["joint"] = (end,)
+            level = self._is_level(self.place[5] - self.place[2], self.speed[5] - self.speed[2])
+            touching["joint"] = ENDS if level else (end,)
         elif key == "ground" and before.ground == "none":
-            touching["ground"] = (end,)
+            level = self._is_level(self.place[2], self.speed[2])
+            touching["ground"] = ENDS if level else (end,)
         else:
             touching[key] = ENDS
             self.place = self._flush(key)
@@ -221,6 +229,10 @@ class _Running:
         self.note("impact", key, before, outcome, gap)
         self._rest()
         self.settle()
+
+    def _is_level(self, angle, rate) -> bool:
+        """Tell whether a base lands with both its ends, but for what no impact is worth."""
+        return abs(angle) < LEVEL and abs(rate) < 1e3 * self.slow
 
     def _flush(self, key):
         """Give the places with an angle that is zero but for rounding made zero."""
