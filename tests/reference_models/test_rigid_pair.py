@@ -16,6 +16,7 @@ from reference_models.rigid_pair.choices import (
     yield_to,
 )
 from reference_models.rigid_pair.count_impacts import KINDS, counted, draw_impact, draw_pair
+from reference_models.rigid_pair.drawing import draw, have_records, pieces_for
 from reference_models.rigid_pair.ground import harmonic, still
 from reference_models.rigid_pair.pair import GRAVITY, Body, Pair, Pattern, Phase
 from reference_models.rigid_pair.simulate import simulate
@@ -325,6 +326,33 @@ def test_ground_that_falls_away_leaves_both_in_flight():
     assert any(event.kind == "flight" for event in run.events)
     assert run.imbalance < 1e-10
     assert all(one == "both" for one in run.events[-1].after)
+
+
+@pytest.mark.skipif(not have_records(), reason="recorded motions are not there")
+def test_a_hinge_that_pulls_and_would_close_at_once_is_held():
+    """Opposite senses of rocking: let go, a light upper block would come down on the lower one."""
+    scene = draw(np.random.default_rng([11, 29]))
+    pieces, period = pieces_for(scene.motion)
+    run = simulate(scene.pair, pieces, 0.01, quickest=period)
+    first = next(event for event in run.events if event.kind == "held")
+    assert first.after in {("left", "right"), ("right", "left")}
+    assert run.unique_until == first.time
+    assert run.imbalance < 1e-10
+
+
+def test_random_scenes_uplift_and_overturn():
+    ends = []
+    for number in range(30):
+        scene = draw(np.random.default_rng([11, number]))
+        if scene.motion["form"] == "record":
+            continue
+        pieces, period = pieces_for(scene.motion)
+        run = simulate(scene.pair, pieces, 0.01, quickest=period)
+        assert run.imbalance < 1e-9
+        ends.append((bool(run.events), run.overturned))
+    assert len(ends) > 15
+    assert sum(lifted for lifted, _ in ends) > 0.8 * len(ends)
+    assert 0.2 < sum(fallen for _, fallen in ends) / len(ends) < 0.8
 
 
 # impacts ---------------------------------------------------------------------------------------

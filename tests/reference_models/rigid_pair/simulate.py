@@ -26,9 +26,10 @@ MOST_EVENTS = 20000
 class Event:
     """A change of the pattern.
 
-    ``kind`` is "uplift", "flight", "impact", "rest", "overturning", or "held" where contacts stay
-    that do not press, as no pattern is admissible. ``admissible`` is 1 where what follows is
-    unique; ``gap`` is how far the velocities then are from those of the complementary impulses.
+    ``kind`` is "uplift", "flight", "impact", "rest" or "overturning"; "held" where contacts stay
+    that do not press, as no pattern is admissible, and "pressed" where such ones press again.
+    ``admissible`` is 1 where what follows is unique; ``gap`` is how far the velocities then are
+    from those of the complementary impulses.
     """
 
     time: float
@@ -198,6 +199,7 @@ class _Running:
             return
         self.take(found.pattern)
         kind = "flight" if "none" in found.pattern else "uplift"
+        kind = "pressed" if found.pattern == before else kind
         self.note(kind, "" if apart is None else apart[0], before, found)
 
     def hit(self, key, end):
