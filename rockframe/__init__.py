@@ -58,8 +58,8 @@ if TYPE_CHECKING:
     from rockframe.results.diagnostics import Diagnostic as Diagnostic
     from rockframe.results.joining import concat as concat
     from rockframe.results.table import table as table
-    from rockframe.simulation.certification import Certification as Certification
     from rockframe.simulation.registration import register as register
+    from rockframe.simulation.run_arguments import Certification as Certification
     from rockframe.simulation.system import System as System
     from rockframe.solve.accuracy import Accuracy as Accuracy
     from rockframe.studies import Case as Case
@@ -146,7 +146,7 @@ _HOMES = {
     "rockframe.results.diagnostics": ("Diagnostic",),
     "rockframe.results.joining": ("concat",),
     "rockframe.results.table": ("table",),
-    "rockframe.simulation.certification": ("Certification",),
+    "rockframe.simulation.run_arguments": ("Certification",),
     "rockframe.simulation.registration": ("register",),
     "rockframe.simulation.system": ("System",),
     "rockframe.solve.accuracy": ("Accuracy",),

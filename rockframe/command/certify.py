@@ -5,7 +5,7 @@ from textwrap import fill
 
 from rockframe.command.given import RUN, Outputs, scene_from, simulated
 from rockframe.command.run import finished
-from rockframe.simulation.certification import Certification
+from rockframe.simulation.run_arguments import Certification
 
 
 def execute(arguments: argparse.Namespace) -> int:

@@ -13,9 +13,9 @@ from rockframe.motion import GroundMotion
 from rockframe.results.diagnostics import Diagnostic
 from rockframe.results.points import BodyPoint
 from rockframe.results.schema import ENERGIES
-from rockframe.simulation.asked import diagnostics_of, lacking, names_of, points_of
 from rockframe.simulation.beginning import Beginning, continuation_of, described
 from rockframe.simulation.friction import has_limit
+from rockframe.simulation.outputs import diagnostics_of, lacking, names_of, points_of
 from rockframe.simulation.run_arguments import RunArguments
 from rockframe.solve.accuracy import Accuracy, AccuracyLevel, accuracy_of
 from rockframe.system.assembly import Assembly

@@ -19,16 +19,20 @@ from rockframe.results.slope import felt_ground, slope_attributes
 from rockframe.results.variables.runs import Direction
 from rockframe.signals import Motion
 from rockframe.simulation.answers import Answers, answers_of, ground_at
-from rockframe.simulation.audit import doubtful, unbalanced
 from rockframe.simulation.beginning import end_attributes, start_of
-from rockframe.simulation.beside import Beside, what_showed
 from rockframe.simulation.certificate import certify
-from rockframe.simulation.certification import Certification
-from rockframe.simulation.end_in_motion import STILL_MOVING, may_overturn_later
 from rockframe.simulation.friction import friction_words, slips
 from rockframe.simulation.plan import Plan
 from rockframe.simulation.provenance import motion_after_end, motion_attributes
+from rockframe.simulation.run_arguments import Certification
+from rockframe.simulation.run_summary import RunSummary, run_summary
 from rockframe.simulation.second_look import doubts, peak_error, second_look
+from rockframe.simulation.soundness import (
+    STILL_MOVING,
+    doubtful_residual,
+    may_overturn_later,
+    unbalanced,
+)
 from rockframe.solve.accuracy import LEVELS, AccuracyLevel
 from rockframe.solve.integrate import STILL_INTERVAL, integrate
 from rockframe.solve.trajectory import Summary, Trajectory
@@ -90,10 +94,10 @@ class Response:
         """Whether the body stood with the energy to overturn later."""
         return in_motion(self.system, self.trajectory, self.missing)
 
-    def beside(self) -> Beside:
+    def beside(self) -> RunSummary:
         """Tell what a certificate asks of the run."""
         share = peak_of(self.trajectory, self.system.setting.overturning_angles).share
-        shown = what_showed(
+        shown = run_summary(
             self.trajectory, self.events, share, self.plan.duration, in_motion=self.in_motion
         )
         slidings = self.answers.slidings
@@ -274,7 +278,7 @@ def outcome(system: Assembly, plan: Plan) -> Summary:
     return respond(system, plan).trajectory
 
 
-def beside(system: Assembly, plan: Plan) -> Beside:
+def beside(system: Assembly, plan: Plan) -> RunSummary:
     """Integrate as planned, and tell what a certificate asks of the run.
 
     Parameters
@@ -286,7 +290,7 @@ def beside(system: Assembly, plan: Plan) -> Beside:
 
     Returns
     -------
-    Beside
+    RunSummary
     """
     return respond(system, plan).beside()
 
@@ -355,7 +359,7 @@ def _attributes(
 
 def nothing_to_say(system: Assembly, summary: Summary) -> bool:
     """Whether a run with fixed steps has come to an end, with its energies in balance."""
-    return summary.status.finished and summary.energy_residual <= doubtful(system)
+    return summary.status.finished and summary.energy_residual <= doubtful_residual(system)
 
 
 def _verdict(system: Assembly, summary: Summary) -> str:

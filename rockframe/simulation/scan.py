@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Final
 
-from rockframe.simulation.beside import Beside
+from rockframe.simulation.run_summary import RunSummary
 
 STEEPER: Final = 2.0
 """Slope that a clearance is allowed between two runs, over those seen hereabouts."""
@@ -31,7 +31,7 @@ AHEAD: Final = 2.0
 LEAST: Final = 1e-15
 """Change below which nothing can be told from rounding."""
 
-Look = Callable[[float], Beside | None]
+Look = Callable[[float], RunSummary | None]
 """Makes the run with a change; None where that cannot be."""
 
 
@@ -46,19 +46,19 @@ class Scan:
         interval was followed closely enough to tell [1].
     flip : float or None
         Change nearest to zero with another verdict [1].
-    ended : Beside or None
+    ended : RunSummary or None
         What that run showed.
     followed : bool
         Whether the margin ends at another verdict or at the reach, not for want of runs.
-    tried : dict of float to Beside
+    tried : dict of float to RunSummary
         All runs, without the one at zero.
     """
 
     margin: float
     flip: float | None
-    ended: Beside | None
+    ended: RunSummary | None
     followed: bool
-    tried: dict[float, Beside]
+    tried: dict[float, RunSummary]
 
     def within(self, reach: float) -> int:
         """Give the number of changes tried up to a reach."""
@@ -77,19 +77,19 @@ class Side:
     ----------
     sign : float
         Of the changes.
-    shown : dict of float to Beside
+    shown : dict of float to RunSummary
         The runs by their places, at first the nearest one only.
     places : list of float
         Sizes of the changes, rising.
     """
 
     sign: float
-    shown: dict[float, Beside]
+    shown: dict[float, RunSummary]
     places: list[float] = field(default_factory=lambda: [0.0])
     closed: bool = False
     rough: list[tuple[float, float]] = field(default_factory=list)
 
-    def add(self, place: float, shown: Beside) -> None:
+    def add(self, place: float, shown: RunSummary) -> None:
         """Put a run in its place."""
         self.shown[place] = shown  # first, so that an interrupt leaves no place without a run
         insort(self.places, place)
@@ -123,7 +123,7 @@ class Side:
 
 def scan(
     look: Look,
-    base: Beside,
+    base: RunSummary,
     row: Sequence[float],
     *,
     most: int,
@@ -136,7 +136,7 @@ def scan(
     ----------
     look : callable
         Makes the run with a change.
-    base : Beside
+    base : RunSummary
         The run without one.
     row : sequence of float
         Sizes of the first changes, rising; the last is the reach.
@@ -152,7 +152,7 @@ def scan(
     Scan
     """
     sides = [Side(sign, {0.0: base}) for sign in (-1.0, 1.0)]
-    tried: dict[float, Beside] = {}
+    tried: dict[float, RunSummary] = {}
 
     def try_at(side: Side, place: float) -> bool:
         shown = look(side.sign * place)

@@ -33,7 +33,7 @@ from rockframe.system.setting import Setting
 from rockframe.units import ACCELERATION, ANGLE, Quantity, QuantityLike, quantity
 
 if TYPE_CHECKING:
-    from rockframe.simulation.certification import Certification
+    from rockframe.simulation.run_arguments import Certification
 
 _DAMAGED: Final = (ValueError, KeyError, TypeError, AttributeError)
 """What is raised where a description is not what was written."""
@@ -274,9 +274,9 @@ class System:
         ComponentError
             `certify` is neither True, False nor a Certification.
         """
-        from rockframe.simulation.certification import certification_of
         from rockframe.simulation.plan import plan_run
         from rockframe.simulation.run import run
+        from rockframe.simulation.run_arguments import certification_of
 
         plan = plan_run(
             self._assembly,

@@ -17,13 +17,13 @@ from rockframe.results.dataset import build_dataset
 from rockframe.results.variables.studies import Outcome
 from rockframe.shared_arguments import takes
 from rockframe.signals.polynomials import turning_points
-from rockframe.simulation.beside import Beside
-from rockframe.simulation.end_in_motion import STILL_MOVING
 from rockframe.simulation.friction import has_limit
 from rockframe.simulation.plan import Plan, plan_run
 from rockframe.simulation.provenance import motion_attributes
 from rockframe.simulation.run import beside, run
 from rockframe.simulation.run_arguments import ScaleArguments
+from rockframe.simulation.run_summary import RunSummary
+from rockframe.simulation.soundness import STILL_MOVING
 from rockframe.studies.flip_words import least_overturning, sentence, unfinished
 from rockframe.studies.flips import Followed, Look, follow
 from rockframe.studies.intensities import of_study
@@ -177,7 +177,7 @@ def critical_scale(
     # samples tell of friction, and of nothing else that is asked for here
     step = plan.output_step if has_limit(system.assembly) else None
 
-    def look(scale: float) -> Beside:
+    def look(scale: float) -> RunSummary:
         return beside(system.assembly, replace(plan_at(scale), output_step=step))
 
     with bar_of(progress, owner=_OWNER, unit="run") as bar:
@@ -211,7 +211,7 @@ def _counted(look: Look, bar: ProgressBar, first: int) -> Look:
     bar.expect(first)
     looks = itertools.count()
 
-    def counted(scale: float) -> Beside:
+    def counted(scale: float) -> RunSummary:
         number = next(looks)
         if number == first:
             bar.name("more scales")

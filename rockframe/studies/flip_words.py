@@ -6,8 +6,8 @@ from typing import Final
 
 import numpy as np
 
-from rockframe.simulation.beside import Beside
 from rockframe.simulation.friction import share_words
+from rockframe.simulation.run_summary import RunSummary
 from rockframe.studies.flips import Flip, Followed
 
 _FEWEST_DIGITS: Final = 4
@@ -80,7 +80,7 @@ def unfinished(undecided: Sequence[float]) -> str:
     return f"{len(undecided)} runs could not be finished and have no verdict"
 
 
-def least_overturning(shown: dict[float, Beside]) -> float:
+def least_overturning(shown: dict[float, RunSummary]) -> float:
     """Give the least scale that overturned; NaN if none did."""
     return next((scale for scale, run in shown.items() if run.overturned), math.nan)
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Final
 
-from rockframe.simulation.beside import Beside
+from rockframe.simulation.run_summary import RunSummary
 from rockframe.simulation.scan import Side, doubtful
 
 FINEST: Final = 0.002
@@ -15,7 +15,7 @@ FINEST: Final = 0.002
 CALM: Final = 0.1
 """Share of the overturning angle: no flip is feared between two runs whose peaks are below it."""
 
-Look = Callable[[float], Beside]
+Look = Callable[[float], RunSummary]
 """Makes the run at a scale."""
 
 
@@ -42,7 +42,7 @@ class Followed:
 
     Parameters
     ----------
-    shown : dict of float to Beside
+    shown : dict of float to RunSummary
         All runs by their scales, rising.
     up_to : float
         Scale up to which every run has a verdict, and no interval is left that shows signs
@@ -51,7 +51,7 @@ class Followed:
         Whether no interrupt (Ctrl-C) came in between.
     """
 
-    shown: dict[float, Beside]
+    shown: dict[float, RunSummary]
     up_to: float
     whole: bool = True
 
@@ -189,12 +189,12 @@ def _narrow(side: Side, look: Look, flip: Flip, width: float) -> None:
             below = middle
 
 
-def _flips(shown: Mapping[float, Beside]) -> Iterator[Flip]:
+def _flips(shown: Mapping[float, RunSummary]) -> Iterator[Flip]:
     decided = [(at, run.overturned) for at, run in shown.items() if run.overturned is not None]
     for (below, before), (above, after) in pairwise(decided):
         if before != after:
             yield Flip(below, above, after)
 
 
-def _in_order(side: Side) -> dict[float, Beside]:
+def _in_order(side: Side) -> dict[float, RunSummary]:
     return {scale: side.shown[scale] for scale in side.places}

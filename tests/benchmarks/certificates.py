@@ -18,8 +18,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 from benchmarks.certified_scenes import Case, cases
 
 import rockframe as rf
-from rockframe.simulation.finer import cut
-from rockframe.simulation.nudging import parameters
+from rockframe.simulation.perturbations import cut, parameters
 from rockframe.simulation.run import outcome
 
 DISTANCES = tuple(10.0**-k for k in range(2, 8))

@@ -22,9 +22,9 @@ from records import records_folder
 
 import rockframe as rf
 from rockframe.signals.polynomials import greatest
-from rockframe.simulation.beside import Beside
 from rockframe.simulation.plan import plan_run
 from rockframe.simulation.run import beside
+from rockframe.simulation.run_summary import RunSummary
 from rockframe.studies.flips import follow
 
 DENSE = 2048
@@ -77,7 +77,7 @@ class Dense:
     """All runs of a scene, and the number of the one at uplift."""
 
     kind: str
-    runs: list[Beside]
+    runs: list[RunSummary]
     start: int
 
     @property

@@ -11,7 +11,7 @@ import xarray as xr
 
 import rockframe as rf
 from rockframe.results.schema import SCHEMA
-from rockframe.simulation.end_in_motion import STILL_MOVING
+from rockframe.simulation.soundness import STILL_MOVING
 
 pytestmark = pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning")
 

@@ -15,12 +15,10 @@ from pages import read, said
 import rockframe as rf
 from rockframe.errors import ComponentError, UnitsError
 from rockframe.results.outcome import verdict_of
-from rockframe.simulation.beside import Beside
-from rockframe.simulation.certificate import RESOLUTION, SAFETY, Certificate, certify, settles
-from rockframe.simulation.certificate_words import NEAR
-from rockframe.simulation.finer import CUTS, SHORTER, cut, shortened
-from rockframe.simulation.nudging import parameters
+from rockframe.simulation.certificate import NEAR, RESOLUTION, SAFETY, Certificate, certify, settles
+from rockframe.simulation.perturbations import CUTS, SHORTER, cut, parameters, shortened
 from rockframe.simulation.plan import plan_run
+from rockframe.simulation.run_summary import RunSummary
 from rockframe.simulation.scan import NOT_TRIED, Scan, scan
 from rockframe.solve.accuracy import accuracy_of
 
@@ -115,7 +113,7 @@ def pretended(overturns):
     def run(system, plan):
         verdict = overturns(system, plan)
         clearances = (1.0, 1.0) if verdict else (0.5,)
-        return Beside(verdict, 0.1 + plan.accuracy.rtol, clearances, 1.0, 0, 0.001)
+        return RunSummary(verdict, 0.1 + plan.accuracy.rtol, clearances, 1.0, 0, 0.001)
 
     return run
 
@@ -250,7 +248,7 @@ def test_a_peak_that_comes_near_to_overturning_is_looked_into():
         off = plan.motion.si.peak / PULSE.si.peak - 1.0 - middle
         left = abs(off) - half
         fell = left < 0.0
-        return Beside(fell, 0.1, (1.0, 1.0) if fell else (5.0 * left,), 1.0, 0, 0.001)
+        return RunSummary(fell, 0.1, (1.0, 1.0) if fell else (5.0 * left,), 1.0, 0, 0.001)
 
     plan = planned()
     found = certify(SYSTEM.assembly, plan, run(SYSTEM.assembly, plan), rf.Certification(), run)
@@ -265,7 +263,7 @@ def test_a_course_that_cannot_be_followed_ends_the_margin():
     def run(_, plan):
         off = abs(plan.motion.si.peak / PULSE.si.peak - 1.0)
         course = (1.0, rng.uniform(0.0, 1.0) if off > 0.1 else 0.5)
-        return Beside(False, 0.1, (0.5,), math.nan, 0, 0.001, course)
+        return RunSummary(False, 0.1, (0.5,), math.nan, 0, 0.001, course)
 
     plan = planned()
     found = certify(SYSTEM.assembly, plan, run(SYSTEM.assembly, plan), rf.Certification(), run)
@@ -284,7 +282,7 @@ def test_a_course_that_cannot_be_followed_ends_the_margin():
 def test_the_peak_of_a_standing_body_must_be_sure_to_stay_below():
     def run(_, plan):
         left = 0.01 if plan.accuracy.rtol > 1e-5 else 0.004
-        return Beside(False, 0.1, (left,), math.nan, 0, 0.001)
+        return RunSummary(False, 0.1, (left,), math.nan, 0, 0.001)
 
     plan = planned()
     found = certify(SYSTEM.assembly, plan, run(SYSTEM.assembly, plan), rf.Certification(), run)
@@ -326,8 +324,8 @@ def test_a_margin_of_more_than_a_hundredth_is_not_near(edge, words):
 
 def combinations():
     """Give certificates of all that may be found, in the runs of either sense."""
-    stands, falls = Beside(False, 0.1, (0.5,)), Beside(True, 0.2, (1.0, 1.0), 1.0, 1)
-    back, lost = Beside(False, 0.3, (0.5, 0.5)), Beside(None, 0.1)
+    stands, falls = RunSummary(False, 0.1, (0.5,)), RunSummary(True, 0.2, (1.0, 1.0), 1.0, 1)
+    back, lost = RunSummary(False, 0.3, (0.5, 0.5)), RunSummary(None, 0.1)
     same = dict.fromkeys((-0.1, 0.1), stands)
     for course, base, moving in itertools.product(
         ("stop", "continue"), (stands, falls, back), (False, True)
@@ -393,7 +391,7 @@ def test_the_sentence_says_what_the_numbers_say():
 
 
 def test_a_reach_within_the_nudge_is_all_that_is_asked():
-    same = {scale: Beside(False, 0.1, (0.5,)) for scale in (-0.01, 0.01)}
+    same = {scale: RunSummary(False, 0.1, (0.5,)) for scale in (-0.01, 0.01)}
     along = Scan(0.01, None, None, followed=True, tried=same)
     wanted = rf.Certification(nudge=0.1, reach=0.01)
     found = Certificate(wanted, planned(), same[0.01], along=along)
@@ -641,7 +639,7 @@ def test_shorter_steps_are_shorter(accuracy):
 
 def test_a_verdict_is_settled_only_if_all_that_it_hangs_on_is():
     """Of a body that overturns: its rate at that angle, and the time that was left."""
-    falls = Beside(overturned=True, peak=0.2, clearances=(1.0, 0.5), time=4.0, direction=1)
+    falls = RunSummary(overturned=True, peak=0.2, clearances=(1.0, 0.5), time=4.0, direction=1)
     for clearances, sure in (
         ((1.1, 0.6), True),
         ((1.4, 0.5), False),
@@ -660,7 +658,7 @@ def test_of_flips_to_both_sides_the_nearest_is_told(sign):
     def look(change):
         reached = sign * change > near or -sign * change > far
         left = min(abs(near - sign * change), abs(far + sign * change))
-        return Beside(overturned=reached, peak=0.1, clearances=(left,))
+        return RunSummary(overturned=reached, peak=0.1, clearances=(left,))
 
     row = [0.05, 0.1, 0.2]
     found = scan(look, look(0.0), row, most=100, resolution=RESOLUTION)
@@ -672,7 +670,7 @@ def test_of_flips_to_both_sides_the_nearest_is_told(sign):
 
 
 def test_changes_at_the_reach_itself_were_tried():
-    base = Beside(overturned=False, peak=0.1, clearances=(0.9,))
+    base = RunSummary(overturned=False, peak=0.1, clearances=(0.9,))
     found = scan(lambda _: base, base, [0.1, 0.2], most=100, resolution=0.5)
     assert found.margin == 0.2
     assert found.within(found.margin) == len(found.tried)

@@ -18,8 +18,8 @@ from rockframe.components import Component, InitialState
 from rockframe.components.registry import kinds
 from rockframe.errors import AssemblyError, RockframeError, shown
 from rockframe.motion import GroundMotion
-from rockframe.simulation.certification import Certification, certification_of
 from rockframe.simulation.plan import read_arguments
+from rockframe.simulation.run_arguments import Certification, certification_of
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import Accuracy, AccuracyLevel
 from rockframe.system.options import Overturning

@@ -14,7 +14,7 @@ from rockframe.results.variables.requests import (
 from rockframe.results.variables.runs import EVENTS_AND_SCALARS, HISTORIES
 from rockframe.results.variables.studies import SWEEP
 from rockframe.results.variables.variable import TIME
-from rockframe.simulation.asked import listed
+from rockframe.simulation.outputs import listed
 from rockframe.simulation.plan import STILL_GROUND_OUTPUT_STEP, RunRequest, length_of
 from rockframe.studies.sweeps.scenes import FunctionScene, SweptScene
 from rockframe.studies.sweeps.study import Histories

@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import pytest
 
-from rockframe.simulation.beside import Beside
+from rockframe.simulation.run_summary import RunSummary
 from rockframe.solve.layout import Status
 from rockframe.studies.flip_words import sentence
 from rockframe.studies.flips import FINEST, follow
@@ -21,10 +21,12 @@ def runs_of(peak, undecided=lambda scale: False):
         asked.append(scale)
         share = peak(scale)
         if undecided(scale):
-            return Beside(None, min(share, 1.0), (1.0 - min(share, 1.0),), status=Status.CHATTER)
+            return RunSummary(
+                None, min(share, 1.0), (1.0 - min(share, 1.0),), status=Status.CHATTER
+            )
         if share < 1.0:
-            return Beside(False, share, (1.0 - share,))
-        return Beside(
+            return RunSummary(False, share, (1.0 - share,))
+        return RunSummary(
             True, 1.0, (share - 1.0, 1.0), time=1.0, direction=1, status=Status.OVERTURNED
         )
 

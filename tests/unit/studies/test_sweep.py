@@ -21,7 +21,7 @@ from rockframe.compiled import COMPILED
 from rockframe.errors import ModelWarning, SchemaError, SolverWarning, StudyError
 from rockframe.results.variables.runs import RunStatus
 from rockframe.simulation import run as of_a_run
-from rockframe.simulation.end_in_motion import STILL_MOVING
+from rockframe.simulation.soundness import STILL_MOVING
 from rockframe.solve.layout import Status
 from rockframe.studies.sweeps import case as of_cases
 from rockframe.studies.sweeps import labelling

@@ -1,4 +1,4 @@
-"""What a run is asked for beyond what every run has: outputs by name, and points."""
+"""Outputs and points that are asked of a run, beyond what every run has."""
 
 from collections.abc import Iterable, Mapping
 from typing import Any, Final, cast

@@ -1,4 +1,4 @@
-"""What a run beside another one showed, and how far its verdict was from the other one."""
+"""What a run showed, and how far its verdict was from the other one."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -25,7 +25,7 @@ PARTS: Final = 6
 
 
 @dataclass(frozen=True)
-class Beside:
+class RunSummary:
     """What a run showed.
 
     The verdict is that of the run, in the sense in which it was asked. The clearances are
@@ -83,7 +83,7 @@ class Beside:
         """Whether it stood and never passed the overturning angle: it has one clearance then."""
         return not self.overturned and len(self.clearances) == 1
 
-    def alike(self, other: "Beside") -> bool:
+    def alike(self, other: "RunSummary") -> bool:
         """Whether both take the same course.
 
         Both stand, within the overturning angle or back from beyond it, or both overturn in the
@@ -102,18 +102,18 @@ class Beside:
         return self.direction == other.direction and not apart
 
 
-Run: TypeAlias = Callable[[Assembly, Plan], Beside]
+Run: TypeAlias = Callable[[Assembly, Plan], RunSummary]
 """Makes a run, and tells what it showed."""
 
 
-def what_showed(
+def run_summary(
     summary: Summary,
     events: Mapping[str, Generic],
     peak_share: float,
     duration: float,
     *,
     in_motion: bool,
-) -> Beside:
+) -> RunSummary:
     """Tell what a run showed.
 
     Parameters
@@ -131,7 +131,7 @@ def what_showed(
 
     Returns
     -------
-    Beside
+    RunSummary
     """
     rates = np.abs(events["angular_velocity_before"])
     if summary.overturned:
@@ -141,7 +141,7 @@ def what_showed(
         clearances = (peak_share - 1.0, 1.0 - summary.peak_rotation / RIGHT_ANGLE)
     else:
         clearances = (1.0 - peak_share,)
-    return Beside(
+    return RunSummary(
         summary.overturned,
         summary.peak_rotation,
         clearances,

@@ -6,20 +6,20 @@ import pytest
 from extremes.scenes import Scene, scenes
 
 import rockframe as rf
-from rockframe.simulation import audit
-from rockframe.simulation.audit import (
+from rockframe.simulation import soundness
+from rockframe.simulation.plan import plan_run
+from rockframe.simulation.run import outcome
+from rockframe.simulation.run_summary import RunSummary
+from rockframe.simulation.soundness import (
     BY_TOLERANCE,
     DOUBTFUL,
     DOUBTFUL_ON_SPRINGS,
     FIXED,
     unbalanced,
 )
-from rockframe.simulation.beside import Beside
-from rockframe.simulation.plan import plan_run
-from rockframe.simulation.run import outcome
 
 SYSTEM, MOTION = Scene().system, Scene().motion
-STOOD = Beside(False, 0.1, (0.5,), course=(1.0, 0.2))
+STOOD = RunSummary(False, 0.1, (0.5,), course=(1.0, 0.2))
 
 
 def said(accuracy, residual, other=STOOD, base=STOOD, system=SYSTEM):
@@ -70,7 +70,7 @@ def test_fixed_steps_are_judged_by_a_run_by_tolerance_where_their_balance_leaves
     [
         (replace(STOOD, peak=0.102), "a peak rotation of 0.102 rad"),
         (replace(STOOD, course=(1.0, 0.5)), "a peak rotation of 0.1 rad"),
-        (Beside(True, 0.1, (0.5, 1.0), 2.0, 1, course=(1.0, 0.2)), "which overturns"),
+        (RunSummary(True, 0.1, (0.5, 1.0), 2.0, 1, course=(1.0, 0.2)), "which overturns"),
     ],
 )
 def test_another_course_is_said(other, words):
@@ -80,13 +80,13 @@ def test_another_course_is_said(other, words):
 
 
 def test_a_run_that_was_cut_off_is_not_judged():
-    cut_off = Beside(None, 0.1)
+    cut_off = RunSummary(None, 0.1)
     assert said("fast", 1.0, base=cut_off) == (None, [])
     assert said("fast", 2.0 * DOUBTFUL_ON_SPRINGS, other=cut_off)[0] is None
 
 
 def test_a_run_that_is_no_solution_warns_and_says_so_in_its_cautions(monkeypatch):
-    monkeypatch.setattr(audit, "BY_TOLERANCE", 1e-30)
+    monkeypatch.setattr(soundness, "BY_TOLERANCE", 1e-30)
     with pytest.warns(rf.SolverWarning, match="out of balance"):
         run = SYSTEM.simulate(MOTION)
     assert "this is no solution" in run.attrs["cautions"]
