@@ -9,7 +9,7 @@ import numpy as np
 
 from rockframe.compiled import Vector
 from rockframe.dynamics.base import Base, root_above_zero
-from rockframe.dynamics.bed import Bed
+from rockframe.dynamics.bed import Bed, Rigid
 from rockframe.dynamics.body import BaseLine, Body
 from rockframe.dynamics.pads import LEAVE, REENGAGE, ROUNDING, ElasticPads, Pads
 from rockframe.dynamics.point_law import Point, Viscoelastic
@@ -248,4 +248,28 @@ def bed_numbers(
         rotational_stiffness=stiffness * (body.left**3 + body.right**3) / 3.0,
         damping_time=damping / stiffness,
         end_tolerance=np.array([ROUNDING * (1.0 + size / settlement)]),
+    )
+
+
+def rigid_numbers(body: Body) -> BaseNumbers:
+    """Give a rigid base under a body of a chain.
+
+    Parameters
+    ----------
+    body : Body
+        The body on it.
+
+    Returns
+    -------
+    BaseNumbers
+    """
+    width = body.left + body.right
+    return BaseNumbers(
+        Rigid(0.0, 0.0, 1.0, width, by_pressure=False),
+        (Column("left_reaction", per_mass=True), Column("right_reaction", per_mass=True)),
+        settlement=0.0,
+        vertical_stiffness=0.0,
+        rotational_stiffness=0.0,
+        damping_time=0.0,
+        end_tolerance=np.array([ROUNDING]),
     )

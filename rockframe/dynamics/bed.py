@@ -35,7 +35,7 @@ class Ends(NamedTuple):
 @inlined
 def end_contact(contact: int, left: bool) -> int:
     """Give the contact of one end."""
-    return contact & LEFT_BIT if left else contact >> RIGHT_BIT
+    return contact & LEFT_BIT if left else contact >> RIGHT_BIT & LEFT_BIT
 
 
 @inlined
@@ -254,3 +254,9 @@ class Bed(Base, BedNumbers):
         left, right = self.pressure(start, ends), self.pressure(end, ends)
         toe = max(left, right) if end > start else 0.0
         return self.force(contact, line, own).upward, self.width * (end - start), toe
+
+
+class Rigid(Bed):
+    """A rigid base, in chains of bodies: a bed without forces, whose ends constraints hold."""
+
+    __slots__ = ()

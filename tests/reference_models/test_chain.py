@@ -134,7 +134,7 @@ def test_a_chain_tells_what_it_cannot_carry(pair):
             )
         ).setting.support.own_law,
     )
-    with pytest.raises(TypeError, match="stands on pads or on a bed, got tuple"):
+    with pytest.raises(TypeError, match="stands on pads, on a bed or on rigid bases, got tuple"):
         row_of(body, replace(numbers, law=(1.0,)), 1.0, 0.0, 0.0)
 
 

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -14,9 +14,11 @@ from rockframe.dynamics.alone_model import (
     rounding_at,
 )
 from rockframe.dynamics.base_numbers import BaseNumbers
+from rockframe.dynamics.bed import Rigid, both_contacts
 from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, DEGREES, ROTATION, VERTICAL
 from rockframe.dynamics.body import Body, BodyState
 from rockframe.dynamics.chain import rows as at
+from rockframe.dynamics.chain.rigid import KEPT, RigidChain
 from rockframe.dynamics.chain.rows import GUARDS, OBSERVED, lists_of, row_of
 from rockframe.dynamics.chain.system import Chain
 from rockframe.dynamics.pads import CORNER_GUARDS, ROUNDING
@@ -29,6 +31,9 @@ from rockframe.dynamics.protocol import (
     Start,
     column_of,
 )
+
+ROUNDING_OF_FORCES: Final = 1e-14
+"""Of what holds a body on a rigid base, over the weight on it."""
 
 
 class ChainBody(NamedTuple):
@@ -50,9 +55,20 @@ class AtRest(NamedTuple):
 
 def chain_of(links: Sequence[ChainBody]) -> Chain:
     """Give the equations of bodies upon one another, from the top down."""
-    return Chain(*lists_of([
+    kind = RigidChain if some_rigid(links) else Chain
+    return kind(*lists_of([
         row_of(one.body, one.base, one.mass, one.top, one.beside) for one in links
     ]))  # fmt: skip
+
+
+def some_rigid(links: Sequence[ChainBody]) -> bool:
+    """Whether some of the bases are rigid."""
+    return any(is_rigid(one.base) for one in links)
+
+
+def is_rigid(base: BaseNumbers) -> bool:
+    """Whether a base is rigid."""
+    return isinstance(base.law, Rigid)
 
 
 def chain(
@@ -82,15 +98,22 @@ def chain(
     top, count = links[0].body, len(links)
     system = chain_of(links)
     fastest, damping_rate = fastest_vibration(links)
+    rigid = some_rigid(links)
+    carried = np.cumsum([one.mass for one in links])
     return ContactModel(
         name="stack",
         system=system,
         rotation_limits=(math.atan2(top.left, top.height), math.atan2(top.right, top.height)),
         rotation_weights=_weights(count, 0),
         scales=_scales(links),
-        guard_tolerance=np.concatenate([_tolerance(one.base) for one in links]),
+        guard_tolerance=np.concatenate([
+            _tolerance(one.base, on / one.mass) for one, on in zip(links, carried, strict=True)
+        ]),
         columns=tuple(column for k in range(count) for column in _columns(links[k].base, k)),
-        memory=(*MEMORY, *(f"held_place_of_{k}" for k in range(1, count)), "body_of_event"),
+        memory=(
+            *MEMORY, *(f"held_place_of_{k}" for k in range(1, count)), "body_of_event",
+            *(KEPT if rigid else ()),
+        ),
         shows_bodies=True,
         mass=mass,
         fastest_frequency=fastest,
@@ -99,7 +122,7 @@ def chain(
             one.mass * one.body.gravity * radius_of(one.body) * one.body.angle for one in links
         ),
         initial=lambda start: _initial(system, links, rest, start),
-        rounding=rounding_at(
+        rounding=None if all(is_rigid(one.base) for one in links) else rounding_at(
             sum(radius_of(one.body) for one in links),
             sum(one.base.settlement for one in links),
             _answers(links), fastest, 0,
@@ -118,8 +141,10 @@ def _weights(count: int, k: int) -> Vector:
     return weights
 
 
-def _tolerance(base: BaseNumbers) -> Vector:
+def _tolerance(base: BaseNumbers, carried: float) -> Vector:
     """Give the rounding noise of a body's guards, of which those of a bed's ends are fewer."""
+    if is_rigid(base):
+        return np.full(GUARDS, ROUNDING_OF_FORCES * carried)
     found = part_tolerance(base)
     ends = len(base.end_tolerance)
     if ends == CORNER_GUARDS:
@@ -144,8 +169,11 @@ def _scales(links: Sequence[ChainBody]) -> Vector:
     for one in links:
         carried += one.mass
         sway, rate = radius_of(one.body) * one.body.angle, rocking_rate(_per_own_mass(one))
-        places += [one.body.angle, one.base.settlement]
-        place_rates += [rate, math.sqrt(one.base.vertical_stiffness / carried)]
+        rise, vertical = one.base.settlement, math.sqrt(one.base.vertical_stiffness / carried)
+        if is_rigid(one.base):
+            rise, vertical = sway * one.body.angle, rate
+        places += [one.body.angle, rise]
+        place_rates += [rate, vertical]
         sways.append(sway)
         sway_rates.append(rate)
     sizes, rates = np.array([*places, *sways]), np.array([*place_rates, *sway_rates])
@@ -173,7 +201,10 @@ def fastest_vibration(links: Sequence[ChainBody]) -> tuple[float, float]:
             mass, stiffness, damped = small_motion_matrices(some, stands=stands)
             fastest = max(fastest, _largest(mass, stiffness))
             damping = max(damping, _largest(mass, damped))
-    return math.sqrt(fastest), damping
+    # a body that stands still on a rigid base makes no vibration faster; one that rocks is a
+    # pendulum of its own
+    rocking = sum(rocking_rate(_per_own_mass(one)) ** 2 for one in links if is_rigid(one.base))
+    return math.sqrt(max(fastest, rocking)), damping
 
 
 def _largest(mass: Matrix, matrix: Matrix) -> float:
@@ -233,7 +264,9 @@ def _initial(
         rotation = first.rotation if start.rotation is None else start.rotation - below
         attitude = part.body.attitude(rotation)
         height = start.vertical_displacement
-        if height is None:
+        if height is None and is_rigid(links[0].base):
+            height = 0.0  # as its contact has it
+        elif height is None:
             lift = part.body.left * attitude.sine, -part.body.right * attitude.sine
             height = part.base.resting_height(*lift, ()) - attitude.rise
         placed[0] = AtRest(rotation, height)
@@ -245,7 +278,11 @@ def _initial(
             start.vertical_velocity if moving else 0.0, 0.0,
         )  # fmt: skip
         i, x = BEFORE_HORIZONTAL * k, system.horizontal_of(k)
-        contact = part.base.starting(part.body.base_line_at(body), ())
+        if is_rigid(links[k].base):
+            side = body.rotation or body.angular_velocity
+            contact = both_contacts(int(side > 0.0), int(side < 0.0))
+        else:
+            contact = part.base.starting(part.body.base_line_at(body), ())
         # upright and at rest a body leans nowhere yet; it follows the one above
         leaning = body
         if body.rotation == 0.0 and k > 0:
@@ -265,4 +302,7 @@ def _initial(
             reach = part.body.reach(pin, part.body.attitude(body.rotation))
             state[n + x] = reach.rate * body.angular_velocity
         mode = system.with_part(mode, k, standing)
+    if isinstance(system, RigidChain):
+        memory = np.concatenate([memory, [1.0, 0.0, 0.0]])
+        system.write_contacts(mode, state, memory)
     return mode, state, memory

@@ -25,8 +25,8 @@ def place_bodies(system: Rows, mode: int, state: Vector, room: Vector) -> None:
     below = 0.0  # top of the body below above its centre of mass
     for k in range(count - 1, -1, -1):
         i = k * PLACES
-        part, body = system.on_base(k), system.state_of(k, state)
-        standing = system.part_mode(mode, k)
+        part, standing = system.on_base(k), system.part_mode(mode, k)
+        body = system.standing_state(k, standing, state)
         attitude = part.body.attitude(body.rotation)
         reach = part.body.reach(part.body.pin(standing.pivot), attitude)
         free = part.is_free(standing)

@@ -13,13 +13,14 @@ import numpy as np
 from rockframe.compiled import Vector, inlined, kernel, numbers_in, part_of, stretch
 from rockframe.dynamics.base import Base, BaseForce, EndEvent, Guards, Variables
 from rockframe.dynamics.base_numbers import BaseNumbers
-from rockframe.dynamics.bed import Bed
+from rockframe.dynamics.bed import Bed, Rigid
 from rockframe.dynamics.bodies import DEGREES, InState
-from rockframe.dynamics.body import BaseLine, Body
+from rockframe.dynamics.body import BaseLine, Body, BodyState
 from rockframe.dynamics.on_base import BODY_GUARDS, Mode, OnBase
 from rockframe.dynamics.pads import CORNER, CORNER_GUARDS, ElasticPads
 from rockframe.dynamics.point_law import Viscoelastic
 from rockframe.dynamics.protocol import MOST_MODES, POWERS
+from rockframe.dynamics.restraint import BY_CONTACT
 
 # a row: the body's numbers in their order in `Body`, among them
 INERTIA: Final = 3
@@ -39,6 +40,7 @@ ROW: Final = BASE + BASE_NUMBERS
 # laws
 ON_PADS: Final = 0
 ON_BED: Final = 1
+ON_RIGID: Final = 2  # a bed without stiffness: what holds the ends are constraints
 
 OBSERVED: Final = 3
 """Columns of a base, of which pads have two."""
@@ -67,7 +69,17 @@ ROTATION: Final = 18
 # forces of its base along and normal to what it stands on
 THRUST: Final = 19
 PRESS: Final = 20
-PLACES: Final = 21
+# constraints of the corners on a rigid base, and their impulses in an event; impulses of all such
+# bases on the body
+LEFT_CORNER: Final = 21
+RIGHT_CORNER: Final = 22
+LEFT_IMPULSE: Final = 23
+RIGHT_IMPULSE: Final = 24
+IMPULSE_X: Final = 25
+IMPULSE_Y: Final = 26
+IMPULSE_MOMENT: Final = 27
+IMPULSES: Final = 5
+PLACES: Final = 28
 
 # constraints, at most so many of each body; of each
 MOST_CONSTRAINTS: Final = 3
@@ -397,6 +409,11 @@ class Rows(InState, Lists):
         return OnBase(body, base)
 
     @inlined
+    def standing_state(self, k: int, standing: Mode, state: Vector) -> BodyState:
+        """Give placement and rates of a body as its contacts allow them."""
+        return self.state_of(k, state)
+
+    @inlined
     def place_value(self, k: int) -> int:
         """Give what the mode of a body is multiplied by in that of the chain."""
         return int(self.rows[k * ROW + PLACE_VALUE])
@@ -427,13 +444,17 @@ def row_of(body: Body, base: BaseNumbers, mass: float, top: float, beside: float
     """
     if isinstance(base.law, ElasticPads) and isinstance(base.law.law, Viscoelastic):
         law = ON_PADS
+    elif isinstance(base.law, Rigid):
+        law = ON_RIGID
     elif isinstance(base.law, Bed):
         law = ON_BED
     else:
-        msg = f"a chain of bodies stands on pads or on a bed, got {type(base.law).__name__}"
+        name = type(base.law).__name__
+        msg = f"a chain of bodies stands on pads, on a bed or on rigid bases, got {name}"
         raise TypeError(msg)
     row = np.zeros(ROW)
-    row[: len(body)] = body
+    # a corner that bears on a rigid base does not slide on it, whatever the rule
+    row[: len(body)] = body._replace(restraint=BY_CONTACT) if law == ON_RIGID else body
     row[[MASS, TOP, BESIDE, LAW]] = mass, top, beside, law
     row[[PER_MASS, PER_INERTIA]] = 1.0 / mass, 1.0 / body.inertia
     numbers = numbers_in(base.law)

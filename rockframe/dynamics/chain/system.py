@@ -4,8 +4,9 @@ Equations :eq:`eq-chain`; per unit of a mass that all others are measured by.
 """
 
 from rockframe.compiled import Vector, inlined, kernel, put
-from rockframe.dynamics.base import Guards
+from rockframe.dynamics.base import Guards, Variables
 from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, DEGREES, ROTATION, VERTICAL
+from rockframe.dynamics.body import BodyState
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.motion import (
     FREE,
@@ -83,17 +84,43 @@ class Chain(Rows):
         """Write the constraints of a mode; give how many there are."""
         count, rows = 0, self.constraints()
         for k in range(self.body_count):
-            i, standing = k * PLACES, self.part_mode(mode, k)
-            room[i + at.THRUST] = 0.0
-            if room[i + at.HELD] != FREE:
-                wanted = coriolis_along(i, room) + room[i + at.DRIFT]
-                reach = room[i + at.REACH]
-                add_constraint(self, count, k, 1.0, 0.0, -reach, wanted, room, rows)
-                count += 1
-            elif standing.slides:
-                self.let_slide(k, count, standing, state, room, rows)
-                count += 1
+            standing = self.part_mode(mode, k)
+            count = self.add_corners(k, count, standing, state, True, room, rows)
+            count = self.hold_or_slide(k, count, standing, state, room, rows)
         return count
+
+    @inlined
+    def hold_or_slide(
+        self, k: int, count: int, standing: Mode, state: Vector, room: Vector, rows: Vector
+    ) -> int:
+        """Add the constraint of a point that is held, or of an end that slides."""
+        i = k * PLACES
+        room[i + at.THRUST] = 0.0
+        if room[i + at.HELD] != FREE:
+            wanted = coriolis_along(i, room) + room[i + at.DRIFT]
+            add_constraint(self, count, k, 1.0, 0.0, -room[i + at.REACH], wanted, room, rows)
+            count += 1
+        elif standing.slides:
+            self.let_slide(k, count, standing, state, room, rows)
+            count += 1
+        return count
+
+    @inlined
+    def add_corners(
+        self, k: int, count: int, standing: Mode, state: Vector, moves: bool, room: Vector,
+        rows: Vector,
+    ) -> int:  # fmt: skip
+        """Add the constraints of corners on a rigid base: there are none here."""
+        return count
+
+    @inlined
+    def band(self) -> int:
+        """Give how far apart constraints that have a body in common may stand."""
+        return 1
+
+    @inlined
+    def stand_still(self, room: Vector, out: Vector) -> None:
+        """Take rounding from the accelerations of bodies that do not move on theirs: none."""
 
     @kernel
     def let_slide(
@@ -117,11 +144,12 @@ class Chain(Rows):
     def solve(self, count: int, room: Vector) -> None:
         """Write forces and accelerations, in the ground's axes and of all coordinates."""
         rows = self.constraints()
-        solve_motion(self, count, 1, room, rows, self.matrix())
-        for which in range(count):
+        solve_motion(self, count, self.band(), room, rows, self.matrix())
+        for which in range(count):  # the last one of each body is along what it stands on
             first = which * CONSTRAINT
             room[int(rows[first + at.BODY]) * PLACES + at.THRUST] = rows[first + at.FORCE]
         write_relative(self, room, self.slopes())
+        self.stand_still(room, self.slopes())
 
     @kernel
     def accelerate(self, mode: int, state: Vector, ground: Ground) -> Vector:
@@ -199,23 +227,37 @@ class Chain(Rows):
         values, changes = self.guard_room(0), self.guard_room(1)
         slides = self.some_end_slides(mode)
         for k in range(self.body_count):
-            part, standing, body = self.on_base(k), self.part_mode(mode, k), self.state_of(k, state)
-            first, sliding = BEFORE_HORIZONTAL * k, IDLE
-            vertical, angular = slope[first + VERTICAL], slope[first + ROTATION]
-            if slides and standing.slides:
-                rise = lift_by_slip(self, part, k, mode, state)
-                self.forces_from(mode, state, slope, ground)
-                push = self.places()[k * PLACES + at.THRUST]
-                horizontal = slope[self.horizontal_of(k)]
-                sliding = part.sliding_guards(standing, body, angular, horizontal, push, rise)
-            found = part.guards_with(standing, body, (), vertical, angular, sliding)
+            found = self.guards_on_base(k, slides, mode, state, slope, ground)
             put(found.values, GUARDS * k, values)
             put(found.changes, GUARDS * k, changes)
         return Guards(values, changes)
 
+    @inlined
+    def guards_on_base(
+        self, k: int, slides: bool, mode: int, state: Vector, slope: Slope, ground: Ground
+    ) -> Guards:
+        """Give the guards of a body on a base that gives way, and their rates."""
+        part, standing, body = self.on_base(k), self.part_mode(mode, k), self.state_of(k, state)
+        first, sliding = BEFORE_HORIZONTAL * k, IDLE
+        vertical, angular = slope[first + VERTICAL], slope[first + ROTATION]
+        if slides and standing.slides:
+            rise = lift_by_slip(self, part, k, mode, state)
+            self.forces_from(mode, state, slope, ground)
+            push = self.places()[k * PLACES + at.THRUST]
+            horizontal = slope[self.horizontal_of(k)]
+            sliding = part.sliding_guards(standing, body, angular, horizontal, push, rise)
+        return part.guards_with(standing, body, (), vertical, angular, sliding)
+
     @kernel
     def switch(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:
         """Carry out the switch that a guard calls for; give the new mode."""
+        return self.switch_on_base(mode, guard, state, ground, memory)
+
+    @inlined
+    def switch_on_base(
+        self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector
+    ) -> int:
+        """Carry out the switch of a body on a base that gives way."""
         k = guard // GUARDS
         new = switch_part(self, self.on_base(k), k, guard - k * GUARDS, mode, state, ground, memory)
         for above in range(k):
@@ -233,11 +275,11 @@ class Chain(Rows):
         kinetic = gravity = elastic = change = rise = rate = 0.0
         for k in range(self.body_count - 1, -1, -1):
             i, mass = k * PLACES, self.number(k, at.MASS)
-            body = self.state_of(k, state)
+            body = self.standing_state(k, self.part_mode(mode, k), state)
             x, y = room[i + at.SPEED_X], room[i + at.SPEED_Y]
             rate += body.angular_velocity
             kinetic += 0.5 * (mass * (x * x + y * y) + self.number(k, at.INERTIA) * rate * rate)
-            rise = self.rise_of(k, rise, state, room)
+            rise = self.rise_of(k, rise, body.vertical, room)
             gravity += mass * self.number(k, at.GRAVITY) * rise
             stored, more = self.on_base(k).elastic_energy(body, ())
             elastic += stored
@@ -245,9 +287,9 @@ class Chain(Rows):
         return Energies(kinetic, gravity, elastic, change)
 
     @inlined
-    def rise_of(self, k: int, below: float, state: Vector, room: Vector) -> float:
+    def rise_of(self, k: int, below: float, vertical: float, room: Vector) -> float:
         """Give the rise of a body's centre of mass from rest, to all digits, from that below."""
-        i, vertical = k * PLACES, state[BEFORE_HORIZONTAL * k + VERTICAL]
+        i = k * PLACES
         sine, cosine = room[i + at.SINE], room[i + at.COSINE]
         versine = sine * sine / (1.0 + cosine) if cosine > 0.0 else 1.0 - cosine
         fixed = room[i + at.ARM] - vertical if k + 1 < self.body_count else 0.0
@@ -259,15 +301,17 @@ class Chain(Rows):
     ) -> Vector:
         """Give motion and forces of each body in turn, from the top down, and of its base."""
         out = self.column_room()
+        self.find_corner_forces(mode, state, ground)
         self.forces_from(mode, state, slope, ground)
         room = self.places()
         shear = room[(self.body_count - 1) * PLACES + at.THRUST]
         rotation = rate = rise = x = 0.0
         for k in range(self.body_count - 1, -1, -1):
-            i, j, body = k * PLACES, COLUMNS * k, self.state_of(k, state)
+            i, j, standing = k * PLACES, COLUMNS * k, self.part_mode(mode, k)
+            body = self.standing_state(k, standing, state)
             rotation += body.rotation
             rate += body.angular_velocity
-            rise = self.rise_of(k, rise, state, room)
+            rise = self.rise_of(k, rise, body.vertical, room)
             sine, cosine = room[i + at.SINE], room[i + at.COSINE]
             if k + 1 < self.body_count:
                 x += room[i + at.ARM] * sine + room[i + at.ACROSS] * cosine
@@ -281,9 +325,17 @@ class Chain(Rows):
             )  # fmt: skip
             out[j + 10], out[j + 11] = room[i + at.THRUST], room[i + at.PRESS]
             out[j + 12], out[j + 13] = body.rotation, body.vertical
-            shown = self.on_base(k).observed_base(self.part_mode(mode, k), body, ())
-            put(shown, j + COLUMNS - OBSERVED, out)
+            put(self.observed_base(k, standing, body), j + COLUMNS - OBSERVED, out)
         return out
+
+    @inlined
+    def find_corner_forces(self, mode: int, state: Vector, ground: Ground) -> None:
+        """Find the forces of corners on rigid bases: there are none here."""
+
+    @inlined
+    def observed_base(self, k: int, standing: Mode, body: BodyState) -> Variables:
+        """Give what users see of a base."""
+        return self.on_base(k).observed_base(standing, body, ())
 
     @kernel
     def place(self, k: int, mode: int, state: Vector, memory: Vector) -> float:
@@ -311,6 +363,8 @@ class Chain(Rows):
         for j in range(self.body_count):
             i = j * PLACES
             room[i + at.RISE] = room[i + at.SWAY] = room[i + at.FRAME_RATE] = 0.0
+            standing = self.part_mode(mode, j)
+            count = self.add_corners(j, count, standing, state, False, room, rows)
             if room[i + at.HELD] != FREE:
                 wanted = -slip if j == k else 0.0
                 add_constraint(self, count, j, 1.0, 0.0, -room[i + at.REACH], wanted, room, rows)
@@ -325,6 +379,11 @@ class Chain(Rows):
     @kernel
     def respond(self, k: int, mode: int, response: VelocityChange, state: Vector) -> None:
         """Change the velocities by the last response."""
+        self.add_slopes(state)
+
+    @inlined
+    def add_slopes(self, state: Vector) -> None:
+        """Change the velocities by what stands in the room for slopes; what holds lasts."""
         out, room, n = self.slopes(), self.places(), self.coordinates()
         for i in range(n):
             state[n + i] += out[i]

@@ -1,0 +1,171 @@
+"""Chains on rigid bases: one body as Housner's, impacts of two as in the reference model."""
+
+import math
+
+import numpy as np
+import pytest
+from reference_models.rigid_pair.choices import ALL, strike
+from reference_models.rigid_pair.count_impacts import KINDS, draw_impact
+from reference_models.rigid_pair.pair import Body, Pair, Pattern, Phase
+
+import rockframe as rf
+from rockframe.dynamics.alone_model import rigid_body
+from rockframe.dynamics.base_numbers import rigid_numbers
+from rockframe.dynamics.chain import rows as at
+from rockframe.dynamics.chain.model import ChainBody, chain
+from rockframe.dynamics.chain.rigid import ADMISSIBLE, TAKEN
+from rockframe.dynamics.chain.rows import PLACES
+from rockframe.dynamics.protocol import HELD_PLACE, IMPACT_LOSS, Ground, Start
+from rockframe.solve.accuracy import accuracy_of
+from rockframe.solve.integrate import integrate
+from rockframe.system.assembly import assemble
+
+pytestmark = pytest.mark.reference_models
+
+STILL = Ground(0.0, 0.0)
+EQUAL = Pair(Body.uniform(1.0, 2.0, 1.0), Body.uniform(1.0, 2.0, 1.0))
+ENDS = {"none": 0, "left": 1, "right": 2, "both": 3}
+
+
+def alone(block):
+    """Give a block on rigid ground: as Housner's, and as a chain of one body."""
+    setting = assemble((block,)).setting
+    law = setting.load.law(setting.body.mass)
+    one = ChainBody(law, rigid_numbers(law), 1.0, 0.0, 0.0)
+    return setting, chain([one], setting.body.mass)
+
+
+def model_of(pair: Pair):
+    """Give two blocks on rigid bases, per unit mass of the upper one."""
+    links, measure = [], pair.upper.mass
+    offset = pair.offset + pair.upper.beside - pair.lower.beside
+    for one, beside in ((pair.upper, offset), (pair.lower, 0.0)):
+        body = rigid_body(
+            left=one.half_width + one.beside, right=one.half_width - one.beside,
+            height=one.below, inertia=one.inertia / measure, restraint=0, small_rotation=False,
+            gravity=pair.gravity,
+        )  # fmt: skip
+        links.append(ChainBody(body, rigid_numbers(body), one.mass / measure, one.above, beside))
+    return chain(links, measure)
+
+
+def landing(pair: Pair, place, speed, touching):
+    """Let two bodies that touch go on; give pattern, number of those admissible, and speeds."""
+    model, (lower, upper) = model_of(pair), (pair.lower, pair.upper)
+    system, state, memory = model.system, np.zeros(12), np.zeros(len(model.memory))
+    cosine, sine = math.cos(place[2]), math.sin(place[2])
+    along, normal = np.array([cosine, -sine]), np.array([sine, cosine])
+    between, moving = place[3:5] - place[:2], speed[3:5] - speed[:2]
+    state[:6] = (
+        place[5] - place[2], between @ normal - lower.above - upper.below, place[2],
+        place[1] - lower.below, between @ along, place[0],
+    )  # fmt: skip
+    state[6:] = (
+        speed[5] - speed[2], moving @ normal + (between @ along) * speed[2], speed[2], speed[1],
+        moving @ along - (between @ normal) * speed[2], speed[0],
+    )  # fmt: skip
+    weight = {"joint": 1, "ground": 4}
+    closed = sum(weight[key] * ENDS[end] for key, some in touching.items() for end in some)
+    flying = system.with_bearing(0, 0, 0)
+    had = system.energies(flying, state).kinetic
+    assert 2.0 * had * upper.mass == pytest.approx(pair.masses @ speed**2, rel=1e-11)
+    new = system.let_bear(flying, closed, 0, 0, state, STILL, memory)
+    after = system.energies(new, state).kinetic
+    assert memory[IMPACT_LOSS] == pytest.approx(had - after, abs=1e-12 * had)
+    room = system.places()
+    six = [
+        room[k * PLACES + i] if i >= 0 else sum(state[6 + 2 * j] for j in range(k, 2))
+        for k in (1, 0)
+        for i in (at.SPEED_X, at.SPEED_Y, -1)
+    ]
+    kept = HELD_PLACE + 2
+    taken = int(memory[kept + TAKEN])
+    bears = {number: name for name, number in ENDS.items()}
+    pattern = Pattern(bears[taken >> 2], bears[taken & 3])
+    return pattern, int(memory[kept + ADMISSIBLE]), np.array(six), after / had
+
+
+def test_one_body_is_housners():
+    rng = np.random.default_rng(1)
+    impacts = compared = one = 0
+    while compared < 30:
+        one += 1
+        width, height = rng.uniform(0.3, 2.0), rng.uniform(2.0, 6.0)
+        aside = rng.uniform(-0.1, 0.1) * width if one % 3 == 0 else 0.0
+        middle = (f"{0.5 * height} m", f"{aside} m")
+        setting, model = alone(
+            rf.Block(width=f"{width} m", height=f"{height} m", mass="1 t", centre_of_mass=middle)
+        )
+        start, motion = Start(), None
+        if one % 5 == 4:
+            start = Start(0.5 * setting.overturning_angle)
+        else:
+            times = np.arange(0.0, 3.0, 0.01)
+            peak = rng.uniform(0.8, 3.0) * 9.81 * width / height
+            across = peak * np.sin(2.0 * np.pi * rng.uniform(0.5, 2.0) * times)
+            up = rng.uniform(-4.0, 4.0) * np.sin(6.0 * np.pi * times)
+            motion = rf.GroundMotion.from_arrays(
+                (across, "m/s^2"), "0.01 s", vertical=(up, "m/s^2")
+            ).si
+        housner, ours = (
+            integrate(each, start, motion, accuracy_of("reference"), duration=6.0, output_step=0.05)
+            for each in (setting.compile(), model)
+        )
+        if (ours.events.memory[:, HELD_PLACE + 1 + ADMISSIBLE] != 1.0).any():
+            continue  # the corner does not press, and may part: Housner's block is held
+        compared += 1
+        assert ours.status == housner.status, one
+        assert len(ours.events.time) == len(housner.events.time), one
+        apart = np.abs(ours.state[:, 0] - housner.state[:, 0])
+        assert apart.max() < 1e-9 * np.abs(housner.state[:, 0]).max() + 1e-15, one
+        assert ours.energy_residual < 1e-9
+        impacts += len(ours.events.time)
+    assert impacts > 300
+
+
+@pytest.mark.parametrize("slenderness", [1.5, 3.0, 8.0])
+def test_one_body_loses_in_an_impact_what_housners_does(slenderness):
+    _, model = alone(rf.Block(width="1 m", height=f"{slenderness} m", mass="1 t"))
+    system, state, memory = model.system, np.zeros(6), np.zeros(len(model.memory))
+    mode = system.with_bearing(0, 2, 0)
+    state[3] = -1.0
+    system.hold_contacts(mode, state, memory)
+    new = system.switch(mode, 0, state, STILL, memory)
+    assert system.bearing(new) == 1
+    expected = 1.0 - 1.5 * math.sin(math.atan(1.0 / slenderness)) ** 2
+    assert state[3] == pytest.approx(-expected, abs=4e-16)
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "rates", "energy"),
+    [
+        (Pattern("right", "both"), ("left", "both"), (-31 / 34, -31 / 34), 961 / 1156),
+        (Pattern("both", "right"), ("left", "left"), (-9 / 49, -47 / 98), 109 / 196),
+    ],
+)
+def test_landings_of_two_equal_blocks_in_exact_numbers(before, after, rates, energy):
+    phase = Phase(EQUAL, before, 0.0)
+    place = phase.placed(np.zeros(phase.size))
+    speed = phase.motions(0.0, 0.0)[0] @ np.full(phase.size, -1.0)
+    pattern, admissible, six, share = landing(EQUAL, place, speed, ALL)
+    assert (pattern, admissible) == (after, 1)
+    assert (six[2], six[5]) == pytest.approx(rates, abs=1e-14)
+    assert share == pytest.approx(energy, abs=1e-14)
+
+
+def test_random_impacts_of_two_blocks():
+    """As in the reference model, and as seldom without one admissible pattern."""
+    rng, others = np.random.default_rng(5), dict.fromkeys(KINDS, 0)
+    for kind in KINDS:
+        for number in range(250):
+            pair, place, speed, touching = draw_impact(rng, kind)
+            theirs = strike(pair, pair.offset, place, speed, touching)
+            pattern, admissible, six, _ = landing(pair, place, speed, touching)
+            assert admissible == theirs.admissible, (kind, number)
+            others[kind] += admissible != 1
+            size = np.abs(speed).max()
+            assert six == pytest.approx(theirs.motion, abs=1e-9 * size), (kind, number)
+            if admissible == 1:
+                assert pattern == theirs.pattern, (kind, number)
+    assert others[KINDS[0]] == others[KINDS[1]] == 0
+    assert sum(others.values()) > 5
