@@ -64,7 +64,7 @@ class RockframeAccessor:
             No function draws such a dataset.
         """
         from rockframe import plot
-        from rockframe.plot._given import drawn_by
+        from rockframe.plot._checks import drawn_by
 
         return getattr(plot, drawn_by(self._dataset))(self._dataset, **options)
 

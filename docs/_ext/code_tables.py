@@ -22,8 +22,6 @@ from rockframe.results.variables.analyses import (
     SPECTRA,
     FragilityStatus,
 )
-from rockframe.results.variables.comparison import COMPARISON
-from rockframe.results.variables.identification import FREE_DECAY, FitStatus
 from rockframe.results.variables.requests import (
     ACCELERATIONS,
     FORCE_SCALARS,
@@ -42,7 +40,14 @@ from rockframe.results.variables.runs import (
     RunStatus,
 )
 from rockframe.results.variables.statics import HELD, MODES, REST
-from rockframe.results.variables.studies import CRITICAL_SCALE, SWEEP, Outcome
+from rockframe.results.variables.studies import (
+    COMPARISON,
+    CRITICAL_SCALE,
+    FREE_DECAY,
+    SWEEP,
+    FitStatus,
+    Outcome,
+)
 from rockframe.results.variables.variable import EVENT, Variable
 from rockframe.solve.accuracy import LEVELS
 from rockframe.system.options import Restraint, Rotation

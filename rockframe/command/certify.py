@@ -3,8 +3,8 @@
 import argparse
 from textwrap import fill
 
-from rockframe.command.given import RUN, Outputs, scene_from, simulated
 from rockframe.command.run import finished
+from rockframe.command.shared import RUN, Outputs, scene_from, simulated
 from rockframe.simulation.run_arguments import Certification
 
 

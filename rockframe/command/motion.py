@@ -5,8 +5,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Final
 
-from rockframe.command.given import Outputs, motion_from, printed, table_kind
 from rockframe.command.plot import PICTURE, save
+from rockframe.command.shared import Outputs, motion_from, printed, table_kind
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.measures import intensity_measures
 from rockframe.motion import GroundMotion

@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from rockframe import plot
-from rockframe.command.given import Outputs, opened
+from rockframe.command.shared import Outputs, opened
 from rockframe.errors import ComponentError
-from rockframe.plot._given import drawn_by
+from rockframe.plot._checks import drawn_by
 from rockframe.reports.figures import close, figure_of
 from rockframe.version import __version__
 from rockframe.writing import FileKind

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import xarray as xr
 
-from rockframe.command.given import opened
+from rockframe.command.shared import opened
 from rockframe.errors import FileError
 from rockframe.reports import report
 from rockframe.studies import case

@@ -4,7 +4,7 @@ import argparse
 
 import xarray as xr
 
-from rockframe.command.given import RUN, Outputs, scene_from, simulated, system_words
+from rockframe.command.shared import RUN, Outputs, scene_from, simulated, system_words
 from rockframe.results.variables.runs import RunStatus
 from rockframe.simulation.provenance import motion_words
 

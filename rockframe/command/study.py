@@ -9,9 +9,9 @@ from typing import Final
 import numpy as np
 
 from rockframe.command.files.studies import DescribedStudy, read_study
-from rockframe.command.given import STUDY, Outputs, printed, system_words, table_kind
 from rockframe.command.main import INTERRUPTED
 from rockframe.command.run import FINISHED
+from rockframe.command.shared import STUDY, Outputs, printed, system_words, table_kind
 from rockframe.errors import FileError, StudyError
 from rockframe.results.table import table
 from rockframe.results.variables.runs import RunStatus

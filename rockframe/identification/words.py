@@ -7,7 +7,7 @@ from typing import Any, Final
 import numpy as np
 
 from rockframe.identification.least_squares import MOST_EVALUATIONS, Solution, Uncertainty
-from rockframe.results.variables.identification import FitStatus
+from rockframe.results.variables.studies import FitStatus
 
 _DEPENDENT: Final = 0.3
 """Correlation of residuals with the next from which they do not count as independent."""

@@ -10,14 +10,13 @@ import xarray as xr
 from rockframe.arguments import whole_number
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError, shown
-from rockframe.measures.labels import build_over
+from rockframe.measures.common import Looked, build_over, check_some
 from rockframe.measures.response import (
     checked_periods,
     checked_ratios,
     oscillator_axes,
     shortest_of,
 )
-from rockframe.measures.several import Looked, check_some
 from rockframe.motion.pair import HorizontalPair
 from rockframe.motion.processing.coarseness import say_coarse
 from rockframe.results.dataset import build_dataset

@@ -5,9 +5,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import xarray as xr
 
-from rockframe.measures.about import about
-from rockframe.measures.component import component_of, signal_of
-from rockframe.measures.labels import build_over
+from rockframe.measures.common import build_over, component_attributes, component_of, signal_of
 from rockframe.signals.fourier import transform_of
 from rockframe.units import FREQUENCY, POSITIVE, to_si
 
@@ -71,7 +69,7 @@ def fourier_spectrum(
     return build_over(
         {"frequency": (frequency, "cyclic frequency")},
         {"fourier_amplitude": np.abs(transform), "fourier_phase": np.angle(transform)},
-        about(motion, component_of(component, owner=_OWNER)),
+        component_attributes(motion, component_of(component, owner=_OWNER)),
         title="Fourier spectrum",
         source="fast Fourier transform",
     )

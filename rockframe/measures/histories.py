@@ -4,8 +4,7 @@ from typing import TYPE_CHECKING
 
 import xarray as xr
 
-from rockframe.measures.about import about
-from rockframe.measures.component import GroundComponent, component_of, signal_of
+from rockframe.measures.common import GroundComponent, component_attributes, component_of, signal_of
 from rockframe.results.dataset import build_dataset
 from rockframe.signals.path import ground_path
 from rockframe.signals.polynomials import knots_of
@@ -69,7 +68,7 @@ def velocity_and_displacement(
     }
     return build_dataset(
         {name: array.copy() for name, array in values.items()},
-        about(motion, which),
+        component_attributes(motion, which),
         title="Ground motion",
         source="integration from sample to sample",
     )

@@ -9,8 +9,7 @@ import xarray as xr
 from rockframe.components import Block
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError, shown
-from rockframe.measures.component import GroundComponent, component_of
-from rockframe.measures.several import looked_at
+from rockframe.measures.common import GroundComponent, component_of, looked_at
 from rockframe.results.dataset import build_dataset
 from rockframe.signals import Signal
 from rockframe.signals.accumulation import (

@@ -9,8 +9,7 @@ import xarray as xr
 
 from rockframe.arguments import one_of_words
 from rockframe.errors import ComponentError, shown
-from rockframe.measures.labels import build_over
-from rockframe.measures.several import Looked, looked_at
+from rockframe.measures.common import Looked, build_over, looked_at
 from rockframe.motion.operations.timing import Interpolation
 from rockframe.motion.processing.coarseness import say_coarse
 from rockframe.motion.processing.sampling import band_limited

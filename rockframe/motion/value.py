@@ -130,9 +130,9 @@ class MotionValue:
         return [name for name in super().__dir__() if not name.startswith("_")]
 
     def _repr_html_(self) -> str:
-        from rockframe.motion.card import motion_card
+        from rockframe.motion.html import motion_html
 
-        return motion_card(self)
+        return motion_html(self)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, MotionValue):

@@ -10,7 +10,7 @@ import xarray as xr
 from rockframe.errors import ComponentError, shown
 from rockframe.plot._artists import CONTACT, SceneArtist
 from rockframe.plot._axes import BLUE, GREY
-from rockframe.plot._given import check_run
+from rockframe.plot._checks import check_run
 from rockframe.plot._panels import Panels, sheet
 from rockframe.plot._response import response, strips_of
 from rockframe.plot._runs import Run, runs_of

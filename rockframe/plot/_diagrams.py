@@ -7,7 +7,7 @@ import xarray as xr
 
 from rockframe.errors import SchemaError
 from rockframe.plot._axes import COLOURS, GREY, colour_of, grid, ink, key, labelled, zero_line
-from rockframe.plot._given import overturning_angles, refuse, system_of
+from rockframe.plot._checks import overturning_angles, refuse, system_of
 from rockframe.plot._panels import single
 from rockframe.plot._response import of_rotation, relative
 from rockframe.plot._runs import Run, runs_of, verdict_of

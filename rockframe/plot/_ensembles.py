@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe.plot._axes import COLOURS, grid, label_of
-from rockframe.plot._given import check_study
+from rockframe.plot._checks import check_study
 from rockframe.plot._panels import Panels, sheet, single
 from rockframe.results.outcome import overturns
 from rockframe.studies.sweeps.telling import verdict_of

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from rockframe.plot._axes import BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILLION, key
-from rockframe.plot._given import overturning_angles
+from rockframe.plot._checks import overturning_angles
 from rockframe.plot._runs import Run
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ import xarray as xr
 
 from rockframe.errors import SchemaError
 from rockframe.plot._axes import COLOURS, colour_of, grid, label_of_intensity, style_of
-from rockframe.plot._given import check_study
+from rockframe.plot._checks import check_study
 from rockframe.plot._panels import Panels, Sheet, sheet, single
 from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.studies.fragility.words import measures_of, sentences

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias, cast
 
 from rockframe.motion.shown_name import shown_name
 from rockframe.plot._axes import colour_of, style_of
-from rockframe.plot._given import check_motion
+from rockframe.plot._checks import check_motion
 
 if TYPE_CHECKING:
     from rockframe.motion import GroundMotion

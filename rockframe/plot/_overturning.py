@@ -18,7 +18,7 @@ from rockframe.plot._axes import (
     plain_ticks,
     steps_of,
 )
-from rockframe.plot._given import check_study
+from rockframe.plot._checks import check_study
 from rockframe.plot._panels import Panels, Sheet, sheet, single
 from rockframe.results.outcome import overturns
 from rockframe.studies.sweeps.telling import verdict_of

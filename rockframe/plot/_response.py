@@ -17,9 +17,9 @@ from rockframe.plot._axes import (
     labelled,
     zero_line,
 )
+from rockframe.plot._checks import overturning_angles
 from rockframe.plot._contact import draw_contact, draw_contact_legend
 from rockframe.plot._events import draw_events
-from rockframe.plot._given import overturning_angles
 from rockframe.plot._panels import Panels, sheet
 from rockframe.plot._runs import Run, runs_of, verdict_of
 from rockframe.plot._units import RELATIVE, Shown, unit_of

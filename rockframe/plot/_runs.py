@@ -9,7 +9,7 @@ import xarray as xr
 
 from rockframe.errors import ComponentError, shown
 from rockframe.plot._axes import colour_of, style_of
-from rockframe.plot._given import check_run
+from rockframe.plot._checks import check_run
 from rockframe.units import TIME, QuantityLike, to_si
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ import xarray as xr
 
 from rockframe.errors import ComponentError, SchemaError, shown
 from rockframe.plot._artists import SceneArtist, labels_of
-from rockframe.plot._given import check_run, check_system, system_of
+from rockframe.plot._checks import check_run, check_system, system_of
 from rockframe.plot._layout import Drawer
 from rockframe.plot._panels import single
 from rockframe.results.placement import UPRIGHT, Placement

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe.plot._axes import BLUE, GREY, VERMILLION, grid, plain_ticks
-from rockframe.plot._given import check_selection
+from rockframe.plot._checks import check_selection
 from rockframe.plot._panels import Panels, sheet
 
 if TYPE_CHECKING:

@@ -20,7 +20,7 @@ from rockframe.plot._axes import (
     style_of,
     zero_line,
 )
-from rockframe.plot._given import check_study
+from rockframe.plot._checks import check_study
 from rockframe.plot._panels import Panels, sheet, single
 from rockframe.plot._units import unit_of
 from rockframe.results.outcome import overturns

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe.plot._axes import GREY, grid, ink
-from rockframe.plot._given import check_rungs
+from rockframe.plot._checks import check_rungs
 from rockframe.plot._panels import Panels, sheet
 
 if TYPE_CHECKING:

@@ -13,9 +13,7 @@ from rockframe.results.variables.analyses import (
     SPECTRA,
 )
 from rockframe.results.variables.bodies import BODIES
-from rockframe.results.variables.comparison import COMPARISON
 from rockframe.results.variables.directions import DIRECTIONS
-from rockframe.results.variables.identification import FREE_DECAY
 from rockframe.results.variables.motions import MEASURES
 from rockframe.results.variables.requests import (
     ACCELERATIONS,
@@ -34,7 +32,15 @@ from rockframe.results.variables.runs import (
     MOTION_AFTER_END,
 )
 from rockframe.results.variables.statics import HELD, MODES, REST
-from rockframe.results.variables.studies import CASE, CRITICAL_SCALE, MESSAGE, MOTION, SWEEP
+from rockframe.results.variables.studies import (
+    CASE,
+    COMPARISON,
+    CRITICAL_SCALE,
+    FREE_DECAY,
+    MESSAGE,
+    MOTION,
+    SWEEP,
+)
 from rockframe.results.variables.suites import RECORDS, TARGETS
 from rockframe.results.variables.variable import Variable
 

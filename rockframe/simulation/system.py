@@ -177,9 +177,9 @@ class System:
         return [name for name in super().__dir__() if not name.startswith("_")]
 
     def _repr_html_(self) -> str:
-        from rockframe.system.card import system_card
+        from rockframe.system.html import system_html
 
-        return system_card(self._assembly, type(self).__name__)
+        return system_html(self._assembly, type(self).__name__)
 
     def describe(self) -> str:
         """Tell which model was picked, by which equations, and what it leaves out.

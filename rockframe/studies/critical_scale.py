@@ -24,10 +24,8 @@ from rockframe.simulation.run import beside, run
 from rockframe.simulation.run_arguments import ScaleArguments
 from rockframe.simulation.run_summary import RunSummary
 from rockframe.simulation.soundness import STILL_MOVING
-from rockframe.studies.flip_words import least_overturning, sentence, unfinished
-from rockframe.studies.flips import Followed, Look, follow
-from rockframe.studies.intensities import of_study
-from rockframe.studies.scaled_intensity import ScaledIntensity
+from rockframe.studies.flips import Followed, Look, follow, least_overturning, sentence, unfinished
+from rockframe.studies.intensities import ScaledIntensity, of_study
 from rockframe.studies.sweeps.progress import ProgressBar, bar_of
 from rockframe.system.rigid_ground import RigidGroundSetting
 from rockframe.units import POSITIVE, Condition, to_ratio

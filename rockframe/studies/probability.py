@@ -15,8 +15,7 @@ from rockframe.shared_arguments import takes
 from rockframe.studies.confidence import clopper_pearson, read_level
 from rockframe.studies.limit_states import overturns
 from rockframe.studies.lines import head
-from rockframe.studies.ranking import ranked
-from rockframe.studies.spread import Sampling, drawn, read_spread
+from rockframe.studies.spread import Sampling, drawn, ranked, read_spread
 from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.studies.sweeps.memory import check_memory
 from rockframe.studies.sweeps.motions import motions_of

@@ -10,8 +10,8 @@ import numpy as np
 from rockframe.arguments import one_of_words
 from rockframe.errors import ComponentError, shown
 from rockframe.measures import rotated_spectrum
+from rockframe.measures.common import looked_at
 from rockframe.measures.response import checked_periods, shortest_of, spectra_of
-from rockframe.measures.several import looked_at
 from rockframe.motion.processing.coarseness import say_coarse
 from rockframe.signals.arrays import Array
 from rockframe.suites.suite import MotionSuite

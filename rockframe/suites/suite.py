@@ -121,9 +121,9 @@ class MotionSuite(Mapping[str, GroundMotion]):
         return [name for name in super().__dir__() if not name.startswith("_")]
 
     def _repr_html_(self) -> str:
-        from rockframe.suites.card import suite_card
+        from rockframe.suites.html import suite_html
 
-        return suite_card(self)
+        return suite_html(self)
 
     @property
     def verticals(self) -> Mapping[str, GroundMotion]:

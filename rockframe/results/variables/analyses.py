@@ -3,7 +3,7 @@
 from enum import IntEnum
 from typing import Final
 
-from rockframe.results.variables.identification import PARAMETER
+from rockframe.results.variables.studies import PARAMETER
 from rockframe.results.variables.variable import FLIP, Variable, count, flag, number
 from rockframe.units import Unit
 

@@ -8,8 +8,7 @@ from rockframe.simulation.plan import Plan, length_of
 from rockframe.simulation.second_look import Look, is_sure, look_at, second_look
 from rockframe.solve.accuracy import LEVELS, AccuracyLevel
 from rockframe.studies.sweeps.cases_of_job import CasesOfJob
-from rockframe.studies.sweeps.runs import each_run
-from rockframe.studies.sweeps.side_by_side import Finished
+from rockframe.studies.sweeps.side_by_side import Finished, each_run
 from rockframe.system.assembly import Assembly
 
 SCREEN: Final = "screen"

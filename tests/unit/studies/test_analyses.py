@@ -12,7 +12,7 @@ from rockframe.errors import ComponentError, SchemaError, StudyError
 from rockframe.results.schema import SCHEMA
 from rockframe.studies import lines
 from rockframe.studies.brackets import Bracket, brackets_of, narrowed, padded
-from rockframe.studies.ranking import ranked
+from rockframe.studies.spread import ranked
 from rockframe.studies.sweeps import execution
 
 BLOCK = rf.Block(width="0.5 m", height="2 m", mass="400 kg")

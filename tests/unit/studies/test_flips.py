@@ -7,8 +7,7 @@ import pytest
 
 from rockframe.simulation.run_summary import RunSummary
 from rockframe.solve.layout import Status
-from rockframe.studies.flip_words import sentence
-from rockframe.studies.flips import FINEST, follow
+from rockframe.studies.flips import FINEST, follow, sentence
 
 ROW = [0.1 * k for k in range(41)]
 

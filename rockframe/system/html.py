@@ -15,7 +15,7 @@ _PAD: Final = 0.06
 """Thickness with which pads are drawn, over the width of the base."""
 
 
-def system_card(scene: "Assembly", name: str) -> str:
+def system_html(scene: "Assembly", name: str) -> str:
     """Give drawing and numbers of a scene as HTML."""
     setting, options = scene.setting, scene.options
     rows = {"model": setting.model}

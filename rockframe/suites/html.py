@@ -3,7 +3,7 @@
 from html import escape
 from typing import TYPE_CHECKING, Final
 
-from rockframe.motion.card import peak_words
+from rockframe.motion.html import peak_words
 from rockframe.notebook import CELL, TABLE, card, curve
 
 if TYPE_CHECKING:
@@ -13,7 +13,7 @@ _SHOWN: Final = 8
 """Motions that have a row of their own."""
 
 
-def suite_card(suite: "MotionSuite") -> str:
+def suite_html(suite: "MotionSuite") -> str:
     """Give number, and curves of the first motions, of a suite as HTML."""
     rows = {"motions": str(len(suite))}
     if suite.verticals:

@@ -15,7 +15,7 @@ _TOLD: tuple[str, ...] = ("event", "station", "component")
 """Metadata that stand on a card, where a file told them."""
 
 
-def motion_card(motion: "MotionValue") -> str:
+def motion_html(motion: "MotionValue") -> str:
     """Give name, curve and numbers of a motion as HTML."""
     si = motion.si
     samples = np.asarray(si.horizontal.samples)

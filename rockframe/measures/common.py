@@ -1,0 +1,254 @@
+"""What measures have in common: the motions and components they look at, and labels of answers."""
+
+from collections.abc import Callable, Iterable, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from enum import StrEnum
+from os import cpu_count
+from typing import TYPE_CHECKING, Any, Final, Generic, TypeVar, cast
+
+import numpy as np
+import xarray as xr
+
+from rockframe.arguments import one_of_words
+from rockframe.compiled import COMPILED
+from rockframe.errors import ComponentError, shown
+from rockframe.motion import GroundMotion
+from rockframe.results.dataset import build_dataset
+from rockframe.results.joining import MOTION
+from rockframe.results.schema import SCHEMA
+from rockframe.signals import Signal
+
+if TYPE_CHECKING:
+    from rockframe.signals.arrays import Array
+
+
+class GroundComponent(StrEnum):
+    """Which acceleration of a motion is looked at."""
+
+    HORIZONTAL = "horizontal"
+    VERTICAL = "vertical"
+
+
+def signal_of(motion: object, component: object, *, owner: str) -> Signal:
+    """Take one component of a motion.
+
+    Parameters
+    ----------
+    motion : GroundMotion
+        The motion.
+    component : {"horizontal", "vertical"}
+        Which acceleration.
+    owner : str
+        Function, for the message.
+
+    Returns
+    -------
+    Signal
+
+    Raises
+    ------
+    ComponentError
+        Not a motion, not a component, or the motion lacks it.
+    """
+    if not isinstance(motion, GroundMotion):
+        msg = f"{owner}: motion needs a GroundMotion, got {shown(motion)}"
+        raise ComponentError(msg)
+    if component_of(component, owner=owner) is GroundComponent.HORIZONTAL:
+        return motion.si.horizontal
+    if motion.si.vertical is None:
+        msg = f"{owner}: component='vertical', but {motion.name!r} has no vertical acceleration"
+        raise ComponentError(msg)
+    return motion.si.vertical
+
+
+def component_of(given: object, *, owner: str) -> GroundComponent:
+    """Read the argument `component`.
+
+    Parameters
+    ----------
+    given : {"horizontal", "vertical"}
+        What the user gave.
+    owner : str
+        Function, for the message.
+
+    Returns
+    -------
+    GroundComponent
+
+    Raises
+    ------
+    ComponentError
+        None of the two.
+    """
+    return one_of_words(GroundComponent, given, owner=owner, name="component")
+
+
+Thing = TypeVar("Thing")
+Answer = TypeVar("Answer")
+
+_LABEL: Final = {"long_name": "ground motion"}
+
+
+@dataclass(frozen=True)
+class Looked(Generic[Thing]):
+    """What is looked at: one thing, or several with their labels.
+
+    Parameters
+    ----------
+    things : list
+        Signals, or pairs of motions.
+    labels : list of str or None
+        Of several; None where it is one.
+    attributes : dict
+        What the answer says of them.
+    """
+
+    things: list[Thing]
+    labels: list[str] | None
+    attributes: dict[str, str | float | int]
+
+    @property
+    def over(self) -> tuple[str, ...]:
+        """The dimension of several."""
+        return () if self.labels is None else (MOTION,)
+
+    def each(self, function: Callable[[Thing], Answer]) -> list[Answer]:
+        """Ask for the answer of each, in threads where compiled code lets them run together."""
+        workers = min(cpu_count() or 1, len(self.things))
+        if not COMPILED or workers < 2:
+            return [function(thing) for thing in self.things]
+        first = function(self.things[0])  # compiles, the first time
+        with ThreadPoolExecutor(workers) as pool:
+            return [first, *pool.map(function, self.things[1:])]
+
+    def together(self, answers: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
+        """Put the values of all answers into arrays, or give those of the one."""
+        rows = list(answers)
+        if self.labels is None:
+            return dict(rows[0])
+        return {name: np.array([row[name] for row in rows]) for name in rows[0]}
+
+    def labelled(self, dataset: xr.Dataset) -> xr.Dataset:
+        """Name several along their dimension."""
+        if self.labels is None:
+            return dataset
+        dataset = dataset.assign_coords({MOTION: (MOTION, self.labels, _LABEL)})
+        # a coordinate has no missing values, so it needs no fill value (CF 2.5.1)
+        dataset[MOTION].encoding["_FillValue"] = None
+        return dataset
+
+
+def looked_at(given: object, component: object, *, owner: str) -> Looked[Signal]:
+    """Take one component of a motion, or of each of several.
+
+    Parameters
+    ----------
+    given : GroundMotion, or mapping of str to GroundMotion
+        The motion, or a suite.
+    component : {"horizontal", "vertical"}
+        Which acceleration.
+    owner : str
+        Function, for the message.
+
+    Returns
+    -------
+    Looked
+
+    Raises
+    ------
+    ComponentError
+        Neither, none at all, not a component, or a motion lacks it.
+    """
+    if not isinstance(given, Mapping):
+        signal = signal_of(given, component, owner=owner)
+        which = component_of(component, owner=owner)
+        return Looked([signal], None, component_attributes(cast("GroundMotion", given), which))
+    motions = cast("Mapping[Any, Any]", given)
+    check_some(motions, owner=owner)
+    signals = [signal_of(motion, component, owner=owner) for motion in motions.values()]
+    which = str(component_of(component, owner=owner))
+    attributes: dict[str, Any] = {"component": which, "references": REFERENCES}
+    return Looked(signals, [str(label) for label in motions], attributes)
+
+
+def check_some(motions: Mapping[Any, Any], *, owner: str) -> None:
+    """Refuse a mapping that is empty."""
+    if not motions:
+        msg = f"{owner}: found no motions; expected one at least"
+        raise ComponentError(msg)
+
+
+REFERENCES: Final = (
+    "Nigam and Jennings (1969), Bull. Seism. Soc. Am. 59, 909-922; Arias (1970), in Seismic Design "
+    "for Nuclear Power Plants; Rathje et al. (2004), Earthquake Spectra 20, 119-144"
+)
+"""Where spectra and intensity measures come from; page "Response spectra" has them all."""
+
+
+def component_attributes(
+    motion: "GroundMotion", component: GroundComponent
+) -> dict[str, str | float | int]:
+    """Describe a motion so that it can be recognised.
+
+    Parameters
+    ----------
+    motion : GroundMotion
+        The motion.
+    component : GroundComponent
+        The component that was looked at.
+
+    Returns
+    -------
+    dict
+        Attributes of a dataset.
+    """
+    return {
+        "motion": motion.name,
+        "motion_sha256": motion.sha256,
+        "motion_time_step": motion.si.time_step,
+        "motion_samples": len(motion),
+        "motion_history": "; ".join(motion.history),
+        "component": str(component),
+        "references": REFERENCES,
+    }
+
+
+def build_over(
+    axes: "Mapping[str, tuple[Array, str]]",
+    values: "Mapping[str, Array]",
+    attributes: Mapping[str, str | float | int],
+    *,
+    over: tuple[str, ...] = (),
+    title: str,
+    source: str,
+) -> xr.Dataset:
+    """Label values, and give their dimensions coordinates.
+
+    The axes have the names and units of the schema's rows for a system's modes, where
+    these are variables over ``mode``.
+
+    Parameters
+    ----------
+    axes : mapping
+        Coordinate and its meaning, by the dimension's name.
+    values : mapping
+        Arrays by their names in the schema.
+    attributes : mapping
+        Strings and numbers.
+    over : tuple of str, optional
+        Dimensions that all values have before their own.
+    title, source : str
+        What the dataset holds, and how it was computed.
+
+    Returns
+    -------
+    xarray.Dataset
+    """
+    dataset = build_dataset(values, attributes, over=over, title=title, source=source)
+    for name, (axis, meaning) in axes.items():
+        labels = {**SCHEMA[name].attributes(), "long_name": meaning}
+        dataset = dataset.assign_coords({name: (name, axis.copy(), labels)})
+        # a coordinate has no missing values, so it needs no fill value (CF 2.5.1)
+        dataset[name].encoding["_FillValue"] = None
+    return dataset
