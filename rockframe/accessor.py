@@ -99,9 +99,9 @@ class RockframeAccessor:
     @property
     def verdict(self) -> str:
         """What became of it in one sentence; of a part of a sweep, what became of that part."""
-        from rockframe.studies.sweeps.telling import verdict_of
+        from rockframe.studies.sweeps.telling import cases_verdict
 
-        return verdict_of(self._dataset)
+        return cases_verdict(self._dataset)
 
     @property
     def summary(self) -> str:

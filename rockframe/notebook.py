@@ -30,7 +30,7 @@ class Polygon(NamedTuple):
     points: Sequence[tuple[float, float]]
 
 
-def in_words(arguments: Mapping[str, Any]) -> dict[str, str]:
+def arguments_in_words(arguments: Mapping[str, Any]) -> dict[str, str]:
     """Give arguments as people write them.
 
     Parameters

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from rockframe import plot
-from rockframe.command.shared import Outputs, opened
+from rockframe.command.shared import Outputs, read_result
 from rockframe.errors import ComponentError
 from rockframe.plot._checks import drawn_by
 from rockframe.reports.figures import close, figure_of
@@ -30,7 +30,7 @@ def execute(arguments: argparse.Namespace) -> int:
     """Draw what a file holds."""
     outputs = Outputs(arguments, [arguments.dataset])
     outputs.check(arguments.output, PICTURE)
-    dataset = opened(arguments.dataset)
+    dataset = read_result(arguments.dataset)
     function = getattr(plot, drawn_by(dataset))
     named = {} if arguments.title is None else {"title": arguments.title}
     save(figure_of(function(dataset, **named)), arguments.output, outputs)

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import xarray as xr
 
-from rockframe.command.shared import opened
+from rockframe.command.shared import read_result
 from rockframe.errors import FileError
 from rockframe.reports import report
 from rockframe.studies import case
@@ -13,7 +13,7 @@ from rockframe.studies import case
 
 def execute(arguments: argparse.Namespace) -> int:
     """Write the page."""
-    dataset = opened(arguments.dataset)
+    dataset = read_result(arguments.dataset)
     if "axes_json" in dataset.attrs or arguments.case is not None:
         dataset = _case_of(dataset, arguments)
     path = arguments.output

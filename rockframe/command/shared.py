@@ -102,7 +102,7 @@ class Outputs:
         self.write(path, kind, "Table", lambda part: values.to_csv(part))
 
 
-def opened(path: str) -> xr.Dataset:
+def read_result(path: str) -> xr.Dataset:
     """Read a result.
 
     Raises

@@ -11,7 +11,7 @@ def verdicts_agree(run: xr.Dataset, reference: xr.Dataset) -> bool:
     return verdict_of(run) is not None and verdict_of(run) == verdict_of(reference)
 
 
-def peak_error(run: xr.Dataset, reference: xr.Dataset) -> float:
+def relative_peak_error(run: xr.Dataset, reference: xr.Dataset) -> float:
     """Compare peak rotations, relative to that of the reference."""
     if _cut_off(run, reference):
         return float("nan")

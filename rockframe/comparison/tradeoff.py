@@ -14,7 +14,7 @@ from rockframe.arguments import whole_number
 from rockframe.comparison.errors import (
     event_time_error,
     history_error,
-    peak_error,
+    relative_peak_error,
     verdicts_agree,
 )
 from rockframe.comparison.models import check_system, model_ladder
@@ -173,10 +173,10 @@ def measure(
         "run_time": float(np.median(times)),
         "run_time_least": min(times),
         "run_time_greatest": max(times),
-        "numerical_peak_error": peak_error(found, converged),
+        "numerical_peak_error": relative_peak_error(found, converged),
         "numerical_history_error": history_error(found, converged),
         "event_time_error": event_time_error(found, converged),
-        "peak_error": peak_error(found, truth),
+        "peak_error": relative_peak_error(found, truth),
         "history_error": history_error(found, truth),
         "verdict_agrees": verdicts_agree(found, truth),
         **{name: found[name].item() for name in _KEPT},

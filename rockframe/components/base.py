@@ -8,10 +8,10 @@ from typing import Any, ClassVar, NoReturn, Self
 from rockframe.components.alternatives import OneOf
 from rockframe.components.docstrings import with_parameters
 from rockframe.components.parameters import DERIVED, REQUIRED, Declared
-from rockframe.components.registry import register
+from rockframe.components.registry import register_class
 from rockframe.components.values import SIValues
 from rockframe.errors import ComponentError, ModelWarning, shown, warn
-from rockframe.notebook import Polygon, card, drawing, in_words
+from rockframe.notebook import Polygon, arguments_in_words, card, drawing
 
 
 class Component:
@@ -60,7 +60,7 @@ class Component:
             cls.__init__ = _constructor(cls)
         if cls.__doc__ is not None:
             cls.__doc__ = with_parameters(cls.__doc__, cls._declared.values())
-        register(cls)
+        register_class(cls)
 
     def __init__(self, **given: object) -> None:
         self._fill(given)
@@ -156,7 +156,7 @@ class Component:
     def _repr_html_(self) -> str:
         shapes = self._shapes()
         drawn = drawing(shapes) if shapes else ""
-        return card(type(self).__name__, in_words(self._arguments()), drawn)
+        return card(type(self).__name__, arguments_in_words(self._arguments()), drawn)
 
     def __reduce__(self) -> tuple[object, ...]:
         return (type(self).from_dict, (self._arguments(),))

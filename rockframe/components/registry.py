@@ -13,7 +13,7 @@ _KINDS: Final[dict[str, "type[Component]"]] = {}
 _TYPE: Final = "type"
 
 
-def register(kind: "type[Component]") -> None:
+def register_class(kind: "type[Component]") -> None:
     """Note a class by its name.
 
     Parameters

@@ -16,7 +16,7 @@ from rockframe.identification.measured import (
     read_peaks,
 )
 from rockframe.identification.prediction import Prediction
-from rockframe.identification.report import report
+from rockframe.identification.report import fit_dataset
 from rockframe.identification.starts import starts_of
 from rockframe.identification.swings import swings_of
 from rockframe.identification.unknowns import Circumstance, TrialSystems
@@ -148,7 +148,7 @@ def fit_free_decay(
         fit = fit_peaks(prediction, data, chosen)
     else:
         fit = fit_history(prediction, data, swings_of(data, _OWNER), chosen)
-    return report(
+    return fit_dataset(
         prediction, data, fit, probability, accuracy if isinstance(accuracy, str) else "own"
     )
 

@@ -12,14 +12,14 @@ from rockframe.identification.least_squares import Solution, uncertainty_of
 from rockframe.identification.measured import History, MeasuredPeaks
 from rockframe.identification.prediction import Prediction
 from rockframe.identification.unknowns import Circumstance
-from rockframe.identification.words import cautions_of, verdict_of
+from rockframe.identification.words import cautions_of, fit_sentence
 from rockframe.results.dataset import build_dataset
 from rockframe.signals.arrays import Array
 
 _TIME: Final = "time of the record"
 
 
-def report(
+def fit_dataset(
     prediction: Prediction,
     measured: History | MeasuredPeaks,
     solution: Solution,
@@ -74,7 +74,7 @@ def report(
         warn(f"fit_free_decay: {caution}", ModelWarning)
     fitted = prediction.trials.system({name: found[name] for name in places})
     attributes: dict[str, str | float | int] = {
-        "verdict": verdict_of(values, list(places), confidence, uncertainty.reach),
+        "verdict": fit_sentence(values, list(places), confidence, uncertainty.reach),
         "confidence": confidence,
         "model": fitted.setting.model,
         "model_description": fitted.describe(),

@@ -19,7 +19,7 @@ _CLOSE: Final = 0.98
 """Correlation from which two unknowns can hardly be told apart."""
 
 
-def verdict_of(
+def fit_sentence(
     values: Mapping[str, Any], names: Sequence[str], confidence: float, reach: float
 ) -> str:
     """Say in one sentence what was found.

@@ -17,7 +17,7 @@ from rockframe.motion.processing.sampling import padded
 from rockframe.motion.processing.velocity_pulses import strongest
 from rockframe.motion.quantities import with_quantity
 from rockframe.motion.readers.reading import Reading, read_components
-from rockframe.motion.readers.source import Request, load
+from rockframe.motion.readers.source import Request, read_source
 from rockframe.motion.readers.timing import same_start
 from rockframe.units import ANGLE
 
@@ -108,7 +108,7 @@ class HorizontalPair:
             It cannot be read, or does not hold two horizontal components and at most one
             vertical one.
         """
-        source = load(path)
+        source = read_source(path)
         readings: list[Reading] = []
         for one in read_components(source, format, Request()):
             if isinstance(one, RecordError):

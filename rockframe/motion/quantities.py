@@ -167,7 +167,7 @@ def times_to_si(value: object, *, owner: str, name: str) -> Array:
     factor = 1.0
     dates = getattr(value, "dtype", None)
     if getattr(dates, "kind", "") in {"m", "M"}:
-        found = seconds_of(value, "s")
+        found = relative_seconds(value, "s")
         if found is None:
             msg = f"{owner}: {name} needs two or more dates, and none missing"
             raise ComponentError(msg)
@@ -262,17 +262,17 @@ def declared_times(value: object) -> Array | None:
         if array.ndim != 1 or array.dims[0] not in array.coords or array.dims[0] != "time":
             return None
         axis = array[array.dims[0]]
-        return seconds_of(axis.values, axis.attrs.get("units", "s"))
+        return relative_seconds(axis.values, axis.attrs.get("units", "s"))
     held = cast("tuple[object, ...]", value)[0] if isinstance(value, tuple) and value else value
     if _is_quantity(held):
         held = cast("Any", held).magnitude
     index = getattr(held, "index", None)
     if not hasattr(held, "iloc") or index is None:  # no pandas Series
         return None
-    return seconds_of(index, "s")
+    return relative_seconds(index, "s")
 
 
-def seconds_of(axis: object, unit: object) -> Array | None:
+def relative_seconds(axis: object, unit: object) -> Array | None:
     """Give an axis in seconds from its first time.
 
     Parameters

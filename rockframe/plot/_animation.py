@@ -14,7 +14,7 @@ from rockframe.plot._checks import check_run
 from rockframe.plot._panels import Panels, sheet
 from rockframe.plot._response import response, strips_of
 from rockframe.plot._runs import Run, runs_of
-from rockframe.plot._scene import Moving, size_of
+from rockframe.plot._scene import Moving, figure_size
 from rockframe.version import __version__
 from rockframe.writing import FileKind, checked_path, generator, write_file
 
@@ -244,7 +244,7 @@ def animation(
     times = np.linspace(drawn.time[0], drawn.time[-1], count)
     moving = Moving(drawn.dataset, "animation", magnify)
     shown_at = _nearest(drawn, times)
-    width, height = size_of(moving.drawer, wide=False)
+    width, height = figure_size(moving.drawer, wide=False)
     names = ["scene", "rotation", *strips_of([drawn])]
     heights = [height, 1.3, *[0.42] * (len(names) - 2)]
     on = sheet(

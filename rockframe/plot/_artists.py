@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from rockframe.notebook import in_words
+from rockframe.notebook import arguments_in_words
 from rockframe.plot._axes import BLUE, GREEN, GREY, ORANGE, VERMILLION, ink
 from rockframe.plot._layout import Drawer, Layout
 from rockframe.results.placement import Placement
@@ -162,7 +162,7 @@ class SceneArtist:
         self._artists[key].set_data(places[:, 0], places[:, 1])
 
 
-def labels_of(parts: Parts, geometry: Geometry) -> dict[str, str]:
+def part_labels(parts: Parts, geometry: Geometry) -> dict[str, str]:
     """Give what the parts of a scene are called, with their numbers, by their slots."""
     found: dict[str, str] = {}
     lower = () if parts.stack is None else parts.stack.bodies
@@ -170,7 +170,9 @@ def labels_of(parts: Parts, geometry: Geometry) -> dict[str, str]:
     named |= {f"stack {k - 1}" if k else "block": body for k, body in enumerate(lower)}
     for slot, part in named.items():
         if part is not None:
-            numbers = [f"{name} {value}" for name, value in in_words(part.to_dict()).items()]
+            numbers = [
+                f"{name} {value}" for name, value in arguments_in_words(part.to_dict()).items()
+            ]
             found[slot] = "\n   ".join([type(part).__name__, *numbers])
     if geometry.bed_sinks is None:
         found["ground"] = "rigid ground"

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 import xarray as xr
 
-from rockframe.studies.intensities import PERIOD_OF, in_words
+from rockframe.studies.intensities import PERIOD_OF, measure_words
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -60,21 +60,21 @@ def style_of(number: int) -> Any:
 
 def label_of(values: xr.DataArray) -> str:
     """Give name and unit of values, for an axis."""
-    return labelled(str(values.name).replace("_", " "), str(values.attrs.get("units", "1")))
+    return axis_label(str(values.name).replace("_", " "), str(values.attrs.get("units", "1")))
 
 
 def label_of_intensity(values: xr.DataArray, study: xr.Dataset) -> str:
     """Give name, period and unit of an intensity measure of a study, for an axis."""
-    words = in_words(str(values.name), study.attrs.get(PERIOD_OF))
-    return labelled(words, str(values.attrs.get("units", "1")))
+    words = measure_words(str(values.name), study.attrs.get(PERIOD_OF))
+    return axis_label(words, str(values.attrs.get("units", "1")))
 
 
-def labelled(words: str, unit: str) -> str:
+def axis_label(words: str, unit: str) -> str:
     """Put a unit behind words, for an axis."""
-    return f"{words} [{'-' if unit == '1' else raised(unit)}]"
+    return f"{words} [{'-' if unit == '1' else powers_in_mathtext(unit)}]"
 
 
-def raised(unit: str) -> str:
+def powers_in_mathtext(unit: str) -> str:
     """Write powers of a unit as powers."""
     return re.sub(r"\^(-?\d+)", r"$^{\1}$", unit)
 
@@ -104,7 +104,7 @@ def plain_ticks(axes: "Axes", which: str = "xy") -> None:
             axis.set_minor_locator(NullLocator())
 
 
-def steps_of(along: xr.DataArray) -> Any:
+def colour_steps(along: xr.DataArray) -> Any:
     """Give values for colours from dark to light, one for each label."""
     from matplotlib import colormaps
 

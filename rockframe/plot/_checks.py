@@ -263,7 +263,7 @@ def check_motion(given: object, function: str) -> None:
         raise ComponentError(refuse(function, given))
 
 
-def check_system(given: object, function: str) -> None:
+def require_system(given: object, function: str) -> None:
     """Refuse what is not a system.
 
     Parameters
@@ -284,7 +284,7 @@ def check_system(given: object, function: str) -> None:
         raise ComponentError(refuse(function, given))
 
 
-def system_of(run: xr.Dataset, function: str) -> "System":
+def system_of_run(run: xr.Dataset, function: str) -> "System":
     """Build the system of a run, without its motion.
 
     Parameters

@@ -6,11 +6,11 @@ import numpy as np
 import xarray as xr
 
 from rockframe.errors import SchemaError
-from rockframe.plot._axes import COLOURS, GREY, colour_of, grid, ink, key, labelled, zero_line
-from rockframe.plot._checks import overturning_angles, refuse, system_of
+from rockframe.plot._axes import COLOURS, GREY, axis_label, colour_of, grid, ink, key, zero_line
+from rockframe.plot._checks import overturning_angles, refuse, system_of_run
 from rockframe.plot._panels import single
 from rockframe.plot._response import of_rotation, relative
-from rockframe.plot._runs import Run, runs_of, verdict_of
+from rockframe.plot._runs import Run, runs_of, runs_title
 from rockframe.plot._units import RELATIVE, Shown, unit_of
 from rockframe.results.schema import ENERGIES, SCHEMA
 from rockframe.units import ANGLE, Measure, Unit
@@ -81,14 +81,14 @@ def phase(
     _about_zero(on.axes)
     words, per_second = ("-", "s^-1") if unit is None else (unit.words, f"{unit.words} s^-1")
     on.axes.set(
-        xlabel=labelled(r"rotation $\alpha/\theta$" if unit is None else "rotation", words),
-        ylabel=labelled(
+        xlabel=axis_label(r"rotation $\alpha/\theta$" if unit is None else "rotation", words),
+        ylabel=axis_label(
             r"rate $\dot\alpha/\theta$" if unit is None else "rate of the rotation", per_second
         ),
     )
     if len(given) > 1:
         key(on.axes)
-    on.entitle(verdict_of(given), title)
+    on.entitle(runs_title(given), title)
     return on.axes
 
 
@@ -167,10 +167,11 @@ def moment_rotation(
             )  # fmt: skip
         if on.axes.get_legend_handles_labels()[0]:
             key(on.axes)
-        on.entitle(verdict_of(runs), title)
+        on.entitle(runs_title(runs), title)
     _about_zero(on.axes)
     on.axes.set(
-        xlabel=labelled("rotation", angle.words), ylabel=labelled("moment of the base", size.words)
+        xlabel=axis_label("rotation", angle.words),
+        ylabel=axis_label("moment of the base", size.words),
     )
     return on.axes
 
@@ -245,10 +246,10 @@ def energies(
         part.time, from_start["input_energy"][kept], color=ink(), linewidth=1.1, label="input"
     )
     zero_line(on.axes)
-    on.axes.set(xlabel="time [s]", ylabel=labelled("energy", unit.words))
+    on.axes.set(xlabel="time [s]", ylabel=axis_label("energy", unit.words))
     on.axes.set_xlim(part.time[0], part.time[-1])
     on.legend(*on.axes.get_legend_handles_labels(), ncols=4)
-    on.entitle(verdict_of(given), title)
+    on.entitle(runs_title(given), title)
     return on.axes
 
 
@@ -287,7 +288,7 @@ def _draw_held(axes: "Axes", held: xr.Dataset, angle: Shown, size: Shown) -> Non
 
 def _draw_beneath(axes: "Axes", run: Run, angle: Shown, size: Shown) -> None:
     """Draw the moment in equilibrium beneath that of a run, as far as it rotates."""
-    system = system_of(run.dataset, "moment_rotation")
+    system = system_of_run(run.dataset, "moment_rotation")
     rotation = run.dataset["rotation"].to_numpy()
     angles = np.linspace(rotation.min(), rotation.max(), _ANGLES)
     held = system.moment_rotation((angles, str(ANGLE.unit)))

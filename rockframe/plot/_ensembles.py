@@ -9,7 +9,7 @@ from rockframe.plot._axes import COLOURS, grid, label_of
 from rockframe.plot._checks import check_study
 from rockframe.plot._panels import Panels, sheet, single
 from rockframe.results.outcome import overturns
-from rockframe.studies.sweeps.telling import verdict_of
+from rockframe.studies.sweeps.telling import cases_verdict
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -113,5 +113,5 @@ def probability(
     right.set(ylabel="share that overturns [-]", ylim=(0.0, 1.02))
     for axes in on.panels:
         grid(axes)
-    on.entitle(verdict_of(given), title)
+    on.entitle(cases_verdict(given), title)
     return on.panels

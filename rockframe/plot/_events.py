@@ -50,7 +50,7 @@ def draw_events(axes: "Axes", runs: list[Run], unit: "Shown | None") -> None:
         drawn = rotation / np.where(rotation < 0.0, left, right)
         drawn = drawn if unit is None else unit.of(rotation)
         when = dataset["event_time"].to_numpy()
-        for name, chosen in kinds_in(run).items():
+        for name, chosen in events_by_kind(run).items():
             marker, colour = MARKS[name]
             label = None if name in named else name.replace("_", " ")
             named.add(name)
@@ -63,7 +63,7 @@ def draw_events(axes: "Axes", runs: list[Run], unit: "Shown | None") -> None:
         key(axes, ncols=2)
 
 
-def kinds_in(run: Run) -> "dict[str, np.ndarray]":
+def events_by_kind(run: Run) -> "dict[str, np.ndarray]":
     """Give which events of a run are of each kind that is drawn."""
     kinds = run.dataset["event_kind"]
     values = kinds.to_numpy()

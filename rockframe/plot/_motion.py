@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 import xarray as xr
 
-from rockframe.plot._axes import BLUE, GREEN, GREY, ink, labelled, zero_line
-from rockframe.plot._motions import columns_of, motions_of, title_of
+from rockframe.plot._axes import BLUE, GREEN, GREY, axis_label, ink, zero_line
+from rockframe.plot._motions import columns_of, drawn_motions, motions_title
 from rockframe.plot._panels import Panels, sheet
 from rockframe.plot._runs import window_of
 from rockframe.plot._units import Shown, unit_of
@@ -63,7 +63,7 @@ def motion(
     """
     from rockframe.measures import velocity_and_displacement
 
-    given = motions_of(motion, "motion")
+    given = drawn_motions(motion, "motion")
     cut = window_of(window, "motion")
     units = [
         unit_of(unit, measure, function="motion", name=name)
@@ -91,7 +91,7 @@ def motion(
             if single:
                 _mark_peak(axes, history, f"ground_{name}", unit, colour)
         zero_line(axes)
-        axes.set_ylabel(labelled(f"{name}\n", unit.words).replace("\n ", "\n"))
+        axes.set_ylabel(axis_label(f"{name}\n", unit.words).replace("\n ", "\n"))
         axes.margins(y=0.15)
         axes.set_xlim(
             min(float(history["time"][0]) for history in found),
@@ -104,7 +104,7 @@ def motion(
     on.panels[-1].set_xlabel("time [s]")
     if on.own is not None:
         on.own.align_ylabels(on.panels)
-    on.entitle(title_of(given), title)
+    on.entitle(motions_title(given), title)
     return on.panels
 
 

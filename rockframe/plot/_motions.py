@@ -34,7 +34,7 @@ def columns_of(given: list[Drawn]) -> int:
     return max(1, min(len(given), _LETTERS // (longest + 6)))
 
 
-def title_of(given: list[Drawn]) -> str:
+def motions_title(given: list[Drawn]) -> str:
     """Give the title of a figure: the name of the one motion that it shows."""
     if len(given) != 1:
         return ""
@@ -42,7 +42,7 @@ def title_of(given: list[Drawn]) -> str:
     return shown_name(one.motion.name, one.motion.history)
 
 
-def motions_of(given: object, function: str) -> list[Drawn]:
+def drawn_motions(given: object, function: str) -> list[Drawn]:
     """Read one or several motions.
 
     Parameters

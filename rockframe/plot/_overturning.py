@@ -12,16 +12,16 @@ from rockframe.plot._axes import (
     SKY,
     STANDS,
     VERMILLION,
+    colour_steps,
     grid,
     label_of,
     label_of_intensity,
     plain_ticks,
-    steps_of,
 )
 from rockframe.plot._checks import check_study
 from rockframe.plot._panels import Panels, Sheet, sheet, single
 from rockframe.results.outcome import overturns
-from rockframe.studies.sweeps.telling import verdict_of
+from rockframe.studies.sweeps.telling import cases_verdict
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -70,7 +70,7 @@ def dynamic_analysis(
         lambda figure: figure.subplots(1, 2, width_ratios=(1.4, 1)),
     )  # fmt: skip
     left, right = on.panels
-    colours = steps_of(given["motion"])
+    colours = colour_steps(given["motion"])
     last = given.isel(limit_state=-1)
     for number, colour in enumerate(colours):
         one, along = given.isel(motion=number), intensity.isel(motion=number)
@@ -113,7 +113,7 @@ def dynamic_analysis(
     right.legend(frameon=False, fontsize="small")
     for axes in on.panels:
         grid(axes)
-    on.entitle(verdict_of(given), title)
+    on.entitle(cases_verdict(given), title)
     return on.panels
 
 
@@ -277,7 +277,7 @@ def _sheet(ax: "AxesLike", function: str, given: xr.Dataset) -> Sheet:
 
 
 def _lines(axes: "Axes", values: xr.DataArray) -> None:
-    for number, colour in enumerate(steps_of(values["motion"])):
+    for number, colour in enumerate(colour_steps(values["motion"])):
         one = values.isel(motion=number)
         label = str(one["motion"].item())
         axes.plot(one["rocking_period"], one, color=colour, lw=1.0, label=label)

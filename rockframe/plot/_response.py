@@ -12,16 +12,16 @@ from rockframe.plot._axes import (
     GREY,
     ORANGE,
     VERMILLION,
+    axis_label,
     ink,
     key,
-    labelled,
     zero_line,
 )
 from rockframe.plot._checks import overturning_angles
 from rockframe.plot._contact import draw_contact, draw_contact_legend
 from rockframe.plot._events import draw_events
 from rockframe.plot._panels import Panels, sheet
-from rockframe.plot._runs import Run, runs_of, verdict_of
+from rockframe.plot._runs import Run, runs_of, runs_title
 from rockframe.plot._units import RELATIVE, Shown, unit_of
 from rockframe.units import ACCELERATION, ANGLE, LENGTH
 
@@ -140,7 +140,7 @@ def response(
     ends = [run.time[[0, -1]] for run in given]
     for axes in on.panels:
         axes.set_xlim(min(start for start, _ in ends), max(end for _, end in ends))
-    on.entitle(verdict_of(given), title)
+    on.entitle(runs_title(given), title)
     return on.panels
 
 
@@ -203,7 +203,7 @@ def _ground(axes: "Axes", runs: list[Run], unit: Shown | None) -> None:
         axes.plot(run.time, across, color=colour, linewidth=0.8)
     if axes.get_legend_handles_labels()[0]:
         key(axes)
-    axes.set_ylabel(labelled("ground\n", unit.words).replace("\n ", "\n"))
+    axes.set_ylabel(axis_label("ground\n", unit.words).replace("\n ", "\n"))
 
 
 def _rotation(axes: "Axes", runs: list[Run], unit: Shown | None) -> None:
@@ -226,7 +226,7 @@ def _rotation(axes: "Axes", runs: list[Run], unit: Shown | None) -> None:
         key(axes)
     zero_line(axes)
     if unit is not None:
-        axes.set_ylabel(labelled("rotation", unit.words))
+        axes.set_ylabel(axis_label("rotation", unit.words))
         return
     axes.set_ylabel(r"rotation $\alpha/\theta$ [-]")
     angles = {overturning_angles(run.dataset) for run in runs}
@@ -269,7 +269,7 @@ def _vertical(axes: "Axes", runs: list[Run], unit: Shown | None) -> None:
         axes.plot(run.time, values, color=colour, linestyle=run.style, linewidth=1.1)
     zero_line(axes)
     if not over_settlement:
-        axes.set_ylabel(labelled("vertical $y$", metres.words))
+        axes.set_ylabel(axis_label("vertical $y$", metres.words))
         return
     stacked = any(_STACKED in run.dataset for run in runs)  # two settlements, so say which
     whose = "\n($\\delta$ of the pads)" if stacked else ""

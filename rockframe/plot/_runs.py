@@ -90,7 +90,7 @@ def window_of(window: object, function: str) -> tuple[float, float]:
     return (-np.inf if np.isnan(start) else start), (np.inf if np.isnan(end) else end)
 
 
-def verdict_of(runs: list[Run]) -> str:
+def runs_title(runs: list[Run]) -> str:
     """Give the title of a figure: the verdict of a run; of several, what they have in common."""
     if len(runs) == 1:
         return str(runs[0].dataset.attrs.get("verdict", ""))

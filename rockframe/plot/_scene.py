@@ -6,8 +6,8 @@ import numpy as np
 import xarray as xr
 
 from rockframe.errors import ComponentError, SchemaError, shown
-from rockframe.plot._artists import SceneArtist, labels_of
-from rockframe.plot._checks import check_run, check_system, system_of
+from rockframe.plot._artists import SceneArtist, part_labels
+from rockframe.plot._checks import check_run, require_system, system_of_run
 from rockframe.plot._layout import Drawer
 from rockframe.plot._panels import single
 from rockframe.results.placement import UPRIGHT, Placement
@@ -85,7 +85,7 @@ def scene(
     >>> axes.get_xlabel()
     '[m]'
     """
-    check_system(system, "scene")
+    require_system(system, "scene")
     drawer = Drawer(geometry_of(system.assembly))
     at = Placement(drawer.geometry, UPRIGHT, system.restraint)
     marked = {
@@ -94,8 +94,8 @@ def scene(
         )
         for name, place in (points or {}).items()
     }
-    on = single(ax, "scene", size_of(drawer, wide=legend))
-    artist = SceneArtist(on.axes, drawer, names=labels_of(system.parts, drawer.geometry))
+    on = single(ax, "scene", figure_size(drawer, wide=legend))
+    artist = SceneArtist(on.axes, drawer, names=part_labels(system.parts, drawer.geometry))
     artist.frame([at])
     artist.mark(marked)
     artist.draw(at)
@@ -155,7 +155,7 @@ def state(
     moving = Moving(run, "state", magnify)
     place = moving.nearest(time)
     at = moving.at(place)
-    on = single(ax, "state", size_of(moving.drawer, wide=False))
+    on = single(ax, "state", figure_size(moving.drawer, wide=False))
     artist = SceneArtist(on.axes, moving.drawer)
     artist.frame([at])
     artist.rest(moving.upright)
@@ -184,7 +184,7 @@ class Moving:
         if not 0.0 < number < np.inf:
             msg = f"rf.plot.{function}: magnify must be a number above zero, got {shown(magnify)}"
             raise ComponentError(msg)
-        self.system = system_of(run, function)
+        self.system = system_of_run(run, function)
         self.drawer = Drawer(geometry_of(self.system.assembly), number)
         self.run = run
         self.time = run["time"].to_numpy()
@@ -253,7 +253,7 @@ class Moving:
         return np.vstack(found)
 
 
-def size_of(drawer: Drawer, *, wide: bool) -> tuple[float, float]:
+def figure_size(drawer: Drawer, *, wide: bool) -> tuple[float, float]:
     """Give the size of a figure that a scene fits [in]."""
     geometry = drawer.geometry
     tall = (geometry.level + geometry.height) / (2.0 * drawer.reach)

@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 import xarray as xr
 
-from rockframe.plot._axes import colour_of, grid, ink, labelled, plain_ticks, style_of, zero_line
-from rockframe.plot._motions import Drawn, columns_of, motions_of, title_of
+from rockframe.plot._axes import axis_label, colour_of, grid, ink, plain_ticks, style_of, zero_line
+from rockframe.plot._motions import Drawn, columns_of, drawn_motions, motions_title
 from rockframe.plot._panels import Panels, sheet
 from rockframe.plot._runs import window_of
 from rockframe.plot._units import Shown, unit_of
@@ -74,7 +74,7 @@ def spectra(
         velocity_and_displacement,
     )
 
-    given = motions_of(motion, "spectra")
+    given = drawn_motions(motion, "spectra")
     cut = window_of(window, "spectra")
     unit = unit_of(acceleration, ACCELERATION, function="spectra", name="acceleration")
     found = [
@@ -101,7 +101,7 @@ def spectra(
     _label(on.panels, found, unit)
     if len(given) > 1:
         on.legend(*on.panels[1].get_legend_handles_labels(), ncols=columns_of(given))
-    on.entitle(title_of(given), title)
+    on.entitle(motions_title(given), title)
     return on.panels
 
 
@@ -144,9 +144,9 @@ def _label(panels: Panels, found: list[Any], unit: Shown) -> None:
     history.set_xlim(min(time[0] for time in ends), max(time[-1] for time in ends))
     history.set(
         xlabel="time [s]",
-        ylabel=labelled("acceleration\n", unit.words).replace("\n ", "\n"),
+        ylabel=axis_label("acceleration\n", unit.words).replace("\n ", "\n"),
     )
-    response.set(xlabel="period [s]", ylabel=labelled("pseudo-spectral acceleration", unit.words))
+    response.set(xlabel="period [s]", ylabel=axis_label("pseudo-spectral acceleration", unit.words))
     response.set_ylim(bottom=0.0)
     if not several:
         response.legend(title="damping", fontsize="small", title_fontsize="small", frameon=False)

@@ -11,12 +11,12 @@ from rockframe.plot._axes import (
     BLUE,
     GREY,
     VERMILLION,
+    axis_label,
     colour_of,
     grid,
     ink,
     key,
     label_of,
-    labelled,
     style_of,
     zero_line,
 )
@@ -25,7 +25,7 @@ from rockframe.plot._panels import Panels, sheet, single
 from rockframe.plot._units import unit_of
 from rockframe.results.outcome import overturns
 from rockframe.results.variables.studies import Outcome
-from rockframe.studies.sweeps.telling import verdict_of
+from rockframe.studies.sweeps.telling import cases_verdict
 from rockframe.units import ANGLE
 
 if TYPE_CHECKING:
@@ -85,7 +85,7 @@ def critical_scale(
     on.axes.set_ylim(bottom=0.0)
     grid(on.axes)
     key(on.axes)
-    on.entitle(verdict_of(given), title)
+    on.entitle(cases_verdict(given), title)
     return on.axes
 
 
@@ -199,7 +199,7 @@ def free_decay(
     below.plot(times[2], unit.of(given[names[2]]), dots, color=GREY, lw=0.8, markersize=3.0)
     for axes, words in ((above, "rotation"), (below, "measured\nless fitted")):
         zero_line(axes)
-        axes.set_ylabel(labelled(words, unit.words))
+        axes.set_ylabel(axis_label(words, unit.words))
         grid(axes)
     below.set_xlabel("time [s]" if histories or "measured_peak_time" in given else "peak")
     key(above)

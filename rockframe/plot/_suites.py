@@ -4,8 +4,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from rockframe.plot._axes import BLUE, GREY, VERMILLION, grid, key, labelled, plain_ticks
-from rockframe.plot._motions import motions_of, title_of
+from rockframe.plot._axes import BLUE, GREY, VERMILLION, axis_label, grid, key, plain_ticks
+from rockframe.plot._motions import drawn_motions, motions_title
 from rockframe.plot._panels import single
 from rockframe.plot._units import unit_of
 from rockframe.units import ACCELERATION
@@ -71,9 +71,9 @@ def suite(
     """
     from rockframe.measures import response_spectrum
 
-    given = motions_of(motions, "suite")
+    given = drawn_motions(motions, "suite")
     unit = unit_of(acceleration, ACCELERATION, function="suite", name="acceleration")
-    named = {one.label or title_of(given): one.motion for one in given}
+    named = {one.label or motions_title(given): one.motion for one in given}
     found = response_spectrum(named, periods, damping_ratio, component=component)
     found = found.isel(period=np.flatnonzero(found["period"].to_numpy() > 0.0))
     values = unit.of(
@@ -98,7 +98,7 @@ def suite(
         on.axes.plot(known, unit.of(wanted), color=VERMILLION, linewidth=1.8, label="target")
     on.axes.set(
         xscale="log", yscale="log", xlabel="period [s]",
-        ylabel=labelled("pseudo-spectral acceleration", unit.words),
+        ylabel=axis_label("pseudo-spectral acceleration", unit.words),
     )  # fmt: skip
     on.axes.set_xlim(period[0], period[-1])
     plain_ticks(on.axes)

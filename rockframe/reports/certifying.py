@@ -7,7 +7,7 @@ import xarray as xr
 from rockframe.errors import RockframeError, RockframeWarning
 from rockframe.results.outcome import verdict_of
 from rockframe.results.variables.runs import CERTIFICATE
-from rockframe.simulation.provenance import run_arguments
+from rockframe.simulation.provenance import arguments_of_run
 from rockframe.simulation.system import System
 
 
@@ -38,7 +38,7 @@ def certified(dataset: xr.Dataset, system: System | None) -> tuple[xr.Dataset, s
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", RockframeWarning)  # they stand in the dataset
-            again = system.simulate(**run_arguments(dataset), outputs=None, certify=True)
+            again = system.simulate(**arguments_of_run(dataset), outputs=None, certify=True)
     except RockframeError as problem:
         return dataset, f"{problem}."
     if verdict_of(again) != verdict_of(dataset):

@@ -17,7 +17,7 @@ from rockframe.motion import GroundMotion
 from rockframe.reports import page
 from rockframe.reports.figures import figure_of
 from rockframe.reports.limits import GENERAL, limits_of
-from rockframe.reports.values import raised, table_of
+from rockframe.reports.values import powers_in_html, table_of
 from rockframe.results.outcome import verdict_of
 from rockframe.results.variables.runs import CERTIFICATE
 from rockframe.simulation.provenance import motion_words
@@ -52,7 +52,7 @@ _PROVENANCE: Final = (
 )
 
 
-def verdict(dataset: xr.Dataset, reason: str) -> Iterator[str]:
+def verdict_section(dataset: xr.Dataset, reason: str) -> Iterator[str]:
     """Say what became of the body, and how sure that is."""
     title, kind = _BANNERS[verdict_of(dataset)]
     yield page.banner(title, str(dataset.attrs.get("verdict", "")), kind)
@@ -68,7 +68,7 @@ def verdict(dataset: xr.Dataset, reason: str) -> Iterator[str]:
         yield page.banner("To be used with care", cautions, "doubt")
 
 
-def scene(dataset: xr.Dataset, system: System | None) -> Iterator[str]:
+def scene_section(dataset: xr.Dataset, system: System | None) -> Iterator[str]:
     """Show the parts with their parameters, and the model."""
     if system is not None:
         yield from _drawing(system)
@@ -85,7 +85,7 @@ def scene(dataset: xr.Dataset, system: System | None) -> Iterator[str]:
     yield page.verbatim(str(dataset.attrs.get("model_description", "not described")))
 
 
-def motion(dataset: xr.Dataset, found: GroundMotion | None) -> Iterator[str]:
+def motion_section(dataset: xr.Dataset, found: GroundMotion | None) -> Iterator[str]:
     """Show the motion, its measures and its figure."""
     attributes = dict(dataset.attrs)
     if "motion" in attributes:
@@ -109,7 +109,7 @@ def motion(dataset: xr.Dataset, found: GroundMotion | None) -> Iterator[str]:
     )
 
 
-def results(dataset: xr.Dataset) -> Iterator[str]:
+def response_section(dataset: xr.Dataset) -> Iterator[str]:
     """Show the scalars of a run, and its figure."""
     if dataset.sizes.get("time", 0) > 1:
         yield page.picture(
@@ -126,14 +126,14 @@ def results(dataset: xr.Dataset) -> Iterator[str]:
         yield page.rows(table_of(dataset, _CERTIFICATE))
 
 
-def limits(system: System | None) -> Iterator[str]:
+def limits_section(system: System | None) -> Iterator[str]:
     """Say what the model leaves out."""
     yield page.items(GENERAL)
     parts = None if system is None else system.parts
     yield page.definitions((one.title, one.words) for one in limits_of(parts))
 
 
-def provenance(dataset: xr.Dataset, file: str) -> Iterator[str]:
+def provenance_section(dataset: xr.Dataset, file: str) -> Iterator[str]:
     """Say where the numbers come from, so that they can be had again."""
     attributes = dataset.attrs
     told = [(words, str(attributes[name])) for name, words in _PROVENANCE if name in attributes]
@@ -181,7 +181,7 @@ def _value(given: object) -> str:
     """Write a number with its unit, as far as six digits show it."""
     number, blank, unit = str(given).partition(" ")
     try:
-        return f"{float(number):.6g}{blank}{raised(unit)}"
+        return f"{float(number):.6g}{blank}{powers_in_html(unit)}"
     except ValueError:
         return str(given)
 

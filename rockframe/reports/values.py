@@ -44,10 +44,10 @@ def value_of(variable: xr.DataArray) -> str:
     number = f"{value + 0.0:.4g}"  # no negative zero
     if unit == Unit.RADIAN:
         return f"{number} rad ({math.degrees(value):.3g}°)"
-    return number if unit == Unit.ONE else f"{number} {raised(unit)}"
+    return number if unit == Unit.ONE else f"{number} {powers_in_html(unit)}"
 
 
-def raised(unit: str) -> str:
+def powers_in_html(unit: str) -> str:
     """Write the powers of a unit above the line."""
     return _POWER.sub(lambda power: power[1].translate(_ABOVE), unit)
 

@@ -87,12 +87,12 @@ def report(
     made = str(dataset.attrs.get("history", "")).splitlines()
     body = [
         f"<header>\n{_heading(heading, made)}\n</header>",
-        page.section("Verdict", sections.verdict(dataset, reason)),
-        page.section("Response", sections.results(dataset)),
-        page.section("Scene", sections.scene(dataset, system)),
-        page.section("Ground motion", sections.motion(dataset, motion)),
-        page.section("Limits of validity", sections.limits(system)),
-        page.section("Provenance", sections.provenance(dataset, Path(source).name)),
+        page.section("Verdict", sections.verdict_section(dataset, reason)),
+        page.section("Response", sections.response_section(dataset)),
+        page.section("Scene", sections.scene_section(dataset, system)),
+        page.section("Ground motion", sections.motion_section(dataset, motion)),
+        page.section("Limits of validity", sections.limits_section(system)),
+        page.section("Provenance", sections.provenance_section(dataset, Path(source).name)),
     ]
     content = page.page(heading, body).encode()
     return write_file(path, _KIND, content, overwrite=overwrite, read=read)

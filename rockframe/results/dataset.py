@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from rockframe.constants import CONVENTIONS, PAPER_TITLE
 from rockframe.errors import SchemaError
 from rockframe.results.outcome import Values
-from rockframe.results.schema import COORDINATES, SCHEMA_VERSION, row_of
+from rockframe.results.schema import COORDINATES, SCHEMA_VERSION, schema_row
 from rockframe.version import __version__
 
 
@@ -49,7 +49,7 @@ def build_dataset(
     variables: dict[str, tuple[tuple[str, ...], NDArray[Any]]] = {}
     labels: dict[str, dict[str, Any]] = {}
     for name, value in values.items():
-        row = row_of(name)
+        row = schema_row(name)
         data = np.asarray(value)
         gaps = data.dtype.kind == "f" and row.dtype != "float64" and bool(np.isnan(data).any())
         data = data if gaps else np.asarray(data, dtype=row.dtype)
@@ -59,7 +59,7 @@ def build_dataset(
             raise SchemaError(msg)
         variables[name] = (dims, data)
         labels[name] = row.attributes("float64" if gaps else None)
-    own = [name for name in variables if row_of(name).dims == (name,)]  # labels
+    own = [name for name in variables if schema_row(name).dims == (name,)]  # labels
     names = dict.fromkeys((*COORDINATES, *own))
     coordinates = {name: variables.pop(name) for name in names if name in variables}
     dataset = xr.Dataset(
@@ -95,7 +95,7 @@ def fitting(values: Mapping[str, Any], sizes: Mapping[str, int]) -> dict[str, ND
     """
     sizes, found = dict(sizes), {name: np.asarray(value) for name, value in values.items()}
     for name, data in found.items():
-        dims = row_of(name).dims
+        dims = schema_row(name).dims
         wanted = tuple(sizes.setdefault(*each) for each in zip(dims, data.shape, strict=False))
         if data.ndim != len(dims) or data.shape != wanted:
             msg = f"{name!r} over {dims} has the shape {data.shape}"

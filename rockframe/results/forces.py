@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockframe.results.along_steps import AlongSteps
-from rockframe.results.outcome import Generic, sine_cosine
+from rockframe.results.outcome import Generic, sines_cosines
 from rockframe.signals.arrays import Array
 from rockframe.system.load import Load
 
@@ -57,7 +57,7 @@ def force_histories(values: Values, ground: Array, load: Load) -> dict[str, Gene
     thrust, press = values["horizontal_reaction"], values["vertical_reaction"]
     rotation = values.get(STACKED, values["rotation"])
     body, small = load.body, load.options.small
-    sine, cosine = sine_cosine(rotation, small=small)
+    sine, cosine = sines_cosines(rotation, small=small)
     beside, lift = body.eccentricity * cosine, body.eccentricity * sine
     if small:  # widths to first order
         lift = np.zeros_like(rotation)
@@ -199,7 +199,7 @@ def residuals(values: Values, load: Load) -> dict[str, float]:
     """Give what is left at the end of a run, by its names in the schema."""
     rotation = float(values["rotation"][-1])
     body = load.body
-    sines, _ = sine_cosine(np.array([0.5 * rotation, rotation]), small=load.options.small)
+    sines, _ = sines_cosines(np.array([0.5 * rotation, rotation]), small=load.options.small)
     half, whole = float(sines[0]), float(sines[1])
     sunk = -float(values["vertical_displacement"][-1]) - body.eccentricity * whole
     return {

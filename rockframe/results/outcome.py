@@ -109,7 +109,7 @@ def ground_histories(ground: Array, *, has_vertical_motion: bool) -> dict[str, G
     return values
 
 
-def sine_cosine(rotation: Array, *, small: bool) -> tuple[Array, Array]:
+def sines_cosines(rotation: Array, *, small: bool) -> tuple[Array, Array]:
     """Give the sine and cosine of rotations, or their small-rotation forms."""
     if small:
         return rotation, np.ones_like(rotation)
@@ -122,7 +122,7 @@ def cap_histories(values: Mapping[str, Generic], setting: Setting) -> dict[str, 
     if offset is None:
         return {}
     small, beside = setting.options.small, setting.body.eccentricity
-    sine, cosine = sine_cosine(rotation, small=small)
+    sine, cosine = sines_cosines(rotation, small=small)
     versine = 0.5 * rotation**2 if small else 2.0 * np.sin(0.5 * rotation) ** 2
     rate = values["angular_velocity"]
     return {

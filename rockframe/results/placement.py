@@ -7,7 +7,7 @@ import numpy as np
 
 from rockframe.dynamics.events import ContactState
 from rockframe.dynamics.restraint import PIVOT_LEFT, PIVOT_RIGHT, pivot_of
-from rockframe.results.points import carried
+from rockframe.results.points import rotated_points
 from rockframe.signals.arrays import Array
 from rockframe.system.geometry import Geometry
 from rockframe.system.options import Restraint
@@ -73,7 +73,7 @@ class Placement:
         rotation = self.values.get("cap_rotation", 0.0)
         pin = half_width * self._held_side(rotation)
         # the centre of mass about the held point, which does not move, as in eq-kinematics
-        across, _ = carried(
+        across, _ = rotated_points(
             np.array(-pin), np.array(0.5 * height), np.array(rotation),
             small_rotation=self.geometry.small_rotation,
         )  # fmt: skip
@@ -108,7 +108,7 @@ class Placement:
         moves: tuple[float, float],
     ) -> Array:
         right, up = (points - np.array(centre)).T
-        across, above = carried(
+        across, above = rotated_points(
             right, up, np.array(rotation), small_rotation=self.geometry.small_rotation
         )
         return points + np.column_stack([across + moves[0], above + moves[1]])

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rockframe.results.along_steps import AlongSteps
-from rockframe.results.outcome import Generic, sine_cosine
+from rockframe.results.outcome import Generic, sines_cosines
 from rockframe.results.variables.requests import POINT_PEAKS
 from rockframe.signals.arrays import Array
 from rockframe.system.load import Load
@@ -29,7 +29,7 @@ class BodyPoint:
     y: float
 
 
-def carried(
+def rotated_points(
     right: Array, up: Array, rotation: Array, *, small_rotation: bool
 ) -> tuple[Array, Array]:
     """Give how a rotation moves points about the point that they are measured from.
@@ -90,14 +90,14 @@ def point_histories(
     body, small = load.body, load.options.small
     right = np.array([point.x for point in points])[:, None] - body.eccentricity
     up = np.array([point.y for point in points])[:, None] - body.centre_height
-    sine, cosine = sine_cosine(rotation, small=small)
+    sine, cosine = sines_cosines(rotation, small=small)
     # derivatives of the place about the centre of mass by the rotation
     across_rate, up_rate = up * cosine - right * sine, -right * cosine - up * sine
     across_bend, up_bend = -right * cosine - up * sine, right * sine - up * cosine
     if small:  # heights to second order, widths to first
         across_rate, up_rate = up + 0.0 * rotation, -right - up * rotation
         across_bend, up_bend = np.zeros_like(up_rate), -up + 0.0 * rotation
-    across, above = carried(right, up, rotation, small_rotation=small)
+    across, above = rotated_points(right, up, rotation, small_rotation=small)
     square = rate * rate
     x, y = values["horizontal_displacement"], values["vertical_displacement"]
     a_x = values["absolute_horizontal_acceleration"]

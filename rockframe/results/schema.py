@@ -82,7 +82,7 @@ SCHEMA: Final = {row.name: row for table in _TABLES for row in table}
 """All variables by name, with those that users have registered."""
 
 
-def row_of(name: str) -> Variable:
+def schema_row(name: str) -> Variable:
     """Give the row of a variable.
 
     Parameters

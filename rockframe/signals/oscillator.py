@@ -115,7 +115,7 @@ def shift_piece(pieces: Matrix, row: int, part: int, parts: int, shifted: Vector
 
 
 @kernel
-def march(
+def march_oscillator(
     pieces: Matrix,
     parts: int,
     force: float,
@@ -261,13 +261,13 @@ def march_all(
         fill_step(kappa, damping, step)
         state[0] = state[1] = 0.0
         clear(peaks)
-        march(
+        march_oscillator(
             pieces, parts, length * length, kappa, damping, step, shifted, state, peaks
         )  # fmt: skip
         for j in range(QUANTITIES):
             found[k, j] = peaks[j] / length**j
         state[1] *= free_length / length
         clear(peaks)
-        march(still, 1, 0.0, free, damping, free_step, shifted, state, peaks)
+        march_oscillator(still, 1, 0.0, free, damping, free_step, shifted, state, peaks)
         for j in range(QUANTITIES):
             found[k, j] = max(found[k, j], peaks[j] / free_length**j)

@@ -29,7 +29,7 @@ def start_of(beginning: Beginning) -> Start | Ending:
     return Start(si.rotation, si.angular_velocity, si.vertical_displacement, si.vertical_velocity)
 
 
-def described(beginning: Beginning) -> dict[str, Any]:
+def beginning_to_dict(beginning: Beginning) -> dict[str, Any]:
     """Give a beginning as plain values, fit for JSON."""
     if isinstance(beginning, Ending):
         return {"type": "Continuation", "ending": _plain(beginning)}

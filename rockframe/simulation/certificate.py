@@ -14,7 +14,7 @@ from rockframe.simulation.perturbations import (
     SceneAt,
     finer_plans,
     parameters,
-    scaled,
+    scaled_plan,
     scales,
     tolerance_words,
 )
@@ -122,7 +122,7 @@ class Certificate:
     @property
     def sentence(self) -> str:
         """All this in words."""
-        return sentence(self, self.values())
+        return certificate_sentence(self, self.values())
 
     def values(self) -> dict[str, float | bool]:
         """Give the scalars by their names in the schema."""
@@ -210,7 +210,7 @@ def _scaled(
     limits = system.setting.overturning_angles
 
     def look(change: float) -> RunSummary | None:
-        other = scaled(plan, 1.0 + change, limits)
+        other = scaled_plan(plan, 1.0 + change, limits)
         return None if other is None else run(system, other)
 
     row = scales(wanted.nudge, wanted.reach)
@@ -243,7 +243,7 @@ NEAR: Final = 0.01
 """A margin up to which a verdict is called near the boundary [1]."""
 
 
-def sentence(found: "Certificate", values: Mapping[str, float | bool]) -> str:
+def certificate_sentence(found: "Certificate", values: Mapping[str, float | bool]) -> str:
     """Say what was tried and what was found.
 
     Parameters

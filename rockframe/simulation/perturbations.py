@@ -8,7 +8,7 @@ from typing import Final
 from rockframe.dynamics.protocol import Ending
 from rockframe.errors import RockframeError
 from rockframe.motion import GroundMotion
-from rockframe.motion.processing.sampling import divided
+from rockframe.motion.processing.sampling import divided_signal
 from rockframe.simulation.plan import Plan
 from rockframe.solve.accuracy import LEVELS, Accuracy, AccuracyLevel
 from rockframe.solve.integrate import STILL_INTERVAL
@@ -81,7 +81,7 @@ def scales(nudge: float, reach: float) -> list[float]:
     return [*row, reach]
 
 
-def scaled(plan: Plan, scale: float, limits: OverturningAngles) -> Plan | None:
+def scaled_plan(plan: Plan, scale: float, limits: OverturningAngles) -> Plan | None:
     """Scale what drives a run: its motion, or without one its start; None if it cannot be."""
     if plan.motion is not None:
         return replace(plan, motion=plan.motion.scaled(scale))
@@ -207,4 +207,4 @@ def cut(motion: GroundMotion, parts: int) -> GroundMotion:
     GroundMotion
         Straight lines stay straight lines, polynomials the same polynomials.
     """
-    return GroundMotion(motion.si.each(lambda one: divided(one, parts)), name=motion.name)
+    return GroundMotion(motion.si.each(lambda one: divided_signal(one, parts)), name=motion.name)

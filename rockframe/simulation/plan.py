@@ -13,7 +13,7 @@ from rockframe.motion import GroundMotion
 from rockframe.results.diagnostics import Diagnostic
 from rockframe.results.points import BodyPoint
 from rockframe.results.schema import ENERGIES
-from rockframe.simulation.beginning import Beginning, continuation_of, described
+from rockframe.simulation.beginning import Beginning, beginning_to_dict, continuation_of
 from rockframe.simulation.friction import has_limit
 from rockframe.simulation.outputs import diagnostics_of, lacking, names_of, points_of
 from rockframe.simulation.run_arguments import RunArguments
@@ -101,7 +101,7 @@ class Plan(_Asked):
 
     def to_json(self) -> str:
         """Give the plan as JSON, without the motion."""
-        own = {"duration": _time(self.duration), "initial": described(self.initial)}
+        own = {"duration": _time(self.duration), "initial": beginning_to_dict(self.initial)}
         return json.dumps({**own, **self._described()})
 
 
@@ -136,7 +136,7 @@ def plan_run(system: Assembly, motion: GroundMotion | None, **asked: Unpack[RunA
     if faults:
         raise AssemblyError(faults)
     arguments = read_arguments(faults, **asked)
-    plan = fitted(arguments, system, motion, faults)
+    plan = fit_plan(arguments, system, motion, faults)
     if faults:
         raise AssemblyError(faults)
     return plan
@@ -185,7 +185,7 @@ def read_arguments(faults: list[str], **asked: Unpack[RunArguments]) -> RunReque
     )
 
 
-def fitted(
+def fit_plan(
     arguments: RunRequest, system: Assembly, motion: GroundMotion | None, faults: list[str]
 ) -> Plan:
     """Fit the arguments of a run to its system and its motion.
@@ -207,7 +207,7 @@ def fitted(
         Of no use where there are faults.
     """
     beginning = _beginning(system, arguments.initial, faults)
-    length = length_of(arguments, motion)
+    length = run_length(arguments, motion)
     if not length:
         faults.append("nothing to simulate: give a motion, or a duration for a still ground")
     step = None
@@ -278,7 +278,7 @@ def _beginning(
     return given
 
 
-def length_of(arguments: RunRequest, motion: GroundMotion | None) -> float:
+def run_length(arguments: RunRequest, motion: GroundMotion | None) -> float:
     """Give the length of a run under a motion; zero where neither tells it [s]."""
     if arguments.duration is not None:
         return arguments.duration

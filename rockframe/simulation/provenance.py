@@ -140,7 +140,7 @@ def _joined(dataset: xr.Dataset, name: str, count: int) -> NDArray[Any]:
     return np.concatenate(parts)
 
 
-def run_arguments(dataset: xr.Dataset) -> dict[str, Any]:
+def arguments_of_run(dataset: xr.Dataset) -> dict[str, Any]:
     """Give the arguments of the run that a result came from, without its outputs.
 
     Parameters

@@ -14,7 +14,7 @@ from rockframe.errors import ModelWarning, RockframeWarning, SolverWarning, atte
 from rockframe.motion import GroundMotion
 from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import Generic, event_columns, peak_of, scalars, verdict
-from rockframe.results.schema import row_of
+from rockframe.results.schema import schema_row
 from rockframe.results.slope import felt_ground, slope_attributes
 from rockframe.results.variables.runs import Direction
 from rockframe.signals import Motion
@@ -206,7 +206,7 @@ def run(
     xarray.Dataset
     """
     for column in () if system.model.shows_bodies else system.model.columns:
-        row_of(column.name)  # before the run
+        schema_row(column.name)  # before the run
     response = respond(system, plan)
     summary, missing = response.trajectory, response.missing
     attributes = _attributes(system, plan, summary, missing)

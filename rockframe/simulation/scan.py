@@ -220,13 +220,13 @@ def _first_doubt(sides: Sequence[Side], end: float, resolution: float) -> _Task 
         for number, (near, far) in enumerate(side.intervals()):
             if near >= end or side.shown[far].overturned != side.shown[0.0].overturned:
                 break
-            if _wide(near, far, resolution) and doubtful(side, number, other):
+            if _wide(near, far, resolution) and may_change_between(side, number, other):
                 found.append((side, near, far))
                 break
     return min(found, key=lambda one: one[1], default=None)
 
 
-def doubtful(side: Side, number: int, other: Side | None = None) -> bool:
+def may_change_between(side: Side, number: int, other: Side | None = None) -> bool:
     """Tell whether a clearance might go to zero between two runs of the same verdict.
 
     Parameters

@@ -115,7 +115,7 @@ def span_of(h: float, progress: Progress) -> Span:
 
 
 @inlined
-def march(
+def make_steps(
     equations: BoundEquations, known: KnownMode, trial: float, pieces: Pieces, progress: Progress,
     steps: StepTable, w: Workspace,
 ) -> int:  # fmt: skip
@@ -152,11 +152,11 @@ def step_to_event(
     begins_positive = w.before[crossed] > noise or w.before[rates + crossed] > 0.0
     has_root = h > 0.0 and begins_positive
     if has_root and negative < 1.0:
-        march(equations, known, high, pieces, progress, steps, w)
+        make_steps(equations, known, high, pieces, progress, steps, w)
         has_root = w.after[crossed] < 0.0
     for correction in range(1 + MOST_POLISHING):
         if h > 0.0:
-            march(equations, known, h, pieces, progress, steps, w)
+            make_steps(equations, known, h, pieces, progress, steps, w)
         else:
             stand_still(w)
         guard, fall = w.after[crossed], w.after[rates + crossed]
@@ -322,7 +322,7 @@ def run_on(
             keep_start(known.mode, progress, steps, w)
         anew = False
         clock[at.NEXT_OUTPUT] = next_output(controls, counters, output)
-        happened = march(equations, known, 0.0, pieces, progress, steps, w)
+        happened = make_steps(equations, known, 0.0, pieces, progress, steps, w)
         if counters[at.HALF] != half:
             half = 1 - half
             w = swapped(w)

@@ -24,8 +24,8 @@ def guards_at(
     system: Equations, mode: int, state: Vector, slope: Vector, ground: Ground, limits: Vector,
     out: Vector,
 ) -> None:  # fmt: skip
-    """Write the guards of a state, see :func:`write_guards`; of several limits the nearest."""
-    write_guards(system, system.guards_in(mode, state, slope, ground), state, limits, out)
+    """Write the guards of a state, see :func:`put_guards`; of several limits the nearest."""
+    put_guards(system, system.guards_in(mode, state, slope, ground), state, limits, out)
     size, last = system.coordinates(), system.guards()
     row = WEIGHTS + size
     while row < len(limits):
@@ -43,7 +43,7 @@ def guards_at(
 
 
 @inlined
-def write_guards(
+def put_guards(
     system: Equations, found: Guards, state: Vector, limits: Vector, out: Vector
 ) -> None:
     """Write guards, then their rates; the last is the distance of the rotation from its limit."""

@@ -50,7 +50,7 @@ def fit_step(h: float, remaining: float) -> float:
 
 
 @inlined
-def length_of(index: int, intervals: int, controls: Vector) -> float:
+def interval_length(index: int, intervals: int, controls: Vector) -> float:
     """Give the length of an interval of the motion; of the rest of the run behind the last."""
     rest = controls[at.DURATION] - index * controls[at.TIME_STEP]
     return min(controls[at.TIME_STEP], rest) if index < intervals else rest
@@ -107,7 +107,7 @@ def march(
     intervals = max(len(pieces_x), len(pieces_y))
     shortest = SHORTEST * controls[at.DURATION]
     degree_x, degree_y = counters[at.DEGREE_X], counters[at.DEGREE_Y]
-    begin, length = index * time_step, length_of(index, intervals, controls)
+    begin, length = index * time_step, interval_length(index, intervals, controls)
     result = AT_END
     while True:
         remaining = length - tau
@@ -119,7 +119,7 @@ def march(
                 break
             index += 1
             tau = 0.0
-            begin, length = index * time_step, length_of(index, intervals, controls)
+            begin, length = index * time_step, interval_length(index, intervals, controls)
             degree_x = load_interval(index, pieces_x, 0, ground)
             degree_y = load_interval(index, pieces_y, TERMS, ground)
             if jumps(ground[0], clock[at.GROUND_X]) or jumps(ground[TERMS], clock[at.GROUND_Y]):

@@ -137,7 +137,7 @@ def _halved(one: Bracket, middle: float, shown: float) -> Iterator[Bracket]:
         yield replace(one, below=middle, before=shown)
 
 
-def padded(
+def bracket_arrays(
     brackets: Sequence[Bracket], shape: tuple[int, int]
 ) -> tuple[Array, Array, Array, Array]:
     """Arrange brackets in arrays.

@@ -24,7 +24,14 @@ from rockframe.simulation.run import beside, run
 from rockframe.simulation.run_arguments import ScaleArguments
 from rockframe.simulation.run_summary import RunSummary
 from rockframe.simulation.soundness import STILL_MOVING
-from rockframe.studies.flips import Followed, Look, follow, least_overturning, sentence, unfinished
+from rockframe.studies.flips import (
+    Followed,
+    Look,
+    flips_sentence,
+    follow,
+    least_overturning,
+    unfinished,
+)
 from rockframe.studies.intensities import ScaledIntensity, of_study
 from rockframe.studies.sweeps.progress import ProgressBar, bar_of
 from rockframe.system.rigid_ground import RigidGroundSetting
@@ -181,7 +188,7 @@ def critical_scale(
     with bar_of(progress, owner=_OWNER, unit="run") as bar:
         found = follow(_counted(look, bar, len(row)), row, most=most, width=share)
     critical = least_overturning(found.shown)
-    told = sentence(found, width=share)
+    told = flips_sentence(found, width=share)
     if not found.whole:
         warn(f"{_OWNER}: interrupted; {told}", SolverWarning)
     attributes = {

@@ -14,12 +14,12 @@ from rockframe.results.variables.studies import MOTION
 from rockframe.shared_arguments import takes
 from rockframe.signals.arrays import Array
 from rockframe.simulation.friction import share_words
-from rockframe.studies.brackets import least_exceeding, padded
+from rockframe.studies.brackets import bracket_arrays, least_exceeding
 from rockframe.studies.intensities import Intensity, intensity_in, of_study
 from rockframe.studies.limit_states import LimitState, exceeds, limit_states
 from rockframe.studies.lines import INTERRUPTED, SCALE, VERDICT, Lines, read_scales, read_width
 from rockframe.studies.sweeps.arguments import SweepArguments
-from rockframe.studies.sweeps.motions import motions_of
+from rockframe.studies.sweeps.motions import named_motions
 
 if TYPE_CHECKING:
     from rockframe.motion import GroundMotion
@@ -116,13 +116,13 @@ def incremental_dynamic_analysis(
     if given is None:
         msg = f"{_OWNER}: there is no motion to scale; give one"
         raise StudyError(msg)
-    lines = Lines(system, motions_of(given), {}, run, _OWNER)
+    lines = Lines(system, named_motions(given), {}, run, _OWNER)
 
     def verdicts(runs: xr.Dataset) -> xr.DataArray:
         return xr.concat([exceeds(runs, state) for state in states], VERDICT)
 
     scan, brackets = lines.followed(scales, verdicts, width=share)
-    below, above, _, after = padded(brackets, (len(states), scan.sizes[MOTION]))
+    below, above, _, after = bracket_arrays(brackets, (len(states), scan.sizes[MOTION]))
     shown = verdicts(scan).transpose(VERDICT, MOTION, SCALE).to_numpy()
     capacity = least_exceeding(scales, shown, above, after)
     narrow = build_dataset(

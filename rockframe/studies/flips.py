@@ -10,7 +10,7 @@ import numpy as np
 
 from rockframe.simulation.friction import share_words
 from rockframe.simulation.run_summary import RunSummary
-from rockframe.simulation.scan import Side, doubtful
+from rockframe.simulation.scan import Side, may_change_between
 
 FINEST: Final = 0.002
 """Length of an interval of scales that is not looked into for hidden flips, over its far end."""
@@ -76,7 +76,7 @@ def follow(look: Look, row: Sequence[float], *, most: int, width: float) -> Foll
     """Scan scales, look into what is doubtful, and narrow every change of the verdict.
 
     Between two runs of the same verdict an even number of flips may hide. Where that is to
-    be feared (:func:`rockframe.simulation.scan.doubtful`), the interval is halved: first
+    be feared (:func:`rockframe.simulation.scan.may_change_between`), the interval is halved: first
     below the least scale that overturns, until none is left there, then above it.
 
     Parameters
@@ -153,7 +153,7 @@ def _suspects(side: Side, *, up_to_first: bool) -> Iterator[tuple[float, float]]
         if before != after:
             if up_to_first:
                 yield near, far
-        elif doubtful(side, number):
+        elif may_change_between(side, number):
             yield near, far
 
 
@@ -210,7 +210,7 @@ _MOST_GAPS: Final = 3
 """Ranges that stand again which are named one by one."""
 
 
-def sentence(found: Followed, *, width: float) -> str:
+def flips_sentence(found: Followed, *, width: float) -> str:
     """Tell from which scale on the block overturns, where it stands again, and what was tried.
 
     Parameters

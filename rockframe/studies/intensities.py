@@ -16,8 +16,8 @@ from rockframe.results.variables.motions import MEASURES
 from rockframe.results.variables.studies import MOTION
 from rockframe.results.variables.variable import OSCILLATOR
 from rockframe.studies.limit_states import check_names
-from rockframe.studies.sweeps.case import motion_of, remembered
-from rockframe.studies.sweeps.motions import SPECTRAL, scaled
+from rockframe.studies.sweeps.case import remembered, unscaled_motion
+from rockframe.studies.sweeps.motions import SPECTRAL, motion_of_case
 from rockframe.units import ACCELERATION, PERIOD, POSITIVE, TIME, to_ratio, to_si
 
 if TYPE_CHECKING:
@@ -59,7 +59,7 @@ PERIOD_OF: Final = "intensity_period"
 _OSCILLATORS: Final = tuple(name for name in POWERS if SCHEMA[name].dims == OSCILLATOR)
 
 
-def in_words(name: str, period: float | None) -> str:
+def measure_words(name: str, period: float | None) -> str:
     """Write the name of a measure in words, of a spectral value with its period [s]."""
     words = name.replace("_", " ")
     return words if period is None or name not in _OSCILLATORS else f"{words} at {period:.6g} s"
@@ -163,14 +163,14 @@ def intensity_in(
     """
     if intensity.name in runs.coords and intensity.period is None:
         return runs[intensity.name]
-    before = motions_in(runs, motions, owner=owner)
+    before = unscaled_motions(runs, motions, owner=owner)
     factor = _factors(runs, before)
     measured = of_motions(runs, before, intensity.of)
     found = measured * np.abs(factor) ** POWERS[intensity.name]
     return found.assign_attrs(intensity.attributes()).rename(intensity.name)
 
 
-def motions_in(runs: xr.Dataset, given: object, *, owner: str) -> dict[str, GroundMotion]:
+def unscaled_motions(runs: xr.Dataset, given: object, *, owner: str) -> dict[str, GroundMotion]:
     """Give the motions of a sweep by their names, as they were before they were scaled.
 
     Raises
@@ -194,7 +194,7 @@ def motions_in(runs: xr.Dataset, given: object, *, owner: str) -> dict[str, Grou
     for number, name in enumerate(names):
         if name not in used:
             continue
-        motion = motion_of(given, number, attributes, known)
+        motion = unscaled_motion(given, number, attributes, known)
         if motion is None:
             msg = f"{owner}: the sweep has no motions of its own, of which there is an intensity"
             raise StudyError(msg)
@@ -226,7 +226,7 @@ def _factors(runs: xr.Dataset, motions: Mapping[str, GroundMotion]) -> xr.DataAr
 
 
 def _unit_factor(motion: GroundMotion, name: str, period: float | None) -> float:
-    one = scaled(motion, name, 1.0, period)
+    one = motion_of_case(motion, name, 1.0, period)
     at = int(np.argmax(np.abs(motion.si.horizontal.samples)))
     return abs(float(one.si.horizontal.samples[at] / motion.si.horizontal.samples[at]))
 

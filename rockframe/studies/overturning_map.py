@@ -16,7 +16,7 @@ from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.studies import MOTION
 from rockframe.shared_arguments import takes
 from rockframe.signals.arrays import Array
-from rockframe.studies.brackets import padded
+from rockframe.studies.brackets import bracket_arrays
 from rockframe.studies.limit_states import overturns
 from rockframe.studies.lines import SCALE, VERDICT, Lines, read_width
 from rockframe.studies.sweeps.arguments import SweepArguments
@@ -121,7 +121,7 @@ def overturning_map(
     scan, brackets = lines.followed(
         levels, lambda runs: ways(runs).expand_dims(VERDICT), width=share
     )
-    below, above, before, after = (one[0] for one in padded(brackets, (1, len(motions))))
+    below, above, before, after = (one[0] for one in bracket_arrays(brackets, (1, len(motions))))
     counted = ways(scan)
     of_cases = build_dataset(
         {"impacts_before_overturning": _without_stands(counted.to_numpy())},

@@ -18,7 +18,7 @@ from rockframe.studies.lines import head
 from rockframe.studies.spread import Sampling, drawn, ranked, read_spread
 from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.studies.sweeps.memory import check_memory
-from rockframe.studies.sweeps.motions import motions_of
+from rockframe.studies.sweeps.motions import named_motions
 from rockframe.studies.sweeps.scenes import own_motion, scene_of
 from rockframe.studies.sweeps.sweep import sweep
 
@@ -115,7 +115,7 @@ def probability_of_overturning(
     first = whole_number(seed, owner=_OWNER, name="seed", lowest=0)
     level = read_level(confidence, owner=_OWNER)
     own = own_motion(scene) if motions is None else motions
-    named = None if own is None else motions_of(own)
+    named = None if own is None else named_motions(own)
     wrong = check_memory(
         {"numbers that are drawn": 1.0 + len(spreads)}, count, "draw fewer cases", owner=_OWNER
     )

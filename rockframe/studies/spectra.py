@@ -13,12 +13,12 @@ from rockframe.results.dataset import build_dataset
 from rockframe.results.variables.studies import CASE, MOTION
 from rockframe.shared_arguments import takes
 from rockframe.studies.block_sizes import BlockSizes
-from rockframe.studies.brackets import least_exceeding, padded
-from rockframe.studies.intensities import POWERS, Intensity, motions_in, of_motions, of_study
+from rockframe.studies.brackets import bracket_arrays, least_exceeding
+from rockframe.studies.intensities import POWERS, Intensity, of_motions, of_study, unscaled_motions
 from rockframe.studies.limit_states import overturns
 from rockframe.studies.lines import SCALE, VERDICT, Lines, head, read_scales, read_width
 from rockframe.studies.sweeps.arguments import SweepArguments
-from rockframe.studies.sweeps.motions import motions_of
+from rockframe.studies.sweeps.motions import named_motions
 from rockframe.studies.sweeps.sweep import sweep
 
 if TYPE_CHECKING:
@@ -161,18 +161,18 @@ def overturning_spectrum(
     scales = read_scales(scale, owner=_OVERTURNING, most=_MOST_SCALES)
     share = read_width(width, owner=_OVERTURNING)
     measure = Intensity.read(intensity, period, owner=_OVERTURNING)
-    named = motions_of(_given(motions, system, _OVERTURNING))
+    named = named_motions(_given(motions, system, _OVERTURNING))
     lines = Lines(sizes.system, named, sizes.columns, run, _OVERTURNING)
     scan, brackets = lines.followed(
         scales, lambda runs: overturns(runs).expand_dims(VERDICT), width=share
     )
     shape = (scan.sizes[CASE], scan.sizes[MOTION])
     below, above, _, after = (
-        one[0].reshape(*shape, -1) for one in padded(brackets, (1, shape[0] * shape[1]))
+        one[0].reshape(*shape, -1) for one in bracket_arrays(brackets, (1, shape[0] * shape[1]))
     )
     shown = overturns(scan).transpose(CASE, MOTION, SCALE).to_numpy()
     capacity = least_exceeding(scales, shown, above, after)
-    unit = of_motions(scan, motions_in(scan, named, owner=_OVERTURNING), measure.of)
+    unit = of_motions(scan, unscaled_motions(scan, named, owner=_OVERTURNING), measure.of)
     powers = capacity ** POWERS[measure.name]
     narrow = build_dataset(
         {

@@ -9,7 +9,7 @@ from typing import IO, Any, Final, cast
 from rockframe.errors import RecordError, shown
 from rockframe.motion.readers.archives import check_unpackable, is_archive, members, packs_tar
 from rockframe.motion.readers.received import IN_MEMORY, path_of
-from rockframe.motion.readers.source import Source, load, source_of
+from rockframe.motion.readers.source import Source, read_source, source_of
 
 MOST_FILES: Final = 20_000
 """Most files of a folder."""
@@ -94,7 +94,7 @@ def _of_path(path: Path) -> Iterator[Source | Unread]:
             if is_archive(start) or packs_tar(file):
                 yield from _of_archive(file, str(path), path.stat().st_size)
                 return
-        yield load(path)
+        yield read_source(path)
     except RecordError as problem:
         yield unread(str(path), problem)
     except OSError as problem:
@@ -114,7 +114,7 @@ def _of_open(file: IO[bytes], name: str) -> Iterator[Source | Unread]:
         if isinstance(start, bytes) and (is_archive(start) or packs_tar(file)):
             yield from _of_archive(file, name, size)
         else:
-            yield load(file)
+            yield read_source(file)
     except RecordError as problem:
         yield unread(name, problem)
 

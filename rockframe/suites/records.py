@@ -9,7 +9,7 @@ from typing import Any, Final
 from rockframe.errors import ComponentError
 from rockframe.motion import GroundMotion
 from rockframe.motion.pair import HorizontalPair
-from rockframe.motion.readers.timing import seconds_of
+from rockframe.motion.readers.timing import epoch_seconds
 
 FIRST: Final = "H1"
 SECOND: Final = "H2"
@@ -172,7 +172,7 @@ def _start(component: RecordedComponent) -> float | None:
     about = component.about
     if not _named_by_station(about) or any(about.get(key) for key in _WHEN):
         return None
-    return seconds_of(about.get(_START))
+    return epoch_seconds(about.get(_START))
 
 
 def _named_by_station(about: Mapping[str, Any]) -> bool:

@@ -101,10 +101,12 @@ def scale_to_target(
         owner=_OWNER,
     )
     factors = np.clip(candidates.factors, *candidates.bounds)
-    return fitted(candidates, np.arange(len(candidates.labels)), factors, title="Scaled motions")
+    return scaled_set(
+        candidates, np.arange(len(candidates.labels)), factors, title="Scaled motions"
+    )
 
 
-def fitted(
+def scaled_set(
     candidates: Candidates,
     places: "NDArray[np.intp]",
     factors: "Array",

@@ -11,7 +11,7 @@ from rockframe.arguments import whole_number
 from rockframe.errors import ComponentError
 from rockframe.results.dataset import build_dataset
 from rockframe.suites.candidates import Combination, candidates_of
-from rockframe.suites.scaling import USUAL_BOUNDS, fitted
+from rockframe.suites.scaling import USUAL_BOUNDS, scaled_set
 from rockframe.units import NOT_NEGATIVE, to_ratio
 
 if TYPE_CHECKING:
@@ -139,7 +139,7 @@ def select_for_target(
         raise ComponentError(msg)
     misfits = np.sqrt((search.residuals[chosen] ** 2).mean(axis=1))
     places = allowed[np.array(chosen)[np.argsort(misfits, kind="stable")]]
-    dataset = fitted(
+    dataset = scaled_set(
         candidates,
         places,
         candidates.factors,

@@ -112,7 +112,7 @@ def suite_dataset(suite: "MotionSuite") -> xr.Dataset:
     return dataset
 
 
-def motions_in(dataset: xr.Dataset) -> tuple[dict[str, GroundMotion], dict[str, Any]]:
+def stored_motions(dataset: xr.Dataset) -> tuple[dict[str, GroundMotion], dict[str, Any]]:
     """Read what :func:`suite_dataset` wrote.
 
     Parameters

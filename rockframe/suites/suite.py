@@ -23,7 +23,7 @@ from rockframe.suites.choosing import check_column, chosen, order
 from rockframe.suites.columns import known_columns, other_columns
 from rockframe.suites.matching import matched
 from rockframe.suites.records import pairs_of
-from rockframe.suites.stored import motions_in, suite_dataset
+from rockframe.suites.stored import stored_motions, suite_dataset
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -455,7 +455,7 @@ class MotionSuite(Mapping[str, GroundMotion]):
             Not such a dataset, or its samples were changed since.
         """
         owner = f"{cls.__name__}.from_dataset"
-        motions, about = motions_in(checked_dataset(dataset, owner=owner))
+        motions, about = stored_motions(checked_dataset(dataset, owner=owner))
         count = len(motions) - about.pop("verticals")
         labels = list(motions)
         return cls(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from rockframe.errors import AssemblyError
 from rockframe.system.describe import describe
-from rockframe.system.fitting import doubts, misfits, missizes
+from rockframe.system.fitting import contradictions, misfits, missizes
 from rockframe.system.options import (
     Coupling,
     Options,
@@ -59,7 +59,7 @@ class Assembly:
     @cached_property
     def doubts(self) -> list[str]:
         """What is unusual about the scene."""
-        return [*self.setting.cautions(), *doubts(self.parts)]
+        return [*self.setting.cautions(), *contradictions(self.parts)]
 
     @cached_property
     def cautions(self) -> list[str]:
@@ -124,10 +124,10 @@ def assemble(
         read_measured(gravity, "gravity", wrong),
         read_measured(inclination, "inclination", wrong),
     )
-    return joined(given, options, faults, wrong)
+    return assembly_of(given, options, faults, wrong)
 
 
-def joined(
+def assembly_of(
     given: Parts, options: Options, faults: Sequence[str] = (), wrong: Sequence[str] = ()
 ) -> Assembly:
     """Check sorted parts against one another, and find the scene they make.

@@ -82,7 +82,7 @@ def _misfits_of_stack(stack: Stack, parts: Parts) -> list[str]:
     return faults
 
 
-def doubts(parts: Parts) -> list[str]:
+def contradictions(parts: Parts) -> list[str]:
     """Say which sizes of parts contradict one another, though they can be simulated.
 
     Parameters

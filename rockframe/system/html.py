@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from rockframe.notebook import Polygon, card, drawing, in_words
+from rockframe.notebook import Polygon, arguments_in_words, card, drawing
 from rockframe.signals.arrays import Array
 from rockframe.system.geometry import Geometry, geometry_of, rectangle
 
@@ -20,7 +20,7 @@ def system_html(scene: "Assembly", name: str) -> str:
     setting, options = scene.setting, scene.options
     rows = {"model": setting.model}
     for part in scene.parts.structural():
-        numbers = in_words(part.to_dict())
+        numbers = arguments_in_words(part.to_dict())
         rows[type(part).__name__] = ", ".join(f"{one} {value}" for one, value in numbers.items())
     left, right = setting.overturning_angles
     to_left, to_right = (f"{np.degrees(side):.4g}°" for side in (left, right))

@@ -12,7 +12,7 @@ from rockframe.system.load import Load
 from rockframe.system.options import Options
 from rockframe.system.overturning_energy import least_overturning_energy
 from rockframe.system.small_motion import SmallMotion
-from rockframe.system.statics import Statics, carried
+from rockframe.system.statics import Statics, required_states
 from rockframe.system.support import Support
 from rockframe.system.words import Words
 
@@ -128,8 +128,8 @@ class Setting(ABC):
         """Give the quasi-static states at rotations [rad]; None where nothing holds the body."""
 
     def held_at(self, rotations: Sequence[float]) -> list[Statics]:
-        """Give the quasi-static states at rotations [rad]; see :func:`carried`."""
-        return carried(rotations, self.curve(rotations))
+        """Give the quasi-static states at rotations [rad]; see :func:`required_states`."""
+        return required_states(rotations, self.curve(rotations))
 
     def statics(self, rotation: float) -> Statics:
         """Give the quasi-static state at a rotation [rad]."""

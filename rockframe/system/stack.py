@@ -165,13 +165,13 @@ class StackSetting(Setting):
 
         rest = [AtRest(one.state.rotation, one.state.vertical) for one in self._rest]
         limits = [
-            together(self.bodies[: k + 1], self.tops, self.offsets).overturning_angles
+            combined_body(self.bodies[: k + 1], self.tops, self.offsets).overturning_angles
             for k in range(1, len(self.bodies))
         ]
         return chain(self.links, self.body.mass, rest if self.leans else None, limits)
 
 
-def together(
+def combined_body(
     bodies: Sequence[SupportedBody], tops: Sequence[float], offsets: Sequence[float]
 ) -> SupportedBody:
     """Give bodies upon one another, from the top down, as one upright body.
@@ -209,7 +209,7 @@ def stack_setting(stack: Stack, base: Component, options: Options) -> StackSetti
     tops = tuple(one.height - one.centre_height for one in stack.si.bodies)
     offsets = stack.si.offsets
     bases = tuple(
-        support_of(part, Load(together(bodies[: k + 1], tops, offsets), options))
+        support_of(part, Load(combined_body(bodies[: k + 1], tops, offsets), options))
         for k, part in enumerate((*stack.interfaces, base))
     )
     return StackSetting(Load(bodies[0], options), bodies, tops, offsets, bases)

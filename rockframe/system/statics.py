@@ -46,7 +46,7 @@ class Statics:
     reactions: dict[str, float] = field(default_factory=dict[str, float])
 
 
-def carried(rotations: Sequence[float], states: Sequence[Statics | None]) -> list[Statics]:
+def required_states(rotations: Sequence[float], states: Sequence[Statics | None]) -> list[Statics]:
     """Give states at rotations, of which there must be one at each.
 
     Raises
@@ -107,7 +107,7 @@ class StandingBodies:
     def _near_upright(self, rotation: float, state: Statics) -> Statics:
         """Give a state with moments to all digits, by their slope, exact to the fourth order."""
         step = SMALL * self.chain.links[0].allowed_rotation
-        near, far = carried((step, 2.0 * step), self.held((step, 2.0 * step)))
+        near, far = required_states((step, 2.0 * step), self.held((step, 2.0 * step)))
         share = rotation / (6.0 * step)
         return replace(
             state,

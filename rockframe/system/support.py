@@ -11,7 +11,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar
 
 from rockframe.system.load import Load
-from rockframe.system.statics import StandingBodies, Statics, carried
+from rockframe.system.statics import StandingBodies, Statics, required_states
 from rockframe.system.words import vibration_words
 
 if TYPE_CHECKING:
@@ -123,7 +123,7 @@ class Support(ABC):
 
     def held_at(self, rotation: float) -> Statics:
         """Give the equilibrium under the weight at a rotation [rad]."""
-        return carried([rotation], self.standing.held([rotation]))[0]
+        return required_states([rotation], self.standing.held([rotation]))[0]
 
     @cached_property
     def standing(self) -> StandingBodies:

@@ -25,7 +25,7 @@ from rockframe.units.hints import (
     without_unit,
 )
 from rockframe.units.kinds import Condition, Measure, Unit
-from rockframe.units.written import number_and_unit, read
+from rockframe.units.written import number_and_unit, parse_quantity
 
 if TYPE_CHECKING:
     import numpy as np
@@ -272,7 +272,7 @@ def _parse(value: object, measure: Measure, *, owner: str, name: str) -> Quantit
         if re.search(pattern, value):
             msg = f"{needed}, got {shown(value)} ({words}); {example}"
             raise UnitsError(msg)
-    written = read(value)
+    written = parse_quantity(value)
     if written is None:
         hint = misread(value, measure)
         wanted = "a number" if measure.unit == Unit.ONE else "one number and a unit"

@@ -68,7 +68,7 @@ def number_and_unit(text: str) -> tuple[str, str] | None:
     return None if parts is None else (parts["number"], parts["unit"])
 
 
-def read(text: str) -> WrittenQuantity | None:
+def parse_quantity(text: str) -> WrittenQuantity | None:
     """Read a text as one number and a unit.
 
     Parameters

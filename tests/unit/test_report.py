@@ -116,8 +116,10 @@ def test_a_run_by_a_record_has_its_certificate_though_it_overturned(tmp_path):
 def test_a_certificate_holds_only_where_it_is_sure_in_every_way(response, doubted):
     told = response.assign(dict.fromkeys(("verdict_converged", "verdict_robust"), True))
     told.attrs["certificate"] = "The body stands."
-    assert "the verdict holds" in "".join(sections.verdict(told, ""))
-    assert "the verdict is in doubt" in "".join(sections.verdict(told.assign({doubted: False}), ""))
+    assert "the verdict holds" in "".join(sections.verdict_section(told, ""))
+    assert "the verdict is in doubt" in "".join(
+        sections.verdict_section(told.assign({doubted: False}), "")
+    )
 
 
 def test_only_results_of_one_run_are_reported(response, tmp_path):

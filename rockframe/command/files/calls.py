@@ -6,7 +6,7 @@ from inspect import Parameter, signature
 from typing import Any, TypeVar
 
 from rockframe.command.files.lines import Place
-from rockframe.command.files.tables import TomlFile, title_of
+from rockframe.command.files.tables import TomlFile, table_title
 from rockframe.components.parameters import Declared
 from rockframe.errors import AssemblyError, RockframeError, StudyError
 
@@ -73,12 +73,12 @@ def checked(
             sound = False
     for name, required in known.items():
         if required and name not in table:
-            file.fault(where, f"[{title_of(where)}] lacks {name!r}{_wanted(declared.get(name))}")
+            file.fault(where, f"[{table_title(where)}] lacks {name!r}{_wanted(declared.get(name))}")
             sound = False
     for name, value in table.items():
         if name in known and name in declared:
             try:
-                declared[name].accept(value, f"[{title_of(where)}]")
+                declared[name].accept(value, f"[{table_title(where)}]")
             except RockframeError as problem:
                 file.fault((*where, name), str(problem))
                 sound = False

@@ -10,8 +10,8 @@ from rockframe.command.files.calls import arguments_of
 from rockframe.command.files.motions import motion_keys
 from rockframe.command.files.scenes import (
     CONSTRUCTOR,
+    classes_in,
     constructors,
-    kinds_in,
     part_slots,
     run_keys,
 )
@@ -51,7 +51,7 @@ def every_key() -> str:
 def _lines() -> Iterator[str]:
     yield from _HEAD.splitlines()
     for slot in part_slots():
-        for name, kind in kinds_in(slot).items():
+        for name, kind in classes_in(slot).items():
             yield from _of_part(slot, name, kind)
     yield from _of_function("system", "options of the system", System.__init__, of=System)
     yield from _of_motion()

@@ -21,7 +21,7 @@ def motion_keys() -> dict[str, bool]:
     return {_FILE: True, **arguments, _OPERATIONS: False}
 
 
-def motion_of(file: TomlFile, where: Place, given: object) -> GroundMotion | None:
+def described_motion(file: TomlFile, where: Place, given: object) -> GroundMotion | None:
     """Build the motion that a table describes.
 
     Parameters
@@ -112,7 +112,7 @@ def _done(file: TomlFile, where: Place, motion: GroundMotion, given: object) -> 
     if not checked(file, where, table, arguments):
         return None
     if isinstance(table.get("other"), dict):
-        other = motion_of(file, (*where, "other"), table["other"])
+        other = described_motion(file, (*where, "other"), table["other"])
         if other is None:
             return None
         table["other"] = other

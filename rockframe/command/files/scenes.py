@@ -12,7 +12,7 @@ from typing import Any, Final
 from rockframe.arguments import hints_of
 from rockframe.command.files.calls import arguments_of, checked, made
 from rockframe.command.files.lines import Place
-from rockframe.command.files.motions import motion_of
+from rockframe.command.files.motions import described_motion
 from rockframe.command.files.tables import TomlFile
 from rockframe.components import Component, InitialState
 from rockframe.components.registry import kinds
@@ -89,14 +89,14 @@ def read_scene(path: str | Path) -> Described:
     for name in file.values:
         if name not in keys():
             _unknown_table(file, name)
-    found = described(file)
+    found = described_scene(file)
     file.check()
     if found is None:  # without a fault there is a system
         raise AssertionError
     return found
 
 
-def described(file: TomlFile) -> Described | None:
+def described_scene(file: TomlFile) -> Described | None:
     """Build what the tables of a file describe.
 
     Parameters
@@ -110,8 +110,8 @@ def described(file: TomlFile) -> Described | None:
         None where a fault was found.
     """
     given = file.values
-    parts = [part_of(file, slot, given[slot]) for slot in part_slots() if slot in given]
-    motion = motion_of(file, (MOTION,), given[MOTION]) if MOTION in given else None
+    parts = [described_part(file, slot, given[slot]) for slot in part_slots() if slot in given]
+    motion = described_motion(file, (MOTION,), given[MOTION]) if MOTION in given else None
     run = _run_of(file, given[RUN]) if RUN in given else {}
     options = file.table((OPTIONS,), given.get(OPTIONS, {}))
     known = arguments_of(System.__init__, without=("parts",))
@@ -124,7 +124,7 @@ def described(file: TomlFile) -> Described | None:
     return None if system is None else Described(system, motion, run, tuple(file.files))
 
 
-def part_of(file: TomlFile, slot: str, given: object) -> Component | None:
+def described_part(file: TomlFile, slot: str, given: object) -> Component | None:
     """Build the part that a table describes.
 
     Parameters
@@ -170,7 +170,7 @@ def part_of(file: TomlFile, slot: str, given: object) -> Component | None:
     return made(file, where, function, table)
 
 
-def kinds_in(slot: str) -> dict[str, type[Component]]:
+def classes_in(slot: str) -> dict[str, type[Component]]:
     """Give the classes of parts that a table may describe, the usual one first.
 
     Parameters
@@ -212,7 +212,7 @@ def run_keys() -> dict[str, bool]:
     return arguments_of(System.simulate, without=("motion",))
 
 
-def run_arguments(file: TomlFile, where: Place, table: dict[str, Any]) -> dict[str, Any]:
+def described_run(file: TomlFile, where: Place, table: dict[str, Any]) -> dict[str, Any]:
     """Build the objects that tables inside a table of a run stand for.
 
     Parameters
@@ -254,7 +254,7 @@ def _run_of(file: TomlFile, given: object) -> dict[str, Any]:
     hints = hints_of(System.simulate)
     if table is None or not checked(file, (RUN,), table, run_keys(), hints=hints):
         return {}
-    arguments = run_arguments(file, (RUN,), table)
+    arguments = described_run(file, (RUN,), table)
     made(file, (RUN,), _read_arguments, arguments)
     return arguments
 
@@ -280,7 +280,7 @@ def _read_arguments(**given: Any) -> None:
 
 
 def _kind_of(file: TomlFile, slot: str, name: object) -> type[Component] | None:
-    known = kinds_in(slot)
+    known = classes_in(slot)
     if name is None:
         return next(iter(known.values()))
     if isinstance(name, str) and name in known:

@@ -9,13 +9,13 @@ from typing import Any, Final
 import pandas as pd
 
 from rockframe.command.files.calls import arguments_of, checked, made
-from rockframe.command.files.motions import motion_of
+from rockframe.command.files.motions import described_motion
 from rockframe.command.files.scenes import (
     Described,
-    described,
+    described_run,
+    described_scene,
     import_modules,
     read_scene,
-    run_arguments,
 )
 from rockframe.command.files.scenes import keys as scene_keys
 from rockframe.command.files.tables import TomlFile
@@ -115,7 +115,7 @@ def sweep_keys() -> dict[str, bool]:
 def _scene_of(file: TomlFile) -> Described | None:
     name = file.values.get(SCENE)
     if name is None:
-        return described(file)
+        return described_scene(file)
     inner = [key for key in file.values if key in scene_keys()]
     for key in inner:
         file.fault((key,), f"[{key}] and scene = {shown(name)} are both given; one of them does")
@@ -137,7 +137,9 @@ def _motions_of(file: TomlFile) -> Motions:
     where = (MOTIONS,)
     items: list[Any] = given if isinstance(given, list) else [given]
     if items and all(isinstance(item, dict) for item in items):
-        found = [motion_of(file, (MOTIONS, number), item) for number, item in enumerate(items)]
+        found = [
+            described_motion(file, (MOTIONS, number), item) for number, item in enumerate(items)
+        ]
         return [one for one in found if one is not None]
     if not items or not all(isinstance(item, str) for item in items):
         words = 'motions must be a list of files, folders or patterns such as ["records/*.AT2"]'
@@ -187,7 +189,7 @@ def _sweep_of(file: TomlFile) -> dict[str, Any]:
     if table is None or not checked(file, (SWEEP,), table, sweep_keys()):
         return {}
     try:
-        return run_arguments(file, (SWEEP,), table)
+        return described_run(file, (SWEEP,), table)
     except RockframeError as problem:
         file.fault((SWEEP,), str(problem))
         return {}

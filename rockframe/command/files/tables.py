@@ -114,7 +114,7 @@ class TomlFile:
             return {str(name): value for name, value in given.items()}  # pyright: ignore[reportUnknownVariableType]
         self.fault(
             where,
-            f"{where[-1]} must be a table, [{title_of(where)}] with its keys below it, "
+            f"{where[-1]} must be a table, [{table_title(where)}] with its keys below it, "
             f"got {shown(given)}",
         )
         return None
@@ -127,10 +127,10 @@ class TomlFile:
             return
         near = get_close_matches(name.casefold(), known, n=1, cutoff=0.6)
         meant = f"; was {near[0]!r} meant?" if near else ";"
-        inside = f"[{title_of(where)}] takes" if where else "there are"
+        inside = f"[{table_title(where)}] takes" if where else "there are"
         self.fault((*where, name), f"unknown key {name!r}{meant} {inside} {', '.join(known)}")
 
 
-def title_of(where: Place) -> str:
+def table_title(where: Place) -> str:
     """Name a table as its header does."""
     return ".".join(name for name in where if isinstance(name, str))

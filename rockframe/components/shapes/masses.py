@@ -78,7 +78,7 @@ def centre_of_mass(masses: Sequence[Placed]) -> tuple[float, float]:
     return mean_by_mass(masses, lambda one: one.x), mean_by_mass(masses, lambda one: one.y)
 
 
-def together(masses: Sequence[Placed]) -> PlaneMass:
+def combined_mass(masses: Sequence[Placed]) -> PlaneMass:
     """Make one mass of many, by the parallel-axis theorem, :eq:`eq-parts-inertia`.
 
     Parameters

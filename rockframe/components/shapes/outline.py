@@ -8,9 +8,9 @@ import numpy as np
 from rockframe.components.shapes.masses import PlaneMass
 from rockframe.components.shapes.polygon import (
     crossing,
+    extent_of,
     is_flat,
     region,
-    size_of,
     turning_back,
 )
 from rockframe.components.shapes.reading import read_mass, read_points
@@ -97,7 +97,7 @@ def _check_simple(points: Array, corners: Sequence[OutlineCorner], owner: str) -
     if is_flat(points):
         msg = f"{owner}: the outline has no area: all its points lie on one line"
         raise ComponentError(msg)
-    scaled = (points - points.mean(axis=0)) / size_of(points)
+    scaled = (points - points.mean(axis=0)) / extent_of(points)
     back = turning_back(scaled)
     if back is not None:
         msg = f"{owner}: the outline turns back on itself at {_at(corners[back])}"
@@ -138,4 +138,4 @@ def _at(corner: OutlineCorner) -> str:
 
 
 def _size(corners: Sequence[OutlineCorner]) -> float:
-    return size_of(np.array([(corner.x, corner.y) for corner in corners]))
+    return extent_of(np.array([(corner.x, corner.y) for corner in corners]))

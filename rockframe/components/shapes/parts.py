@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any, cast
 
-from rockframe.components.shapes.masses import together
+from rockframe.components.shapes.masses import combined_mass
 from rockframe.components.shapes.part import PlacedPart, read_part
 from rockframe.components.shapes.reading import read_place
 from rockframe.components.shapes.standing import ROUNDING, ShapedBody, Stance, shaped_body
@@ -48,7 +48,7 @@ def body_of_parts(given: object, base: object, owner: str) -> ShapedBody:
         stance = _common_base(parts, sorted(on_ground), slack, owner)
     else:
         stance = _given_base(base, on_ground, slack, owner)
-    whole = together([part.mass for part in parts])
+    whole = combined_mass([part.mass for part in parts])
     if not whole.inertia > 0.0:
         msg = f"{owner}: all mass is in one point, so that the body has no inertia"
         raise ComponentError(msg)

@@ -41,7 +41,7 @@ def region(points: Array) -> Region:
     its size, so that a far origin costs no digits.
     """
     low, high = points.min(axis=0), points.max(axis=0)
-    middle, size = 0.5 * (low + high), size_of(points)
+    middle, size = 0.5 * (low + high), extent_of(points)
     x, y = ((points - middle) / size).T
     area, across, up = _first_moments(x, y)
     x, y = x - across, y - up
@@ -54,14 +54,14 @@ def region(points: Array) -> Region:
     )
 
 
-def size_of(points: Array) -> float:
+def extent_of(points: Array) -> float:
     """Give the greater of width and height [m]."""
     return float(np.ptp(points, axis=0).max())
 
 
 def is_flat(points: Array) -> bool:
     """Tell whether all points lie on one line, but for rounding."""
-    size = size_of(points)
+    size = extent_of(points)
     if not 0.0 < size < math.inf:
         return True
     spread = np.linalg.svd((points - points.mean(axis=0)) / size, compute_uv=False)

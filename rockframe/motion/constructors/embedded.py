@@ -55,7 +55,7 @@ def example(
     <Quantity(0.106, 'standard_gravity')>
     """
     folder = resources.files("rockframe.motion") / "embedded"
-    records = provenance(folder)
+    records = record_sources(folder)
     record = records.get(name) if isinstance(cast("object", name), str) else None
     if record is None:
         known = ", ".join(repr(one) for one in records)
@@ -73,6 +73,6 @@ def example(
     )
 
 
-def provenance(folder: Traversable) -> dict[str, Any]:
+def record_sources(folder: Traversable) -> dict[str, Any]:
     """Read where the records of a folder are from, by their names."""
     return tomllib.loads((folder / _PROVENANCE).read_text(encoding="utf-8"))

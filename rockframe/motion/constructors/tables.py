@@ -14,7 +14,7 @@ from rockframe.motion.processing.sampling import instants_of
 from rockframe.motion.quantities import (
     accelerations_to_si,
     argument_unit,
-    seconds_of,
+    relative_seconds,
     times_to_si,
 )
 from rockframe.motion.readers.components import SENSE
@@ -259,7 +259,7 @@ def _step(frame: Any, time: str | None, time_step: QuantityLike | None, owner: s
     else:
         msg = f"{owner}: time {time!r} is none of the columns"
         raise ComponentError(msg)
-    times = seconds_of(axis, "s")
+    times = relative_seconds(axis, "s")
     if times is None:
         if asked is None:
             msg = f"{owner}: the frame holds no times; give time, or time_step='0.01 s'"

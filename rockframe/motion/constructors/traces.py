@@ -12,7 +12,7 @@ from rockframe.motion.readers.components import FileComponent, choose_component,
 from rockframe.motion.readers.orientation import orientation_of
 from rockframe.motion.readers.reading import to_motion
 from rockframe.motion.readers.source import Metadata, Record, Request, Source
-from rockframe.motion.readers.traces import by_channel, codes_of, joined
+from rockframe.motion.readers.traces import by_channel, codes_of, joined_traces
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -123,7 +123,7 @@ def _component(
     about = {"network": network, "station": station, "sensor_location": location}
 
     def samples() -> Record:
-        values, time_step, start = joined(source, traces)
+        values, time_step, start = joined_traces(source, traces)
         check_time_step(source, time_step, None)
         unit, as_read, said = choose_unit(source, request, _stated_unit(traces[0].stats), None)
         metadata: Metadata = {key: value for key, value in about.items() if value}

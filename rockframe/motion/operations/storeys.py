@@ -14,7 +14,7 @@ from rockframe.errors import ComponentError, RecordWarning, warn
 from rockframe.motion.operations.following import following, lost_pieces
 from rockframe.motion.operations.storey_arguments import read_building
 from rockframe.motion.processing.floors import decay_time, passed_on
-from rockframe.motion.processing.sampling import divided, padded
+from rockframe.motion.processing.sampling import divided_signal, padded
 from rockframe.signals import Motion
 from rockframe.signals.signal import MAXIMUM_SAMPLES
 from rockframe.signals.spectra import MAXIMUM_PARTS
@@ -157,7 +157,7 @@ def through_storeys(
     across = _floor(padded(si.horizontal, count), building.modes, parts)
     above = None
     if si.vertical is not None and upwards is VerticalComponent.UNCHANGED:
-        above = divided(padded(si.vertical, count), parts)
+        above = divided_signal(padded(si.vertical, count), parts)
     result = Motion(across.signal, above)
     if across.deviation > _COARSE:
         # the deviation falls with the square of the time step, :eq:`eq-floor-chords`
@@ -199,8 +199,8 @@ class _Floor(NamedTuple):
 
 
 def _floor(ground: Signal, modes: FloorModes, parts: int) -> _Floor:
-    halves = divided(ground, 2 * parts)
-    rigid = modes.rigid_share * divided(ground, parts).samples
+    halves = divided_signal(ground, 2 * parts)
+    rigid = modes.rigid_share * divided_signal(ground, parts).samples
     added = passed_on(halves.pieces, halves.time_step, modes.moving)
     samples = rigid + added[::2]
     peak = float(np.max(np.abs(samples)))

@@ -176,7 +176,7 @@ def padded(signal: Signal, count: int) -> Signal:
     return replace(signal, samples=samples, polynomials=pieces)
 
 
-def divided(signal: Signal, parts: int) -> Signal:
+def divided_signal(signal: Signal, parts: int) -> Signal:
     """Divide every interval into equal parts.
 
     Parameters

@@ -28,7 +28,7 @@ from rockframe.motion.readers.numbers import (
     last_fields,
 )
 from rockframe.motion.readers.orientation import UNKNOWN, orientation_of
-from rockframe.motion.readers.source import Metadata, Record, Request, Source, shown
+from rockframe.motion.readers.source import Metadata, Record, Request, Source, quoted_first_line
 from rockframe.motion.readers.stated import compare_peak
 
 if TYPE_CHECKING:
@@ -118,7 +118,9 @@ def _columns(source: Source) -> tuple[list[str], int]:
         if len(names) > 1 and all(orientation_of(name) != UNKNOWN for name in names):
             return names, index + 1
     expected = "a line with the names of the columns, such as 'N-S E-W U-D'"
-    raise source.refuse(found=f"no columns below {shown(source.start)}", expected=expected, line=1)
+    raise source.refuse(
+        found=f"no columns below {quoted_first_line(source.start)}", expected=expected, line=1
+    )
 
 
 def _peaks(header: Keys) -> tuple[dict[str, str], str | None, int | None]:

@@ -19,9 +19,9 @@ from rockframe.motion.readers.checks import (
 )
 from rockframe.motion.readers.components import FileComponent, choose_component
 from rockframe.motion.readers.fixed import cell, fixed_width
-from rockframe.motion.readers.numbers import number
+from rockframe.motion.readers.numbers import one_number
 from rockframe.motion.readers.orientation import UNKNOWN, Orientation, azimuth_of, orientation_of
-from rockframe.motion.readers.source import Metadata, Record, Request, Source, shown
+from rockframe.motion.readers.source import Metadata, Record, Request, Source, quoted_first_line
 from rockframe.motion.readers.stated import compare_length, surplus
 
 if TYPE_CHECKING:
@@ -83,7 +83,7 @@ def read(source: Source, request: Request) -> Record:
             raise source.refuse(found="more", expected=expected, line=index + 1)
     if not starts:
         expected = "a first line such as '* VOL1DS FILE:  5526/01'"
-        raise source.refuse(found=shown(source.start), expected=expected, line=1)
+        raise source.refuse(found=quoted_first_line(source.start), expected=expected, line=1)
     return choose_component(
         source, request, [_component(source, request, first) for first in starts]
     )
@@ -123,7 +123,7 @@ def _samples(source: Source, request: Request, first: int, text: list[str]) -> R
     volume = _FIRST_LINE.match(text[0])
     if volume is None or volume.group(1) != "1":
         expected = "uncorrected accelerations (volume 1)"
-        raise source.refuse(found=shown(text[0]), expected=expected, line=first + 1)
+        raise source.refuse(found=quoted_first_line(text[0]), expected=expected, line=first + 1)
     points, line = _line(source, first, text, _POINTS, "'NO. OF POINTS =   9472  DURATION = 47.36'")
     units, unit_line = _line(source, first, text, _UNITS, "'UNITS ARE SECONDS AND G/10'")
     unit, as_read, warnings = choose_unit(source, request, units.group(1), unit_line)
@@ -150,7 +150,7 @@ def _time_step(source: Source, first: int) -> float:
         or "no sampling rate (real 7)"
     )
     line = first + _REALS + 2
-    rate = number(printed, source, line)
+    rate = one_number(printed, source, line)
     if not rate > 0.0:
         found = f"a sampling rate of {rate!r} Hz (real 7)"
         raise source.refuse(found=found, expected="one above zero", line=line)

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from rockframe.motion.readers.numbers import NUMBER, floats, is_plain, number, too_many, with_e
-from rockframe.motion.readers.source import HEADER_WIDTH, MAXIMUM_SAMPLES, Source, shown
+from rockframe.motion.readers.numbers import NUMBER, floats, is_plain, one_number, too_many, with_e
+from rockframe.motion.readers.source import HEADER_WIDTH, MAXIMUM_SAMPLES, Source, quoted_first_line
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -111,7 +111,7 @@ def read_table(source: Source, most_columns: int) -> Table:
         values = floats([with_e(field) for field in fields])
     if values is None:
         checked = [
-            number(field.strip(), source, lines[place // columns])
+            one_number(field.strip(), source, lines[place // columns])
             for place, field in enumerate(fields)
         ]
         values = np.array(checked, dtype=np.float64)
@@ -193,7 +193,7 @@ def _header(source: Source) -> tuple[list[tuple[int, str]], int]:
         if words > HEADER_LINES or len(header) >= _MOST_COMMENTS:
             break
         header.append((index + 1, text[:HEADER_WIDTH]))
-    found = f"no row of numbers below {shown(source.start)}"
+    found = f"no row of numbers below {quoted_first_line(source.start)}"
     expected = f"columns of numbers below at most {HEADER_LINES} header lines"
     raise source.refuse(found=found, expected=expected, line=header[0][0] if header else 1)
 
@@ -214,14 +214,17 @@ def _has_decimal_commas(source: Source, lines: list[int], rows: list[str], body:
     if ";" in body:
         if "." in body:
             point = next(place for place, text in enumerate(rows) if "." in text)
-            found = f"a comma inside {shown(rows[comma])}, a point in line {lines[point]}"
+            found = (
+                f"a comma inside {quoted_first_line(rows[comma])}, a point in line {lines[point]}"
+            )
             expected = "one decimal sign throughout"
             raise source.refuse(found=found, expected=expected, line=lines[comma])
         return True
     if "." in body or _GLUED_COMMA.search(body) is None:
         return False
     if not all(map(_SPREAD.fullmatch, rows)):
-        found = f"{shown(rows[comma])}, where the comma may be a decimal sign or a separator"
+        where = quoted_first_line(rows[comma])
+        found = f"{where}, where the comma may be a decimal sign or a separator"
         expected = "decimal points, or ';' between columns with decimal commas"
         raise source.refuse(found=found, expected=expected, line=lines[comma])
     return True
@@ -249,7 +252,7 @@ def _uneven(
     source: Source, parts: list[str], columns: int, lines: Sequence[int], place: int
 ) -> RecordError:
     """Build the error for a row of another length."""
-    found = f"{len(parts)} fields ({shown(' '.join(parts))})"
+    found = f"{len(parts)} fields ({quoted_first_line(' '.join(parts))})"
     expected = f"{columns} fields, as in line {lines[0]}"
     return source.refuse(found=found, expected=expected, line=lines[place])
 
@@ -273,7 +276,7 @@ def _check_header(
         single = len(text.split()) == 1 and separator is None
         if mixed or (single and _NOT_A_WORD.match(text)):
             raise source.refuse(
-                found=shown(odd[0] if odd else text), expected="a number", line=line
+                found=quoted_first_line(odd[0] if odd else text), expected="a number", line=line
             )
         if len(parts) == columns and all(_NOT_A_WORD.match(part) for part in parts):
-            raise source.refuse(found=shown(text), expected="numbers", line=line)
+            raise source.refuse(found=quoted_first_line(text), expected="numbers", line=line)

@@ -30,7 +30,7 @@ from rockframe.motion.readers.cosmos_tables import (
 )
 from rockframe.motion.readers.fixed import fixed_width, whole
 from rockframe.motion.readers.orientation import Orientation, azimuth_of, orientation_of
-from rockframe.motion.readers.source import Metadata, Record, Request, Source, shown
+from rockframe.motion.readers.source import Metadata, Record, Request, Source, quoted_first_line
 from rockframe.motion.readers.stated import compare_peak, surplus
 from rockframe.motion.unit_names import acceleration_unit
 
@@ -92,14 +92,14 @@ def read(source: Source, request: Request) -> Record:
     """
     blocks = _blocks(source)
     if not blocks:
-        found = f"{shown(source.start)}"
+        found = f"{quoted_first_line(source.start)}"
         expected = (
             "a first line such as 'Corrected acceleration (Format v01.20 with 13 text lines)'"
         )
         raise source.refuse(found=found, expected=expected, line=1)
     wanted = [block for block in blocks if "accel" in block.kind.casefold()]
     if not wanted:
-        kinds = ", ".join(sorted({shown(block.kind) for block in blocks})[:4])
+        kinds = ", ".join(sorted({quoted_first_line(block.kind) for block in blocks})[:4])
         expected = "an acceleration"
         raise source.refuse(found=f"only {kinds}", expected=expected, line=blocks[0].index + 1)
     components = [_component(source, request, block) for block in wanted]
@@ -201,7 +201,9 @@ def _data_line(source: Source, header: Header) -> tuple[int, re.Match[str]]:
             return index + 1, match
     index = min(header.data_at, len(source.lines) - 1)
     expected = "a line such as '42000 acceleration pts, ..., units=cm/sec2(04),Format=(8F10.3)'"
-    raise source.refuse(found=shown(source.lines[index]), expected=expected, line=index + 1)
+    raise source.refuse(
+        found=quoted_first_line(source.lines[index]), expected=expected, line=index + 1
+    )
 
 
 def _unit_name(source: Source, request: Request, header: Header, text: str, line: int) -> str:

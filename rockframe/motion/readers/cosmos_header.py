@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from typing import Final
 
 from rockframe.motion.readers.fixed import whole
-from rockframe.motion.readers.numbers import number
-from rockframe.motion.readers.source import Source, shown
+from rockframe.motion.readers.numbers import one_number
+from rockframe.motion.readers.source import Source, quoted_first_line
 
 _INTEGERS: Final = re.compile(
     r"(\d{1,4})\s+Integer-header values follow on\s+(\d{1,4})\s+lines?,?"
@@ -83,7 +83,7 @@ class Header:
         value = whole(text)
         if value is None and text.strip():
             raise self.source.refuse(
-                found=f"{shown(text)} for integer header {place}",
+                found=f"{quoted_first_line(text)} for integer header {place}",
                 expected="a whole number",
                 line=self.integers_at + row + 1,
             )
@@ -98,7 +98,7 @@ class Header:
         text = line[column * self.real_width : (column + 1) * self.real_width].strip()
         if not text:
             return None
-        value = number(text, self.source, self.reals_at + row + 1)
+        value = one_number(text, self.source, self.reals_at + row + 1)
         return None if math.isclose(value, self.unknown[1]) else value
 
     def real_line(self, place: int) -> int:
@@ -175,7 +175,7 @@ def _section(
         return (count, columns, width), first, first + lines
     index = min(max(at, 0), end - 1)
     raise source.refuse(
-        found=shown(source.lines[index]),
+        found=quoted_first_line(source.lines[index]),
         expected=f"the line that announces the {what}, such as '100 Integer-header values "
         "follow on 10 lines, Format= (10I8)'"
         if announcement is _INTEGERS

@@ -36,13 +36,13 @@ from rockframe.motion.readers.csmip_header import (
     channel_of,
     description,
     is_corrected,
-    length_of,
-    peak_of,
+    length_in_header,
+    peak_in_header,
 )
 from rockframe.motion.readers.csmip_pairs import Pairs, find_pairs, read_pairs
 from rockframe.motion.readers.fixed import fixed_width
 from rockframe.motion.readers.orientation import Orientation, orientation_of
-from rockframe.motion.readers.source import Record, Request, Source, shown
+from rockframe.motion.readers.source import Record, Request, Source, quoted_first_line
 from rockframe.motion.readers.stated import compare_length, compare_peak, surplus
 
 if TYPE_CHECKING:
@@ -119,7 +119,7 @@ def read(source: Source, request: Request) -> Record:
     components = [_component(source, request, block) for block in _blocks(source)]
     components = components or _components_of_pairs(source, request)
     if not components:
-        found = f"no evenly sampled accelerations below {shown(source.start)}"
+        found = f"no evenly sampled accelerations below {quoted_first_line(source.start)}"
         expected = "a line such as '1138 points of accel data equally spaced at .020 sec'"
         raise source.refuse(found=found, expected=expected, line=1)
     return choose_component(source, request, components)
@@ -174,7 +174,7 @@ def _samples(source: Source, request: Request, block: _Block) -> Record:
     text = source.top(1, block.line)[0]
     said = _UNIT.search(text)
     name = said.group(1).rstrip(".") if said else None
-    peak = peak_of(block.header, block.first, corrected=is_corrected(block.header))
+    peak = peak_in_header(block.header, block.first, corrected=is_corrected(block.header))
     if name is None and peak is not None:
         name, line = peak.unit, peak.line
     unit, as_read, warnings = choose_unit(source, request, name, line)
@@ -198,12 +198,12 @@ def _doubts(
     unit: RecordUnit,
 ) -> list[str]:
     doubts: list[str] = []
-    peak = peak_of(header, first, corrected=is_corrected(header))
+    peak = peak_in_header(header, first, corrected=is_corrected(header))
     if peak is not None:
         doubts += compare_peak(
             source, values, unit, printed=peak.text, printed_unit=peak.unit, line=peak.line
         )
-    length = length_of(header, first)
+    length = length_in_header(header, first)
     if length is not None:
         doubts += compare_length(
             source, values.size, time_step, printed=length.text, line=length.line
@@ -272,7 +272,7 @@ def _seconds(source: Source, text: str, line: int) -> float:
     try:
         return float(text)
     except ValueError:
-        found = f"an interval of {shown(text)} s"
+        found = f"an interval of {quoted_first_line(text)} s"
         raise source.refuse(found=found, expected="a time step", line=line) from None
 
 
@@ -287,7 +287,7 @@ def _layout(source: Source, block: _Block, text: str) -> tuple[int, int]:
     width, rest = divmod(len(first), per_line)
     if rest or width not in _WIDTHS:
         raise source.refuse(
-            found=f"a line of {len(first)} characters ({shown(first)})",
+            found=f"a line of {len(first)} characters ({quoted_first_line(first)})",
             expected=f"{per_line} numbers of one width",
             line=block.line + 2,
         )

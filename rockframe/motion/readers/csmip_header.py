@@ -99,7 +99,7 @@ def channel_of(header: list[str], first: int) -> tuple[int | None, str, int]:
     return found
 
 
-def peak_of(header: list[str], first: int, *, corrected: bool) -> Stated | None:
+def peak_in_header(header: list[str], first: int, *, corrected: bool) -> Stated | None:
     """Find the peak of the acceleration; arguments as for :func:`channel_of`.
 
     Parameters
@@ -124,7 +124,7 @@ def peak_of(header: list[str], first: int, *, corrected: bool) -> Stated | None:
     return None
 
 
-def length_of(header: list[str], first: int) -> Stated | None:
+def length_in_header(header: list[str], first: int) -> Stated | None:
     """Find the length of the record; arguments as for :func:`channel_of`."""
     for line, text in enumerate(header, start=first + 1):
         match = _LENGTH.search(text)

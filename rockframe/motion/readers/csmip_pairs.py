@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from rockframe.motion.readers.fixed import fixed_width
-from rockframe.motion.readers.source import Source, shown
+from rockframe.motion.readers.source import Source, quoted_first_line
 from rockframe.motion.readers.timing import uniform_step
 
 if TYPE_CHECKING:
@@ -122,7 +122,7 @@ def read_pairs(source: Source, pairs: Pairs) -> tuple[float, Array]:
     width, indent = divmod(len(line), max(per_line, 1))
     if width not in _WIDTHS or indent > 1 or line[:indent].strip():
         raise source.refuse(
-            found=f"a line of {len(line)} characters ({shown(line)})",
+            found=f"a line of {len(line)} characters ({quoted_first_line(line)})",
             expected=f"{per_line} numbers of one width, pairs of time and acceleration",
             line=pairs.data_at + 1,
         )

@@ -27,10 +27,10 @@ from rockframe.motion.readers.numbers import (
     ends_inside_number,
     free_format,
     last_fields,
-    number,
+    one_number,
 )
 from rockframe.motion.readers.orientation import UNKNOWN, orientation_of
-from rockframe.motion.readers.source import Metadata, Record, Request, Source, shown
+from rockframe.motion.readers.source import Metadata, Record, Request, Source, quoted_first_line
 from rockframe.motion.readers.stated import compare_length, compare_peak
 
 NAME: Final = "csmnc"
@@ -85,7 +85,7 @@ def read(source: Source, request: Request) -> Record:
     if kind.group(1).upper() != "ACCELERATION":
         found = f"a {kind.group(1).lower()}"
         raise source.refuse(found=found, expected="an acceleration", line=kind_line)
-    time_step = number(points.group(2), source, line)
+    time_step = one_number(points.group(2), source, line)
     check_time_step(source, time_step, line)
     check_asked_time_step(source, request, time_step, line)
     unit, as_read, warnings = choose_unit(source, request, kind.group(2), kind_line)
@@ -138,7 +138,7 @@ def _found(source: Source, pattern: re.Pattern[str], such_as: str) -> tuple[re.M
         match = pattern.match(text)
         if match is not None:
             return match, line
-    found = f"no such line below {shown(source.start)}"
+    found = f"no such line below {quoted_first_line(source.start)}"
     raise source.refuse(found=found, expected=f"a line such as {such_as!r}", line=1)
 
 

@@ -30,14 +30,14 @@ from rockframe.motion.readers.components import FileComponent, choose_component
 from rockframe.motion.readers.declared import settle_count
 from rockframe.motion.readers.fixed import fixed_width
 from rockframe.motion.readers.keys import Keys, kept, needed, needed_rate
-from rockframe.motion.readers.numbers import number
+from rockframe.motion.readers.numbers import one_number
 from rockframe.motion.readers.orientation import (
     DOWNWARDS,
     Orientation,
     azimuth_of,
     orientation_of,
 )
-from rockframe.motion.readers.source import Metadata, Record, Request, Source, shown
+from rockframe.motion.readers.source import Metadata, Record, Request, Source, quoted_first_line
 from rockframe.motion.readers.stated import compare_peak
 
 if TYPE_CHECKING:
@@ -173,7 +173,7 @@ class _Table:
             )
         if "recordlength" in self._header:
             text, line = self._header["recordlength"]
-            announced = number(text, source, line) * self._rate
+            announced = one_number(text, source, line) * self._rate
             if 0.0 < announced < 1e12:
                 self.metadata, said = settle_count(
                     source, declared=round(announced), counted=rows, what="RecordLength", line=line
@@ -186,7 +186,7 @@ class _Table:
         match = _LAYOUT.match(text)
         if match is None or int(match.group(1)) != self._columns:
             raise self._source.refuse(
-                found=f"the layout {shown(text)}",
+                found=f"the layout {quoted_first_line(text)}",
                 expected=f"{self._columns} columns, such as '{self._columns}F10.3'",
                 line=line,
             )
@@ -210,7 +210,7 @@ def _columns(source: Source, header: Keys) -> tuple[list[tuple[str, Orientation]
     text, line = needed(source, header, "datasequence")
     names = _COLUMN.findall(text)
     if len(names) < 2 or names[0][0].casefold() != "time":
-        found = f"the columns {shown(text)}"
+        found = f"the columns {quoted_first_line(text)}"
         raise source.refuse(found=found, expected="the time, then the components", line=line)
     columns: list[tuple[str, Orientation]] = []
     for name, sign in names[1:]:

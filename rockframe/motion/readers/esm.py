@@ -23,7 +23,7 @@ from rockframe.motion.readers.numbers import (
     last_fields,
 )
 from rockframe.motion.readers.orientation import orientation_of
-from rockframe.motion.readers.source import Metadata, Record, Request, Source, shown
+from rockframe.motion.readers.source import Metadata, Record, Request, Source, quoted_first_line
 from rockframe.motion.readers.stated import compare_length, compare_peak
 
 NAME: Final = "esm"
@@ -78,7 +78,7 @@ def read(source: Source, request: Request) -> Record:
     header, first = _header(source)
     kind, kind_line = header.get("DATA_TYPE", ("", 0))
     if kind and kind.casefold().removeprefix("un").removeprefix("processed ") != "acceleration":
-        found = f"DATA_TYPE {shown(kind)}"
+        found = f"DATA_TYPE {quoted_first_line(kind)}"
         raise source.refuse(found=found, expected="an acceleration", line=kind_line)
     time_step = needed_step(source, request, header, "SAMPLING_INTERVAL_S")
     unit_name, unit_line = header.get("UNITS", ("", 0))

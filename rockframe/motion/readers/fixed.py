@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from rockframe.motion.readers.numbers import floats, is_plain, number, too_many, with_e
-from rockframe.motion.readers.source import MAXIMUM_SAMPLES, Source, shown
+from rockframe.motion.readers.numbers import floats, is_plain, one_number, too_many, with_e
+from rockframe.motion.readers.source import MAXIMUM_SAMPLES, Source, quoted_first_line
 
 if TYPE_CHECKING:
     from rockframe.signals.arrays import Array
@@ -71,7 +71,7 @@ def fixed_width(
         if len(line) != length:
             fields = length // width
             raise source.refuse(
-                found=f"{len(line)} characters ({shown(line)})",
+                found=f"{len(line)} characters ({quoted_first_line(line)})",
                 expected=f"{length}: {fields} numbers of {width} characters",
                 line=first + index + 1,
             )
@@ -83,7 +83,7 @@ def fixed_width(
             if values is not None:
                 return values
     checked = [
-        number(field.strip(), source, first + index // per_line + 1)
+        one_number(field.strip(), source, first + index // per_line + 1)
         for index, field in enumerate(fields)
     ]
     return np.array(checked, dtype=np.float64)
@@ -139,7 +139,7 @@ def header_number(
     line = first + (place - 1) // per_line + 1
     if not text:
         raise source.refuse(found=f"no {what}", expected=f"a number ({what})", line=line)
-    return number(text, source, line)
+    return one_number(text, source, line)
 
 
 def header_count(
@@ -150,7 +150,7 @@ def header_count(
     line = first + (place - 1) // per_line + 1
     value = whole(text)
     if value is None:
-        found = f"{shown(text)} for the {what}"
+        found = f"{quoted_first_line(text)} for the {what}"
         raise source.refuse(found=found, expected="a whole number", line=line)
     return value
 

@@ -30,7 +30,7 @@ from rockframe.motion.readers.orientation import (
     azimuth_of,
     orientation_of,
 )
-from rockframe.motion.readers.source import Metadata, Record, Request, Source, shown
+from rockframe.motion.readers.source import Metadata, Record, Request, Source, quoted_first_line
 from rockframe.motion.readers.stated import compare_length, compare_peak
 
 NAME: Final = "geonet"
@@ -124,7 +124,7 @@ def _blocks(source: Source) -> list[_Block]:
                 expected += (
                     f", the next component, or the end of the file (component {len(blocks)})"
                 )
-            raise source.refuse(found=shown(text), expected=expected, line=index + 1)
+            raise source.refuse(found=quoted_first_line(text), expected=expected, line=index + 1)
         corrected = first.group(1) is None
         block = _Block(index, _count(source, index, corrected=corrected), corrected)
         blocks.append(block)
@@ -196,7 +196,8 @@ def _samples(source: Source, request: Request, block: _Block) -> Record:
     if said is not None:
         printed = _number_or_none(said.group(1))
         if printed is None or not math.isclose(printed, time_step, rel_tol=1e-6, abs_tol=_DIGIT):
-            found = f"a time step of {time_step!r} s, and {shown(said.group(0))} in the text"
+            stated = quoted_first_line(said.group(0))
+            found = f"a time step of {time_step!r} s, and {stated} in the text"
             raise source.refuse(found=found, expected="one time step", line=line)
     check_asked_time_step(source, request, time_step, line)
     unit, as_read, warnings = choose_unit(source, request, UNIT, None)

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from rockframe.motion.readers.checks import check_asked_time_step, check_time_step
 from rockframe.motion.readers.fixed import whole
-from rockframe.motion.readers.numbers import number
-from rockframe.motion.readers.source import shown
+from rockframe.motion.readers.numbers import one_number
+from rockframe.motion.readers.source import quoted_first_line
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -46,7 +46,7 @@ def needed_count(source: Source, keys: Keys, key: str) -> tuple[int, int]:
     text, line = needed(source, keys, key)
     count = whole(text)
     if count is None or count < 1:
-        found, expected = f"{key} {shown(text)}", "a whole number above zero"
+        found, expected = f"{key} {quoted_first_line(text)}", "a whole number above zero"
         raise source.refuse(found=found, expected=expected, line=line)
     return count, line
 
@@ -83,7 +83,7 @@ def needed(source: Source, keys: Keys, key: str) -> tuple[str, int]:
 def needed_rate(source: Source, keys: Keys, key: str) -> tuple[float, int]:
     """Give a sampling rate that must be there and above zero, and its line [Hz]."""
     text, line = needed(source, keys, key)
-    rate = number(text.casefold().removesuffix("hz").strip(), source, line)
+    rate = one_number(text.casefold().removesuffix("hz").strip(), source, line)
     if not rate > 0.0:
         found = f"a sampling rate of {rate!r} Hz"
         raise source.refuse(found=found, expected="one above zero", line=line)
@@ -93,7 +93,7 @@ def needed_rate(source: Source, keys: Keys, key: str) -> tuple[float, int]:
 def needed_step(source: Source, request: Request, keys: Keys, key: str) -> float:
     """Give a time step that must be there, and be that which the caller asked for [s]."""
     text, line = needed(source, keys, key)
-    time_step = number(text, source, line)
+    time_step = one_number(text, source, line)
     check_time_step(source, time_step, line)
     check_asked_time_step(source, request, time_step, line)
     return time_step

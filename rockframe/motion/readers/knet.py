@@ -27,9 +27,9 @@ from rockframe.motion.readers.checks import (
 from rockframe.motion.readers.components import FileComponent, choose_component
 from rockframe.motion.readers.declared import settle_count
 from rockframe.motion.readers.keys import Keys, needed, needed_rate
-from rockframe.motion.readers.numbers import NUMBER, free_format, last_fields, number
+from rockframe.motion.readers.numbers import NUMBER, free_format, last_fields, one_number
 from rockframe.motion.readers.orientation import orientation_of
-from rockframe.motion.readers.source import Metadata, Record, Request, Source, shown
+from rockframe.motion.readers.source import Metadata, Record, Request, Source, quoted_first_line
 
 if TYPE_CHECKING:
     from rockframe.signals.arrays import Array
@@ -150,10 +150,10 @@ def _scale(source: Source, header: Keys) -> float:
     text, line = needed(source, header, "Scale Factor")
     match = _SCALE.fullmatch(text)
     if match is not None:
-        over, under = (number(part, source, line) for part in match.groups())
+        over, under = (one_number(part, source, line) for part in match.groups())
         if under > 0.0 and over > 0.0 and math.isfinite(over / under):
             return over / under
-    found = f"a scale factor of {shown(text)}"
+    found = f"a scale factor of {quoted_first_line(text)}"
     expected = "a ratio above zero such as 3920(gal)/6182761"
     raise source.refuse(found=found, expected=expected, line=line)
 
@@ -168,9 +168,9 @@ def _counts(
         line = first + int(fractions[0]) // _PER_LINE + 1
         raise source.refuse(found=found, expected="counts, which are whole numbers", line=line)
     duration, line = needed(source, header, "Duration Time(s)")
-    announced = number(duration, source, line) * rate
+    announced = one_number(duration, source, line) * rate
     if not 0.0 < announced < 1e12:
-        found = f"a duration of {shown(duration)} s"
+        found = f"a duration of {quoted_first_line(duration)} s"
         raise source.refuse(found=found, expected="a length above zero", line=line)
     declared = round(announced)
     said, differing = settle_count(
@@ -193,7 +193,7 @@ def _compare_peak(source: Source, header: Keys, values: Array) -> list[str]:
     printed, line = header.get("Max. Acc. (gal)", header.get("Max Acc. (gal)", ("", 1)))
     if not printed:
         return []
-    said, peak = number(printed, source, line), float(np.max(np.abs(values)))
+    said, peak = one_number(printed, source, line), float(np.max(np.abs(values)))
     if abs(peak - said) <= _PEAK_TOLERANCE * abs(said) + _PEAK_DIGIT:
         return []
     return [

@@ -36,7 +36,7 @@ from rockframe.motion.readers.source import (
     Source,
 )
 from rockframe.motion.readers.station_xml import InstrumentResponse, InstrumentResponses
-from rockframe.motion.readers.traces import by_channel, codes_of, joined
+from rockframe.motion.readers.traces import by_channel, codes_of, joined_traces
 
 if TYPE_CHECKING:
     from collections.abc import Generator
@@ -243,7 +243,7 @@ def _samples(
     response: InstrumentResponse | None,
     metadata: Metadata,
 ) -> Record:
-    counts, time_step, start = joined(source, traces)
+    counts, time_step, start = joined_traces(source, traces)
     check_time_step(source, time_step, None)
     check_asked_time_step(source, request, time_step, None)
     about: Metadata = {key: value for key, value in metadata.items() if value}

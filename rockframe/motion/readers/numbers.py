@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from rockframe.motion.readers.source import MAXIMUM_SAMPLES, Source, shown
+from rockframe.motion.readers.source import MAXIMUM_SAMPLES, Source, quoted_first_line
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -88,7 +88,7 @@ def is_plain(text: str) -> bool:
     return text.isascii() and "_" not in text
 
 
-def number(text: str, source: Source, line: int) -> float:
+def one_number(text: str, source: Source, line: int) -> float:
     """Read one field that must be one finite number.
 
     Parameters
@@ -110,11 +110,13 @@ def number(text: str, source: Source, line: int) -> float:
         Not a finite number.
     """
     if _ONE_NUMBER.fullmatch(text) is None:
-        raise source.refuse(found=shown(text), expected="a number", line=line)
+        raise source.refuse(found=quoted_first_line(text), expected="a number", line=line)
     value = float(text.upper().replace("D", "E"))
     if not math.isfinite(value):
         raise source.refuse(
-            found=f"{shown(text)}, which overflows", expected="a finite number", line=line
+            found=f"{quoted_first_line(text)}, which overflows",
+            expected="a finite number",
+            line=line,
         )
     return value
 
@@ -232,13 +234,13 @@ def _careful(field: str, source: Source, line: int) -> list[float]:
         pieces.append(match.group())
         position = match.end()
     if position != len(field) or not pieces:
-        raise source.refuse(found=shown(field), expected="a finite number", line=line)
+        raise source.refuse(found=quoted_first_line(field), expected="a finite number", line=line)
     together = len(pieces) > 1
     if together and not all(piece[0] in "+-" and "." in piece for piece in pieces[1:]):
-        found = f"{shown(field)}, numbers run together"
+        found = f"{quoted_first_line(field)}, numbers run together"
         raise source.refuse(
             found=found, expected="blanks, or signs, between the numbers", line=line
         )
     if together and "." not in pieces[0]:
-        raise source.refuse(found=shown(field), expected="a finite number", line=line)
-    return [number(piece, source, line) for piece in pieces]
+        raise source.refuse(found=quoted_first_line(field), expected="a finite number", line=line)
+    return [one_number(piece, source, line) for piece in pieces]

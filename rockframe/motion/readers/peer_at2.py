@@ -31,7 +31,7 @@ from rockframe.motion.readers.numbers import (
     last_fields,
 )
 from rockframe.motion.readers.orientation import UNKNOWN, Orientation, orientation_of
-from rockframe.motion.readers.source import Metadata, Record, Request, Source, shown
+from rockframe.motion.readers.source import Metadata, Record, Request, Source, quoted_first_line
 
 NAME: Final = "peer-at2"
 TITLE: Final = "PEER acceleration file (AT2)"
@@ -124,7 +124,7 @@ def _points_line(source: Source) -> int:
             return index
     raise source.refuse(
         found=f"no number of points (NPTS) in the first {HEADER_LINES} lines, "
-        f"which begin with {shown(source.start)}",
+        f"which begin with {quoted_first_line(source.start)}",
         expected="a PEER header with a line such as 'NPTS=  7999, DT=   .0050 SEC'",
         line=1,
     )
@@ -149,7 +149,7 @@ def _points_and_step(source: Source, index: int) -> tuple[int, float]:
         count_text, step_text = west1.groups()
     else:
         expected = "'NPTS= <count>, DT= <seconds> SEC' or '<count> <seconds> NPTS, DT'"
-        raise source.refuse(found=shown(line), expected=expected, line=index + 1)
+        raise source.refuse(found=quoted_first_line(line), expected=expected, line=index + 1)
     try:
         count = int(count_text.rstrip("."))
     except ValueError:  # a fraction, or thousands of digits
@@ -166,7 +166,7 @@ def _check_kind(source: Source, index: int) -> None:
     for number, line in enumerate(source.top(index), start=1):
         kind = _OTHER_KIND.search(line)
         if kind is not None and "ACCELERATION" not in line.upper():
-            found = f"a {kind.group(1).lower()} ({shown(line)})"
+            found = f"a {kind.group(1).lower()} ({quoted_first_line(line)})"
             raise source.refuse(
                 found=found, expected="an acceleration (the .AT2 file of the set)", line=number
             )

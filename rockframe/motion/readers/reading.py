@@ -26,7 +26,7 @@ from rockframe.motion.readers.source import (
     Source,
     StoredMotion,
     base_name,
-    load,
+    read_source,
 )
 from rockframe.motion.unit_names import RecordUnit
 from rockframe.signals import Motion
@@ -97,7 +97,7 @@ def read_record(given: RecordLike, format_name: str | None, request: Request) ->
         No such format.
     """
     chosen = None if format_name is None else by_name(str(format_name))
-    source = load(given)
+    source = read_source(given)
     entry = chosen or recognised(source)
     if request.response is not None and entry.own and entry.name not in WITH_RESPONSE:
         kinds = ", ".join(WITH_RESPONSE)

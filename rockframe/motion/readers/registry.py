@@ -28,7 +28,7 @@ from rockframe.motion.readers import (
     text,
     unam,
 )
-from rockframe.motion.readers.source import Record, Request, Source, StoredMotion, shown
+from rockframe.motion.readers.source import Record, Request, Source, StoredMotion, quoted_first_line
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -265,7 +265,7 @@ def recognised(source: Source) -> Format:
     for entry in known:
         if entry.binary and _looks_like(source, entry):
             return entry
-    top = shown(source.start)  # refuses what is no text either
+    top = quoted_first_line(source.start)  # refuses what is no text either
     for entry in known:
         if not entry.binary and _looks_like(source, entry):
             return entry

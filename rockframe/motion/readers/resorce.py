@@ -21,7 +21,7 @@ from rockframe.motion.readers.components import FileComponent, choose_component
 from rockframe.motion.readers.fixed import fixed_width
 from rockframe.motion.readers.keys import kept, needed_count, needed_step, read_keys
 from rockframe.motion.readers.orientation import orientation_of
-from rockframe.motion.readers.source import Metadata, Record, Request, Source, shown
+from rockframe.motion.readers.source import Metadata, Record, Request, Source, quoted_first_line
 from rockframe.motion.readers.stated import compare_peak, surplus
 
 NAME: Final = "resorce"
@@ -105,6 +105,6 @@ def _series(source: Source) -> tuple[str, int]:
         match = _SERIES.match(text)
         if match is not None:
             return match.group(1), line
-    found = f"no line with the unit below {shown(source.start)}"
+    found = f"no line with the unit below {quoted_first_line(source.start)}"
     expected = "'Accelaration time series in m/s/s' above the numbers"
     raise source.refuse(found=found, expected=expected, line=1)

@@ -37,7 +37,7 @@ from rockframe.motion.readers.orientation import (
     azimuth_of,
     orientation_of,
 )
-from rockframe.motion.readers.source import Metadata, Record, Request, Source, shown
+from rockframe.motion.readers.source import Metadata, Record, Request, Source, quoted_first_line
 from rockframe.motion.readers.stated import compare_peak, surplus
 
 if TYPE_CHECKING:
@@ -116,9 +116,9 @@ def _check_kind(source: Source) -> None:
     match = _KIND.match(source.top(1)[0])
     if match is None:
         expected = "a first line such as '2 CORRECTED ACCELEROGRAM'"
-        raise source.refuse(found=shown(source.start), expected=expected, line=1)
+        raise source.refuse(found=quoted_first_line(source.start), expected=expected, line=1)
     if not _is_accelerogram(match):
-        found = f"{shown(match.group(0))}, which is no accelerogram"
+        found = f"{quoted_first_line(match.group(0))}, which is no accelerogram"
         raise source.refuse(found=found, expected="an acceleration", line=1)
 
 
@@ -164,7 +164,7 @@ def _samples(source: Source, request: Request) -> Record:
         raise source.refuse(found=found, expected=expected, line=13)
     for index, line in enumerate(source.top(comments, _COMMENTS), start=_COMMENTS + 1):
         if not line.startswith("|"):
-            found = f"{shown(line)} among {comments} comment lines"
+            found = f"{quoted_first_line(line)} among {comments} comment lines"
             raise source.refuse(found=found, expected="a line that begins with '|'", line=index)
     time_step = _time_step(source)
     check_asked_time_step(source, request, time_step, _REALS + 1)

@@ -218,7 +218,7 @@ class StoredMotion:
     recipe: Mapping[str, Any] | None
 
 
-def load(given: RecordLike) -> Source:
+def read_source(given: RecordLike) -> Source:
     """Read the bytes of a file, or refuse it.
 
     Parameters
@@ -248,7 +248,7 @@ def base_name(path: str) -> str:
     return path.replace("\\", "/").rstrip("/").rsplit("/", 1)[-1]
 
 
-def shown(text: str) -> str:
+def quoted_first_line(text: str) -> str:
     """Quote the first line of a text, shortened, for a message."""
     line = text.strip().split("\n", 1)[0].strip()
     return repr(line if len(line) <= _SHOWN else line[:_SHOWN] + "...")
@@ -303,6 +303,6 @@ def _check_text(text: str, start: str, source: Source) -> None:
         found = "StationXML, which describes an instrument and holds no motion"
         expected = "the miniSEED file itself; this one goes with it as the argument response"
         raise source.refuse(found=found, expected=expected, line=line)
-    found = f"a web page or other markup, {shown(shown_start)}"
+    found = f"a web page or other markup, {quoted_first_line(shown_start)}"
     expected = f"{_RECORD}; was an error page downloaded?"
     raise source.refuse(found=found, expected=expected, line=line)

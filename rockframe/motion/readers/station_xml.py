@@ -23,7 +23,7 @@ from rockframe.motion.readers.orientation import (
     Orientation,
     azimuth_of,
 )
-from rockframe.motion.readers.source import base_name, load
+from rockframe.motion.readers.source import base_name, read_source
 from rockframe.motion.readers.traces import codes_of, location_code
 from rockframe.motion.unit_names import RecordUnit, acceleration_unit
 
@@ -153,7 +153,7 @@ class InstrumentResponses:
                 size = path.stat().st_size
                 if size <= self._left:
                     self._left -= size
-                    self._read[path] = _inventory(load(path))
+                    self._read[path] = _inventory(read_source(path))
         return self._read[path]
 
 
@@ -177,7 +177,7 @@ def response_in(file: Source, name: str, time: datetime) -> InstrumentResponse |
 
 
 def _given(response: str) -> _Inventory:
-    file = load(response)
+    file = read_source(response)
     if len(file.data) > _LARGEST:
         size = f"{len(file.data) / 2**20:.3g} MiB"
         expected = f"StationXML of at most {_LARGEST // 2**20} MiB, such as of one station"

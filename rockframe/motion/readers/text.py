@@ -21,7 +21,7 @@ from rockframe.motion.readers.numbers import (
     ends_inside_number,
     free_format,
     last_fields,
-    number,
+    one_number,
     too_many,
 )
 from rockframe.motion.readers.source import (
@@ -43,7 +43,7 @@ from rockframe.motion.readers.text_header import (
     column_names,
     has_times,
     is_direction,
-    rises,
+    is_rising,
     time_scale,
     unit_of_header,
 )
@@ -103,7 +103,7 @@ def read(source: Source, request: Request) -> Record:
     metadata: Metadata = {}
     if table.header:
         metadata["description"] = table.header[0][1].lstrip("#% \t")
-    if columns > 1 and not (timed and (names or rises(table))):
+    if columns > 1 and not (timed and (names or is_rising(table))):
         order = None if any(map(is_direction, names)) else reading_order(table.values)
         asked = (request.component or "").strip().casefold() == BY_ROWS
         if order == ROWS or (asked and order != COLUMNS):
@@ -154,7 +154,7 @@ def read(source: Source, request: Request) -> Record:
 def _row_by_row(source: Source, request: Request, table: Table, metadata: Metadata) -> Record:
     """Read a record that is wrapped to several values a line."""
     columns = table.values.shape[1]
-    rest = [number(field, source, table.lines[-1]) for field in table.rest]
+    rest = [one_number(field, source, table.lines[-1]) for field in table.rest]
     values = np.append(table.values.ravel(), rest)
     if values.size > MAXIMUM_SAMPLES:
         raise too_many(source, values.size, line=table.lines[-1])

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 
 from rockframe.motion.readers.columns import Table, split_header
 from rockframe.motion.readers.orientation import UNKNOWN, Orientation, orientation_of
-from rockframe.motion.readers.source import Source, shown
+from rockframe.motion.readers.source import Source, quoted_first_line
 from rockframe.motion.readers.text_stated import TIME_UNITS
 from rockframe.motion.unit_names import acceleration_unit, other_quantity
 
@@ -89,7 +89,7 @@ def column_names(source: Source, table: Table) -> tuple[list[str], int]:
     last = names[-1]
     if _is_other(last):
         raise source.refuse(
-            found=f"the column {shown(last)}", expected="an acceleration", line=line
+            found=f"the column {quoted_first_line(last)}", expected="an acceleration", line=line
         )
     if columns == 2 and (_ACCELERATION_NAME.match(names[0]) or _TIME_NAME.match(last)):
         both = all(map(is_direction, names))
@@ -124,7 +124,9 @@ def _check_no_spectrum(source: Source, table: Table, names: list[str], line: int
         return
     for number, text in table.header:
         if _SPECTRUM.search(text) and not _MATCHED.search(text) and table.values.shape[1] > 1:
-            raise source.refuse(found=f"a spectrum ({shown(text)})", expected=expected, line=number)
+            raise source.refuse(
+                found=f"a spectrum ({quoted_first_line(text)})", expected=expected, line=number
+            )
 
 
 def has_times(table: Table, names: list[str]) -> bool:
@@ -152,10 +154,10 @@ def has_times(table: Table, names: list[str]) -> bool:
         timed = any(unit.casefold() in TIME_UNITS for unit in in_brackets(first))
         directions = all(map(is_direction, names))
         return named or timed or (columns == 2 and not directions)
-    return columns == 2 or rises(table)
+    return columns == 2 or is_rising(table)
 
 
-def rises(table: Table) -> bool:
+def is_rising(table: Table) -> bool:
     """Tell whether the numbers of the first column rise all along."""
     return bool((table.values[1:, 0] > table.values[:-1, 0]).all())
 

@@ -45,11 +45,11 @@ def same_start(one: object, other: object, time_step: float) -> bool:
     """
     if one is None or other is None or one == other:
         return True
-    first, second = seconds_of(one), seconds_of(other)
+    first, second = epoch_seconds(one), epoch_seconds(other)
     return first is not None and second is not None and abs(second - first) <= _SAME * time_step
 
 
-def seconds_of(time: object) -> float | None:
+def epoch_seconds(time: object) -> float | None:
     """Give the seconds from 1970 to a time in ISO 8601, or None for another one."""
     try:
         moment = datetime.fromisoformat(str(time).strip())

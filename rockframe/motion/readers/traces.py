@@ -44,7 +44,7 @@ def location_code(given: str) -> str:
     return given.strip(" -")
 
 
-def joined(source: Source, traces: list[Any]) -> tuple[Array, float, str]:
+def joined_traces(source: Source, traces: list[Any]) -> tuple[Array, float, str]:
     """Join the traces of one channel.
 
     Parameters

@@ -28,7 +28,7 @@ from rockframe.motion.readers.components import FileComponent, choose_component
 from rockframe.motion.readers.declared import settle_count
 from rockframe.motion.readers.fixed import fixed_width, whole
 from rockframe.motion.readers.keys import Keys, kept, needed, read_keys
-from rockframe.motion.readers.numbers import number
+from rockframe.motion.readers.numbers import one_number
 from rockframe.motion.readers.orientation import (
     DOWNWARDS,
     UNKNOWN,
@@ -38,7 +38,7 @@ from rockframe.motion.readers.orientation import (
     azimuth_of,
     orientation_of,
 )
-from rockframe.motion.readers.source import Metadata, Record, Request, Source, shown
+from rockframe.motion.readers.source import Metadata, Record, Request, Source, quoted_first_line
 from rockframe.motion.readers.stated import compare_length, compare_peak
 
 if TYPE_CHECKING:
@@ -155,13 +155,13 @@ def _samples(
     text, unit_line = needed(source, header, _UNITS)
     unit, as_read, warnings = choose_unit(source, request, text.split()[0], unit_line)
     printed, line = _entry(source, lists.steps, place, "sampling interval")
-    time_step = number(printed, source, line)
+    time_step = one_number(printed, source, line)
     check_time_step(source, time_step, line)
     check_asked_time_step(source, request, time_step, line)
     said, count_line = _entry(source, lists.counts, place, "number of samples")
     declared = whole(said)
     if declared is None or declared < 1:
-        found = f"{shown(said)} samples"
+        found = f"{quoted_first_line(said)} samples"
         expected = "a whole number above zero"
         raise source.refuse(found=found, expected=expected, line=count_line)
     counts, differing = settle_count(
@@ -205,7 +205,9 @@ def _layout(source: Source, header: Keys) -> tuple[int, int]:
     match = _LAYOUT.match(text)
     if match is None or int(match.group(1)) < 1 or int(match.group(2)) < 1:
         expected = "a layout such as '3F10.3'"
-        raise source.refuse(found=f"the layout {shown(text)}", expected=expected, line=line)
+        raise source.refuse(
+            found=f"the layout {quoted_first_line(text)}", expected=expected, line=line
+        )
     return int(match.group(1)), int(match.group(2))
 
 

@@ -4,7 +4,7 @@ from enum import IntEnum
 from typing import Final
 
 from rockframe.results.variables.studies import PARAMETER
-from rockframe.results.variables.variable import FLIP, Variable, count, flag, number
+from rockframe.results.variables.variable import FLIP, Variable, count, counting, flag
 from rockframe.units import Unit
 
 LIMIT_STATE: Final = ("limit_state",)
@@ -288,7 +288,7 @@ ENSEMBLE: Final = (
 
 SEQUENCES: Final = (
     Variable("sequence", ("sequence",), None, "sequence of earthquakes", dtype="str"),
-    number("earthquake", "number of the earthquake in its sequence"),
+    counting("earthquake", "number of the earthquake in its sequence"),
     Variable(
         "overturning_earthquake",
         ("sequence",),

@@ -3,14 +3,14 @@
 from typing import Final
 
 from rockframe.dynamics.events import ContactState
-from rockframe.results.variables.variable import EVENT, Variable, flag, number
+from rockframe.results.variables.variable import EVENT, Variable, counting, flag
 from rockframe.units import Unit
 
 BODY: Final = ("body",)
 BODY_TIME: Final = ("body", "time")
 
 BODIES: Final = (
-    number("body", "number of a body of a stack, from the top down"),
+    counting("body", "number of a body of a stack, from the top down"),
     Variable("body_rotation", BODY_TIME, Unit.RADIAN, "rotation of each body, clockwise"),
     Variable("body_angular_velocity", BODY_TIME, Unit.RADIAN_PER_SECOND, "its rate, of each body"),
     Variable(

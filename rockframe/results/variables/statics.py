@@ -3,7 +3,7 @@
 from typing import Final
 
 from rockframe.dynamics.events import ContactState
-from rockframe.results.variables.variable import ANGLE, MODE, Variable, flag, number
+from rockframe.results.variables.variable import ANGLE, MODE, Variable, counting, flag
 from rockframe.units import Unit
 
 MODE_BODY: Final = ("mode", "body")
@@ -56,7 +56,7 @@ REST: Final = (
 """Scalars of a system at rest."""
 
 MODES: Final = (
-    number("mode", "number of the mode, from slow to fast"),
+    counting("mode", "number of the mode, from slow to fast"),
     Variable("angular_frequency", MODE, Unit.RADIAN_PER_SECOND, "angular frequency, undamped"),
     Variable("frequency", MODE, Unit.HERTZ, "cyclic frequency, undamped"),
     Variable("period", MODE, Unit.SECOND, "period, undamped"),

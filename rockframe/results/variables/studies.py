@@ -3,7 +3,7 @@
 from enum import IntEnum
 from typing import Final
 
-from rockframe.results.variables.variable import FLIP, SCALE, TIME, Variable, count, flag, number
+from rockframe.results.variables.variable import FLIP, SCALE, TIME, Variable, count, counting, flag
 from rockframe.units import Unit
 
 CASE: Final = "case"
@@ -64,7 +64,7 @@ CRITICAL_SCALE: Final = (
 """Of a motion that is scaled until a block overturns."""
 
 SWEEP: Final = (
-    number(CASE, "number of the row in the table of cases"),
+    counting(CASE, "number of the row in the table of cases"),
     Variable(MOTION, (MOTION,), None, "ground motion", dtype="str"),
     Variable(MESSAGE, (MESSAGE,), None, "what is said of cases, each text once", dtype="str"),
     Variable(

@@ -88,6 +88,6 @@ def count(name: str, words: str) -> Variable:
     return Variable(name, (), Unit.ONE, words, dtype="int64")
 
 
-def number(name: str, words: str) -> Variable:
+def counting(name: str, words: str) -> Variable:
     """Make the row of a coordinate that counts."""
     return Variable(name, (name,), Unit.ONE, words, dtype="int64")

@@ -26,7 +26,7 @@ from rockframe.solve.equations import BoundEquations, known_mode
 from rockframe.solve.guards import WEIGHTS
 from rockframe.solve.lanes import fields
 from rockframe.solve.lanes.intervals import is_at_end
-from rockframe.solve.march import jumps, length_of
+from rockframe.solve.march import interval_length, jumps
 from rockframe.solve.workspace import (
     TERMS,
     EventTable,
@@ -102,14 +102,14 @@ def note_mode(batch: Batch, row: Vector) -> None:
 
 
 @inlined
-def load(row_of_pieces: int, pieces: ReadOnlyMatrix, first: int, ground: Vector) -> None:
+def write_ground(row_of_pieces: int, pieces: ReadOnlyMatrix, first: int, ground: Vector) -> None:
     """Write the polynomial of one interval into a lane."""
     for j in range(pieces.shape[1]):
         ground[first + j] = pieces[row_of_pieces, j]
 
 
 @inlined
-def stand_still(terms: int, first: int, ground: Vector) -> None:
+def write_still_ground(terms: int, first: int, ground: Vector) -> None:
     """Write the polynomial of ground that stands still; -0 + x is x, whatever the sign of x."""
     ground[first] = 0.0
     for j in range(1, terms):
@@ -121,13 +121,13 @@ def load_ground(batch: Batch, index: int, whole: Integers, ground: Vector) -> No
     """Write the ground motion of an interval into a lane."""
     x, y = batch.pieces.x, batch.pieces.y
     if index < whole[fields.COUNT_X]:
-        load(whole[fields.FIRST_X] + index, x, 0, ground)
+        write_ground(whole[fields.FIRST_X] + index, x, 0, ground)
     else:
-        stand_still(x.shape[1], 0, ground)
+        write_still_ground(x.shape[1], 0, ground)
     if index < whole[fields.COUNT_Y]:
-        load(whole[fields.FIRST_Y] + index, y, TERMS, ground)
+        write_ground(whole[fields.FIRST_Y] + index, y, TERMS, ground)
     else:
-        stand_still(y.shape[1], TERMS, ground)
+        write_still_ground(y.shape[1], TERMS, ground)
 
 
 @inlined
@@ -146,7 +146,7 @@ def enter_interval(batch: Batch, lane: int) -> bool:
     index += 1
     counters[at.INTERVAL] = index
     clock[at.INTO_INTERVAL] = 0.0
-    own[fields.LENGTH] = length_of(index, intervals, controls)
+    own[fields.LENGTH] = interval_length(index, intervals, controls)
     load_ground(batch, index, whole, ground)
     if jumps(ground[0], clock[at.GROUND_X]) or jumps(ground[TERMS], clock[at.GROUND_Y]):
         counters[at.STALE] = 1
@@ -202,7 +202,7 @@ def return_to_lane(batch: Batch, row: Vector, lane: int, everything: bool) -> No
     controls = stretch(row, fields.CONTROLS, at.CONTROLS)
     note_mode(batch, row)
     intervals = max(whole[fields.COUNT_X], whole[fields.COUNT_Y])
-    row[fields.OWN + fields.LENGTH] = length_of(counters[at.INTERVAL], intervals, controls)
+    row[fields.OWN + fields.LENGTH] = interval_length(counters[at.INTERVAL], intervals, controls)
     if everything:
         copy_to_lane(batch, row, lane, 0, shape.numbers + shape.number_count)
     else:

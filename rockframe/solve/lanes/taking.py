@@ -3,7 +3,7 @@
 from rockframe.compiled import Vector, as_integers, inlined, lane_of
 from rockframe.dynamics.protocol import Equations, Ground
 from rockframe.solve import layout as at
-from rockframe.solve.guards import may_fall, write_guards
+from rockframe.solve.guards import may_fall, put_guards
 from rockframe.solve.lanes import fields
 from rockframe.solve.lanes.fields import Places, places_of
 from rockframe.solve.peaks import rotation_in_step
@@ -27,7 +27,7 @@ def is_quiet(system: Equations, room: Vector, lane: int) -> bool:
     ground = Ground(own[fields.NOW_X], own[fields.NOW_Y])
     held = system.without_sliding(counters[at.MODE])
     found = system.guards_in(held, new, lane_of(room, there.last, lane), ground)
-    write_guards(system, found, new, limits, after)
+    put_guards(system, found, new, limits, after)
     falls = may_fall(system, h, lane_of(room, there.before, lane), after)
     rotation = rotation_in_step(system, limits, state, new)
     peaks = rotation.may_peak(h, clock[at.PEAK_LEFT], clock[at.PEAK_RIGHT])

@@ -13,7 +13,7 @@ from rockframe.results.variables.studies import MOTION
 from rockframe.simulation.friction import share_words
 from rockframe.studies.confidence import read_level
 from rockframe.studies.dynamic_analysis import labels_of_states
-from rockframe.studies.fragility.labelling import Found, Means, labelled
+from rockframe.studies.fragility.labelling import Means, StructureTrials, fragility_dataset
 from rockframe.studies.fragility.likelihood import Bands, Trials
 from rockframe.studies.fragility.structures import structures_of
 from rockframe.studies.fragility.trials import (
@@ -145,7 +145,7 @@ def fragility(
     means = Means(_bands(bands, usual, len(measures)), read_level(confidence, owner=_OWNER))
     by_motion = means.bands is Bands.SANDWICH and repeated
     parts = zip(*(structures.parts(one) for one in (*verdicts, *measures)), strict=True)
-    found: list[Found] = []
+    found: list[StructureTrials] = []
     for part in parts:
         those, along = part[: len(states)], part[len(states) :]
         for state, verdict in zip(states, those, strict=True):
@@ -154,13 +154,13 @@ def fragility(
             else:
                 trials, count = trials_of_runs(verdict, along, by_motion=by_motion)
                 left_out = verdict.size - int(trials.weight.sum())
-                found.append(Found(trials, flat(verdict, along), left_out, count))
+                found.append(StructureTrials(trials, flat(verdict, along), left_out, count))
     over = dict(zip(structures.groups, structures.shape, strict=True))
     about: dict[str, str | float | int] = {"trials": "capacities" if of_capacities else "runs"}
     together = (pooled,) if isinstance(pooled, str) else tuple(pooled)
     if together:
         about[POOLED] = ", ".join(together)
-    dataset = labelled(
+    dataset = fragility_dataset(
         found, {**over, "limit_state": len(states)}, [_labels(one) for one in measures], means,
         about | _period_of(period),
     )  # fmt: skip
@@ -253,8 +253,8 @@ def fragility_of_counts(
     total = int(count.sum())
     labels = (which.name, which.attributes())
     about: dict[str, str | float | int] = {"trials": "trials"}
-    found = labelled(
-        [Found(made, (each[0][:, None], each[1]), 0, total)],
+    found = fragility_dataset(
+        [StructureTrials(made, (each[0][:, None], each[1]), 0, total)],
         {"limit_state": 1}, [labels], means, about | _period_of(period),
     ).isel(limit_state=0)  # fmt: skip
     return found.assign_attrs(verdict=sentences(found))
@@ -278,7 +278,7 @@ def _states(
 
 def _of_capacities(
     analysis: xr.Dataset, state: LimitState, verdict: xr.DataArray, measures: Sequence[xr.DataArray]
-) -> Found:
+) -> StructureTrials:
     """Give what a dynamic analysis tells of a limit state."""
     if SCALE not in analysis.dims:
         msg = f"{_OWNER}: found a dynamic analysis at one scale; expected one with all its scales"
@@ -289,7 +289,7 @@ def _of_capacities(
         one, known = one.expand_dims(MOTION), known.expand_dims(MOTION)
     trials = trials_of_capacities(one, known, measures)
     count = len(trials.weight)
-    return Found(trials, None, one.sizes[MOTION] - count, count)
+    return StructureTrials(trials, None, one.sizes[MOTION] - count, count)
 
 
 def _sliding(runs: xr.Dataset, *, of_capacities: bool) -> str:

@@ -77,7 +77,7 @@ class Means:
 
 
 @dataclass(frozen=True, eq=False)
-class Found:
+class StructureTrials:
     """What was found out of one structure against one limit state.
 
     Parameters
@@ -108,7 +108,7 @@ class _Fitted:
     bounded: bool
 
     @classmethod
-    def of(cls, found: Found, means: Means) -> "_Fitted":
+    def of(cls, found: StructureTrials, means: Means) -> "_Fitted":
         """Fit, and look for the region where bounds come from it."""
         made = fit(found.trials, means.bands)
         fitted = made.status is FragilityStatus.FITTED
@@ -119,8 +119,8 @@ class _Fitted:
         return cls(found.trials, made, edge, bounds)
 
 
-def labelled(
-    found: Sequence[Found],
+def fragility_dataset(
+    found: Sequence[StructureTrials],
     over: Mapping[str, int],
     measures: Sequence[Labels],
     means: Means,
@@ -130,7 +130,7 @@ def labelled(
 
     Parameters
     ----------
-    found : sequence of Found
+    found : sequence of StructureTrials
         Of each structure and limit state.
     over : mapping of str to int
         Their dimensions and sizes, the last one fastest.

@@ -9,7 +9,7 @@ from rockframe.results.outcome import Generic
 from rockframe.results.variables.analyses import LIMIT_STATE, FragilityStatus
 from rockframe.signals.arrays import Array
 from rockframe.studies.fragility.likelihood import Bands
-from rockframe.studies.intensities import PERIOD_OF, in_words
+from rockframe.studies.intensities import PERIOD_OF, measure_words
 
 POOLED: Final = "pooled"
 """Attribute that tells which structures were taken for one."""
@@ -79,7 +79,7 @@ def measures_of(fragility: xr.Dataset) -> list[str]:
 def _fit(last: xr.Dataset, status: Generic, fitted: Generic) -> str:
     """Tell the fit of one structure, or the range of several."""
     names = measures_of(last)
-    over = " and ".join(in_words(name, last.attrs.get(PERIOD_OF)) for name in names)
+    over = " and ".join(measure_words(name, last.attrs.get(PERIOD_OF)) for name in names)
     state = str(last["limit_state"].item()) if "limit_state" in last.coords else "what was counted"
     by = ", ".join(map(str, last["fragility_status"].dims))
     aside = [f"{len(status)} structures by {by}"] if len(status) > 1 else []

@@ -20,7 +20,7 @@ from rockframe.results.variables.studies import MOTION, REPEATED
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import LEVELS, Accuracy
 from rockframe.studies.sweeps.axes import OF_SCENES, Axis, Changes
-from rockframe.studies.sweeps.motions import motion_number, motions_of, scaled
+from rockframe.studies.sweeps.motions import motion_number, motion_of_case, named_motions
 from rockframe.studies.sweeps.scenes import FunctionScene, SweptScene, SystemScene, scene_of
 from rockframe.studies.sweeps.screening import AGAIN
 from rockframe.studies.sweeps.starts import started
@@ -131,14 +131,14 @@ def case(
     made = _scene(scene, attributes, known)
     names: list[str] = json.loads(attributes["motion_names"])
     number = names.index(_value(dataset, MOTION, place))
-    motion = motion_of(motions, number, attributes, known, kept)
+    motion = unscaled_motion(motions, number, attributes, known, kept)
     of_scene = {axis: one for axis, one in values.items() if axis.changes in OF_SCENES}
     system = _system(made, of_scene)
     if motion is None:
         motion = system.motion
     for axis, value in values.items():
         if axis.changes is Changes.MOTION and motion is not None:
-            motion = scaled(motion, axis.name, value, attributes.get("spectral_period"))
+            motion = motion_of_case(motion, axis.name, value, attributes.get("spectral_period"))
     options = _options(json.loads(attributes["run_json"]))
     start = {axis.parameter: one for axis, one in values.items() if axis.changes is Changes.START}
     options["initial"] = started(options["initial"], start)
@@ -255,7 +255,7 @@ def _of_assembly(assembly: Assembly) -> System:
     return System(*assembly.parts.structural(), **options)
 
 
-def motion_of(
+def unscaled_motion(
     given: object,
     number: int,
     attributes: Mapping[str, Any],
@@ -296,7 +296,7 @@ def motion_of(
         return list(known.motions.values())[number]
     if described.get("constructor"):
         return GroundMotion.from_dict(described)
-    found = () if given is None else motions_of(given).values()
+    found = () if given is None else named_motions(given).values()
     for motion in found:
         if motion.sha256 == described["sha256"]:
             return motion

@@ -7,9 +7,9 @@ from typing import Any, TypeAlias
 from rockframe.components import InitialState
 from rockframe.errors import AssemblyError, heard
 from rockframe.motion import GroundMotion
-from rockframe.simulation.plan import Plan, fitted
+from rockframe.simulation.plan import Plan, fit_plan
 from rockframe.studies.sweeps.axes import OF_SCENES, Changes
-from rockframe.studies.sweeps.motions import scaled
+from rockframe.studies.sweeps.motions import motion_of_case
 from rockframe.studies.sweeps.starts import started
 from rockframe.studies.sweeps.study import SweepJob
 from rockframe.system.assembly import Assembly
@@ -90,7 +90,7 @@ class CasesOfJob:
         ((name, values),) = self._scale
         key = (id(motion), values[case])
         if self._motion[0] != key:
-            self._motion = (key, scaled(motion, name, values[case], self.job.period))
+            self._motion = (key, motion_of_case(motion, name, values[case], self.job.period))
         return self._motion[1]
 
     def planned(self, case: int) -> tuple[Assembly, list[str], Plan]:
@@ -107,7 +107,7 @@ class CasesOfJob:
         if self._start and isinstance(arguments.initial, InitialState):
             values = {name: each[case] for name, each in self._start}
             arguments = replace(arguments, initial=started(arguments.initial, values))
-        plan = fitted(arguments, system, self.motion(case), faults)
+        plan = fit_plan(arguments, system, self.motion(case), faults)
         if faults:
             raise AssemblyError(faults)
         return system, said, plan if self._change is None else self._change(system, plan)

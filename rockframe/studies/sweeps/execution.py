@@ -35,7 +35,7 @@ class Chunk:
     cases: range
 
 
-def carry_out(
+def run_chunks(
     chunks: Iterable[Chunk],
     job_of: Callable[[Chunk], SweepJob],
     take: Callable[[Chunk, CaseResults], None],

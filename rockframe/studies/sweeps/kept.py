@@ -15,7 +15,7 @@ from rockframe.results.variables.runs import EVENTS_AND_SCALARS, HISTORIES
 from rockframe.results.variables.studies import SWEEP
 from rockframe.results.variables.variable import TIME
 from rockframe.simulation.outputs import listed
-from rockframe.simulation.plan import STILL_GROUND_OUTPUT_STEP, RunRequest, length_of
+from rockframe.simulation.plan import STILL_GROUND_OUTPUT_STEP, RunRequest, run_length
 from rockframe.studies.sweeps.scenes import FunctionScene, SweptScene
 from rockframe.studies.sweeps.study import Histories
 
@@ -104,5 +104,5 @@ def kept_histories(
             )
             raise StudyError(msg)
         (step,) = steps
-    longest = max(length_of(arguments, motion) for motion in motions.values())
+    longest = max(run_length(arguments, motion) for motion in motions.values())
     return Histories(names or None, step, 1 + int(longest / step * (1.0 + 1e-12)))

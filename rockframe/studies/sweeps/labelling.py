@@ -64,7 +64,7 @@ class Labels:
     attributes: Mapping[str, str | float | int]
 
 
-def labels_of(study: Study) -> Labels:
+def sweep_labels(study: Study) -> Labels:
     """Give the labels of a sweep."""
     arguments = study.arguments
     scene = study.scene
@@ -93,7 +93,7 @@ def every_axis(grid: Grid) -> tuple[Axis, ...]:
     return (*grid.axes, *grid.columns)
 
 
-def labelled(labels: Labels, found: Iterable[tuple[range, CaseResults]]) -> xr.Dataset:
+def sweep_dataset(labels: Labels, found: Iterable[tuple[range, CaseResults]]) -> xr.Dataset:
     """Label what has been found.
 
     Parameters

@@ -53,7 +53,9 @@ def target_words(name: str) -> str:
     return SCHEMA[name].long_name
 
 
-def scaled(motion: GroundMotion, name: str, value: float, period: float | None) -> GroundMotion:
+def motion_of_case(
+    motion: GroundMotion, name: str, value: float, period: float | None
+) -> GroundMotion:
     """Give the motion of a case.
 
     Parameters
@@ -80,7 +82,7 @@ def scaled(motion: GroundMotion, name: str, value: float, period: float | None) 
     return motion.scaled(**wanted)
 
 
-def motions_of(given: object) -> dict[str, GroundMotion]:
+def named_motions(given: object) -> dict[str, GroundMotion]:
     """Read the motions of a sweep.
 
     Parameters

@@ -30,7 +30,7 @@ from rockframe.studies.sweeps.motions import (
     OF_THE_SCENE,
     SPECTRAL,
     motion_number,
-    motions_of,
+    named_motions,
 )
 from rockframe.studies.sweeps.scenes import FunctionScene, SweptScene, own_motion, scene_of
 from rockframe.studies.sweeps.screening import FIRST, SCREEN
@@ -143,7 +143,7 @@ def _remedies(arguments: RunRequest, kept: Histories | None) -> str:
 
 def _motions(given: object, scene: SweptScene) -> dict[str, GroundMotion | None]:
     if given is not None:
-        return dict(motions_of(given))
+        return dict(named_motions(given))
     own = own_motion(scene)
     if own is not None:
         return {own.name: own}

@@ -16,9 +16,9 @@ from rockframe.studies.sweeps.axes import OWNER
 from rockframe.studies.sweeps.case import remember
 from rockframe.studies.sweeps.cases_of_job import CasesOfJob
 from rockframe.studies.sweeps.chunk import CaseResults
-from rockframe.studies.sweeps.execution import Chunk, carry_out
+from rockframe.studies.sweeps.execution import Chunk, run_chunks
 from rockframe.studies.sweeps.grid import chunks_of
-from rockframe.studies.sweeps.labelling import labelled, labels_of
+from rockframe.studies.sweeps.labelling import sweep_dataset, sweep_labels
 from rockframe.studies.sweeps.progress import ProgressBar
 from rockframe.studies.sweeps.store import Store, begin_with
 from rockframe.studies.sweeps.study import Study, worker_count
@@ -101,8 +101,8 @@ def _in_memory(
         found.append((one.cases, rows))
         bar.update(len(one.cases))
 
-    whole = carry_out(chunks, lambda one: study.job(one.cases), take, executor)
-    return labelled(labels_of(study), sorted(found, key=lambda one: one[0].start)), whole
+    whole = run_chunks(chunks, lambda one: study.job(one.cases), take, executor)
+    return sweep_dataset(sweep_labels(study), sorted(found, key=lambda one: one[0].start)), whole
 
 
 def _kept(
@@ -131,13 +131,13 @@ def _kept(
         kept.put(one, rows)
         bar.update(len(one.cases))
 
-    whole = carry_out(still_missing(), lambda one: study.job(one.cases), take, executor)
-    return opened(kept), whole
+    whole = run_chunks(still_missing(), lambda one: study.job(one.cases), take, executor)
+    return stored_dataset(kept), whole
 
 
-def opened(kept: Store) -> xr.Dataset:
+def stored_dataset(kept: Store) -> xr.Dataset:
     """Give what a folder holds as a dataset."""
-    dataset = labelled(kept.labels(), kept.found())
+    dataset = sweep_dataset(kept.labels(), kept.found())
     dataset.attrs["history"] = kept.history
     return dataset
 

@@ -26,7 +26,7 @@ from rockframe.studies.sweeps.axes import (
 from rockframe.studies.sweeps.identity import name_of
 from rockframe.studies.sweeps.motions import TARGETS, target_words
 from rockframe.studies.sweeps.starts import STARTS, of_start
-from rockframe.system.assembly import Assembly, joined
+from rockframe.system.assembly import Assembly, assembly_of
 from rockframe.system.options import MEASURED, Coupling, Restraint, Rotation
 from rockframe.units import Measure, Unit, quantity
 
@@ -146,7 +146,7 @@ class SystemScene:
         }
         # options that no axis changes stay the same object, by which loads are shared
         options = replace(options, **other) if other else options
-        found = joined(parts.changed(**changed, motion=None), options)
+        found = assembly_of(parts.changed(**changed, motion=None), options)
         for caution in found.setting.cautions():
             warn(caution, ModelWarning)
         return found

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Final
 
-from rockframe.simulation.plan import Plan, length_of
+from rockframe.simulation.plan import Plan, run_length
 from rockframe.simulation.second_look import Look, is_sure, look_at, second_look
 from rockframe.solve.accuracy import LEVELS, AccuracyLevel
 from rockframe.studies.sweeps.cases_of_job import CasesOfJob
@@ -21,7 +21,7 @@ AGAIN: Final = AccuracyLevel.STANDARD
 
 def look_at_case(cases: CasesOfJob, run: Finished) -> Look:
     """Take from a run of a case what tells of its verdict."""
-    duration = length_of(cases.job.arguments, cases.unscaled(run.case))
+    duration = run_length(cases.job.arguments, cases.unscaled(run.case))
     return look_at(run.system.setting, run.summary, duration)
 
 

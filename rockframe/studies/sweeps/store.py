@@ -32,7 +32,7 @@ from rockframe.studies.sweeps.chunk import CaseResults
 from rockframe.studies.sweeps.execution import Chunk
 from rockframe.studies.sweeps.grid import Grid, chunks_of
 from rockframe.studies.sweeps.identity import difference
-from rockframe.studies.sweeps.labelling import Labels, labels_of
+from rockframe.studies.sweeps.labelling import Labels, sweep_labels
 from rockframe.studies.sweeps.study import Histories, Study
 from rockframe.version import __version__
 
@@ -248,7 +248,7 @@ def _cannot_be_kept(path: Path, problem: OSError) -> StudyError:
 def _make(path: Path, study: Study, chunk: int) -> None:
     """Write what a study is; ``study.json`` comes last, and stays what it is."""
     path.mkdir(parents=True, exist_ok=True)
-    labels = labels_of(study)
+    labels = sweep_labels(study)
     arrays: dict[str, Generic] = {}
     described: dict[str, Any] = {
         "attributes": dict(labels.attributes),

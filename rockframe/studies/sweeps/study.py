@@ -11,7 +11,7 @@ from rockframe.compiled import COMPILED
 from rockframe.errors import heard
 from rockframe.motion import GroundMotion
 from rockframe.results.outcome import Generic
-from rockframe.simulation.plan import STILL_GROUND_OUTPUT_STEP, RunRequest, length_of
+from rockframe.simulation.plan import STILL_GROUND_OUTPUT_STEP, RunRequest, run_length
 from rockframe.studies.sweeps.axes import OF_SCENES, Axis
 from rockframe.studies.sweeps.grid import Grid
 from rockframe.studies.sweeps.identity import digest_of, told
@@ -213,7 +213,7 @@ class Study:
     def _length(self, motion: GroundMotion | None) -> float:
         """Give the number of intervals of a run."""
         step = STILL_GROUND_OUTPUT_STEP if motion is None else motion.si.time_step
-        return length_of(self.arguments, motion) / step
+        return run_length(self.arguments, motion) / step
 
 
 def worker_count() -> int:

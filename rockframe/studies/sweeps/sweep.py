@@ -14,7 +14,7 @@ from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.studies.sweeps.axes import OWNER
 from rockframe.studies.sweeps.planning import plan_study
 from rockframe.studies.sweeps.progress import bar_of
-from rockframe.studies.sweeps.running import folder_of, opened, run_study
+from rockframe.studies.sweeps.running import folder_of, run_study, stored_dataset
 from rockframe.studies.sweeps.store import Store
 from rockframe.system.options import Overturning
 
@@ -173,4 +173,4 @@ def open_study(path: "str | PathLike[str]") -> xr.Dataset:
     StudyError
         There is no study, it is damaged, or another version of rockframe wrote it.
     """
-    return opened(Store.at(folder_of(path)))
+    return stored_dataset(Store.at(folder_of(path)))

@@ -23,7 +23,7 @@ MOST_ALIKE: Final = 16
 _NUMBER: Final = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w.]*\w)")
 
 
-def verdict_of(dataset: xr.Dataset) -> str:
+def cases_verdict(dataset: xr.Dataset) -> str:
     """Say what became of the cases of a dataset: of a whole result as its attribute does.
 
     Parameters
@@ -43,15 +43,15 @@ def verdict_of(dataset: xr.Dataset) -> str:
     if status.size == whole or status.dtype.kind not in "iu":  # such as a mean
         return said
     some = f"{status.size} of the {whole} cases of the sweep"
-    return sentence(dataset, f"Of {some if status.size < whole else f'{status.size} cases'}")
+    return cases_sentence(dataset, f"Of {some if status.size < whole else f'{status.size} cases'}")
 
 
 def whole_verdict(dataset: xr.Dataset) -> str:
     """Say what became of all cases of a sweep, in words that stay true of a part of it."""
-    return sentence(dataset, f"Of all {dataset['status'].size} cases of the sweep")
+    return cases_sentence(dataset, f"Of all {dataset['status'].size} cases of the sweep")
 
 
-def sentence(runs: xr.Dataset, these: str) -> str:
+def cases_sentence(runs: xr.Dataset, these: str) -> str:
     """Say in one sentence what became of cases.
 
     Parameters

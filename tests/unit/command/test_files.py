@@ -6,7 +6,7 @@ import pytest
 import rockframe as rf
 from rockframe.command.files.every_key import every_key
 from rockframe.command.files.lines import lines_of
-from rockframe.command.files.scenes import kinds_in, part_slots, read_scene
+from rockframe.command.files.scenes import classes_in, part_slots, read_scene
 from rockframe.command.files.studies import read_study
 from rockframe.command.files.templates import TEMPLATES
 
@@ -281,7 +281,7 @@ def test_every_key_that_can_be_written_is_told():
     text = every_key()
     for slot in part_slots():
         assert f"\n[{slot}]" in text
-        for name, kind in kinds_in(slot).items():
+        for name, kind in classes_in(slot).items():
             assert f'type = "{name}"' in text
             assert all(f"\n# {key} = " in text for key in kind.declared())
     assert "``" not in text

@@ -9,7 +9,7 @@ import xarray as xr
 from rockframe.comparison.errors import (
     event_time_error,
     history_error,
-    peak_error,
+    relative_peak_error,
     verdicts_agree,
 )
 from rockframe.solve.layout import Status
@@ -35,7 +35,7 @@ REFERENCE = made([0.0, 1.0, -4.0, 2.0], TIME)
 
 @pytest.mark.parametrize("peak", [3.0, 5.0])
 def test_a_peak_is_off_by_a_share_of_the_reference(peak):
-    assert peak_error(made([0.0, peak], TIME[:2]), REFERENCE) == 0.25
+    assert relative_peak_error(made([0.0, peak], TIME[:2]), REFERENCE) == 0.25
 
 
 def test_a_history_is_off_by_a_share_of_the_reference():
@@ -52,7 +52,7 @@ def test_the_instant_at_which_a_run_ended_is_not_compared():
 
 def test_a_reference_at_rest():
     still, moving = made([0.0] * 4, TIME), made([0.0, 0.0, 1e-9, 0.0], TIME)
-    for error in (peak_error, history_error):
+    for error in (relative_peak_error, history_error):
         assert error(still, still) == 0.0
         assert error(moving, still) == math.inf
 
@@ -74,7 +74,7 @@ def test_other_events_have_no_times_to_compare(kinds):
 @pytest.mark.parametrize("status", [Status.STEP_LIMIT, Status.STEP_TOO_SMALL, Status.CHATTER])
 def test_a_run_that_was_cut_off_has_no_errors(status):
     cut = made([0.0, 1.0, -4.0], TIME[:3], status=status)
-    for error in (peak_error, history_error, event_time_error):
+    for error in (relative_peak_error, history_error, event_time_error):
         assert math.isnan(error(cut, REFERENCE))
         assert math.isnan(error(REFERENCE, cut))
     assert not verdicts_agree(cut, REFERENCE)

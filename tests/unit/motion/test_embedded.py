@@ -10,7 +10,7 @@ from records import record_path
 
 from rockframe.errors import ComponentError, RecordError
 from rockframe.motion import GroundMotion
-from rockframe.motion.constructors.embedded import provenance
+from rockframe.motion.constructors.embedded import record_sources
 
 FOLDER = resources.files("rockframe.motion") / "embedded"
 MOST_BYTES = 300_000
@@ -25,7 +25,7 @@ TOLD = ("magnitude", "source", "processing", "licence", "attribution", "referenc
 
 
 def test_all_files_have_a_source_and_are_small():
-    known = provenance(FOLDER)
+    known = record_sources(FOLDER)
     assert set(known) == set(RECORDS)
     packed = {file.name for file in FOLDER.iterdir() if file.name.endswith(".gz")}
     assert packed == {record["file"] for record in known.values()}
@@ -52,7 +52,7 @@ def test_the_motion_is_that_of_the_file(name):
 @pytest.mark.parametrize("name", RECORDS)
 def test_the_file_is_as_published(name):
     published = record_path(RECORDS[name][-1]).read_bytes()
-    held = (FOLDER / provenance(FOLDER)[name]["file"]).read_bytes()
+    held = (FOLDER / record_sources(FOLDER)[name]["file"]).read_bytes()
     assert gzip.decompress(held) == published
     digest = GroundMotion.example(name).metadata["source_sha256"]
     assert digest == hashlib.sha256(published).hexdigest()

@@ -11,7 +11,7 @@ import rockframe as rf
 from rockframe.errors import RecordError
 from rockframe.motion import GroundMotion
 from rockframe.motion.readers.reading import read_components
-from rockframe.motion.readers.source import Request, load
+from rockframe.motion.readers.source import Request, read_source
 from rockframe.motion.readers.wrapping import COLUMNS, ROWS, reading_order
 
 ASKED = {"unit": "g", "time_step": "0.02 s"}
@@ -29,7 +29,7 @@ SEVERAL = [name for name in FILES if name.startswith(("GEO", "CWA", "more/"))]
 
 def components(name: str):
     """All components of a recorded file."""
-    held = read_components(load(record_path(name)), None, Request())
+    held = read_components(read_source(record_path(name)), None, Request())
     return [one.si.horizontal.samples for one in held]
 
 

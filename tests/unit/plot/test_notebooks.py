@@ -9,7 +9,7 @@ import xarray as xr
 
 import rockframe as rf
 from rockframe.errors import SchemaError
-from rockframe.notebook import curve, in_words, number_with_unit
+from rockframe.notebook import arguments_in_words, curve, number_with_unit
 
 BLOCK = rf.Block(width="0.8 m", height="4 m", mass="2 t", centre_of_mass=("2 m", "0.1 m"))
 PADS = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
@@ -103,7 +103,7 @@ def test_numbers_are_written_as_people_do():
              (2.5e5, "N m^-1"): "250 kN m^-1", (4.0, "m"): "4 m", (0.5, "s"): "0.5 s"}  # fmt: skip
     for (size, unit), words in cases.items():
         assert number_with_unit(size, unit) == words
-    assert in_words({"type": "x", "shape_factor": 2.92}) == {"shape factor": "2.92"}
+    assert arguments_in_words({"type": "x", "shape_factor": 2.92}) == {"shape factor": "2.92"}
 
 
 def test_only_public_names_are_completed():

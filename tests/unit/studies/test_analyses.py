@@ -11,7 +11,7 @@ import rockframe as rf
 from rockframe.errors import ComponentError, SchemaError, StudyError
 from rockframe.results.schema import SCHEMA
 from rockframe.studies import lines
-from rockframe.studies.brackets import Bracket, brackets_of, narrowed, padded
+from rockframe.studies.brackets import Bracket, bracket_arrays, brackets_of, narrowed
 from rockframe.studies.spread import ranked
 from rockframe.studies.sweeps import execution
 
@@ -250,7 +250,7 @@ def test_brackets_split_where_a_third_verdict_lies_between():
     assert [one.above for one in found] == pytest.approx([1.234, 1.301, 3.3], rel=1e-6)
     assert [(one.before, one.after) for one in found] == [(-1.0, 2.0), (2.0, -1.0), (-1.0, 0.0)]
     assert runs == list(range(1, len(runs) + 1))
-    below, above, before, _ = padded([*found, Bracket(0, 1, 1.0, 2.0, 0.0, 1.0)], (1, 2))
+    below, above, before, _ = bracket_arrays([*found, Bracket(0, 1, 1.0, 2.0, 0.0, 1.0)], (1, 2))
     assert below.shape == above.shape == (1, 2, 3)
     assert np.isnan(before[0, 1]).tolist() == [False, True, True]
     nan = np.array([[[0.0, np.nan, 1.0]]])

@@ -7,7 +7,7 @@ import pytest
 
 from rockframe.simulation.run_summary import RunSummary
 from rockframe.solve.layout import Status
-from rockframe.studies.flips import FINEST, follow, sentence
+from rockframe.studies.flips import FINEST, flips_sentence, follow
 
 ROW = [0.1 * k for k in range(41)]
 
@@ -62,7 +62,9 @@ def test_it_says_how_far_apart_the_runs_were():
     assert found.flips() == []
     assert found.up_to == ROW[-1]
     assert found.largest_gap == pytest.approx(0.1)
-    assert sentence(found, width=1e-4).endswith("looked at 41 scales up to 4, at most 0.1 apart.")
+    assert flips_sentence(found, width=1e-4).endswith(
+        "looked at 41 scales up to 4, at most 0.1 apart."
+    )
     fine = follow(look, [0.05 * k for k in range(81)], most=100, width=1e-4)
     assert fine.largest_gap < 2.099 - 2.001
     assert len(fine.flips()) == 2
@@ -71,7 +73,7 @@ def test_it_says_how_far_apart_the_runs_were():
 @pytest.mark.parametrize("gap", [0.1, 0.30000001, 0.0126, 0.00999, 9.91, 1e-9, 123.0])
 def test_a_gap_is_rounded_up(gap):
     look, _ = runs_of(lambda scale: 0.01)
-    text = sentence(follow(look, [0.0, gap], most=2, width=1e-3), width=1e-3)
+    text = flips_sentence(follow(look, [0.0, gap], most=2, width=1e-3), width=1e-3)
     said = float(text.partition("at most ")[2].partition(" apart")[0])
     assert gap * (1.0 - 1e-9) <= said <= 1.1 * gap
 
@@ -90,7 +92,7 @@ def test_without_runs_to_spare_it_says_how_far_it_looked():
     assert len(asked) == len(ROW)
     assert found.flips() == []
     assert found.up_to < 1.55
-    assert "not close enough together" in sentence(found, width=1e-4)
+    assert "not close enough together" in flips_sentence(found, width=1e-4)
 
 
 def test_runs_without_a_verdict_are_neither():
@@ -100,7 +102,7 @@ def test_runs_without_a_verdict_are_neither():
     assert flip.below <= 1.8 + 1e-12
     assert flip.above >= 2.3 - 1e-12
     assert 1.5 < found.up_to <= 1.8 + 1e-12
-    text = sentence(found, width=1e-3)
+    text = flips_sentence(found, width=1e-3)
     assert "5 runs could not be finished and have no verdict, the first at 1.9." in text
     assert "Overturns from 2.3 times the motion on" in text
 
@@ -121,7 +123,7 @@ def test_ranges_that_stand_again_are_named_up_to_three():
     for length, ranges in ((2.0, 1), (1.0, 3), (0.5, 7)):
         look, _ = runs_of(lambda at, length=length: 1.5 if at % length >= 0.5 * length else 0.5)
         found = follow(look, row, most=len(row), width=1e-6)
-        text = sentence(found, width=1e-6)
+        text = flips_sentence(found, width=1e-6)
         assert sum(not flip.overturns_above for flip in found.flips()) == ranges
         assert text.startswith(f"Overturns from {0.5 * length:g} times the motion on, stands again")
         named = text.partition(";")[0].count("from") - 1
@@ -148,7 +150,7 @@ def test_an_interrupt_leaves_what_was_found_until_then():
         found = follow(interrupted, ROW, most=100, width=1e-4)
         assert not found.whole
         assert sorted(found.shown) == sorted(asked[:count])
-        assert "interrupted" in sentence(found, width=1e-4)
+        assert "interrupted" in flips_sentence(found, width=1e-4)
         # up to there every flip that the whole analysis found lies in a bracket
         for flip in whole.flips():
             around = [one for one in found.flips() if one.below <= flip.below < one.above]

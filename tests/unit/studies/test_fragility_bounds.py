@@ -6,7 +6,12 @@ from pages import table
 from scipy import optimize, stats
 
 import rockframe as rf
-from rockframe.studies.fragility.labelling import Arrangement, Found, Means, labelled
+from rockframe.studies.fragility.labelling import (
+    Arrangement,
+    Means,
+    StructureTrials,
+    fragility_dataset,
+)
 from rockframe.studies.fragility.likelihood import Bands, FragilityStatus, Trials, fit
 from rockframe.studies.fragility.words import COVERAGE, bounded, words_of_bounds
 
@@ -69,8 +74,8 @@ def test_the_sandwich_of_counts_takes_each_trial_for_a_cluster():
 
 def held(samples, dispersion, bands):
     """Shares of samples in which the bounds hold the median, 1, and the dispersion."""
-    found = labelled(
-        [Found(trials, None, 0, independent) for trials, independent in samples],
+    found = fragility_dataset(
+        [StructureTrials(trials, None, 0, independent) for trials, independent in samples],
         {"limit_state": len(samples)}, [MEASURE], Means(bands, 0.95), {"trials": "runs"},
     )  # fmt: skip
     fitted = found.fragility_status == FragilityStatus.FITTED
@@ -119,8 +124,8 @@ def test_too_few_motions_have_no_bounds():
     logs, over, cluster = runs_of(rng, 9, 0.5)
     trials = Trials.of_verdicts(logs[:, None], over, np.ones(len(over)), cluster)
     for independent, lacking in ((9, True), (10, False)):
-        found = labelled(
-            [Found(trials, None, 0, independent)], {"limit_state": 1}, [MEASURE],
+        found = fragility_dataset(
+            [StructureTrials(trials, None, 0, independent)], {"limit_state": 1}, [MEASURE],
             Means(Bands.SANDWICH, 0.95), {"trials": "runs"},
         )  # fmt: skip
         assert found.median_intensity.notnull().all()

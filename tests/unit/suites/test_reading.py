@@ -228,10 +228,10 @@ def test_the_published_records():
 
 def test_the_published_table():
     path = record_path("more/PEER_SearchResults.csv")
-    from rockframe.motion.readers.source import load
+    from rockframe.motion.readers.source import read_source
     from rockframe.suites.peer_table import is_peer_table, read_peer_table
 
-    source = load(path)
+    source = read_source(path)
     assert is_peer_table(source.data)
     known = read_peer_table(source)
     assert len(known) == 3 * 30 - 1  # one record has no vertical component

@@ -1,0 +1,39 @@
+"""One word for one thing: names of classes and functions stand once in the package."""
+
+import ast
+from collections import defaultdict
+from pathlib import Path
+
+import rockframe as rf
+from rockframe import plot
+
+PACKAGE = Path(rf.__file__).parent
+SHARED_CLASSES = {
+    "Source",  # of a record, by which readers of users' own know it, and of compiled functions
+}
+SHARED_FUNCTIONS = {
+    # the same for each of several
+    "execute",  # commands
+    "read", "recognises",  # formats of records; GroundMotion.read
+    "fastest_vibration", "small_motion_matrices", "solve_motion",  # equations of several bodies
+    "matched",  # a motion, and a suite
+    # public names that users have known from the beginning
+    "register", "table",
+    # a figure, and what it shows
+    "energies", "moment_rotation", "velocity_pulse",
+}  # fmt: skip
+
+
+def test_names_of_classes_and_functions_stand_once():
+    places = {ast.ClassDef: defaultdict(list), ast.FunctionDef: defaultdict(list)}
+    for path in sorted(PACKAGE.rglob("*.py")):
+        for node in ast.parse(path.read_text(encoding="utf-8")).body:
+            if type(node) in places and not node.name.startswith("_"):
+                places[type(node)][node.name].append(str(path.relative_to(PACKAGE)))
+    figures = set(plot.__all__) & set(rf.__all__)
+    for kind, shared in (
+        (ast.ClassDef, SHARED_CLASSES), (ast.FunctionDef, SHARED_FUNCTIONS | figures)
+    ):  # fmt: skip
+        several = {name: files for name, files in places[kind].items() if len(files) > 1}
+        assert not {name: files for name, files in several.items() if name not in shared}
+        assert shared - figures <= set(several), "names that stand once, or not at all"
