@@ -218,8 +218,8 @@ def warn(message: str, category: type[RockframeWarning]) -> None:
     warnings.warn(message, category, stacklevel=level)
 
 
-def attempted(work: Callable[[], Found], instead: Found, what: str, missing: list[str]) -> Found:
-    """Compute what a finished run is told with, without a risk to the run.
+def or_missing(work: Callable[[], Found], instead: Found, what: str, missing: list[str]) -> Found:
+    """Compute what goes with a finished run, without a risk to the run.
 
     Parameters
     ----------

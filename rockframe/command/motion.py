@@ -42,7 +42,7 @@ def execute(arguments: argparse.Namespace) -> int:
     values = table(measures)
     if len(motions) <= _MOST_SHOWN:
         for name, motion in motions.items():
-            print("\n".join(_told(name, motion)))
+            print("\n".join(_motion_lines(name, motion)))
             for head, value in values.loc[name].items():
                 print(f"  {str(head).replace('_', ' '):<52} {value:.4g}")
     else:
@@ -72,7 +72,7 @@ def _read(arguments: argparse.Namespace) -> Mapping[str, GroundMotion]:
     return dict(suite.items())
 
 
-def _told(name: str, motion: GroundMotion) -> list[str]:
+def _motion_lines(name: str, motion: GroundMotion) -> list[str]:
     peak = motion.peak_acceleration.to("m/s^2").magnitude
     lines = [
         name,

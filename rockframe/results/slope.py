@@ -30,7 +30,7 @@ def slope_attributes(slope: Slope) -> dict[str, str]:
     return {"inclination": f"{slope.inclination!r} {ANGLE.unit}", "axes": axes}
 
 
-def felt_ground(ground: Array, slope: Slope) -> tuple[Array, Array]:
+def ground_on_slope(ground: Array, slope: Slope) -> tuple[Array, Array]:
     """Give the ground's acceleration along and normal to the base.
 
     Parameters
@@ -42,7 +42,7 @@ def felt_ground(ground: Array, slope: Slope) -> tuple[Array, Array]:
 
     Returns
     -------
-    moved, felt : ndarray, shape (samples, 2)
+    moved, resolved : ndarray, shape (samples, 2)
         Without gravity, and as the equations take it: with its part along the base.
     """
     if slope.level:

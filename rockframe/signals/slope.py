@@ -56,8 +56,8 @@ class Slope:
         sine, cosine = math.sin(self.inclination), math.cos(self.inclination)
         return across * cosine + up * sine, up * cosine - across * sine
 
-    def felt(self, motion: Motion | None, *, duration: float, interval: float) -> Motion:
-        """Give the motion that bodies on the slope feel: turned, with gravity along the base.
+    def resolved(self, motion: Motion | None, *, duration: float, interval: float) -> Motion:
+        """Give the motion along and normal to the base, with the part of gravity along it.
 
         Parameters
         ----------

@@ -7,7 +7,7 @@ import numpy as np
 from rockframe.compiled import Integers
 from rockframe.dynamics.events import IMPACT, SILENT
 from rockframe.dynamics.protocol import BODY_FORCES, column_of
-from rockframe.errors import attempted
+from rockframe.errors import or_missing
 from rockframe.motion import GroundMotion
 from rockframe.results.along_steps import FRACTIONS, AlongSteps
 from rockframe.results.dataset import fitting
@@ -32,7 +32,7 @@ from rockframe.results.outcome import (
 )
 from rockframe.results.points import point_histories, point_labels, point_peaks
 from rockframe.results.schema import ON_REQUEST, SCHEMA
-from rockframe.results.slope import energies_on_slope, felt_ground, without_gravity
+from rockframe.results.slope import energies_on_slope, ground_on_slope, without_gravity
 from rockframe.results.variables.variable import EVENT, TIME
 from rockframe.signals.arrays import Array
 from rockframe.signals.slope import Slope
@@ -125,12 +125,12 @@ def answers_of(system: Assembly, plan: Plan, run: Trajectory, missing: list[str]
     impulses = {name: each[shown] for name, each in events.impulses(load.body.mass).items()}
     everything = values | impulses | _energies(system, plan, run, values)
     if plan.histories:
-        own = _told_by_users(system, everything, events.those(shown), missing)
+        own = _own_answers(system, everything, events.those(shown), missing)
         told |= {name: each for name, each in own.items() if not SCHEMA[name].dims}
         everything |= {name: each for name, each in own.items() if SCHEMA[name].dims}
     for one in plan.diagnostics:
         state = _state_of(values, run.time, ground[:count])
-        history_and_peak = attempted(
+        history_and_peak = or_missing(
             lambda one=one, state=state: (one.of(state), _peak_of(one, along)),
             None, f"the diagnostic {one.name!r}", missing,
         )  # fmt: skip
@@ -149,7 +149,7 @@ def _everything(plan: Plan) -> bool:
     return bool(plan.points or plan.diagnostics)
 
 
-def _told_by_users(
+def _own_answers(
     system: Assembly, values: dict[str, Generic], events: EventStates, missing: list[str]
 ) -> dict[str, Generic]:
     """Give what bases and scenes of users' own tell beside what their equations show."""
@@ -159,7 +159,7 @@ def _told_by_users(
     for own in (system.setting, *system.parts.structural()):
         if isinstance(own, OwnAnswers):
             what = f"what {type(own).__name__} tells of the run"
-            found |= attempted(
+            found |= or_missing(
                 lambda own=own: fitting(own.answers(values, *sides), sizes), {}, what, missing
             )
     return found
@@ -193,14 +193,14 @@ def _everything_of(
     memory, row = memory_at_outputs(run)
     before = np.arange(len(events.time))
     ground = ground_at(plan.motion, np.concatenate([run.time, events.time, events.time]))
-    moved, felt = felt_ground(ground, system.options.slope)
+    moved, resolved = ground_on_slope(ground, system.options.slope)
     shown = _shown(
         system,
         np.concatenate([run.mode, events.mode_before, events.mode_after]),
         np.concatenate([run.state, events.state_before, events.state_after]),
         memory,
         np.concatenate([row, before, before + 1]),
-        felt,
+        resolved,
     )
     return shown, ground, moved
 
@@ -246,14 +246,14 @@ def _along(system: Assembly, plan: Plan, run: Trajectory) -> AlongSteps:
         states = steps.inside(which, system.model, FRACTIONS)
         time = time.ravel()
         ground = ground_at(plan.motion, time)
-        moved, felt = felt_ground(ground, slope)
+        moved, resolved = ground_on_slope(ground, slope)
         found = _shown(
             system,
             np.repeat(steps.mode[which], places),
             states.reshape(-1, states.shape[-1]),
             memory,
             np.repeat(steps.memory_row[which], places),
-            felt,
+            resolved,
         )
         found |= force_histories(found, moved, load)
         return found | _state_of(found, time, ground)

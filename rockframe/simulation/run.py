@@ -10,12 +10,12 @@ import numpy as np
 import xarray as xr
 
 from rockframe.compiled import compiling_for
-from rockframe.errors import ModelWarning, RockframeWarning, SolverWarning, attempted, warn
+from rockframe.errors import ModelWarning, RockframeWarning, SolverWarning, or_missing, warn
 from rockframe.motion import GroundMotion
 from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import Generic, event_columns, peak_of, scalars, verdict
 from rockframe.results.schema import schema_row
-from rockframe.results.slope import felt_ground, slope_attributes
+from rockframe.results.slope import ground_on_slope, slope_attributes
 from rockframe.results.variables.runs import Direction
 from rockframe.signals import Motion
 from rockframe.simulation.answers import Answers, answers_of, ground_at
@@ -62,7 +62,7 @@ def felt_motion(system: Assembly, plan: Plan) -> Motion | None:
     motion, slope = None if plan.motion is None else plan.motion.si, system.options.slope
     if slope.level:
         return motion
-    return slope.felt(motion, duration=plan.duration, interval=STILL_INTERVAL)
+    return slope.resolved(motion, duration=plan.duration, interval=STILL_INTERVAL)
 
 
 @dataclass(frozen=True)
@@ -94,7 +94,7 @@ class Response:
         """Whether the body stood with the energy to overturn later."""
         return in_motion(self.system, self.trajectory, self.missing)
 
-    def beside(self) -> RunSummary:
+    def summary(self) -> RunSummary:
         """Tell what a certificate asks of the run."""
         share = peak_of(self.trajectory, self.system.setting.overturning_angles).share
         shown = run_summary(
@@ -108,21 +108,22 @@ class Response:
         """Give what is to be warned of."""
         summary, plan, missing = self.trajectory, self.plan, self.missing
         moving = [STILL_MOVING] if self.in_motion else []
-        audit = attempted(
+        audit = or_missing(
             lambda: unbalanced(
-                self.system, plan, summary, self.beside, lambda other: beside(self.system, other)
+                self.system, plan, summary, self.summary,
+                lambda other: summary_of(self.system, other),
             ),
             None, "whether another run agrees with this one", missing,
         )  # fmt: skip
         others = [
-            attempted(
+            or_missing(
                 lambda: [
                     *_lost_weight(self.system, plan.motion),
                     *_pulling(self.system, self.answers.values, summary.overturning_time),
                 ],
                 [], _LEAVING, missing,
             ),
-            attempted(
+            or_missing(
                 lambda: [(ModelWarning, text) for text in slips(self.answers.slidings)],
                 [], _FRICTION, missing,
             ),
@@ -154,7 +155,7 @@ def in_motion(system: Assembly, summary: Summary, missing: list[str]) -> bool:
     bool
     """
     what = "whether the body still has the energy to overturn"
-    return attempted(lambda: may_overturn_later(system, summary), False, what, missing)
+    return or_missing(lambda: may_overturn_later(system, summary), False, what, missing)
 
 
 def scalars_of(
@@ -176,7 +177,7 @@ def scalars_of(
     dict of str to float, int or bool
     """
     setting = system.setting
-    uplift = attempted(lambda: setting.uplift_angle, math.nan, "the uplift angle", missing)
+    uplift = or_missing(lambda: setting.uplift_angle, math.nan, "the uplift angle", missing)
     return scalars(summary, setting, uplift_angle=uplift)
 
 
@@ -213,15 +214,15 @@ def run(
     attributes |= end_attributes(summary.ending)
     if summary.status.finished and not system.setting.slides:
         answers = response.answers
-        friction = attempted(
+        friction = or_missing(
             lambda: friction_words(answers.scalars, answers.slidings), "", _FRICTION, missing
         )
         attributes["verdict"] = f"{attributes['verdict']}{friction}"
-    of_scene = attempted(lambda: system.cautions, [], "what is unusual about the scene", missing)
+    of_scene = or_missing(lambda: system.cautions, [], "what is unusual about the scene", missing)
     cautions, told = response.cautions(), len(missing)
     values = {**response.events, **response.scalars}
     if look_again and certification is None and plan.accuracy == LEVELS[AccuracyLevel.FAST]:
-        error, doubted = attempted(
+        error, doubted = or_missing(
             lambda: _looked_again(system, plan, summary), (math.nan, []), _SECOND, missing
         )
         values["peak_error_estimate"] = error
@@ -231,14 +232,14 @@ def run(
     for kind, text in cautions:
         warn(text, kind)
     if certification is not None:
-        found = attempted(
-            lambda: certify(system, plan, response.beside(), certification, beside),
+        found = or_missing(
+            lambda: certify(system, plan, response.summary(), certification, summary_of),
             None, "the certificate", missing,
         )  # fmt: skip
         attributes |= {"certificate": "Not known."} if found is None else found.attributes()
         values |= {} if found is None else found.values()
     of_samples = {**response.answers.values, **response.answers.points}
-    dataset = attempted(
+    dataset = or_missing(
         lambda: build_dataset(
             {**values, **of_samples, **motion_after_end(plan.motion, of_samples)}, attributes
         ),
@@ -278,7 +279,7 @@ def outcome(system: Assembly, plan: Plan) -> Summary:
     return respond(system, plan).trajectory
 
 
-def beside(system: Assembly, plan: Plan) -> RunSummary:
+def summary_of(system: Assembly, plan: Plan) -> RunSummary:
     """Integrate as planned, and tell what a certificate asks of the run.
 
     Parameters
@@ -292,7 +293,7 @@ def beside(system: Assembly, plan: Plan) -> RunSummary:
     -------
     RunSummary
     """
-    return respond(system, plan).beside()
+    return respond(system, plan).summary()
 
 
 def respond(system: Assembly, plan: Plan) -> Response:
@@ -322,7 +323,7 @@ def respond(system: Assembly, plan: Plan) -> Response:
             keep_steps=sampled,
         )  # fmt: skip
         if sampled:
-            answers = attempted(
+            answers = or_missing(
                 lambda: answers_of(system, plan, trajectory, missing), answers, _SAMPLES, missing
             )
     return Response(system, plan, trajectory, answers, missing)
@@ -331,7 +332,7 @@ def respond(system: Assembly, plan: Plan) -> Response:
 def _attributes(
     system: Assembly, plan: Plan, summary: Summary, missing: list[str]
 ) -> dict[str, str | float | int]:
-    description = attempted(lambda: system.description, "", "the words of the model", missing)
+    description = or_missing(lambda: system.description, "", "the words of the model", missing)
     coupling = {"coupling": str(system.options.coupling)} if system.scene.coupling else {}
     return {
         "verdict": _verdict(system, summary),
@@ -351,9 +352,9 @@ def _attributes(
         "solver_steps": summary.step_count,
         "solver_rejected_steps": summary.rejected_count,
         "solver_end_time": summary.end_time,
-        **attempted(lambda: motion_attributes(plan.motion), {}, "the motion's origin", missing),
-        "system_json": attempted(lambda: system.json, "", "the parts as text", missing),
-        "run_json": attempted(plan.to_json, "", "the arguments as text", missing),
+        **or_missing(lambda: motion_attributes(plan.motion), {}, "the motion's origin", missing),
+        "system_json": or_missing(lambda: system.json, "", "the parts as text", missing),
+        "run_json": or_missing(plan.to_json, "", "the arguments as text", missing),
     }
 
 
@@ -378,7 +379,7 @@ def _lost_weight(system: Assembly, motion: GroundMotion | None) -> Iterator[Caut
         return
     if slope.level and motion.si.vertical is None:
         return
-    moved, _ = felt_ground(ground_at(motion, motion.si.horizontal.times), slope)
+    moved, _ = ground_on_slope(ground_at(motion, motion.si.horizontal.times), slope)
     lowest = float(np.min(moved[:, 1]))
     if lowest < -slope.normal_gravity:
         which = "vertical" if slope.level else "normal"

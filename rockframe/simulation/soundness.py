@@ -26,7 +26,7 @@ reached it, and those with half of it were wrong no more often than those with n
 PEAK: Final = 0.01
 """Share by which the peak rotation of a sound run may differ from that."""
 
-UNFELT: Final = 1e-4
+NEGLIGIBLE: Final = 1e-4
 """Share of the overturning angle up to which a peak, or a difference of peaks, says nothing of the
 verdict: the energies of such motion are errors as small as any step is allowed to make."""
 
@@ -69,14 +69,14 @@ def unbalanced(
     shown = base()
     if shown.overturned is None:
         return None
-    unfelt = shown.peak_share <= UNFELT
-    if unfelt and by_tolerance:
+    negligible = shown.peak_share <= NEGLIGIBLE
+    if negligible and by_tolerance:
         return None
     found = f"the energies are out of balance by {residual:.2g} of the largest"
     if by_tolerance:
         return f"{found}: this is no solution; repeat the run with a tighter tolerance"
     remedy = f"repeat the run with accuracy='{AccuracyLevel.STANDARD}'"
-    if residual > FIXED and not unfelt:
+    if residual > FIXED and not negligible:
         return f"{found}: this is no solution; {remedy}"
     standard = LEVELS[AccuracyLevel.STANDARD]
     other = run(replace(plan.bare(), accuracy=standard))
@@ -85,7 +85,7 @@ def unbalanced(
     difference = abs(other.peak - shown.peak)
     if shown.alike(other) and difference <= PEAK * other.peak:
         return None
-    if unfelt and other.overturned is False and other.peak_share <= UNFELT:
+    if negligible and other.overturned is False and other.peak_share <= NEGLIGIBLE:
         return None
     ends = "overturns" if other.overturned else f"has a peak rotation of {other.peak:.4g} rad"
     return (

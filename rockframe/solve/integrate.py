@@ -16,7 +16,7 @@ from rockframe.solve.driver import advance
 from rockframe.solve.equations import equations_of, runs_as_python
 from rockframe.solve.layout import Status
 from rockframe.solve.steps import steps_of
-from rockframe.solve.trajectory import Events, Trajectory, told_by
+from rockframe.solve.trajectory import Events, Trajectory, run_counts
 from rockframe.solve.workspace import (
     BESIDE,
     CODES,
@@ -149,7 +149,7 @@ def integrate(
         start_memory=run.start_memory,
         events=_events(events, int(counters[at.EVENTS]), width),
         status=Status(result),
-        **told_by(clock, counters),
+        **run_counts(clock, counters),
         substeps=run.substeps,
         ending=Ending(int(counters[at.MODE]), workspace.state.copy(), memory.copy()),
         start_energy=float(clock[at.START_ENERGY]),

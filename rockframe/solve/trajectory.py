@@ -147,7 +147,7 @@ class Trajectory(Summary):
     steps: Steps | None
 
 
-def told_by(clock: Vector, counters: Integers) -> dict[str, Any]:
+def run_counts(clock: Vector, counters: Integers) -> dict[str, Any]:
     """Give what an integrator's progress tells of a finished run, by the names of a summary.
 
     Parameters

@@ -20,7 +20,7 @@ from rockframe.signals.polynomials import turning_points
 from rockframe.simulation.friction import has_limit
 from rockframe.simulation.plan import Plan, plan_run
 from rockframe.simulation.provenance import motion_attributes
-from rockframe.simulation.run import beside, run
+from rockframe.simulation.run import run, summary_of
 from rockframe.simulation.run_arguments import ScaleArguments
 from rockframe.simulation.run_summary import RunSummary
 from rockframe.simulation.soundness import STILL_MOVING
@@ -183,7 +183,7 @@ def critical_scale(
     step = plan.output_step if has_limit(system.assembly) else None
 
     def look(scale: float) -> RunSummary:
-        return beside(system.assembly, replace(plan_at(scale), output_step=step))
+        return summary_of(system.assembly, replace(plan_at(scale), output_step=step))
 
     with bar_of(progress, owner=_OWNER, unit="run") as bar:
         found = follow(_counted(look, bar, len(row)), row, most=most, width=share)

@@ -58,7 +58,7 @@ class AloneSetting(Setting):
         """Give the equations of a body on its base."""
         from rockframe.dynamics.alone_model import alone
 
-        body, base = self.load.own_law, self.support.own_law
+        body, base = self.load.rigid_body, self.support.base_numbers
         return alone(self.model, body, base, self.body.mass, self.rest_rotation)
 
     @cached_property

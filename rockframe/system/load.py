@@ -59,7 +59,7 @@ class Load:
         return self.body.overturning_angles.on_slope(self.slope, small=self.options.small)
 
     @cached_property
-    def own_law(self) -> "Body":
+    def rigid_body(self) -> "Body":
         """The body as the equations take it, per unit of its own mass."""
         return self.law(self.body.mass)
 

@@ -70,7 +70,9 @@ def _with_cap(parts: Parts, options: Options) -> AloneSetting:
 
 def _refuse_twins(parts: Parts, upper: AloneSetting, lower: AloneSetting) -> None:
     """Refuse two bases that show the same column, which would hide one of them."""
-    shown = [{column.name for column in each.support.own_law.columns} for each in (upper, lower)]
+    shown = [
+        {column.name for column in each.support.base_numbers.columns} for each in (upper, lower)
+    ]
     twins = sorted(shown[0] & shown[1])
     if twins:
         pads, soil = (type(parts[slot]).__name__ for slot in ("pads", "soil"))

@@ -97,7 +97,7 @@ class StandingBodies:
     def held(self, rotations: Sequence[float]) -> list[Statics | None]:
         """Give the states with the highest body held at rotations; None where there is none."""
         curve = self.chain.curve(rotations)
-        found = [None if stands is None else self._told(stands) for stands in curve]
+        found = [None if stands is None else self._statics_of(stands) for stands in curve]
         least = LEAST * self.chain.links[0].allowed_rotation if self.chain.upright else 0.0
         for i, (rotation, state) in enumerate(zip(rotations, found, strict=True)):
             if state is not None and abs(rotation) < least:
@@ -115,7 +115,7 @@ class StandingBodies:
             restoring_moment=share * (8.0 * near.restoring_moment - far.restoring_moment),
         )
 
-    def _told(self, stands: list[Stand]) -> Statics:
+    def _statics_of(self, stands: list[Stand]) -> Statics:
         (part, *_), lowest = self.chain.links[0], stands[-1]
         body = self.chain.links[-1].part.body
         attitude = body.attitude(lowest.state.rotation)

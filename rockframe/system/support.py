@@ -132,16 +132,16 @@ class Support(ABC):
         from rockframe.dynamics.on_base import OnBase
         from rockframe.dynamics.statics import StandingChain, link_of
 
-        body, numbers = self.load.own_law, self.own_law
+        body, numbers = self.load.rigid_body, self.base_numbers
         link = link_of(OnBase(body, numbers.law), beside=eccentricity_of(body))
         chain = StandingChain((link,), self.load.slope.along_gravity)
         return StandingBodies(chain, self.load.body.mass, (numbers,))
 
     @cached_property
-    def own_law(self) -> "BaseNumbers":
+    def base_numbers(self) -> "BaseNumbers":
         """The base as the equations of its body alone take it, per unit mass of that."""
         mass = self.load.body.mass
-        return self.law(self.load.own_law, mass, mass)
+        return self.law(self.load.rigid_body, mass, mass)
 
     @cached_property
     def rocking_stiffness(self) -> float:

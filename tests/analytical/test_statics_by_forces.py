@@ -109,7 +109,7 @@ def test_closed_forms_of_a_held_body(block, base, rotation):
 def test_slopes_of_the_forces_are_the_stiffnesses_that_bases_declare(block, base, rotation):
     """Sizes and steps of runs are measured by these."""
     support = rf.System(BLOCKS[block], BASES[base], rotation=rotation).setting.support
-    numbers, standing = support.own_law, support.standing
+    numbers, standing = support.base_numbers, support.standing
     link, stand = standing.chain.links[0], standing.upright[0]
     slopes = np.array([of_base(link, stand, name) for name in (*PLACES, *RATES)])
     h, g = support.load.body.centre_height, support.load.slope.normal_gravity

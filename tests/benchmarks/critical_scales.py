@@ -23,7 +23,7 @@ from records import records_folder
 import rockframe as rf
 from rockframe.signals.polynomials import greatest
 from rockframe.simulation.plan import plan_run
-from rockframe.simulation.run import beside
+from rockframe.simulation.run import summary_of
 from rockframe.simulation.run_summary import RunSummary
 from rockframe.studies.flips import follow
 
@@ -99,7 +99,7 @@ def dense(kind: str, system: rf.System, motion: rf.GroundMotion) -> Dense:
     )  # fmt: skip
     scales = LARGEST * np.arange(DENSE + 1) / DENSE
     runs = [
-        beside(system.assembly, replace(plan, motion=motion.scaled(scale)))
+        summary_of(system.assembly, replace(plan, motion=motion.scaled(scale)))
         for scale in scales.tolist()
     ]
     start = 0

@@ -58,7 +58,7 @@ def main() -> None:
     print(f"load of the machine meanwhile: {os.getloadavg()[0]:.1f} on {os.cpu_count()} processors")
 
 
-study.WORTH = math.inf  # lanes are compiled in the first round
+study.COMPILING_SHARE = math.inf  # lanes are compiled in the first round
 
 
 def costs(motion, axes, accuracy) -> dict[str, float]:

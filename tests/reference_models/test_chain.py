@@ -132,7 +132,7 @@ def test_a_chain_tells_what_it_cannot_carry(pair):
                 rf.Block(width="1 m", height="4 m", mass="4 t"),
                 rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1),
             )
-        ).setting.support.own_law,
+        ).setting.support.base_numbers,
     )
     with pytest.raises(TypeError, match="stands on pads, on a bed or on rigid bases, got tuple"):
         row_of(body, replace(numbers, law=(1.0,)), 1.0, 0.0, 0.0)

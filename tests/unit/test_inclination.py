@@ -49,7 +49,9 @@ def test_descriptions_tell_the_slope_and_both_sides():
 def test_a_motion_is_turned_and_gravity_lasts():
     slope = Slope(math.radians(30.0), 10.0)
     samples = np.array([0.0, 2.0, -1.0])
-    felt = slope.felt(Motion.of_samples(0.5, samples, 2.0 * samples), duration=2.0, interval=0.01)
+    felt = slope.resolved(
+        Motion.of_samples(0.5, samples, 2.0 * samples), duration=2.0, interval=0.01
+    )
     s, c = 0.5, math.sqrt(0.75)
     for signal, part, lasting in (
         (felt.horizontal, c + 2.0 * s, 5.0),
@@ -60,7 +62,7 @@ def test_a_motion_is_turned_and_gravity_lasts():
             signal.at(time), part * np.interp(time, [0.0, 0.5, 1.0], samples) + lasting
         )
         np.testing.assert_allclose(signal.at(np.array([1.2, 1.7, 2.0])), lasting, atol=1e-15)
-    still = slope.felt(None, duration=1.0, interval=0.01)
+    still = slope.resolved(None, duration=1.0, interval=0.01)
     np.testing.assert_allclose(still.horizontal.at(np.linspace(0.0, 1.0, 7)), 5.0)
     assert slope.normal_gravity == pytest.approx(10.0 * c)
 

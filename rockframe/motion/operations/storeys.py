@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from rockframe.units import QuantityLike, RatioLike
 
 _SNAP: Final = 1e-9
-_MODES_TOLD: Final = 10
+_MODES_LISTED: Final = 10
 _COARSE: Final = 0.02
 """Deviation between samples, as a share of the peak, beyond which there is a warning."""
 
@@ -169,7 +169,7 @@ def through_storeys(
         )
         warn(msg, RecordWarning)
     steps = [
-        f"absolute acceleration of a floor, {building.words}: {_told(building.modes)}",
+        f"absolute acceleration of a floor, {building.words}: {_modes_words(building.modes)}",
         f"followed for {zeros * si.time_step:.9g} s after the ground's motion",
     ]
     if parts > 1:
@@ -252,14 +252,14 @@ def _check_size(si: Motion, moving: FloorModes, still: float, parts: int, owner:
         raise ComponentError(msg)
 
 
-def _told(modes: FloorModes) -> str:
+def _modes_words(modes: FloorModes) -> str:
     rows = np.column_stack(modes).tolist()
     each = [
         f"period {period:.9g} s, damping ratio {damping:.9g}, participation {participation:.9g}"
-        for period, damping, participation in rows[:_MODES_TOLD]
+        for period, damping, participation in rows[:_MODES_LISTED]
     ]
-    if len(rows) > _MODES_TOLD:
-        each.append(f"{len(rows) - _MODES_TOLD} further modes")
+    if len(rows) > _MODES_LISTED:
+        each.append(f"{len(rows) - _MODES_LISTED} further modes")
     rigid = modes.rigid_share
     if abs(rigid) > _SNAP:
         each.append(f"participation {rigid:.9g} with the ground")

@@ -99,7 +99,7 @@ def run_chunk(job: SweepJob, stopped: Callable[[], bool] = lambda: False) -> Cas
     return None if stopped() else told.rows()
 
 
-def _told_by(run: Finished) -> tuple[list[str], Mapping[str, Generic | float]]:
+def _cautions_and_scalars(run: Finished) -> tuple[list[str], Mapping[str, Generic | float]]:
     """Give what is to be warned of in a run, and its scalars."""
     if run.response is not None:
         return [text for _, text in run.response.cautions()], run.response.scalars
@@ -141,7 +141,7 @@ class _Telling:
         case, response = run.case, run.response
         if self._status[case] != RunStatus.NOT_RUN:  # of a first run
             self._clear(case)
-        cautions, told = _told_by(run)
+        cautions, told = _cautions_and_scalars(run)
         self._say(case, "; ".join([*run.said, *cautions]) or NONE)
         self._status[case] = run.summary.status
         if run.summary.overturned is None:

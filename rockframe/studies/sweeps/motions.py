@@ -106,7 +106,7 @@ def named_motions(given: object) -> dict[str, GroundMotion]:
     if isinstance(given, Mapping):
         named = by_words(cast("Mapping[Any, Any]", given), owner=OWNER)
     elif isinstance(given, Iterable) and not isinstance(given, str):
-        named = _told_apart(list(cast("Iterable[Any]", given)))
+        named = _distinct_names(list(cast("Iterable[Any]", given)))
     else:
         named = {"": given}
     wrong = [one for one in named.values() if not isinstance(one, GroundMotion)]
@@ -159,7 +159,7 @@ def motion_number(wanted: object, names: Sequence[str], *, owner: str) -> int:
     raise StudyError(msg)
 
 
-def _told_apart(motions: list[Any]) -> dict[str, Any]:
+def _distinct_names(motions: list[Any]) -> dict[str, Any]:
     """Name motions: by their scales those of one name, with a number those that remain alike."""
     names = [str(getattr(motion, "name", place)) for place, motion in enumerate(motions)]
     named: dict[str, Any] = {}

@@ -15,7 +15,7 @@ from rockframe.solve.beginning import begun
 from rockframe.solve.integrate import STILL_INTERVAL
 from rockframe.solve.lanes.integrate import LaneRun, integrate_lanes, kind_of, lanes_compiled
 from rockframe.solve.layout import Status
-from rockframe.solve.trajectory import Summary, told_by
+from rockframe.solve.trajectory import Summary, run_counts
 from rockframe.studies.sweeps.cases_of_job import CasesOfJob
 from rockframe.system.assembly import Assembly
 
@@ -202,7 +202,7 @@ def _run(group: _Group) -> Iterator[Finished]:
             status=Status(int(found.status[k])),
             substeps=scene.run.begun.substeps,
             ending=found.endings[k],
-            **told_by(found.clock[k], found.counters[k]),
+            **run_counts(found.clock[k], found.counters[k]),
         )
         if nothing_to_say(scene.system, summary):
             yield Finished(case, scene.system, summary, scene.said)

@@ -23,7 +23,7 @@ LONG_ENOUGH: Final = 1.0
 LARGEST_CHUNK: Final = 10_000
 FEWEST_IN_LANES: Final = 500
 """Cases below which lanes, whose machine code has to be read, save next to nothing."""
-WORTH: Final = 1.0
+COMPILING_SHARE: Final = 1.0
 """Longest time to compile what lanes need, over the time that they save in the sweep."""
 IN_LANES: Final = 0.25
 """Of the time of a run alone."""
@@ -162,13 +162,13 @@ class Study:
         if not COMPILED or sampled or self.grid.count < FEWEST_IN_LANES:
             return None
         saved = (1.0 - IN_LANES) * self.grid.count * self._time_of_case() / worker_count()
-        return WORTH * saved
+        return COMPILING_SHARE * saved
 
     def to_dict(self) -> dict[str, Any]:
         """Tell all that the results depend on: every field, and what a function makes of cases."""
-        return {"rockframe_version": __version__, **told(self), "scenes": self._scenes_told()}
+        return {"rockframe_version": __version__, **told(self), "scenes": self._scene_digests()}
 
-    def _scenes_told(self) -> list[str]:
+    def _scene_digests(self) -> list[str]:
         """Give digests of scenes that a function has made, which its source need not tell."""
         if not isinstance(self.scene, FunctionScene):
             return []

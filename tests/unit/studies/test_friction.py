@@ -78,7 +78,7 @@ def test_cases_with_a_limit_leave_the_lanes_and_the_others_stay(monkeypatch, acc
         return SLIPPERY if slippery else rf.System(BLOCK)
 
     found = []
-    monkeypatch.setattr(study, "WORTH", np.inf)
+    monkeypatch.setattr(study, "COMPILING_SHARE", np.inf)
     for fewest in (1, 10**9):
         monkeypatch.setattr(study, "FEWEST_IN_LANES", fewest)
         with pytest.warns(rf.ModelWarning, match=SLIDES):

@@ -101,7 +101,7 @@ def test_a_case_runs_alone_as_it_ran_in_the_sweep(runs):
 
 
 def test_chunks_stores_and_lanes_change_nothing(runs, tmp_path, monkeypatch):
-    monkeypatch.setattr(study, "WORTH", np.inf)
+    monkeypatch.setattr(study, "COMPILING_SHARE", np.inf)
     cases = {**AXES, "scale": np.linspace(0.4, 1.1, 128).tolist()}
     lanes = rf.sweep(SYSTEM, shaking(), **cases, accuracy="screen")
     assert lanes.repeated.size >= FEWEST_IN_LANES

@@ -52,7 +52,7 @@ def on(*parts, **options):
 def both(monkeypatch, *arguments, accuracy="fast", **options):
     """Run a sweep in lanes, and again alone."""
     found = []
-    monkeypatch.setattr(study, "WORTH", math.inf)
+    monkeypatch.setattr(study, "COMPILING_SHARE", math.inf)
     for fewest in (1, 10**9):
         monkeypatch.setattr(study, "FEWEST_IN_LANES", fewest)
         found.append(rf.sweep(*arguments, accuracy=accuracy, **options))
@@ -158,7 +158,7 @@ def test_still_ground_and_inclined_bases(monkeypatch):
 @pytest.mark.parametrize("chunk", [1, 7, 1000])
 def test_neighbours_chunks_and_executors_change_nothing(monkeypatch, chunk):
     monkeypatch.setattr(study, "FEWEST_IN_LANES", 1)
-    monkeypatch.setattr(study, "WORTH", math.inf)
+    monkeypatch.setattr(study, "COMPILING_SHARE", math.inf)
     system = rf.System(BLOCK, PADS)
     axes = {"scale": np.linspace(0.2, 2.0, 12), "damping_ratio": [0.05, 0.2]}
 
@@ -184,7 +184,7 @@ def test_small_sweeps_run_alone(accuracy):
 
 @pytest.mark.parametrize("worth", [0.0, math.inf])
 def test_a_law_that_cannot_be_compiled_runs_in_plain_python(monkeypatch, fallbacks, worth):
-    monkeypatch.setattr(study, "WORTH", worth)
+    monkeypatch.setattr(study, "COMPILING_SHARE", worth)
     rf.register(TabulatedPads)
     system = rf.System(BLOCK, TabulatedPads(frequency_ratio=20, damping_ratio=0.1))
     options = {"accuracy": "fast", "duration": "0.03 s"}
@@ -258,7 +258,7 @@ def test_what_fails_in_preparing_lanes_is_told_as_an_error(monkeypatch):
         raise ZeroDivisionError(msg)
 
     monkeypatch.setattr(study, "FEWEST_IN_LANES", 1)
-    monkeypatch.setattr(study, "WORTH", math.inf)
+    monkeypatch.setattr(study, "COMPILING_SHARE", math.inf)
     monkeypatch.setattr(side_by_side, "begun", fails)
     told = r"beside others failed \(ZeroDivisionError: no such lane\).*error in rockframe"
     with pytest.warns(rf.ModelWarning, match=told):
@@ -275,7 +275,7 @@ def test_what_fails_in_preparing_lanes_is_told_as_an_error(monkeypatch):
 
     monkeypatch.undo()
     monkeypatch.setattr(study, "FEWEST_IN_LANES", 1)
-    monkeypatch.setattr(study, "WORTH", math.inf)
+    monkeypatch.setattr(study, "COMPILING_SHARE", math.inf)
     runs = rf.sweep(scene, MOTIONS[0], width=[0.8, 1.0], accuracy="fast")
     assert runs.status.values.ravel().tolist() == [1, 6]
     assert not any("error in rockframe" in text for text in runs.message.values)

@@ -405,7 +405,7 @@ def test_axes_of_the_initial_state_begin_runs_where_they_say(monkeypatch):
         rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1),
     )
     found = []
-    monkeypatch.setattr(study, "WORTH", np.inf)
+    monkeypatch.setattr(study, "COMPILING_SHARE", np.inf)
     for fewest in (1, 10**9):
         monkeypatch.setattr(study, "FEWEST_IN_LANES", fewest)
         start = rf.InitialState(vertical_velocity="0.01 m/s")
