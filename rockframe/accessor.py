@@ -99,7 +99,7 @@ class RockframeAccessor:
     @property
     def verdict(self) -> str:
         """What became of it in one sentence; of a part of a sweep, what became of that part."""
-        from rockframe.studies.sweeps.telling import cases_verdict
+        from rockframe.studies.sweeps.words import cases_verdict
 
         return cases_verdict(self._dataset)
 

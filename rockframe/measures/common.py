@@ -91,7 +91,7 @@ _LABEL: Final = {"long_name": "ground motion"}
 
 
 @dataclass(frozen=True)
-class Looked(Generic[Thing]):
+class Inputs(Generic[Thing]):
     """What is looked at: one thing, or several with their labels.
 
     Parameters
@@ -139,7 +139,7 @@ class Looked(Generic[Thing]):
         return dataset
 
 
-def looked_at(given: object, component: object, *, owner: str) -> Looked[Signal]:
+def read_inputs(given: object, component: object, *, owner: str) -> Inputs[Signal]:
     """Take one component of a motion, or of each of several.
 
     Parameters
@@ -153,7 +153,7 @@ def looked_at(given: object, component: object, *, owner: str) -> Looked[Signal]
 
     Returns
     -------
-    Looked
+    Inputs
 
     Raises
     ------
@@ -163,13 +163,13 @@ def looked_at(given: object, component: object, *, owner: str) -> Looked[Signal]
     if not isinstance(given, Mapping):
         signal = signal_of(given, component, owner=owner)
         which = component_of(component, owner=owner)
-        return Looked([signal], None, component_attributes(cast("GroundMotion", given), which))
+        return Inputs([signal], None, component_attributes(cast("GroundMotion", given), which))
     motions = cast("Mapping[Any, Any]", given)
     check_some(motions, owner=owner)
     signals = [signal_of(motion, component, owner=owner) for motion in motions.values()]
     which = str(component_of(component, owner=owner))
     attributes: dict[str, Any] = {"component": which, "references": REFERENCES}
-    return Looked(signals, [str(label) for label in motions], attributes)
+    return Inputs(signals, [str(label) for label in motions], attributes)
 
 
 def check_some(motions: Mapping[Any, Any], *, owner: str) -> None:

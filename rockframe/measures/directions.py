@@ -10,7 +10,7 @@ import xarray as xr
 from rockframe.arguments import whole_number
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError, shown
-from rockframe.measures.common import Looked, build_over, check_some
+from rockframe.measures.common import Inputs, build_over, check_some
 from rockframe.measures.response import (
     checked_periods,
     checked_ratios,
@@ -232,10 +232,10 @@ def _intensity(signal: "Signal") -> float:
     return float(arias_history(signal, STANDARD_GRAVITY)[-1])
 
 
-def _pairs(given: object, *, owner: str) -> Looked[HorizontalPair]:
+def _pairs(given: object, *, owner: str) -> Inputs[HorizontalPair]:
     """Take one pair or several."""
     if isinstance(given, HorizontalPair):
-        return Looked([given], None, {"motion": given.name, "references": _REFERENCES})
+        return Inputs([given], None, {"motion": given.name, "references": _REFERENCES})
     if not isinstance(given, Mapping):
         wanted = "two horizontal components, rf.HorizontalPair(first, second)"
         msg = f"{owner}: pair needs {wanted}, got {shown(given)}"
@@ -249,4 +249,4 @@ def _pairs(given: object, *, owner: str) -> Looked[HorizontalPair]:
                 "are suite.pairs"
             )
             raise ComponentError(msg)
-    return Looked(list(pairs.values()), [str(one) for one in pairs], {"references": _REFERENCES})
+    return Inputs(list(pairs.values()), [str(one) for one in pairs], {"references": _REFERENCES})

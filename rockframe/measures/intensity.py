@@ -9,7 +9,7 @@ import xarray as xr
 from rockframe.components import Block
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError, shown
-from rockframe.measures.common import GroundComponent, component_of, looked_at
+from rockframe.measures.common import GroundComponent, component_of, read_inputs
 from rockframe.results.dataset import build_dataset
 from rockframe.signals import Signal
 from rockframe.signals.accumulation import (
@@ -107,7 +107,7 @@ def intensity_measures(
     >>> round(float(measures.relative_peak_ground_acceleration), 4)
     2.0394
     """
-    looked = looked_at(motion, component, owner=_OWNER)
+    looked = read_inputs(motion, component, owner=_OWNER)
     accelerations = {
         "threshold": threshold,
         "gravity": f"{STANDARD_GRAVITY!r} m/s^2" if gravity is None else gravity,

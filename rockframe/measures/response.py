@@ -9,7 +9,7 @@ import xarray as xr
 
 from rockframe.arguments import one_of_words
 from rockframe.errors import ComponentError, shown
-from rockframe.measures.common import Looked, build_over, looked_at
+from rockframe.measures.common import Inputs, build_over, read_inputs
 from rockframe.motion.operations.timing import Interpolation
 from rockframe.motion.processing.coarseness import say_coarse
 from rockframe.motion.processing.sampling import band_limited
@@ -99,7 +99,7 @@ def response_spectrum(
     >>> spectrum.pseudo_spectral_acceleration.values.round(4).tolist()
     [[1.0, 1.7321, 0.3963]]
     """
-    looked = looked_at(motion, component, owner=_OWNER)
+    looked = read_inputs(motion, component, owner=_OWNER)
     seconds = checked_periods(periods, owner=_OWNER)
     ratios = checked_ratios(damping_ratios, owner=_OWNER)
     between = one_of_words(Interpolation, interpolation, owner=_OWNER, name="interpolation")
@@ -109,7 +109,7 @@ def response_spectrum(
 
 
 def spectra_of(
-    looked: Looked[Signal],
+    looked: Inputs[Signal],
     seconds: Array,
     ratios: Array,
     between: Interpolation = Interpolation.LINEAR,
@@ -118,7 +118,7 @@ def spectra_of(
 
     Parameters
     ----------
-    looked : Looked
+    looked : Inputs
         One component of a motion, or of several.
     seconds : ndarray, shape (k,)
         Periods [s].

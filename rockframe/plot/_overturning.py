@@ -21,7 +21,7 @@ from rockframe.plot._axes import (
 from rockframe.plot._checks import check_study
 from rockframe.plot._panels import Panels, Sheet, sheet, single
 from rockframe.results.outcome import overturns
-from rockframe.studies.sweeps.telling import cases_verdict
+from rockframe.studies.sweeps.words import cases_verdict
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

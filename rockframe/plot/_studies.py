@@ -25,7 +25,7 @@ from rockframe.plot._panels import Panels, sheet, single
 from rockframe.plot._units import unit_of
 from rockframe.results.outcome import overturns
 from rockframe.results.variables.studies import Outcome
-from rockframe.studies.sweeps.telling import cases_verdict
+from rockframe.studies.sweeps.words import cases_verdict
 from rockframe.units import ANGLE
 
 if TYPE_CHECKING:

@@ -30,7 +30,7 @@ _REST: Final = InitialState()
 
 
 @dataclass(frozen=True, kw_only=True)
-class _Asked:
+class _Requested:
     """What is asked of a run beside its length and its start; numbers in SI units."""
 
     accuracy: Accuracy
@@ -61,7 +61,7 @@ class _Asked:
 
 
 @dataclass(frozen=True, kw_only=True)
-class RunRequest(_Asked):
+class RunRequest(_Requested):
     """What a run is asked for, whatever its system and motion; numbers in SI units."""
 
     duration: float | None
@@ -79,7 +79,7 @@ class RunRequest(_Asked):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Plan(_Asked):
+class Plan(_Requested):
     """A run's arguments, checked and in SI units.
 
     There are samples where `output_step` is given: for the histories, if they are kept, for
@@ -222,7 +222,7 @@ def fit_plan(
                 "friction"
             )
     faults += lacking(system, arguments.requested)
-    asked = {name: getattr(arguments, name) for name in _Asked.__annotations__}
+    asked = {name: getattr(arguments, name) for name in _Requested.__annotations__}
     asked["output_step"] = step
     return Plan(motion=motion, duration=length, initial=beginning, **asked)
 

@@ -57,7 +57,7 @@ Caution: TypeAlias = tuple[type[RockframeWarning], str]
 """A warning's kind and text."""
 
 
-def felt_motion(system: Assembly, plan: Plan) -> Motion | None:
+def base_motion(system: Assembly, plan: Plan) -> Motion | None:
     """Give the motion as the integrator takes it: on a slope along and normal to the base."""
     motion, slope = None if plan.motion is None else plan.motion.si, system.options.slope
     if slope.level:
@@ -317,7 +317,7 @@ def respond(system: Assembly, plan: Plan) -> Response:
     answers = Answers()
     with compiling_for(f"a run ({system.setting.model})"):
         trajectory = integrate(
-            system.model, start_of(plan.initial), felt_motion(system, plan), plan.accuracy,
+            system.model, start_of(plan.initial), base_motion(system, plan), plan.accuracy,
             duration=plan.duration, output_step=output_step,
             stop_at_overturning=plan.stop_at_overturning, with_work=bool(plan.energies),
             keep_steps=sampled,
@@ -358,7 +358,7 @@ def _attributes(
     }
 
 
-def nothing_to_say(system: Assembly, summary: Summary) -> bool:
+def has_no_cautions(system: Assembly, summary: Summary) -> bool:
     """Whether a run with fixed steps has come to an end, with its energies in balance."""
     return summary.status.finished and summary.energy_residual <= doubtful_residual(system)
 

@@ -10,7 +10,7 @@ import numpy as np
 from rockframe.arguments import one_of_words
 from rockframe.errors import ComponentError, shown
 from rockframe.measures import rotated_spectrum
-from rockframe.measures.common import looked_at
+from rockframe.measures.common import read_inputs
 from rockframe.measures.response import checked_periods, shortest_of, spectra_of
 from rockframe.motion.processing.coarseness import say_coarse
 from rockframe.signals.arrays import Array
@@ -194,7 +194,7 @@ def _spectra(
 ) -> tuple[list[str], Array, list[str]]:
     with_unit = (seconds, str(PERIOD.unit))
     if kind is Combination.EACH:
-        looked = looked_at(suite, "horizontal", owner=owner)
+        looked = read_inputs(suite, "horizontal", owner=owner)
         found = spectra_of(looked, seconds, np.array([damping_ratio]))[
             "pseudo_spectral_acceleration"
         ]

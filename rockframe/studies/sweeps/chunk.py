@@ -81,22 +81,22 @@ def run_chunk(job: SweepJob, stopped: Callable[[], bool] = lambda: False) -> Cas
         None where it was left off.
     """
     cases = CasesOfJob(job)
-    told = _Telling(len(cases), job.histories)
+    collected = _Collector(len(cases), job.histories)
     looks: dict[int, Look] = {}
     for run in each_run(cases, range(len(cases)), stopped, job.patience):
-        told.put(run)
+        collected.put(run)
         if job.screened and isinstance(run, Finished):
             looks[run.case] = look_at_case(cases, run)
     if job.screened and not stopped():
         doubtful = in_doubt(cases, looks, stopped)
-        told.screen(looks, doubtful)
+        collected.screen(looks, doubtful)
         patience = None
         if job.patience is not None and len(doubtful) >= FEWEST_IN_LANES:
             patience = job.patience * len(doubtful) / len(cases)
         for run in each_run(cases.changed(repeated), doubtful, stopped, patience):
-            told.put(run)
-            told.compare(looks[run.case], run)
-    return None if stopped() else told.rows()
+            collected.put(run)
+            collected.compare(looks[run.case], run)
+    return None if stopped() else collected.rows()
 
 
 def _cautions_and_scalars(run: Finished) -> tuple[list[str], Mapping[str, Generic | float]]:
@@ -104,9 +104,9 @@ def _cautions_and_scalars(run: Finished) -> tuple[list[str], Mapping[str, Generi
     if run.response is not None:
         return [text for _, text in run.response.cautions()], run.response.scalars
     missing: list[str] = []
-    told = scalars_of(run.system, run.summary, missing)
+    scalars = scalars_of(run.system, run.summary, missing)
     moving = in_motion(run.system, run.summary, missing)
-    return [*([STILL_MOVING] if moving else []), *missing], told
+    return [*([STILL_MOVING] if moving else []), *missing], scalars
 
 
 def _driver(run: Finished) -> Driver:
@@ -115,7 +115,7 @@ def _driver(run: Finished) -> Driver:
     return Driver.AS_PYTHON if run.response.trajectory.as_python else Driver.ALONE
 
 
-class _Telling:
+class _Collector:
     """Collects what cases show."""
 
     def __init__(self, count: int, histories: Histories | None) -> None:
@@ -141,14 +141,14 @@ class _Telling:
         case, response = run.case, run.response
         if self._status[case] != RunStatus.NOT_RUN:  # of a first run
             self._clear(case)
-        cautions, told = _cautions_and_scalars(run)
+        cautions, scalars = _cautions_and_scalars(run)
         self._say(case, "; ".join([*run.said, *cautions]) or NONE)
         self._status[case] = run.summary.status
         if run.summary.overturned is None:
             self._clear(case)
             return
         self._put_scalars(case, {DRIVER: _driver(run)})
-        self._put_scalars(case, {name: told[name] for name in told if name != _STATUS})
+        self._put_scalars(case, {name: scalars[name] for name in scalars if name != _STATUS})
         if self._kept is not None and response is not None and response.answers.values:
             self._put_histories(case, response.answers.values, self._kept)
 

@@ -19,7 +19,7 @@ from rockframe.results.outcome import Generic
 _OWN: Final = __name__.partition(".")[0]
 
 
-def told(value: object) -> Any:
+def description_of(value: object) -> Any:
     """Describe a value, fit for JSON, so that two that differ have other descriptions.
 
     Parameters
@@ -42,21 +42,29 @@ def told(value: object) -> Any:
     if value is None or isinstance(value, str | bool | int | float):
         return value
     if isinstance(value, np.generic):
-        return told(value.item())
+        return description_of(value.item())
     if isinstance(value, np.ndarray):
         return _of_array(cast("Generic", value))
     if isinstance(value, GroundMotion):
-        return digest_of(told(value.si))
+        return digest_of(description_of(value.si))
     if isinstance(value, Component):
-        return {**value.to_dict(), "given": told(vars(value.given)), **_written(type(value))}
+        return {
+            **value.to_dict(),
+            "given": description_of(vars(value.given)),
+            **_written(type(value)),
+        }
     if is_dataclass(value) and not isinstance(value, type):
-        own = {one.name: told(getattr(value, one.name)) for one in fields(value) if one.compare}
+        own = {
+            one.name: description_of(getattr(value, one.name))
+            for one in fields(value)
+            if one.compare
+        }
         return {"kind": type(value).__name__, **own}
     if isinstance(value, Mapping):
         items = cast("Mapping[Any, Any]", value).items()
-        return [[told(key), told(one)] for key, one in items]
+        return [[description_of(key), description_of(one)] for key, one in items]
     if isinstance(value, tuple | list):
-        return [told(one) for one in cast("list[Any]", value)]
+        return [description_of(one) for one in cast("list[Any]", value)]
     if callable(value):
         return _of_function(value)
     msg = (
@@ -67,7 +75,7 @@ def told(value: object) -> Any:
 
 
 def digest_of(described: object) -> str:
-    """Give the sha256 of what :func:`told` has described; the order of entries counts."""
+    """Give the sha256 of what :func:`description_of` has described; the order of entries counts."""
     return hashlib.sha256(json.dumps(described).encode()).hexdigest()
 
 

@@ -24,7 +24,7 @@ from rockframe.studies.sweeps.grid import Grid
 from rockframe.studies.sweeps.scenes import FunctionScene, SystemScene
 from rockframe.studies.sweeps.screening import SCREEN
 from rockframe.studies.sweeps.study import Histories, Study
-from rockframe.studies.sweeps.telling import SCREENED, summed_up, whole_verdict
+from rockframe.studies.sweeps.words import SCREENED, summed_up, whole_verdict
 
 ALWAYS: Final = tuple(
     row.name for row in EVENTS_AND_SCALARS if not row.dims and row.name != "status"

@@ -23,7 +23,7 @@ from rockframe.results.variables.variable import EVENT, TIME
 from rockframe.simulation.plan import RunRequest, read_arguments
 from rockframe.studies.sweeps.axes import OWNER, Axis, Changes
 from rockframe.studies.sweeps.grid import MOST_CASES, Grid
-from rockframe.studies.sweeps.kept import kept_histories, numbers_of_case
+from rockframe.studies.sweeps.histories import kept_histories, numbers_of_case
 from rockframe.studies.sweeps.memory import check_memory
 from rockframe.studies.sweeps.motions import (
     NO_MOTION,

@@ -22,7 +22,7 @@ from rockframe.studies.sweeps.labelling import sweep_dataset, sweep_labels
 from rockframe.studies.sweeps.progress import ProgressBar
 from rockframe.studies.sweeps.store import Store, begin_with
 from rockframe.studies.sweeps.study import Study, worker_count
-from rockframe.studies.sweeps.telling import say_what_is_missing
+from rockframe.studies.sweeps.words import say_what_is_missing
 from rockframe.system.own_base import OwnBase
 from rockframe.system.own_scene import OwnScene
 

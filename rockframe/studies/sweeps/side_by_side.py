@@ -10,7 +10,7 @@ from rockframe.compiled import compiling_for
 from rockframe.errors import PLEASE_REPORT, RockframeError
 from rockframe.signals import Motion
 from rockframe.simulation.beginning import start_of
-from rockframe.simulation.run import Response, nothing_to_say, respond
+from rockframe.simulation.run import Response, has_no_cautions, respond
 from rockframe.solve.beginning import begun
 from rockframe.solve.integrate import STILL_INTERVAL
 from rockframe.solve.lanes.integrate import LaneRun, integrate_lanes, kind_of, lanes_compiled
@@ -204,7 +204,7 @@ def _run(group: _Group) -> Iterator[Finished]:
             ending=found.endings[k],
             **run_counts(found.clock[k], found.counters[k]),
         )
-        if nothing_to_say(scene.system, summary):
+        if has_no_cautions(scene.system, summary):
             yield Finished(case, scene.system, summary, scene.said)
 
 

@@ -14,7 +14,7 @@ from rockframe.results.outcome import Generic
 from rockframe.simulation.plan import STILL_GROUND_OUTPUT_STEP, RunRequest, run_length
 from rockframe.studies.sweeps.axes import OF_SCENES, Axis
 from rockframe.studies.sweeps.grid import Grid
-from rockframe.studies.sweeps.identity import digest_of, told
+from rockframe.studies.sweeps.identity import description_of, digest_of
 from rockframe.studies.sweeps.scenes import FunctionScene, SweptScene
 from rockframe.version import __version__
 
@@ -166,7 +166,11 @@ class Study:
 
     def to_dict(self) -> dict[str, Any]:
         """Tell all that the results depend on: every field, and what a function makes of cases."""
-        return {"rockframe_version": __version__, **told(self), "scenes": self._scene_digests()}
+        return {
+            "rockframe_version": __version__,
+            **description_of(self),
+            "scenes": self._scene_digests(),
+        }
 
     def _scene_digests(self) -> list[str]:
         """Give digests of scenes that a function has made, which its source need not tell."""
@@ -180,7 +184,7 @@ class Study:
             values = {axis: each.item() for axis, each in axes if axis.changes in OF_SCENES}
             try:
                 with heard():
-                    found.append(digest_of(told(self.scene.assembled(values))))
+                    found.append(digest_of(description_of(self.scene.assembled(values))))
             except Exception as problem:  # of which its run tells
                 found.append(type(problem).__name__)
         return found

@@ -10,7 +10,7 @@ import xarray as xr
 
 import rockframe as rf
 from rockframe.errors import AssemblyError, ComponentError, SolverError, UnitsError
-from rockframe.simulation.run import beside
+from rockframe.simulation.run import summary_of
 
 BLOCK = rf.Block(width="0.8 m", height="3.6 m", mass="4 t")
 RIGID = rf.System(BLOCK)
@@ -221,7 +221,7 @@ def test_an_interrupt_gives_back_the_runs_until_then(monkeypatch):
     def interrupted(*given):
         if next(calls) == 17:
             raise KeyboardInterrupt
-        return beside(*given)
+        return summary_of(*given)
 
     options = {"scales": 20, "runs": 30, "free_vibration": "5 s", "accuracy": "fast"}
     monkeypatch.setattr(MODULE, "beside", interrupted)

@@ -11,7 +11,7 @@ from own_example import example
 
 import rockframe as rf
 from rockframe.errors import StudyError
-from rockframe.studies.sweeps.identity import _written, digest_of, told
+from rockframe.studies.sweeps.identity import _written, description_of, digest_of
 from rockframe.studies.sweeps.planning import plan_study
 from rockframe.studies.sweeps.study import Study, SweepJob
 
@@ -182,12 +182,12 @@ def test_all_fields_are_told_and_none_that_cannot_be():
             np.array(["ab", ""]), WEAK, STRONG, SYSTEM.parts.block, RUN["initial"], one, alike,
         )),
     ]  # fmt: skip
-    digests = [digest_of(told(each)) for each in (one, *others)]
+    digests = [digest_of(description_of(each)) for each in (one, *others)]
     assert len(set(digests)) == len(digests)
-    assert digest_of(told(Asked(1.0, ("a", "b")))) == digests[0]
+    assert digest_of(description_of(Asked(1.0, ("a", "b")))) == digests[0]
     for unknown in (object(), {1, 2}, Asked(1.0, (), object()), {"a": object()}):
         with pytest.raises(StudyError, match="nothing tells whether it is the same"):
-            told(unknown)
+            description_of(unknown)
 
 
 def studied(**changes):
@@ -223,7 +223,7 @@ def test_the_samples_of_a_motion_are_told():
     upwards = replace(si.horizontal, name="vertical")
     changed = [replace(si, horizontal=one) for one in (other, longer, straight)]
     changed.append(replace(si, vertical=upwards))
-    assert len({digest_of(told(rf.GroundMotion(one))) for one in (si, *changed)}) == 5
+    assert len({digest_of(description_of(rf.GroundMotion(one))) for one in (si, *changed)}) == 5
 
 
 def test_what_a_function_uses_is_told():
@@ -247,7 +247,7 @@ def test_the_laws_of_a_users_base_are_told(tmp_path):
     def digest(module):
         _written.cache_clear()
         pads = module.YieldingPads(**GIVEN)
-        return digest_of(told(pads))
+        return digest_of(description_of(pads))
 
     with example() as module:
         plain = digest(module)

@@ -6,7 +6,7 @@ import xarray as xr
 from kept_sweep import alike
 
 import rockframe as rf
-from rockframe.studies.sweeps.telling import MOST_ALIKE, summed_up
+from rockframe.studies.sweeps.words import MOST_ALIKE, summed_up
 
 BLOCK = rf.Block(width="0.5 m", height="2 m", mass="400 kg")
 PULSE = rf.GroundMotion.sine_pulse("3 m/s^2", "1 Hz")

@@ -5,12 +5,7 @@ from collections.abc import Mapping
 from rockframe.errors import StudyError
 from rockframe.motion import GroundMotion
 from rockframe.results.schema import GROUPS, SCHEMA
-from rockframe.results.variables.requests import (
-    FORCE_SCALARS,
-    POINT_PEAKS,
-    POINT_TIME,
-    POINTS,
-)
+from rockframe.results.variables.requests import FORCE_SCALARS, POINT_PEAKS, POINT_TIME, POINTS
 from rockframe.results.variables.runs import EVENTS_AND_SCALARS, HISTORIES
 from rockframe.results.variables.studies import SWEEP
 from rockframe.results.variables.variable import TIME
