@@ -224,7 +224,7 @@ def test_an_interrupt_gives_back_the_runs_until_then(monkeypatch):
         return summary_of(*given)
 
     options = {"scales": 20, "runs": 30, "free_vibration": "5 s", "accuracy": "fast"}
-    monkeypatch.setattr(MODULE, "beside", interrupted)
+    monkeypatch.setattr(MODULE, "summary_of", interrupted)
     with pytest.warns(rf.SolverWarning, match="critical_scale: interrupted; .*17 scales"):
         found = rf.critical_scale(ON_PADS, PULSE, **options)
     assert found.sizes["scale"] == 17
