@@ -27,6 +27,9 @@ OF_ONE_RUN: Final = frozenset(
         "solver_rejected_steps",
         "solver_end_time",
         "end_state",
+        "impacts_of_several_modes",
+        "impacts_of_no_mode",
+        "corners_held_without_pressing",
     }
 )
 """Attributes that tell what became of one run; of several none of them is said."""

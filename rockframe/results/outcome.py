@@ -166,7 +166,8 @@ def event_columns(model: ContactModel, run: Trajectory) -> dict[str, Generic]:
     }
     if model.shows_bodies:
         highest = np.isin(events.kind, (OVERTURNING, TOPPLED))
-        contacts["event_body"] = np.where(highest, 1, events.memory[:, -1]).astype(int)[shown]
+        of = events.memory[:, model.memory.index("body_of_event")]
+        contacts["event_body"] = np.where(highest, 1, of).astype(int)[shown]
     return {
         "event_time": events.time[shown],
         "event_kind": events.kind[shown].astype(np.int8),

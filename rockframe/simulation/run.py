@@ -33,6 +33,7 @@ from rockframe.simulation.soundness import (
     may_overturn_later,
     unbalanced,
 )
+from rockframe.simulation.uniqueness import NOT_LOOKED_AT, Uniqueness, uniqueness_of
 from rockframe.solve.accuracy import LEVELS, AccuracyLevel
 from rockframe.solve.integrate import STILL_INTERVAL, integrate
 from rockframe.solve.trajectory import Summary, Trajectory
@@ -94,6 +95,11 @@ class Response:
         """Whether the body stood with the energy to overturn later."""
         return in_motion(self.system, self.trajectory, self.missing)
 
+    @cached_property
+    def uniqueness(self) -> Uniqueness | None:
+        """Impacts on rigid bases after which motion is not unique."""
+        return uniqueness_of(self.system.model, self.trajectory)
+
     def summary(self) -> RunSummary:
         """Tell what a certificate asks of the run."""
         share = peak_of(self.trajectory, self.system.setting.overturning_angles).share
@@ -133,6 +139,7 @@ class Response:
             *_unfinished(self.system, summary),
             *((SolverWarning, text) for text in moving),
             *([] if audit is None else [(SolverWarning, audit)]),
+            *((ModelWarning, text) for text in (self.uniqueness or NOT_LOOKED_AT).cautions),
             *(caution for found in others for caution in found),
             *((SolverWarning, text) for text in missing),
         ]
@@ -212,6 +219,8 @@ def run(
     summary, missing = response.trajectory, response.missing
     attributes = _attributes(system, plan, summary, missing)
     attributes |= end_attributes(summary.ending)
+    if response.uniqueness is not None:
+        attributes |= response.uniqueness.attributes()
     if summary.status.finished and not system.setting.slides:
         answers = response.answers
         friction = or_missing(

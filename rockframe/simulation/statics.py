@@ -78,7 +78,7 @@ def frequencies(system: Assembly) -> xr.Dataset:
     }
     shapes = np.array([mode.shape for mode in modes])
     if motion.bodies:
-        values["body"] = np.arange(1, motion.bodies + 1)
+        values["body"] = np.array(motion.bodies)
     names = list(dict.fromkeys(motion.coordinates))
     for row, name in enumerate(names):
         values[f"{name}_shape"] = shapes[:, row :: len(names)] if motion.bodies else shapes[:, row]

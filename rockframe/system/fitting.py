@@ -2,14 +2,14 @@
 
 import math
 
-from rockframe.components import Stack
+from rockframe.components import RigidGround, Stack
 from rockframe.system.own_base import OwnBase
 from rockframe.system.parts import Parts
 from rockframe.system.slots import slot_of
 
 _ROUNDING = 1e-12
-BASES = ("pads", "soil")
-"""Slots of bases that give way."""
+BASES = ("pads", "soil", "ground")
+"""Slots of bases that bodies of a stack may stand on."""
 _ROUNDING_OF_DEPTHS = 1e-9
 
 
@@ -63,12 +63,12 @@ def _misfits_of_stack(stack: Stack, parts: Parts) -> list[str]:
         faults.append(f"a Stack and a {name} are both given; the {name} is one of its bodies")
     if parts.cap is not None:
         faults.append("a Stack and a CushionCap are both given; give the cap as its lowest body")
-    bases = [one for one in (parts.pads, parts.soil) if one is not None]
-    if parts.cap is None and len(bases) != 1:
+    bases = [one for one in (parts.pads, parts.soil, parts.ground) if one is not None]
+    if parts.pads is not None and parts.soil is not None and parts.cap is None:
         faults.append("a Stack stands on a TwoSpringSupport or on a WinklerSoil: give one of them")
     standing = (*stack.interfaces, *bases)
     faults += [
-        "the bodies of a Stack stand on TwoSpringSupport or WinklerSoil, not on "
+        "the bodies of a Stack stand on TwoSpringSupport, WinklerSoil or RigidGround, not on "
         f"{type(one).__name__}"
         for one in standing
         if slot_of(one) not in BASES or isinstance(one, OwnBase)
@@ -79,6 +79,11 @@ def _misfits_of_stack(stack: Stack, parts: Parts) -> list[str]:
         for one in standing
         if getattr(one.si, "friction", None) is not None
     ]
+    if any(isinstance(one, RigidGround) and one.si.restitution is not None for one in standing):
+        faults.append(
+            "RigidGround: in a Stack impacts are plastic, and what they leave of the velocities of "
+            "all bodies is computed; restitution must not be given"
+        )
     return faults
 
 

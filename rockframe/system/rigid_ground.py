@@ -10,6 +10,7 @@ from rockframe.system.impact import Restitutions, resolve_restitution, restituti
 from rockframe.system.load import load_of
 from rockframe.system.options import Options
 from rockframe.system.parts import Parts
+from rockframe.system.rigid_base import NO_VERTICAL_START
 from rockframe.system.setting import Setting
 from rockframe.system.statics import Statics
 from rockframe.system.words import Words, angle_words
@@ -80,12 +81,7 @@ class RigidGroundSetting(Setting):
 
     def start_faults(self, rotation: float, has_vertical_start: bool) -> list[str]:
         """Refuse a vertical start: the ground leaves no vertical freedom."""
-        if has_vertical_start:
-            return [
-                "InitialState: vertical_displacement and vertical_velocity need a base that "
-                "gives way; on rigid ground they follow from the rotation"
-            ]
-        return []
+        return [NO_VERTICAL_START] if has_vertical_start else []
 
     def contact_model(self) -> "ContactModel":
         """Give Housner's equations."""

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Final
 
-from rockframe.components import Component
+from rockframe.components import Component, RigidGround
 from rockframe.errors import AssemblyError
 from rockframe.system.alone import AloneSetting
 from rockframe.system.bodies import one_body
@@ -92,7 +92,7 @@ def _upon_one_another(slot: str, parts: Parts, options: Options) -> StackSetting
     """Put a stack on the base in a slot."""
     if parts.stack is None:
         raise TypeError
-    return stack_setting(parts.stack, parts[slot], options)
+    return stack_setting(parts.stack, parts.components().get(slot, RigidGround()), options)
 
 
 _STACK = frozenset({"block", "pads", "cap", "soil"})
@@ -122,6 +122,7 @@ _SHIPPED: Final = (
         partial(_stacked, CascadeSetting),
         Coupling.CASCADE,
     ),
+    Scene("Stack (on rigid ground)", frozenset({"stack"}), partial(_upon_one_another, "ground")),
     Scene(
         "Stack + TwoSpringSupport",
         frozenset({"stack", "pads"}),

@@ -20,6 +20,7 @@ from rockframe.motion import GroundMotion
 from rockframe.system.load import Load
 from rockframe.system.own_base import OwnBase
 from rockframe.system.pads import pads_under
+from rockframe.system.rigid_base import rigid_under
 from rockframe.system.soil import bed_under
 from rockframe.system.support import Support
 
@@ -47,7 +48,7 @@ _KINDS: Final[dict[type, Kind]] = {
     TwoSpringSupport: Kind("pads", pads_under),
     CushionCap: Kind("cap"),
     WinklerSoil: Kind("soil", bed_under),
-    RigidGround: Kind("ground"),
+    RigidGround: Kind("ground", rigid_under),
     GroundMotion: Kind("motion"),
 }
 

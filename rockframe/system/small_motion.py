@@ -20,15 +20,15 @@ class SmallMotion:
         Names of the coordinates.
     mass, damping, stiffness : ndarray, shape (n, n)
         SI units.
-    bodies : int
-        Of a stack, whose coordinates are those of each body in turn; 0 of other scenes.
+    bodies : tuple of int
+        Of a stack, whose coordinates are those of these bodies in turn, counted from 1 at the top.
     """
 
     coordinates: tuple[str, ...]
     mass: Array
     damping: Array
     stiffness: Array
-    bodies: int = field(default=0, kw_only=True)
+    bodies: tuple[int, ...] = field(default=(), kw_only=True)
 
 
 @dataclass(frozen=True)

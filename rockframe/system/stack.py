@@ -7,12 +7,14 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Final
 
 from rockframe.components import Component, Stack
-from rockframe.dynamics.statics import Stand, StandingChain, link_of
+from rockframe.dynamics.statics import Stand, StandingBody, StandingChain, link_of
 from rockframe.errors import AssemblyError
 from rockframe.system.bodies import SupportedBody, body_of_block
 from rockframe.system.load import Load
 from rockframe.system.options import Options
+from rockframe.system.overturning_energy import least_overturning_energy
 from rockframe.system.restraints import restraint_words
+from rockframe.system.rigid_base import RigidBase
 from rockframe.system.setting import Setting
 from rockframe.system.slots import support_of
 from rockframe.system.small_motion import SmallMotion
@@ -21,7 +23,8 @@ from rockframe.system.support import Support
 from rockframe.system.words import Words
 
 if TYPE_CHECKING:
-    from rockframe.dynamics.chain.model import ChainBody
+    from rockframe.dynamics.base_numbers import BaseNumbers
+    from rockframe.dynamics.chain.model import AtRest, ChainBody
     from rockframe.dynamics.protocol import ContactModel
 
 NO_REST: Final = "the bodies find no rest under their weight: their bases are too soft for them"
@@ -60,6 +63,26 @@ class StackSetting(Setting):
         """All bases."""
         return self.bases
 
+    @cached_property
+    def settlement(self) -> float | None:
+        """Settlement under the highest body; none on a rigid base [m]."""
+        return None if self.rigid[0] else self.bases[0].settlement
+
+    @property
+    def rigid(self) -> tuple[bool, ...]:
+        """Which bases are rigid."""
+        return tuple(isinstance(base, RigidBase) for base in self.bases)
+
+    @cached_property
+    def groups(self) -> tuple[range, ...]:
+        """Bodies that rigid bases make one at rest, on each base that gives way."""
+        found, first = list[range](), 0
+        for k, rigid in enumerate(self.rigid):
+            if not rigid:
+                found.append(range(first, k + 1))
+                first = k + 1
+        return tuple(found)
+
     @property
     def leans(self) -> bool:
         """Whether some body is not symmetric, or not above the middle of what it stands on."""
@@ -86,12 +109,17 @@ class StackSetting(Setting):
             numbers += [(f"base {k}: {name}", words) for name, words in told.numbers]
             left_out += [one for one in told.left_out if one not in left_out]
         laws = list(dict.fromkeys(base.words().law for base in self.bases))
+        projected = (
+            "on rigid bases plastic, by projection on the contacts that are admissible; of "
+            "several the one that loses the least energy"
+        )
         return Words(
             equations=[
                 ("full, left, right", f"{3 * len(self.bodies)} coordinates less one for each point "
                  f"that is held; {' and '.join(laws)}, along the normal of what a body stands on"),
                 ("flight", "free fall of a body and all above it, apart or together"),
                 ("impact", "an impulse between two bodies; the velocities of all of them answer"),
+                *([("", projected)] if any(self.rigid) else []),
             ],
             restraint=f"of every body on what it stands on; {restraint_words(self.options)}",
             numbers=numbers,
@@ -119,19 +147,54 @@ class StackSetting(Setting):
     def _standing(self) -> StandingBodies:
         from rockframe.dynamics.on_base import OnBase
 
-        links = tuple(
-            link_of(OnBase(one.body, one.base.law), one.mass, one.top, one.beside)
-            for one in self.links
+        found, numbers = list[StandingBody](), list["BaseNumbers"]()
+        mass = self.body.mass
+        for some in self.groups:
+            body, lowest = self._together(some), some[-1]
+            # how far its centre of mass is beside that of what it stands on
+            beside = self.offsets[lowest] + body.eccentricity
+            for below in self.groups:
+                if below[0] == lowest + 1:
+                    shift = math.fsum(self.offsets[below[0] : below[-1]])
+                    beside += shift - self._together(below).eccentricity
+            height = math.fsum(self.bodies[k].centre_height + self.tops[k] for k in some)
+            law = Load(body, self.options).law(mass)
+            carried = math.fsum(one.mass for one in self.bodies[: lowest + 1])
+            numbers.append(self.bases[lowest].law(law, mass, carried))
+            part = OnBase(law, numbers[-1].law)
+            found.append(link_of(part, body.mass / mass, height - body.centre_height, beside))
+        chain = StandingChain(tuple(found), self.slope.along_gravity)
+        return StandingBodies(chain, mass, tuple(numbers))
+
+    def _together(self, some: range) -> SupportedBody:
+        """Give bodies that rigid bases make one."""
+        first, last = some[0], some[-1] + 1
+        if len(some) == 1:
+            return self.bodies[first]
+        return combined_body(
+            self.bodies[first:last], self.tops[first:last], self.offsets[first:last]
         )
-        chain = StandingChain(links, self.slope.along_gravity)
-        return StandingBodies(chain, self.body.mass, tuple(one.base for one in self.links))
 
     @cached_property
     def _rest(self) -> list[Stand]:
-        found = self._standing.rest
+        found = self._standing.rest if self.groups else []
         if found is None:
             raise AssemblyError([NO_REST])
         return found
+
+    def _placed_at_rest(self) -> "list[AtRest]":
+        """Give where each body is at rest; those on rigid bases are there in full contact."""
+        from rockframe.dynamics.chain.model import AtRest
+
+        placed = [AtRest(0.0, 0.0) for _ in self.bodies]
+        for some, stand in zip(self.groups, self._rest, strict=True):
+            lowest, rotation, vertical = some[-1], stand.state.rotation, stand.state.vertical
+            if len(some) > 1:  # of a centre of mass at another height
+                body = self.links[lowest].body
+                attitude = body.attitude(rotation)
+                vertical = stand.line.left - attitude.rise - body.left * attitude.sine
+            placed[lowest] = AtRest(rotation, vertical)
+        return placed
 
     @cached_property
     def rest_rotation(self) -> float:
@@ -144,16 +207,92 @@ class StackSetting(Setting):
         """
         return math.fsum(one.state.rotation for one in self._rest) if self.leans else 0.0
 
-    def small_motion(self) -> SmallMotion:
+    def small_motion(self) -> SmallMotion | None:
         """Give the equations of small motion about rest, of each body on what it stands on."""
-        count = len(self.bodies)
-        names = ("body_rotation", "body_vertical_displacement") * count
-        return SmallMotion(names, *self._standing.small_motion(self._rest), bodies=count)
+        if not self.groups:
+            return None
+        names = ("body_rotation", "body_vertical_displacement") * len(self.groups)
+        which = tuple(some[-1] + 1 for some in self.groups)
+        return SmallMotion(names, *self._standing.small_motion(self._rest), bodies=which)
+
+    def without_small_motion(self) -> str:
+        """Say why there are no such equations."""
+        return (
+            "bodies on rigid bases have no small motion: they stand still or rock, with a period "
+            "that grows with the amplitude; put them on pads or soil"
+        )
+
+    @cached_property
+    def overturning_energy(self) -> float:
+        """Energy that it takes to overturn bodies by themselves, on the weaker side [J].
+
+        On rigid bases beside others, that of the weakest of those, as if all else were rigid.
+        """
+        if not any(self.rigid) or not self.groups:
+            return least_overturning_energy(self)
+        return min(
+            base.load.weight * (math.hypot(half, base.load.body.centre_height)
+            - base.load.body.centre_height)
+            for base in self._rigid_bases
+            for half in (base.load.body.left, base.load.body.right)
+        )  # fmt: skip
+
+    @property
+    def _rigid_bases(self) -> list[RigidBase]:
+        return [base for base in self.bases if isinstance(base, RigidBase)]
 
     def curve(self, rotations: Sequence[float]) -> list[Statics | None]:
-        """Give the equilibria with the highest body held at rotations."""
+        """Give the equilibria with the highest body held at rotations.
+
+        On rigid bases beside others, up to the couple at which a corner lifts from one.
+        """
+        if not self.groups:
+            return [self._on_rigid_bases(rotation) for rotation in rotations]
         found = self._standing.held(rotations)
-        return [None if one is None else replace(one, reactions={}) for one in found]
+        return [
+            replace(one, reactions={})
+            if one is not None and self._bear(one.restoring_moment) else None
+            for one in found
+        ]  # fmt: skip
+
+    def _bear(self, moment: float) -> bool:
+        """Whether rigid bases bear a couple on the highest body in full contact."""
+        loads = [base.load for base in self._rigid_bases]
+        return all(
+            -one.weight * one.body.left <= moment <= one.weight * one.body.right for one in loads
+        )
+
+    def _on_rigid_bases(self, rotation: float) -> Statics:
+        """Give the equilibrium where all bases are rigid: all above the weakest one rocks."""
+        right = rotation > 0.0
+        side = 1.0 if right else -1.0
+
+        def half_of(base: Support) -> float:
+            return base.load.body.right if right else base.load.body.left
+
+        capacities = [base.load.weight * half_of(base) for base in self.bases]
+        k = capacities.index(min(capacities))
+        load, half = self.bases[k].load, half_of(self.bases[k])
+        sine, versine = math.sin(abs(rotation)), 2.0 * math.sin(0.5 * rotation) ** 2
+        arm = half * (1.0 - versine) - load.body.centre_height * sine
+        moment = side * load.weight * arm if rotation != 0.0 else 0.0
+        # of each centre of mass beside the middle of the lowest base; of the highest its rise
+        place = level = rise = corner = foot = 0.0
+        base_moment = moment
+        for j in range(len(self.bodies) - 1, -1, -1):
+            one = self.bodies[j]
+            place += self.offsets[j]
+            across, up = place + one.eccentricity, level + one.centre_height
+            if j == k:
+                corner, foot = place + side * one.half_width, level
+            if j <= k and rotation != 0.0:
+                away, above = side * (corner - across), up - foot
+                across = corner - side * (away * (1.0 - versine) - above * sine)
+                rise = away * sine - above * versine
+            base_moment += self.gravity * one.mass * across
+            level += one.centre_height + self.tops[j]
+        state = "full" if rotation == 0.0 or k > 0 else "right" if right else "left"
+        return Statics(rise, base_moment, moment, state)
 
     def equilibrium(self) -> dict[str, float]:
         """Give nothing beside the rotation at rest: each base has a settlement of its own."""
@@ -161,9 +300,9 @@ class StackSetting(Setting):
 
     def contact_model(self) -> "ContactModel":
         """Give the equations of bodies upon one another."""
-        from rockframe.dynamics.chain.model import AtRest, chain
+        from rockframe.dynamics.chain.model import chain
 
-        rest = [AtRest(one.state.rotation, one.state.vertical) for one in self._rest]
+        rest = self._placed_at_rest()
         limits = [
             combined_body(self.bodies[: k + 1], self.tops, self.offsets).overturning_angles
             for k in range(1, len(self.bodies))

@@ -61,12 +61,13 @@ def test_what_makes_no_stack_is_refused(bodies, given, words):
 @pytest.mark.parametrize(
     ("parts", "words"),
     [
-        ((STACK,), "stands on a TwoSpringSupport or on a WinklerSoil"),
         ((STACK, GROUND, SOIL), "give one of them"),
         ((STACK, STATUE, GROUND), "a Stack and a Block are both given"),
         ((STACK, rf.CushionCap(height="1 m", mass="1 t"), SOIL), "as its lowest body"),
         ((STACK, JOINT.replace(friction=0.5)), "friction is not looked at in a Stack"),
-        ((rf.Stack(STATUE, PLINTH, interfaces=[rf.RigidGround()]), GROUND), "not on RigidGround"),
+        ((STACK, rf.RigidGround(friction=0.5)), "friction is not looked at in a Stack"),
+        ((STACK, rf.RigidGround(restitution=0.9)), "restitution must not be given"),
+        ((STACK, GROUND, rf.RigidGround()), "both given"),
     ],
 )
 def test_parts_that_do_not_fit_a_stack_are_refused(parts, words):

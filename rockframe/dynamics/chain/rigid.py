@@ -276,7 +276,8 @@ class RigidChain(Chain):
         else:
             self.scale_impulses(0.0)
             new = self.switch_on_base(mode, guard, state, ground, memory)
-            if not self.some_pull():
+            # a change of a held point is the rule's, and no blow: contacts stay as they are
+            if memory[LAST_EVENT] != IMPACT or not self.some_pull():
                 return new
             new = self.meet_anew(new, state, ground, memory)
         for other in range(count):
@@ -307,10 +308,7 @@ class RigidChain(Chain):
         closed |= self.land(k, left, standing, state)
         memory[LAST_EVENT] = IMPACT
         new = self.let_bear(mode, closed, before, 0, state, ground, memory)
-        for j in range(self.body_count):
-            if self.is_rigid(j):
-                new = self.rest_if_small(j, new, state, ground, memory)
-        return new
+        return self.rest_where_small(new, state, ground, memory)
 
     @kernel
     def meet_anew(self, mode: int, state: Vector, ground: Ground, memory: Vector) -> int:
@@ -328,7 +326,11 @@ class RigidChain(Chain):
         attempt(self, flying, 0, 0, False, True, 0.0, state)
         self.change_velocities(state)
         memory[IMPACT_LOSS] += had - self.energies(flying, state).kinetic
-        return self.let_bear(mode, before, before, 0, state, ground, memory)
+        event = memory[LAST_EVENT]
+        new = self.let_bear(mode, before, before, 0, state, ground, memory)
+        new = self.rest_where_small(new, state, ground, memory)
+        memory[LAST_EVENT] = event
+        return new
 
     @kernel
     def let_bear(
@@ -369,32 +371,56 @@ class RigidChain(Chain):
         write_relative(self, room, self.slopes())
         self.add_slopes(state)
 
+    @inlined
+    def rest_where_small(self, mode: int, state: Vector, ground: Ground, memory: Vector) -> int:
+        """Let bodies come to rest, of which one at rest may let another come to rest."""
+        new = mode
+        for _ in range(self.body_count):
+            new = self.rest_if_small(new, state, ground, memory)
+        return new
+
     @kernel
-    def rest_if_small(
-        self, k: int, mode: int, state: Vector, ground: Ground, memory: Vector
-    ) -> int:
-        """Let a body whose rebound is below all that counts come to rest on its base."""
-        n, first, corners = self.coordinates(), BEFORE_HORIZONTAL * k, self.bearing(mode)
-        bears, rate = corners >> 2 * k & BOTH, state[n + first + ROTATION]
-        if bears in (0, BOTH) or state[first + ROTATION] != 0.0:
-            return mode
-        side = -1.0 if bears == LEFT_ONLY else 1.0
-        restoring = -side * self.accelerate(mode, state, ground)[first + ROTATION]
-        rebound = rate * rate / (2.0 * restoring) if restoring > 0.0 else math.inf
-        if rebound >= REST_AMPLITUDE * self.on_base(k).body.angle:
-            return mode
+    def rest_if_small(self, mode: int, state: Vector, ground: Ground, memory: Vector) -> int:
+        """Let bodies whose rebound is below all that counts come to rest, together or alone."""
+        n, corners, small, count = self.coordinates(), self.bearing(mode), 0, 0
+        slope = self.accelerate(mode, state, ground)
+        for k in range(self.body_count):
+            first, bears = BEFORE_HORIZONTAL * k, corners >> 2 * k & BOTH
+            if bears in (LEFT_ONLY, RIGHT_ONLY) and state[first + ROTATION] == 0.0:
+                side, rate = -1.0 if bears == LEFT_ONLY else 1.0, state[n + first + ROTATION]
+                restoring = -side * slope[first + ROTATION]
+                least = REST_AMPLITUDE * self.on_base(k).body.angle
+                if restoring > 0.0 and rate * rate < 2.0 * restoring * least:
+                    small |= BOTH << 2 * k
+                    count += 1
+        new = mode
+        if count > 1:
+            new = self.rest(small, mode, state, ground, memory)
+        if new == mode:
+            for k in range(self.body_count):
+                if small >> 2 * k & BOTH != 0:
+                    new = self.rest(BOTH << 2 * k, new, state, ground, memory)
+        return new
+
+    @kernel
+    def rest(self, corners: int, mode: int, state: Vector, ground: Ground, memory: Vector) -> int:
+        """Let bodies stand on both corners, if these press then; else give the mode as it is."""
         before, lost = self.velocities(state), memory[IMPACT_LOSS]
         self.write_contacts(mode, state, memory)
-        corners |= BOTH << 2 * k
-        flying, resting = self.with_bearing(mode, 0, 0), self.with_bearing(mode, corners, 0)
+        all_of_them = self.bearing(mode) | corners
+        flying, resting = self.with_bearing(mode, 0, 0), self.with_bearing(mode, all_of_them, 0)
         had = self.energies(flying, state).kinetic
         load_bodies(self, 0.0, 0.0, self.places())
-        attempt(self, flying, corners, corners, False, True, 0.0, state)
+        attempt(self, flying, all_of_them, all_of_them, False, True, 0.0, state)
         self.change_velocities(state)
         self.hold_contacts(resting, state, memory)
         memory[IMPACT_LOSS] += had - self.energies(resting, state).kinetic
         self.accelerate(resting, state, ground)
-        if min(self.corner_force(k, True), self.corner_force(k, False)) >= 0.0:
+        least = 0.0
+        for k in range(self.body_count):
+            if corners >> 2 * k & BOTH != 0:
+                least = min(least, self.corner_force(k, True), self.corner_force(k, False))
+        if least >= 0.0:
             memory[LAST_EVENT] = REST
             return resting
         self.blend_velocities(before, 0.0, state)

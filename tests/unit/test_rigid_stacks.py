@@ -1,0 +1,174 @@
+"""Stacks on rigid bases: how they start, what a run shows, and beside pads and soil."""
+
+import math
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import rockframe as rf
+from rockframe.dynamics.events import ContactState, EventKind
+
+STATUE = rf.Block(width="0.5 m", height="1.8 m", mass="900 kg")
+PLINTH = rf.Block(width="0.9 m", height="1 m", mass="2200 kg")
+COLUMN = rf.Block(width="0.5 m", height="3 m", mass="3 t")
+HEAD = rf.Block(width="0.5 m", height="0.4 m", mass="300 kg")
+RIGID = rf.RigidGround()
+PADS = rf.TwoSpringSupport(frequency_ratio=40, damping_ratio=0.1)
+SOIL = rf.WinklerSoil(stiffness="20 MPa", damping_ratio=0.2)
+PULSE = rf.GroundMotion.sine_pulse(amplitude="-5 m/s^2", frequency="2 Hz")
+PLAN = {"free_vibration": "1 s", "second_look": False}
+GRAVITY = 9.80665
+FULL = int(ContactState.FULL)
+
+
+def on_rigid(upper, lower, **given):
+    return rf.System(rf.Stack(upper, lower, interfaces=[RIGID], **given), RIGID)
+
+
+def shaken(peak: float, frequency: float = 1.0) -> rf.GroundMotion:
+    return rf.GroundMotion.sine_pulse(amplitude=f"{peak} m/s^2", frequency=f"{frequency} Hz")
+
+
+@pytest.fixture(scope="module")
+def run():
+    return on_rigid(STATUE, PLINTH).simulate(PULSE, outputs=["energy"], **PLAN)
+
+
+def test_a_stack_alone_stands_on_rigid_ground():
+    stack = rf.Stack(STATUE, PLINTH, interfaces=[RIGID])
+    assert (
+        rf.System(stack).describe().split("Contact")[1:]
+        == (rf.System(stack, RIGID).describe().split("Contact")[1:])
+    )
+    assert "by projection" in rf.System(stack).describe()
+
+
+def together(upper, lower) -> float:
+    """Give the acceleration at which two centred blocks rock as one."""
+    one, two = lower.si, upper.si
+    moment = one.mass * one.half_height + two.mass * (2.0 * one.half_height + two.half_height)
+    return GRAVITY * (one.mass + two.mass) * one.half_width / moment
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+@pytest.mark.parametrize(("upper", "lower", "first"), [(STATUE, PLINTH, 1), (HEAD, COLUMN, 2)])
+def test_what_rocks_first(upper, lower, first, way):
+    alone = GRAVITY * upper.si.half_width / upper.si.half_height
+    starts = alone if first == 1 else together(upper, lower)
+    assert starts < (together(upper, lower) if first == 1 else alone)
+    system = on_rigid(upper, lower)
+    assert system.simulate(shaken(0.999 * starts), duration="0.5 s").sizes["event"] == 0
+    found = system.simulate(shaken(1.01 * way * starts), duration="0.35 s")
+    assert found.event_kind[0] == EventKind.UPLIFT
+    assert found.event_body[0] == first
+    # the ground goes to one side, the body to the other
+    moved = found.body_rotation.to_numpy()[first - 1]
+    assert -way * moved[np.abs(moved) > 0.0][0] > 0.0
+    when = float(found.event_time[0])
+    assert 1.01 * math.sin(2.0 * math.pi * when) == pytest.approx(1.0, abs=1e-6)
+
+
+def test_bodies_that_rock_together_do_as_one():
+    whole = rf.Block(width="0.5 m", height="3.4 m", mass="3.4 t")
+    parts = [rf.Block(width="0.5 m", height="1.7 m", mass="1.7 t")] * 2
+    motion = shaken(1.1 * GRAVITY * 0.5 / 3.4, 0.5)
+    one = rf.System(whole).simulate(motion, duration="2 s", accuracy="reference")
+    both = on_rigid(*parts).simulate(motion, duration="2 s", accuracy="reference")
+    until = float(one.event_time[1])  # the first impact may part them
+    early = one.time < until
+    assert np.abs(one.rotation)[early].max() > 1e-3
+    assert np.abs((both.rotation - one.rotation)[early]).max() < 1e-9
+
+
+def test_a_run_shows_forces_and_balances(run, tmp_path):
+    assert run.sizes["body"] == 2
+    assert float(run.energy_residual) < 1e-8
+    weights = GRAVITY * np.array([900.0, 3100.0])
+    assert np.allclose(run.body_vertical_reaction[:, 0], weights, rtol=1e-12)
+    lost = run.impact_energy.to_numpy()
+    assert (np.diff(lost) >= -1e-12 * lost[-1]).all()
+    assert lost[-1] > 0.0
+    balance = run.kinetic_energy + run.potential_energy + run.impact_energy - run.input_energy
+    assert np.abs(balance - balance[0]).max() < 1e-7 * float(run.input_energy.max())
+    full = (run.body_contact_state == FULL).all("body")
+    assert np.abs(run.body_rotation_on_base.where(full, 0.0)).max() == 0.0
+    assert run.attrs["impacts_of_several_modes"] == 0
+    run.to_netcdf(tmp_path / "stack.nc")
+    with xr.open_dataset(tmp_path / "stack.nc") as stored:
+        assert rf.System.from_dataset(stored).parts.stack == rf.System.from_dataset(run).parts.stack
+
+
+def test_runs_of_mirrored_motions_are_mirrored(run):
+    mirror = on_rigid(STATUE, PLINTH).simulate(PULSE.scaled(-1.0), **PLAN)
+    assert np.abs(mirror.body_rotation + run.body_rotation).max() < 1e-9
+
+
+def test_rocking_dies_out():
+    system = on_rigid(HEAD, PLINTH)
+    with pytest.warns(rf.ModelWarning, match="2 modes: taken is that which loses the least"):
+        run = system.simulate(
+            None, duration="6 s", initial=rf.InitialState(rotation="0.3 rad"), accuracy="standard"
+        )
+    assert run.attrs["impacts_of_several_modes"] == 1
+    assert "one of several motions" in run.attrs["cautions"]
+    assert int(EventKind.REST) in run.event_kind
+    assert (run.body_contact_state[:, -1] == FULL).all()
+    assert not np.any(run.body_rotation[:, -1])
+
+
+def test_vertical_motion_makes_bodies_fly():
+    hop = shaken(0.5, 4.0).with_vertical(shaken(-25.0, 4.0))
+    run = on_rigid(STATUE, PLINTH).simulate(hop, **PLAN)
+    assert (run.body_contact_state == int(ContactState.FLIGHT)).any("time").any()
+    assert float(run.energy_residual) < 1e-6
+
+
+@pytest.mark.parametrize(
+    ("interface", "base"), [(RIGID, PADS), (RIGID, SOIL), (PADS, RIGID), (SOIL, RIGID)]
+)
+def test_rigid_bases_beside_others(interface, base):
+    system = rf.System(rf.Stack(STATUE, PLINTH, interfaces=[interface], offsets=["2 cm"]), base)
+    still = system.simulate(None, duration="0.3 s", accuracy="reference")
+    assert np.abs(still.rotation - still.rotation[0]).max() < 1e-10
+    run = system.simulate(PULSE, outputs=["energy"], **PLAN)
+    assert int(run.status) != 5
+    assert float(run.energy_residual) < 1e-5
+    assert {1, 2} >= set(run.event_body.to_numpy())
+    assert system.frequencies().sizes["body"] == 1
+    lean = float(system.equilibrium().rest_rotation) + 1e-4
+    assert system.moment_rotation([f"{lean} rad"]).restoring_moment.item() > 0.0
+
+
+def test_statics_on_rigid_bases():
+    system = on_rigid(STATUE, PLINTH)
+    held = system.moment_rotation(["0 rad", "1e-9 rad", "0.1 rad", "-0.1 rad"])
+    weight = 900.0 * GRAVITY
+    arms = 0.25 * math.cos(0.1) - 0.9 * math.sin(0.1)
+    expected = [0.0, 0.25 * weight, arms * weight, -arms * weight]
+    assert np.allclose(held.restoring_moment, expected, rtol=1e-8)
+    assert held.held_contact_state.to_numpy().tolist() == [0, 2, 2, 1]
+    assert system.equilibrium().uplift_angle == 0.0
+    with pytest.raises(rf.AssemblyError, match="rigid bases have no small motion"):
+        system.frequencies()
+
+
+def test_sweeps_of_rigid_stacks():
+    def scene(height):
+        return on_rigid(STATUE.replace(height=f"{height} m"), PLINTH)
+
+    runs = rf.sweep(scene, motions=[PULSE], height=[1.5, 1.8], accuracy="fast", duration="1 s")
+    alone = [scene(h).simulate(PULSE, duration="1 s", accuracy="fast", second_look=False)
+             for h in (1.5, 1.8)]  # fmt: skip
+    found = runs.peak_rotation.to_numpy().ravel().tolist()
+    assert found == [float(one.peak_rotation) for one in alone]
+
+
+@pytest.mark.parametrize("count", [3, 5])
+def test_columns_of_drums(count):
+    drums = [rf.Block(width=f"{0.6 + 0.05 * k} m", height="0.8 m", mass="1 t")
+             for k in range(count)]  # fmt: skip
+    system = rf.System(rf.Stack(*drums, interfaces=[RIGID] * (count - 1)))
+    run = system.simulate(shaken(4.0, 1.5), duration="0.45 s")
+    assert run.sizes["event"] > 0
+    assert float(run.energy_residual) < 1e-7
