@@ -10,6 +10,8 @@ from typing import Any
 import pytest
 
 os.environ.setdefault("MPLBACKEND", "agg")
+# so that machine code is what is tested, from the first run on
+os.environ.setdefault("ROCKFRAME_COMPILE", "wait")
 # each worker has a core: threads of linear algebra would only wait for one another
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 _ROOT = Path(__file__).parent

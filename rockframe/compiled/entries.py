@@ -5,31 +5,37 @@ kinds of its arrays and numbers.
 """
 
 import logging
-import math
 import os
 from collections.abc import Callable, Generator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from contextvars import ContextVar
 from functools import update_wrapper, wraps
 from importlib.util import find_spec
 from threading import RLock
-from typing import Any, Final, ParamSpec, TypeVar, cast
+from typing import TYPE_CHECKING, Any, Final, ParamSpec, TypeVar, cast
 
 import numpy as np
 
 from rockframe.compiled.arrays import Vector
 from rockframe.compiled.bound import Bound, Source
-from rockframe.compiled.marks import inlined
-from rockframe.compiled.plain import viewed
+from rockframe.compiled.decorators import inlined
+from rockframe.compiled.fallback import viewed
+from rockframe.compiled.meanwhile import Meanwhile
+
+if TYPE_CHECKING:
+    from rockframe.compiled.jobs import Job
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 P = ParamSpec("P")
 
 _HAS_NUMBA: Final = find_spec("numba") is not None
-COMPILED: Final = os.environ.get("ROCKFRAME_COMPILE", "1") != "0" and _HAS_NUMBA
+_ASKED: Final = os.environ.get("ROCKFRAME_COMPILE", "")
+COMPILED: Final = _ASKED != "0" and _HAS_NUMBA
 """Whether functions are compiled."""
+WAITS: Final = _ASKED == "wait"
+"""Whether all entries wait for their machine code."""
 PATIENCE: Final = 3.0
-"""Length of a run in plain Python from which on numba is spoken of [s]."""
+"""Length of a run in plain Python from which on compilation is spoken of [s]."""
 _said_slow: Final[list[bool]] = []
 
 NEEDED_BY: Final = ContextVar("needed_by", default="this")
@@ -40,13 +46,18 @@ _lock: Final = RLock()
 
 
 def entry(function: Function) -> Function:
-    """Mark a function that Python calls and that is compiled.
+    """Mark a function that Python calls and that is compiled before it runs.
 
     Its arguments are floats, integers, arrays in C order, bound functions
     (:mod:`rockframe.compiled.bound`) and named tuples of these; its result is an integer or
     none.
     """
     return cast("Function", Entry(function) if COMPILED else _as_python(function))
+
+
+def entry_at_once(function: Function) -> Function:
+    """Mark an entry that runs as plain Python, which gives the same, until it is compiled."""
+    return cast("Function", Entry(function, WAITS) if COMPILED else _as_python(function))
 
 
 def _as_python(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -75,20 +86,25 @@ def _could_not(function: Callable[..., Any], problem: Exception) -> None:
 
 
 def say_slow(seconds: float) -> None:
-    """Say once, after a long run without numba, what it would do.
+    """Say once, after a long run in plain Python, why, and what machine code would do.
 
     Parameters
     ----------
     seconds : float
         That the run has taken.
     """
-    if seconds > PATIENCE and not _HAS_NUMBA and not _said_slow:
-        _said_slow.append(True)
-        _logger.warning(
-            "this run took %.0f s in plain Python; with numba (pip install 'rockframe[fast]') "
-            "one like it takes some hundredth of that",
-            seconds,
-        )
+    if seconds <= PATIENCE or _said_slow or (_HAS_NUMBA and not COMPILED):
+        return
+    _said_slow.append(True)
+    why = (
+        "while rockframe compiles what it needs, once for this machine: the next"
+        if COMPILED
+        else "; with numba (pip install 'rockframe[fast]')"
+    )
+    _logger.warning(
+        "this run took %.0f s, in plain Python%s%s one like it takes some hundredth of that",
+        seconds, " " if COMPILED else "", why,
+    )  # fmt: skip
 
 
 class Entry:
@@ -98,16 +114,20 @@ class Entry:
     ----------
     function : callable
         Its source.
+    waits : bool
+        Whether a call waits for machine code; else it runs as plain Python meanwhile.
     """
 
-    def __init__(self, function: Callable[..., Any]) -> None:
+    def __init__(self, function: Callable[..., Any], waits: bool = True) -> None:
         self.source = inlined(function)
         self._plain = _as_python(function)
+        self._waits = waits
         self._routines: dict[tuple[Any, ...], Callable[..., Any] | None] = {}
+        self._awaited: dict[Any, Meanwhile] = {}
         update_wrapper(self, function)
 
     def __call__(self, *arguments: Any) -> Any:
-        """Run the machine code, or the function itself where it could not be compiled.
+        """Run the machine code, or the function itself where there is none.
 
         Raises
         ------
@@ -120,36 +140,65 @@ class Entry:
         routine = self._routines.get(structure)
         if routine is None or not all(source.address for source in sources):
             with _lock:
-                routine = self._compiled(structure, sources)
+                meanwhile = None if self._waits else self._meanwhile(structure, sources)
+                ready = meanwhile is None or meanwhile.is_over()
+                routine = self._compiled(structure, sources) if ready else None
             if routine is None:
-                return self._plain(*arguments)
+                with meanwhile or nullcontext():
+                    return self._plain(*arguments)
             words = [word.address if isinstance(word, Source) else word for word in words]
         return routine(*words)
 
     def is_compiled_within(self, patience: float, arguments: tuple[Any, ...]) -> bool:
         """See :func:`compiled_within`."""
+        from rockframe.compiled.parallel import time_for
+
         sources: list[Source] = []
         structure = tuple(_structure_of(argument, [], sources) for argument in arguments)
         with _lock:
-            return self._compiled(structure, sources, patience) is not None
+            if time_for(self._jobs(structure, sources)) > patience:
+                return False
+            if not WAITS:
+                meanwhile = self._meanwhile(structure, sources)
+                if meanwhile is not None and not meanwhile.is_over(at_once=True):
+                    return False
+            return self._compiled(structure, sources) is not None
+
+    def _meanwhile(self, structure: tuple[Any, ...], sources: list[Source]) -> "Meanwhile | None":
+        """Give what goes on until there is machine code; None where there can be none, or is."""
+        if self._has_failed(structure, sources):
+            return None
+        key = structure, *map(id, sources)
+        found = self._awaited.get(key)
+        if found is None:
+            found = self._awaited[key] = Meanwhile(self._jobs(structure, sources))
+        return found
+
+    def _has_failed(self, structure: tuple[Any, ...], sources: list[Source]) -> bool:
+        failed = structure in self._routines and self._routines[structure] is None
+        return failed or any(source.failed for source in sources)
+
+    def _jobs(self, structure: tuple[Any, ...], sources: list[Source]) -> "list[Job]":
+        """Give what is to be compiled for a call: bound functions, then, always, the entry."""
+        from rockframe.compiled.jobs import Job
+
+        jobs = [
+            Job(source.function, source.structure, True, source.in_lanes)
+            for source in _missing(sources)
+        ]
+        return [*jobs, Job(self.source, structure, False)]
 
     def _compiled(
-        self, structure: tuple[Any, ...], sources: list[Source], patience: float = math.inf
+        self, structure: tuple[Any, ...], sources: list[Source]
     ) -> Callable[..., Any] | None:
-        from rockframe.compiled.jobs import Job
-        from rockframe.compiled.together import NotCompiledError, make_all, time_for
+        from rockframe.compiled.parallel import NotCompiledError, make_all
 
-        failed = structure in self._routines and self._routines[structure] is None
-        if failed or any(source.failed for source in sources):
+        if self._has_failed(structure, sources):
             return None
-        missing = [*{id(source): source for source in sources if not source.address}.values()]
-        routine = self._routines.get(structure)
+        missing, routine = _missing(sources), self._routines.get(structure)
         if routine is not None and not missing:
             return routine
-        jobs = [Job(source.function, source.structure, True, source.in_lanes) for source in missing]
-        jobs.append(Job(self.source, structure, False))
-        if time_for(jobs) > patience:
-            return None
+        jobs = self._jobs(structure, sources)
         try:
             *codes, routine = make_all(jobs)
         except NotCompiledError as found:
@@ -165,10 +214,14 @@ class Entry:
         return routine
 
 
+def _missing(sources: list[Source]) -> list[Source]:
+    return [*{id(source): source for source in sources if not source.address}.values()]
+
+
 def compiled_within(
     patience: float, function: Callable[P, Any], *arguments: P.args, **_: P.kwargs
 ) -> bool:
-    """Tell whether an entry runs as machine code, which is compiled now if that does not take long.
+    """Tell whether an entry runs as machine code, which is compiled unless that takes long.
 
     Parameters
     ----------
@@ -182,7 +235,7 @@ def compiled_within(
     Returns
     -------
     bool
-        False too where it cannot be compiled.
+        False while another process compiles it, and where it cannot be compiled.
     """
     return isinstance(function, Entry) and function.is_compiled_within(patience, arguments)
 

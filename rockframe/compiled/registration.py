@@ -7,7 +7,7 @@ from collections.abc import Callable
 from importlib import import_module
 from typing import Any, Final
 
-from rockframe.compiled.marks import KERNELS, is_method
+from rockframe.compiled.decorators import KERNELS, is_method
 
 # numba's own annotations are partial
 numba: Final[Any] = import_module("numba")

@@ -136,7 +136,7 @@ def begun(
     counters[at.PENDING] = -1
     counters[at.STALE] = 1
     counters[at.LAST_INTERVAL] = NEVER
-    counters[at.MAX_STEPS] = accuracy.max_steps
+    counters[at.MAX_STEPS] = counters[at.PAUSE_AT] = accuracy.max_steps
     counters[at.STOP_AT_OVERTURNING] = int(stop_at_overturning)
     counters[at.FLIGHTS] = int(contact == FLIGHT)
     return Begun(

@@ -8,7 +8,7 @@ of room in the event table and entered again.
 import math
 from typing import Final
 
-from rockframe.compiled import Integers, Vector, entry, inlined, kernel
+from rockframe.compiled import Integers, Vector, entry_at_once, inlined, kernel
 from rockframe.dynamics.events import FLIGHT
 from rockframe.dynamics.protocol import LAST_EVENT, POWERS, Ground
 from rockframe.solve import layout as at
@@ -333,7 +333,8 @@ def run_on(
             status = at.PAUSED
             break
         if happened == EXHAUSTED:
-            status = at.STEP_LIMIT
+            tried = counters[at.STEPS] + counters[at.REJECTED]
+            status = at.STEP_LIMIT if tried >= counters[at.MAX_STEPS] else at.PAUSED
         elif happened == TOO_SMALL:
             status = at.STEP_TOO_SMALL
         if happened in (AT_END, EXHAUSTED, TOO_SMALL):
@@ -380,7 +381,7 @@ def run_on(
     return status
 
 
-@entry
+@entry_at_once
 def advance(
     equations: BoundEquations,
     tolerance: Vector,

@@ -139,6 +139,11 @@ def runs_as_python(equations: BoundEquations) -> bool:
     return not COMPILED or any(one.source.failed for one in equations if isinstance(one, Bound))
 
 
+def has_machine_code(equations: Equations) -> bool:
+    """Whether the functions of a system are there as machine code."""
+    return all(one.source.address for one in equations if isinstance(one, Bound))
+
+
 class KnownMode(NamedTuple):
     """A mode, and what it means for steps: asked for when it begins, and kept as long as it lasts.
 

@@ -13,7 +13,7 @@ from rockframe.solve.accuracy import Accuracy
 from rockframe.solve.beginning import begun
 from rockframe.solve.bookkeeping import ON_SAMPLE
 from rockframe.solve.driver import advance
-from rockframe.solve.equations import equations_of, runs_as_python
+from rockframe.solve.equations import equations_of, has_machine_code, runs_as_python
 from rockframe.solve.layout import Status
 from rockframe.solve.steps import steps_of
 from rockframe.solve.trajectory import Events, Trajectory, run_counts
@@ -34,6 +34,8 @@ EVENT_ROOM = 256
 STEP_ROOM = 1024
 STEPS_PER_INTERVAL = 3.0
 """Room for steps, more than most runs need: memory that is not written to costs nothing."""
+STEPS_AT_ONCE = 500
+"""Steps in plain Python, after which it is seen whether there is machine code by now."""
 STILL_INTERVAL = 0.01
 """Interval into which time is cut where the ground has no samples [s]."""
 
@@ -109,6 +111,10 @@ def integrate(
     workspace = make_workspace(equations, state, run.reference, run.limits)
     began = perf_counter()
     while True:
+        counters[at.PAUSE_AT] = counters[at.MAX_STEPS]
+        if not has_machine_code(equations):
+            tried = counters[at.STEPS] + counters[at.REJECTED]
+            counters[at.PAUSE_AT] = min(tried + STEPS_AT_ONCE, counters[at.MAX_STEPS])
         result = advance(
             equations,
             run.tolerance,
@@ -119,7 +125,7 @@ def integrate(
             events,
             workspace,
         )
-        if result != at.MORE_ROOM:
+        if result not in (at.MORE_ROOM, at.PAUSED):
             break
         if counters[at.EVENTS] >= len(events.codes):
             events = EventTable(*_longer(*events))

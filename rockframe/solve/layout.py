@@ -99,7 +99,8 @@ DEGREE_Y: Final = 14
 STALE: Final = 15  # whether slope and guards at the state are to be evaluated anew
 LAST_INTERVAL: Final = 16  # at whose end the run pauses
 STEPS_KEPT: Final = 17
-COUNTERS: Final = 18
+PAUSE_AT: Final = 18  # steps, tried ones too, after which the run pauses
+COUNTERS: Final = 19
 
 CLOSE_EVENTS_LIMIT: Final = 1000
 """Events in a row, each within CHATTER_TIME of the one before, that end a run as chatter."""

@@ -24,7 +24,7 @@ JUMPED: Final = 1  # the ground, from one interval to the next
 GUARDED: Final = 2  # a step was made, and some guard asks for a closer look
 # a step was made that holds an output time, or a reversal, or is the last that there is room for
 TO_BE_SEEN: Final = 3
-EXHAUSTED: Final = 4  # the limit of steps
+EXHAUSTED: Final = 4  # the steps after which it was asked to stop
 TOO_SMALL: Final = 5  # no step was small enough
 PAUSED: Final = 6  # the end of the interval at which it was asked to stop
 TRIED: Final = 7  # a step that was only tried
@@ -127,7 +127,7 @@ def march(
                 break
             continue
         tried = counters[at.STEPS] + counters[at.REJECTED]
-        if tried >= counters[at.MAX_STEPS] and trial == 0.0:
+        if tried >= counters[at.PAUSE_AT] and trial == 0.0:
             result = EXHAUSTED
             break
         asked = fit_step(min(h_next, controls[at.MAX_STEP]), remaining)

@@ -12,7 +12,7 @@ from rockframe.compiled import (
     Matrix,
     Vector,
     bound,
-    entry,
+    entry_at_once,
     kernel,
     numbers_in,
 )
@@ -50,7 +50,7 @@ def _of(system: Equations, function: Callable[..., None]) -> OfSystem:
     return OfSystem(bound((function,), system)[0], numbers_in(system))
 
 
-@entry
+@entry_at_once
 def observe_rows(
     sloping: OfSystem,
     observing: OfSystem,
@@ -76,7 +76,7 @@ def observe_rows(
             out[j, i] = room.columns[wanted[j]]
 
 
-@entry
+@entry_at_once
 def observe_kept(
     sloping: OfSystem,
     observing: OfSystem,
@@ -107,7 +107,7 @@ def observe_kept(
             out[j, i] = room.columns[wanted[j]]
 
 
-@entry
+@entry_at_once
 def energy_rows(
     storing: OfSystem, mode: Integers, state: Matrix, row: Vector, stored: Vector, out: Matrix
 ) -> None:

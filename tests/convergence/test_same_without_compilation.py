@@ -1,4 +1,4 @@
-"""Compiled and plain runs are the same source, and give the same numbers."""
+"""Compiled and plain runs are the same source, and give the same numbers to the last bit."""
 
 import os
 import subprocess
@@ -53,10 +53,10 @@ np.savez(sys.argv[1], **arrays)
 @pytest.mark.skipif(
     os.environ.get("ROCKFRAME_COMPILE") == "0", reason="this run does without compilation"
 )
-def test_compiled_and_plain_agree_to_rounding(tmp_path):
+def test_compiled_and_plain_are_the_same(tmp_path):
     pytest.importorskip("numba")
     results = {}
-    for compiled in ("1", "0"):
+    for compiled in ("wait", "0"):
         file = tmp_path / f"{compiled}.npz"
         subprocess.run(
             [sys.executable, "-c", RUN, str(file)],
@@ -64,10 +64,8 @@ def test_compiled_and_plain_agree_to_rounding(tmp_path):
             check=True,
         )
         results[compiled] = np.load(file)
-    assert set(results["1"].files) == set(results["0"].files)
-    for name in results["1"].files:
-        np.testing.assert_allclose(
-            results["1"][name], results["0"][name], rtol=1e-12, atol=1e-12, err_msg=name
-        )
-    impacts = [results["1"][name] for name in results["1"].files if "impact_count" in name]
+    assert set(results["wait"].files) == set(results["0"].files)
+    for name in results["wait"].files:
+        np.testing.assert_array_equal(results["wait"][name], results["0"][name], err_msg=name)
+    impacts = [results["wait"][name] for name in results["wait"].files if "impact_count" in name]
     assert max(int(count) for count in impacts) > 3

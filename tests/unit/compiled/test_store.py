@@ -136,12 +136,12 @@ def test_processes_that_start_at_once_do_not_harm_each_other(own, folder):
 
 
 def test_a_helper_compiles_what_it_can_import(own, folder, monkeypatch):
-    from rockframe.compiled import together
+    from rockframe.compiled import parallel
     from rockframe.compiled.jobs import Job
 
-    monkeypatch.setattr(together, "_processors", lambda: 2)
+    monkeypatch.setattr(parallel, "processors", lambda: 2)
     job = Job(load(own, monkeypatch).add_one.source, (("float64", 1, True),), False)
-    with together._helper([job, job]) as helper:  # for one alone it would not start
+    with parallel._helper([job, job]) as helper:  # for one alone it would not start
         assert helper.wait(timeout=120) == 0
     assert job.is_stored
     values = np.array([1.0])
@@ -150,26 +150,26 @@ def test_a_helper_compiles_what_it_can_import(own, folder, monkeypatch):
 
 
 def test_what_a_helper_cannot_import_is_compiled_all_the_same(monkeypatch):
-    from rockframe.compiled import together
+    from rockframe.compiled import parallel
     from rockframe.compiled.jobs import Job
 
-    monkeypatch.setattr(together, "_processors", lambda: 2)
+    monkeypatch.setattr(parallel, "processors", lambda: 2)
     structure = (("float64", 1, True),)
     jobs = [Job(one.source, structure, False) for one in (add_two, add_three)]
     monkeypatch.delitem(sys.modules, __name__, raising=False)
     values = np.zeros(1)
-    for made in together.make_all(jobs):
+    for made in parallel.make_all(jobs):
         made(values)
     assert values.tolist() == [5.0]
 
 
 @pytest.mark.parametrize(("ends", "waits"), [("0", True), ("1", False)])
 def test_others_are_waited_for_unless_a_helper_has_died(monkeypatch, ends, waits):
-    from rockframe.compiled import together
+    from rockframe.compiled import parallel
 
     helper = subprocess.Popen([sys.executable, "-c", f"raise SystemExit({ends})"])
-    monkeypatch.setattr(together, "_helper", lambda jobs: helper)
-    with together._helped([]) as waiting:
+    monkeypatch.setattr(parallel, "_helper", lambda jobs: helper)
+    with parallel._helped([]) as waiting:
         helper.wait(timeout=120)
         assert waiting() is waits
 
@@ -188,7 +188,7 @@ def some_function():
 
 def test_every_state_of_the_sources_has_a_folder_of_its_own(own, tmp_path, monkeypatch):
     package = tmp_path / "package"
-    for name in ("constants.py", "compiled/marks.py", "dynamics/alone.py", "dynamics/a/b.py"):
+    for name in ("constants.py", "compiled/decorators.py", "dynamics/alone.py", "dynamics/a/b.py"):
         (package / name).parent.mkdir(parents=True, exist_ok=True)
         (package / name).write_text("A = 1\n")
     monkeypatch.setattr(sources, "PACKAGE", package)
@@ -286,9 +286,9 @@ def add_seven(values: Vector) -> None:
 
 
 def test_where_nothing_can_be_written_a_warning_is_all(tmp_path, monkeypatch, caplog):
-    from rockframe.compiled import together
+    from rockframe.compiled import parallel
 
-    monkeypatch.setattr(together, "_announced", set())
+    monkeypatch.setattr(parallel, "_announced", set())
     blocked = tmp_path / "a file, no folder"
     blocked.write_text("")
     monkeypatch.setenv("ROCKFRAME_CACHE_DIR", str(blocked))
@@ -301,7 +301,7 @@ def test_where_nothing_can_be_written_a_warning_is_all(tmp_path, monkeypatch, ca
 
 
 def test_each_long_compilation_is_told_with_what_it_is_for(monkeypatch, caplog):
-    from rockframe.compiled import together
+    from rockframe.compiled import parallel
     from rockframe.compiled.jobs import Job
 
     def told_of(words, called, seconds):
@@ -312,7 +312,7 @@ def test_each_long_compilation_is_told_with_what_it_is_for(monkeypatch, caplog):
         caplog.clear()
         return said
 
-    monkeypatch.setattr(together, "_announced", set())
+    monkeypatch.setattr(parallel, "_announced", set())
     text = "rockframe compiles what a run (pads) needs for this machine: about 1 s where nothing"
     assert told_of("a run (pads)", add_four, 0.1)[0].startswith(text)
     assert told_of("a run (pads)", add_four, 30.0) == []

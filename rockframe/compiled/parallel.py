@@ -1,7 +1,8 @@
 """Compiling what belongs together, by two processes where nothing has been kept.
 
 numba compiles one function at a time. A helper process starts at the other end of the list, and
-both meet: each finds in the store what the other one has made.
+both meet: each finds in the store what the other one has made. Or another process compiles it
+all, and this one goes on.
 """
 
 import logging
@@ -72,7 +73,7 @@ def time_for(jobs: Sequence[Job]) -> float:
         return 0.0
     if not seconds:
         return 0.0
-    return max(*seconds, sum(seconds) / min(2, _processors())) if len(seconds) > 1 else seconds[0]
+    return max(*seconds, sum(seconds) / min(2, processors())) if len(seconds) > 1 else seconds[0]
 
 
 def _tell(jobs: Sequence[Job]) -> None:
@@ -120,29 +121,50 @@ def _helped(jobs: Sequence[Job]) -> Generator[Callable[[], bool]]:
 
 
 def _helper(jobs: Sequence[Job]) -> "subprocess.Popen[bytes] | None":
-    """Start a process that compiles what is missing; None where there can be none."""
-    if _processors() < 2 or getattr(sys, "frozen", False) or not sys.executable:
-        return None
+    """Start a process that compiles what is missing from its end; None where there can be none."""
     try:
         missing = [job for job in jobs if not job.is_stored]
-        if len(missing) < 2 or any(job.file is None for job in missing):
+    except Exception:  # this process will do it all, and say what is wrong
+        return None
+    return _process("help_with", [*reversed(missing)]) if len(missing) > 1 else None
+
+
+def start_compiler(jobs: Sequence[Job]) -> "subprocess.Popen[bytes] | None":
+    """Start a process that compiles jobs while this one goes on.
+
+    Parameters
+    ----------
+    jobs : sequence of Job
+        What is to be compiled, and kept.
+
+    Returns
+    -------
+    Popen or None
+        None where there can be none. It goes on when this process has ended.
+    """
+    return _process("make_all_of", jobs)
+
+
+def _process(task: str, jobs: Sequence[Job]) -> "subprocess.Popen[bytes] | None":
+    if processors() < 2 or getattr(sys, "frozen", False) or not sys.executable:
+        return None
+    program = (
+        f"import sys; sys.path[:] = sys.argv[1:]; from {__name__} import {task}; "
+        f"{task}(sys.stdin.buffer.read())"
+    )
+    try:
+        if any(job.file is None for job in jobs):
             return None
-        order = pickle.dumps([_told(job) for job in reversed(missing)])
-        helper = subprocess.Popen(
-            [sys.executable, "-c", _PROGRAM, *sys.path], stdin=subprocess.PIPE,
-            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+        order = pickle.dumps([_told(job) for job in jobs])
+        process = subprocess.Popen(
+            [sys.executable, "-c", program, *sys.path], stdin=subprocess.PIPE,
+            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True,
         )  # fmt: skip
     except Exception:  # this process will do it all, and say what is wrong
         return None
-    with suppress(OSError), cast("IO[bytes]", helper.stdin) as told:
+    with suppress(OSError), cast("IO[bytes]", process.stdin) as told:
         told.write(order)
-    return helper
-
-
-_PROGRAM = (
-    "import sys; sys.path[:] = sys.argv[1:]; "
-    f"from {__name__} import help_with; help_with(sys.stdin.buffer.read())"
-)
+    return process
 
 
 def help_with(order: bytes) -> None:
@@ -151,16 +173,39 @@ def help_with(order: bytes) -> None:
     Parameters
     ----------
     order : bytes
-        Jobs, as they are told to a helper.
+        Jobs, as they are told to a process.
     """
+    for job in _jobs_in(order):
+        if job.is_stored or job.file is None or store.is_compiled_elsewhere(job.file):
+            return
+        job.make()
+
+
+def make_all_of(order: bytes) -> None:
+    """Compile all jobs, with one more process where neither this nor the first one needs it.
+
+    Parameters
+    ----------
+    order : bytes
+        Jobs, as they are told to a process.
+    """
+    jobs = _jobs_in(order)
+    if processors() > 2:
+        make_all(jobs)
+        return
+    for job in jobs:
+        job.make()
+
+
+def _jobs_in(order: bytes) -> list[Job]:
+    found = list[Job]()
     for module, name, structure, *kind in pickle.loads(order):  # noqa: S301
         function: Any = import_module(module)
         for part in name.split("."):
             function = getattr(function, part)
-        job = Job(function.source if isinstance(function, Entry) else function, structure, *kind)
-        if job.is_stored or job.file is None or store.is_compiled_elsewhere(job.file):
-            return
-        job.make()
+        source = function.source if isinstance(function, Entry) else function
+        found.append(Job(source, structure, *kind))
+    return found
 
 
 def _told(job: Job) -> tuple[Any, ...]:
@@ -168,7 +213,8 @@ def _told(job: Job) -> tuple[Any, ...]:
     return function.__module__, function.__qualname__, job.structure, job.bound, job.in_lanes
 
 
-def _processors() -> int:
+def processors() -> int:
+    """Give the number of processors that this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1

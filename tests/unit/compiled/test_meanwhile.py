@@ -1,0 +1,204 @@
+"""Runs go on in plain Python until their machine code is there, and nobody can tell by numbers."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import rockframe as rf
+from rockframe.compiled import COMPILED, meanwhile, parallel
+from rockframe.compiled.meanwhile import WORTHWHILE, Meanwhile
+from rockframe.solve import integrate
+
+pytestmark = [
+    pytest.mark.unit,
+    pytest.mark.skipif(not COMPILED, reason="this run does without compilation"),
+]
+
+
+class Compiler:
+    """Stands for a process that compiles."""
+
+    def __init__(self):
+        self.ended = None
+
+    def poll(self):
+        return self.ended
+
+
+class Job:
+    """Stands for what is to be compiled."""
+
+    def __init__(self):
+        self.is_stored = False
+
+
+@pytest.fixture
+def jobs(monkeypatch):
+    monkeypatch.setattr(meanwhile, "_compilers", [])
+    monkeypatch.setattr(parallel, "processors", lambda: 2)
+    monkeypatch.setattr(parallel, "time_for", lambda jobs: 8.0)
+    return [Job(), Job()]
+
+
+@pytest.fixture
+def started(monkeypatch):
+    """Compilers that were started."""
+    found = []
+
+    def start(jobs):
+        found.append(Compiler())
+        return found[-1]
+
+    monkeypatch.setattr(parallel, "start_compiler", start)
+    return found
+
+
+def spend(one, seconds):
+    one._seconds += seconds
+
+
+def test_what_is_stored_is_loaded(jobs, started):
+    for job in jobs:
+        job.is_stored = True
+    assert Meanwhile(jobs).is_over()
+    assert not started
+
+
+def test_a_short_run_starts_no_compiler_and_a_longer_one_one(jobs, started):
+    one = Meanwhile(jobs)
+    assert not one.is_over()
+    spend(one, 0.9 * WORTHWHILE)
+    assert not one.is_over()
+    assert not started
+    spend(one, 0.2 * WORTHWHILE)
+    assert not one.is_over()
+    assert not one.is_over()
+    assert len(started) == 1
+    spend(one, 100.0)  # it is still compiling: longer, where the machine has other work
+    assert not one.is_over()
+    for job in jobs:
+        job.is_stored = True
+    started[0].ended = 0
+    assert one.is_over()
+
+
+def test_lanes_are_compiled_though_nothing_has_run(jobs, started):
+    assert not Meanwhile(jobs).is_over(at_once=True)
+    assert len(started) == 1
+
+
+def test_where_no_process_can_compile_this_one_waits_as_long_as_it_has_run(jobs, monkeypatch):
+    monkeypatch.setattr(parallel, "start_compiler", lambda jobs: None)
+    one = Meanwhile(jobs)
+    spend(one, 7.9)
+    assert not one.is_over()
+    spend(one, 0.2)
+    assert one.is_over()
+    assert Meanwhile(jobs).is_over(at_once=True)
+
+
+def test_one_that_has_died_is_not_started_again(jobs, started):
+    one = Meanwhile(jobs)
+    spend(one, 1.0)
+    assert not one.is_over()
+    started[0].ended = 1
+    assert not one.is_over()
+    spend(one, 8.0)
+    assert one.is_over()
+    assert len(started) == 1
+
+
+def test_no_more_compilers_at_once_than_half_the_processors(jobs, started):
+    first, second = Meanwhile(jobs), Meanwhile([Job()])
+    for one in (first, second):
+        spend(one, 1.0)
+        assert not one.is_over()
+    assert len(started) == 1
+    started[0].ended = 0
+    assert not second.is_over()
+    assert len(started) == 2
+
+
+def test_what_cannot_be_described_is_compiled_at_once_so_that_it_is_said():
+    class Broken:
+        @property
+        def is_stored(self):
+            raise TypeError
+
+    assert Meanwhile([Broken()]).is_over()
+
+
+PADS = rf.TwoSpringSupport(stiffness="5 MN/m", damping_ratio=0.1)
+BLOCK = rf.Block(width="0.5 m", height="2 m", mass="1 t")
+RUN = """
+import sys, time
+import numpy as np
+from rockframe.compiled import Vector, entry_at_once
+
+@entry_at_once
+def add_up(values: Vector) -> None:
+    for _ in range(20_000):
+        for i in range(len(values)):
+            values[i] += 0.1 * i
+
+if __name__ == "__main__":
+    from slow import add_up
+    codes, begun = [], time.monotonic()
+    while time.monotonic() - begun < 120.0 and not (codes and codes[-1]):
+        values = np.zeros(5)
+        add_up(values)
+        codes.append(any(add_up._routines.values()))
+        print(codes[-1], values.tolist())
+"""
+
+
+def test_a_call_becomes_machine_code_when_another_process_has_made_it(tmp_path):
+    (tmp_path / "slow.py").write_text(RUN)
+    environment = {"PYTHONPATH": ":".join(sys.path), "ROCKFRAME_CACHE_DIR": str(tmp_path / "code")}
+    found = subprocess.run(
+        [sys.executable, "slow.py"], cwd=tmp_path, env=environment, check=True, text=True,
+        capture_output=True,
+    ).stdout.splitlines()  # fmt: skip
+    code, values = zip(*(line.split(" ", 1) for line in found), strict=True)
+    if parallel.processors() > 1:
+        assert code[0] == "False"
+    assert code[-1] == "True"
+    assert len(set(values)) == 1
+
+
+@pytest.mark.parametrize("accuracy", ["fast", "standard"])
+@pytest.mark.parametrize("stands_on", [(), (PADS,)])
+def test_a_run_that_comes_back_now_and_then_is_the_same_run(monkeypatch, accuracy, stands_on):
+    rng = np.random.default_rng(1)
+    motion = rf.GroundMotion.from_arrays((5.0 * rng.normal(size=300), "m/s^2"), "0.02 s")
+    system = rf.System(BLOCK, *stands_on)
+    whole = system.simulate(motion, accuracy=accuracy, outputs=["energy"], duration="9 s")
+    counts = []
+    advance = integrate.advance
+
+    def counted(*arguments):
+        counts.append(advance(*arguments))
+        return counts[-1]
+
+    monkeypatch.setattr(integrate, "has_machine_code", lambda equations: False)
+    monkeypatch.setattr(integrate, "STEPS_AT_ONCE", 7)
+    monkeypatch.setattr(integrate, "advance", counted)
+    pieces = system.simulate(motion, accuracy=accuracy, outputs=["energy"], duration="9 s")
+    assert len(counts) > 20
+    assert whole.drop_attrs().identical(pieces.drop_attrs())
+    assert whole.attrs["verdict"] == pieces.attrs["verdict"]
+
+
+def test_the_limit_of_steps_ends_a_run_that_comes_back_too(monkeypatch):
+    motion = rf.GroundMotion.harmonic("1 m/s^2", "2 Hz", duration="5 s")
+    system = rf.System(BLOCK, PADS)
+    accuracy = rf.Accuracy(rtol=1e-9, max_steps=100)
+    with pytest.warns(rf.SolverWarning, match="limit of steps"):
+        whole = system.simulate(motion, accuracy=accuracy)
+    monkeypatch.setattr(integrate, "has_machine_code", lambda equations: False)
+    monkeypatch.setattr(integrate, "STEPS_AT_ONCE", 7)
+    with pytest.warns(rf.SolverWarning, match="limit of steps"):
+        run = system.simulate(motion, accuracy=accuracy)
+    assert run.drop_attrs().identical(whole.drop_attrs())
