@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from own_example import SCENE_FILE, example
+from plainly import plainly
 
 import rockframe as rf
 from rockframe.dynamics.protocol import Ground
@@ -20,8 +21,8 @@ HISTORIES = (
 
 @pytest.fixture(scope="module", autouse=True)
 def own():
-    """Give the module of the example, its scene registered."""
-    with example(SCENE_FILE) as module:
+    """Give the module of the example, its scene registered; compiled it gives the same."""
+    with example(SCENE_FILE) as module, plainly():
         yield module
 
 
