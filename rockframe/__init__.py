@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from rockframe.components import InitialState as InitialState
     from rockframe.components import Member as Member
     from rockframe.components import RegularFrame as RegularFrame
+    from rockframe.components import Restrainer as Restrainer
     from rockframe.components import RigidGround as RigidGround
     from rockframe.components import Stack as Stack
     from rockframe.components import TwoSpringSupport as TwoSpringSupport
@@ -109,6 +110,7 @@ _HOMES = {
         "InitialState",
         "Member",
         "RegularFrame",
+        "Restrainer",
         "RigidGround",
         "Stack",
         "Stack",
@@ -200,6 +202,7 @@ __all__ = [
     "RecordError",
     "RecordWarning",
     "RegularFrame",
+    "Restrainer",
     "RigidGround",
     "RockframeError",
     "RockframeWarning",

@@ -29,6 +29,7 @@ from rockframe.compiled.lanes import as_integers as as_integers
 from rockframe.compiled.lanes import lane_of as lane_of
 from rockframe.compiled.lanes import widest_registers as widest_registers
 from rockframe.compiled.tuples import constant as constant
+from rockframe.compiled.tuples import filled as filled
 from rockframe.compiled.tuples import part_of as part_of
 from rockframe.compiled.tuples import put as put
 from rockframe.compiled.tuples import stretch as stretch

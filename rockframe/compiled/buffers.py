@@ -250,6 +250,12 @@ def _with_numbers(numbers: Any, first: Any, others: Any) -> Callable[..., Any]:
     return _written("numbers, first, others", f"return {made}")
 
 
+@extending.overload(tuples.filled, strict=False, jit_options=_INTO_CALLERS)
+def _filled(like: Any, numbers: Any) -> Callable[..., Any]:
+    some = ", ".join(f"numbers[{i}]" for i in range(len(like)))
+    return _written("like, numbers", f"return kind({some})", kind=like.instance_class)
+
+
 @extending.overload(tuples.put, strict=False, jit_options=_INTO_CALLERS)
 def _put(numbers: Any, first: Any, out: Any) -> Callable[..., Any]:
     if isinstance(numbers, BufferType):
@@ -266,8 +272,8 @@ def _is_place(place: Any) -> bool:
     return all(isinstance(number, numba.types.Integer) for number in numbers)
 
 
-def _written(arguments: str, line: str) -> Callable[..., Any]:
+def _written(arguments: str, line: str, **names: Any) -> Callable[..., Any]:
     """Make a function of one line, as long as some tuple is."""
-    scope: dict[str, Any] = {"with_number": _with_number}
+    scope: dict[str, Any] = {"with_number": _with_number, **names}
     exec(f"def written({arguments}):\n    {line}\n", scope)  # noqa: S102
     return scope["written"]

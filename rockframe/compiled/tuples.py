@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 from rockframe.compiled.arrays import Vector
 
 Array = TypeVar("Array", bound=NDArray[Any])
+Bundle = TypeVar("Bundle")
 
 
 def constant(value: float, like: tuple[float, ...]) -> tuple[float, ...]:
@@ -25,6 +26,12 @@ def with_numbers(
 ) -> tuple[float, ...]:
     """Give a tuple with others in place of some of its numbers, from an index on."""
     return (*numbers[:first], *others, *numbers[first + len(others) :])
+
+
+def filled(like: Bundle, numbers: Vector) -> Bundle:
+    """Give a named tuple of the class of another one, filled with numbers from an array."""
+    kind: Any = type(like)
+    return kind(*numbers[: len(kind._fields)])
 
 
 def part_of(array: Vector, first: int) -> Vector:

@@ -9,6 +9,7 @@ from rockframe.components.frame_members import Member
 from rockframe.components.frame_regular import RegularFrame
 from rockframe.components.ground import RigidGround
 from rockframe.components.initial_state import InitialState
+from rockframe.components.link import Link, Restrainer
 from rockframe.components.pads import TwoSpringSupport
 from rockframe.components.parameters import DERIVED, Choice, Parameter, Ratio, Text
 from rockframe.components.registry import component_from_dict
@@ -23,11 +24,13 @@ __all__ = [
     "CushionCap",
     "FrameEquivalent",
     "InitialState",
+    "Link",
     "Member",
     "OneOf",
     "Parameter",
     "Ratio",
     "RegularFrame",
+    "Restrainer",
     "RigidGround",
     "Separation",
     "Stack",

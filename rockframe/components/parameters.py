@@ -1,11 +1,15 @@
 """Parameters of components, each declared once, as an attribute of its class."""
 
+import re
 from enum import Enum, StrEnum
 from typing import Any, Final, Generic, NoReturn, Self, TypeVar, overload
+
+import numpy as np
 
 from rockframe.arguments import one_of_words
 from rockframe.errors import ComponentError, shown
 from rockframe.units import (
+    LENGTH,
     Condition,
     Measure,
     Quantity,
@@ -244,3 +248,129 @@ class Text(Declared[str, Usual]):
         missing = ", or None" if self.default is None else ""
         msg = f"{owner}: {self.name} must be a text that is not empty{missing}, got {shown(given)}"
         raise ComponentError(msg)
+
+
+class Flag(Declared[bool, bool]):
+    """A parameter that is true or false; the usual one goes without saying.
+
+    Parameters
+    ----------
+    default : bool
+        Value unless given.
+    doc : str
+        What it is, in a sentence.
+    """
+
+    written_as = "bool"
+    annotation = bool
+
+    def __init__(self, *, doc: str, default: bool) -> None:
+        super().__init__(None, None, doc=doc, default=default)
+
+    def read(self, given: object, owner: str) -> bool:
+        """Take the truth value, or the word for it.
+
+        Raises
+        ------
+        ComponentError
+            It is neither.
+        """
+        if isinstance(given, bool | np.bool_):
+            return bool(given)
+        if given in _TRUTHS:
+            return _TRUTHS[str(given)]
+        msg = f"{owner}: {self.name} must be True or False, got {shown(given)}"
+        raise ComponentError(msg)
+
+    def write(self, value: bool) -> str | None:
+        """Write the word, unless it is the usual one."""
+        return None if value is self.default else str(value).lower()
+
+
+_TRUTHS: Final = {"true": True, "false": False}
+
+
+class Count(Declared[int, Usual]):
+    """A parameter that is a whole number from 1 on.
+
+    Parameters
+    ----------
+    doc : str
+        What it is, in a sentence.
+    default : int, optional
+        Value unless given; None for one that may be missing.
+    """
+
+    written_as = "int"
+    annotation = int
+
+    def __init__(self, *, doc: str, default: Usual = REQUIRED) -> None:
+        super().__init__(None, None, doc=doc, default=default)
+
+    def read(self, given: object, owner: str) -> int:
+        """Take the number.
+
+        Raises
+        ------
+        ComponentError
+            It is no whole number, or below 1.
+        """
+        number = given if not isinstance(given, bool) else None
+        if isinstance(number, int | np.integer | float) and number == int(number) and number >= 1:
+            return int(number)
+        msg = f"{owner}: {self.name} must be a whole number from 1 on, got {shown(given)}"
+        raise ComponentError(msg)
+
+    def write(self, value: int) -> int | None:
+        """Write the number, unless it is the usual one."""
+        return None if value == self.default else value
+
+
+class Place(Declared[tuple[Quantity, Quantity], Missing]):
+    """A parameter that is a point: how far to the right it is, and how high.
+
+    Parameters
+    ----------
+    doc : str
+        What it is, in a sentence.
+    """
+
+    written_as = "tuple of str or Quantity"
+    annotation = tuple[QuantityLike, QuantityLike]
+
+    def __init__(self, *, doc: str) -> None:
+        super().__init__(LENGTH.like('("-0.5 m", "3 m")'), None, doc=doc, default=REQUIRED)
+
+    def read(self, given: object, owner: str) -> tuple[float, float]:
+        """Convert to SI units.
+
+        Raises
+        ------
+        ComponentError
+            It is not a pair.
+        UnitsError
+            A length has the wrong unit, or none.
+        """
+        written = _PLACE.fullmatch(given) if isinstance(given, str) else None
+        if written is not None:
+            given = tuple(f"{one} m" for one in written.groups())
+        pair: list[Any] = list(given) if isinstance(given, tuple | list) else []
+        if len(pair) != 2:
+            msg = (
+                f'{owner}: {self.name} must be a point such as ("-0.5 m", "3 m"), to the right '
+                f"and above, got {shown(given)}"
+            )
+            raise ComponentError(msg)
+        x, y = (to_si(one, LENGTH, owner=owner, name=self.name) for one in pair)
+        return x, y
+
+    def write(self, value: tuple[float, float]) -> str:
+        """Write the numbers with their unit, so that :meth:`read` gives the same back."""
+        return f"({value[0]!r}, {value[1]!r}) m"
+
+    def public(self, value: tuple[float, float]) -> tuple[Quantity, Quantity]:
+        """Give the numbers with their unit."""
+        return quantity(value[0], LENGTH), quantity(value[1], LENGTH)
+
+
+_PLACE: Final = re.compile(r"\((\S+), (\S+)\) m")

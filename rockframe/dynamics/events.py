@@ -30,6 +30,21 @@ class EventKind(IntEnum):
     SOIL_SEPARATION = 9
     SOIL_CONTACT = 10
     SOIL_PIVOT_CHANGE = 11
+    RESTRAINER_SLACK = 12
+    RESTRAINER_TAUT = 13
+    RESTRAINER_YIELD = 14
+    RESTRAINER_UNLOADING = 15
+    RESTRAINER_FRACTURE = 16
+
+
+class LinkState(IntEnum):
+    """How a restrainer is; one that yields as it is pressed is `PRESSED`."""
+
+    SLACK = 0
+    TAUT = 1
+    YIELDING = 2
+    BROKEN = 3
+    PRESSED = 4
 
 
 FULL: Final = int(ContactState.FULL)
@@ -49,3 +64,8 @@ TOPPLED: Final = int(EventKind.TOPPLED)
 SOIL_SEPARATION: Final = int(EventKind.SOIL_SEPARATION)
 SOIL_CONTACT: Final = int(EventKind.SOIL_CONTACT)
 SOIL_PIVOT_CHANGE: Final = int(EventKind.SOIL_PIVOT_CHANGE)
+LINK_SLACK: Final = int(EventKind.RESTRAINER_SLACK)
+LINK_TAUT: Final = int(EventKind.RESTRAINER_TAUT)
+LINK_YIELDS: Final = int(EventKind.RESTRAINER_YIELD)
+LINK_UNLOADS: Final = int(EventKind.RESTRAINER_UNLOADING)
+LINK_BREAKS: Final = int(EventKind.RESTRAINER_FRACTURE)

@@ -47,12 +47,16 @@ def linear(chain: StandingChain, stands: list[Stand]) -> Linear:
     """
     size = 2 * len(stands)
     damping, stiffness = np.zeros((size, size)), np.zeros((size, size))
+    ties = chain.tied(stands)
+    states = [one.state for one in ties]
+    for one in ties:
+        damping += one.damping_matrix
     for k, (link, stand) in enumerate(zip(chain.links, stands, strict=True)):
         own = slice(2 * k, 2 * k + 2)
         damping[own, own] = np.array([of_base(link, stand, name) for name in RATES]).T
         stiffness[own, own] = np.array([of_base(link, stand, name) for name in PLACES]).T
         for i, name in enumerate(PLACES):
-            stiffness[:, 2 * k + i] += _of_weight(chain, stands, k, name)
+            stiffness[:, 2 * k + i] += _of_weight(chain, stands, k, name, states)
     return Linear(_mass(chain, stands), damping, stiffness)
 
 
@@ -71,15 +75,20 @@ def of_base(link: StandingBody, stand: Stand, name: str) -> tuple[float, float]:
     return moment, upward
 
 
-def _of_weight(chain: StandingChain, stands: list[Stand], k: int, name: str) -> Vector:
-    """Give minus the changes of the generalised forces of all weights."""
+def _of_weight(
+    chain: StandingChain, stands: list[Stand], k: int, name: str, states: list[int]
+) -> Vector:
+    """Give minus the changes of the generalised forces of all weights, and of links."""
     link, stand, step = chain.links[k], stands[k], _step(chain.links[k], name)
 
     def weights(by: float) -> Vector:
         state = _moved(stand, name, by)
         reach, across = link.way(link.part.body.attitude(state.rotation), stand.mode.pivot)
-        moved = stand._replace(state=state, reach=reach, across=across)
-        return np.ravel(chain.weights([*stands[:k], moved, *stands[k + 1 :]]))
+        arm = stand.arm + by if name == PLACES[1] else stand.arm
+        moved = stand._replace(state=state, reach=reach, across=across, arm=arm)
+        others = [*stands[:k], moved, *stands[k + 1 :]]
+        found = np.ravel(chain.weights(others))
+        return found + chain.tie_loads(others, states) if states else found
 
     return sum(
         (weight / step * (weights(-place * step) - weights(place * step))

@@ -42,11 +42,13 @@ IMPULSIVE_INPUT: Final = 2
 mass [m^2 s^-2]."""
 LAST_EVENT: Final = 3
 """Index into the memory: kind of the last switch, see :mod:`rockframe.dynamics.events`."""
-HELD_PLACE: Final = 4
+LINK_LOSS: Final = 4
+"""Index into the memory: energy lost with links that broke so far, per unit mass [m^2 s^-2]."""
+HELD_PLACE: Final = 5
 """Index into the memory: horizontal place of the point that holds the first body [m]; those of
 further bodies follow, then whatever else a system keeps."""
 MEMORY: Final = (
-    "impact_loss", "repinning_loss", "impulsive_input", "last_event", "held_place",
+    "impact_loss", "repinning_loss", "impulsive_input", "last_event", "link_loss", "held_place",
 )  # fmt: skip
 """Names of what every system keeps."""
 
@@ -261,6 +263,8 @@ class ContactModel:
         Names, in the results' schema, of the contact states of the first bodies.
     shows_bodies : bool
         Whether results have the motion of each body.
+    links : int
+        How many links of bodies results show.
     other_limits : ndarray, shape (others * (2 + n),)
         Of other bodies that overturn: of each both limits and the weights of its rotation.
     scales : ndarray, shape (2 n + variables,)
@@ -307,6 +311,7 @@ class ContactModel:
     rounding: Callable[[float], Vector] | None = None
     contacts: tuple[str, ...] = ("contact_state",)
     shows_bodies: bool = False
+    links: int = 0
     other_limits: Vector = field(default_factory=lambda: np.zeros(0))
 
     def __post_init__(self) -> None:

@@ -8,15 +8,20 @@ what is left are moments, :eq:`eq-static-chain`. All is per unit mass.
 import math
 import sys
 from collections.abc import Sequence
-from typing import Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 
+from rockframe.compiled import Vector
 from rockframe.dynamics.base import BaseForce
 from rockframe.dynamics.body import Attitude, BaseLine, BodyState, Reach
 from rockframe.dynamics.following import Path, Sizes, followed
 from rockframe.dynamics.on_base import Mode, OnBase
 from rockframe.dynamics.trigonometry import sine_cosine
+
+if TYPE_CHECKING:
+    from rockframe.dynamics.chain.linked import ChainLink
+    from rockframe.dynamics.tied import Tied
 
 ROUNDING: Final = 4.0 * sys.float_info.epsilon
 """Share of the sizes of heights that is rounding."""
@@ -26,6 +31,8 @@ BALANCED: Final = 1e-9
 """Moments that are rounding, over that of the weight about the middle of the base."""
 SHARP: Final = 1e-9
 """Share of the uplift angle by which contact is full before it and partial beyond."""
+LEAST_SHARE: Final = 2.0**-20
+"""Of a step of Newton's, below which it leads no further."""
 HALVINGS: Final = 60
 """Of the rotation at which contact is first lost, where the levels of the ends do not tell it."""
 
@@ -73,25 +80,32 @@ class Stand(NamedTuple):
     force: BaseForce
     press: float  # what stands on its base, along the normal of that
     own: Any  # variables of its base's own, as at a start there
+    arm: float = 0.0  # of its centre of mass normal to the deck beneath, from the one beneath
 
 
 class StandingChain(NamedTuple):
-    """Bodies that stand on one another, from the top down, and gravity along the lowest base."""
+    """Bodies that stand on one another, from the top down, and gravity along the lowest base.
+
+    Of what links them a share pulls.
+    """
 
     links: tuple[StandingBody, ...]
     along_gravity: float = 0.0
+    ties: "tuple[ChainLink, ...]" = ()
+    pull: float = 1.0
 
     @property
     def upright(self) -> bool:
         """Whether nothing turns the bodies from where they stand upright."""
-        return self.along_gravity == 0.0 and all(link.beside == 0.0 for link in self.links)
+        level = self.along_gravity == 0.0 and not self.ties
+        return level and all(link.beside == 0.0 for link in self.links)
 
     def with_share(self, share: float) -> "StandingChain":
         """Give the chain with a share of its slope and of the eccentricity of its bodies."""
         if share == 1.0:
             return self
         links = tuple(link.with_share(share) for link in self.links)
-        return StandingChain(links, share * self.along_gravity)
+        return StandingChain(links, share * self.along_gravity, self.ties, share * self.pull)
 
     def frames(self, rotations: Sequence[float]) -> list[tuple[float, float]]:
         """Give gravity normal to the deck under each body, and along it."""
@@ -105,19 +119,86 @@ class StandingChain(NamedTuple):
 
     def settled(self, rotations: Sequence[float]) -> list[Stand] | None:
         """Give how the bodies stand at rotations on their bases; None where one would pull."""
-        mass, stands = 0.0, list[Stand]()
-        frames = self.frames(rotations)
-        for link, rotation, (normal, _) in zip(self.links, rotations, frames, strict=True):
+        mass, presses = 0.0, list[float]()
+        for link, (normal, _) in zip(self.links, self.frames(rotations), strict=True):
             mass += link.mass
-            if normal <= 0.0:
+            presses.append(mass * normal)
+        if not self.ties:
+            return self._pressed(rotations, presses)
+        return self._balanced(rotations, np.array(presses))
+
+    def _pressed(self, rotations: Sequence[float], presses: Sequence[float]) -> list[Stand] | None:
+        """Give how the bodies stand on bases that carry some forces."""
+        if not all(press > 0.0 for press in presses):
+            return None
+        stands = [
+            settled(link, rotation, press)
+            for link, rotation, press in zip(self.links, rotations, presses, strict=True)
+        ]
+        if not self.ties:
+            return stands
+        decks = [*(link.top for link in self.links[1:]), 0.0]
+        return [
+            one._replace(arm=deck + link.part.body.height + one.state.vertical)
+            for link, one, deck in zip(self.links, stands, decks, strict=True)
+        ]
+
+    def _balanced(self, rotations: Sequence[float], weights: Vector) -> list[Stand] | None:
+        """Give how the bodies stand on bases that carry weights and what links pull down."""
+
+        def lack(presses: Vector) -> tuple[list[Stand] | None, Vector]:
+            stands = self._pressed(rotations, presses.tolist())
+            if stands is None:
+                return None, np.full(len(presses), math.nan)
+            return stands, weights - self.tie_loads(stands)[1::2] - presses
+
+        presses = weights
+        stands, missing = lack(presses)
+        least = 0.1 * BALANCED * weights[-1]
+        for _ in range(TRIES):
+            if stands is None:
                 return None
-            stands.append(settled(link, rotation, mass * normal))
-        return stands
+            if np.abs(missing).max() <= ROUNDING * weights[-1]:
+                break
+            step = 1e-6 * weights[-1]
+            slopes = np.array([
+                (lack(presses + move)[1] - lack(presses - move)[1]) / (2.0 * step)
+                for move in step * np.eye(len(presses))
+            ]).T  # fmt: skip
+            if not np.isfinite(slopes).all():
+                return None
+            move, share = np.linalg.solve(slopes, -missing), 1.0
+            further = lack(presses + move)
+            while share > LEAST_SHARE and not (np.abs(further[1]).max() < np.abs(missing).max()):
+                share *= 0.5
+                further = lack(presses + share * move)
+            if share <= LEAST_SHARE:
+                break
+            presses = presses + share * move
+            stands, missing = further
+        return stands if np.abs(missing).max() <= least else None
+
+    def tied(self, stands: Sequence[Stand], states: Sequence[int] | None = None) -> "list[Tied]":
+        """Give how what links the bodies is stretched."""
+        from rockframe.dynamics.tied import tied
+
+        return tied(self.links, stands, self.ties, states)
+
+    def tie_loads(self, stands: Sequence[Stand], states: Sequence[int] | None = None) -> Vector:
+        """Give the generalised forces of links on rotation and height of each body."""
+        found = np.zeros(2 * len(stands))
+        for one in self.tied(stands, states):
+            found += self.pull * one.loads
+        return found
 
     def moments(self, stands: Sequence[Stand]) -> list[float]:
         """Give the generalised force on each body's rotation on its base."""
         weights = self.weights(stands)
-        return [stand.force.moment + of[0] for stand, of in zip(stands, weights, strict=True)]
+        found = [stand.force.moment + of[0] for stand, of in zip(stands, weights, strict=True)]
+        if self.ties:
+            pulled = self.tie_loads(stands)[::2].tolist()
+            found = [moment + more for moment, more in zip(found, pulled, strict=True)]
+        return found
 
     def weights(self, stands: Sequence[Stand]) -> list[tuple[float, float]]:
         """Give the generalised forces of all weights on rotation and height of each body."""

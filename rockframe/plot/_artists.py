@@ -49,7 +49,9 @@ class SceneArtist:
     def frame(self, shown: Iterable[Placement]) -> None:
         """Set limits that hold the scene at all instants."""
         found = [self.drawer.lay_out(at) for at in shown]
-        corners = np.vstack([np.vstack([one.block, one.ground, *one.lower]) for one in found])
+        corners = np.vstack(
+            [np.vstack([one.block, one.ground, *one.lower, *one.ties]) for one in found]
+        )
         low, high = corners.min(axis=0), corners.max(axis=0)
         widest = float(max(-low[0], high[0]))
         if widest > self.drawer.reach:
@@ -84,6 +86,8 @@ class SceneArtist:
         self._polygon("block", found.block, BLUE, 4, alpha=0.08 if found.members else 0.22)
         for number, member in enumerate(found.members):
             self._polygon(f"member {number}", member, BLUE, 4, alpha=0.3)
+        for number, ends in enumerate(found.ties):
+            self._line(f"tie {number}", ends, color=VERMILLION, linewidth=1.4, zorder=5)
         self._dots("centre", found.centre[None], marker="P", color=ink(), markersize=6.0)
         self._touching(found)
         for name, place in self._marked.items():

@@ -9,7 +9,7 @@ import numpy as np
 from rockframe.dynamics.events import ContactState
 from rockframe.results.placement import Placement
 from rockframe.signals.arrays import Array
-from rockframe.system.geometry import Geometry
+from rockframe.system.geometry import Geometry, LinkedPoints
 
 _PAD_WIDTH: Final = 0.17
 """Over that of the base."""
@@ -44,6 +44,8 @@ class Layout:
         Surface of rigid ground, where there is no soil.
     lower : tuple of ndarray
         Outlines of the bodies of a stack beneath the block.
+    ties : tuple of ndarray
+        Both ends of each restrainer, shape (2, 2).
     """
 
     block: Array
@@ -56,6 +58,7 @@ class Layout:
     touching: tuple[Array, ...]
     ground: Array
     lower: tuple[Array, ...] = ()
+    ties: tuple[Array, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -116,7 +119,16 @@ class Drawer:
         lower = tuple(
             self._moved(partial(at.lower, k), one.outline) for k, one in enumerate(geometry.lower)
         )
-        return self._inclined(replace(found, lower=lower))
+        ties = tuple(self._tie(at, one) for one in geometry.ties)
+        return self._inclined(replace(found, lower=lower, ties=ties))
+
+    def _tie(self, at: Placement, tie: LinkedPoints) -> Array:
+        """Lay out a restrainer, from one body to another or to the ground."""
+        ends = list[Array]()
+        for point, k in zip(tie.points, tie.bodies, strict=True):
+            place = at.block if k == 0 else partial(at.lower, k - 1)
+            ends.append(point if k < 0 else self._moved(place, point[None])[0])
+        return np.array(ends)
 
     def points(self, at: Placement, places: Array) -> Array:
         """Lay out points of the body that results are of, from the middle of its base."""
@@ -204,6 +216,7 @@ class Drawer:
             touching=tuple(turn(one) for one in found.touching),
             ground=turn(found.ground),
             lower=tuple(turn(one) for one in found.lower),
+            ties=tuple(turn(one) for one in found.ties),
         )
 
 

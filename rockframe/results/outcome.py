@@ -12,12 +12,14 @@ from rockframe.dynamics.events import OVERTURNING, SILENT, TOPPLED
 from rockframe.dynamics.protocol import (
     IMPACT_LOSS,
     IMPULSIVE_INPUT,
+    LINK_LOSS,
     REPINNING_LOSS,
     ContactModel,
     column_of,
 )
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.bodies import OF_EACH
+from rockframe.results.variables.restrainers import OF_EACH as OF_EACH_LINK
 from rockframe.results.variables.runs import Direction
 from rockframe.signals.arrays import Array
 from rockframe.solve.layout import Status
@@ -74,8 +76,12 @@ def body_histories(
     dict of str to ndarray
         All of them, or without the columns that the arrays are made of.
     """
-    if not model.shows_bodies:
+    if not (model.shows_bodies or model.links):
         return dict(values)
+    kept = {name: each for name, each in values.items() if name in SCHEMA}
+    kept |= link_histories(model, values)
+    if not model.shows_bodies:
+        return kept
     bodies = range(model.system.bodies())
     found: dict[str, Generic] = {
         name: np.array([values[column_of(one, k)] for k in bodies]) for name, one in OF_EACH.items()
@@ -84,8 +90,15 @@ def body_histories(
         [model.contact_states(run.mode, k) for k in bodies], dtype=np.int8
     )
     found["body"] = np.array(bodies) + 1
-    kept = {name: each for name, each in values.items() if name in SCHEMA}
     return kept | found
+
+
+def link_histories(model: ContactModel, values: Mapping[str, Generic]) -> dict[str, Generic]:
+    """Give histories of all restrainers in one array each, where there are some."""
+    if not model.links:
+        return {}
+    links = range(model.links)
+    return {name: np.array([values[column_of(name, i)] for i in links]) for name in OF_EACH_LINK}
 
 
 def relative_histories(values: Mapping[str, Generic], setting: Setting) -> dict[str, Generic]:
@@ -148,7 +161,7 @@ def energy_histories(model: ContactModel, run: Trajectory) -> dict[str, Generic]
         "kinetic_energy": stored[:, 0].copy(),
         "potential_energy": stored[:, 1].copy(),
         "elastic_energy": stored[:, 2].copy(),
-        "dissipated_energy": work[:, 0].copy(),
+        "dissipated_energy": work[:, 0] + lost[:, LINK_LOSS],
         "impact_energy": lost[:, IMPACT_LOSS].copy(),
         "repinning_energy": lost[:, REPINNING_LOSS].copy(),
         "input_energy": work[:, 1] + lost[:, IMPULSIVE_INPUT],
@@ -166,8 +179,12 @@ def event_columns(model: ContactModel, run: Trajectory) -> dict[str, Generic]:
     }
     if model.shows_bodies:
         highest = np.isin(events.kind, (OVERTURNING, TOPPLED))
-        of = events.memory[:, model.memory.index("body_of_event")]
-        contacts["event_body"] = np.where(highest, 1, of).astype(int)[shown]
+        of_event = events.memory[:, model.memory.index("body_of_event")]
+        contacts["event_body"] = np.where(highest, 1, of_event).astype(int)[shown]
+    if model.links:
+        whole = np.isin(events.kind, (OVERTURNING, TOPPLED))
+        of_event = events.memory[:, model.memory.index("link_of_event")]
+        contacts["event_restrainer"] = np.where(whole, 0, of_event).astype(int)[shown]
     return {
         "event_time": events.time[shown],
         "event_kind": events.kind[shown].astype(np.int8),

@@ -24,6 +24,7 @@ from rockframe.results.variables.requests import (
     POINTS,
     REACTIONS,
 )
+from rockframe.results.variables.restrainers import RESTRAINER_SCALARS, RESTRAINERS
 from rockframe.results.variables.runs import (
     CERTIFICATE,
     ENERGY_HISTORIES,
@@ -49,6 +50,8 @@ _TABLES: Final = (
     MOTION_AFTER_END,
     ENERGY_HISTORIES,
     BODIES,
+    RESTRAINERS,
+    RESTRAINER_SCALARS,
     ACCELERATIONS,
     REACTIONS,
     OTHERS,
@@ -114,6 +117,7 @@ COORDINATES: Final = (
     "point_x",
     "point_y",
     "body",
+    "restrainer",
     "scale",
     CASE,
     MOTION,

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from rockframe.compiled import Integers
-from rockframe.dynamics.events import IMPACT, SILENT
+from rockframe.dynamics.events import IMPACT, LINK_BREAKS, SILENT
 from rockframe.dynamics.protocol import BODY_FORCES, column_of
 from rockframe.errors import or_missing
 from rockframe.motion import GroundMotion
@@ -117,9 +117,12 @@ def answers_of(system: Assembly, plan: Plan, run: Trajectory, missing: list[str]
     if system.model.shows_bodies:
         told["peak_body_rotation"] = _peak_rotations(system, along)
     places: dict[str, Generic] = {}
+    if system.model.links:
+        told |= _of_links(system, run, along)
+        places = {"restrainer": np.array(system.setting.link_names)}
     if plan.points:
         told |= point_peaks(plan.points, along, load)
-        places = point_labels(plan.points)
+        places |= point_labels(plan.points)
         values |= point_histories(plan.points, values, load)
     shown = run.events.kind != SILENT
     impulses = {name: each[shown] for name, each in events.impulses(load.body.mass).items()}
@@ -237,6 +240,7 @@ def _along(system: Assembly, plan: Plan, run: Trajectory) -> AlongSteps:
             names += OF_SOIL_FRICTION
         if system.model.shows_bodies:
             names += rotations_of(system.model.system.bodies())
+        names += forces_of_links(system.model.links)
         shown: dict[str, Generic] = {**observe_steps(system.model, steps, memory, names)}
         shown |= friction_demands(shown, load)
 
@@ -264,6 +268,19 @@ def _along(system: Assembly, plan: Plan, run: Trajectory) -> AlongSteps:
 def rotations_of(bodies: int) -> tuple[str, ...]:
     """Name the columns of the rotations of all bodies."""
     return tuple(column_of("rotation", k) for k in range(bodies))
+
+
+def forces_of_links(links: int) -> tuple[str, ...]:
+    """Name the columns of the forces of all restrainers."""
+    return tuple(column_of("restrainer_force", i) for i in range(links))
+
+
+def _of_links(system: Assembly, run: Trajectory, along: AlongSteps) -> dict[str, Generic | float]:
+    """Give the largest force of each restrainer, and how many broke."""
+    names = forces_of_links(system.model.links)
+    peaks = along.largest(lambda shown: np.abs([shown[name] for name in names]))[0]
+    broken = int(np.sum(run.events.kind == LINK_BREAKS))
+    return {"peak_restrainer_force": peaks, "broken_restrainer_count": broken}
 
 
 def _peak_rotations(system: Assembly, along: AlongSteps) -> Array:

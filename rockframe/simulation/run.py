@@ -213,7 +213,8 @@ def run(
     -------
     xarray.Dataset
     """
-    for column in () if system.model.shows_bodies else system.model.columns:
+    lists = system.model.shows_bodies or system.model.links
+    for column in () if lists else system.model.columns:
         schema_row(column.name)  # before the run
     response = respond(system, plan)
     summary, missing = response.trajectory, response.missing

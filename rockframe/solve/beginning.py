@@ -11,6 +11,7 @@ from rockframe.dynamics.events import FLIGHT, FULL
 from rockframe.dynamics.protocol import (
     IMPACT_LOSS,
     IMPULSIVE_INPUT,
+    LINK_LOSS,
     REPINNING_LOSS,
     ContactModel,
     Ending,
@@ -153,7 +154,7 @@ def _state_of(model: ContactModel, start: Start | Ending) -> tuple[int, Vector, 
         return model.initial(start)
     memory = start.memory.copy()
     # losses are counted anew in each run
-    memory[IMPACT_LOSS] = memory[REPINNING_LOSS] = memory[IMPULSIVE_INPUT] = 0.0
+    memory[[IMPACT_LOSS, REPINNING_LOSS, IMPULSIVE_INPUT, LINK_LOSS]] = 0.0
     return start.mode, start.state.copy(), memory
 
 

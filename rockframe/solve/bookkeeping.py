@@ -11,6 +11,7 @@ from rockframe.dynamics.events import FLIGHT, FULL, IMPACT, OVERTURNING, REST, T
 from rockframe.dynamics.protocol import (
     IMPACT_LOSS,
     IMPULSIVE_INPUT,
+    LINK_LOSS,
     REPINNING_LOSS,
     Ground,
 )
@@ -53,7 +54,7 @@ def audit(
     """
     energies = energies_at(equations, mode, w.state, w.answers)
     stored = energies.gravity + energies.from_rest
-    lost = clock[at.DISSIPATED] + memory[IMPACT_LOSS] + memory[REPINNING_LOSS]
+    lost = clock[at.DISSIPATED] + memory[IMPACT_LOSS] + memory[REPINNING_LOSS] + memory[LINK_LOSS]
     supplied = clock[at.SUPPLIED] + memory[IMPULSIVE_INPUT]
     balance = energies.kinetic + stored + lost - supplied - clock[at.START_ENERGY]
     moved = max(energies.kinetic, abs(stored), lost, abs(supplied))

@@ -42,6 +42,8 @@ def misfits(parts: Parts) -> list[str]:
                 f"RigidGround and {' and '.join(others)} are both given; rigid ground carries a "
                 "block directly"
             )
+    if parts.links:
+        faults += _misfits_of_links(parts)
     if cap is not None and soil is None:
         faults.append("a CushionCap is given without a WinklerSoil for it to stand on")
     if pads is not None and soil is not None and cap is None and parts.stack is None:
@@ -52,6 +54,32 @@ def misfits(parts: Parts) -> list[str]:
     for part in given.values():
         if isinstance(part, OwnBase):
             faults += part.misfits(given)
+    return faults
+
+
+def _misfits_of_links(parts: Parts) -> list[str]:
+    """Give the faults of links with other parts."""
+    faults: list[str] = []
+    base = next((one for one in (parts.pads, parts.soil) if one is not None), None)
+    if base is None:
+        faults.append(
+            "a Restrainer is given in a scene on rigid ground, which has no equations with "
+            "restrainers yet; put the body on a stiff TwoSpringSupport or on a WinklerSoil"
+        )
+    if parts.cap is not None:
+        faults.append(
+            "a Restrainer and a CushionCap are both given; give the cap as the lowest body of a "
+            "Stack"
+        )
+    if isinstance(base, OwnBase):
+        faults.append(
+            "a body with a Restrainer stands on TwoSpringSupport or WinklerSoil, not on "
+            f"{type(base).__name__}"
+        )
+    if base is not None and getattr(base.si, "friction", None) is not None:
+        faults.append(
+            f"{type(base).__name__}: friction is not looked at in a scene with a Restrainer"
+        )
     return faults
 
 

@@ -8,6 +8,8 @@ import numpy as np
 from rockframe.components import FrameEquivalent, Stack
 from rockframe.signals.arrays import Array
 from rockframe.system.assembly import Assembly
+from rockframe.system.setting import Setting
+from rockframe.system.stack import StackSetting
 
 
 class LowerBody(NamedTuple):
@@ -15,6 +17,16 @@ class LowerBody(NamedTuple):
 
     outline: Array
     centre: tuple[float, float]
+
+
+class LinkedPoints(NamedTuple):
+    """Both points of a restrainer, from the middle of the lowest base [m], and their bodies.
+
+    Bodies are counted from 0 at the top; -1 is the ground.
+    """
+
+    points: Array
+    bodies: tuple[int, int]
 
 
 @dataclass(frozen=True)
@@ -48,6 +60,8 @@ class Geometry:
         Whether the kinematics are expanded in the rotation.
     lower : tuple of LowerBody
         Bodies of a stack beneath the block, from the top down.
+    ties : tuple of LinkedPoints
+        Points that restrainers link.
     """
 
     outline: Array
@@ -62,6 +76,7 @@ class Geometry:
     inclination: float
     small_rotation: bool
     lower: tuple[LowerBody, ...] = ()
+    ties: tuple[LinkedPoints, ...] = ()
 
     @property
     def level(self) -> float:
@@ -136,7 +151,14 @@ def geometry_of(scene: Assembly) -> Geometry:
         stacked=setting.stacked,
         inclination=scene.options.inclination,
         small_rotation=scene.options.small,
+        ties=_ties_of(setting),
     )
+
+
+def _ties_of(setting: Setting) -> tuple[LinkedPoints, ...]:
+    """Give the points that restrainers link."""
+    ties = setting.ties if isinstance(setting, StackSetting) else ()
+    return tuple(LinkedPoints(np.array(one.ends), (one.on, one.to)) for one in ties)
 
 
 def _of_stack(stack: Stack, scene: Assembly) -> Geometry:
@@ -164,6 +186,7 @@ def _of_stack(stack: Stack, scene: Assembly) -> Geometry:
         inclination=0.0,
         small_rotation=scene.options.small,
         lower=tuple(lower),
+        ties=_ties_of(scene.setting),
     )
 
 

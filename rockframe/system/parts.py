@@ -4,12 +4,21 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, cast
 
-from rockframe.components import Block, Component, CushionCap, RigidGround, Stack
+from rockframe.components import Block, Component, CushionCap, Link, RigidGround, Stack
 from rockframe.components.block_numbers import BlockSI
 from rockframe.errors import shown
 from rockframe.motion import GroundMotion
 from rockframe.system.bodies import Cap, cap_under
-from rockframe.system.slots import SHIPPED, beyond_models, hint_for, slot_of, slots
+from rockframe.system.slots import (
+    RESTRAINER,
+    SHIPPED,
+    beyond_models,
+    hint_for,
+    kind_of_slot,
+    numbered,
+    slot_of,
+    slots,
+)
 
 
 @dataclass(frozen=True)
@@ -27,8 +36,11 @@ class Parts:
     @classmethod
     def of(cls, by_slot: Mapping[str, Component | GroundMotion | None]) -> "Parts":
         """Give parts by their slots, in whatever order; None fills none."""
-        rows = [(slot, by_slot.get(slot)) for slot in slots()]
-        return cls(tuple((slot, part) for slot, part in rows if part is not None))
+        order = {slot: i for i, slot in enumerate(slots())}
+        given = [slot for slot, part in by_slot.items() if part is not None]
+        # several of a kind keep their order
+        given.sort(key=lambda slot: order[kind_of_slot(slot)])
+        return cls(tuple((slot, by_slot[slot]) for slot in given))  # type: ignore[misc]
 
     def __getitem__(self, slot: str) -> Component:
         """Give the part in a slot, in a scene that has it."""
@@ -90,7 +102,16 @@ class Parts:
 
     def own(self) -> dict[str, Component]:
         """Give the parts in slots that scenes of users' own have, by these."""
-        return {slot: part for slot, part in self.components().items() if slot not in SHIPPED}
+        return {
+            slot: part
+            for slot, part in self.components().items()
+            if kind_of_slot(slot) not in SHIPPED
+        }
+
+    @property
+    def links(self) -> tuple[Link, ...]:
+        """The links between points of bodies, ground and walls."""
+        return tuple(part for part in self.structural() if isinstance(part, Link))
 
     @property
     def the_block(self) -> BlockSI:
@@ -111,7 +132,7 @@ class Parts:
     @property
     def signature(self) -> frozenset[str]:
         """Names of the structural parts that are there; rigid ground goes without saying."""
-        return frozenset(self.components().keys() - {"ground"})
+        return frozenset(kind_of_slot(slot) for slot in self.components()) - {"ground"}
 
 
 def sort_parts(given: Sequence[object], faults: list[str]) -> Parts:
@@ -133,6 +154,10 @@ def sort_parts(given: Sequence[object], faults: list[str]) -> Parts:
         slot = slot_of(part)
         if slot is None:
             faults.append(f"{shown(part)} is not a part of a system{hint_for(part)}")
+        elif slot == RESTRAINER:
+            count = sum(kind_of_slot(one) == RESTRAINER for one in found)
+            found[numbered(slot, count + 1)] = part
+            faults += beyond_models(part)
         elif slot in found:
             name = type(part).__name__
             faults.append(f"{name} is given twice: {shown(found[slot])} and {shown(part)}")

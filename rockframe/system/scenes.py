@@ -15,8 +15,8 @@ from rockframe.system.own_scene import OwnScene
 from rockframe.system.parts import Parts
 from rockframe.system.rigid_ground import rigid_ground_setting
 from rockframe.system.setting import Setting
-from rockframe.system.slots import support_of
-from rockframe.system.stack import StackSetting, stack_setting
+from rockframe.system.slots import RESTRAINER, support_of
+from rockframe.system.stack import StackSetting, block_setting, stack_setting
 from rockframe.system.stacked import CascadeSetting, CoupledSetting, StackedSetting
 
 
@@ -89,10 +89,11 @@ def _stacked(kind: type[StackedSetting], parts: Parts, options: Options) -> Stac
 
 
 def _upon_one_another(slot: str, parts: Parts, options: Options) -> StackSetting:
-    """Put a stack on the base in a slot."""
+    """Put a stack, or a block with restrainers, on the base in a slot."""
     if parts.stack is None:
-        raise TypeError
-    return stack_setting(parts.stack, parts.components().get(slot, RigidGround()), options)
+        return block_setting(parts.the_block, parts[slot], options, parts.links)
+    base = parts.components().get(slot, RigidGround())
+    return stack_setting(parts.stack, base, options, parts.links)
 
 
 _STACK = frozenset({"block", "pads", "cap", "soil"})
@@ -129,6 +130,15 @@ _SHIPPED: Final = (
         partial(_upon_one_another, "pads"),
     ),
     Scene("Stack + WinklerSoil", frozenset({"stack", "soil"}), partial(_upon_one_another, "soil")),
+    *(
+        Scene(
+            f"{upper} + {lower} + Restrainer (one or several)",
+            frozenset({slot, under, RESTRAINER}),
+            partial(_upon_one_another, under),
+        )
+        for upper, slot in (("Block", "block"), ("Stack", "stack"))
+        for lower, under in (("TwoSpringSupport", "pads"), ("WinklerSoil", "soil"))
+    ),
 )
 
 

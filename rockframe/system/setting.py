@@ -99,6 +99,11 @@ class Setting(ABC):
         """The bases that give way, from that of the body down; none on rigid ground."""
         return ()
 
+    @property
+    def link_names(self) -> tuple[str, ...]:
+        """What results call links between points, of which most scenes have none."""
+        return ()
+
     @cached_property
     def uplift_angle(self) -> float:
         """Rotation on its base at which a body loses full contact; NaN if never [rad].
@@ -165,6 +170,8 @@ class Setting(ABC):
             reasons.append("its centre of mass is beside the middle of its base")
         if not self.slope.level:
             reasons.append("its base is inclined")
+        if not reasons:
+            reasons.append("restrainers pull it")
         return [
             f"at rest the body leans by {lean:.4g} rad, {100.0 * share:.3g} % of its "
             f"overturning angle to that side, since {' and '.join(reasons)}"

@@ -10,6 +10,8 @@ from rockframe.components import (
     Component,
     CushionCap,
     FrameEquivalent,
+    Link,
+    Restrainer,
     RigidGround,
     Stack,
     TwoSpringSupport,
@@ -49,9 +51,12 @@ _KINDS: Final[dict[type, Kind]] = {
     CushionCap: Kind("cap"),
     WinklerSoil: Kind("soil", bed_under),
     RigidGround: Kind("ground", rigid_under),
+    Restrainer: Kind("restrainer"),
     GroundMotion: Kind("motion"),
 }
 
+RESTRAINER: Final = "restrainer"
+"""The slot of links, of which a scene may have several."""
 SHIPPED: Final = tuple(dict.fromkeys(kind.slot for kind in _KINDS.values()))
 """Slots of the package's own parts, in a fixed order; that of the motion is the last."""
 
@@ -65,6 +70,22 @@ def slots() -> tuple[str, ...]:
 def add_base(kind: type[OwnBase]) -> None:
     """Make a user's own base known."""
     _KINDS[kind] = Kind(kind.slot, kind.support)
+
+
+def add_link(kind: type[Link]) -> None:
+    """Make a user's own link known."""
+    _KINDS[kind] = Kind(RESTRAINER)
+
+
+def numbered(slot: str, number: int) -> str:
+    """Give the slot of one of several parts of a kind, counted from 1."""
+    return slot if number == 1 else f"{slot}_{number}"
+
+
+def kind_of_slot(slot: str) -> str:
+    """Give the slot of a kind of which there may be several parts."""
+    head, _, number = slot.rpartition("_")
+    return head if head == RESTRAINER and number.isdigit() else slot
 
 
 def add_part(kind: type[Component], slot: str) -> None:

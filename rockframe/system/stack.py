@@ -4,13 +4,15 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
-from rockframe.components import Component, Stack
+from rockframe.components import Component, Link, Stack
+from rockframe.components.block_numbers import BlockSI
 from rockframe.dynamics.statics import Stand, StandingBody, StandingChain, link_of
 from rockframe.errors import AssemblyError
 from rockframe.system.bodies import SupportedBody, body_of_block
-from rockframe.system.load import Load
+from rockframe.system.links import Placed, placed
+from rockframe.system.load import Load, load_of
 from rockframe.system.options import Options
 from rockframe.system.overturning_energy import least_overturning_energy
 from rockframe.system.restraints import restraint_words
@@ -24,6 +26,7 @@ from rockframe.system.words import Words
 
 if TYPE_CHECKING:
     from rockframe.dynamics.base_numbers import BaseNumbers
+    from rockframe.dynamics.chain.linked import ChainLink
     from rockframe.dynamics.chain.model import AtRest, ChainBody
     from rockframe.dynamics.protocol import ContactModel
 
@@ -46,17 +49,22 @@ class StackSetting(Setting):
         How far the middle of each base is to the right of that of the body below [m].
     bases : tuple of Support
         What each stands on, under all that it carries.
+    ties : tuple of Placed
+        What links their points.
     """
 
     bodies: tuple[SupportedBody, ...]
     tops: tuple[float, ...]
     offsets: tuple[float, ...]
     bases: tuple[Support, ...]
+    ties: tuple[Placed, ...] = ()
 
     @property
     def model(self) -> str:
         """Name of the model."""
-        return "stack"
+        if len(self.bodies) == 1:
+            return f"{self.bases[0].model}-restrained"
+        return "stack-restrained" if self.ties else "stack"
 
     @property
     def supports(self) -> tuple[Support, ...]:
@@ -84,15 +92,22 @@ class StackSetting(Setting):
         return tuple(found)
 
     @property
+    def link_names(self) -> tuple[str, ...]:
+        """What results call the ties."""
+        return tuple(one.name for one in self.ties)
+
+    @property
     def leans(self) -> bool:
-        """Whether some body is not symmetric, or not above the middle of what it stands on."""
+        """Whether one side is not as the other, by bodies, offsets or ties."""
+        if self.ties:
+            return True
         eccentric = any(body.eccentricity != 0.0 for body in self.bodies)
         return eccentric or any(self.offsets) or not self.slope.level
 
     def cautions(self) -> list[str]:
         """Give the warnings of all bases, each with the body that it is under."""
         found = [
-            f"under body {k}: {text}"
+            f"under body {k}: {text}" if len(self.bodies) > 1 else text
             for k, base in enumerate(self.bases, 1)
             for text in base.cautions()
         ]
@@ -108,11 +123,15 @@ class StackSetting(Setting):
             numbers.append((f"body {k}", f"{size} above its base, {body.mass:.6g} kg"))
             numbers += [(f"base {k}: {name}", words) for name, words in told.numbers]
             left_out += [one for one in told.left_out if one not in left_out]
+        numbers += [(one.name, one.words()) for one in self.ties]
         laws = list(dict.fromkeys(base.words().law for base in self.bases))
         projected = (
             "on rigid bases plastic, by projection on the contacts that are admissible; of "
             "several the one that loses the least energy"
         )
+        pulled = [
+            ("restrainers", "a force along each, between its points; slack, taut, yielding, broken")
+        ]
         return Words(
             equations=[
                 ("full, left, right", f"{3 * len(self.bodies)} coordinates less one for each point "
@@ -120,6 +139,7 @@ class StackSetting(Setting):
                 ("flight", "free fall of a body and all above it, apart or together"),
                 ("impact", "an impulse between two bodies; the velocities of all of them answer"),
                 *([("", projected)] if any(self.rigid) else []),
+                *(pulled if self.ties else ()),
             ],
             restraint=f"of every body on what it stands on; {restraint_words(self.options)}",
             numbers=numbers,
@@ -144,6 +164,11 @@ class StackSetting(Setting):
         return tuple(found)
 
     @cached_property
+    def chain_ties(self) -> "tuple[ChainLink, ...]":
+        """The ties as the equations take them."""
+        return tuple(one.chain_link(self.body.mass) for one in self.ties)
+
+    @cached_property
     def _standing(self) -> StandingBodies:
         from rockframe.dynamics.on_base import OnBase
 
@@ -163,7 +188,7 @@ class StackSetting(Setting):
             numbers.append(self.bases[lowest].law(law, mass, carried))
             part = OnBase(law, numbers[-1].law)
             found.append(link_of(part, body.mass / mass, height - body.centre_height, beside))
-        chain = StandingChain(tuple(found), self.slope.along_gravity)
+        chain = StandingChain(tuple(found), self.slope.along_gravity, self.chain_ties)
         return StandingBodies(chain, mass, tuple(numbers))
 
     def _together(self, some: range) -> SupportedBody:
@@ -211,6 +236,11 @@ class StackSetting(Setting):
         """Give the equations of small motion about rest, of each body on what it stands on."""
         if not self.groups:
             return None
+        if len(self.bodies) == 1:
+            found = self._standing.small_motion(self._rest)
+            return SmallMotion(
+                ("vertical_displacement", "rotation"), *(one[::-1, ::-1] for one in found)
+            )
         names = ("body_rotation", "body_vertical_displacement") * len(self.groups)
         which = tuple(some[-1] + 1 for some in self.groups)
         return SmallMotion(names, *self._standing.small_motion(self._rest), bodies=which)
@@ -249,6 +279,8 @@ class StackSetting(Setting):
         if not self.groups:
             return [self._on_rigid_bases(rotation) for rotation in rotations]
         found = self._standing.held(rotations)
+        if len(self.bodies) == 1:
+            return found
         return [
             replace(one, reactions={})
             if one is not None and self._bear(one.restoring_moment) else None
@@ -295,8 +327,26 @@ class StackSetting(Setting):
         return Statics(rise, base_moment, moment, state)
 
     def equilibrium(self) -> dict[str, float]:
-        """Give nothing beside the rotation at rest: each base has a settlement of its own."""
-        return {}
+        """Give what the one base and the ties show at rest; each of several has its own."""
+        found = dict[str, Any]()
+        if len(self.bodies) == 1:
+            shown = self._standing.reactions(self._rest)
+            found = {
+                self.bases[0].settlement_name: self.bases[0].settlement,
+                **{f"static_{name}": value for name, value in shown.items()},
+            }
+        return found | self.tied_at_rest()
+
+    def tied_at_rest(self) -> dict[str, Any]:
+        """Give forces and elongations of ties at rest, by their names in the schema."""
+        if not self.ties:
+            return {}
+        tied = self._standing.chain.tied(self._rest)
+        return {
+            "restrainer": [one.name for one in self.ties],
+            "static_restrainer_force": [self.body.mass * one.force for one in tied],
+            "static_restrainer_elongation": [one.elongation for one in tied],
+        }
 
     def contact_model(self) -> "ContactModel":
         """Give the equations of bodies upon one another."""
@@ -307,7 +357,17 @@ class StackSetting(Setting):
             combined_body(self.bodies[: k + 1], self.tops, self.offsets).overturning_angles
             for k in range(1, len(self.bodies))
         ]
-        return chain(self.links, self.body.mass, rest if self.leans else None, limits)
+        return chain(
+            self.links, self.body.mass, rest if self.leans else None, limits, self.chain_ties,
+            self._held_height if self.ties and len(self.bodies) == 1 else None,
+        )  # fmt: skip
+
+    def _held_height(self, rotation: float) -> float:
+        """Give the height at which the one body starts at a rotation, with its ties."""
+        stands = self._standing.chain.settled([rotation])
+        if stands is None:
+            raise AssemblyError([NO_REST])
+        return stands[0].state.vertical
 
 
 def combined_body(
@@ -334,16 +394,45 @@ def combined_body(
     return SupportedBody(lowest.half_width, height, mass, inertia, shape_factor, across)
 
 
-def stack_setting(stack: Stack, base: Component, options: Options) -> StackSetting:
+def block_setting(
+    block: BlockSI, base: Component, options: Options, links: Sequence[Link]
+) -> StackSetting:
+    """Give the scene of a block with restrainers on a base.
+
+    Raises
+    ------
+    AssemblyError
+        It stands on a slope, or its rotation is small; a fault of its restrainers.
+    """
+    _refuse("a block with restrainers", options, small=False)
+    load = load_of(block, options)
+    support = support_of(base, load)
+    ties = placed(links, (load.body,), (0.0,), (0.0,))
+    return StackSetting(load, (load.body,), (0.0,), (0.0,), (support,), ties)
+
+
+def _refuse(what: str, options: Options, *, small: bool) -> None:
+    """Refuse options that the equations have not."""
+    faults = list[str]()
+    if options.inclination != 0.0:
+        faults.append(f"{what} stands on level ground: inclination must be zero")
+    if options.small and not small:
+        faults.append(f"{what} rotates as far as it does: give rotation='finite'")
+    if faults:
+        raise AssemblyError(faults)
+
+
+def stack_setting(
+    stack: Stack, base: Component, options: Options, links: Sequence[Link] = ()
+) -> StackSetting:
     """Give the scene of a stack on a base.
 
     Raises
     ------
     AssemblyError
-        It stands on a slope.
+        It stands on a slope; a fault of its restrainers.
     """
-    if options.inclination != 0.0:
-        raise AssemblyError(["a Stack stands on level ground: inclination must be zero"])
+    _refuse("a Stack", options, small=not links)
     bodies = tuple(body_of_block(one) for one in stack.si.bodies)
     tops = tuple(one.height - one.centre_height for one in stack.si.bodies)
     offsets = stack.si.offsets
@@ -351,4 +440,5 @@ def stack_setting(stack: Stack, base: Component, options: Options) -> StackSetti
         support_of(part, Load(combined_body(bodies[: k + 1], tops, offsets), options))
         for k, part in enumerate((*stack.interfaces, base))
     )
-    return StackSetting(Load(bodies[0], options), bodies, tops, offsets, bases)
+    ties = placed(links, bodies, tops, offsets)
+    return StackSetting(Load(bodies[0], options), bodies, tops, offsets, bases, ties)

@@ -232,6 +232,7 @@ DIMENSIONS = {
     "set_misfit": (0, 0, 0, 0),
 }
 DIMENSION_NAMES = {
+    "restrainer",
     "body",
     "time",
     "sample_after_end",

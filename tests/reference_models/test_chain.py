@@ -15,7 +15,7 @@ from rockframe.dynamics.chain.rows import COLUMNS, GUARDS, OBSERVED, lists_of, r
 from rockframe.dynamics.coupled.model import system_of
 from rockframe.dynamics.on_base import Mode
 from rockframe.dynamics.pads import CORNER, CORNER_GUARDS
-from rockframe.dynamics.protocol import Ground
+from rockframe.dynamics.protocol import MEMORY, Ground
 from rockframe.system.assembly import assemble
 
 pytestmark = pytest.mark.reference_models
@@ -107,7 +107,7 @@ def test_velocities_answer_impulses_as_solved_by_hand(pair):
 
 def test_what_is_observed_is_what_two_bodies_show(pair):
     by_hand, chain = pair
-    memory = np.random.default_rng(5).normal(size=6)
+    memory = np.random.default_rng(5).normal(size=len(MEMORY) + 1)
     # motion and forces of the block, the cap's motion, the block on the cap, then the bases
     cap = COLUMNS + np.arange(4)
     bases = [*range(COLUMNS - OBSERVED, COLUMNS - 1), *range(2 * COLUMNS - OBSERVED, 2 * COLUMNS)]

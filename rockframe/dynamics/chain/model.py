@@ -1,7 +1,7 @@
 """Assembly of the model of a chain of bodies: sizes, bounds of its frequencies, initial state."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -18,9 +18,11 @@ from rockframe.dynamics.bed import Rigid, both_contacts
 from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, DEGREES, ROTATION, VERTICAL
 from rockframe.dynamics.body import Body, BodyState
 from rockframe.dynamics.chain import rows as at
+from rockframe.dynamics.chain.linked import ChainLink, LinkedChain, linked
 from rockframe.dynamics.chain.rigid import KEPT, RigidChain
 from rockframe.dynamics.chain.rows import GUARDS, OBSERVED, lists_of, row_of
 from rockframe.dynamics.chain.system import Chain
+from rockframe.dynamics.links import GUARDS as GUARDS_OF_LINK
 from rockframe.dynamics.pads import CORNER_GUARDS, ROUNDING
 from rockframe.dynamics.protocol import (
     BODY_COLUMNS,
@@ -76,6 +78,8 @@ def chain(
     mass: float,
     rest: Sequence[AtRest] | None = None,
     limits: Sequence[tuple[float, float]] = (),
+    ties: Sequence[ChainLink] = (),
+    held: Callable[[float], float] | None = None,
 ) -> ContactModel:
     """Assemble the model of bodies upon one another.
 
@@ -90,42 +94,62 @@ def chain(
     limits : sequence of tuple of float
         Rotations to the left and to the right at which each body but the first overturns, with
         all above it; none are looked at unless given [rad].
+    ties : sequence of ChainLink
+        What links points of bodies.
+    held : callable, optional
+        From a rotation of the highest body to the height at which it starts there; unless
+        given, that at which its base carries its weight.
 
     Returns
     -------
     ContactModel
     """
     top, count = links[0].body, len(links)
-    system = chain_of(links)
-    fastest, damping_rate = fastest_vibration(links)
+    bare = chain_of(links)
+    system = linked(bare, ties) if ties else bare
+    fastest, damping_rate = fastest_vibration(links, ties)
     rigid = some_rigid(links)
+    if rigid and ties:
+        msg = "links of bodies on rigid bases have no equations yet"
+        raise TypeError(msg)
     carried = np.cumsum([one.mass for one in links])
+    starts = Starts(links, rest, held)
+    if isinstance(system, LinkedChain):
+        mode, state, _ = _initial(system, starts, Start())
+        system.keep_energies(mode, state)
+    tied = system.link_count if isinstance(system, LinkedChain) else 0
+    scales = [size for one in ties for size in one.numbers.variable_scales]
     return ContactModel(
         name="stack",
         system=system,
         rotation_limits=(math.atan2(top.left, top.height), math.atan2(top.right, top.height)),
         rotation_weights=_weights(count, 0),
-        scales=_scales(links),
+        scales=np.append(_scales(links), scales),
         guard_tolerance=np.concatenate([
-            _tolerance(one.base, on / one.mass) for one, on in zip(links, carried, strict=True)
+            *(_tolerance(one.base, on / one.mass) for one, on in zip(links, carried, strict=True)),
+            *(_tie_tolerance(one) for one in ties),
         ]),
-        columns=tuple(column for k in range(count) for column in _columns(links[k].base, k)),
+        columns=(
+            *(column for k in range(count) for column in _columns(links[k].base, k)),
+            *(column for i in range(tied) for column in _tie_columns(i)),
+        ),
         memory=(
             *MEMORY, *(f"held_place_of_{k}" for k in range(1, count)), "body_of_event",
-            *(KEPT if rigid else ()),
+            *(KEPT if rigid else ()), *(("link_of_event",) if ties else ()),
         ),
-        shows_bodies=True,
+        shows_bodies=count > 1,
+        links=tied,
         mass=mass,
         fastest_frequency=fastest,
         damping_rate=damping_rate,
         energy_scale=sum(
             one.mass * one.body.gravity * radius_of(one.body) * one.body.angle for one in links
         ),
-        initial=lambda start: _initial(system, links, rest, start),
+        initial=lambda start: _initial(system, starts, start),
         rounding=None if all(is_rigid(one.base) for one in links) else rounding_at(
             sum(radius_of(one.body) for one in links),
             sum(one.base.settlement for one in links),
-            _answers(links), fastest, 0,
+            _answers(links), fastest, len(scales),
         ),
         other_limits=np.array(
             [each for k, both in enumerate(limits, 1) for each in (*both, *_weights(count, k))]
@@ -164,6 +188,21 @@ def _columns(base: BaseNumbers, k: int) -> tuple[Column, ...]:
     )
 
 
+def _tie_tolerance(tie: ChainLink) -> Vector:
+    """Give the rounding noise of a link's guards."""
+    reach = math.hypot(*tie.apart) + math.hypot(*tie.on_point) + math.hypot(*tie.to_point)
+    return np.full(GUARDS_OF_LINK, ROUNDING * reach)
+
+
+def _tie_columns(i: int) -> tuple[Column, ...]:
+    """Name the columns of a link."""
+    return (
+        Column(column_of("restrainer_force", i), per_mass=True),
+        Column(column_of("restrainer_elongation", i)),
+        Column(column_of("restrainer_state", i)),
+    )
+
+
 def _scales(links: Sequence[ChainBody]) -> Vector:
     places, sways, place_rates, sway_rates, carried = [], [], [], [], 0.0
     for one in links:
@@ -192,19 +231,43 @@ def _answers(links: Sequence[ChainBody]) -> Vector:
     return np.array([*places, *np.ones(len(links))])
 
 
-def fastest_vibration(links: Sequence[ChainBody]) -> tuple[float, float]:
+def fastest_vibration(
+    links: Sequence[ChainBody], ties: Sequence[ChainLink] = ()
+) -> tuple[float, float]:
     """Give bounds of angular frequency and damping rate, whichever of the bodies fly."""
     fastest = damping = 0.0
     for first in range(len(links)):
         some = links[first:]
+        pulled, slowed = _of_ties(some, ties, first)
         for stands in (True, False):
             mass, stiffness, damped = small_motion_matrices(some, stands=stands)
-            fastest = max(fastest, _largest(mass, stiffness))
-            damping = max(damping, _largest(mass, damped))
+            fastest = max(fastest, _largest(mass, stiffness + pulled))
+            damping = max(damping, _largest(mass, damped + slowed))
     # a body that stands still on a rigid base makes no vibration faster; one that rocks is a
     # pendulum of its own
     rocking = sum(rocking_rate(_per_own_mass(one)) ** 2 for one in links if is_rigid(one.base))
     return math.sqrt(max(fastest, rocking)), damping
+
+
+def _of_ties(
+    links: Sequence[ChainBody], ties: Sequence[ChainLink], first: int
+) -> tuple[Matrix, Matrix]:
+    """Give what links add to stiffness and damping, whichever way they are directed.
+
+    Bodies above the first of some do not move.
+    """
+    size = 2 * len(links)
+    stiffness, damping = np.zeros((size, size)), np.zeros((size, size))
+    x, y, turn = small_ways(links)
+    for tie in ties:
+        way = np.zeros((2, size))
+        for k, point, sign in ((tie.on, tie.on_point, 1.0), (tie.to, tie.to_point, -1.0)):
+            if k >= first:
+                way[0] += sign * (x[k - first] + point[1] * turn[k - first])
+                way[1] += sign * (y[k - first] - point[0] * turn[k - first])
+        stiffness += tie.numbers.stiffness * way.T @ way
+        damping += tie.numbers.damping * way.T @ way
+    return stiffness, damping
 
 
 def _largest(mass: Matrix, matrix: Matrix) -> float:
@@ -219,20 +282,7 @@ def small_motion_matrices(
     In the order of rotation and height of each body relative to what it stands on, from the top
     down; the lowest one stands on the ground, or on nothing.
     """
-    count = len(links)
-    x, y, turn = (np.zeros((count, 2 * count)) for _ in range(3))
-    below_x, below_y, below_turn = (np.zeros(2 * count) for _ in range(3))
-    deck = 0.0
-    for k in range(count - 1, -1, -1):
-        one = links[k]
-        arm = 0.0 if k == count - 1 else deck + one.body.height
-        beside = 0.0 if k == count - 1 else one.beside
-        own, up = np.zeros(2 * count), np.zeros(2 * count)
-        own[2 * k], up[2 * k + 1] = 1.0, 1.0
-        x[k] = below_x + arm * below_turn + one.body.height * own
-        y[k] = below_y - beside * below_turn + up
-        turn[k] = below_turn + own
-        below_x, below_y, below_turn, deck = x[k], y[k], turn[k], one.top
+    x, y, turn = small_ways(links)
     mass = sum(
         one.mass * (np.outer(x[k], x[k]) + np.outer(y[k], y[k]))
         + one.body.inertia * np.outer(turn[k], turn[k])
@@ -251,11 +301,37 @@ def small_motion_matrices(
     return np.asarray(mass), np.diag(springs), np.diag(springs * times)
 
 
-def _initial(
-    system: Chain, links: Sequence[ChainBody], rest: Sequence[AtRest] | None, start: Start
-) -> tuple[int, Vector, Vector]:
-    """Start a run: all at rest but the first body, which is as told."""
+def small_ways(links: Sequence[ChainBody]) -> tuple[Matrix, Matrix, Matrix]:
+    """Give how the centres of mass move, and the bodies turn, with these coordinates."""
     count = len(links)
+    x, y, turn = (np.zeros((count, 2 * count)) for _ in range(3))
+    below_x, below_y, below_turn = (np.zeros(2 * count) for _ in range(3))
+    deck = 0.0
+    for k in range(count - 1, -1, -1):
+        one = links[k]
+        arm = 0.0 if k == count - 1 else deck + one.body.height
+        beside = 0.0 if k == count - 1 else one.beside
+        own, up = np.zeros(2 * count), np.zeros(2 * count)
+        own[2 * k], up[2 * k + 1] = 1.0, 1.0
+        x[k] = below_x + arm * below_turn + one.body.height * own
+        y[k] = below_y - beside * below_turn + up
+        turn[k] = below_turn + own
+        below_x, below_y, below_turn, deck = x[k], y[k], turn[k], one.top
+    return x, y, turn
+
+
+class Starts(NamedTuple):
+    """What starts are told by."""
+
+    links: Sequence[ChainBody]
+    rest: Sequence[AtRest] | None
+    held: Callable[[float], float] | None
+
+
+def _initial(system: Chain, starts: Starts, start: Start) -> tuple[int, Vector, Vector]:
+    """Start a run: all at rest but the first body, which is as told."""
+    count, rest = len(starts.links), starts.rest
+    tied = isinstance(system, LinkedChain)
     n = DEGREES * count
     placed = list(rest or [AtRest(0.0, 0.0)] * count)
     below = sum(one.rotation for one in placed[1:])
@@ -264,13 +340,16 @@ def _initial(
         rotation = first.rotation if start.rotation is None else start.rotation - below
         attitude = part.body.attitude(rotation)
         height = start.vertical_displacement
-        if height is None and is_rigid(links[0].base):
+        if height is None and is_rigid(starts.links[0].base):
             height = 0.0  # as its contact has it
+        elif height is None and starts.held is not None:
+            height = starts.held(rotation)
         elif height is None:
             lift = part.body.left * attitude.sine, -part.body.right * attitude.sine
             height = part.base.resting_height(*lift, ()) - attitude.rise
         placed[0] = AtRest(rotation, height)
-    state, memory, mode = np.zeros(2 * n), np.zeros(len(MEMORY) + count), 0
+    state, memory = np.zeros(2 * n + system.variables()), np.zeros(len(MEMORY) + count + tied)
+    mode = 0
     for k, one in enumerate(placed):
         part, moving = system.on_base(k), k == 0
         body = BodyState(
@@ -278,7 +357,7 @@ def _initial(
             start.vertical_velocity if moving else 0.0, 0.0,
         )  # fmt: skip
         i, x = BEFORE_HORIZONTAL * k, system.horizontal_of(k)
-        if is_rigid(links[k].base):
+        if is_rigid(starts.links[k].base):
             side = body.rotation or body.angular_velocity
             contact = both_contacts(int(side > 0.0), int(side < 0.0))
         else:
@@ -296,13 +375,16 @@ def _initial(
         )  # fmt: skip
         memory[HELD_PLACE + k] = pin + offset
         free = part.is_free(standing)
-        if k + 1 < count or free:
+        moves = tied or k + 1 < count
+        if moves or free:
             state[x] = pin + offset + part.body.about_pin(pin, body.rotation)
-        if k + 1 < count and not free:
+        if moves and not free:
             reach = part.body.reach(pin, part.body.attitude(body.rotation))
             state[n + x] = reach.rate * body.angular_velocity
         mode = system.with_part(mode, k, standing)
     if isinstance(system, RigidChain):
         memory = np.concatenate([memory, [1.0, 0.0, 0.0]])
         system.write_contacts(mode, state, memory)
+    if isinstance(system, LinkedChain):
+        mode = system.start_links(mode, state)
     return mode, state, memory

@@ -167,15 +167,31 @@ class Chain(Rows):
             dissipated += base.dissipated
             press_at(self, k, base.upward, base.moment, room)
             supplied -= mass * (ground.x * room[i + at.SPEED_X] + ground.y * room[i + at.SPEED_Y])
+        dissipated += self.pull(mode, state, room)
         self.solve(self.constrain(mode, state, room), room)
         for k in range(self.body_count):
             i = k * PLACES
             if self.part_mode(mode, k).slides:
                 slip = room[i + at.SWAY] - room[i + at.REACH] * room[i + at.RATE]
                 dissipated -= room[i + at.THRUST] * slip
-        out[DEGREES * self.body_count] = dissipated
-        out[DEGREES * self.body_count + 1] = supplied
+        powers = DEGREES * self.body_count + self.variables()
+        out[powers], out[powers + 1] = dissipated, supplied
         return out
+
+    @inlined
+    def pull(self, mode: int, state: Vector, room: Vector) -> float:
+        """Load bodies by what links them, and give what that dissipates: nothing links them."""
+        return 0.0
+
+    @inlined
+    def pulled_x(self, k: int) -> float:
+        """Give the last force of links on a body, to the right."""
+        return 0.0
+
+    @inlined
+    def pulled_y(self, k: int) -> float:
+        """Give the same upwards."""
+        return 0.0
 
     @kernel
     def some_end_slides(self, mode: int) -> bool:
@@ -199,6 +215,7 @@ class Chain(Rows):
         """
         room = self.places()
         place_bodies(self, mode, state, room)
+        self.pull(mode, state, room)
         x = y = angular = 0.0
         for k in range(self.body_count - 1, -1, -1):
             i, first = k * PLACES, BEFORE_HORIZONTAL * k
@@ -215,8 +232,9 @@ class Chain(Rows):
         force_x = force_y = 0.0
         for k in range(self.body_count):
             i, mass = k * PLACES, self.number(k, at.MASS)
-            force_x += mass * (room[i + at.X] + ground.x)
+            force_x += mass * (room[i + at.X] + ground.x) - self.pulled_x(k)
             force_y += mass * (room[i + at.Y] + self.number(k, at.GRAVITY) + ground.y)
+            force_y -= self.pulled_y(k)
             sine, cosine = room[i + at.SINE], room[i + at.COSINE]
             room[i + at.THRUST] = cosine * force_x - sine * force_y
             room[i + at.PRESS] = sine * force_x + cosine * force_y
@@ -224,6 +242,11 @@ class Chain(Rows):
     @kernel
     def guards_in(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
         """Give the guards of each body in turn, and their rates."""
+        return self.guards_of_bodies(mode, state, slope, ground)
+
+    @kernel
+    def guards_of_bodies(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
+        """Write the guards of each body in turn, and their rates."""
         values, changes = self.guard_room(0), self.guard_room(1)
         slides = self.some_end_slides(mode)
         for k in range(self.body_count):
@@ -270,6 +293,11 @@ class Chain(Rows):
     @kernel
     def energies(self, mode: int, state: Vector) -> Energies:
         """Give the energies of all bodies and bases."""
+        return self.energies_of_bodies(mode, state)
+
+    @kernel
+    def energies_of_bodies(self, mode: int, state: Vector) -> Energies:
+        """Give the energies of all bodies and bases, and leave how the bodies lie in the room."""
         room = self.places()
         place_bodies(self, mode, state, room)
         kinetic = gravity = elastic = change = rise = rate = 0.0
@@ -300,6 +328,13 @@ class Chain(Rows):
         self, mode: int, state: Vector, slope: Slope, ground: Ground, memory: Vector
     ) -> Vector:
         """Give motion and forces of each body in turn, from the top down, and of its base."""
+        return self.observe_bodies(mode, state, slope, ground, memory)
+
+    @kernel
+    def observe_bodies(
+        self, mode: int, state: Vector, slope: Slope, ground: Ground, memory: Vector
+    ) -> Vector:
+        """Write motion and forces of each body in turn, from the top down, and of its base."""
         out = self.column_room()
         self.find_corner_forces(mode, state, ground)
         self.forces_from(mode, state, slope, ground)

@@ -180,7 +180,7 @@ def _prepared(cases: CasesOfJob, case: int, vertical: bool) -> _Scene | None:
         return None  # samples are looked at, for friction
     if not system.options.slope.level or (vertical and not system.setting.flies):
         return None  # the ground is another one for each scene; or a block may leave it
-    if system.model.shows_bodies:
+    if system.model.shows_bodies or system.model.links:
         return None  # its equations work in lists, for which there are no lanes
     interval = STILL_INTERVAL if plan.motion is None else plan.motion.si.time_step
     begin = begun(

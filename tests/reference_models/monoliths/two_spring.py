@@ -25,7 +25,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from . import SIMULTANEOUS, Drive, Guard, crossings, polish, stepper
+from . import SIMULTANEOUS, Drive, Guard, crossings, polish, stepper, ties
 
 TOUCHING, RELAXING, CLEAR = "touching", "relaxing", "clear"
 SUBDIVISIONS = 8
@@ -96,6 +96,7 @@ class Result:
     initial_energy: float = 0.0
     final_energy: float = 0.0
     energy_residual: float = 0.0
+    ties: list[ties.Tie] = field(default_factory=list)
 
 
 class _Run:
@@ -141,6 +142,7 @@ class _Run:
         self.corner = {"L": TOUCHING, "R": TOUCHING}
         self.contact = "full"
         self.guards: list[Guard] = []
+        self.ties: list[ties.Tie] = []
         self.grace: set[str] = set()
         self.limit = self.theta
         self.ground_x: Callable = lambda t: 0.0 * t
@@ -196,19 +198,22 @@ class _Run:
                 lift = lift + force
                 moment = moment + force * arm
         ax, ay = self.ground_x(t), self.ground_y(t)
-        y_acc = lift - (self.g + ay)
+        turn, up, across = ties.forces(self.ties, z, xp)
+        ax = ax - across
+        y_acc = lift + up - (self.g + ay)
         if self.contact == "flight":
-            alpha_acc, x_acc = 0.0 * alpha, -ax
+            alpha_acc, x_acc = turn / self.inertia + 0.0 * alpha, -ax
         else:
             first, second = self.lever(alpha, xp)
-            alpha_acc = (moment - first * ax - first * second * alpha_dot**2) / (
+            alpha_acc = (moment + turn - first * ax - first * second * alpha_dot**2) / (
                 self.inertia + first**2
             )
             x_acc = first * alpha_acc + second * alpha_dot**2
         return alpha_acc, y_acc, x_acc, ends, ax, ay
 
     def rhs(self, t, z):
-        alpha_acc, y_acc, x_acc, ends, ax, ay = self.motion(t, z)
+        alpha_acc, y_acc, x_acc, ends, *_ = self.motion(t, self.whole(z))
+        ax, ay = self.ground_x(t), self.ground_y(t)
         alpha_dot, y_dot = z[3], z[4]
         x_dot = z[5] if self.contact == "flight" else self.lever(z[0])[0] * alpha_dot
         dissipated = 0.0
@@ -217,8 +222,16 @@ class _Run:
                 dissipated += self.c * rate * rate
             elif self.corner[name] == RELAXING:
                 dissipated += self.k * (self.delta - rise) * rate
+        for tie in self.ties:
+            dissipated += tie.lost_power(tie.length(self.whole(z))[2])
         work = -(ax * x_dot + ay * y_dot)
         return [alpha_dot, y_dot, x_dot, alpha_acc, y_acc, x_acc, dissipated, work]
+
+    def whole(self, z, xp=math):
+        """Give the state with the horizontal speed of a body that is held."""
+        if not self.ties or self.contact == "flight":
+            return z
+        return [*z[:5], self.lever(z[0], xp)[0] * z[3], *z[6:]]
 
     # energy ---------------------------------------------------------------------------------
     def energies(self, z):
@@ -229,6 +242,7 @@ class _Run:
         springs = 0.0
         for rise, *_ in self.corners(alpha, y).values():
             springs += 0.5 * self.k * max(0.0, self.delta - rise) ** 2
+        springs += sum(tie.stored(z) for tie in self.ties)
         return kinetic, self.g * y, springs
 
     # guards ---------------------------------------------------------------------------------
@@ -248,12 +262,14 @@ class _Run:
                 guards.append(Guard("land", name))
         if self.restraint == "leading-corner" and self.side:
             guards.append(Guard("side", ""))
+        guards += [guard for i, tie in enumerate(self.ties) for guard in tie.guards(i)]
         guards.append(Guard("topple", "+", strict=False))
         guards.append(Guard("topple", "-", strict=False))
         self.guards = guards
 
     def guard_values(self, t, z, xp=math):
-        alpha_acc, y_acc, _, ends, *_ = self.motion(t, z, xp)
+        z = self.whole(z, xp)
+        alpha_acc, y_acc, x_acc, ends, *_ = self.motion(t, z, xp)
         alpha, alpha_dot = z[0], z[3]
         out = []
         for guard in self.guards:
@@ -262,6 +278,11 @@ class _Run:
             elif guard.kind == "topple":
                 sign = 1.0 if guard.where == "+" else -1.0
                 out.append((self.limit - sign * alpha, -sign * alpha_dot))
+            elif guard.kind in ties.KINDS:
+                tie = self.ties[int(guard.where)]
+                length, way, rate, bend = tie.length(z, xp)
+                acc = way[0] * alpha_acc + way[1] * y_acc + way[2] * x_acc + bend
+                out.append(tie.value(guard.kind, length, rate, acc))
             else:
                 rise, rate, force, arm, bend = ends[guard.where]
                 acc = y_acc + arm * alpha_acc + bend * alpha_dot**2
@@ -321,7 +342,8 @@ class _Run:
 
     def due(self, t, z):
         """List the changes of contact that the present state asks for at once."""
-        asked = []
+        z = self.whole(z)
+        asked = [("turn", str(i)) for i, tie in enumerate(self.ties) if tie.turned(z)]
         alpha_acc, y_acc, _, ends, *_ = self.motion(t, z)
         for name, (rise, rate, force, arm, bend) in ends.items():
             state = self.corner[name]
@@ -372,6 +394,7 @@ def simulate(
     steps_per_period: float = 40.0,
     max_step: float | None = None,
     method: str = "DOP853",
+    tied: Sequence[ties.Tie] = (),
 ) -> Result:
     """Integrate a block on two springs from ``initial`` = (alpha, y, alpha', y').
 
@@ -431,15 +454,19 @@ def simulate(
         if run.finite:
             z[2] += run.eccentricity() * (1.0 - math.cos(alpha))
         z[5] = run.lever(alpha)[0] * alpha_dot
+    for tie in tied:
+        tie.begin(run.h, run.whole(z))
+    run.ties = list(tied)
     energy_start = sum(run.energies(z))
     peak = abs(alpha)
 
     def audit(now):
         nonlocal largest, worst
         terms = run.energies(now)
-        parts = (*terms, now[6], now[7], losses["repin"], losses["impact"])
+        broken = sum(tie.loss for tie in run.ties)
+        parts = (*terms, now[6], now[7], losses["repin"], losses["impact"], broken)
         largest = max(largest, *(abs(one) for one in parts))
-        balance = sum(terms) + now[6] + losses["repin"] + losses["impact"]
+        balance = sum(terms) + now[6] + losses["repin"] + losses["impact"] + broken
         worst = max(worst, abs(balance - energy_start - now[7]))
 
     def switch(t, z, asked):
@@ -447,6 +474,11 @@ def simulate(
         nonlocal overturned, ended, tension
         run.grace.clear()
         for _ in range(CASCADE):
+            for kind, name in asked:
+                if kind in ties.KINDS:
+                    run.ties[int(name)].switch(kind, run.whole(z))
+                    was, span = run.contact, _span(z)
+                    events.append(Event(float(t), kind, name, was, was, span, span))
             order = ("topple", "side", "leave", "slip", "clear", "engage", "settle", "land")
             for kind in order:
                 names = "".join(name for what, name in asked if what == kind)
@@ -621,4 +653,5 @@ def simulate(
         initial_energy=energy_start,
         final_energy=final,
         energy_residual=worst / largest if largest > 0.0 else 0.0,
+        ties=run.ties,
     )

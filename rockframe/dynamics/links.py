@@ -1,0 +1,309 @@
+"""What pulls two points together: a law, given once and used by every link that follows it.
+
+A link knows itself where its points are and how they move, :eq:`eq-link`. A law says how it
+pulls. It is a named tuple of numbers per unit mass with some of the methods of
+:class:`LinkLaw`; :func:`link_law` gives it the others. It may have **states**, such as slack
+and taut, of whose end its guards tell, and **variables** of its own.
+"""
+
+import inspect
+import math
+from dataclasses import dataclass
+from typing import Any, Final, NamedTuple, TypeVar
+
+from rockframe.compiled import Vector, inlined, kernel
+from rockframe.dynamics.events import (
+    LINK_BREAKS,
+    LINK_SLACK,
+    LINK_TAUT,
+    LINK_UNLOADS,
+    LINK_YIELDS,
+    SILENT,
+)
+
+Law = TypeVar("Law")
+NEEDED: Final = ("force", "energy")
+"""Methods that a law must give."""
+GUARDS: Final = 2
+"""Guards of every link; a law may need fewer."""
+
+
+class Stretch(NamedTuple):
+    """How a link is stretched, from the geometry in which it was given."""
+
+    elongation: float
+    rate: float  # its rate
+    acceleration: float  # that of the rate; only guards know it
+    given: float  # length in the geometry in which it was given
+    noise: float  # rounding of the elongation
+
+
+class LinkEvent(NamedTuple):
+    """What happens to a link as a guard falls through zero."""
+
+    state: int
+    event: int  # its kind; 0 for one that users are not shown
+    lost: float  # energy
+
+
+class LinkLaw:
+    """The methods of a law; the first two are to be given, the others where they differ.
+
+    `state` is the state of the law, `own` its variables, by their indices.
+    """
+
+    __slots__ = ()
+
+    def force(self, state: int, stretch: Stretch, own: Vector) -> float:
+        """Give the force with which the link pulls its points together."""
+        raise NotImplementedError
+
+    def energy(self, state: int, stretch: Stretch, own: Vector) -> float:
+        """Give the stored energy."""
+        raise NotImplementedError
+
+    @inlined
+    def power(self, state: int, stretch: Stretch, own: Vector) -> float:
+        """Give the power that is dissipated."""
+        return 0.0
+
+    @inlined
+    def variables(self) -> int:
+        """Give the number of variables."""
+        return 0
+
+    @kernel
+    def rates(self, state: int, stretch: Stretch, own: Vector, out: Vector) -> None:
+        """Write the rates of the variables; unless given they change at events alone."""
+        for i in range(self.variables()):
+            out[i] = 0.0
+
+    @inlined
+    def states(self) -> int:
+        """Give the number of states, counted from 0."""
+        return 1
+
+    @kernel
+    def starting(self, stretch: Stretch, own: Vector) -> int:
+        """Give the state at the start of a run; sets the variables."""
+        return 0
+
+    @kernel
+    def guard(self, which: int, state: int, stretch: Stretch, own: Vector) -> tuple[float, float]:
+        """Give a function that falls through zero where the state ends, and its rate.
+
+        `which` is 0 or 1.
+        """
+        return 1.0, 0.0
+
+    @kernel
+    def switch(self, which: int, state: int, stretch: Stretch, own: Vector) -> LinkEvent:
+        """Give what happens when a guard falls through zero; sets the variables."""
+        return LinkEvent(state, SILENT, 0.0)
+
+    @inlined
+    def shown(self, state: int) -> int:
+        """Give the state that users see, a :class:`~rockframe.dynamics.events.LinkState`."""
+        return TAUT
+
+
+def link_law(law: type[Law]) -> type[Law]:
+    """Make a named tuple the law of a link: mark its methods, and give it those it lacks.
+
+    Parameters
+    ----------
+    law : type
+        A named tuple of floats with some of the methods of :class:`LinkLaw`.
+
+    Returns
+    -------
+    type
+        The same class.
+
+    Raises
+    ------
+    TypeError
+        It is no named tuple, lacks a method, or a field has the name of a method.
+    """
+    own = {name: each for name, each in vars(law).items() if inspect.isfunction(each)}
+    fields = getattr(law, "_fields", None)
+    faults = [] if fields is not None else [f"{law.__name__} is no NamedTuple"]
+    faults += [f"{law.__name__} has no method {name}" for name in NEEDED if name not in own]
+    together = {"guard", "switch", "states"}
+    if together & own.keys() and not together <= own.keys():
+        faults.append(f"{law.__name__} has only some of states, guard and switch")
+    known = {name for name in vars(LinkLaw) if not name.startswith("_")}
+    faults += [
+        f"{law.__name__} has a field {name!r}, which is a method of laws; give it another name"
+        for name in sorted(known.intersection(fields or ()))
+    ]
+    if faults:
+        raise TypeError("; ".join(faults))
+    for name, method in own.items():
+        if not name.startswith("_"):
+            (inlined if name in ("force", "power") else kernel)(method)
+    for name, method in vars(LinkLaw).items():
+        if not name.startswith("_") and name not in own:
+            setattr(law, name, method)
+    return law
+
+
+@dataclass(frozen=True)
+class LinkNumbers:
+    """A law as the equations take it, and what a model must know of it beforehand.
+
+    Parameters
+    ----------
+    law : named tuple
+        A :func:`link_law`, per unit mass.
+    stiffness, damping : float
+        Greatest change of its force with elongation and with rate, per unit mass.
+    variable_scales : tuple of float
+        Typical sizes of its variables.
+    """
+
+    law: Any
+    stiffness: float
+    damping: float = 0.0
+    variable_scales: tuple[float, ...] = ()
+
+
+# states of a tie; what a tie that pushes has in place of slack is yielding as it is pressed
+SLACK: Final = 0
+TAUT: Final = 1
+YIELDS: Final = 2
+BROKEN: Final = 3
+YIELDS_PRESSED: Final = SLACK
+# what users see of the latter, beside the others
+SHOWN_PRESSED: Final = 4
+
+LOWER: Final = 0
+"""The guard of the end of a state by shortening, or by its reversal."""
+UPPER: Final = 1
+"""That of its end by lengthening."""
+CLEAR: Final = 16.0
+"""Roundings of the elongation by which a tie that unloads stands below its strength."""
+TAUT_NOISE: Final = 1e3
+"""Roundings of the elongation within which a tie is taut where a run starts."""
+
+
+@link_law
+class Tie(NamedTuple):
+    """A spring that pulls, yields or breaks, beside a dashpot, :eq:`eq-tie`.
+
+    Its variable is the elongation that yielding has left.
+    """
+
+    stiffness: float  # k/m
+    damping: float  # c/m
+    free: float  # elongation at which it becomes taut
+    most: float  # stretch of the spring at its strength
+    brittle: float  # 1 where it breaks then, 0 where it yields
+    pushes: float  # 1 where it also resists being pressed
+
+    def force(self, state: int, stretch: Stretch, own: Vector) -> float:
+        """Give k x + c l'; k x is the strength while it yields, and zero while it is slack."""
+        if state == BROKEN:
+            return 0.0
+        x = stretch.elongation - self.free - own[0]
+        if state == YIELDS:
+            x = self.most
+        elif state == SLACK:
+            x = -self.most if self.pushes != 0.0 else 0.0
+        return self.stiffness * x + self.damping * stretch.rate
+
+    def energy(self, state: int, stretch: Stretch, own: Vector) -> float:
+        """Give k x^2/2."""
+        x = stretch.elongation - self.free - own[0]
+        if state == BROKEN:
+            x = 0.0
+        elif state == YIELDS:
+            x = self.most
+        elif state == SLACK:
+            x = self.most if self.pushes != 0.0 else 0.0
+        return 0.5 * self.stiffness * x * x
+
+    def power(self, state: int, stretch: Stretch, own: Vector) -> float:
+        """Give what dashpot and yielding dissipate."""
+        if state == BROKEN:
+            return 0.0
+        lost = self.damping * stretch.rate * stretch.rate
+        if state == YIELDS:
+            lost += self.stiffness * self.most * stretch.rate
+        elif state == SLACK and self.pushes != 0.0:
+            lost -= self.stiffness * self.most * stretch.rate
+        return lost
+
+    def variables(self) -> int:
+        """Give 1: the elongation that is left."""
+        return 1
+
+    def states(self) -> int:
+        """Give 4."""
+        return 4
+
+    def starting(self, stretch: Stretch, own: Vector) -> int:
+        """Give the state after slow loading up to here."""
+        own[0] = 0.0
+        x = stretch.elongation - self.free
+        found = TAUT
+        if x > self.most and self.brittle != 0.0:
+            found = BROKEN
+        elif x > self.most:
+            own[0], found = x - self.most, YIELDS
+        elif self.pushes != 0.0:
+            if x < -self.most and self.brittle != 0.0:
+                found = BROKEN
+            elif x < -self.most:
+                own[0], found = x + self.most, YIELDS_PRESSED
+        elif x < -TAUT_NOISE * stretch.noise:
+            found = SLACK
+        return found
+
+    def guard(self, which: int, state: int, stretch: Stretch, own: Vector) -> tuple[float, float]:
+        """Give how far the stretch is from where the state ends, or the rate that must not turn."""
+        x, sign = stretch.elongation - self.free - own[0], 1.0
+        value, rate = 1.0, 0.0
+        if which == UPPER:
+            sign = -1.0
+        if state == TAUT and which == UPPER:
+            value = self.most - x
+        elif state == TAUT and self.pushes != 0.0:
+            value = x + self.most
+        elif state == TAUT:
+            # one that has no length where it is unstretched never hangs slack
+            value = x if stretch.given + self.free + own[0] > stretch.noise else math.inf
+        elif state == YIELDS and which == LOWER:
+            return stretch.rate, stretch.acceleration
+        elif state == SLACK and which == UPPER:
+            if self.pushes != 0.0:
+                return -stretch.rate, -stretch.acceleration
+            value = -x
+        else:
+            sign = 0.0
+        if sign == 0.0 or value == math.inf:
+            return 1.0, 0.0
+        rate = sign * stretch.rate
+        return value, rate
+
+    def switch(self, which: int, state: int, stretch: Stretch, own: Vector) -> LinkEvent:
+        """Give the state after the end of one; what a tie that breaks has stored is lost."""
+        x = stretch.elongation - self.free
+        if state == YIELDS:
+            own[0] = x - self.most + CLEAR * stretch.noise
+            return LinkEvent(TAUT, LINK_UNLOADS, 0.0)
+        if state == SLACK and self.pushes != 0.0:
+            own[0] = x + self.most - CLEAR * stretch.noise
+            return LinkEvent(TAUT, LINK_UNLOADS, 0.0)
+        if state == SLACK:
+            return LinkEvent(TAUT, LINK_TAUT, 0.0)
+        if which == LOWER and self.pushes == 0.0:
+            return LinkEvent(SLACK, LINK_SLACK, 0.0)
+        if self.brittle != 0.0:
+            lost = 0.5 * self.stiffness * (x - own[0]) * (x - own[0])
+            return LinkEvent(BROKEN, LINK_BREAKS, lost)
+        return LinkEvent(YIELDS if which == UPPER else YIELDS_PRESSED, LINK_YIELDS, 0.0)
+
+    def shown(self, state: int) -> int:
+        """Give the state that users see."""
+        return SHOWN_PRESSED if state == SLACK and self.pushes != 0.0 else state

@@ -1,0 +1,160 @@
+"""Links of bodies at rest and held: how they are stretched, and what they do to coordinates.
+
+A link is in the state that slow loading up to there brings it into. Its force does work on
+every rotation and height between its points, :eq:`eq-link-statics`.
+"""
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from rockframe.compiled import Matrix, Vector
+from rockframe.dynamics.chain.linked import GROUND, ChainLink
+from rockframe.dynamics.links import Stretch
+from rockframe.dynamics.trigonometry import sine_cosine
+
+if TYPE_CHECKING:
+    from rockframe.dynamics.statics import Stand, StandingBody
+
+STEP = 1e-3
+"""Rate by which the force's change with the rate is found [m s^-1]."""
+
+
+class Tied(NamedTuple):
+    """A link of bodies that are at rest."""
+
+    force: float  # with which it pulls
+    elongation: float
+    state: int
+    damping: float  # change of the force with the rate of the elongation
+    way: Matrix  # how its first point moves from its second, by all coordinates
+    direction: Vector  # from the second to the first; zero where they meet
+
+    @property
+    def loads(self) -> Vector:
+        """Generalised forces on rotation and height of each body on its base."""
+        found: Vector = -self.force * (self.direction @ self.way)
+        return found
+
+    @property
+    def damping_matrix(self) -> Matrix:
+        """What its dashpot does in small motion, along the link or wherever its points go."""
+        along = self.direction @ self.way
+        if self.direction.any():
+            return self.damping * np.outer(along, along)
+        return self.damping * self.way.T @ self.way
+
+
+class _Frame(NamedTuple):
+    """Where a body is, and the axes of what it stands on."""
+
+    place: Vector
+    sine: float  # of its rotation
+    cosine: float
+    along: Vector
+    normal: Vector
+
+
+def tied(
+    links: "Sequence[StandingBody]",
+    stands: "Sequence[Stand]",
+    ties: Sequence[ChainLink],
+    states: Sequence[int] | None = None,
+) -> list[Tied]:
+    """Give how links are stretched between bodies that stand.
+
+    Parameters
+    ----------
+    links : sequence of StandingBody
+        The bodies, from the top down.
+    stands : sequence of Stand
+        How they stand.
+    ties : sequence of ChainLink
+        What links them.
+    states : sequence of int, optional
+        The states that the links keep; those of slow loading unless given.
+
+    Returns
+    -------
+    list of Tied
+    """
+    frames = _frames(links, stands)
+    return [
+        _tied(one, stands, frames, None if states is None else states[i])
+        for i, one in enumerate(ties)
+    ]
+
+
+def _tied(
+    tie: ChainLink, stands: "Sequence[Stand]", frames: Sequence[_Frame], state: int | None
+) -> Tied:
+    law: Any = tie.numbers.law
+    apart, given = np.array(tie.apart), math.hypot(*tie.apart)
+    on, on_way = _point(tie.on, tie.on_point, stands, frames)
+    to, to_way = _point(tie.to, tie.to_point, stands, frames)
+    moved = on - to
+    now = apart + moved
+    length = math.hypot(*now)
+    elongation = 0.0 if length == 0.0 else float((2.0 * apart + moved) @ moved) / (length + given)
+    reach = given + math.hypot(*tie.on_point) + math.hypot(*tie.to_point)
+    stretch = Stretch(elongation, 0.0, 0.0, given, 1e-15 * reach)
+    own = np.zeros(law.variables())
+    found = law.starting(stretch, own)
+    if state is not None:
+        found = state
+    faster, slower = (law.force(found, stretch._replace(rate=rate), own) for rate in (STEP, -STEP))
+    direction = np.zeros(2) if length == 0.0 else now / length
+    return Tied(
+        law.force(found, stretch, own), elongation, found, 0.5 * (faster - slower) / STEP,
+        on_way - to_way, direction,
+    )  # fmt: skip
+
+
+def _frames(links: "Sequence[StandingBody]", stands: "Sequence[Stand]") -> list[_Frame]:
+    """Give where bodies are, from where they are given."""
+    found, place, turned = list[_Frame](), np.zeros(2), 0.0
+    sine, cosine = 0.0, 1.0
+    for k in range(len(stands) - 1, -1, -1):
+        stand, body = stands[k], links[k].part.body
+        fixed = links[k + 1].top + body.height if k + 1 < len(stands) else body.height
+        along, normal = np.array([cosine, -sine]), np.array([sine, cosine])
+        versine = sine * sine / (1.0 + cosine) if cosine > 0.0 else 1.0 - cosine
+        lift = np.array([fixed * sine, -fixed * versine])  # of what is fixed normal to the base
+        beside = links[k].beside
+        slid = (stand.across - beside) * along + beside * np.array([-versine, -sine])
+        place = place + slid + lift + stand.state.vertical * normal
+        turned += stand.state.rotation
+        sine, cosine = sine_cosine(turned)
+        found.append(_Frame(place, sine, cosine, along, normal))
+    return found[::-1]
+
+
+def _point(
+    k: int, point: tuple[float, float], stands: "Sequence[Stand]", frames: Sequence[_Frame]
+) -> tuple[Vector, Matrix]:
+    """Give how a point has moved, and how it moves with all coordinates."""
+    way = np.zeros((2, 2 * len(stands)))
+    if k == GROUND:
+        return np.zeros(2), way
+    one = frames[k]
+    versine = one.sine * one.sine / (1.0 + one.cosine) if one.cosine > 0.0 else 1.0 - one.cosine
+    x, y = point
+    turned = np.array([y * one.sine - x * versine, -x * one.sine - y * versine])
+    # from the centre of mass of each body below, as that rotates
+    arm = np.array([x, y]) + turned
+    for j in range(k, len(stands)):
+        frame = frames[j]
+        far = arm if j == k else arm + _between(k, j, stands, frames)
+        way[:, 2 * j] = stands[j].reach.rate * frame.along + np.array([far[1], -far[0]])
+        way[:, 2 * j + 1] = frame.normal
+    return one.place + turned, way
+
+
+def _between(k: int, j: int, stands: "Sequence[Stand]", frames: Sequence[_Frame]) -> Vector:
+    """Give the place of the centre of mass of body k from that of body j below it."""
+    return sum(
+        (stands[i].across * frames[i].along + stands[i].arm * frames[i].normal
+         for i in range(k, j)), start=np.zeros(2),
+    )  # fmt: skip

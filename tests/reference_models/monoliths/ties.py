@@ -1,0 +1,149 @@
+"""A tie between a point of a body and one of the ground, for `two_spring`.
+
+Per unit mass of the body. The tie is SLACK, TAUT, YIELDING, PRESSED (yielding as it is pressed)
+or BROKEN; its dashpot acts both ways until it breaks.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from . import Guard
+
+SLACK, TAUT, YIELDING, PRESSED, BROKEN = "slack", "taut", "yielding", "pressed", "broken"
+
+
+@dataclass
+class Tie:
+    """Point of the body from its centre of mass, and anchor from the middle of the base at rest."""
+
+    point: tuple[float, float]
+    anchor: tuple[float, float]
+    stiffness: float
+    damping: float = 0.0
+    slack: float = 0.0
+    preload: float = 0.0
+    strength: float = math.inf
+    brittle: bool = False
+    compression: bool = False
+    state: str = SLACK
+    set: float = 0.0
+    loss: float = 0.0
+
+    def begin(self, height: float, z) -> None:
+        """Find the natural length, and the state at the start."""
+        self.set, self.loss = 0.0, 0.0
+        dx, dy = self.point[0] - self.anchor[0], self.point[1] + height - self.anchor[1]
+        self.height = height
+        self.natural = math.hypot(dx, dy) + self.slack - self.preload / self.stiffness
+        self.most = self.strength / self.stiffness
+        x = self.length(z)[0] - self.natural
+        # a tie that has yielded on the way to the start is about to be unloaded there
+        if x > self.most:
+            self.state, self.set = (BROKEN, 0.0) if self.brittle else (TAUT, x - self.most)
+        elif self.compression and x < -self.most:
+            self.state, self.set = (BROKEN, 0.0) if self.brittle else (TAUT, x + self.most)
+        else:
+            self.state = TAUT if x > 0.0 or self.compression else SLACK
+
+    def length(self, z, xp=math):
+        """Give length, its derivatives by rotation, height and place, rate and what bends it."""
+        alpha, y, x, alpha_dot, y_dot, x_dot = z[:6]
+        sine, cosine = xp.sin(alpha), xp.cos(alpha)
+        px, py = self.point
+        across, up = px * cosine + py * sine, py * cosine - px * sine
+        dx, dy = x + across - self.anchor[0], self.height + y + up - self.anchor[1]
+        vx, vy = x_dot + up * alpha_dot, y_dot - across * alpha_dot
+        length = xp.sqrt(dx * dx + dy * dy)
+        ux, uy = dx / length, dy / length
+        rate = ux * vx + uy * vy
+        bend = (vx * vx + vy * vy - rate * rate) / length
+        bend = bend - (ux * across + uy * up) * alpha_dot**2
+        return length, (ux * up - uy * across, uy, ux), rate, bend
+
+    def tension(self, length, rate):
+        """Give the force that pulls the body towards the anchor."""
+        if self.state == BROKEN:
+            return 0.0 * length
+        x = {
+            SLACK: 0.0 * length,
+            TAUT: length - self.natural - self.set,
+            YIELDING: self.most + 0.0 * length,
+            PRESSED: -self.most + 0.0 * length,
+        }[self.state]
+        return self.stiffness * x + self.damping * rate
+
+    def stored(self, z) -> float:
+        """Give the energy of the spring."""
+        if self.state in (SLACK, BROKEN):
+            return 0.0
+        x = self.most
+        if self.state == TAUT:
+            x = self.length(z)[0] - self.natural - self.set
+        return 0.5 * self.stiffness * x * x
+
+    def lost_power(self, rate: float) -> float:
+        """Give what dashpot and yielding take."""
+        if self.state == BROKEN:
+            return 0.0
+        sign = {YIELDING: 1.0, PRESSED: -1.0}.get(self.state, 0.0)
+        plastic = sign * self.stiffness * self.most * rate if sign else 0.0
+        return self.damping * rate * rate + plastic
+
+    def guards(self, number: int) -> list[Guard]:
+        """Give what can end the present state."""
+        kinds = {SLACK: ("taut",), YIELDING: ("turn",), PRESSED: ("turn",), BROKEN: ()}
+        some = list(kinds.get(self.state, ()))
+        if self.state == TAUT:
+            some += ["slack"] if not self.compression else []
+            some += ["yield"] if math.isfinite(self.most) else []
+            some += ["press"] if math.isfinite(self.most) and self.compression else []
+        return [Guard(kind, str(number), strict=False) for kind in some]
+
+    def value(self, kind, length, rate, acceleration):
+        """Give a guard and its rate."""
+        x = length - self.natural - self.set
+        if kind == "turn":
+            sign = 1.0 if self.state == YIELDING else -1.0
+            return sign * rate, sign * acceleration
+        return {
+            "taut": (-x, -rate),
+            "slack": (x, rate),
+            "yield": (self.most - x, -rate),
+            "press": (self.most + x, rate),
+        }[kind]
+
+    def switch(self, kind: str, z) -> None:
+        """Go on to the next state."""
+        x = self.length(z)[0] - self.natural - self.set
+        if kind == "turn":
+            self.set += x - (self.most if self.state == YIELDING else -self.most)
+            self.state = TAUT
+        elif kind in ("yield", "press") and self.brittle:
+            self.loss += 0.5 * self.stiffness * x * x
+            self.state = BROKEN
+        else:
+            names = {"taut": TAUT, "slack": SLACK, "yield": YIELDING, "press": PRESSED}
+            self.state = names[kind]
+
+    def turned(self, z) -> bool:
+        """Whether something has turned a tie that yields."""
+        sign = {YIELDING: 1.0, PRESSED: -1.0}.get(self.state, 0.0)
+        return bool(sign * self.length(z)[2] < 0.0)
+
+
+KINDS = ("taut", "slack", "yield", "press", "turn")
+
+
+def forces(ties, z, xp=np):
+    """Give the generalised forces on rotation, height and place of all ties."""
+    found = [0.0, 0.0, 0.0]
+    for tie in ties:
+        length, way, rate, _ = tie.length(z, xp)
+        pull = tie.tension(length, rate)
+        for i in range(3):
+            found[i] = found[i] - pull * way[i]
+    return found

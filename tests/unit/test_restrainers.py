@@ -1,0 +1,175 @@
+"""Restrainers between points of bodies and the ground."""
+
+import math
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import rockframe as rf
+from rockframe.dynamics.events import EventKind, LinkState
+
+BLOCK = rf.Block(width="1 m", height="4 m", mass="4 t")
+PADS = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
+TIE = rf.Restrainer(
+    on=("-0.5 m", "3 m"), to=("-1.5 m", "3 m"), stiffness="200 kN/m", slack="5 mm",
+    strength="5 kN", name="upper",
+)  # fmt: skip
+PRELOADED = rf.Restrainer(
+    on=("0.5 m", "3 m"), to=("1.5 m", "3 m"), stiffness="200 kN/m", preload="1 kN"
+)
+PULSE = rf.GroundMotion.sine_pulse(amplitude="5 m/s^2", frequency="1 Hz")
+
+
+def mirrored(tie: rf.Restrainer) -> rf.Restrainer:
+    on, to = tie.on, tie.to
+    return tie.replace(on=(-on[0], on[1]), to=(-to[0], to[1]))
+
+
+def run(*parts, motion=PULSE, **options) -> xr.Dataset:
+    return rf.System(*parts).simulate(motion, free_vibration="1 s", **options)
+
+
+def imbalance(found: xr.Dataset) -> float:
+    stored = found.kinetic_energy + found.potential_energy + found.elastic_energy
+    lost = found.dissipated_energy + found.impact_energy + found.repinning_energy
+    total = stored + lost - found.input_energy
+    return float((total.max() - total.min()) / abs(found.input_energy).max())
+
+
+def test_what_is_given_comes_back():
+    system = rf.System(BLOCK, PADS, TIE, PRELOADED)
+    assert rf.System.from_dict(system.to_dict()) == system
+    assert system.parts.links == (TIE, PRELOADED)
+    assert TIE.replace(brittle=False, to_body=None).brittle is False
+    assert TIE.on[1].m_as("m") == 3.0
+    assert "breaks at 5000 N" in " ".join(system.describe().split())
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"preload": "1 kN"}, "a tie with slack has no preload"),
+        ({"compression": True}, "a bar that pushes has no slack"),
+        ({"slack": None, "preload": "6 kN"}, "is not below its strength"),
+        ({"on": ("1 m",)}, "must be a point"),
+        ({"brittle": 2}, "brittle must be True or False"),
+        ({"on_body": 0}, "must be a whole number from 1 on"),
+    ],
+)
+def test_what_makes_no_tie_is_refused(changes, words):
+    with pytest.raises(rf.ComponentError, match=words):
+        TIE.replace(**changes)
+
+
+@pytest.mark.parametrize(
+    ("parts", "words"),
+    [
+        ((BLOCK, TIE), "on rigid ground"),
+        ((BLOCK, PADS, TIE, TIE), "two links are called 'upper'"),
+        ((BLOCK, PADS, TIE.replace(on_body=2)), "there is no body 2"),
+        ((BLOCK, PADS, TIE.replace(to_body=1)), "both its points are on body 1"),
+        (
+            (BLOCK, PADS, PRELOADED.replace(to=("0.5 m", "3 m"))),
+            "its points meet, so that its preload has no direction",
+        ),
+    ],
+)
+def test_what_makes_no_scene_is_refused(parts, words):
+    with pytest.raises(rf.AssemblyError, match=words):
+        rf.System(*parts)
+
+
+def test_a_run_shows_each_restrainer(tmp_path):
+    found = run(BLOCK, PADS, TIE, PRELOADED, outputs=("energy",))
+    assert found.restrainer_force.dims == ("restrainer", "time")
+    assert found.restrainer.values.tolist() == ["upper", "restrainer 2"]
+    broke = found.event_kind == EventKind.RESTRAINER_FRACTURE
+    assert found.event_restrainer[broke].values.tolist() == [1]
+    assert int(found.broken_restrainer_count) == 1
+    assert int(found.restrainer_state[0, -1]) == LinkState.BROKEN
+    assert float(found.restrainer_force[0, -1]) == 0.0
+    assert float(found.peak_restrainer_force[0]) == pytest.approx(5000.0, rel=1e-9)
+    assert imbalance(found) < 1e-8
+    assert float(found.energy_residual) < 1e-8
+    found.to_netcdf(tmp_path / "tied.nc")
+    with xr.open_dataset(tmp_path / "tied.nc") as kept:
+        assert kept.restrainer.values.tolist() == ["upper", "restrainer 2"]
+        assert rf.System.from_dataset(kept).parts.links == (TIE, PRELOADED)
+
+
+def test_the_mirror_image_moves_as_the_mirror_image():
+    ties = (TIE.replace(brittle=False), PRELOADED)
+    found = run(BLOCK, PADS, *ties)
+    other = run(BLOCK, PADS, *map(mirrored, ties), motion=PULSE.scaled(-1.0))
+    np.testing.assert_allclose(found.rotation, -other.rotation, rtol=0, atol=1e-9)
+    np.testing.assert_allclose(found.restrainer_force, other.restrainer_force, atol=1e-3)
+
+
+def test_a_corner_tie_adds_its_closed_form():
+    tie = rf.Restrainer(on=("-0.5 m", "0 m"), to=("-0.5 m", "0 m"), stiffness="100 kN/m")
+    stiff = rf.TwoSpringSupport(frequency_ratio=3000, damping_ratio=0.1)
+    angles = ([0.05, 0.1, 0.2], "rad")
+    tied = rf.System(BLOCK, stiff, tie).moment_rotation(angles).restoring_moment.values
+    free = rf.System(BLOCK, stiff).moment_rotation(angles).restoring_moment.values
+    expected = 4.0 * 1e5 * 0.5**2 * np.sin(angles[0])
+    np.testing.assert_allclose(tied - free, expected, rtol=2e-3)
+
+
+def test_a_horizontal_tie_adds_its_closed_form():
+    height, stiffness = 3.0, 2e5
+    tie = rf.Restrainer(on=("-0.5 m", "3 m"), to=("-1e6 m", "3 m"), stiffness=f"{stiffness} N/m")
+    stiff = rf.TwoSpringSupport(frequency_ratio=3000, damping_ratio=0.1)
+    angles = np.array([0.02, 0.1])
+    tied = rf.System(BLOCK, stiff, tie).moment_rotation((angles, "rad")).restoring_moment.values
+    free = rf.System(BLOCK, stiff).moment_rotation((angles, "rad")).restoring_moment.values
+    reach = 1.0 * (1.0 - np.cos(angles)) + height * np.sin(angles)
+    expected = stiffness * reach * (1.0 * np.sin(angles) + height * np.cos(angles))
+    np.testing.assert_allclose(tied - free, expected, rtol=2e-3)
+
+
+def test_a_tie_changes_rest_frequencies_and_the_energy_to_overturn():
+    free, tied = rf.System(BLOCK, PADS), rf.System(BLOCK, PADS, PRELOADED)
+    assert tied.frequencies().period[0] < 0.8 * free.frequencies().period[0]
+    assert tied.setting.rest_rotation > 0.0
+    still = tied.simulate(duration="0.5 s")
+    assert abs(still.rotation - tied.setting.rest_rotation).max() < 1e-12
+    rest = tied.equilibrium()
+    assert 0.0 < float(rest.static_restrainer_force[0]) < 1000.0
+    several = rf.System(BLOCK, PADS, PRELOADED, mirrored(PRELOADED))
+    assert several.setting.overturning_energy > free.setting.overturning_energy
+
+
+def test_frequencies_are_those_of_a_small_run():
+    tied = rf.System(BLOCK, PADS, PRELOADED, mirrored(PRELOADED))
+    start = rf.InitialState(rotation="1e-5 rad")
+    found = tied.simulate(duration="2 s", initial=start, output_step="1 ms")
+    turns = np.nonzero(np.diff(np.sign(found.rotation.values)))[0]
+    period = 2.0 * float(np.diff(found.time.values[turns]).mean())
+    first = tied.frequencies().isel(mode=0)
+    damped = float(first.period) / math.sqrt(1.0 - float(first.damping_ratio) ** 2)
+    assert period == pytest.approx(damped, rel=2e-3)
+
+
+def test_a_stack_is_tied_between_bodies_and_to_the_ground():
+    plinth = rf.Block(width="1.4 m", height="1 m", mass="5 t")
+    joint = rf.TwoSpringSupport(frequency_ratio=40, damping_ratio=0.1)
+    stack = rf.Stack(BLOCK, plinth, plinth, interfaces=[joint, joint])
+    between = rf.Restrainer(
+        on=("-0.5 m", "1 m"), to=("-0.6 m", "0.5 m"), stiffness="1 MN/m", to_body=3,
+        slack="1 mm", strength="20 kN", brittle=False,
+    )  # fmt: skip
+    found = run(stack, PADS, between, TIE, outputs=("energy",))
+    assert found.sizes["restrainer"] == 2
+    assert found.sizes["body"] == 3
+    assert imbalance(found) < 1e-8
+    assert float(found.peak_restrainer_force.min()) > 0.0
+
+
+def test_sweeps_name_the_parameters_of_ties():
+    runs = rf.sweep(
+        rf.System(BLOCK, PADS, TIE), motions={"pulse": PULSE},
+        axes={"Restrainer.stiffness": ([1.0, 200.0], "kN/m")}, free_vibration="2 s",
+    )  # fmt: skip
+    assert runs.sizes["Restrainer.stiffness"] == 2
+    assert float(runs.overturning_time.std()) > 0.0
