@@ -15,6 +15,7 @@ from rockframe.dynamics.base_numbers import BaseNumbers, pads_over, springs_unde
 from rockframe.dynamics.bed import Bed
 from rockframe.dynamics.body import BaseLine, Body
 from rockframe.dynamics.events import SILENT, ContactState, EventKind
+from rockframe.dynamics.links import LinkEvent, LinkNumbers, Stretch, link_law
 from rockframe.dynamics.pads import Pads
 from rockframe.dynamics.point_law import FREE, Point, point_law
 from rockframe.dynamics.protocol import (
@@ -32,6 +33,7 @@ from rockframe.dynamics.protocol import (
 )
 from rockframe.dynamics.protocol import Equations as System
 from rockframe.results.variables.variable import EVENT, TIME, Variable
+from rockframe.system.links import OwnLink
 from rockframe.system.load import Load
 from rockframe.system.own_base import OwnBase
 from rockframe.system.own_scene import OwnScene
@@ -74,10 +76,13 @@ __all__ = [
     "EventKind",
     "Ground",
     "Guards",
+    "LinkEvent",
+    "LinkNumbers",
     "Load",
     "Measure",
     "OneOf",
     "OwnBase",
+    "OwnLink",
     "OwnScene",
     "PadSupport",
     "Pads",
@@ -86,6 +91,7 @@ __all__ = [
     "Ratio",
     "Start",
     "Statics",
+    "Stretch",
     "Support",
     "System",
     "Text",
@@ -96,6 +102,7 @@ __all__ = [
     "bed_under",
     "inlined",
     "kernel",
+    "link_law",
     "pads_over",
     "pads_under",
     "point_law",

@@ -10,10 +10,11 @@ from rockframe.errors import ComponentError, shown
 from rockframe.results.diagnostics import DIAGNOSTICS, Diagnostic, add_diagnostic
 from rockframe.results.schema import GROUPS, SCHEMA
 from rockframe.results.variables.variable import EVENT, TIME, Variable
+from rockframe.system.links import OwnLink
 from rockframe.system.own_base import OwnAnswers, OwnBase
 from rockframe.system.own_scene import OwnScene
 from rockframe.system.scenes import add_scene, twin_of
-from rockframe.system.slots import SHIPPED, add_base, add_part, slot_of_kind
+from rockframe.system.slots import SHIPPED, add_base, add_link, add_part, slot_of_kind
 from rockframe.units import Unit
 
 _OWNER: Final = "register"
@@ -24,21 +25,22 @@ _OF_A_RUN: Final = (*TIME, *EVENT)
 
 
 def register(
-    kind: "type[OwnBase] | type[OwnScene] | Diagnostic | Callable[..., Any]",
+    kind: "type[OwnBase] | type[OwnScene] | type[OwnLink] | Diagnostic | Callable[..., Any]",
     *,
     columns: Sequence[Variable] = (),
     name: str | None = None,
     unit: Unit | str | None = None,
     long_name: str | None = None,
 ) -> None:
-    """Make something of your own known: a base, a scene, or a diagnostic.
+    """Make something of your own known: a base, a link, a scene, or a diagnostic.
 
     Parameters
     ----------
-    kind : type of OwnBase, type of OwnScene, Diagnostic or callable
-        The class of a base, with ``slot`` and ``support``, which stands in scenes as pads or
-        soil do; that of a scene, with the parts that make it and equations of its own; or a
-        function of the state, which gives a :class:`~rockframe.Diagnostic`.
+    kind : type of OwnBase, type of OwnScene, type of OwnLink, Diagnostic or callable
+        The class of a link, with ``law``, which stands in scenes as a Restrainer does; that of a
+        base, with ``slot`` and ``support``, which stands in scenes as pads or soil do; that of a
+        scene, with the parts that make it and equations of its own; or a function of the state,
+        which gives a :class:`~rockframe.Diagnostic`.
     columns : sequence of Variable, optional
         What a base or a scene shows and no other does: over ``time``, over ``event``, over
         dimensions of its own, for each of which there is a column of its name with labels, or
@@ -73,6 +75,8 @@ def register(
     _refuse(faults)
     if issubclass(kind, OwnBase):
         add_base(kind)
+    elif issubclass(kind, OwnLink):
+        add_link(kind)
     else:
         add_scene(kind)
         for slot, part in kind.made_of.items():
@@ -114,9 +118,11 @@ def _faults_of(kind: Any) -> list[str]:
         return _faults_of_base(kind)
     if isinstance(kind, type) and issubclass(kind, OwnScene):
         return _faults_of_scene(kind)
+    if isinstance(kind, type) and issubclass(kind, OwnLink):
+        return [] if kind.law is not OwnLink.law else [f"{kind.__name__} has no method law(mass)"]
     return [
-        "expected a class derived from OwnBase or OwnScene, a Diagnostic or a function, got "
-        f"{shown(kind)}"
+        "expected a class derived from OwnBase or OwnScene, or from OwnLink, a Diagnostic or a "
+        f"function, got {shown(kind)}"
     ]
 
 

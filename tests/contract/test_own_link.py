@@ -1,0 +1,66 @@
+"""A link of a user's own, from the example's file."""
+
+import importlib.util
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import rockframe as rf
+
+FILE = Path(__file__).parents[2] / "examples" / "own_link.py"
+PAGE = Path(__file__).parents[2] / "docs" / "guide" / "own_link.md"
+BLOCK = rf.Block(width="1 m", height="4 m", mass="4 t")
+PADS = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
+POINTS = {"on": ("-0.5 m", "3 m"), "to": ("-1.5 m", "3 m"), "stiffness": "50 kN/m"}
+PULSE = rf.GroundMotion.sine_pulse(amplitude="-4 m/s^2", frequency="1 Hz")
+
+
+@pytest.fixture(scope="module")
+def example():
+    spec = importlib.util.spec_from_file_location("own_link", FILE)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    rf.register(module.Rope)
+    return module
+
+
+def test_a_rope_runs_and_balances_its_energies(example):
+    system = rf.System(BLOCK, PADS, example.Rope(**POINTS, reach="0.1 m"))
+    run = system.simulate(PULSE, free_vibration="1 s")
+    assert float(run.energy_residual) < 1e-8
+    assert float(run.peak_restrainer_force[0]) > 0.0
+    assert rf.System.from_dict(system.to_dict()) == system
+
+
+def test_one_that_hardly_hardens_is_a_tie(example):
+    rope = example.Rope(**POINTS, reach="1e6 m")
+    runs = [
+        rf.System(BLOCK, PADS, one).simulate(PULSE, free_vibration="1 s", accuracy="reference")
+        for one in (rope, rf.Restrainer(**POINTS))
+    ]
+    np.testing.assert_allclose(runs[0].rotation, runs[1].rotation, rtol=0, atol=1e-9)
+    held = [
+        rf.System(BLOCK, PADS, one).moment_rotation(([0.05], "rad")).restoring_moment
+        for one in (rope, rf.Restrainer(**POINTS))
+    ]
+    np.testing.assert_allclose(held[0], held[1], rtol=1e-9)
+
+
+def test_what_is_no_link_is_refused():
+    with pytest.raises(rf.ComponentError, match="OwnBase or OwnScene"):
+        rf.register(int)
+
+
+def test_the_page_names_files_that_are_there():
+    text = PAGE.read_text()
+    root = FILE.parents[1]
+    for name in (
+        "rockframe/dynamics/links.py",
+        "rockframe/system/links.py",
+        "examples/own_link.py",
+    ):
+        assert f"`{name}`" in text
+        assert (root / name).exists()
+    assert "import rockframe" in FILE.read_text()
+    assert "rockframe.dynamics" not in FILE.read_text()
