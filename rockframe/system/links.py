@@ -38,7 +38,7 @@ class OwnLink(Link):
 
 
 @dataclass(frozen=True)
-class Placed:
+class PlacedLink:
     """A link between points of upright bodies.
 
     Parameters
@@ -133,7 +133,7 @@ def placed(
     bodies: Sequence[SupportedBody],
     tops: Sequence[float],
     offsets: Sequence[float],
-) -> tuple[Placed, ...]:
+) -> tuple[PlacedLink, ...]:
     """Give links between points of bodies upon one another, from the top down.
 
     Raises
@@ -142,9 +142,9 @@ def placed(
         A link is on a body that there is not, both its points are on the same, two have one
         name, or one without length has a preload; with every fault.
     """
-    names = names_of(parts)
+    names = link_labels(parts)
     faults = [f"two links are called {name!r}" for name in names if names.count(name) > 1]
-    found = list[Placed]()
+    found = list[PlacedLink]()
     for part, name in zip(parts, names, strict=True):
         on, to = part.si.on_body - 1, -1 if part.si.to_body is None else part.si.to_body - 1
         missing = [k + 1 for k in (on, to) if k >= len(bodies)]
@@ -164,7 +164,7 @@ def placed(
             ends.append((middle + x, base + y))
             points.append((x, y) if k < 0 else (x - bodies[k].eccentricity,
                                                 y - bodies[k].centre_height))  # fmt: skip
-        one = Placed(part, name, on, points[0], to, points[1], (ends[0], ends[1]))
+        one = PlacedLink(part, name, on, points[0], to, points[1], (ends[0], ends[1]))
         if one.length == 0.0 and isinstance(part, Restrainer) and part.si.preload:
             faults.append(f"{name}: its points meet, so that its preload has no direction")
         found.append(one)
@@ -173,7 +173,7 @@ def placed(
     return tuple(found)
 
 
-def names_of(parts: Sequence[Link]) -> list[str]:
+def link_labels(parts: Sequence[Link]) -> list[str]:
     """Give what results call links: their names, or their numbers."""
     return [part.si.name or f"restrainer {i}" for i, part in enumerate(parts, 1)]
 

@@ -11,7 +11,7 @@ from rockframe.components.block_numbers import BlockSI
 from rockframe.dynamics.statics import Stand, StandingBody, StandingChain, link_of
 from rockframe.errors import AssemblyError
 from rockframe.system.bodies import SupportedBody, body_of_block
-from rockframe.system.links import Placed, placed
+from rockframe.system.links import PlacedLink, placed
 from rockframe.system.load import Load, load_of
 from rockframe.system.options import Options
 from rockframe.system.overturning_energy import least_overturning_energy
@@ -49,7 +49,7 @@ class StackSetting(Setting):
         How far the middle of each base is to the right of that of the body below [m].
     bases : tuple of Support
         What each stands on, under all that it carries.
-    ties : tuple of Placed
+    ties : tuple of PlacedLink
         What links their points.
     """
 
@@ -57,7 +57,7 @@ class StackSetting(Setting):
     tops: tuple[float, ...]
     offsets: tuple[float, ...]
     bases: tuple[Support, ...]
-    ties: tuple[Placed, ...] = ()
+    ties: tuple[PlacedLink, ...] = ()
 
     @property
     def model(self) -> str:

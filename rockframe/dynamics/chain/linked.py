@@ -78,7 +78,7 @@ class Moved(NamedTuple):
     speed_y: float
 
 
-class Drawn(NamedTuple):
+class StretchedLink(NamedTuple):
     """A link that is stretched: how, and the direction from its second point to its first."""
 
     stretch: Stretch
@@ -224,7 +224,7 @@ class LinkedChain(LinkedLists, Chain):  # pyright: ignore[reportGeneralTypeIssue
         )  # fmt: skip
 
     @inlined
-    def drawn(self, row: Vector, on: Moved, to: Moved) -> Drawn:
+    def drawn(self, row: Vector, on: Moved, to: Moved) -> StretchedLink:
         """Give how a link is stretched, :eq:`eq-link`.
 
         Where its points meet it acts along the way that they go apart.
@@ -243,10 +243,10 @@ class LinkedChain(LinkedLists, Chain):  # pyright: ignore[reportGeneralTypeIssue
             square = x * x + y * y
             length = math.sqrt(square)
         if square < TINY:
-            return Drawn(Stretch(elongation, 0.0, 0.0, given, row[NOISE]), 0.0, 0.0)
+            return StretchedLink(Stretch(elongation, 0.0, 0.0, given, row[NOISE]), 0.0, 0.0)
         x, y = x / length, y / length
         rate = x * speed_x + y * speed_y
-        return Drawn(Stretch(elongation, rate, 0.0, given, row[NOISE]), x, y)
+        return StretchedLink(Stretch(elongation, rate, 0.0, given, row[NOISE]), x, y)
 
     @inlined
     def points_of(self, row: Vector, room: Vector) -> tuple[Moved, Moved]:
