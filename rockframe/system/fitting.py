@@ -61,7 +61,8 @@ def _misfits_of_links(parts: Parts) -> list[str]:
     """Give the faults of links with other parts."""
     faults: list[str] = []
     base = next((one for one in (parts.pads, parts.soil) if one is not None), None)
-    if base is None:
+    interfaces = () if parts.stack is None else parts.stack.interfaces
+    if base is None or any(slot_of(one) == "ground" for one in interfaces):
         faults.append(
             "a Restrainer is given in a scene on rigid ground, which has no equations with "
             "restrainers yet; put the body on a stiff TwoSpringSupport or on a WinklerSoil"
