@@ -147,6 +147,53 @@ class Stack(Component):
         """
         return [text for one in (*self.bodies, *self.interfaces) for text in one.cautions()]
 
+    def parameters(self) -> tuple[str, ...]:
+        """Name the numbers of bodies and interfaces other than zero.
+
+        Returns
+        -------
+        tuple of str
+            As "height of body 1" and "stiffness of interface 1", from the top down.
+        """
+        return tuple(
+            f"{name} of {kind} {k}"
+            for kind, parts in (("body", self.bodies), ("interface", self.interfaces))
+            for k, part in enumerate(parts, 1)
+            for name in part.parameters()
+        )
+
+    def with_scaled(self, name: str, factor: float) -> Self:
+        """Build a stack of which one number of a body or an interface is larger or smaller.
+
+        Parameters
+        ----------
+        name : str
+            One of :meth:`parameters`.
+        factor : float
+            New value over old [1].
+
+        Returns
+        -------
+        Stack
+
+        Raises
+        ------
+        ComponentError
+            No such parameter, or its new value is out of range, or a body is then wider than what
+            it stands on.
+        """
+        if name not in self.parameters():
+            msg = f"Stack: no parameter is called {shown(name)}"
+            raise ComponentError(msg)
+        own, _, place = name.partition(" of ")
+        kind, _, k = place.partition(" ")
+        bodies, interfaces = list(self.bodies), list(self.interfaces)
+        parts: list[Any] = bodies if kind == "body" else interfaces
+        parts[int(k) - 1] = parts[int(k) - 1].with_scaled(own, factor)
+        part = object.__new__(type(self))
+        part._keep(bodies, interfaces, self._arguments()["offsets"])
+        return part
+
     def _arguments(self) -> dict[str, Any]:
         return {
             "bodies": [one.to_dict() for one in self.bodies],

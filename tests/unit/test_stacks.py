@@ -10,6 +10,7 @@ import rockframe as rf
 from rockframe.components import stack
 from rockframe.dynamics.chain import rows
 from rockframe.dynamics.events import ContactState
+from rockframe.simulation.perturbations import parameters
 
 STATUE = rf.Block(width="0.5 m", height="1.8 m", mass="900 kg")
 PLINTH = rf.Block(width="0.9 m", height="1 m", mass="2200 kg")
@@ -171,3 +172,31 @@ def test_contact_states_of_a_run_in_flight():
     )
     run = rf.System(STACK, GROUND).simulate(hop, **PLAN)
     assert (run.body_contact_state == int(ContactState.FLIGHT)).any("time").any()
+
+
+def test_every_number_of_its_parts_can_be_changed():
+    names = STACK.parameters()
+    assert {"height of body 1", "mass of body 2", "damping ratio of interface 1"} <= {
+        name.replace("_", " ") for name in names
+    }
+    for name in names:
+        try:
+            changed = STACK.with_scaled(name, 0.99)
+        except rf.ComponentError as refused:  # a lower body would be narrower than what it carries
+            assert "reaches" in str(refused)
+            continue
+        assert changed != STACK
+        assert changed.offsets == STACK.offsets
+    higher = STACK.with_scaled("height of body 2", 1.1)
+    assert higher.bodies == (STATUE, PLINTH.with_scaled("height", 1.1))
+    with pytest.raises(rf.ComponentError, match="no parameter is called 'offsets'"):
+        STACK.with_scaled("offsets", 2.0)
+
+
+@pytest.mark.parametrize("joint", [JOINT, rf.RigidGround()])
+def test_certificates_change_all_its_numbers(joint):
+    stack = rf.Stack(STATUE, PLINTH, interfaces=[joint])
+    scenes = dict(parameters(rf.System(stack, GROUND).assembly))
+    assert {f"{name.replace('_', ' ')} of the stack" for name in stack.parameters()} < set(scenes)
+    changed = scenes["height of body 1 of the stack"](1e-3)
+    assert changed.setting.bodies[0].centre_height == pytest.approx(0.9 * 1.001, rel=1e-12)
