@@ -180,11 +180,7 @@ def test_every_number_of_its_parts_can_be_changed():
         name.replace("_", " ") for name in names
     }
     for name in names:
-        try:
-            changed = STACK.with_scaled(name, 0.99)
-        except rf.ComponentError as refused:  # a lower body would be narrower than what it carries
-            assert "reaches" in str(refused)
-            continue
+        changed = STACK.with_scaled(name, 0.99)
         assert changed != STACK
         assert changed.offsets == STACK.offsets
     higher = STACK.with_scaled("height of body 2", 1.1)
