@@ -12,6 +12,8 @@ import rockframe as rf
 from rockframe import extension as ext
 
 SLACK, TAUT = 0, 1
+BECAME_SLACK = int(ext.EventKind.RESTRAINER_SLACK)
+BECAME_TAUT = int(ext.EventKind.RESTRAINER_TAUT)
 
 
 @ext.link_law
@@ -45,8 +47,8 @@ class Hardening(NamedTuple):
 
     def switch(self, which, state, stretch, own):
         if state == TAUT:
-            return ext.LinkEvent(SLACK, int(ext.EventKind.RESTRAINER_SLACK), 0.0)
-        return ext.LinkEvent(TAUT, int(ext.EventKind.RESTRAINER_TAUT), 0.0)
+            return ext.LinkEvent(SLACK, BECAME_SLACK, 0.0)
+        return ext.LinkEvent(TAUT, BECAME_TAUT, 0.0)
 
     def shown(self, state):
         return state

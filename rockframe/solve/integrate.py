@@ -5,7 +5,7 @@ from time import perf_counter
 
 import numpy as np
 
-from rockframe.compiled import Integers, Matrix, Vector, say_slow
+from rockframe.compiled import COMPILED, Integers, Matrix, Vector, say_slow
 from rockframe.dynamics.protocol import ContactModel, Ending, Start
 from rockframe.signals import Motion
 from rockframe.solve import layout as at
@@ -109,8 +109,9 @@ def integrate(
     pieces = pieces_of(motion)
     equations = equations_of(model.system, fixed_steps=accuracy.rtol is None)
     workspace = make_workspace(equations, state, run.reference, run.limits)
-    began = perf_counter()
+    as_python = 0.0  # time that it took in plain Python
     while True:
+        began = perf_counter()
         counters[at.PAUSE_AT] = counters[at.MAX_STEPS]
         if not has_machine_code(equations):
             tried = counters[at.STEPS] + counters[at.REJECTED]
@@ -125,6 +126,8 @@ def integrate(
             events,
             workspace,
         )
+        if not has_machine_code(equations):
+            as_python += perf_counter() - began
         if result not in (at.MORE_ROOM, at.PAUSED):
             break
         if counters[at.EVENTS] >= len(events.codes):
@@ -132,7 +135,8 @@ def integrate(
         if has_no_room(steps.codes, counters):
             steps = StepTable(*_longer(*steps))
 
-    say_slow(perf_counter() - began)
+    if not COMPILED or not runs_as_python(equations):  # of which more has been said
+        say_slow(as_python)
 
     stored = int(counters[at.OUTPUTS])
     time: Vector = np.arange(stored, dtype=np.float64) * (output_step or 1.0)

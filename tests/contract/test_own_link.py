@@ -1,6 +1,7 @@
 """A link of a user's own, from the example's file."""
 
 import importlib.util
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -20,6 +21,7 @@ PULSE = rf.GroundMotion.sine_pulse(amplitude="-4 m/s^2", frequency="1 Hz")
 def example():
     spec = importlib.util.spec_from_file_location("own_link", FILE)
     module = importlib.util.module_from_spec(spec)
+    sys.modules["own_link"] = module  # where its machine code looks for it
     spec.loader.exec_module(module)
     rf.register(module.Rope)
     return module
@@ -64,3 +66,9 @@ def test_the_page_names_files_that_are_there():
         assert (root / name).exists()
     assert "import rockframe" in FILE.read_text()
     assert "rockframe.dynamics" not in FILE.read_text()
+
+
+def test_links_of_two_laws_are_refused_in_one_scene(example):
+    rope, tie = example.Rope(**POINTS, reach="1 m", name="rope"), rf.Restrainer(**POINTS)
+    with pytest.raises(rf.AssemblyError, match="follow one law, got Restrainer and Rope"):
+        rf.System(BLOCK, PADS, rope, tie)

@@ -267,7 +267,7 @@ THEMSELVES = {
     "writing.py": "the mechanism",
     "studies/sweeps/arrays_file.py": "the folder of a study, whole or not at all by itself",
     "compiled/store.py": "machine code, in a folder of its own",
-    "command/given.py": "to the place that the mechanism gives",
+    "command/shared.py": "to the place that the mechanism gives",
     "command/plot.py": "to memory",
     "reports/page.py": "to memory",
     "plot/_animation.py": "to the place that the mechanism gives",
