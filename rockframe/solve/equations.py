@@ -139,7 +139,7 @@ def runs_as_python(equations: BoundEquations) -> bool:
     return not COMPILED or any(one.source.failed for one in equations if isinstance(one, Bound))
 
 
-def has_machine_code(equations: Equations) -> bool:
+def has_machine_code(equations: BoundEquations) -> bool:
     """Whether the functions of a system are there as machine code."""
     return all(one.source.address for one in equations if isinstance(one, Bound))
 
