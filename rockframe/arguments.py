@@ -15,23 +15,7 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 def hinted(**hints: str) -> Callable[[Function], Function]:
-    """Say more of arguments that a function does not take, but that one may look for there.
-
-    Parameters
-    ----------
-    **hints : str
-        Where to give what was meant, by names of arguments that there are not.
-
-    Returns
-    -------
-    callable
-        A decorator; the function keeps its signature.
-
-    Raises
-    ------
-    TypeError
-        By the function, as ever, when such an argument is given.
-    """
+    """Say more of arguments that a function does not take, but that one may look for there."""
 
     def decorate(function: Function) -> Function:
         @wraps(function)
@@ -54,25 +38,7 @@ def hints_of(function: Callable[..., Any]) -> Mapping[str, str]:
 
 
 def by_words(given: Mapping[Any, Any], *, owner: str) -> dict[str, Any]:
-    """Read a mapping whose keys are labels, also numbers, as a mapping of words.
-
-    Parameters
-    ----------
-    given : mapping
-        What the user gave.
-    owner : str
-        Class or function, for the message.
-
-    Returns
-    -------
-    dict
-        In the same order.
-
-    Raises
-    ------
-    ComponentError
-        Two keys are the same word.
-    """
+    """Read a mapping whose keys are labels, also numbers, as a mapping of words."""
     found = {str(key): value for key, value in given.items()}
     if len(found) < len(given):
         words = [str(key) for key in given]
@@ -83,26 +49,7 @@ def by_words(given: Mapping[Any, Any], *, owner: str) -> dict[str, Any]:
 
 
 def one_of_words(kind: type[Words], given: object, *, owner: str, name: str) -> Words:
-    """Read an argument that is one of a few words.
-
-    Parameters
-    ----------
-    kind : type of StrEnum
-        The words.
-    given : object
-        What the user gave.
-    owner, name : str
-        Class or function, and argument, for the message.
-
-    Returns
-    -------
-    StrEnum
-
-    Raises
-    ------
-    ComponentError
-        None of them.
-    """
+    """Read an argument that is one of a few words."""
     try:
         return kind(str(given))
     except ValueError:
@@ -112,13 +59,7 @@ def one_of_words(kind: type[Words], given: object, *, owner: str, name: str) -> 
 
 
 def text(given: object, *, owner: str, name: str) -> str:
-    """Read an argument that is a text.
-
-    Raises
-    ------
-    ComponentError
-        Something else.
-    """
+    """Read an argument that is a text."""
     if isinstance(given, str):
         return given
     msg = f"{owner}: {name} must be a text, got {shown(given)}"
@@ -126,13 +67,7 @@ def text(given: object, *, owner: str, name: str) -> str:
 
 
 def truth(given: object, *, owner: str, name: str) -> bool:
-    """Read an argument that is True or False.
-
-    Raises
-    ------
-    ComponentError
-        Something else.
-    """
+    """Read an argument that is True or False."""
     if isinstance(given, bool):
         return given
     msg = f"{owner}: {name} must be True or False, got {shown(given)}"
@@ -142,26 +77,7 @@ def truth(given: object, *, owner: str, name: str) -> bool:
 def whole_number(
     given: object, *, owner: str, name: str, lowest: int, highest: int | None = None
 ) -> int:
-    """Read an argument that is a whole number, Python's or numpy's.
-
-    Parameters
-    ----------
-    given : object
-        What the user gave.
-    owner, name : str
-        Class or function, and argument, for the message.
-    lowest, highest : int
-        Range; no upper bound if `highest` is None.
-
-    Returns
-    -------
-    int
-
-    Raises
-    ------
-    ComponentError
-        None, or out of the range.
-    """
+    """Read an argument that is a whole number, Python's or numpy's."""
     try:
         number = None if isinstance(given, bool) else index(cast("SupportsIndex", given))
     except TypeError:
@@ -174,24 +90,7 @@ def whole_number(
 
 
 def checked_dataset(given: object, *, owner: str) -> xr.Dataset:
-    """Read an argument that is a dataset.
-
-    Parameters
-    ----------
-    given : object
-        What the user gave.
-    owner : str
-        Class or function, for the message.
-
-    Returns
-    -------
-    xarray.Dataset
-
-    Raises
-    ------
-    SchemaError
-        None, such as the path of a file.
-    """
+    """Read an argument that is a dataset."""
     if isinstance(given, xr.Dataset):
         return given
     msg = (

@@ -150,18 +150,7 @@ class RecordWarning(RockframeWarning):
 
 
 def shown(value: object) -> str:
-    """Show a value in a message: as it is written, if that is short.
-
-    Parameters
-    ----------
-    value : object
-        What the user gave.
-
-    Returns
-    -------
-    str
-        One line. Of long arrays and of datasets the type; of other long values the beginning.
-    """
+    """Show a value in a message: as it is written, if that is short."""
     text = repr(value)
     if len(text) <= LONGEST_SHOWN and "\n" not in text:
         return text
@@ -182,13 +171,7 @@ _heard: Final[ContextVar[list[str] | None]] = ContextVar("heard", default=None)
 
 @contextmanager
 def heard() -> Generator[list[str]]:
-    """Collect what is warned of, in this thread alone, instead of warning.
-
-    Yields
-    ------
-    list of str
-        The messages so far.
-    """
+    """Collect what is warned of, in this thread alone, instead of warning."""
     texts: list[str] = []
     before = _heard.set(texts)
     try:
@@ -198,15 +181,7 @@ def heard() -> Generator[list[str]]:
 
 
 def warn(message: str, category: type[RockframeWarning]) -> None:
-    """Warn at the line that called into rockframe, however deep the fault is found.
-
-    Parameters
-    ----------
-    message : str
-        What is unusual.
-    category : type
-        Kind of warning.
-    """
+    """Warn at the line that called into rockframe, however deep the fault is found."""
     texts = _heard.get()
     if texts is not None:
         texts.append(message)
@@ -219,23 +194,7 @@ def warn(message: str, category: type[RockframeWarning]) -> None:
 
 
 def or_missing(work: Callable[[], Found], instead: Found, what: str, missing: list[str]) -> Found:
-    """Compute what goes with a finished run, without a risk to the run.
-
-    Parameters
-    ----------
-    work : callable
-        Computes it.
-    instead : object
-        What stands for it where that fails, whatever the reason.
-    what : str
-        What it is, in words.
-    missing : list of str
-        Takes up what could not be computed, and why.
-
-    Returns
-    -------
-    object
-    """
+    """Compute what goes with a finished run, without a risk to the run."""
     try:
         return work()
     except Warning:  # asked for as an error

@@ -31,18 +31,7 @@ class Polygon(NamedTuple):
 
 
 def arguments_in_words(arguments: Mapping[str, Any]) -> dict[str, str]:
-    """Give arguments as people write them.
-
-    Parameters
-    ----------
-    arguments : mapping of str to float or str
-        Numbers, numbers with SI units, and words, as ``to_dict`` of a part gives them.
-
-    Returns
-    -------
-    dict of str to str
-        Without ``type`` and what is longer than a few words.
-    """
+    """Give arguments as people write them."""
     found = {name.replace("_", " "): _written(value) for name, value in arguments.items()
              if name != "type"}  # fmt: skip
     return {name: words for name, words in found.items() if len(words) <= _LONGEST}
@@ -52,21 +41,7 @@ _LONGEST: Final = 60
 
 
 def card(title: str, rows: Mapping[str, str], drawing: str = "", more: str = "") -> str:
-    """Give a card: a title, a drawing and a table of names and values.
-
-    Parameters
-    ----------
-    title : str
-        Plain text, as are the names and values.
-    rows : mapping of str to str
-        Values by their names.
-    drawing, more : str
-        HTML of the drawing, and of what stands below the table.
-
-    Returns
-    -------
-    str
-    """
+    """Give a card: a title, a drawing and a table of names and values."""
     cells = "".join(
         f'<tr style="background:transparent"><th style="{CELL};font-weight:normal;opacity:0.7">'
         f'{escape(name)}</th><td style="{CELL}">{escape(value)}</td></tr>'
@@ -80,20 +55,7 @@ def card(title: str, rows: Mapping[str, str], drawing: str = "", more: str = "")
 
 
 def drawing(shapes: Iterable[Polygon], *, size: float = 130.0) -> str:
-    """Draw polygons to scale.
-
-    Parameters
-    ----------
-    shapes : iterable of Polygon
-        From back to front, y upwards.
-    size : float
-        Of the longer side [px].
-
-    Returns
-    -------
-    str
-        An SVG element.
-    """
+    """Draw polygons to scale."""
     given = list(shapes)
     places = [point for shape in given for point in shape.points]
     left, right = min(x for x, _ in places), max(x for x, _ in places)
@@ -109,20 +71,7 @@ def drawing(shapes: Iterable[Polygon], *, size: float = 130.0) -> str:
 
 
 def curve(values: Sequence[float], *, width: float = 260.0, height: float = 60.0) -> str:
-    """Draw values along time.
-
-    Parameters
-    ----------
-    values : sequence of float
-        At equal distances.
-    width, height : float
-        Of the drawing [px].
-
-    Returns
-    -------
-    str
-        An SVG element; of many values lowest and highest ones are drawn.
-    """
+    """Draw values along time."""
     most = max((abs(value) for value in values), default=0.0) or 1.0
     count = len(values)
     step = max(1, -(-count // 300))
@@ -171,19 +120,7 @@ def _written(value: Any) -> str:
 
 
 def number_with_unit(size: float, unit: str) -> str:
-    """Write a number in an SI unit as people do: 99 t, 9 MPa, 250 kN m^-1.
-
-    Parameters
-    ----------
-    size : float
-        In that unit.
-    unit : str
-        As :class:`rockframe.units.Unit` spells it.
-
-    Returns
-    -------
-    str
-    """
+    """Write a number in an SI unit as people do: 99 t, 9 MPa, 250 kN m^-1."""
     if unit == "kg" and abs(size) >= 1e3:
         return f"{1e-3 * size:.6g} t"
     if unit.split(" ")[0] in _SCALED:

@@ -21,52 +21,21 @@ _ROW: Final = re.compile(r"^(?=\S)", re.M)
 
 @dataclass(frozen=True)
 class Argument:
-    """What is said of an argument, beside its type: the metadata of ``Annotated``.
+    """What is said of an argument, beside its type: the metadata of ``Annotated``."""
 
-    Parameters
-    ----------
-    default : object
-        Its value unless given.
-    kind : str
-        Its type, as the manual has it.
-    words : str
-        What it is, with its unit.
-    """
-
-    default: object
-    kind: str
-    words: str
+    default: object  # its value unless given
+    kind: str  # its type, as the manual has it
+    words: str  # what it is, with its unit
 
 
 def declared_in(kind: type) -> dict[str, Argument]:
-    """Give the arguments of a typed dictionary, by their names.
-
-    Parameters
-    ----------
-    kind : type of TypedDict
-        Whose values are ``Annotated`` by an :class:`Argument`.
-
-    Returns
-    -------
-    dict of str to Argument
-    """
+    """Give the arguments of a typed dictionary, by their names."""
     hints = get_type_hints(kind, include_extras=True)
     return {name: hint.__metadata__[0] for name, hint in hints.items()}
 
 
 def documented_by(kind: type) -> Callable[[Function], Function]:
-    """Complete the docstring of a function that takes shared arguments by name.
-
-    Parameters
-    ----------
-    kind : type of TypedDict
-        Their declarations. A row that the docstring has stays.
-
-    Returns
-    -------
-    callable
-        A decorator.
-    """
+    """Complete the docstring of a function that takes shared arguments by name."""
 
     def decorate(function: Function) -> Function:
         names = inspect.signature(function).parameters
@@ -77,25 +46,7 @@ def documented_by(kind: type) -> Callable[[Function], Function]:
 
 
 def takes(kind: type, **otherwise: object) -> Callable[[Function], Function]:
-    """Let a function take shared arguments, which it has as ``**run: Unpack[kind]``.
-
-    Parameters
-    ----------
-    kind : type of TypedDict
-        Their declarations.
-    **otherwise
-        Defaults of this function that are not those of the declarations.
-
-    Returns
-    -------
-    callable
-        A decorator. The function's signature and docstring list every argument.
-
-    Raises
-    ------
-    TypeError
-        By the function, when another argument is given; it names similar ones.
-    """
+    """Let a function take shared arguments, which it has as ``**run: Unpack[kind]``."""
     declared = declared_in(kind)
 
     def decorate(function: Function) -> Function:

@@ -20,20 +20,11 @@ Content: TypeAlias = "bytes | Callable[[Path], object]"
 
 @dataclass(frozen=True)
 class FileKind:
-    """A kind of file that rockframe writes.
+    """A kind of file that rockframe writes."""
 
-    Parameters
-    ----------
-    words : str
-        What it is, with its article.
-    endings : tuple of str
-        Of names of such files, in small letters.
-    is_own : callable
-        Whether a file that is there was written by rockframe as one of this kind.
-    """
-
-    words: str
-    endings: tuple[str, ...]
+    words: str  # what it is, with its article
+    endings: tuple[str, ...]  # of names of such files, in small letters
+    # whether a file that is there was written by rockframe as one of this kind
     is_own: Callable[[Path], bool]
 
     @classmethod
@@ -59,32 +50,7 @@ def generator(what: str, version: str = "") -> str:
 def checked_path(
     path: PathLike, kind: FileKind, *, overwrite: bool = False, read: Iterable[PathLike] = ()
 ) -> Path:
-    """Refuse a file that must not be written; to be asked before the work.
-
-    Parameters
-    ----------
-    path : str or path-like
-        Of the file; ``~`` is the user's folder.
-    kind : FileKind
-        What is written.
-    overwrite : bool, optional
-        Whether a file is replaced that rockframe has not written.
-    read : iterable of path-like, optional
-        Files, and folders of files, that it is made from.
-
-    Returns
-    -------
-    Path
-        Of the file itself, where a link leads to it.
-
-    Raises
-    ------
-    ComponentError
-        `overwrite` is neither True nor False.
-    FileError
-        Its ending belongs to another kind, its folder is not there, something is there already
-        that is not replaced, or it is one of those that are read.
-    """
+    """Refuse a file that must not be written; to be asked before the work."""
     if not isinstance(overwrite, bool):  # pyright: ignore[reportUnnecessaryIsInstance]
         msg = f"overwrite must be True or False, got {shown(overwrite)}"
         raise ComponentError(msg)
@@ -110,25 +76,7 @@ def write_file(
     overwrite: bool = False,
     read: Iterable[PathLike] = (),
 ) -> Path:
-    """Write a file whole or not at all: beside its place, and then moved there.
-
-    Parameters
-    ----------
-    path, kind, overwrite, read
-        As for :func:`checked_path`.
-    content : bytes or callable
-        All of the file; or what writes it, called with a path that has the same ending.
-
-    Returns
-    -------
-    Path
-        As it was given.
-
-    Raises
-    ------
-    FileError
-        It must not be written, or cannot be.
-    """
+    """Write a file whole or not at all: beside its place, and then moved there."""
     place = checked_path(path, kind, overwrite=overwrite, read=read)
     part = place.with_name(f".{os.getpid()}.{os.urandom(4).hex()}{Path(path).suffix}")
     try:

@@ -47,17 +47,7 @@ def execute(arguments: argparse.Namespace) -> int:
 
 
 def script(shell: str) -> str:
-    """Write the script for a shell.
-
-    Parameters
-    ----------
-    shell : {"bash", "zsh", "fish"}
-        Which.
-
-    Returns
-    -------
-    str
-    """
+    """Write the script for a shell."""
     return {"bash": _bash, "zsh": _zsh, "fish": _fish}[shell]()
 
 

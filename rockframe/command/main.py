@@ -20,18 +20,7 @@ INTERRUPTED: Final = 130
 
 
 def main(given: Sequence[str] | None = None) -> int:
-    """Carry out what was typed.
-
-    Parameters
-    ----------
-    given : sequence of str, optional
-        Words after the name of the program; those of this process unless given.
-
-    Returns
-    -------
-    int
-        Exit code.
-    """
+    """Carry out what was typed."""
     parser = build_parser()
     try:
         arguments = parser.parse_args(given)

@@ -19,21 +19,11 @@ PICTURES: Final = "a picture; its ending tells the format: .png, .svg, .pdf"
 
 @dataclass(frozen=True)
 class CommandArgument:
-    """One argument of a command.
+    """One argument of a command."""
 
-    Parameters
-    ----------
-    names : tuple of str
-        As it is typed.
-    settings : dict
-        As :meth:`argparse.ArgumentParser.add_argument` takes them.
-    of_files : bool
-        Whether it names a file.
-    """
-
-    names: tuple[str, ...]
-    settings: dict[str, Any]
-    of_files: bool = False
+    names: tuple[str, ...]  # as it is typed
+    settings: dict[str, Any]  # as :meth:`argparse.ArgumentParser.add_argument` takes them
+    of_files: bool = False  # whether it names a file
 
 
 def _path(*names: str, **settings: Any) -> CommandArgument:
@@ -46,27 +36,13 @@ def _word(*names: str, **settings: Any) -> CommandArgument:
 
 @dataclass(frozen=True)
 class Command:
-    """One command.
+    """One command."""
 
-    Parameters
-    ----------
-    name : str
-        As it is typed; the module of that name carries it out.
-    words : str
-        What it does, in a line.
-    story : str
-        What it does, for those who ask for help.
-    examples : str
-        Lines to copy.
-    arguments : tuple of CommandArgument
-        What it takes.
-    """
-
-    name: str
-    words: str
-    story: str
-    examples: str
-    arguments: Sequence[CommandArgument]
+    name: str  # as it is typed; the module of that name carries it out
+    words: str  # what it does, in a line
+    story: str  # what it does, for those who ask for help
+    examples: str  # lines to copy
+    arguments: Sequence[CommandArgument]  # what it takes
 
 
 _SCENE: Final = _path("scene", metavar="scene.toml", help="the scene; 'template' writes one")
@@ -279,12 +255,7 @@ A scene is a text file with units:
 
 
 def build_parser() -> argparse.ArgumentParser:
-    """Build the parser of the whole command line.
-
-    Returns
-    -------
-    argparse.ArgumentParser
-    """
+    """Build the parser of the whole command line."""
     everywhere = argparse.ArgumentParser(add_help=False)
     everywhere.add_argument(
         "--debug",

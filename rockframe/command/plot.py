@@ -38,13 +38,7 @@ def execute(arguments: argparse.Namespace) -> int:
 
 
 def save(figure: "Figure", path: str | Path, outputs: Outputs) -> None:
-    """Write a figure, and say so.
-
-    Raises
-    ------
-    ComponentError
-        It cannot be drawn.
-    """
+    """Write a figure, and say so."""
     kind = Path(path).suffix.lower()
     drawn = BytesIO()
     try:

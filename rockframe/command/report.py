@@ -26,13 +26,7 @@ def execute(arguments: argparse.Namespace) -> int:
 
 
 def _case_of(dataset: xr.Dataset, arguments: argparse.Namespace) -> xr.Dataset:
-    """Simulate the case of a study that is asked for.
-
-    Raises
-    ------
-    FileError
-        None is, or not as names with values.
-    """
+    """Simulate the case of a study that is asked for."""
     axes = ", ".join(
         f"{name} ({size})" for name, size in dataset.sizes.items() if name != "message"
     )

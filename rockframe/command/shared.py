@@ -31,17 +31,7 @@ def motion_from(path: str, arguments: argparse.Namespace) -> GroundMotion:
 
 
 def scene_from(arguments: argparse.Namespace) -> Described:
-    """Read the scene, with the motion and the arguments of the run that options give instead.
-
-    Parameters
-    ----------
-    arguments : argparse.Namespace
-        Of ``run`` or ``certify``.
-
-    Returns
-    -------
-    Described
-    """
+    """Read the scene, with the motion and the arguments of the run that options give instead."""
     found = read_scene(arguments.scene)
     motion, files = found.motion, found.files
     if arguments.motion is not None:
@@ -63,27 +53,13 @@ def simulated(found: Described, **more: Any) -> xr.Dataset:
 
 
 class Outputs:
-    """The files that a command writes, and those that it must not write over.
-
-    Parameters
-    ----------
-    arguments : argparse.Namespace
-        Of the command.
-    read : iterable of path
-        Files and folders that it reads.
-    """
+    """The files that a command writes, and those that it must not write over."""
 
     def __init__(self, arguments: argparse.Namespace, read: Iterable[str | Path]) -> None:
         self._given: dict[str, Any] = {"overwrite": arguments.overwrite, "read": list(read)}
 
     def check(self, path: str | Path | None, kind: FileKind) -> None:
-        """Refuse a file that must not be written, before the work and not after it.
-
-        Raises
-        ------
-        FileError
-            As :func:`rockframe.writing.checked_path`.
-        """
+        """Refuse a file that must not be written, before the work and not after it."""
         if path is not None:
             checked_path(path, kind, **self._given)
 
@@ -103,13 +79,7 @@ class Outputs:
 
 
 def read_result(path: str) -> xr.Dataset:
-    """Read a result.
-
-    Raises
-    ------
-    FileError
-        There is none, or it is no netCDF file.
-    """
+    """Read a result."""
     place = Path(path).expanduser()
     if not place.is_file():
         found = "this is a folder" if place.is_dir() else "there is no such file"

@@ -25,13 +25,7 @@ _MOST_SHOWN: Final = 40
 
 
 def execute(arguments: argparse.Namespace) -> int:
-    """Carry out a study, or what is left of it.
-
-    Raises
-    ------
-    KeyboardInterrupt
-        While no case was running.
-    """
+    """Carry out a study, or what is left of it."""
     found = read_study(arguments.study)
     if arguments.output is None and found.output is not None:
         arguments.output = str(found.output)

@@ -148,24 +148,7 @@ def tradeoff(
 def measure(
     scene: System, plan: Plan, converged: xr.Dataset, truth: xr.Dataset, repeats: int
 ) -> Outcome:
-    """Run a rung, time it and compare it.
-
-    Parameters
-    ----------
-    scene : System
-        The rung's model.
-    plan : Plan
-        With its accuracy.
-    converged, truth : xarray.Dataset
-        The same model, and the scene itself, at a tolerance of 1e-12.
-    repeats : int
-        How often it is timed.
-
-    Returns
-    -------
-    dict
-        Scalars by their names in the schema.
-    """
+    """Run a rung, time it and compare it."""
     found = run(scene.assembly, plan)
     bare = replace(plan, output_step=None)
     times = [_timed(scene, bare) for _ in range(repeats)]

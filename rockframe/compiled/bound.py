@@ -38,13 +38,7 @@ def structure_of(bundle: Any) -> tuple[Any, ...]:
 
 
 class Signature:
-    """Numba's signature of a function, which is looked up in each call of an entry: hashed once.
-
-    Parameters
-    ----------
-    value : numba signature
-        The signature.
-    """
+    """Numba's signature of a function, which is looked up in each call of an entry: hashed once."""
 
     def __init__(self, value: Any) -> None:
         self.value = value
@@ -58,18 +52,7 @@ class Signature:
 
 
 class Source:
-    """A function and the structure of a tuple that it can be bound to.
-
-    Parameters
-    ----------
-    function : callable
-        Its source; the first argument is the tuple.
-    structure : tuple
-        Of that, see :func:`structure_of`.
-    in_lanes : bool
-        Whether the function takes, in place of the tuple, the function that makes it of
-        numbers.
-    """
+    """A function and the structure of a tuple that it can be bound to."""
 
     def __init__(
         self, function: Callable[..., Any], structure: tuple[Any, ...], in_lanes: bool
@@ -90,15 +73,7 @@ class Source:
 
 
 class Bound:
-    """A function bound to a tuple: plain Python, and what entries call in its place.
-
-    Parameters
-    ----------
-    source : Source
-        The function.
-    bundle : named tuple or callable
-        That it is bound to.
-    """
+    """A function bound to a tuple: plain Python, and what entries call in its place."""
 
     __slots__ = ("_bundle", "source")
 
@@ -112,42 +87,13 @@ class Bound:
 
 
 def bound(functions: tuple[Callable[..., Any], ...], bundle: Any) -> tuple[Bound, ...]:
-    """Bind functions to the tuple that is their first argument.
-
-    Parameters
-    ----------
-    functions : tuple of callable
-        Marked functions, annotated with ``int``, ``float`` and ``Vector``; they give a number
-        or none.
-    bundle : named tuple
-        Of numbers, and named tuples of them.
-
-    Returns
-    -------
-    tuple of Bound
-        They take another last argument, which is :func:`numbers_in` the bundle. They are
-        compiled with the entry that is first called with them.
-    """
+    """Bind functions to the tuple that is their first argument."""
     structure = structure_of(bundle)
     return tuple(Bound(_source(function, structure, False), bundle) for function in functions)
 
 
 def bound_in_lanes(function: Callable[..., Any], bundle: Any) -> Bound:
-    """Bind a function to the class of a tuple, of which each lane has its own.
-
-    Parameters
-    ----------
-    function : callable
-        As for :func:`bound`, but its first argument is a function that makes a tuple of the
-        numbers of a lane.
-    bundle : named tuple
-        One of the tuples.
-
-    Returns
-    -------
-    Bound
-        Its last argument is not looked at.
-    """
+    """Bind a function to the class of a tuple, of which each lane has its own."""
     structure = structure_of(bundle)
     return Bound(_source(function, structure, True), tuple_from(structure))
 

@@ -24,19 +24,7 @@ _INTO_CALLERS: Final = {"forceinline": True, "no_cpython_wrapper": True, "no_cfu
 
 
 class BufferType(numba.types.Type):
-    """numba's type of a buffer.
-
-    Parameters
-    ----------
-    dtype : numba type
-        Of its elements.
-    dimensions : int
-        Number of its indices.
-    writeable : bool
-        Whether elements can be set.
-    stride : int
-        Elements from one of a vector to the next.
-    """
+    """numba's type of a buffer."""
 
     def __init__(self, dtype: Any, dimensions: int, writeable: bool, stride: int = 1) -> None:
         self.dtype = dtype

@@ -15,13 +15,7 @@ ir: Final[Any] = import_module("llvmlite.ir")
 
 
 class CodeType(numba.types.Type):
-    """numba's type of a function at an address.
-
-    Parameters
-    ----------
-    signature : numba signature
-        Of the function.
-    """
+    """numba's type of a function at an address."""
 
     def __init__(self, signature: Any) -> None:
         self.signature = signature
@@ -35,18 +29,7 @@ class _CodeModel(extending.models.PrimitiveModel):
 
 
 def code_at(signature: Any) -> Any:
-    """Make the function that takes a whole number for the address of a function.
-
-    Parameters
-    ----------
-    signature : numba signature
-        Of the function at the address.
-
-    Returns
-    -------
-    callable
-        For compiled code.
-    """
+    """Make the function that takes a whole number for the address of a function."""
     kind = CodeType(signature)
 
     @extending.intrinsic

@@ -86,13 +86,7 @@ def _could_not(function: Callable[..., Any], problem: Exception) -> None:
 
 
 def say_slow(seconds: float) -> None:
-    """Say once, after a long run in plain Python, why, and what machine code would do.
-
-    Parameters
-    ----------
-    seconds : float
-        That the run has taken.
-    """
+    """Say once, after a long run in plain Python, why, and what machine code would do."""
     if seconds <= PATIENCE or _said_slow or (_HAS_NUMBA and not COMPILED):
         return
     _said_slow.append(True)
@@ -108,15 +102,7 @@ def say_slow(seconds: float) -> None:
 
 
 class Entry:
-    """A compiled function: the machine code for each structure of arguments.
-
-    Parameters
-    ----------
-    function : callable
-        Its source.
-    waits : bool
-        Whether a call waits for machine code; else it runs as plain Python meanwhile.
-    """
+    """A compiled function: the machine code for each structure of arguments."""
 
     def __init__(self, function: Callable[..., Any], waits: bool = True) -> None:
         self.source = inlined(function)
@@ -127,13 +113,7 @@ class Entry:
         update_wrapper(self, function)
 
     def __call__(self, *arguments: Any) -> Any:
-        """Run the machine code, or the function itself where there is none.
-
-        Raises
-        ------
-        TypeError
-            An array is not contiguous in C order, or an argument is of another sort.
-        """
+        """Run the machine code, or the function itself where there is none."""
         words: list[Any] = []
         sources: list[Source] = []
         structure = tuple(_structure_of(argument, words, sources) for argument in arguments)
@@ -221,34 +201,13 @@ def _missing(sources: list[Source]) -> list[Source]:
 def compiled_within(
     patience: float, function: Callable[P, Any], *arguments: P.args, **_: P.kwargs
 ) -> bool:
-    """Tell whether an entry runs as machine code, which is compiled unless that takes long.
-
-    Parameters
-    ----------
-    patience : float
-        Longest time for that [s].
-    function : callable
-        An entry.
-    *arguments
-        Those it is to be called with, or others of their structure.
-
-    Returns
-    -------
-    bool
-        False while another process compiles it, and where it cannot be compiled.
-    """
+    """Tell whether an entry runs as machine code, which is compiled unless that takes long."""
     return isinstance(function, Entry) and function.is_compiled_within(patience, arguments)
 
 
 @contextmanager
 def compiling_for(words: str) -> Generator[None]:
-    """Say, where something is compiled meanwhile, for what.
-
-    Parameters
-    ----------
-    words : str
-        What needs it, as in "rockframe compiles what ... needs".
-    """
+    """Say, where something is compiled meanwhile, for what."""
     before = NEEDED_BY.set(words)
     try:
         yield

@@ -6,18 +6,7 @@ import numpy as np
 
 
 def viewed(argument: Any) -> Any:
-    """Give an argument of an entry with memory views in place of its arrays.
-
-    Parameters
-    ----------
-    argument : float, int, callable, ndarray or named tuple of these
-        As it would be handed to machine code.
-
-    Returns
-    -------
-    float, int, callable, memoryview or named tuple of these
-        Of the same memory.
-    """
+    """Give an argument of an entry with memory views in place of its arrays."""
     if isinstance(argument, np.ndarray):
         return memoryview(cast("Any", argument))
     if isinstance(argument, tuple):

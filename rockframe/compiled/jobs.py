@@ -47,25 +47,14 @@ def signature_of(function: Callable[..., Any]) -> Any:
 
 @dataclass(frozen=True)
 class Job:
-    """A function to compile for one structure of its arguments.
+    """A function to compile for one structure of its arguments."""
 
-    Parameters
-    ----------
-    function : callable
-        Its source.
-    structure : tuple
-        Of the tuple that it is bound to, :func:`rockframe.compiled.bound.structure_of`; of
-        all its arguments, as :class:`rockframe.compiled.entries.Entry` describes them.
-    bound : bool
-        Which of these.
-    in_lanes : bool
-        Whether it is bound to the class of the tuple alone.
-    """
-
-    function: Callable[..., Any]
+    function: Callable[..., Any]  # its source
+    # of the tuple that it is bound to, :func:`rockframe.compiled.bound.structure_of`; of all its
+    # arguments, as :class:`rockframe.compiled.entries.Entry` describes them
     structure: tuple[Any, ...]
-    bound: bool
-    in_lanes: bool = False
+    bound: bool  # which of these
+    in_lanes: bool = False  # whether it is bound to the class of the tuple alone
 
     @cached_property
     def _written(self) -> tuple[str, dict[str, Any], Any]:
@@ -114,18 +103,7 @@ class Job:
         return self.file is not None and store.has_code(self.file)
 
     def make(self, waiting: Callable[[], bool] = lambda: True) -> Any:
-        """Give the compiled function: compiled now, or as it was kept.
-
-        Parameters
-        ----------
-        waiting : callable
-            Whether to go on waiting for another process that compiles it.
-
-        Returns
-        -------
-        callable
-            Of a vector as its last argument where it is bound, else of words.
-        """
+        """Give the compiled function: compiled now, or as it was kept."""
         file = self.file
         if file is None:
             register_kernels()

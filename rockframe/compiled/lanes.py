@@ -31,18 +31,7 @@ def widest_registers() -> None:
 
 
 def tuple_from(structure: tuple[Any, ...]) -> Callable[[Vector], Any]:
-    """Give the function that makes a tuple of numbers in a vector.
-
-    Parameters
-    ----------
-    structure : tuple
-        Of the tuple, :func:`rockframe.compiled.bound.structure_of`.
-
-    Returns
-    -------
-    callable
-        The reverse of :func:`rockframe.compiled.bound.numbers_in`.
-    """
+    """Give the function that makes a tuple of numbers in a vector."""
 
     def made(kind: Any, parts: tuple[Any, ...], numbers: Vector, first: int) -> tuple[Any, int]:
         taken: list[Any] = []

@@ -39,18 +39,7 @@ else:
 
 
 def lock(file: Path) -> Callable[[], None] | None:
-    """Lock a file, unless another process or thread has locked it.
-
-    Parameters
-    ----------
-    file : Path
-        It is there, and is neither read nor changed.
-
-    Returns
-    -------
-    callable or None
-        What unlocks it. None where another one has it.
-    """
+    """Lock a file, unless another process or thread has locked it."""
     try:
         stream = file.open("r+b")
     except OSError:  # nothing can be written: nobody waits

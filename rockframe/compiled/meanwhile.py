@@ -24,11 +24,6 @@ class Meanwhile:
     """What goes on until there is machine code for a call.
 
     A context manager, whose blocks are the calls that run in plain Python.
-
-    Parameters
-    ----------
-    jobs : sequence of Job
-        What is to be compiled.
     """
 
     def __init__(self, jobs: "Sequence[Job]") -> None:
@@ -49,15 +44,6 @@ class Meanwhile:
 
         By this process where no other one can, or those that may are at work, as soon as plain
         Python has taken as long as compiling will: that is never more than twice the shortest time.
-
-        Parameters
-        ----------
-        at_once : bool
-            Whether to compile it though nothing has run yet.
-
-        Returns
-        -------
-        bool
         """
         if self._compiler is not None and self._compiler.poll() is None:
             return False

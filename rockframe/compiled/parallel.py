@@ -26,15 +26,7 @@ _FREEZE: Final = 2.0
 
 
 class NotCompiledError(Exception):
-    """A job failed, whatever happened inside the compiler.
-
-    Parameters
-    ----------
-    place : int
-        Of the job in its list.
-    problem : Exception
-        What happened.
-    """
+    """A job failed, whatever happened inside the compiler."""
 
     def __init__(self, place: int, problem: Exception) -> None:
         super().__init__(str(problem))
@@ -43,23 +35,7 @@ class NotCompiledError(Exception):
 
 
 def make_all(jobs: Sequence[Job]) -> list[Any]:
-    """Compile jobs, or take what was kept of them.
-
-    Parameters
-    ----------
-    jobs : sequence of Job
-        What is to be compiled.
-
-    Returns
-    -------
-    list of callable
-        In the order of the jobs.
-
-    Raises
-    ------
-    NotCompiledError
-        The first job that failed.
-    """
+    """Compile jobs, or take what was kept of them."""
     _tell(jobs)
     with _helped(jobs) as waiting:
         return [_made(place, job, waiting) for place, job in enumerate(jobs)]
@@ -130,18 +106,7 @@ def _helper(jobs: Sequence[Job]) -> "subprocess.Popen[bytes] | None":
 
 
 def start_compiler(jobs: Sequence[Job]) -> "subprocess.Popen[bytes] | None":
-    """Start a process that compiles jobs while this one goes on.
-
-    Parameters
-    ----------
-    jobs : sequence of Job
-        What is to be compiled, and kept.
-
-    Returns
-    -------
-    Popen or None
-        None where there can be none. It goes on when this process has ended.
-    """
+    """Start a process that compiles jobs while this one goes on."""
     return _process("make_all_of", jobs)
 
 
@@ -168,13 +133,7 @@ def _process(task: str, jobs: Sequence[Job]) -> "subprocess.Popen[bytes] | None"
 
 
 def help_with(order: bytes) -> None:
-    """Compile jobs as long as no other process has come to them.
-
-    Parameters
-    ----------
-    order : bytes
-        Jobs, as they are told to a process.
-    """
+    """Compile jobs as long as no other process has come to them."""
     for job in _jobs_in(order):
         if job.is_stored or job.file is None or store.is_compiled_elsewhere(job.file):
             return
@@ -182,13 +141,7 @@ def help_with(order: bytes) -> None:
 
 
 def make_all_of(order: bytes) -> None:
-    """Compile all jobs, with one more process where neither this nor the first one needs it.
-
-    Parameters
-    ----------
-    order : bytes
-        Jobs, as they are told to a process.
-    """
+    """Compile all jobs, with one more process where neither this nor the first one needs it."""
     jobs = _jobs_in(order)
     if processors() > 2:
         make_all(jobs)

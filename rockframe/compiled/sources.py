@@ -24,20 +24,7 @@ _INSTALLED: Final = tuple(
 
 
 def digest_of_sources(function: Callable[..., Any], classes: Iterable[type]) -> str | None:
-    """Give a name for the contents of all files that a function's machine code comes from.
-
-    Parameters
-    ----------
-    function : callable
-        The function.
-    classes : iterable of type
-        Classes of named tuples among its arguments.
-
-    Returns
-    -------
-    str or None
-        None where some source has no file, as in a notebook.
-    """
+    """Give a name for the contents of all files that a function's machine code comes from."""
     files = _own_files({function.__module__, *(kind.__module__ for kind in classes)})
     if files is None:
         return None

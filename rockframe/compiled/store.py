@@ -19,22 +19,7 @@ _UNUSED: Final = 30 * 24 * 3600.0
 
 
 def file_of(function: Callable[..., Any], text: str, classes: Iterable[type]) -> Path | None:
-    """Give the file of an entry's module, written if it is not there.
-
-    Parameters
-    ----------
-    function : callable
-        What it calls.
-    text : str
-        Of the module.
-    classes : iterable of type
-        Classes of named tuples among the arguments.
-
-    Returns
-    -------
-    Path or None
-        None where some source has no file, or nothing can be written.
-    """
+    """Give the file of an entry's module, written if it is not there."""
     classes = list(classes)
     sources = digest_of_sources(function, classes)
     if sources is None:
@@ -77,15 +62,7 @@ def is_compiled_elsewhere(file: Path) -> bool:
 
 @contextmanager
 def compiling(file: Path, waiting: Callable[[], bool]) -> Generator[None]:
-    """Wait as long as another process compiles a module; then let others wait for this one.
-
-    Parameters
-    ----------
-    file : Path
-        Of the module.
-    waiting : callable
-        Whether to go on waiting.
-    """
+    """Wait as long as another process compiles a module; then let others wait for this one."""
     begun = time.monotonic()
     release = None
     while time.monotonic() - begun < LONGEST and waiting():

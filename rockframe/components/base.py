@@ -329,19 +329,7 @@ def replaced(
     changes: Mapping[str, Any],
     alternatives: tuple[OneOf, ...],
 ) -> dict[str, Any]:
-    """Give arguments with some changed, without those that the changes stand for.
-
-    Parameters
-    ----------
-    arguments, changes : mapping
-        By their names.
-    alternatives : tuple of OneOf
-        Arguments that stand for one another.
-
-    Returns
-    -------
-    dict
-    """
+    """Give arguments with some changed, without those that the changes stand for."""
     gone = {name for each in alternatives for name in each.displaced(changes)}
     return {**{name: value for name, value in arguments.items() if name not in gone}, **changes}
 

@@ -14,20 +14,7 @@ _INDENT: Final = "    "
 
 
 def with_parameters(text: str, declared: Iterable[Declared[Any, Any]]) -> str:
-    """Insert the section "Parameters" where numpydoc has it.
-
-    Parameters
-    ----------
-    text : str
-        A docstring in the style of numpydoc.
-    declared : iterable of Declared
-        Parameters in their order.
-
-    Returns
-    -------
-    str
-        The same docstring if it has such a section, or if there are no parameters.
-    """
+    """Insert the section "Parameters" where numpydoc has it."""
     rows = [_row(parameter) for parameter in declared]
     clean = cleandoc(text)
     found = _SECTION.search(clean)

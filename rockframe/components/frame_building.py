@@ -43,22 +43,7 @@ class Building:
         return self.outline.centre_of_mass(self.members)
 
     def block_arguments(self, owner: str) -> dict[str, float | str]:
-        """Give the arguments of the equivalent block.
-
-        Parameters
-        ----------
-        owner : str
-            For the message.
-
-        Returns
-        -------
-        dict
-
-        Raises
-        ------
-        ComponentError
-            All mass is in one point.
-        """
+        """Give the arguments of the equivalent block."""
         outline, members = self.outline, self.members
         mass = sum(member.si.mass for member in members)
         arguments: dict[str, float | str] = {
@@ -88,29 +73,7 @@ class Building:
 def building_of(
     members: object, centre_of_mass: object, measures: Mapping[str, Any], owner: str
 ) -> Building:
-    """Build a frame from a list of its members, or a regular one.
-
-    Parameters
-    ----------
-    members : iterable of Member or of mappings, or None
-        All members; None for a regular frame.
-    centre_of_mass : str or None
-        Where it is taken to be; None for where the members have it, and in the middle of a
-        regular frame.
-    measures : mapping
-        All other arguments of :meth:`rockframe.FrameEquivalent.from_members`.
-    owner : str
-        For the message.
-
-    Returns
-    -------
-    Building
-
-    Raises
-    ------
-    UnitsError, ComponentError
-        As for :class:`RegularFrame`, :class:`Member` and :class:`FrameEquivalent`.
-    """
+    """Build a frame from a list of its members, or a regular one."""
     usual = CentreOfMass.MIDDLE if members is None else CentreOfMass.MEMBERS
     taken = usual
     if centre_of_mass is not None:
@@ -130,25 +93,7 @@ _Found: TypeAlias = tuple[tuple[Member, ...], Outline, dict[str, float | str]]
 
 
 def regular_members(measures: Mapping[str, Any], owner: str) -> _Found:
-    """Take a regular frame apart.
-
-    Parameters
-    ----------
-    measures : mapping
-        Arguments of :class:`RegularFrame`; None for those not given.
-    owner : str
-        For the message.
-
-    Returns
-    -------
-    tuple of Member, Outline, dict
-        With the arguments that give the same again.
-
-    Raises
-    ------
-    UnitsError, ComponentError
-        As for :class:`RegularFrame`.
-    """
+    """Take a regular frame apart."""
     needed = ["column_width", "beam_height", "beam_width", "density"]
     if measures.get("storey_heights") is None:
         needed = ["storeys", "height", *needed]
@@ -166,27 +111,7 @@ def regular_members(measures: Mapping[str, Any], owner: str) -> _Found:
 
 
 def listed_members(members: object, measures: Mapping[str, Any], owner: str) -> _Found:
-    """Read a list of members, and the sizes of their building.
-
-    Parameters
-    ----------
-    members : iterable of Member or of mappings
-        All members.
-    measures : mapping
-        Width, height and perhaps depth; None for all others.
-    owner : str
-        For the message.
-
-    Returns
-    -------
-    tuple of Member, Outline, dict
-        With the arguments that give the same again.
-
-    Raises
-    ------
-    UnitsError, ComponentError
-        As for :class:`Member` and :class:`FrameEquivalent`.
-    """
+    """Read a list of members, and the sizes of their building."""
     foreign = [
         name
         for name, value in measures.items()

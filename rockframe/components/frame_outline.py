@@ -35,35 +35,13 @@ class Outline:
         return 0.0, 0.5 * self.height
 
     def shape_factor(self, members: Sequence[Member]) -> float:
-        """Mu of :eq:`eq-frame-shape-factor`, summed up as :eq:`eq-frame-mean` [1].
-
-        Parameters
-        ----------
-        members : sequence of Member
-            Members that lie within the outline.
-
-        Returns
-        -------
-        float
-            1 or more.
-        """
+        """Mu of :eq:`eq-frame-shape-factor`, summed up as :eq:`eq-frame-mean` [1]."""
         inverse = self._mean_spread(members, self.middle, self.radius)
         # members may reach over the outline by rounding
         return max(1.0, 1.0 / inverse) if inverse > 0.0 else math.inf
 
     def shape_factor_about_centre(self, members: Sequence[Member]) -> float:
-        """Mu of :eq:`eq-frame-about-centre`, about the members' own centre of mass [1].
-
-        Parameters
-        ----------
-        members : sequence of Member
-            Members that lie within the outline.
-
-        Returns
-        -------
-        float
-            Infinite if all mass is in one point.
-        """
+        """Mu of :eq:`eq-frame-about-centre`, about the members' own centre of mass [1]."""
         centre = self.centre_of_mass(members)
         radius = math.hypot(0.5 * self.width, centre[1])
         inverse = self._mean_spread(members, centre, radius)
@@ -80,21 +58,7 @@ class Outline:
         return centre_of_mass([member.si for member in members])
 
     def check(self, members: Sequence[Member], owner: str) -> None:
-        """Refuse members that do not make a building of this outline.
-
-        Parameters
-        ----------
-        members : sequence of Member
-            All members.
-        owner : str
-            For the message.
-
-        Raises
-        ------
-        ComponentError
-            No members, a name twice, a member beyond the outline, or together
-            more than fills it.
-        """
+        """Refuse members that do not make a building of this outline."""
         if not 0.0 < self.radius < math.inf:
             msg = f"{owner}: {self.width} m by {self.height} m is no building's size"
             raise ComponentError(msg)
@@ -176,19 +140,7 @@ def _spread(si: MemberSI, about: tuple[float, float], radius: float) -> float:
 
 
 def outline_cautions(outline: Outline, members: Sequence[Member]) -> list[str]:
-    """Say where the centre of mass is far from where the model takes it.
-
-    Parameters
-    ----------
-    outline : Outline
-        Of the building.
-    members : sequence of Member
-        All members.
-
-    Returns
-    -------
-    list of str
-    """
+    """Say where the centre of mass is far from where the model takes it."""
     x, y = outline.centre_of_mass(members)
     beside, above = x / outline.width, y / outline.height - 0.5
     cautions: list[str] = []

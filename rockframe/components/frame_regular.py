@@ -97,13 +97,7 @@ class StoreyHeights(Declared[Quantity, Missing]):
     annotation = Iterable[QuantityLike]
 
     def read(self, given: object, owner: str) -> tuple[float, ...]:
-        """Convert every height to SI units.
-
-        Raises
-        ------
-        UnitsError, ComponentError
-            A height is none, or there are none.
-        """
+        """Convert every height to SI units."""
         each: Any = given.split(";") if isinstance(given, str) else given
         try:
             each = list(each)

@@ -5,13 +5,7 @@ from rockframe.units import NOT_NEGATIVE
 
 
 class Friction(Ratio[None]):
-    """A coefficient of friction that runs are held to; it changes no motion.
-
-    Parameters
-    ----------
-    of : str
-        What it keeps from sliding.
-    """
+    """A coefficient of friction that runs are held to; it changes no motion."""
 
     def __init__(self, *, of: str) -> None:
         words = (

@@ -251,15 +251,7 @@ class Text(Declared[str, Usual]):
 
 
 class Flag(Declared[bool, bool]):
-    """A parameter that is true or false; the usual one goes without saying.
-
-    Parameters
-    ----------
-    default : bool
-        Value unless given.
-    doc : str
-        What it is, in a sentence.
-    """
+    """A parameter that is true or false; the usual one goes without saying."""
 
     written_as = "bool"
     annotation = bool
@@ -268,13 +260,7 @@ class Flag(Declared[bool, bool]):
         super().__init__(None, None, doc=doc, default=default)
 
     def read(self, given: object, owner: str) -> bool:
-        """Take the truth value, or the word for it.
-
-        Raises
-        ------
-        ComponentError
-            It is neither.
-        """
+        """Take the truth value, or the word for it."""
         if isinstance(given, bool | np.bool_):
             return bool(given)
         if given in _TRUTHS:
@@ -291,15 +277,7 @@ _TRUTHS: Final = {"true": True, "false": False}
 
 
 class Count(Declared[int, Usual]):
-    """A parameter that is a whole number from 1 on.
-
-    Parameters
-    ----------
-    doc : str
-        What it is, in a sentence.
-    default : int, optional
-        Value unless given; None for one that may be missing.
-    """
+    """A parameter that is a whole number from 1 on."""
 
     written_as = "int"
     annotation = int
@@ -308,13 +286,7 @@ class Count(Declared[int, Usual]):
         super().__init__(None, None, doc=doc, default=default)
 
     def read(self, given: object, owner: str) -> int:
-        """Take the number.
-
-        Raises
-        ------
-        ComponentError
-            It is no whole number, or below 1.
-        """
+        """Take the number."""
         number = given if not isinstance(given, bool) else None
         if isinstance(number, int | np.integer | float) and number == int(number) and number >= 1:
             return int(number)
@@ -327,13 +299,7 @@ class Count(Declared[int, Usual]):
 
 
 class Place(Declared[tuple[Quantity, Quantity], Missing]):
-    """A parameter that is a point: how far to the right it is, and how high.
-
-    Parameters
-    ----------
-    doc : str
-        What it is, in a sentence.
-    """
+    """A parameter that is a point: how far to the right it is, and how high."""
 
     written_as = "tuple of str or Quantity"
     annotation = tuple[QuantityLike, QuantityLike]
@@ -342,15 +308,7 @@ class Place(Declared[tuple[Quantity, Quantity], Missing]):
         super().__init__(LENGTH.like('("-0.5 m", "3 m")'), None, doc=doc, default=REQUIRED)
 
     def read(self, given: object, owner: str) -> tuple[float, float]:
-        """Convert to SI units.
-
-        Raises
-        ------
-        ComponentError
-            It is not a pair.
-        UnitsError
-            A length has the wrong unit, or none.
-        """
+        """Convert to SI units."""
         written = _PLACE.fullmatch(given) if isinstance(given, str) else None
         if written is not None:
             given = tuple(f"{one} m" for one in written.groups())

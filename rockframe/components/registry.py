@@ -14,19 +14,7 @@ _TYPE: Final = "type"
 
 
 def register_class(kind: "type[Component]") -> None:
-    """Note a class by its name.
-
-    Parameters
-    ----------
-    kind : type
-        The class; one of the same module and qualified name takes the place of the former,
-        as when a cell of a notebook is run again.
-
-    Raises
-    ------
-    ComponentError
-        Another class has that name.
-    """
+    """Note a class by its name."""
     known = _KINDS.setdefault(kind.__name__, kind)
     if _full_name(known) != _full_name(kind):
         msg = (
@@ -38,32 +26,12 @@ def register_class(kind: "type[Component]") -> None:
 
 
 def kinds() -> Mapping[str, "type[Component]"]:
-    """Give all classes by their names.
-
-    Returns
-    -------
-    mapping
-    """
+    """Give all classes by their names."""
     return _KINDS
 
 
 def component_from_dict(description: Mapping[str, float | str]) -> "Component":
-    """Build any component from its :meth:`Component.to_dict`.
-
-    Parameters
-    ----------
-    description : mapping
-        As written by :meth:`Component.to_dict`.
-
-    Returns
-    -------
-    Component
-
-    Raises
-    ------
-    SchemaError
-        ``type`` is missing or unknown, or something else is not of that class.
-    """
+    """Build any component from its :meth:`Component.to_dict`."""
     kind = description.get(_TYPE)
     if not isinstance(kind, str) or kind not in _KINDS:
         known = ", ".join(sorted(_KINDS))

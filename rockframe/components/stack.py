@@ -19,18 +19,11 @@ MOST_BODIES: Final = 8
 
 @dataclass(frozen=True)
 class StackSI:
-    """A stack in SI units, from the top down.
+    """A stack in SI units, from the top down."""
 
-    Parameters
-    ----------
-    bodies : tuple of BlockSI
-        The bodies.
-    offsets : tuple of float
-        How far the middle of each body's base is to the right of that of the body below; zero
-        of the lowest [m].
-    """
-
-    bodies: tuple[BlockSI, ...]
+    bodies: tuple[BlockSI, ...]  # the bodies
+    # how far the middle of each body's base is to the right of that of the body below; zero of the
+    # lowest [m]
     offsets: tuple[float, ...]
 
 

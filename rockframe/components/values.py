@@ -19,15 +19,7 @@ class SIValues(SimpleNamespace):
 
 
 class SIProperty:
-    """A read-only property: the float ``si.<name>`` as a quantity with its unit.
-
-    Parameters
-    ----------
-    measure : Measure
-        Kind of quantity, which fixes the unit.
-    doc : str
-        Docstring of the property.
-    """
+    """A read-only property: the float ``si.<name>`` as a quantity with its unit."""
 
     def __init__(self, measure: Measure, doc: str) -> None:
         self._measure = measure

@@ -204,19 +204,7 @@ class Base:
 
 
 def root_above_zero(function: Callable[[float], float], about: float) -> float:
-    """Give where a function that is negative at zero, and grows, comes to zero.
-
-    Parameters
-    ----------
-    function : callable
-        The function.
-    about : float
-        Where that may be.
-
-    Returns
-    -------
-    float
-    """
+    """Give where a function that is negative at zero, and grows, comes to zero."""
     from scipy.optimize import root_scalar
 
     while function(about) <= 0.0:

@@ -252,17 +252,7 @@ def bed_numbers(
 
 
 def rigid_numbers(body: Body) -> BaseNumbers:
-    """Give a rigid base under a body of a chain.
-
-    Parameters
-    ----------
-    body : Body
-        The body on it.
-
-    Returns
-    -------
-    BaseNumbers
-    """
+    """Give a rigid base under a body of a chain."""
     width = body.left + body.right
     return BaseNumbers(
         Rigid(0.0, 0.0, 1.0, width, by_pressure=False),

@@ -32,19 +32,7 @@ class Linear(NamedTuple):
 
 
 def linear(chain: StandingChain, stands: list[Stand]) -> Linear:
-    """Give small motion about rest.
-
-    Parameters
-    ----------
-    chain : StandingChain
-        The bodies.
-    stands : list of Stand
-        How they rest.
-
-    Returns
-    -------
-    Linear
-    """
+    """Give small motion about rest."""
     size = 2 * len(stands)
     damping, stiffness = np.zeros((size, size)), np.zeros((size, size))
     ties = chain.tied(stands)

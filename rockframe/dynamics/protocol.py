@@ -228,21 +228,11 @@ class Start:
 
 @dataclass(frozen=True)
 class Ending:
-    """Where a run ended, so that another can go on from there.
+    """Where a run ended, so that another can go on from there."""
 
-    Parameters
-    ----------
-    mode : int
-        Of the model.
-    state : ndarray, shape (2 n + variables,)
-        As the system has it.
-    memory : ndarray, shape (memory,)
-        The system's memory.
-    """
-
-    mode: int
-    state: Vector
-    memory: Vector
+    mode: int  # of the model
+    state: Vector  # as the system has it
+    memory: Vector  # the system's memory
 
 
 @dataclass(frozen=True, kw_only=True)

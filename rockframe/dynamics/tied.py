@@ -63,23 +63,7 @@ def tied(
     ties: Sequence[ChainLink],
     states: Sequence[int] | None = None,
 ) -> list[Tied]:
-    """Give how links are stretched between bodies that stand.
-
-    Parameters
-    ----------
-    links : sequence of StandingBody
-        The bodies, from the top down.
-    stands : sequence of Stand
-        How they stand.
-    ties : sequence of ChainLink
-        What links them.
-    states : sequence of int, optional
-        The states that the links keep; those of slow loading unless given.
-
-    Returns
-    -------
-    list of Tied
-    """
+    """Give how links are stretched between bodies that stand."""
     frames = _frames(links, stands)
     return [
         _tied(one, stands, frames, None if states is None else states[i])

@@ -29,15 +29,9 @@ _WEIGHTINGS: Final = 4
 
 @dataclass(frozen=True)
 class Weights:
-    """Standard deviations by which the residuals of peaks are divided.
+    """Standard deviations by which the residuals of peaks are divided."""
 
-    Parameters
-    ----------
-    rotation, time : float
-        Of the peaks' rotations and of their times [rad], [s].
-    """
-
-    rotation: float
+    rotation: float  # of the peaks' rotations and of their times [rad], [s]
     time: float
 
 
@@ -47,25 +41,7 @@ def fit_history(
     swings: Swings,
     unknowns: Sequence[Unknown],
 ) -> Solution:
-    """Fit a history, every sample with the same weight.
-
-    Parameters
-    ----------
-    prediction : Prediction
-        Of what is measured.
-    measured : History
-        What was measured.
-    swings : Swings
-        Its swings. Their peaks, each fitted with that of the same number, give other start
-        values, from which no swing is taken for the next; the better of both fits is kept.
-    unknowns : sequence of Unknown
-        With start values.
-
-    Returns
-    -------
-    Solution
-        Its residuals in radians.
-    """
+    """Fit a history, every sample with the same weight."""
 
     def residuals(values: Array) -> Array:
         return prediction.history(values, measured) - measured.rotation
@@ -86,20 +62,6 @@ def fit_peaks(
 
     Rotations and times, where there are times, are weighted by the noise that their residuals
     show, :eq:`eq-fit-peaks`.
-
-    Parameters
-    ----------
-    prediction : Prediction
-        Of what is measured.
-    measured : MeasuredPeaks
-        With times or without.
-    unknowns : sequence of Unknown
-        With start values.
-
-    Returns
-    -------
-    Solution
-        Its residuals over the weights.
     """
     sizes = weights = _first_weights(measured)
     misfit = _misfit_of(prediction, measured, weights)

@@ -23,19 +23,11 @@ _DOUBLINGS: Final = 6
 
 @dataclass(frozen=True)
 class FreeMotion:
-    """The rotation after a release; times from then on.
+    """The rotation after a release; times from then on."""
 
-    Parameters
-    ----------
-    time, rotation : ndarray, shape (n,)
-        Samples, and every event twice: before it and after it [s], [rad].
-    rate : ndarray, shape (n,)
-        Rate of the rotation, which jumps at an event [rad s^-1].
-    """
-
-    time: Array
+    time: Array  # samples, and every event twice: before it and after it [s], [rad]
     rotation: Array
-    rate: Array
+    rate: Array  # rate of the rotation, which jumps at an event [rad s^-1]
 
     def at(self, time: Array) -> Array:
         """Give the rotation; before the release and after the end it stays as it is [rad]."""
@@ -53,14 +45,7 @@ class FreeMotion:
         return float(self.time[beyond[0] if beyond.size else -1])
 
     def peaks(self) -> tuple[Array, Array]:
-        """Give times and sizes of the largest rotation between passages through zero.
-
-        Returns
-        -------
-        time, size : ndarray, shape (peaks,)
-            The release is the first of them; the last passage ends the last of them
-            [s], [rad].
-        """
+        """Give times and sizes of the largest rotation between passages through zero."""
         side = np.sign(self.rotation)
         there = np.flatnonzero(side)
         turns = there[1:][side[there[1:]] != side[there[:-1]]]
@@ -97,23 +82,7 @@ class FreeMotion:
 
 
 def let_go(system: Assembly, rotation: float, duration: float, accuracy: Accuracy) -> FreeMotion:
-    """Let a system go from rest at a rotation, the ground still.
-
-    Parameters
-    ----------
-    system : Assembly
-        The scene.
-    rotation : float
-        In vertical equilibrium [rad].
-    duration : float
-        Length of the run [s].
-    accuracy : Accuracy
-        Of the integration.
-
-    Returns
-    -------
-    FreeMotion
-    """
+    """Let a system go from rest at a rotation, the ground still."""
     model = system.setting.compile()
     step = 2.0 * math.pi / model.fastest_frequency / SAMPLES_PER_PERIOD
     # the last sample may stand one step before the end
@@ -137,26 +106,7 @@ def let_go(system: Assembly, rotation: float, duration: float, accuracy: Accurac
 def first_peaks(
     system: Assembly, rotation: float, count: int, duration: float, accuracy: Accuracy
 ) -> tuple[Array, Array]:
-    """Let a system go, and give its first peaks.
-
-    Parameters
-    ----------
-    system : Assembly
-        The scene.
-    rotation : float
-        In vertical equilibrium [rad].
-    count : int
-        Number of peaks, the release among them.
-    duration : float
-        Length of a run that is likely to have them [s].
-    accuracy : Accuracy
-        Of the integration.
-
-    Returns
-    -------
-    time, size : ndarray, shape (count,)
-        Of size zero, at the end of the run, where the system has come to rest [s], [rad].
-    """
+    """Let a system go, and give its first peaks."""
     motion = let_go(system, rotation, duration, accuracy)
     times, sizes = motion.peaks()
     for _ in range(_DOUBLINGS):

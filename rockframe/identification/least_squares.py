@@ -32,50 +32,24 @@ _AT_BOUND: Final = 1e-5
 
 @dataclass(frozen=True)
 class Solution:
-    """Where a fit ended.
+    """Where a fit ended."""
 
-    Parameters
-    ----------
-    values : ndarray, shape (unknowns,)
-        In SI units.
-    jacobian : ndarray, shape (residuals, unknowns)
-        Derivatives of the weighted residuals there.
-    residuals : ndarray, shape (residuals,)
-        Weighted.
-    status : int
-        Of :func:`scipy.optimize.least_squares`.
-    evaluations : int
-        Number of trials, without those for derivatives.
-    at_bound, seen : ndarray of bool, shape (unknowns,)
-        Which unknowns stand at a bound, and which have an effect on the residuals.
-    """
-
-    values: Array
-    jacobian: Array
-    residuals: Array
-    status: int
-    evaluations: int
-    at_bound: Any
+    values: Array  # in SI units
+    jacobian: Array  # derivatives of the weighted residuals there
+    residuals: Array  # weighted
+    status: int  # of :func:`scipy.optimize.least_squares`
+    evaluations: int  # number of trials, without those for derivatives
+    at_bound: Any  # which unknowns stand at a bound, and which have an effect on the residuals
     seen: Any
 
 
 @dataclass(frozen=True)
 class Uncertainty:
-    """How far the values of a fit are certain.
+    """How far the values of a fit are certain."""
 
-    Parameters
-    ----------
-    standard_error : ndarray, shape (unknowns,)
-        NaN where the data cannot tell.
-    correlation : ndarray, shape (unknowns, unknowns)
-        Of the values' errors.
-    reach : float
-        Standard errors to each side that make the confidence interval.
-    """
-
-    standard_error: Array
-    correlation: Array
-    reach: float
+    standard_error: Array  # NaN where the data cannot tell
+    correlation: Array  # of the values' errors
+    reach: float  # standard errors to each side that make the confidence interval
 
 
 def minimize(
@@ -84,21 +58,7 @@ def minimize(
     *,
     tolerance: float = TIGHT,
 ) -> Solution:
-    """Find the unknowns for which the sum of the squared residuals is least.
-
-    Parameters
-    ----------
-    residuals : callable
-        ``residuals(values)``, the values in SI units.
-    unknowns : sequence of Unknown
-        With start values and bounds.
-    tolerance : float
-        Relative change of cost, of the unknowns and of the gradient at which the fit ends.
-
-    Returns
-    -------
-    Solution
-    """
+    """Find the unknowns for which the sum of the squared residuals is least."""
     # loaded here, since it is slow to load and few scripts need it
     from scipy.optimize import least_squares
 
@@ -152,19 +112,7 @@ def minimize(
 
 
 def uncertainty_of(solution: Solution, confidence: float) -> Uncertainty:
-    """Estimate the errors of a fit's values from its residuals, :eq:`eq-fit-covariance`.
-
-    Parameters
-    ----------
-    solution : Solution
-        Of the fit.
-    confidence : float
-        Probability that the interval is to have [1].
-
-    Returns
-    -------
-    Uncertainty
-    """
+    """Estimate the errors of a fit's values from its residuals, :eq:`eq-fit-covariance`."""
     from scipy.special import stdtrit
 
     count, size = solution.jacobian.shape

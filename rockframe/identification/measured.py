@@ -24,15 +24,9 @@ _PEAKS: Final = (
 
 @dataclass(frozen=True)
 class History:
-    """A measured history.
+    """A measured history."""
 
-    Parameters
-    ----------
-    time, rotation : ndarray, shape (n,)
-        [s], [rad].
-    """
-
-    time: Array
+    time: Array  # [s], [rad]
     rotation: Array
 
     @property
@@ -48,21 +42,11 @@ class History:
 
 @dataclass(frozen=True)
 class MeasuredPeaks:
-    """Successive peaks of a rotation, the first one at the release or after it.
+    """Successive peaks of a rotation, the first one at the release or after it."""
 
-    Parameters
-    ----------
-    rotation : ndarray, shape (n,)
-        As given, with their signs or without [rad].
-    sides : ndarray, shape (n,)
-        1 or -1, the signs by which the rotations are given.
-    time : ndarray, shape (n,), or None
-        NaN where it is not known [s].
-    """
-
-    rotation: Array
-    sides: Array
-    time: Array | None = None
+    rotation: Array  # as given, with their signs or without [rad]
+    sides: Array  # 1 or -1, the signs by which the rotations are given
+    time: Array | None = None  # NaN where it is not known [s]
 
     @property
     def count(self) -> int:
@@ -76,26 +60,7 @@ class MeasuredPeaks:
 
 
 def read_history(given: object, owner: str) -> History:
-    """Read a measured history.
-
-    Parameters
-    ----------
-    given : xarray.DataArray or ((times, unit), (rotations, unit))
-        What the user gave.
-    owner : str
-        Function, for messages.
-
-    Returns
-    -------
-    History
-
-    Raises
-    ------
-    UnitsError
-        No unit, or a wrong one.
-    ComponentError
-        Not numbers, not finite, not of equal length, or times that do not increase.
-    """
+    """Read a measured history."""
     if isinstance(given, xr.DataArray):
         name = given.dims[0] if given.ndim == 1 else None
         if name is None or name not in given.coords:
@@ -115,27 +80,7 @@ def read_history(given: object, owner: str) -> History:
 
 
 def read_peaks(given: object, owner: str) -> MeasuredPeaks:
-    """Read successive peaks.
-
-    Parameters
-    ----------
-    given : (rotations, unit), Quantity, or ((times, unit), (rotations, unit))
-        What the user gave.
-    owner : str
-        Function, for messages.
-
-    Returns
-    -------
-    MeasuredPeaks
-
-    Raises
-    ------
-    UnitsError
-        No unit, or a wrong one.
-    ComponentError
-        Not numbers, not finite, zero, neither of one sign nor of alternating signs, or times
-        that do not increase.
-    """
+    """Read successive peaks."""
     pair = _two(given)
     if pair is not None:
         times = _values(pair[0], TIME, owner, "time")
@@ -159,22 +104,7 @@ def read_peaks(given: object, owner: str) -> MeasuredPeaks:
 
 
 def check_below_overturning(measured: History | MeasuredPeaks, theta: float, owner: str) -> None:
-    """Refuse a rotation from which no block comes back.
-
-    Parameters
-    ----------
-    measured : History or MeasuredPeaks
-        What was measured.
-    theta : float
-        Overturning angle of the system [rad].
-    owner : str
-        Function, for the message.
-
-    Raises
-    ------
-    ComponentError
-        A rotation is not below the overturning angle.
-    """
+    """Refuse a rotation from which no block comes back."""
     beyond = np.flatnonzero(np.abs(measured.rotation) >= theta)
     if beyond.size:
         msg = (

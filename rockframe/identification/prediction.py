@@ -20,19 +20,7 @@ _REMEMBERED: Final = 4
 
 
 class Prediction:
-    """Predicts what was measured from values of the unknowns.
-
-    Parameters
-    ----------
-    trials : TrialSystems
-        Systems with other parameters.
-    names : sequence of str
-        The unknowns: parameters and circumstances.
-    known : mapping
-        Circumstances that are not unknown [rad], [s].
-    accuracy : Accuracy
-        Of the integration.
-    """
+    """Predicts what was measured from values of the unknowns."""
 
     def __init__(
         self,

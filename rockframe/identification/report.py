@@ -26,30 +26,7 @@ def fit_dataset(
     confidence: float,
     accuracy: str,
 ) -> xr.Dataset:
-    """Label what was found, and warn of what speaks against it.
-
-    Parameters
-    ----------
-    prediction : Prediction
-        Of what was measured.
-    measured : History or MeasuredPeaks
-        What was measured.
-    solution : Solution
-        Of the fit.
-    confidence : float
-        Probability of the intervals [1].
-    accuracy : str
-        Of the integration.
-
-    Returns
-    -------
-    xarray.Dataset
-
-    Warns
-    -----
-    ModelWarning
-        Something speaks against the values or their errors.
-    """
+    """Label what was found, and warn of what speaks against it."""
     names, places = list(prediction.names), prediction.trials.places
     uncertainty = uncertainty_of(solution, confidence)
     found = prediction.values(solution.values)

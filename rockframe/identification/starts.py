@@ -25,28 +25,7 @@ def starts_of(
     sought: Collection[Circumstance],
     accuracy: Accuracy,
 ) -> dict[str, Unknown]:
-    """Give start values and bounds of the parameters, and of all circumstances.
-
-    Parameters
-    ----------
-    system : System
-        Its parameters are where they start; but on rigid ground the restitution follows from
-        the peaks.
-    trials : TrialSystems
-        Of the system.
-    measured : History or MeasuredPeaks
-        What was measured.
-    swings : Swings or None
-        Of a history.
-    sought : collection of Circumstance
-        The circumstances that are unknown; the others are as first measured.
-    accuracy : Accuracy
-        Of the integration.
-
-    Returns
-    -------
-    dict of str to Unknown
-    """
+    """Give start values and bounds of the parameters, and of all circumstances."""
     peaks = (
         measured
         if isinstance(measured, MeasuredPeaks)

@@ -20,43 +20,18 @@ _FEWEST: Final = 5
 
 @dataclass(frozen=True)
 class Swings:
-    """The swings of a measured history.
+    """The swings of a measured history."""
 
-    Parameters
-    ----------
-    peaks : MeasuredPeaks
-        The release and the peak of every complete swing after it. That of the release has no
-        time: it stands in a plateau, or at the first sample.
-    crossing : float
-        When the rotation first passes through zero [s].
-    offset : float
-        Median after that, which a rotation that dies out has where the gauge reads zero [rad].
-    """
-
+    # the release and the peak of every complete swing after it. That of the release has no time: it
+    # stands in a plateau, or at the first sample
     peaks: MeasuredPeaks
-    crossing: float
+    crossing: float  # when the rotation first passes through zero [s]
+    # median after that, which a rotation that dies out has where the gauge reads zero [rad]
     offset: float
 
 
 def swings_of(history: History, owner: str) -> Swings:
-    """Find the swings of a measured history.
-
-    Parameters
-    ----------
-    history : History
-        From the release on, or before it.
-    owner : str
-        Function, for the message.
-
-    Returns
-    -------
-    Swings
-
-    Raises
-    ------
-    ComponentError
-        The rotation does not pass through zero.
-    """
+    """Find the swings of a measured history."""
     time, rotation = history.time, history.rotation
     offset = _offset(rotation)
     swing = rotation - offset
@@ -90,20 +65,7 @@ def swings_of(history: History, owner: str) -> Swings:
 def restitution_of(peaks: Array, theta: float, *, small_rotation: bool) -> float:
     """Give the restitution with which peaks decay on rigid ground.
 
-    Parameters
-    ----------
-    peaks : ndarray, shape (n,)
-        Successive peaks, with signs or without [rad].
-    theta : float
-        Overturning angle [rad].
-    small_rotation : bool
-        Whether the block's kinematics are those of small rotations.
-
-    Returns
-    -------
-    float
-        Of the straight line through the logarithms of the energies, :eq:`eq-rigid-decay`,
-        weighted for errors that are equal in all rotations.
+    By :eq:`eq-rigid-decay`.
     """
     size = np.clip(np.abs(peaks), 1e-9 * theta, theta)
     if small_rotation:

@@ -31,24 +31,12 @@ class Circumstance(StrEnum):
 
 @dataclass(frozen=True)
 class Unknown:
-    """A number that is to be found.
+    """A number that is to be found."""
 
-    Parameters
-    ----------
-    name : str
-        Of the parameter or the circumstance.
-    start : float
-        Where the search starts.
-    scale : float
-        Its typical size.
-    lower, upper : float
-        Bounds.
-    """
-
-    name: str
-    start: float
-    scale: float
-    lower: float = -math.inf
+    name: str  # of the parameter or the circumstance
+    start: float  # where the search starts
+    scale: float  # its typical size
+    lower: float = -math.inf  # bounds
     upper: float = math.inf
 
     def started_at(self, value: float) -> "Unknown":
@@ -63,24 +51,12 @@ def started_at(unknowns: Sequence[Unknown], values: NDArray[np.float64]) -> list
 
 @dataclass(frozen=True)
 class PartParameter:
-    """A parameter of a part.
+    """A parameter of a part."""
 
-    Parameters
-    ----------
-    part : int
-        Index of the part.
-    argument : str
-        Name of the part's argument.
-    start : float
-        Its value in the system that was given.
-    bounds : tuple of float
-        Numbers between which the part accepts it.
-    """
-
-    part: int
-    argument: str
-    start: float
-    bounds: tuple[float, float]
+    part: int  # index of the part
+    argument: str  # name of the part's argument
+    start: float  # its value in the system that was given
+    bounds: tuple[float, float]  # numbers between which the part accepts it
 
     def unknown(self, name: str) -> Unknown:
         """Give it as an unknown."""
@@ -90,23 +66,7 @@ class PartParameter:
 
 
 class TrialSystems:
-    """Systems that differ in some parameters from the one that was given.
-
-    Parameters
-    ----------
-    system : System
-        Where the parameters start.
-    names : sequence of str
-        Parameters, such as ``"restitution"``, or with the class of their part where several
-        parts have one of the name.
-    owner : str
-        Function, for messages.
-
-    Raises
-    ------
-    ComponentError
-        A parameter that no part has, or several have, or that was given otherwise.
-    """
+    """Systems that differ in some parameters from the one that was given."""
 
     def __init__(self, system: System, names: Sequence[str], owner: str) -> None:
         self._parts = system.parts.structural()

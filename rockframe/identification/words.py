@@ -22,23 +22,7 @@ _CLOSE: Final = 0.98
 def fit_sentence(
     values: Mapping[str, Any], names: Sequence[str], confidence: float, reach: float
 ) -> str:
-    """Say in one sentence what was found.
-
-    Parameters
-    ----------
-    values : mapping
-        By their names in the schema.
-    names : sequence of str
-        The parameters.
-    confidence : float
-        Probability of the intervals [1].
-    reach : float
-        Standard errors to each side that make them.
-
-    Returns
-    -------
-    str
-    """
+    """Say in one sentence what was found."""
     found = ", ".join(
         f"{name} {_with_error(value, reach * error)}"
         for name, value, error in zip(
@@ -58,23 +42,7 @@ def fit_sentence(
 def cautions_of(
     names: Sequence[str], solution: Solution, uncertainty: Uncertainty, values: Mapping[str, Any]
 ) -> Iterator[str]:
-    """Say what speaks against the values or their errors.
-
-    Parameters
-    ----------
-    names : sequence of str
-        The unknowns.
-    solution : Solution
-        Of the fit.
-    uncertainty : Uncertainty
-        Of its values.
-    values : mapping
-        By their names in the schema.
-
-    Yields
-    ------
-    str
-    """
+    """Say what speaks against the values or their errors."""
     if solution.status == FitStatus.TRIAL_LIMIT:
         yield f"the fit was given up after {MOST_EVALUATIONS} trials"
     for name, value, bound in zip(names, solution.values, solution.at_bound, strict=True):

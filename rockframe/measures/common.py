@@ -31,26 +31,7 @@ class GroundComponent(StrEnum):
 
 
 def signal_of(motion: object, component: object, *, owner: str) -> Signal:
-    """Take one component of a motion.
-
-    Parameters
-    ----------
-    motion : GroundMotion
-        The motion.
-    component : {"horizontal", "vertical"}
-        Which acceleration.
-    owner : str
-        Function, for the message.
-
-    Returns
-    -------
-    Signal
-
-    Raises
-    ------
-    ComponentError
-        Not a motion, not a component, or the motion lacks it.
-    """
+    """Take one component of a motion."""
     if not isinstance(motion, GroundMotion):
         msg = f"{owner}: motion needs a GroundMotion, got {shown(motion)}"
         raise ComponentError(msg)
@@ -63,24 +44,7 @@ def signal_of(motion: object, component: object, *, owner: str) -> Signal:
 
 
 def component_of(given: object, *, owner: str) -> GroundComponent:
-    """Read the argument `component`.
-
-    Parameters
-    ----------
-    given : {"horizontal", "vertical"}
-        What the user gave.
-    owner : str
-        Function, for the message.
-
-    Returns
-    -------
-    GroundComponent
-
-    Raises
-    ------
-    ComponentError
-        None of the two.
-    """
+    """Read the argument `component`."""
     return one_of_words(GroundComponent, given, owner=owner, name="component")
 
 
@@ -92,21 +56,11 @@ _LABEL: Final = {"long_name": "ground motion"}
 
 @dataclass(frozen=True)
 class Inputs(Generic[Thing]):
-    """What is looked at: one thing, or several with their labels.
+    """What is looked at: one thing, or several with their labels."""
 
-    Parameters
-    ----------
-    things : list
-        Signals, or pairs of motions.
-    labels : list of str or None
-        Of several; None where it is one.
-    attributes : dict
-        What the answer says of them.
-    """
-
-    things: list[Thing]
-    labels: list[str] | None
-    attributes: dict[str, str | float | int]
+    things: list[Thing]  # signals, or pairs of motions
+    labels: list[str] | None  # of several; None where it is one
+    attributes: dict[str, str | float | int]  # what the answer says of them
 
     @property
     def over(self) -> tuple[str, ...]:
@@ -140,26 +94,7 @@ class Inputs(Generic[Thing]):
 
 
 def read_inputs(given: object, component: object, *, owner: str) -> Inputs[Signal]:
-    """Take one component of a motion, or of each of several.
-
-    Parameters
-    ----------
-    given : GroundMotion, or mapping of str to GroundMotion
-        The motion, or a suite.
-    component : {"horizontal", "vertical"}
-        Which acceleration.
-    owner : str
-        Function, for the message.
-
-    Returns
-    -------
-    Inputs
-
-    Raises
-    ------
-    ComponentError
-        Neither, none at all, not a component, or a motion lacks it.
-    """
+    """Take one component of a motion, or of each of several."""
     if not isinstance(given, Mapping):
         signal = signal_of(given, component, owner=owner)
         which = component_of(component, owner=owner)
@@ -189,20 +124,7 @@ REFERENCES: Final = (
 def component_attributes(
     motion: "GroundMotion", component: GroundComponent
 ) -> dict[str, str | float | int]:
-    """Describe a motion so that it can be recognised.
-
-    Parameters
-    ----------
-    motion : GroundMotion
-        The motion.
-    component : GroundComponent
-        The component that was looked at.
-
-    Returns
-    -------
-    dict
-        Attributes of a dataset.
-    """
+    """Describe a motion so that it can be recognised."""
     return {
         "motion": motion.name,
         "motion_sha256": motion.sha256,
@@ -227,23 +149,6 @@ def build_over(
 
     The axes have the names and units of the schema's rows for a system's modes, where
     these are variables over ``mode``.
-
-    Parameters
-    ----------
-    axes : mapping
-        Coordinate and its meaning, by the dimension's name.
-    values : mapping
-        Arrays by their names in the schema.
-    attributes : mapping
-        Strings and numbers.
-    over : tuple of str, optional
-        Dimensions that all values have before their own.
-    title, source : str
-        What the dataset holds, and how it was computed.
-
-    Returns
-    -------
-    xarray.Dataset
     """
     dataset = build_dataset(values, attributes, over=over, title=title, source=source)
     for name, (axis, meaning) in axes.items():

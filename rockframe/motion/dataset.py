@@ -39,13 +39,7 @@ _OF_A_RESULT: Final = (
 
 
 class NoMotionError(SchemaError):
-    """A dataset that holds no motion.
-
-    Parameters
-    ----------
-    found, expected : str
-        As of a :class:`~rockframe.RecordError`, which names the file besides.
-    """
+    """A dataset that holds no motion."""
 
     def __init__(self, found: str, expected: str = _A_MOTION) -> None:
         self.found = found
@@ -57,13 +51,7 @@ class NoMotionError(SchemaError):
 
 
 def check_no_result(attributes: Container[str]) -> None:
-    """Refuse the result of a system, by the attributes of its dataset.
-
-    Raises
-    ------
-    NoMotionError
-        It is one.
-    """
+    """Refuse the result of a system, by the attributes of its dataset."""
     if _RESULT_ATTRIBUTE in attributes:
         found = "the result of a system"
         raise NoMotionError(found, _OF_A_RESULT)
@@ -135,24 +123,7 @@ def from_dataset(kind: type[Made], dataset: xr.Dataset) -> Made:
 
 
 def stored_motion(dataset: xr.Dataset) -> dict[str, Any]:
-    """Read what :func:`to_dataset` wrote, part by part.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        With ``acceleration`` over ``time``; the rest as far as it is there.
-
-    Returns
-    -------
-    dict
-        Arguments of the motion's constructor.
-
-    Raises
-    ------
-    SchemaError
-        A variable is missing, in another unit or of another shape, or the
-        samples are not those that the digest was written for.
-    """
+    """Read what :func:`to_dataset` wrote, part by part."""
     check_no_result(dataset.attrs)
     for name in ("acceleration", "time"):
         if name not in dataset.variables:

@@ -66,15 +66,7 @@ class GroundMotion(MotionValue):
 
         @wraps(MotionValue.__init__, assigned=())
         def __new__(cls, *given, **named):
-            """Refuse what is no motion yet, and tell how motions are made.
-
-            Raises
-            ------
-            TypeError
-                Nothing was given for `si`.
-            ComponentError
-                Something else was, such as the path of a file.
-            """
+            """Refuse what is no motion yet, and tell how motions are made."""
             if cls.__init__ is not MotionValue.__init__:
                 return super().__new__(cls)
             usage = (

@@ -27,48 +27,14 @@ _TRY_UNIT: Final = Measure("an acceleration", ACCELERATION.unit, "m/s^2")
 
 
 def with_quantity(value: float | Array, measure: Measure) -> Quantity:
-    """Give an SI number or array its unit back.
-
-    Parameters
-    ----------
-    value : float or ndarray
-        In the SI unit of `measure`; an array is copied, so that the quantity
-        may be changed.
-    measure : Measure
-        Kind of quantity.
-
-    Returns
-    -------
-    pint.Quantity
-        In the shared application registry.
-    """
+    """Give an SI number or array its unit back."""
     registry: Any = pint.get_application_registry()
     own = value.copy() if isinstance(value, np.ndarray) else value
     return registry.Quantity(own, str(measure.unit))
 
 
 def accelerations_to_si(value: object, *, owner: str, name: str) -> Array:
-    """Convert an array argument to accelerations in SI units, or refuse it.
-
-    Parameters
-    ----------
-    value : Quantity, (sequence, unit) or xarray.DataArray with a ``units`` attribute
-        What the user gave.
-    owner, name : str
-        Function and argument, for the message.
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        [m s^-2]
-
-    Raises
-    ------
-    UnitsError
-        No unit, an unknown unit, or a unit of another kind.
-    ComponentError
-        Not one-dimensional, not numbers, or masked.
-    """
+    """Convert an array argument to accelerations in SI units, or refuse it."""
     if _is_data_array(value):
         array = cast("xr.DataArray", value)
         if _is_quantity(array.data):
@@ -102,25 +68,7 @@ def accelerations_to_si(value: object, *, owner: str, name: str) -> Array:
 
 
 def argument_unit(unit: object, *, owner: str) -> RecordUnit:
-    """Read the ``unit=`` argument that goes with a record file.
-
-    Parameters
-    ----------
-    unit : str
-        A name that record files use (``g``, ``gal``, ``cm/s2``, ...) or any
-        acceleration unit in the general spelling.
-    owner : str
-        Function, for the message.
-
-    Returns
-    -------
-    RecordUnit
-
-    Raises
-    ------
-    UnitsError
-        Not a known acceleration unit.
-    """
+    """Read the ``unit=`` argument that goes with a record file."""
     text = str(unit)
     known = acceleration_unit(text)
     if known is not None:
@@ -142,27 +90,7 @@ def argument_unit(unit: object, *, owner: str) -> RecordUnit:
 
 
 def times_to_si(value: object, *, owner: str, name: str) -> Array:
-    """Convert an array argument to times in seconds, or refuse it.
-
-    Parameters
-    ----------
-    value : Quantity, (sequence, unit), DataArray with a ``units`` attribute, or dates
-        What the user gave; dates and spans of time (NumPy, pandas) need no unit.
-    owner, name : str
-        Function and argument, for the message.
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        [s], of dates from the first.
-
-    Raises
-    ------
-    UnitsError
-        No unit, an unknown unit, or a unit of another kind.
-    ComponentError
-        Not one-dimensional, not numbers, or not rising.
-    """
+    """Convert an array argument to times in seconds, or refuse it."""
     values: object = value
     factor = 1.0
     dates = getattr(value, "dtype", None)
@@ -244,19 +172,7 @@ def _is_data_array(value: object) -> bool:
 
 
 def declared_times(value: object) -> Array | None:
-    """Give the times that an array carries itself: a time axis, or the index of a Series.
-
-    Parameters
-    ----------
-    value : object
-        What the user gave for an array.
-
-    Returns
-    -------
-    ndarray, shape (n,), or None
-        From the first [s]. None without times: an index that only counts is none, nor is an
-        axis in a unit that is no time.
-    """
+    """Give the times that an array carries itself: a time axis, or the index of a Series."""
     if _is_data_array(value):
         array = cast("Any", value)
         if array.ndim != 1 or array.dims[0] not in array.coords or array.dims[0] != "time":
@@ -273,20 +189,7 @@ def declared_times(value: object) -> Array | None:
 
 
 def relative_seconds(axis: object, unit: object) -> Array | None:
-    """Give an axis in seconds from its first time.
-
-    Parameters
-    ----------
-    axis : array_like, shape (n,)
-        Dates, spans of time, or real numbers.
-    unit : str
-        Of real numbers.
-
-    Returns
-    -------
-    ndarray, shape (n,), or None
-        None if it is no axis of two times or more; whole numbers count, and are no times.
-    """
+    """Give an axis in seconds from its first time."""
     given: Any = axis
     if getattr(getattr(axis, "dtype", None), "tz", None) is not None:
         import pandas as pd

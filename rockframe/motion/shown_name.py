@@ -12,19 +12,7 @@ _SCALED: Final = re.compile(r"scaled by (\S+)(?: to .*)?")
 
 
 def shown_name(name: str, history: Iterable[str]) -> str:
-    """Put the factor of a scaled motion before its name.
-
-    Parameters
-    ----------
-    name : str
-        Of the motion.
-    history : iterable of str
-        One sentence per step.
-
-    Returns
-    -------
-    str
-    """
+    """Put the factor of a scaled motion before its name."""
     steps = [_SCALED.fullmatch(step) for step in history]
     factor = math.prod(float(step[1]) for step in steps if step is not None)
     return name if factor == 1.0 else f"{factor:.6g} times {name}"

@@ -17,18 +17,10 @@ from rockframe.constants import STANDARD_GRAVITY
 
 @dataclass(frozen=True)
 class RecordUnit:
-    """An acceleration unit of a record.
+    """An acceleration unit of a record."""
 
-    Parameters
-    ----------
-    spelling : str
-        In the spelling that the general unit reader knows.
-    factor : float
-        Value of one unit [m s^-2].
-    """
-
-    spelling: str
-    factor: float
+    spelling: str  # in the spelling that the general unit reader knows
+    factor: float  # value of one unit [m s^-2]
 
 
 _G: Final = RecordUnit("g_0", STANDARD_GRAVITY)
@@ -81,17 +73,7 @@ OTHER_QUANTITIES: Final[dict[str, str]] = {
 
 
 def normalised(name: str) -> str:
-    """Spell a unit name as the tables here do.
-
-    Parameters
-    ----------
-    name : str
-        As it stands in a file: ``CM/SEC**2``, ``m/s²``, ...
-
-    Returns
-    -------
-    str
-    """
+    """Spell a unit name as the tables here do."""
     text = re.sub(r"\s+", "", name.casefold())
     text = text.replace("**", "^").replace("²", "^2").replace("·", "").replace("⁻^2", "^-2")
     text = re.sub(r"^[µμ]m", "um", text)
@@ -99,18 +81,7 @@ def normalised(name: str) -> str:
 
 
 def acceleration_unit(name: str) -> RecordUnit | None:
-    """Look up an acceleration unit by the name a record gives it.
-
-    Parameters
-    ----------
-    name : str
-        Any spelling.
-
-    Returns
-    -------
-    RecordUnit or None
-        None if the name is not known as an acceleration.
-    """
+    """Look up an acceleration unit by the name a record gives it."""
     return ACCELERATION_UNITS.get(normalised(name))
 
 

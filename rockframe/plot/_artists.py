@@ -23,17 +23,7 @@ _DEPTH: Final = 0.3
 
 
 class SceneArtist:
-    """A drawing that follows a scene.
-
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes
-        To draw in.
-    drawer : Drawer
-        Lays the scene out.
-    names : mapping of str to str, optional
-        What the parts are called in a legend, by their slots.
-    """
+    """A drawing that follows a scene."""
 
     def __init__(
         self, axes: "Axes", drawer: Drawer, names: Mapping[str, str] | None = None

@@ -115,23 +115,7 @@ _DRAWN_BY: Final = (
 
 
 def drawn_by(given: xr.Dataset) -> str:
-    """Give the function that draws a dataset.
-
-    Parameters
-    ----------
-    given : xarray.Dataset
-        Any dataset.
-
-    Returns
-    -------
-    str
-        Its name in `rf.plot`.
-
-    Raises
-    ------
-    SchemaError
-        No function draws such a dataset; the message says what else can be done.
-    """
+    """Give the function that draws a dataset."""
     for function, names in _KNOWN.items():
         if _holds(given, names):
             return function
@@ -149,20 +133,7 @@ def drawn_by(given: xr.Dataset) -> str:
 
 
 def check_run(given: object, function: str) -> None:
-    """Refuse what is not the result of one run with histories.
-
-    Parameters
-    ----------
-    given : object
-        What the user gave.
-    function : str
-        Which function of `rf.plot` it was given to.
-
-    Raises
-    ------
-    SchemaError
-        It is something else, lacks a variable, holds several runs, or only an instant.
-    """
+    """Refuse what is not the result of one run with histories."""
     if not isinstance(given, xr.Dataset) or not _holds(given, ("rotation", "time", "overturned")):
         raise SchemaError(refuse(function, given))
     _check_complete(function, given, _RUN)
@@ -182,60 +153,21 @@ def check_run(given: object, function: str) -> None:
 
 
 def check_rungs(given: object) -> None:
-    """Refuse what is not a comparison of models and accuracies.
-
-    Parameters
-    ----------
-    given : object
-        What the user gave to `rf.plot.tradeoff`.
-
-    Raises
-    ------
-    SchemaError
-        It is something else, or lacks a variable.
-    """
+    """Refuse what is not a comparison of models and accuracies."""
     if not isinstance(given, xr.Dataset) or not _holds(given, ("run_time", "verdict_agrees")):
         raise SchemaError(refuse("tradeoff", given))
     _check_complete("tradeoff", given, _RUNGS)
 
 
 def check_study(given: object, function: str) -> xr.Dataset:
-    """Refuse what is not the result of a study.
-
-    Parameters
-    ----------
-    given : object
-        What the user gave.
-    function : str
-        Which function of `rf.plot` it was given to.
-
-    Returns
-    -------
-    xarray.Dataset
-
-    Raises
-    ------
-    SchemaError
-        It is something else.
-    """
+    """Refuse what is not the result of a study."""
     if not isinstance(given, xr.Dataset) or not _holds(given, _STUDIES[function]):
         raise SchemaError(refuse(function, given))
     return given
 
 
 def check_selection(given: object) -> None:
-    """Refuse what is not a set of motions beside a target.
-
-    Parameters
-    ----------
-    given : object
-        What the user gave to `rf.plot.selection`.
-
-    Raises
-    ------
-    SchemaError
-        It is something else, or lacks a variable.
-    """
+    """Refuse what is not a set of motions beside a target."""
     wanted = ("scaled_spectral_acceleration", "target_spectral_acceleration")
     if not isinstance(given, xr.Dataset) or not _holds(given, wanted):
         raise SchemaError(refuse("selection", given))
@@ -243,20 +175,7 @@ def check_selection(given: object) -> None:
 
 
 def check_motion(given: object, function: str) -> None:
-    """Refuse what is not a ground motion.
-
-    Parameters
-    ----------
-    given : object
-        What the user gave.
-    function : {"motion", "spectra"}
-        Which function of `rf.plot` it was given to.
-
-    Raises
-    ------
-    ComponentError
-        It is something else.
-    """
+    """Refuse what is not a ground motion."""
     from rockframe.motion import GroundMotion
 
     if not isinstance(given, GroundMotion):
@@ -264,20 +183,7 @@ def check_motion(given: object, function: str) -> None:
 
 
 def require_system(given: object, function: str) -> None:
-    """Refuse what is not a system.
-
-    Parameters
-    ----------
-    given : object
-        What the user gave.
-    function : str
-        Which function of `rf.plot` it was given to.
-
-    Raises
-    ------
-    ComponentError
-        It is something else.
-    """
+    """Refuse what is not a system."""
     from rockframe.simulation.system import System
 
     if not isinstance(given, System):
@@ -285,24 +191,7 @@ def require_system(given: object, function: str) -> None:
 
 
 def system_of_run(run: xr.Dataset, function: str) -> "System":
-    """Build the system of a run, without its motion.
-
-    Parameters
-    ----------
-    run : xarray.Dataset
-        A result.
-    function : str
-        Which function of `rf.plot` it was given to.
-
-    Returns
-    -------
-    System
-
-    Raises
-    ------
-    SchemaError
-        The run does not tell its system.
-    """
+    """Build the system of a run, without its motion."""
     from rockframe.simulation.system import System
 
     text = run.attrs.get("system_json")

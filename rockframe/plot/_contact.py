@@ -20,15 +20,6 @@ def draw_contact(axes: "Axes", state: xr.DataArray, name: str) -> None:
 
     Where states change faster than the figure can show, the colours are mixed by the shares
     of time: bars would show whichever was painted last.
-
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes
-        To draw in.
-    state : xarray.DataArray
-        Contact states over time; the last sample only ends the strip.
-    name : str
-        What the strip is called.
     """
     time = state["time"].to_numpy()
     axes.imshow(
@@ -43,15 +34,7 @@ def draw_contact(axes: "Axes", state: xr.DataArray, name: str) -> None:
 
 
 def draw_contact_legend(axes: "Axes", state: xr.DataArray) -> None:
-    """Name the colours below the strip.
-
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes
-        The lowest strip.
-    state : xarray.DataArray
-        Contact states; all that they can be are named.
-    """
+    """Name the colours below the strip."""
     from matplotlib.patches import Patch
 
     names = [name for _, name in _states(state)]
@@ -63,20 +46,7 @@ def draw_contact_legend(axes: "Axes", state: xr.DataArray) -> None:
 
 
 def mixed_colours(state: xr.DataArray, columns: int) -> Any:
-    """Give the mean colour of equal parts of the time.
-
-    Parameters
-    ----------
-    state : xarray.DataArray
-        Contact states over time; each holds up to the next sample.
-    columns : int
-        Number of parts.
-
-    Returns
-    -------
-    ndarray, shape (columns, 3)
-        Red, green and blue from 0 to 1.
-    """
+    """Give the mean colour of equal parts of the time."""
     from matplotlib.colors import to_rgb
 
     time, values = state["time"].to_numpy(), state.to_numpy()

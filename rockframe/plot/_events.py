@@ -29,17 +29,7 @@ horizontal restraint are not drawn: they come with a separation or a contact."""
 
 
 def draw_events(axes: "Axes", runs: list[Run], unit: "Shown | None") -> None:
-    """Mark events where they happened on the rotation, and name them in the legend.
-
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes
-        Of the rotation over time.
-    runs : list of Run
-        Those drawn.
-    unit : Shown or None
-        Of the rotation; None where it is over the overturning angle.
-    """
+    """Mark events where they happened on the rotation, and name them in the legend."""
     named: set[str] = set()
     for run in runs:
         dataset = run.dataset

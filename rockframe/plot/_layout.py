@@ -22,62 +22,28 @@ _SPRINGS: Final = 81
 
 @dataclass(frozen=True)
 class Layout:
-    """A scene in the coordinates of the drawing [m].
+    """A scene in the coordinates of the drawing [m]."""
 
-    Parameters
-    ----------
-    block, cap : ndarray, shape (corners, 2)
-        Outlines; None where there is no cap.
-    members : tuple of ndarray
-        Of a frame.
-    centre : ndarray, shape (2,)
-        The block's centre of mass.
-    pads : tuple of ndarray
-        Left and right one, or none.
-    pads_bear : tuple of bool
-        Whether each of them bears.
-    soil : ndarray, shape (points, 2), or None
-        Its surface, from the left edge of the drawing to the right one.
-    touching : tuple of ndarray
-        Where contact is: points, shape (1, 2), and lines.
-    ground : ndarray, shape (2, 2)
-        Surface of rigid ground, where there is no soil.
-    lower : tuple of ndarray
-        Outlines of the bodies of a stack beneath the block.
-    ties : tuple of ndarray
-        Both ends of each restrainer, shape (2, 2).
-    """
-
-    block: Array
+    block: Array  # outlines; None where there is no cap
     cap: Array | None
-    members: tuple[Array, ...]
-    centre: Array
-    pads: tuple[Array, ...]
-    pads_bear: tuple[bool, ...]
-    soil: Array | None
-    touching: tuple[Array, ...]
-    ground: Array
-    lower: tuple[Array, ...] = ()
-    ties: tuple[Array, ...] = ()
+    members: tuple[Array, ...]  # of a frame
+    centre: Array  # the block's centre of mass
+    pads: tuple[Array, ...]  # left and right one, or none
+    pads_bear: tuple[bool, ...]  # whether each of them bears
+    soil: Array | None  # its surface, from the left edge of the drawing to the right one
+    touching: tuple[Array, ...]  # where contact is: points, shape (1, 2), and lines
+    ground: Array  # surface of rigid ground, where there is no soil
+    lower: tuple[Array, ...] = ()  # outlines of the bodies of a stack beneath the block
+    ties: tuple[Array, ...] = ()  # both ends of each restrainer, shape (2, 2)
 
 
 @dataclass(frozen=True)
 class Drawer:
-    """Lays scenes out for drawing.
+    """Lays scenes out for drawing."""
 
-    Parameters
-    ----------
-    geometry : Geometry
-        Of the scene.
-    magnify : float
-        By which displacements are multiplied [1].
-    least_reach : float
-        Half the width of the ground that is drawn at least [m].
-    """
-
-    geometry: Geometry
-    magnify: float = 1.0
-    least_reach: float = 0.0
+    geometry: Geometry  # of the scene
+    magnify: float = 1.0  # by which displacements are multiplied [1]
+    least_reach: float = 0.0  # half the width of the ground that is drawn at least [m]
 
     @property
     def pad_thickness(self) -> float:

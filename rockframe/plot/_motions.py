@@ -43,24 +43,7 @@ def motions_title(given: list[Drawn]) -> str:
 
 
 def drawn_motions(given: object, function: str) -> list[Drawn]:
-    """Read one or several motions.
-
-    Parameters
-    ----------
-    given : GroundMotion, or sequence or mapping of them
-        What the user gave; a suite is such a mapping.
-    function : str
-        Which function of `rf.plot` it was given to.
-
-    Returns
-    -------
-    list of Drawn
-
-    Raises
-    ------
-    ComponentError
-        Something else.
-    """
+    """Read one or several motions."""
     from rockframe.motion import GroundMotion
 
     labelled: dict[str, Any] = {}

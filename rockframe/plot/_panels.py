@@ -77,28 +77,6 @@ def sheet(
 
     A figure is one of pyplot, so that a notebook shows it and ``show()`` opens a window. With
     `ax` none is made.
-
-    Parameters
-    ----------
-    ax : Axes, iterable of Axes or None
-        What the user gave.
-    function : str
-        Which function of `rf.plot` it was given to.
-    names : sequence of str
-        What the panels are called, for the message.
-    size : (float, float)
-        Width and height of a new figure [in].
-    make : callable
-        Makes the panels of a new figure.
-
-    Returns
-    -------
-    Sheet
-
-    Raises
-    ------
-    ComponentError
-        Given are something else than Axes, or not as many as are drawn.
     """
     if ax is not None:
         return Sheet(Panels(_given(ax, function, names)), None)

@@ -33,28 +33,7 @@ class Run:
 
 
 def runs_of(given: object, function: str, window: "Window") -> list[Run]:
-    """Read one or several runs, and take the part of them that is drawn.
-
-    Parameters
-    ----------
-    given : xarray.Dataset, or sequence or mapping of them
-        What the user gave.
-    function : str
-        Which function of `rf.plot` it was given to.
-    window : pair of str or Quantity, or None
-        Start and end of the part; None for that of the run.
-
-    Returns
-    -------
-    list of Run
-
-    Raises
-    ------
-    SchemaError
-        Something else than results of single runs with histories.
-    UnitsError, ComponentError
-        The window is no pair of times, or holds less than two samples.
-    """
+    """Read one or several runs, and take the part of them that is drawn."""
     cut = window_of(window, function)
     labelled = _labelled(given)
     if labelled is None:

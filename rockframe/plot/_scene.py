@@ -166,17 +166,7 @@ def state(
 
 
 class Moving:
-    """A run as a scene that moves.
-
-    Parameters
-    ----------
-    run : xarray.Dataset
-        A result with histories.
-    function : str
-        Which function of `rf.plot` it was given to.
-    magnify : float
-        By which displacements are multiplied [1].
-    """
+    """A run as a scene that moves."""
 
     def __init__(self, run: xr.Dataset, function: str, magnify: object) -> None:
         self.function = function

@@ -11,15 +11,7 @@ _LETTERS_PER_INCH: Final = 12.0
 
 
 def set_title(figure: "Figure", words: str) -> None:
-    """Write a title above a figure, in as many lines as it needs.
-
-    Parameters
-    ----------
-    figure : matplotlib.figure.Figure
-        The figure.
-    words : str
-        The title; its own line breaks stay.
-    """
+    """Write a title above a figure, in as many lines as it needs."""
     width = int(_LETTERS_PER_INCH * figure.get_figwidth())
     lines = [line for given in words.splitlines() for line in _lines(given, width)]
     # matplotlib breaks lines that still do not fit, as those of larger letters

@@ -17,18 +17,10 @@ _WRITTEN: Final = {"g_0": "g", "deg": "°", "degree": "°", "degrees": "°"}
 
 @dataclass(frozen=True)
 class Shown:
-    """A unit that an axis has.
+    """A unit that an axis has."""
 
-    Parameters
-    ----------
-    words : str
-        As it is written beside the axis.
-    size : float
-        In the SI unit.
-    """
-
-    words: str
-    size: float
+    words: str  # as it is written beside the axis
+    size: float  # in the SI unit
 
     def of(self, values: "xr.DataArray | npt.ArrayLike") -> npt.NDArray[np.float64]:
         """Give values, in SI units, in this one."""
@@ -36,28 +28,7 @@ class Shown:
 
 
 def unit_of(given: object, measure: Measure, *, function: str, name: str) -> Shown:
-    """Read the unit of an axis.
-
-    Parameters
-    ----------
-    given : object
-        What the user gave, such as ``"deg"``.
-    measure : Measure
-        What is drawn.
-    function, name : str
-        Function of `rf.plot` and its argument, for the message.
-
-    Returns
-    -------
-    Shown
-
-    Raises
-    ------
-    UnitsError
-        No unit, or one of another kind.
-    ComponentError
-        No text.
-    """
+    """Read the unit of an axis."""
     owner = f"rf.plot.{function}"
     if not isinstance(given, str):
         msg = f"{owner}: {name} must be a unit, such as {str(measure.unit)!r}, got {shown(given)}"

@@ -12,20 +12,7 @@ from rockframe.simulation.system import System
 
 
 def certified(dataset: xr.Dataset, system: System | None) -> tuple[xr.Dataset, str]:
-    """Give a result its certificate, by running it again with all runs beside it.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        A result.
-    system : System or None
-        That it came from, with the motion; None where it cannot be had.
-
-    Returns
-    -------
-    tuple of Dataset and str
-        With the certificate, where there is none yet and it can be made; and why not.
-    """
+    """Give a result its certificate, by running it again with all runs beside it."""
     if "certificate" in dataset.attrs:
         return dataset, ""
     if system is None:

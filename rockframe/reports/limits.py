@@ -10,20 +10,11 @@ from rockframe.system.parts import Parts
 
 @dataclass(frozen=True)
 class Limit:
-    """Something that models leave out.
+    """Something that models leave out."""
 
-    Parameters
-    ----------
-    title : str
-        As on the page of the manual.
-    words : str
-        What it means for a result.
-    concerns : callable
-        Whether a scene with these parts is concerned.
-    """
-
-    title: str
-    words: str
+    title: str  # as on the page of the manual
+    words: str  # what it means for a result
+    # whether a scene with these parts is concerned
     concerns: Callable[[Parts], bool] = lambda _: True
 
 

@@ -61,19 +61,7 @@ code { overflow-wrap: anywhere; }
 
 
 def page(title: str, body: Iterable[str]) -> str:
-    """Put a page together.
-
-    Parameters
-    ----------
-    title : str
-        Of the page.
-    body : iterable of str
-        Its pieces, in HTML.
-
-    Returns
-    -------
-    str
-    """
+    """Put a page together."""
     head = (
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         f"{generator('report', __version__)}\n"
@@ -140,19 +128,7 @@ def verbatim(text: str) -> str:
 
 
 def picture(figure: "Figure", words: str) -> str:
-    """Give a figure with what it shows, its image inside the page.
-
-    Parameters
-    ----------
-    figure : matplotlib.figure.Figure
-        The figure.
-    words : str
-        What it shows.
-
-    Returns
-    -------
-    str
-    """
+    """Give a figure with what it shows, its image inside the page."""
     data, kind = _drawn(figure, "svg"), "svg+xml"
     if len(data) > LARGEST_DRAWING:
         data, kind = _drawn(figure, "png"), "png"

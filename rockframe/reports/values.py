@@ -17,17 +17,7 @@ _ABOVE: Final = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def value_of(variable: xr.DataArray) -> str:
-    """Write a scalar with its unit; flags and truth values as words.
-
-    Parameters
-    ----------
-    variable : DataArray
-        Without dimensions.
-
-    Returns
-    -------
-    str
-    """
+    """Write a scalar with its unit; flags and truth values as words."""
     value: Any = variable.item()
     if "flag_values" in variable.attrs:
         places = np.atleast_1d(variable.attrs["flag_values"]).tolist()
@@ -53,19 +43,7 @@ def powers_in_html(unit: str) -> str:
 
 
 def table_of(dataset: xr.Dataset, names: list[str] | None = None) -> list[tuple[str, str]]:
-    """Give the meaning and the value of scalars.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        With scalars.
-    names : list of str, optional
-        Which; all unless given.
-
-    Returns
-    -------
-    list of (str, str)
-    """
+    """Give the meaning and the value of scalars."""
     chosen = [str(name) for name in dataset.data_vars] if names is None else names
     return [
         (_GAP.sub("", str(dataset[name].attrs.get("long_name", name))), value_of(dataset[name]))

@@ -106,13 +106,7 @@ def _heading(words: str, made: list[str]) -> str:
 
 
 def _check(dataset: xr.Dataset) -> None:
-    """Refuse what is not the result of one run.
-
-    Raises
-    ------
-    SchemaError
-        It lacks what every run has, or holds several runs.
-    """
+    """Refuse what is not the result of one run."""
     needed = ("overturned", "status", "peak_rotation")
     missing = [name for name in needed if name not in dataset]
     if missing or "model" not in dataset.attrs:

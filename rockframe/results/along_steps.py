@@ -33,37 +33,18 @@ that of a parabola."""
 
 @dataclass(frozen=True)
 class AlongSteps:
-    """What a model shows at both ends of its steps.
+    """What a model shows at both ends of its steps."""
 
-    Parameters
-    ----------
-    steps : Steps
-        Up to overturning.
-    shown : mapping of str to ndarray
-        By names in the schema, in the rows of the steps: the end of one, just before what happened
-        after it, and the start of the next that does not go on from there.
-    inside : callable
-        Gives the same at `FRACTIONS` of some steps, one step after the other, by the rows of
-        their ends.
-    """
-
-    steps: Steps
+    steps: Steps  # up to overturning
+    # by names in the schema, in the rows of the steps: the end of one, just before what happened
+    # after it, and the start of the next that does not go on from there
     shown: Values
+    # gives the same at `FRACTIONS` of some steps, one step after the other, by the rows of their
+    # ends
     inside: Callable[[Integers], Values]
 
     def largest(self, quantity: Callable[[Values], Array]) -> tuple[Array, Array]:
-        """Give peaks and their times.
-
-        Parameters
-        ----------
-        quantity : callable
-            Gives rows of numbers from 0 on, shape (rows, instants).
-
-        Returns
-        -------
-        peak, time : ndarray, shape (rows,)
-            The times in [s].
-        """
+        """Give peaks and their times."""
         shown = quantity(self.shown)
         if shown.shape[1] < 2:  # no step was made
             return np.zeros(len(shown)), np.full(len(shown), np.nan)
@@ -78,20 +59,7 @@ class AlongSteps:
         return peak[row, best], time
 
     def above(self, quantity: Callable[[Values], Array], level: float) -> tuple[float, float]:
-        """Give from when on and how long a quantity is above a level; NaN and 0 where never.
-
-        Parameters
-        ----------
-        quantity : callable
-            Gives numbers from 0 on, shape (instants,).
-        level : float
-            Above 0.
-
-        Returns
-        -------
-        first, lasted : float
-            [s].
-        """
+        """Give from when on and how long a quantity is above a level; NaN and 0 where never."""
         shown = quantity(self.shown)
         beyond = np.maximum(shown[:-1], shown[1:]) > level
         which = 1 + np.flatnonzero(beyond & (self.steps.length[1:] > 0.0))

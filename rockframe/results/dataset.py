@@ -23,29 +23,7 @@ def build_dataset(
     title: str = "Rocking response",
     source: str = "event-driven integration",
 ) -> xr.Dataset:
-    """Label values by the schema and add the provenance every result carries.
-
-    Parameters
-    ----------
-    values : mapping
-        Arrays and scalars by their names in the schema. Floats with gaps, as NaN, stay floats
-        whatever the type in the schema.
-    attributes : mapping
-        Strings and numbers that describe the run.
-    over : tuple of str, optional
-        Dimensions that all values have before their own.
-    title, source : str
-        What the dataset holds, and how it was computed.
-
-    Returns
-    -------
-    xarray.Dataset
-
-    Raises
-    ------
-    SchemaError
-        A name is not in the schema, or a shape does not fit its dimensions.
-    """
+    """Label values by the schema and add the provenance every result carries."""
     variables: dict[str, tuple[tuple[str, ...], NDArray[Any]]] = {}
     labels: dict[str, dict[str, Any]] = {}
     for name, value in values.items():
@@ -75,24 +53,7 @@ def build_dataset(
 
 
 def fitting(values: Mapping[str, Any], sizes: Mapping[str, int]) -> dict[str, NDArray[Any]]:
-    """Give values that users' own functions gave, where their shapes are those of the schema.
-
-    Parameters
-    ----------
-    values : mapping
-        By their names in the schema.
-    sizes : mapping of str to int
-        Of dimensions that are known.
-
-    Returns
-    -------
-    dict of str to ndarray
-
-    Raises
-    ------
-    SchemaError
-        A name is not in the schema, or a shape does not fit its dimensions or the others.
-    """
+    """Give values that users' own functions gave, where their shapes are those of the schema."""
     sizes, found = dict(sizes), {name: np.asarray(value) for name, value in values.items()}
     for name, data in found.items():
         dims = schema_row(name).dims

@@ -40,19 +40,7 @@ NO_FORCE: Final = 1e-9
 def force_histories(values: Values, ground: Array, load: Load) -> dict[str, Generic]:
     """Give absolute accelerations, the moment of the base, and the friction demand.
 
-    Parameters
-    ----------
-    values : mapping of str to ndarray
-        Histories of a model, by their names in the schema.
-    ground : ndarray, shape (samples, 2)
-        Ground acceleration at the same times.
-    load : Load
-        The body that they are of.
-
-    Returns
-    -------
-    dict of str to ndarray
-        By their names in the schema, :eq:`eq-base-moment`, :eq:`eq-friction-demand`.
+    By :eq:`eq-base-moment` and :eq:`eq-friction-demand`.
     """
     thrust, press = values["horizontal_reaction"], values["vertical_reaction"]
     rotation = values.get(STACKED, values["rotation"])
@@ -89,20 +77,7 @@ def friction_demands(values: Values, load: Load) -> dict[str, Generic]:
 
 
 def friction_demand(thrust: Array, press: Array, mass: float) -> Array:
-    """Give the coefficient of friction that keeps a body from sliding, :eq:`eq-friction-demand`.
-
-    Parameters
-    ----------
-    thrust, press : ndarray
-        Force of the base along its plane, and normal to it [N]; or impulses [N s].
-    mass : float
-        Of the body [kg].
-
-    Returns
-    -------
-    ndarray
-        Infinite where the base holds the body without pressing, 0 where it does neither [1].
-    """
+    """Give the coefficient of friction that keeps a body from sliding, :eq:`eq-friction-demand`."""
     least = NO_FORCE * mass
     held = np.abs(thrust) > least
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -112,22 +87,13 @@ def friction_demand(thrust: Array, press: Array, mass: float) -> Array:
 
 @dataclass(frozen=True)
 class EventStates:
-    """What a model shows just before and just after the events of a run.
+    """What a model shows just before and just after the events of a run."""
 
-    Parameters
-    ----------
-    time : ndarray, shape (events,)
-        Of the events [s].
-    is_impact : ndarray of bool, shape (events,)
-        Whether an event is an impact from which the body goes on. One that it comes to rest by
-        ends an endless series: its ratio of impulses is that of no impact.
-    before, after : mapping of str to ndarray
-        Columns and what follows from them, by their names in the schema.
-    """
-
-    time: Array
+    time: Array  # of the events [s]
+    # whether an event is an impact from which the body goes on. One that it comes to rest by ends
+    # an endless series: its ratio of impulses is that of no impact
     is_impact: NDArray[np.bool_]
-    before: Values
+    before: Values  # columns and what follows from them, by their names in the schema
     after: Values
 
     def until(self, time: float) -> "EventStates":
@@ -155,22 +121,7 @@ class EventStates:
 
 
 def force_scalars(along: AlongSteps, events: EventStates, mass: float) -> dict[str, float]:
-    """Give peaks of forces.
-
-    Parameters
-    ----------
-    along : AlongSteps
-        What the model shows, with what :func:`force_histories` adds, up to overturning.
-    events : EventStates
-        Up to overturning, too.
-    mass : float
-        Of the body [kg].
-
-    Returns
-    -------
-    dict of str to float
-        By their names in the schema.
-    """
+    """Give peaks of forces."""
     (shear, most), (_, when) = along.largest(_shear_and_demand)
     level = min(HALF * most, ENOUGH)
     lasted = along.above(_demand, level)[1] if level > 0.0 else 0.0

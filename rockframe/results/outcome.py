@@ -60,22 +60,7 @@ def contact_histories(model: ContactModel, run: Trajectory) -> dict[str, Generic
 def body_histories(
     model: ContactModel, run: Trajectory, values: Mapping[str, Generic]
 ) -> dict[str, Generic]:
-    """Give histories with the motion of all bodies in one array each, where there are several.
-
-    Parameters
-    ----------
-    model : ContactModel
-        The equations.
-    run : Trajectory
-        The run.
-    values : mapping of str to ndarray
-        Histories, among them the model's columns.
-
-    Returns
-    -------
-    dict of str to ndarray
-        All of them, or without the columns that the arrays are made of.
-    """
+    """Give histories with the motion of all bodies in one array each, where there are several."""
     if not (model.shows_bodies or model.links):
         return dict(values)
     kept = {name: each for name, each in values.items() if name in SCHEMA}
@@ -227,18 +212,7 @@ def scalars(
 
 
 def overturns(runs: xr.Dataset) -> xr.DataArray:
-    """Tell which runs overturned, in the sense in which they were asked.
-
-    Parameters
-    ----------
-    runs : xarray.Dataset
-        One run, or several with their dimensions; their ``status`` tells it.
-
-    Returns
-    -------
-    xarray.DataArray
-        1, 0, or NaN where a run has no verdict.
-    """
+    """Tell which runs overturned, in the sense in which they were asked."""
     status = runs["status"]
     return status.copy(data=overturned_by(status.to_numpy()), deep=False).drop_attrs()
 

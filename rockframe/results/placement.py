@@ -24,38 +24,16 @@ UPRIGHT: Mapping[str, float] = {
 
 @dataclass(frozen=True)
 class Placement:
-    """A scene at an instant: the moves of its bodies, and which ends bear.
+    """A scene at an instant: the moves of its bodies, and which ends bear."""
 
-    Parameters
-    ----------
-    geometry : Geometry
-        Of the scene.
-    values : mapping of str to float
-        Of the instant, by their names in the schema.
-    restraint : Restraint
-        Which point of the base is held horizontally.
-    bodies : ndarray, shape (bodies, 3), or None
-        Of all bodies of a stack rotation and both displacements; None at rest.
-    """
-
-    geometry: Geometry
-    values: Mapping[str, float]
-    restraint: Restraint
+    geometry: Geometry  # of the scene
+    values: Mapping[str, float]  # of the instant, by their names in the schema
+    restraint: Restraint  # which point of the base is held horizontally
+    # of all bodies of a stack rotation and both displacements; None at rest
     bodies: Array | None = None
 
     def block(self, points: Array) -> Array:
-        """Give where points of the block are, and of all that it is one body with.
-
-        Parameters
-        ----------
-        points : ndarray, shape (points, 2)
-            At rest, from the middle of the lowest base [m].
-
-        Returns
-        -------
-        ndarray, shape (points, 2)
-            Along and normal to the base line, relative to the ground [m].
-        """
+        """Give where points of the block are, and of all that it is one body with."""
         values = self.values
         moves = values["horizontal_displacement"], values["vertical_displacement"]
         return self._moved(points, self.geometry.moved, values["rotation"], moves)

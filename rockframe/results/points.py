@@ -14,18 +14,10 @@ from rockframe.system.load import Load
 
 @dataclass(frozen=True)
 class BodyPoint:
-    """A point of a body.
+    """A point of a body."""
 
-    Parameters
-    ----------
-    name : str
-        That it is called by.
-    x, y : float
-        To the right of the middle of the base and above it, at rest [m].
-    """
-
-    name: str
-    x: float
+    name: str  # that it is called by
+    x: float  # to the right of the middle of the base and above it, at rest [m]
     y: float
 
 
@@ -34,19 +26,7 @@ def rotated_points(
 ) -> tuple[Array, Array]:
     """Give how a rotation moves points about the point that they are measured from.
 
-    Parameters
-    ----------
-    right, up : ndarray
-        Places at rest, from the centre of rotation [m].
-    rotation : ndarray
-        Clockwise, of a shape that fits that of the places [rad].
-    small_rotation : bool
-        Whether widths are expanded to the first order, and heights to the second.
-
-    Returns
-    -------
-    across, above : ndarray
-        (R - 1) r of :eq:`eq-point-motion` [m].
+    By :eq:`eq-point-motion`.
     """
     if small_rotation:
         half = 0.5 * rotation
@@ -69,22 +49,7 @@ def point_labels(points: Sequence[BodyPoint]) -> dict[str, Generic]:
 def point_histories(
     points: Sequence[BodyPoint], values: Mapping[str, Generic], load: Load
 ) -> dict[str, Generic]:
-    """Give displacements and absolute accelerations of points.
-
-    Parameters
-    ----------
-    points : sequence of BodyPoint
-        Of the body.
-    values : mapping of str to ndarray
-        Histories of the body with absolute accelerations, by their names in the schema.
-    load : Load
-        The body.
-
-    Returns
-    -------
-    dict of str to ndarray
-        Shape (points, samples), by their names in the schema.
-    """
+    """Give displacements and absolute accelerations of points."""
     rotation, rate = values["rotation"], values["angular_velocity"]
     angular = values["angular_acceleration"]
     body, small = load.body, load.options.small
@@ -111,22 +76,7 @@ def point_histories(
 
 
 def point_peaks(points: Sequence[BodyPoint], along: AlongSteps, load: Load) -> dict[str, Generic]:
-    """Give peaks of displacements and absolute accelerations of points.
-
-    Parameters
-    ----------
-    points : sequence of BodyPoint
-        Of the body.
-    along : AlongSteps
-        As for :func:`point_histories`, up to overturning.
-    load : Load
-        The body.
-
-    Returns
-    -------
-    dict of str to ndarray, shape (points,)
-        By their names in the schema.
-    """
+    """Give peaks of displacements and absolute accelerations of points."""
 
     def sizes(values: Mapping[str, Generic]) -> Array:
         return np.abs(np.concatenate([*point_histories(points, values, load).values()]))

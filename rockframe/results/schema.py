@@ -86,22 +86,7 @@ SCHEMA: Final = {row.name: row for table in _TABLES for row in table}
 
 
 def schema_row(name: str) -> Variable:
-    """Give the row of a variable.
-
-    Parameters
-    ----------
-    name : str
-        Of the variable.
-
-    Returns
-    -------
-    Variable
-
-    Raises
-    ------
-    SchemaError
-        There is none of this name.
-    """
+    """Give the row of a variable."""
     row = SCHEMA.get(name)
     if row is None:
         msg = f"{name!r} is not in the schema of results"

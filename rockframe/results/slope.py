@@ -31,20 +31,7 @@ def slope_attributes(slope: Slope) -> dict[str, str]:
 
 
 def ground_on_slope(ground: Array, slope: Slope) -> tuple[Array, Array]:
-    """Give the ground's acceleration along and normal to the base.
-
-    Parameters
-    ----------
-    ground : ndarray, shape (samples, 2)
-        Horizontal and vertical [m s^-2].
-    slope : Slope
-        Of the base.
-
-    Returns
-    -------
-    moved, resolved : ndarray, shape (samples, 2)
-        Without gravity, and as the equations take it: with its part along the base.
-    """
+    """Give the ground's acceleration along and normal to the base."""
     if slope.level:
         return ground, ground
     moved = np.column_stack(slope.turned(ground[:, 0], ground[:, 1]))
@@ -68,23 +55,7 @@ def energies_on_slope(
 ) -> dict[str, Generic]:
     """Count the work of gravity along the base as gravity energy, and not as input.
 
-    Parameters
-    ----------
-    energies : mapping of str to ndarray
-        Of the equations, to which that gravity is an acceleration of the ground [J].
-    model : ContactModel
-        The equations.
-    run : Trajectory
-        The run.
-    displacement : ndarray, shape (samples,)
-        Of the body's centre of mass along the base [m].
-    slope : Slope
-        Of the base.
-
-    Returns
-    -------
-    dict of str to ndarray
-        All energies, :eq:`eq-incline-energy`.
+    By :eq:`eq-incline-energy`.
     """
     found = dict(energies)
     raised = model.mass * slope.along_gravity * (displacement + _of_carrier(model, run))

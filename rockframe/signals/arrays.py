@@ -14,27 +14,7 @@ OWNER: Final = "GroundMotion"
 
 
 def frozen(values: object, name: str, shape: tuple[int, ...] | None = None) -> Array:
-    """Copy values to an array that is read-only and contiguous, or refuse them.
-
-    Parameters
-    ----------
-    values : array_like
-        Numbers.
-    name : str
-        What they are, for the message.
-    shape : tuple of int, optional
-        What they must have; any one-dimensional one unless given.
-
-    Returns
-    -------
-    ndarray
-        Of the shape wanted.
-
-    Raises
-    ------
-    ComponentError
-        Another shape, or a value that is not finite.
-    """
+    """Copy values to an array that is read-only and contiguous, or refuse them."""
     array = np.array(values, dtype=np.float64, order="C", copy=True)
     if (array.ndim != 1) if shape is None else (array.shape != shape):
         wanted = "one dimension" if shape is None else f"the shape {shape}"

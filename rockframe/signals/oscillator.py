@@ -58,20 +58,7 @@ def fill_step(kappa: float, damping: float, step: Matrix) -> None:
 def turning_value(
     value: Any, slope: Any, bend: Any, end_value: Any, end_slope: Any, end_bend: Any
 ) -> Any:
-    """Find the extremum inside a step whose slopes differ in sign, :eq:`eq-step-extremum`.
-
-    Parameters
-    ----------
-    value, slope, bend : float or ndarray
-        Value and derivatives by x at the step's start.
-    end_value, end_slope, end_bend : float or ndarray
-        The same at its end.
-
-    Returns
-    -------
-    float or ndarray
-        Value of the quintic through them where it turns.
-    """
+    """Find the extremum inside a step whose slopes differ in sign, :eq:`eq-step-extremum`."""
     rise = end_value - value - slope - 0.5 * bend
     turn = end_slope - slope - bend
     twist = end_bend - bend
@@ -88,19 +75,7 @@ def turning_value(
 
 @kernel
 def shift_piece(pieces: Matrix, row: int, part: int, parts: int, shifted: Vector) -> None:
-    """Write a part of an interval's polynomial in the part's own x.
-
-    Parameters
-    ----------
-    pieces : ndarray, shape (n, m)
-        Polynomials of the intervals.
-    row : int
-        Which interval.
-    part, parts : int
-        Which of how many equal parts.
-    shifted : ndarray, shape (m,)
-        Filled.
-    """
+    """Write a part of an interval's polynomial in the part's own x."""
     powers = pieces.shape[1]
     for j in range(powers):
         shifted[j] = pieces[row, j]

@@ -36,17 +36,7 @@ def values_at(pieces: Array, place: Array | float) -> Array:
 
 
 def slopes_of(pieces: Array) -> Array:
-    """Differentiate by x.
-
-    Parameters
-    ----------
-    pieces : ndarray, shape (n, m)
-        Coefficients.
-
-    Returns
-    -------
-    ndarray, shape (n, m - 1)
-    """
+    """Differentiate by x."""
     return pieces[:, 1:] * np.arange(1.0, pieces.shape[1])
 
 
@@ -71,20 +61,7 @@ def integral_of(pieces: Array, time_step: float) -> Array:
 
 
 def divided(pieces: Array, parts: int) -> Array:
-    """Divide every interval into equal parts, each with its own x.
-
-    Parameters
-    ----------
-    pieces : ndarray, shape (n, m)
-        Coefficients.
-    parts : int
-        How many.
-
-    Returns
-    -------
-    ndarray, shape (n parts, m)
-        The same function of time.
-    """
+    """Divide every interval into equal parts, each with its own x."""
     if parts == 1:
         return pieces
     powers = range(pieces.shape[1])
@@ -98,17 +75,7 @@ def divided(pieces: Array, parts: int) -> Array:
 
 
 def knots_of(pieces: Array) -> Array:
-    """Give the values at both ends of all intervals.
-
-    Parameters
-    ----------
-    pieces : ndarray, shape (n, m)
-        Coefficients of a continuous function.
-
-    Returns
-    -------
-    ndarray, shape (n + 1,)
-    """
+    """Give the values at both ends of all intervals."""
     return np.append(pieces[:, 0], pieces[-1].sum())
 
 
@@ -137,37 +104,14 @@ def roots_of(pieces: Array) -> Array:
 
 
 def turning_points(pieces: Array) -> tuple[NDArray[np.intp], Array]:
-    """Find the extrema inside the intervals at whose ends the slopes differ in sign.
-
-    Parameters
-    ----------
-    pieces : ndarray, shape (n, m)
-        Coefficients.
-
-    Returns
-    -------
-    rows : ndarray of int, shape (k,)
-        The intervals.
-    values : ndarray, shape (k,)
-        The values there.
-    """
+    """Find the extrema inside the intervals at whose ends the slopes differ in sign."""
     slopes = slopes_of(pieces)
     rows = np.flatnonzero(slopes[:, 0] * slopes.sum(axis=1) < 0.0)
     return rows, values_at(pieces[rows], roots_of(slopes[rows]))
 
 
 def greatest(pieces: Array) -> float:
-    """Find the greatest absolute value, between the knots too.
-
-    Parameters
-    ----------
-    pieces : ndarray, shape (n, m)
-        Coefficients; the function may jump from piece to piece.
-
-    Returns
-    -------
-    float
-    """
+    """Find the greatest absolute value, between the knots too."""
     _, between = turning_points(pieces)
     ends = np.concatenate([pieces[:, 0], pieces.sum(axis=1), between])
     return float(np.max(np.abs(ends)))

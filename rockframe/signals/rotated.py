@@ -18,18 +18,7 @@ _FEW: Final = 16
 
 
 def unit_vectors(count: int) -> Array:
-    """Give directions evenly spaced over half a circle, from the first component on.
-
-    Parameters
-    ----------
-    count : int
-        How many; even, so that the second component is among them.
-
-    Returns
-    -------
-    ndarray, shape (count, 2)
-        Cosines and sines.
-    """
+    """Give directions evenly spaced over half a circle, from the first component on."""
     angles = np.pi * np.arange(count) / count
     vectors = np.column_stack([np.cos(angles), np.sin(angles)])
     vectors[count // 2] = 0.0, 1.0

@@ -12,18 +12,10 @@ from rockframe.signals.signal import COEFFICIENTS, HORIZONTAL, VERTICAL, Signal
 
 @dataclass(frozen=True)
 class Slope:
-    """A base line that rises to the right, and the gravity that it stands in.
+    """A base line that rises to the right, and the gravity that it stands in."""
 
-    Parameters
-    ----------
-    inclination : float
-        i [rad].
-    gravity : float
-        g [m s^-2].
-    """
-
-    inclination: float
-    gravity: float
+    inclination: float  # i [rad]
+    gravity: float  # g [m s^-2]
 
     @property
     def level(self) -> bool:
@@ -41,18 +33,7 @@ class Slope:
         return self.gravity * math.cos(self.inclination)
 
     def turned(self, across: Array, up: Array) -> tuple[Array, Array]:
-        """Give along and normal components of horizontal and vertical ones.
-
-        Parameters
-        ----------
-        across, up : ndarray
-            To the right, and upwards.
-
-        Returns
-        -------
-        along, normal : ndarray
-            Up the slope to the right, and away from the base; without gravity.
-        """
+        """Give along and normal components of horizontal and vertical ones."""
         sine, cosine = math.sin(self.inclination), math.cos(self.inclination)
         return across * cosine + up * sine, up * cosine - across * sine
 

@@ -46,23 +46,15 @@ from rockframe.system.own_base import OwnAnswers
 
 @dataclass(frozen=True)
 class Answers:
-    """What samples tell; nothing of a run without.
+    """What samples tell; nothing of a run without."""
 
-    Parameters
-    ----------
-    values : dict of str to ndarray
-        By their names in the schema.
-    scalars : dict of str to float or ndarray
-        Peaks of forces, what is left at the end, and peaks at points, shape (points,).
-    points : dict of str to ndarray, shape (points,)
-        Names and places of points.
-    slidings : list of Sliding
-        Whether bases have friction enough, of those to which it was given.
-    """
-
+    # by their names in the schema
     values: dict[str, Generic] = field(default_factory=dict[str, Generic])
+    # peaks of forces, what is left at the end, and peaks at points, shape (points,)
     scalars: dict[str, Generic | float] = field(default_factory=dict[str, Generic | float])
+    # names and places of points
     points: dict[str, Generic] = field(default_factory=dict[str, Generic])
+    # whether bases have friction enough, of those to which it was given
     slidings: list[Sliding] = field(default_factory=list[Sliding])
 
 
@@ -75,23 +67,7 @@ def ground_at(motion: GroundMotion | None, time: Array) -> Array:
 
 
 def answers_of(system: Assembly, plan: Plan, run: Trajectory, missing: list[str]) -> Answers:
-    """Give what the samples of a run tell: histories, if they are kept, peaks and points.
-
-    Parameters
-    ----------
-    system : Assembly
-        The checked scene.
-    plan : Plan
-        The checked arguments.
-    run : Trajectory
-        The run.
-    missing : list of str
-        Takes up what users' own functions failed to give, and why.
-
-    Returns
-    -------
-    Answers
-    """
+    """Give what the samples of a run tell: histories, if they are kept, peaks and points."""
     setting, load, count = system.setting, system.setting.load, len(run.time)
     shown_at, ground, moved = _everything_of(system, plan, run)
     values = {name: each[:count] for name, each in shown_at.items()}

@@ -37,38 +37,12 @@ def beginning_to_dict(beginning: Beginning) -> dict[str, Any]:
 
 
 def end_attributes(ending: Ending) -> dict[str, str]:
-    """Give the end of a run as an attribute that a later run can begin with.
-
-    Parameters
-    ----------
-    ending : Ending
-        Of the run.
-
-    Returns
-    -------
-    dict
-        Mode, state and memory in JSON, exact to the last bit.
-    """
+    """Give the end of a run as an attribute that a later run can begin with."""
     return {_ATTRIBUTE: json.dumps(_plain(ending))}
 
 
 def continuation_of(dataset: xr.Dataset, system: Assembly, faults: list[str]) -> Beginning:
-    """Read where a run ended, or note why none can go on from there.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        Result of a run.
-    system : Assembly
-        The system that is to go on.
-    faults : list of str
-        Appended to.
-
-    Returns
-    -------
-    Ending or InitialState
-        Rest where the dataset holds no end.
-    """
+    """Read where a run ended, or note why none can go on from there."""
     attributes: Mapping[str, Any] = cast("Mapping[str, Any]", dataset.attrs)
     if _ATTRIBUTE not in attributes or "system_json" not in attributes:
         faults.append("initial is a dataset that holds no end of a run; expected one of simulate()")

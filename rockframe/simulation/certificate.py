@@ -41,30 +41,14 @@ FOR_PARAMETERS: Final = 0.6
 
 @dataclass(frozen=True)
 class Certificate:
-    """A run, and what further runs showed; none where it was not finished.
+    """A run, and what further runs showed; none where it was not finished."""
 
-    Parameters
-    ----------
-    wanted : Certification
-        What was to be tried.
-    plan : Plan
-        The run's arguments.
-    base : RunSummary
-        What the run showed.
-    finer : sequence of (str, RunSummary)
-        Runs by finer means, with these in words.
-    nudged : sequence of (str, Scan)
-        Runs with a parameter changed, with its name in words.
-    along : Scan
-        Runs with a scaled motion or start.
-    """
-
-    wanted: Certification
-    plan: Plan
-    base: RunSummary
-    finer: Sequence[tuple[str, RunSummary]] = ()
-    nudged: Sequence[tuple[str, Scan]] = ()
-    along: Scan = NOT_TRIED
+    wanted: Certification  # what was to be tried
+    plan: Plan  # the run's arguments
+    base: RunSummary  # what the run showed
+    finer: Sequence[tuple[str, RunSummary]] = ()  # runs by finer means, with these in words
+    nudged: Sequence[tuple[str, Scan]] = ()  # runs with a parameter changed, with its name in words
+    along: Scan = NOT_TRIED  # runs with a scaled motion or start
 
     @property
     def finished(self) -> bool:
@@ -149,25 +133,7 @@ class Certificate:
 def certify(
     system: Assembly, plan: Plan, base: RunSummary, wanted: Certification, run: Run
 ) -> Certificate:
-    """Make the certificate of a run.
-
-    Parameters
-    ----------
-    system : Assembly
-        The scene.
-    plan : Plan
-        The run's arguments.
-    base : RunSummary
-        What the run showed.
-    wanted : Certification
-        What to try.
-    run : callable
-        Makes a run and tells what it showed.
-
-    Returns
-    -------
-    Certificate
-    """
+    """Make the certificate of a run."""
     if base.overturned is None:
         return Certificate(wanted, plan, base)
     bare = plan.bare()
@@ -244,19 +210,7 @@ NEAR: Final = 0.01
 
 
 def certificate_sentence(found: "Certificate", values: Mapping[str, float | bool]) -> str:
-    """Say what was tried and what was found.
-
-    Parameters
-    ----------
-    found : Certificate
-        The runs, for the names of what was tried.
-    values : mapping of str to float or bool
-        What came of it, as the dataset has it.
-
-    Returns
-    -------
-    str
-    """
+    """Say what was tried and what was found."""
     if not found.finished:
         return "No certificate: the run was not finished."
     ends = _Ends(found)

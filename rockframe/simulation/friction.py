@@ -19,21 +19,12 @@ MOST_DIGITS: Final = 15
 
 @dataclass(frozen=True)
 class Sliding:
-    """Whether a body would slide on a base to which friction was given.
+    """Whether a body would slide on a base to which friction was given."""
 
-    Parameters
-    ----------
-    body : str
-        What stands on it.
-    friction, needed : float
-        The coefficient that the base has, and the largest demand [1].
-    first, lasted : float
-        From when on and how long in all the demand is beyond it; NaN and 0 where it never is [s].
-    """
-
-    body: str
-    friction: float
+    body: str  # what stands on it
+    friction: float  # the coefficient that the base has, and the largest demand [1]
     needed: float
+    # from when on and how long in all the demand is beyond it; NaN and 0 where it never is [s]
     first: float
     lasted: float
 
@@ -67,19 +58,7 @@ def has_limit(system: Assembly) -> bool:
 
 
 def slidings(system: Assembly, along: AlongSteps) -> list[Sliding]:
-    """Tell of each base with a coefficient of friction whether it holds what stands on it.
-
-    Parameters
-    ----------
-    system : Assembly
-        The checked scene.
-    along : AlongSteps
-        What its run showed, up to overturning.
-
-    Returns
-    -------
-    list of Sliding
-    """
+    """Tell of each base with a coefficient of friction whether it holds what stands on it."""
     return [
         _sliding(along, name, friction, body)
         for name, friction, body in _frictions(system)

@@ -26,20 +26,7 @@ def listed(outputs: object) -> list[object]:
 
 
 def names_of(outputs: object, points: object, faults: list[str]) -> tuple[str, ...]:
-    """Read the argument ``outputs``: names of variables and of groups; note what is unknown.
-
-    Parameters
-    ----------
-    outputs, points : object
-        As given by the user.
-    faults : list of str
-        To which what is wrong is added.
-
-    Returns
-    -------
-    tuple of str
-        Names that are given on request only, in the order of the schema.
-    """
+    """Read the argument ``outputs``: names of variables and of groups; note what is unknown."""
     wanted: set[str] = set()
     for name in listed(outputs):
         if isinstance(name, str) and _has_dimensions(name, POINT_TIME):
@@ -91,19 +78,7 @@ def lacking(system: Assembly, names: Iterable[str]) -> list[str]:
 
 
 def points_of(given: object, faults: list[str]) -> tuple[BodyPoint, ...]:
-    """Read the argument ``points``: names and places on the body; note what is wrong.
-
-    Parameters
-    ----------
-    given : object
-        As given by the user.
-    faults : list of str
-        To which what is wrong is added.
-
-    Returns
-    -------
-    tuple of BodyPoint
-    """
+    """Read the argument ``points``: names and places on the body; note what is wrong."""
     if given is None:
         return ()
     if not isinstance(given, Mapping):

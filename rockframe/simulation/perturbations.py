@@ -26,19 +26,7 @@ SceneAt = Callable[[float], Assembly | None]
 
 
 def parameters(system: Assembly) -> Iterator[tuple[str, SceneAt]]:
-    """Give every parameter of every part of a scene, and the scene with it changed.
-
-    Parameters
-    ----------
-    system : Assembly
-        The scene.
-
-    Yields
-    ------
-    str, callable
-        The parameter in words, and what gives the scene for a relative change of it: None
-        where the parts then misfit.
-    """
+    """Give every parameter of every part of a scene, and the scene with it changed."""
     options = system.options.to_dict()
     parts = system.parts.structural()
 
@@ -193,18 +181,5 @@ def shortened(accuracy: Accuracy, system: Assembly, step: float, interval: float
 
 
 def cut(motion: GroundMotion, parts: int) -> GroundMotion:
-    """Give the same function of time by shorter intervals.
-
-    Parameters
-    ----------
-    motion : GroundMotion
-        The motion.
-    parts : int
-        Parts of each interval.
-
-    Returns
-    -------
-    GroundMotion
-        Straight lines stay straight lines, polynomials the same polynomials.
-    """
+    """Give the same function of time by shorter intervals."""
     return GroundMotion(motion.si.each(lambda one: divided_signal(one, parts)), name=motion.name)

@@ -110,26 +110,7 @@ def _time(value: float | None) -> str | None:
 
 
 def plan_run(system: Assembly, motion: GroundMotion | None, **asked: Unpack[RunArguments]) -> Plan:
-    """Check the arguments of a run against the system and one another.
-
-    Parameters
-    ----------
-    system : Assembly
-        The checked scene.
-    motion : GroundMotion or None
-        The one among the parts unless given.
-    **asked
-        As for :meth:`rockframe.System.simulate`.
-
-    Returns
-    -------
-    Plan
-
-    Raises
-    ------
-    AssemblyError
-        With every fault found.
-    """
+    """Check the arguments of a run against the system and one another."""
     faults: list[str] = []
     motion = system.parts.motion if motion is None else motion
     _check_motion(motion, faults)
@@ -143,24 +124,7 @@ def plan_run(system: Assembly, motion: GroundMotion | None, **asked: Unpack[RunA
 
 
 def read_arguments(faults: list[str], **asked: Unpack[RunArguments]) -> RunRequest:
-    """Read the arguments of a run, as far as that needs neither system nor motion.
-
-    Parameters
-    ----------
-    faults : list of str
-        To which what is wrong is added.
-    **asked
-        As for :meth:`rockframe.System.simulate`.
-
-    Returns
-    -------
-    RunRequest
-
-    Raises
-    ------
-    UnitsError, ComponentError, SolverError
-        An argument cannot be read.
-    """
+    """Read the arguments of a run, as far as that needs neither system nor motion."""
     duration = _read_time("duration", asked.get("duration"))
     free_vibration = _read_time("free_vibration", asked.get("free_vibration"))
     if duration is not None and free_vibration is not None:
@@ -188,24 +152,7 @@ def read_arguments(faults: list[str], **asked: Unpack[RunArguments]) -> RunReque
 def fit_plan(
     arguments: RunRequest, system: Assembly, motion: GroundMotion | None, faults: list[str]
 ) -> Plan:
-    """Fit the arguments of a run to its system and its motion.
-
-    Parameters
-    ----------
-    arguments : RunRequest
-        As read.
-    system : Assembly
-        The checked scene.
-    motion : GroundMotion or None
-        Of the ground, which stands still without.
-    faults : list of str
-        To which what does not fit is added.
-
-    Returns
-    -------
-    Plan
-        Of no use where there are faults.
-    """
+    """Fit the arguments of a run to its system and its motion."""
     beginning = _beginning(system, arguments.initial, faults)
     length = run_length(arguments, motion)
     if not length:

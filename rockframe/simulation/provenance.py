@@ -68,23 +68,7 @@ def _on_samples(time: NDArray[Any], step: float) -> int:
 
 
 def motion_from_dataset(dataset: xr.Dataset) -> GroundMotion | None:
-    """Give the motion of a result: built anew, or read from its histories.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        A result.
-
-    Returns
-    -------
-    GroundMotion or None
-        None where the dataset does not hold the motion, sample by sample.
-
-    Warns
-    -----
-    RecordWarning
-        The run had a motion that the dataset does not hold.
-    """
+    """Give the motion of a result: built anew, or read from its histories."""
     text = dataset.attrs.get("motion_json")
     if text is None:
         return None
@@ -141,23 +125,7 @@ def _joined(dataset: xr.Dataset, name: str, count: int) -> NDArray[Any]:
 
 
 def arguments_of_run(dataset: xr.Dataset) -> dict[str, Any]:
-    """Give the arguments of the run that a result came from, without its outputs.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        A result.
-
-    Returns
-    -------
-    dict
-        As :meth:`rockframe.System.simulate` takes them.
-
-    Raises
-    ------
-    SchemaError
-        The run began where another one ended, or the dataset does not describe a run.
-    """
+    """Give the arguments of the run that a result came from, without its outputs."""
     try:
         described = json.loads(dataset.attrs["run_json"])
         initial, accuracy = described["initial"], Accuracy(**described["accuracy"])

@@ -146,21 +146,7 @@ class Response:
 
 
 def in_motion(system: Assembly, summary: Summary, missing: list[str]) -> bool:
-    """Tell whether a body that stood may overturn later; False where it cannot be told.
-
-    Parameters
-    ----------
-    system : Assembly
-        The scene.
-    summary : Summary
-        What became of a run.
-    missing : list of str
-        Takes up why it cannot be told.
-
-    Returns
-    -------
-    bool
-    """
+    """Tell whether a body that stood may overturn later; False where it cannot be told."""
     what = "whether the body still has the energy to overturn"
     return or_missing(lambda: may_overturn_later(system, summary), False, what, missing)
 
@@ -168,21 +154,7 @@ def in_motion(system: Assembly, summary: Summary, missing: list[str]) -> bool:
 def scalars_of(
     system: Assembly, summary: Summary, missing: list[str]
 ) -> dict[str, float | int | bool]:
-    """Give the scalars of a run by their names in the schema, without those of its samples.
-
-    Parameters
-    ----------
-    system : Assembly
-        The scene.
-    summary : Summary
-        What became of a run.
-    missing : list of str
-        Takes up what is NaN since it could not be computed.
-
-    Returns
-    -------
-    dict of str to float, int or bool
-    """
+    """Give the scalars of a run by their names in the schema, without those of its samples."""
     setting = system.setting
     uplift = or_missing(lambda: setting.uplift_angle, math.nan, "the uplift angle", missing)
     return scalars(summary, setting, uplift_angle=uplift)
@@ -195,24 +167,7 @@ def run(
     *,
     look_again: bool = False,
 ) -> xr.Dataset:
-    """Integrate as planned and label the result.
-
-    Parameters
-    ----------
-    system : Assembly
-        The checked scene.
-    plan : Plan
-        The checked arguments.
-    certification : Certification, optional
-        What to try, to tell how sure the verdict is.
-    look_again : bool
-        Whether a run with the steps of ``"fast"`` is made a second time, with more of them,
-        where there is no certificate.
-
-    Returns
-    -------
-    xarray.Dataset
-    """
+    """Integrate as planned and label the result."""
     lists = system.model.shows_bodies or system.model.links
     for column in () if lists else system.model.columns:
         schema_row(column.name)  # before the run
@@ -273,53 +228,17 @@ def _looked_again(system: Assembly, plan: Plan, summary: Summary) -> tuple[float
 
 
 def outcome(system: Assembly, plan: Plan) -> Summary:
-    """Integrate as planned, and give only what became of the run.
-
-    Parameters
-    ----------
-    system : Assembly
-        The checked scene.
-    plan : Plan
-        The checked arguments; without histories it is cheapest.
-
-    Returns
-    -------
-    Summary
-    """
+    """Integrate as planned, and give only what became of the run."""
     return respond(system, plan).trajectory
 
 
 def summary_of(system: Assembly, plan: Plan) -> RunSummary:
-    """Integrate as planned, and tell what a certificate asks of the run.
-
-    Parameters
-    ----------
-    system : Assembly
-        The checked scene.
-    plan : Plan
-        The checked arguments.
-
-    Returns
-    -------
-    RunSummary
-    """
+    """Integrate as planned, and tell what a certificate asks of the run."""
     return respond(system, plan).summary()
 
 
 def respond(system: Assembly, plan: Plan) -> Response:
-    """Integrate as planned.
-
-    Parameters
-    ----------
-    system : Assembly
-        The checked scene.
-    plan : Plan
-        The checked arguments.
-
-    Returns
-    -------
-    Response
-    """
+    """Integrate as planned."""
     sampled = plan.output_step is not None
     # of a run without histories only the start and the end are asked for
     output_step = plan.duration if sampled and not plan.histories else plan.output_step

@@ -140,22 +140,7 @@ class Certification:
 
 
 def certification_of(given: object) -> Certification | None:
-    """Read the argument ``certify`` of a run.
-
-    Parameters
-    ----------
-    given : bool or Certification
-        What the user gave.
-
-    Returns
-    -------
-    Certification or None
-
-    Raises
-    ------
-    ComponentError
-        Neither.
-    """
+    """Read the argument ``certify`` of a run."""
     if given is False:
         return None
     if given is True:

@@ -32,50 +32,28 @@ class RunSummary:
     numbers above zero that change smoothly from scene to scene, and at least one of them goes
     to zero where the verdict changes, or where a body that comes back first passes the
     overturning angle.
-
-    Parameters
-    ----------
-    overturned : bool or None
-        Its verdict; None where the run was not finished.
-    peak : float
-        Largest absolute rotation [rad].
-    clearances : tuple of float
-        Of a body that stands, the share of the overturning angle that its peak left; of one
-        that came back from beyond it, how far it was beyond, and the share of a right angle
-        that was left. Of one that overturns, the square of its rate at that angle, and the
-        time that was left: it fails to overturn if it gets there without speed, or not within
-        the run.
-    time : float
-        Of overturning, or of falling flat in a run that goes on; NaN if none [s].
-    direction : int
-        Sign of the rotation at overturning, 0 if none.
-    step : float
-        Average length of a step [s].
-    course : tuple of float
-        Of the whole run: root of the sum of squared rates at its events about some
-        instants. Where the verdict hangs on what came before, as after many impacts, this
-        tells of it long before a clearance does [rad s^-1].
-    status : Status
-        How it ended.
-    peak_share : float
-        Largest share of a rotation in the overturning angle of its side.
-    in_motion : bool
-        Whether it stood with the energy to overturn later.
-    slides : float
-        Whether it would slide, 1 or 0; NaN where no base has a coefficient of friction, or the
-        run was made without samples.
     """
 
-    overturned: bool | None
-    peak: float
+    overturned: bool | None  # its verdict; None where the run was not finished
+    peak: float  # largest absolute rotation [rad]
+    # of a body that stands, the share of the overturning angle that its peak left; of one that came
+    # back from beyond it, how far it was beyond, and the share of a right angle that was left. Of
+    # one that overturns, the square of its rate at that angle, and the time that was left: it fails
+    # to overturn if it gets there without speed, or not within the run
     clearances: tuple[float, ...] = ()
+    # of overturning, or of falling flat in a run that goes on; NaN if none [s]
     time: float = math.nan
-    direction: int = 0
-    step: float = math.nan
+    direction: int = 0  # sign of the rotation at overturning, 0 if none
+    step: float = math.nan  # average length of a step [s]
+    # of the whole run: root of the sum of squared rates at its events about some instants. Where
+    # the verdict hangs on what came before, as after many impacts, this tells of it long before a
+    # clearance does [rad s^-1]
     course: tuple[float, ...] = ()
-    status: Status = Status.COMPLETED
-    peak_share: float = math.nan
-    in_motion: bool = False
+    status: Status = Status.COMPLETED  # how it ended
+    peak_share: float = math.nan  # largest share of a rotation in the overturning angle of its side
+    in_motion: bool = False  # whether it stood with the energy to overturn later
+    # whether it would slide, 1 or 0; NaN where no base has a coefficient of friction, or the run
+    # was made without samples
     slides: float = math.nan
 
     @property

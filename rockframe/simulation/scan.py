@@ -37,28 +37,16 @@ Look = Callable[[float], RunSummary | None]
 
 @dataclass(frozen=True)
 class Scan:
-    """What was found along a path.
+    """What was found along a path."""
 
-    Parameters
-    ----------
-    margin : float
-        Largest change, to both sides, up to which no other verdict was found and every
-        interval was followed closely enough to tell [1].
-    flip : float or None
-        Change nearest to zero with another verdict [1].
-    ended : RunSummary or None
-        What that run showed.
-    followed : bool
-        Whether the margin ends at another verdict or at the reach, not for want of runs.
-    tried : dict of float to RunSummary
-        All runs, without the one at zero.
-    """
-
+    # largest change, to both sides, up to which no other verdict was found and every interval was
+    # followed closely enough to tell [1]
     margin: float
-    flip: float | None
-    ended: RunSummary | None
+    flip: float | None  # change nearest to zero with another verdict [1]
+    ended: RunSummary | None  # what that run showed
+    # whether the margin ends at another verdict or at the reach, not for want of runs
     followed: bool
-    tried: dict[float, RunSummary]
+    tried: dict[float, RunSummary]  # all runs, without the one at zero
 
     def within(self, reach: float) -> int:
         """Give the number of changes tried up to a reach."""
@@ -71,21 +59,11 @@ NOT_TRIED: Final = Scan(math.nan, None, None, followed=False, tried={})
 
 @dataclass
 class Side:
-    """The runs to one side, by the size of their change.
+    """The runs to one side, by the size of their change."""
 
-    Parameters
-    ----------
-    sign : float
-        Of the changes.
-    shown : dict of float to RunSummary
-        The runs by their places, at first the nearest one only.
-    places : list of float
-        Sizes of the changes, rising.
-    """
-
-    sign: float
-    shown: dict[float, RunSummary]
-    places: list[float] = field(default_factory=lambda: [0.0])
+    sign: float  # of the changes
+    shown: dict[float, RunSummary]  # the runs by their places, at first the nearest one only
+    places: list[float] = field(default_factory=lambda: [0.0])  # sizes of the changes, rising
     closed: bool = False
     rough: list[tuple[float, float]] = field(default_factory=list)
 
@@ -227,21 +205,7 @@ def _first_doubt(sides: Sequence[Side], end: float, resolution: float) -> _Task 
 
 
 def may_change_between(side: Side, number: int, other: Side | None = None) -> bool:
-    """Tell whether a clearance might go to zero between two runs of the same verdict.
-
-    Parameters
-    ----------
-    side : Side
-        The runs.
-    number : int
-        Of the interval between them, from near to far.
-    other : Side, optional
-        The runs to the other side of the nearest one, where there are some.
-
-    Returns
-    -------
-    bool
-    """
+    """Tell whether a clearance might go to zero between two runs of the same verdict."""
     near, far = side.places[number], side.places[number + 1]
     first, last = side.shown[near], side.shown[far]
     if not first.alike(last) or side.crowded(near, far):

@@ -32,31 +32,15 @@ _REMEDY: Final = f"repeat the run with accuracy='{AccuracyLevel.STANDARD}'"
 
 @dataclass(frozen=True)
 class Look:
-    """What a run tells of its verdict.
+    """What a run tells of its verdict."""
 
-    Parameters
-    ----------
-    overturned : bool or None
-        The verdict; None where the run was not finished.
-    share : float
-        Of the peak rotation in the overturning angle of its side [1].
-    impacts : int
-        Their number.
-    time, left : float
-        When it overturned, and how much of the run was left then; NaN if it did not [s].
-    direction : int
-        In which it overturned; 0 if it did not.
-    frequency : float
-        omega of Eq. (6), at which a body leaves its unstable equilibrium [rad s^-1].
-    """
-
-    overturned: bool | None
-    share: float
-    impacts: int
-    time: float
+    overturned: bool | None  # the verdict; None where the run was not finished
+    share: float  # of the peak rotation in the overturning angle of its side [1]
+    impacts: int  # their number
+    time: float  # when it overturned, and how much of the run was left then; NaN if it did not [s]
     left: float
-    direction: int
-    frequency: float
+    direction: int  # in which it overturned; 0 if it did not
+    frequency: float  # omega of Eq. (6), at which a body leaves its unstable equilibrium [rad s^-1]
 
 
 def look_at(setting: Setting, summary: Summary, duration: float) -> Look:
@@ -74,20 +58,7 @@ def look_at(setting: Setting, summary: Summary, duration: float) -> Look:
 
 
 def second_look(system: Assembly, plan: Plan) -> Plan:
-    """Give the same run with more steps in each interval of the motion, by at least one.
-
-    Parameters
-    ----------
-    system : Assembly
-        The scene.
-    plan : Plan
-        Of the first run, with fixed steps.
-
-    Returns
-    -------
-    Plan
-        Without histories.
-    """
+    """Give the same run with more steps in each interval of the motion, by at least one."""
     interval = STILL_INTERVAL if plan.motion is None else plan.motion.si.time_step
     given = max(substeps_of(plan.accuracy, system.model, interval), 1)
     accuracy = Accuracy(substeps=given + math.ceil(MORE * given))
@@ -95,17 +66,7 @@ def second_look(system: Assembly, plan: Plan) -> Plan:
 
 
 def is_sure(first: Look, second: Look) -> bool:
-    """Whether a verdict is farther from its flip than its error, :eq:`eq-screened`.
-
-    Parameters
-    ----------
-    first, second : Look
-        A run, and the same with more steps.
-
-    Returns
-    -------
-    bool
-    """
+    """Whether a verdict is farther from its flip than its error, :eq:`eq-screened`."""
     return is_clear(first, second) and not _other_impacts(first, second)
 
 
@@ -152,22 +113,7 @@ def peak_error(first: Summary, second: Summary) -> float:
 
 
 def doubts(setting: Setting, plan: Plan, first: Summary, second: Summary) -> Iterator[str]:
-    """Say what is not sure of a run by fixed steps.
-
-    Parameters
-    ----------
-    setting : Setting
-        The scene.
-    plan : Plan
-        The arguments of the run.
-    first, second : Summary
-        The run, and the same with more steps.
-
-    Yields
-    ------
-    str
-        What was found and what to do.
-    """
+    """Say what is not sure of a run by fixed steps."""
     if first.overturned is None:
         return
     mine, other = (look_at(setting, one, plan.duration) for one in (first, second))

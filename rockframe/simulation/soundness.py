@@ -43,26 +43,7 @@ def unbalanced(
     base: Callable[[], RunSummary],
     run: Callable[[Plan], RunSummary],
 ) -> str | None:
-    """Say that a run is no solution, where its energies show it.
-
-    Parameters
-    ----------
-    system : Assembly
-        The scene.
-    plan : Plan
-        The run's arguments.
-    summary : Summary
-        What became of it.
-    base : callable
-        Tells what it showed; called only where the energies are out of balance.
-    run : callable
-        Makes a run of the same scene; called only where the energies leave it open.
-
-    Returns
-    -------
-    str or None
-        What was found and what to do; None of a run that may be used.
-    """
+    """Say that a run is no solution, where its energies show it."""
     residual, by_tolerance = summary.energy_residual, plan.accuracy.substeps is None
     if residual <= (BY_TOLERANCE if by_tolerance else doubtful_residual(system)):
         return None
@@ -109,19 +90,6 @@ def may_overturn_later(system: Assembly, summary: Summary) -> bool:
 
     What shakes it is over: its energy is that of its motion and what it takes to hold it at its
     rotation, :eq:`eq-overturning-energy`.
-
-    Parameters
-    ----------
-    system : Assembly
-        The scene.
-    summary : Summary
-        What became of a run.
-
-    Returns
-    -------
-    bool
-        False of a body that overturned, of a run that was broken off, and where nothing holds
-        the body upright.
     """
     if summary.overturned is not False:
         return False

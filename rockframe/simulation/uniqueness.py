@@ -17,22 +17,12 @@ _ONE_OF: Final = "what follows is one of several motions"
 
 @dataclass(frozen=True)
 class Uniqueness:
-    """How often the motion of a run was not unique.
+    """How often the motion of a run was not unique."""
 
-    Parameters
-    ----------
-    several, none : int
-        Impacts with several admissible modes, and with none.
-    held : int
-        Corners that were held for a while though they did not press.
-    cautions : tuple of str
-        The same in words.
-    """
-
-    several: int
+    several: int  # impacts with several admissible modes, and with none
     none: int
-    held: int
-    cautions: tuple[str, ...]
+    held: int  # corners that were held for a while though they did not press
+    cautions: tuple[str, ...]  # the same in words
 
     def attributes(self) -> dict[str, int]:
         """Give the numbers by their names among a run's attributes."""
@@ -48,19 +38,7 @@ NOT_LOOKED_AT: Final = Uniqueness(0, 0, 0, ())
 
 
 def uniqueness_of(model: ContactModel, run: Trajectory) -> Uniqueness | None:
-    """Look for changes of contact after which motion is not unique; None where it always is.
-
-    Parameters
-    ----------
-    model : ContactModel
-        Of the scene.
-    run : Trajectory
-        The run.
-
-    Returns
-    -------
-    Uniqueness or None
-    """
+    """Look for changes of contact after which motion is not unique; None where it always is."""
     if not isinstance(model.system, RigidChain):
         return None
     events = run.events

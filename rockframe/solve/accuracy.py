@@ -97,22 +97,7 @@ LEVELS = {
 
 
 def accuracy_of(choice: "str | float | Accuracy") -> Accuracy:
-    """Give the settings of a named level or of a tolerance, or those given.
-
-    Parameters
-    ----------
-    choice : str, float or Accuracy
-        ``"fast"``, ``"standard"``, ``"reference"``, a tolerance ``rtol`` or own settings.
-
-    Returns
-    -------
-    Accuracy
-
-    Raises
-    ------
-    SolverError
-        Neither a known level nor settings, or a tolerance out of range.
-    """
+    """Give the settings of a named level or of a tolerance, or those given."""
     if isinstance(choice, Accuracy):
         return choice
     if isinstance(choice, float):

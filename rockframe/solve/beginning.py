@@ -37,39 +37,19 @@ NEVER: Final = 2**62
 
 @dataclass(frozen=True)
 class Begun:
-    """A run before its first step.
+    """A run before its first step."""
 
-    Parameters
-    ----------
-    mode : int
-        Of the model.
-    state : ndarray, shape (2 n + variables,)
-        Coordinates, their rates, and variables of first order.
-    memory, start_memory : ndarray, shape (memory,)
-        The model's memory, twice.
-    controls, clock, counters : ndarray
-        Laid out in :mod:`rockframe.solve.layout`.
-    reference : ndarray, shape (2 n + variables,)
-        Largest size so far of each variable.
-    limits : ndarray, shape ((1 + others) * (2 + n),)
-        Of the rotation, :mod:`rockframe.solve.guards`.
-    tolerance : ndarray, shape (guards + 1,)
-        Rounding noise of the guards.
-    substeps : int
-        Fixed steps in each interval, 0 for steps by tolerance.
-    """
-
-    mode: int
-    state: Vector
-    memory: Vector
+    mode: int  # of the model
+    state: Vector  # coordinates, their rates, and variables of first order
+    memory: Vector  # the model's memory, twice
     start_memory: Vector
-    controls: Vector
+    controls: Vector  # laid out in :mod:`rockframe.solve.layout`
     clock: Vector
     counters: Integers
-    reference: Vector
-    limits: Vector
-    tolerance: Vector
-    substeps: int
+    reference: Vector  # largest size so far of each variable
+    limits: Vector  # of the rotation, :mod:`rockframe.solve.guards`
+    tolerance: Vector  # rounding noise of the guards
+    substeps: int  # fixed steps in each interval, 0 for steps by tolerance
 
 
 def begun(

@@ -254,32 +254,7 @@ def run_on(
     events: EventTable,
     w: Workspace,
 ) -> int:
-    """Integrate until the run ends or pauses, or a table is full.
-
-    Parameters
-    ----------
-    equations : BoundEquations
-        Of the scene.
-    tolerance : ndarray
-        Rounding noise of the system's guards, and of the limit of the rotation.
-    memory : ndarray
-        The model's memory; changed in place.
-    pieces : Pieces
-        Ground motion.
-    progress : Progress
-        Settings and progress; changed in place.
-    output : Output
-        Filled at the output times, and by each step where it has room for steps.
-    events : EventTable
-        Filled at the events.
-    w : Workspace
-        Working arrays; ``w.state`` is the state.
-
-    Returns
-    -------
-    int
-        A :class:`rockframe.solve.layout.Status`, ``MORE_ROOM`` or ``PAUSED``.
-    """
+    """Integrate until the run ends or pauses, or a table is full."""
     controls, clock, counters = progress.controls, progress.clock, progress.counters
     known = known_mode(equations, counters[at.MODE], w.answers)
     if math.isnan(clock[at.START_ENERGY]):

@@ -108,19 +108,7 @@ class BoundEquations(NamedTuple):
 
 
 def equations_of(system: Equations, *, fixed_steps: bool) -> BoundEquations:
-    """Bind a system's equations for the integrator.
-
-    Parameters
-    ----------
-    system : Equations
-        A named tuple.
-    fixed_steps : bool
-        Whether steps are of fixed length, else by a tolerance.
-
-    Returns
-    -------
-    BoundEquations
-    """
+    """Bind a system's equations for the integrator."""
     march = march_fixed if fixed_steps else march_by_tolerance
     functions = bound(
         (switched, slope, guards_of_state, observed, march, energies, meaning), system

@@ -120,15 +120,7 @@ def energy_rows(
 
 
 def memory_at_outputs(trajectory: Trajectory) -> tuple[Matrix, Integers]:
-    """Give the memories of a run, and which of them holds at each output time.
-
-    Returns
-    -------
-    memory : ndarray, shape (events + 1, memory)
-        At the start and after each event.
-    row : ndarray of int64, shape (samples,)
-        An output sample at the time of an event shows the state before it.
-    """
+    """Give the memories of a run, and which of them holds at each output time."""
     memory = np.vstack([trajectory.start_memory, trajectory.events.memory])
     row = np.searchsorted(trajectory.events.time, trajectory.time, side="left")
     return memory, row.astype(np.int64)
@@ -184,25 +176,7 @@ def observe_states(
 def observe_steps(
     model: ContactModel, steps: Steps, memory: Matrix, names: tuple[str, ...] | None
 ) -> dict[str, Vector]:
-    """Give columns at the ends and starts of steps.
-
-    Parameters
-    ----------
-    model : ContactModel
-        The equations.
-    steps : Steps
-        The steps.
-    memory : ndarray, shape (memories, memory)
-        Memories of the system.
-    names : tuple of str, or None
-        Of the columns asked for, of those that there are; None asks for all. `BODY_FORCES` cost
-        least.
-
-    Returns
-    -------
-    dict of str to ndarray, shape (rows,)
-        By the names in ``model.columns``.
-    """
+    """Give columns at the ends and starts of steps."""
     columns, function = model.columns, observed
     if names == BODY_FORCES:
         columns = tuple(one for one in columns if one.name in BODY_FORCES)

@@ -17,23 +17,13 @@ _cubic: Final = cast("Callable[..., tuple[Matrix, ...]]", cubic)
 
 @dataclass(frozen=True)
 class Steps:
-    """Ends of steps, each the start of the next; and starts of those that begin anew.
+    """Ends of steps, each the start of the next; and starts of those that begin anew."""
 
-    Parameters
-    ----------
-    values : ndarray, shape (rows, numbers)
-        Rows of :class:`rockframe.solve.workspace.StepTable`, without a start at their end.
-    codes : ndarray of int64, shape (rows, 2)
-        The same.
-    width : int
-        Numbers in a state.
-    exact : bool
-        Whether slopes are those of the equations at the states; of fixed steps they are near.
-    """
-
+    # rows of :class:`rockframe.solve.workspace.StepTable`, without a start at their end
     values: Matrix
-    codes: Integers
-    width: int
+    codes: Integers  # the same
+    width: int  # numbers in a state
+    # whether slopes are those of the equations at the states; of fixed steps they are near
     exact: bool
 
     @property
@@ -79,21 +69,7 @@ class Steps:
         return replace(self, values=self.values[:count], codes=self.codes[:count])
 
     def inside(self, which: Integers, model: ContactModel, fraction: Vector) -> Matrix:
-        """Give states inside steps by their dense solution, :eq:`eq-hermite`.
-
-        Parameters
-        ----------
-        which : ndarray of int64, shape (steps,)
-            Rows of their ends.
-        model : ContactModel
-            The equations.
-        fraction : ndarray, shape (places,)
-            Of each step.
-
-        Returns
-        -------
-        ndarray, shape (steps, places, 2 n + variables)
-        """
+        """Give states inside steps by their dense solution, :eq:`eq-hermite`."""
         size, u = model.system.coordinates(), fraction[:, None]
         h = self.length[which, None, None]
         state, new, first, last = (

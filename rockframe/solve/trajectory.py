@@ -13,69 +13,37 @@ from rockframe.solve.steps import Steps
 
 @dataclass(frozen=True)
 class Events:
-    """Table of events; `n` coordinates.
+    """Table of events; `n` coordinates."""
 
-    Parameters
-    ----------
-    time : ndarray, shape (events,)
-        [s].
-    kind : ndarray of int64, shape (events,)
-        :class:`rockframe.dynamics.events.EventKind`, or ``SILENT`` where
-        users are shown none.
-    mode_before, mode_after : ndarray of int64, shape (events,)
-        Modes of the model.
-    state_before, state_after : ndarray, shape (events, 2 n)
-        Coordinates, then their rates.
-    memory : ndarray, shape (events, memory)
-        The model's memory after each event.
-    """
-
-    time: Vector
+    time: Vector  # [s]
+    # :class:`rockframe.dynamics.events.EventKind`, or ``SILENT`` where users are shown none
     kind: Integers
-    mode_before: Integers
+    mode_before: Integers  # modes of the model
     mode_after: Integers
-    state_before: Matrix
+    state_before: Matrix  # coordinates, then their rates
     state_after: Matrix
-    memory: Matrix
+    memory: Matrix  # the model's memory after each event
 
 
 @dataclass(frozen=True, kw_only=True)
 class Summary:
-    """What became of a run.
+    """What became of a run."""
 
-    Parameters
-    ----------
-    status : Status
-        How the run ended.
-    end_time, peak_left, peak_right, overturning_time, first_uplift_time, flight_time : float
-        Of the dense solution; times are NaN where nothing of the kind happened.
-    overturning_direction : int
-        Sign of the rotation at overturning, 0 if none.
-    impact_count, flight_count, step_count, rejected_count : int
-        Counts.
-    substeps : int
-        Fixed steps in each interval of the motion, 0 for steps by tolerance.
-    energy_residual : float
-        Largest imbalance of the energies over their largest term.
-    ending : Ending
-        Where the run ended.
-    """
-
-    status: Status
-    end_time: float
+    status: Status  # how the run ended
+    end_time: float  # of the dense solution; times are NaN where nothing of the kind happened
     peak_left: float
     peak_right: float
     overturning_time: float
-    overturning_direction: int
+    overturning_direction: int  # sign of the rotation at overturning, 0 if none
     first_uplift_time: float
     flight_time: float
-    impact_count: int
+    impact_count: int  # counts
     flight_count: int
     step_count: int
     rejected_count: int
-    substeps: int
-    energy_residual: float
-    ending: Ending
+    substeps: int  # fixed steps in each interval of the motion, 0 for steps by tolerance
+    energy_residual: float  # largest imbalance of the energies over their largest term
+    ending: Ending  # where the run ended
 
     @property
     def peak_rotation(self) -> float:
@@ -109,57 +77,22 @@ class Summary:
 
 @dataclass(frozen=True, kw_only=True)
 class Trajectory(Summary):
-    """A run.
+    """A run."""
 
-    Parameters
-    ----------
-    time : ndarray, shape (samples,)
-        Output times [s].
-    state : ndarray, shape (samples, 2 n)
-        Coordinates, then their rates.
-    mode : ndarray of int64, shape (samples,)
-        Modes of the model.
-    work : ndarray, shape (samples, 2) or (0, 2)
-        Energies dissipated by dashpots and put in by the ground, if asked for.
-    start_mode : int
-        The model's mode at the start.
-    start_memory : ndarray, shape (memory,)
-        The model's memory at the start.
-    events : Events
-        What happened when.
-    start_energy : float
-        Kinetic, gravity and elastic energy at the start, from that at rest.
-    as_python : bool
-        Whether it was made in plain Python, not by machine code.
-    steps : Steps or None
-        Both ends of all steps, if they are kept.
-    """
-
-    time: Vector
-    state: Matrix
-    mode: Integers
-    work: Matrix
-    start_mode: int
-    start_memory: Vector
-    events: Events
-    start_energy: float
-    as_python: bool
-    steps: Steps | None
+    time: Vector  # output times [s]
+    state: Matrix  # coordinates, then their rates
+    mode: Integers  # modes of the model
+    work: Matrix  # energies dissipated by dashpots and put in by the ground, if asked for
+    start_mode: int  # the model's mode at the start
+    start_memory: Vector  # the model's memory at the start
+    events: Events  # what happened when
+    start_energy: float  # kinetic, gravity and elastic energy at the start, from that at rest
+    as_python: bool  # whether it was made in plain Python, not by machine code
+    steps: Steps | None  # both ends of all steps, if they are kept
 
 
 def run_counts(clock: Vector, counters: Integers) -> dict[str, Any]:
-    """Give what an integrator's progress tells of a finished run, by the names of a summary.
-
-    Parameters
-    ----------
-    clock, counters : ndarray
-        Laid out in :mod:`rockframe.solve.layout`.
-
-    Returns
-    -------
-    dict of str to float or int
-        Without the status, the number of sub-steps and the ending.
-    """
+    """Give what an integrator's progress tells of a finished run, by the names of a summary."""
     reals, wholes = clock.tolist(), counters.tolist()
     moved, residual = reals[at.LARGEST_MOVED], reals[at.RESIDUAL]
     return {

@@ -159,21 +159,7 @@ class Work(NamedTuple):
 def make_workspace(
     equations: "BoundEquations", state: Vector, reference: Vector, limits: Vector
 ) -> Workspace:
-    """Allocate the arrays beside those that a run begins with.
-
-    Parameters
-    ----------
-    equations : BoundEquations
-        Of the scene.
-    state, reference : ndarray, shape (2 n + variables,)
-        State vector; largest size so far of each variable.
-    limits : ndarray, shape ((1 + others) * (2 + n),)
-        Of the rotation, and weights of the coordinates in it.
-
-    Returns
-    -------
-    Workspace
-    """
+    """Allocate the arrays beside those that a run begins with."""
     size = equations.coordinate_count
     slope = size + equations.variable_count + POWERS
     guards = 2 * (equations.guard_count + 1)

@@ -25,25 +25,6 @@ class BlockSizes:
     """A system whose block has other sizes.
 
     Its attribute ``system`` is that system, with the block told by its shape factor.
-
-    Parameters
-    ----------
-    system : System
-        A symmetric block alone on its base. Its shape factor stays, and so does its mass.
-    periods : values with a unit
-        2 pi over the frequency parameter of the block [s].
-    slenderness : values, optional
-        Height over width; that of the block unless given [1].
-    owner : str
-        Function, for messages.
-
-    Raises
-    ------
-    UnitsError
-        Values have a wrong unit, or none.
-    ComponentError
-        Values are not above zero; or the system has more than a block and its base, or a block
-        that width and height do not describe.
     """
 
     def __init__(self, system: System, periods: Any, slenderness: Any, *, owner: str) -> None:

@@ -26,41 +26,18 @@ then cases."""
 
 @dataclass(frozen=True)
 class Bracket:
-    """Two scales of unlike verdicts, between which no run has a verdict.
+    """Two scales of unlike verdicts, between which no run has a verdict."""
 
-    Parameters
-    ----------
-    verdict, line : int
-        Which verdict along which line.
-    below, above : float
-        The scales.
-    before, after : float
-        The verdicts there.
-    """
-
-    verdict: int
+    verdict: int  # which verdict along which line
     line: int
-    below: float
+    below: float  # the scales
     above: float
-    before: float
+    before: float  # the verdicts there
     after: float
 
 
 def brackets_of(scales: Array, verdicts: Array) -> list[Bracket]:
-    """Find all changes among verdicts.
-
-    Parameters
-    ----------
-    scales : ndarray, shape (scales,)
-        Rising.
-    verdicts : ndarray, shape (verdicts, lines, scales)
-        NaN where a run has none; a bracket may enclose it.
-
-    Returns
-    -------
-    list of Bracket
-        Rising, line by line.
-    """
+    """Find all changes among verdicts."""
     found: list[Bracket] = []
     for verdict, line in np.ndindex(verdicts.shape[:2]):
         along = verdicts[verdict, line]
@@ -79,24 +56,6 @@ def narrowed(
     """Halve brackets in rounds until they are narrow.
 
     Where the middle has a third verdict a bracket becomes two.
-
-    Parameters
-    ----------
-    brackets : sequence of Bracket
-        As they were found.
-    sweep : callable
-        Runs the middles of a round.
-    verdicts : callable
-        Tells what they show.
-    width : float
-        Length of a bracket, over its upper end, at which it is narrow enough [1].
-
-    Returns
-    -------
-    list of Bracket
-        Rising, line by line; wider where a run had no verdict, or an interrupt came.
-    bool
-        Whether none came.
     """
     done: list[Bracket] = []
     waiting = list(brackets)
@@ -140,21 +99,7 @@ def _halved(one: Bracket, middle: float, shown: float) -> Iterator[Bracket]:
 def bracket_arrays(
     brackets: Sequence[Bracket], shape: tuple[int, int]
 ) -> tuple[Array, Array, Array, Array]:
-    """Arrange brackets in arrays.
-
-    Parameters
-    ----------
-    brackets : sequence of Bracket
-        Rising, line by line.
-    shape : tuple of int
-        Numbers of verdicts and of lines.
-
-    Returns
-    -------
-    ndarray, ndarray, ndarray, ndarray
-        Lower and upper scales, verdicts before and after; shape (verdicts, lines, brackets),
-        NaN beyond the last bracket of a line.
-    """
+    """Arrange brackets in arrays."""
     count = np.zeros(shape, dtype=np.intp)
     for one in brackets:
         count[one.verdict, one.line] += 1
@@ -169,22 +114,7 @@ def bracket_arrays(
 
 
 def least_exceeding(scales: Array, shown: Array, above: Array, after: Array) -> Array:
-    """Give the least scale that exceeds a limit state.
-
-    Parameters
-    ----------
-    scales : ndarray, shape (scales,)
-        Of the scan.
-    shown : ndarray, shape (..., scales)
-        What it showed: 1, 0, or NaN.
-    above, after : ndarray, shape (..., brackets)
-        Upper ends of brackets, and what was shown there.
-
-    Returns
-    -------
-    ndarray, shape (...)
-        NaN where none does.
-    """
+    """Give the least scale that exceeds a limit state."""
     rising = np.where(after == 1.0, above, np.inf).min(axis=-1, initial=np.inf)
     at = np.where(shown == 1.0, scales, np.inf).min(axis=-1)
     least = np.minimum(rising, at)

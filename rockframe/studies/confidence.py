@@ -12,31 +12,12 @@ _LEVEL: Final = Condition("from 0.5 to 0.9999", lambda value: 0.5 <= value <= 0.
 
 
 def read_level(given: object, *, owner: str) -> float:
-    """Read the argument ``confidence``.
-
-    Raises
-    ------
-    UnitsError, ComponentError
-        No ratio from 0.5 to 0.9999.
-    """
+    """Read the argument ``confidence``."""
     return to_ratio(given, owner=owner, name="confidence", condition=_LEVEL, example="0.95")
 
 
 def clopper_pearson(exceeded: Generic, trials: Generic, confidence: float) -> tuple[Array, Array]:
-    """Give the exact bounds of shares (Clopper and Pearson, 1934).
-
-    Parameters
-    ----------
-    exceeded, trials : ndarray
-        How many, of how many.
-    confidence : float
-        Of the bounds [1].
-
-    Returns
-    -------
-    ndarray, ndarray
-        Lower and upper bounds; 0 and 1 of no trials.
-    """
+    """Give the exact bounds of shares (Clopper and Pearson, 1934)."""
     from scipy.special import betaincinv
 
     tail = 0.5 * (1.0 - confidence)

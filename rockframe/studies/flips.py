@@ -24,39 +24,22 @@ Look = Callable[[float], RunSummary]
 
 @dataclass(frozen=True)
 class Flip:
-    """Two scales of unlike verdicts, between which no run has a verdict.
+    """Two scales of unlike verdicts, between which no run has a verdict."""
 
-    Parameters
-    ----------
-    below, above : float
-        The scales [1].
-    overturns_above : bool
-        Verdict of the upper one; the lower one has the other.
-    """
-
-    below: float
+    below: float  # the scales [1]
     above: float
-    overturns_above: bool
+    overturns_above: bool  # verdict of the upper one; the lower one has the other
 
 
 @dataclass(frozen=True)
 class Followed:
-    """The runs along the scale, and what they show.
+    """The runs along the scale, and what they show."""
 
-    Parameters
-    ----------
-    shown : dict of float to RunSummary
-        All runs by their scales, rising.
-    up_to : float
-        Scale up to which every run has a verdict, and no interval is left that shows signs
-        of a hidden flip. It is no proof that there is none [1].
-    whole : bool
-        Whether no interrupt (Ctrl-C) came in between.
-    """
-
-    shown: dict[float, RunSummary]
+    shown: dict[float, RunSummary]  # all runs by their scales, rising
+    # scale up to which every run has a verdict, and no interval is left that shows signs of a
+    # hidden flip. It is no proof that there is none [1]
     up_to: float
-    whole: bool = True
+    whole: bool = True  # whether no interrupt (Ctrl-C) came in between
 
     def flips(self) -> list[Flip]:
         """Give all changes of the verdict, from low to high."""
@@ -78,27 +61,6 @@ def follow(look: Look, row: Sequence[float], *, most: int, width: float) -> Foll
     Between two runs of the same verdict an even number of flips may hide. Where that is to
     be feared (:func:`rockframe.simulation.scan.may_change_between`), the interval is halved: first
     below the least scale that overturns, until none is left there, then above it.
-
-    Parameters
-    ----------
-    look : callable
-        Makes the run at a scale.
-    row : sequence of float
-        Scales of the first runs, rising.
-    most : int
-        Largest number of runs, those that narrow brackets not counted.
-    width : float
-        Length of a bracket, over its far end, at which it is narrow enough [1].
-
-    Returns
-    -------
-    Followed
-        After an interrupt (Ctrl-C) what the runs until then show.
-
-    Raises
-    ------
-    KeyboardInterrupt
-        During the first run.
     """
     least, *others = row
     side = Side(1.0, {least: look(least)}, [least])
@@ -211,19 +173,7 @@ _MOST_GAPS: Final = 3
 
 
 def flips_sentence(found: Followed, *, width: float) -> str:
-    """Tell from which scale on the block overturns, where it stands again, and what was tried.
-
-    Parameters
-    ----------
-    found : Followed
-        The runs.
-    width : float
-        Relative width of the brackets, which rules the digits [1].
-
-    Returns
-    -------
-    str
-    """
+    """Tell from which scale on the block overturns, where it stands again, and what was tried."""
     digits = max(_FEWEST_DIGITS, 1 + math.ceil(-math.log10(width)))
 
     def number(scale: float) -> str:

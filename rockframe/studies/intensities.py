@@ -66,48 +66,20 @@ def measure_words(name: str, period: float | None) -> str:
 
 
 def of_study(name: str, period: float | None) -> dict[str, str | float]:
-    """Give the attributes by which a dataset tells of which measure it is.
-
-    Parameters
-    ----------
-    name : str
-        Of the measure.
-    period : float or None
-        Of the oscillator of a spectral value [s].
-
-    Returns
-    -------
-    dict of str to (str or float)
-    """
+    """Give the attributes by which a dataset tells of which measure it is."""
     return {"intensity": name} | ({} if period is None else {PERIOD_OF: period})
 
 
 @dataclass(frozen=True)
 class Intensity:
-    """An intensity measure.
+    """An intensity measure."""
 
-    Parameters
-    ----------
-    name : str
-        In the schema.
-    period : float or None
-        Of the oscillator of a spectral value [s].
-    """
-
-    name: str
-    period: float | None
+    name: str  # in the schema
+    period: float | None  # of the oscillator of a spectral value [s]
 
     @classmethod
     def read(cls, given: object, period: "QuantityLike | None", *, owner: str) -> "Intensity":
-        """Read the arguments ``intensity`` and ``period``.
-
-        Raises
-        ------
-        UnitsError
-            `period` is no time.
-        ComponentError
-            No such measure, or a spectral value without a period.
-        """
+        """Read the arguments ``intensity`` and ``period``."""
         given = SHORT.get(given, given) if isinstance(given, str) else given
         name = check_names(given, [*POWERS, *SHORT], owner=owner, name="intensity")
         if name not in _OSCILLATORS:
@@ -138,29 +110,7 @@ class Intensity:
 def intensity_in(
     runs: xr.Dataset, intensity: Intensity, motions: object, *, owner: str
 ) -> xr.DataArray:
-    """Give an intensity measure of the motion of each case of a sweep.
-
-    Parameters
-    ----------
-    runs : xarray.Dataset
-        The sweep.
-    intensity : Intensity
-        The measure.
-    motions : GroundMotion, iterable or mapping of them, optional
-        Records of the sweep, where neither the dataset nor this process has them.
-    owner : str
-        Function, for messages.
-
-    Returns
-    -------
-    xarray.DataArray
-        Over the dimensions on which it depends.
-
-    Raises
-    ------
-    StudyError
-        A record must be given, or the motions are those of the scene.
-    """
+    """Give an intensity measure of the motion of each case of a sweep."""
     if intensity.name in runs.coords and intensity.period is None:
         return runs[intensity.name]
     before = unscaled_motions(runs, motions, owner=owner)
@@ -171,13 +121,7 @@ def intensity_in(
 
 
 def unscaled_motions(runs: xr.Dataset, given: object, *, owner: str) -> dict[str, GroundMotion]:
-    """Give the motions of a sweep by their names, as they were before they were scaled.
-
-    Raises
-    ------
-    StudyError
-        A record must be given, or the motions are those of the scene.
-    """
+    """Give the motions of a sweep by their names, as they were before they were scaled."""
     attributes: Mapping[str, Any] = runs.attrs
     known = remembered(attributes)
     found: dict[str, GroundMotion] = {}
@@ -238,31 +182,7 @@ _OF_THE_BLOCK: Final = ("overturning_angle", "uplift_acceleration")
 
 
 class ScaledIntensity:
-    """An intensity measure of a motion at any scale.
-
-    Parameters
-    ----------
-    system : System
-        Whose block the motion is to rock, and in which gravity.
-    motion : GroundMotion
-        The motion.
-    name : str
-        Variable of :func:`rockframe.intensity_measures` or
-        :func:`rockframe.response_spectrum`.
-    period : str or Quantity, optional
-        Of the oscillator, for a spectral value [s].
-    damping_ratio : float
-        Of the oscillator, or of the spectra behind a measure [1].
-    owner : str
-        Function, for messages.
-
-    Raises
-    ------
-    UnitsError
-        `period` is no time, `damping_ratio` no ratio.
-    ComponentError
-        No such measure, or a period where none is needed, or none where one is.
-    """
+    """An intensity measure of a motion at any scale."""
 
     def __init__(
         self,
@@ -292,18 +212,7 @@ class ScaledIntensity:
         self.name = str(name)
 
     def at(self, scale: float) -> xr.DataArray:
-        """Give the measure of the scaled motion; NaN unless the scale is above zero.
-
-        Parameters
-        ----------
-        scale : float
-            Factor of the motion [1].
-
-        Returns
-        -------
-        xarray.DataArray
-            A scalar, labelled as in the schema; a spectral value with its oscillator.
-        """
+        """Give the measure of the scaled motion; NaN unless the scale is above zero."""
         if scale > 0.0:
             return self._one(self._all(self._motion.scaled(scale)))
         return xr.full_like(self._one(self._all(self._motion)), np.nan)

@@ -23,15 +23,9 @@ _TOLD: Final = ("run_json", "axes_json", "motions_json", "motion_names", "study_
 
 @dataclass(frozen=True)
 class LimitState:
-    """What is asked of a run.
+    """What is asked of a run."""
 
-    Parameters
-    ----------
-    rotation : float
-        Peak rotation over the overturning angle: 0 is uplift, 1 overturning [1].
-    """
-
-    rotation: float
+    rotation: float  # peak rotation over the overturning angle: 0 is uplift, 1 overturning [1]
 
     @property
     def name(self) -> str:
@@ -41,25 +35,7 @@ class LimitState:
 
 
 def limit_states(given: Iterable[object], *, owner: str) -> tuple[LimitState, ...]:
-    """Read the argument ``limits``.
-
-    Parameters
-    ----------
-    given : iterable
-        ``"uplift"``, and peak rotations over the overturning angle.
-    owner : str
-        Function, for messages.
-
-    Returns
-    -------
-    tuple of LimitState
-        From uplift to overturning, which is always among them.
-
-    Raises
-    ------
-    ComponentError
-        Something else.
-    """
+    """Read the argument ``limits``."""
     if isinstance(given, str | int | float):
         given = [given]
     found = {1.0}
@@ -76,13 +52,7 @@ def limit_states(given: Iterable[object], *, owner: str) -> tuple[LimitState, ..
 
 
 def check_runs(given: object, *, owner: str) -> xr.Dataset:
-    """Refuse what is not the result of a sweep.
-
-    Raises
-    ------
-    SchemaError
-        No dataset, or one without the scalars of runs.
-    """
+    """Refuse what is not the result of a sweep."""
     runs = checked_dataset(given, owner=owner)
     missing = [name for name in _NEEDED if name not in runs]
     if missing or not set(_TOLD) <= set(runs.attrs):
@@ -97,20 +67,7 @@ def check_runs(given: object, *, owner: str) -> xr.Dataset:
 
 
 def exceeds(runs: xr.Dataset, state: LimitState) -> xr.DataArray:
-    """Tell which runs exceed a limit state.
-
-    Parameters
-    ----------
-    runs : xarray.Dataset
-        A sweep.
-    state : LimitState
-        The limit state.
-
-    Returns
-    -------
-    xarray.DataArray
-        1, 0, or NaN where a run has no verdict.
-    """
+    """Tell which runs exceed a limit state."""
     overturned = overturns(runs)
     if state.rotation == 1.0:
         return overturned
@@ -129,13 +86,7 @@ def interrupted(runs: xr.Dataset) -> bool:
 
 
 def check_names(given: object, known: Iterable[str], *, owner: str, name: str) -> str:
-    """Read an argument that is one of some names.
-
-    Raises
-    ------
-    ComponentError
-        None of them.
-    """
+    """Read an argument that is one of some names."""
     listed = list(known)
     if isinstance(given, str) and given in listed:
         return given

@@ -48,28 +48,16 @@ VERDICT: Final = "verdict"
 
 @dataclass(frozen=True, eq=False)
 class Lines:
-    """What is the same along each line, and how it is run.
+    """What is the same along each line, and how it is run."""
 
-    Parameters
-    ----------
-    scene : System or callable
-        As for :func:`rockframe.sweep`.
-    motions : mapping of str to GroundMotion
-        All of them.
-    columns : mapping of str to (ndarray, str)
-        Further values, and their unit, for each row of a table; one row without values if
-        there are none.
-    run : SweepArguments
-        How all of it is run. The scan and each round have a folder of their own in its store.
-    owner : str
-        Function that asks for it.
-    """
-
-    scene: "System | Callable[..., System]"
-    motions: Mapping[str, GroundMotion]
+    scene: "System | Callable[..., System]"  # as for :func:`rockframe.sweep`
+    motions: Mapping[str, GroundMotion]  # all of them
+    # further values, and their unit, for each row of a table; one row without values if there are
+    # none
     columns: Mapping[str, tuple[Array, str]]
+    # how all of it is run. The scan and each round have a folder of their own in its store
     run: SweepArguments
-    owner: str
+    owner: str  # function that asks for it
 
     def followed(
         self, scales: Array, verdicts: Verdicts, *, width: float
@@ -78,23 +66,6 @@ class Lines:
 
         One bar counts the cases of the scan and of all rounds. After an interrupt (Ctrl-C) the
         verdict of the scan says so.
-
-        Parameters
-        ----------
-        scales : ndarray, shape (scales,)
-            Of the scan, rising.
-        verdicts : callable
-            Gives the verdicts of a sweep.
-        width : float
-            Of a bracket, over its upper end [1].
-
-        Returns
-        -------
-        xarray.Dataset
-            The scan.
-        list of Bracket
-            The number of a line is that of its row, times that of motions, plus that of its
-            motion.
         """
         store = read_store(self.run.get("store"), owner=self.owner)
         with bar_of(self.run.get("progress"), owner=self.owner) as bar:
@@ -162,13 +133,7 @@ class _Runner:
 
 
 def read_scales(given: object, *, owner: str, most: int) -> Array:
-    """Read the scales of a scan.
-
-    Raises
-    ------
-    UnitsError, ComponentError
-        No numbers above zero, or too many.
-    """
+    """Read the scales of a scan."""
     values = np.unique(numbers_of(given, TARGETS[SCALE].measure, SCALE))
     if not 2 <= len(values) <= most or values[0] <= 0.0:
         msg = f"{owner}: scale needs 2 to {most} different numbers above zero, got {shown(given)}"
@@ -177,24 +142,12 @@ def read_scales(given: object, *, owner: str, most: int) -> Array:
 
 
 def read_width(given: object, *, owner: str) -> float:
-    """Read the relative width of brackets.
-
-    Raises
-    ------
-    UnitsError, ComponentError
-        No ratio from 1e-12 to 0.1.
-    """
+    """Read the relative width of brackets."""
     return to_ratio(given, owner=owner, name="width", condition=_WIDTH, example="0.001")
 
 
 def read_store(given: object, *, owner: str) -> Path | None:
-    """Read the folder of an analysis, and make it.
-
-    Raises
-    ------
-    StudyError
-        No path, or a folder that cannot be made.
-    """
+    """Read the folder of an analysis, and make it."""
     if given is None:
         return None
     if not isinstance(given, str | PathLike):

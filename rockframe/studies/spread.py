@@ -32,31 +32,15 @@ _KINDS: Final = {
 
 @dataclass(frozen=True)
 class Spread:
-    """A parameter that is spread.
+    """A parameter that is spread."""
 
-    Parameters
-    ----------
-    name : str
-        Of the axis.
-    unit : str
-        Of its values.
-    distribution : frozen distribution of scipy.stats
-        In that unit.
-    """
-
-    name: str
-    unit: str
-    distribution: Any
+    name: str  # of the axis
+    unit: str  # of its values
+    distribution: Any  # in that unit
 
 
 def read_spread(given: object, scene: SweptScene, *, owner: str) -> tuple[Spread, ...]:
-    """Read the argument ``spread``.
-
-    Raises
-    ------
-    StudyError
-        With every fault found.
-    """
+    """Read the argument ``spread``."""
     if not isinstance(given, Mapping) or not given:
         msg = f"{owner}: spread must give distributions by names of parameters, got {shown(given)}"
         raise ComponentError(msg)
@@ -73,12 +57,7 @@ def read_spread(given: object, scene: SweptScene, *, owner: str) -> tuple[Spread
 
 
 def drawn(spreads: tuple[Spread, ...], count: int, sampling: Sampling, seed: int) -> Array:
-    """Draw a sample from the unit cube: a column for each parameter, and one for the motion.
-
-    Returns
-    -------
-    ndarray, shape (count, 1 + spreads)
-    """
+    """Draw a sample from the unit cube: a column for each parameter, and one for the motion."""
     from scipy.stats import qmc
 
     size = 1 + len(spreads)
@@ -151,41 +130,20 @@ _FEWEST: Final = 20
 
 
 class Matters(NamedTuple):
-    """How much a parameter matters.
+    """How much a parameter matters."""
 
-    Parameters
-    ----------
-    first_order : float
-        First-order index: the variance of the share that overturns given the parameter, over
-        that of the verdict, without what chance alone would give [1].
-    distance : float
-        Greatest difference of the distributions of the parameter in cases of either verdict;
-        NaN of words [1].
-    chance : float
-        Probability of shares as uneven if the parameter did not matter [1].
-    """
-
+    # first-order index: the variance of the share that overturns given the parameter, over that of
+    # the verdict, without what chance alone would give [1]
     first_order: float
+    # greatest difference of the distributions of the parameter in cases of either verdict; NaN of
+    # words [1]
     distance: float
-    chance: float
+    chance: float  # probability of shares as uneven if the parameter did not matter [1]
 
 
 def ranked(columns: Mapping[str, Generic], verdict: Array) -> dict[str, Matters]:
     """Tell what matters most, first.
 
-    Parameters
-    ----------
-    columns : mapping of str to ndarray, shape (cases,)
-        Parameters; numbers are sorted into groups, words are groups.
-    verdict : ndarray, shape (cases,)
-        1 or 0.
-
-    Returns
-    -------
-    dict of str to Matters
-
-    Notes
-    -----
     The index is the correlation ratio of groups of equal size, less its expectation if there
     were no dependence (the adjusted ratio, Kelley 1935): a first-order Sobol index from given
     data, within the width of the groups. The distance is that of Hornberger and Spear (1981).

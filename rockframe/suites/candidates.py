@@ -46,39 +46,18 @@ _OF_PAIRS: Final = {
 
 @dataclass(frozen=True)
 class Candidates:
-    """Motions or records beside a target.
+    """Motions or records beside a target."""
 
-    Parameters
-    ----------
-    labels : tuple of str
-        Of n motions, or of records where both components are looked at together.
-    seconds : ndarray, shape (k,)
-        Periods at which spectra are compared [s].
-    logarithms : ndarray, shape (n, k)
-        Of the spectra, not scaled.
-    target : ndarray, shape (k,)
-        Logarithm of the target.
-    deviations : ndarray, shape (k,)
-        Its standard deviations.
-    factors : ndarray, shape (n,)
-        By which each is scaled, whatever the bounds [1].
-    bounds : tuple of float
-        Least and greatest factor.
-    events : tuple of str
-        Earthquake of each, empty where it is not known.
-    attributes : dict
-        What answers say of all this.
-    """
-
+    # of n motions, or of records where both components are looked at together
     labels: tuple[str, ...]
-    seconds: Array
-    logarithms: Array
-    target: Array
-    deviations: Array
-    factors: Array
-    bounds: tuple[float, float]
-    events: tuple[str, ...]
-    attributes: dict[str, str | float | int]
+    seconds: Array  # periods at which spectra are compared [s]
+    logarithms: Array  # of the spectra, not scaled
+    target: Array  # logarithm of the target
+    deviations: Array  # its standard deviations
+    factors: Array  # by which each is scaled, whatever the bounds [1]
+    bounds: tuple[float, float]  # least and greatest factor
+    events: tuple[str, ...]  # earthquake of each, empty where it is not known
+    attributes: dict[str, str | float | int]  # what answers say of all this
 
     def residuals(self, factors: Array) -> Array:
         """Give the logarithms of scaled spectra over the target, shape (n, k)."""
@@ -101,28 +80,7 @@ def candidates_of(
     combination: str,
     owner: str,
 ) -> Candidates:
-    """Check the arguments of a selection, and compute the spectra that it needs.
-
-    Parameters
-    ----------
-    suite : MotionSuite
-        What is chosen from.
-    target : TargetSpectrum
-        What is aimed at.
-    periods, conditioned_on, bounds, combination
-        As for :func:`rockframe.scale_to_target`.
-    owner : str
-        Function, for messages.
-
-    Returns
-    -------
-    Candidates
-
-    Raises
-    ------
-    UnitsError, ComponentError
-        As for :func:`rockframe.scale_to_target`.
-    """
+    """Check the arguments of a selection, and compute the spectra that it needs."""
     if not isinstance(target, TargetSpectrum):
         msg = (
             f"{owner}: target needs a TargetSpectrum, got {shown(target)}; write for example "

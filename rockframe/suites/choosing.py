@@ -24,27 +24,7 @@ Test = Callable[[Any], bool]
 
 
 def chosen(motions: Mapping[str, GroundMotion], criteria: Mapping[str, object]) -> list[str]:
-    """Give the labels of the motions that meet all criteria.
-
-    Parameters
-    ----------
-    motions : mapping of str to GroundMotion
-        The suite.
-    criteria : mapping
-        By column: a range ``(lowest, highest)`` with either of them None, a collection of
-        values, a function of the value in SI units, or one value.
-
-    Returns
-    -------
-    list of str
-
-    Raises
-    ------
-    UnitsError
-        A value has no unit where it needs one, or one of another kind.
-    ComponentError
-        No such column, or a value that is none of these.
-    """
+    """Give the labels of the motions that meet all criteria."""
     for name in criteria:
         check_column(motions, name, owner=_OWNER)
     tests = {name: _test(name, given) for name, given in criteria.items()}
@@ -56,13 +36,7 @@ def chosen(motions: Mapping[str, GroundMotion], criteria: Mapping[str, object]) 
 
 
 def check_column(motions: Mapping[str, GroundMotion], name: object, *, owner: str) -> None:
-    """Refuse the name of a column that no motion knows.
-
-    Raises
-    ------
-    ComponentError
-        It is one.
-    """
+    """Refuse the name of a column that no motion knows."""
     known = dict.fromkeys([*COLUMNS, *(key for one in motions.values() for key in one.metadata)])
     if name not in known:
         msg = f"{owner}: there is no column {shown(name)}; known are {', '.join(known)}"

@@ -102,24 +102,7 @@ def eurocode_8(
     *,
     owner: str,
 ) -> tuple[str, Shape, float]:
-    """Give name, shape and damping ratio of the horizontal elastic spectrum of Eurocode 8.
-
-    Parameters
-    ----------
-    ground_acceleration, ground_type, spectrum_type, soil_factor, corner_periods, damping_ratio
-        As for :meth:`rockframe.TargetSpectrum.eurocode_8`.
-    owner : str
-        Who asks, for messages.
-
-    Returns
-    -------
-    str, callable, float
-
-    Raises
-    ------
-    UnitsError, ComponentError
-        An argument without a unit, or out of range.
-    """
+    """Give name, shape and damping ratio of the horizontal elastic spectrum of Eurocode 8."""
     peak = to_si(
         ground_acceleration,
         ACCELERATION,
@@ -152,24 +135,7 @@ def asce_7(
     *,
     owner: str,
 ) -> tuple[str, Shape]:
-    """Give name and shape of the design response spectrum of ASCE 7.
-
-    Parameters
-    ----------
-    short_period_acceleration, one_second_acceleration, long_period
-        As for :meth:`rockframe.TargetSpectrum.asce_7`.
-    owner : str
-        Who asks, for messages.
-
-    Returns
-    -------
-    str, callable
-
-    Raises
-    ------
-    UnitsError, ComponentError
-        An argument without a unit, or out of range.
-    """
+    """Give name and shape of the design response spectrum of ASCE 7."""
     named = {
         "short_period_acceleration": short_period_acceleration,
         "one_second_acceleration": one_second_acceleration,

@@ -16,20 +16,7 @@ COLUMNS: Final = (*(row.name for row in RECORDS), "peak_ground_acceleration")
 
 
 def column(name: str, motion: GroundMotion) -> Any:
-    """Give what is known of a motion.
-
-    Parameters
-    ----------
-    name : str
-        A column, or a key of the metadata.
-    motion : GroundMotion
-        The motion.
-
-    Returns
-    -------
-    str, float, int or None
-        In SI units; None where it is not known.
-    """
+    """Give what is known of a motion."""
     if name in _COMPUTED:
         return _computed(name, motion)
     value = motion.metadata.get(name)
@@ -42,18 +29,7 @@ def column(name: str, motion: GroundMotion) -> Any:
 
 
 def known_columns(motions: Mapping[str, GroundMotion]) -> dict[str, np.ndarray]:
-    """Give the columns of the schema that are known of some motion.
-
-    Parameters
-    ----------
-    motions : mapping of str to GroundMotion
-        The suite.
-
-    Returns
-    -------
-    dict of str to ndarray, shape (n,)
-        In SI units; NaN or an empty text where a value is not known.
-    """
+    """Give the columns of the schema that are known of some motion."""
     found: dict[str, np.ndarray] = {}
     for name in COLUMNS:
         values = [column(name, motion) for motion in motions.values()]

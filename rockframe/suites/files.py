@@ -20,38 +20,14 @@ _OPEN: Final = "open file"
 
 @dataclass(frozen=True)
 class Unread:
-    """A file that was not read.
+    """A file that was not read."""
 
-    Parameters
-    ----------
-    path : str
-        Where it is; in an archive, with its path inside.
-    reason : str
-        What was found, and what was expected.
-    """
-
-    path: str
-    reason: str
+    path: str  # where it is; in an archive, with its path inside
+    reason: str  # what was found, and what was expected
 
 
 def files_of(given: object) -> Iterator[Source | Unread]:
-    """Open all files of what a suite is read from.
-
-    Parameters
-    ----------
-    given : str, path-like, bytes or file object, or iterable of these
-        Folders with all that is below them, archives, and single files.
-
-    Yields
-    ------
-    Source or Unread
-        Each file, in the order given; those of a folder by their names.
-
-    Raises
-    ------
-    RecordError
-        There is no such file or folder, or it is no such argument.
-    """
+    """Open all files of what a suite is read from."""
     if isinstance(given, bytes | bytearray | memoryview):
         yield from _of_open(io.BytesIO(bytes(given)), IN_MEMORY)
     elif hasattr(given, "read"):

@@ -49,23 +49,7 @@ def is_peer_table(data: bytes) -> bool:
 
 
 def read_peer_table(source: "Source") -> dict[str, Known]:
-    """Read what the table tells of each file.
-
-    Parameters
-    ----------
-    source : Source
-        ``_SearchResults.csv``.
-
-    Returns
-    -------
-    dict
-        By the name of a file, in the order of the table: what is known of it, in SI units.
-
-    Raises
-    ------
-    RecordError
-        The table is not there, or a row lacks fields.
-    """
+    """Read what the table tells of each file."""
     lines = source.lines
     first = next((k for k, line in enumerate(lines) if line.startswith(_FIRST)), None)
     if first is None:

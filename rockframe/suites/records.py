@@ -27,26 +27,13 @@ _INSTRUMENT: Final = re.compile(r"(?:^|\.)([FGDCESHBML][NLGH])[A-Z0-9](?:\s|$)")
 
 @dataclass
 class RecordedComponent:
-    """A component that was read, on its way into a suite.
+    """A component that was read, on its way into a suite."""
 
-    Parameters
-    ----------
-    label : str
-        What it will be called.
-    motion : GroundMotion
-        As it was read.
-    vertical : bool
-        Whether it is vertical.
-    file : str
-        Path of its file, for messages.
-    known : dict
-        What is known of it besides; added to.
-    """
-
-    label: str
-    motion: GroundMotion
-    vertical: bool
-    file: str
+    label: str  # what it will be called
+    motion: GroundMotion  # as it was read
+    vertical: bool  # whether it is vertical
+    file: str  # path of its file, for messages
+    # what is known of it besides; added to
     known: dict[str, str | float | int] = field(default_factory=dict)
 
     @property
@@ -72,18 +59,6 @@ def number_in_name(file: str) -> int | None:
 def assign_records(components: Iterable[RecordedComponent]) -> list[str]:
     """Say of each component with which others it was recorded, and along which axis.
 
-    Parameters
-    ----------
-    components : iterable of RecordedComponent
-        In order; ``record`` and ``axis`` are added to what is known of them.
-
-    Returns
-    -------
-    list of str
-        Why components that belong together do not make a pair.
-
-    Notes
-    -----
     Components belong together if they have the same record sequence number, or the same station
     and earthquake (or times that overlap), or come from one file. Then there may be two horizontal
     ones, at a right angle, and a vertical one; where there are more, those of one instrument and
@@ -116,18 +91,7 @@ def assign_records(components: Iterable[RecordedComponent]) -> list[str]:
 def pairs_of(
     motions: Mapping[str, GroundMotion], verticals: Mapping[str, GroundMotion]
 ) -> dict[str, HorizontalPair]:
-    """Put the components of each record together.
-
-    Parameters
-    ----------
-    motions, verticals : mapping of str to GroundMotion
-        With ``record`` and ``axis`` in their metadata.
-
-    Returns
-    -------
-    dict of str to HorizontalPair
-        By the names of the records, where both horizontal components are there.
-    """
+    """Put the components of each record together."""
     axes: dict[str, dict[str, GroundMotion]] = {}
     for motion in (*motions.values(), *verticals.values()):
         about = motion.metadata

@@ -114,25 +114,7 @@ def scaled_set(
     title: str,
     **attributes: str | float,
 ) -> xr.Dataset:
-    """Label a set of scaled motions beside its target.
-
-    Parameters
-    ----------
-    candidates : Candidates
-        What there is to choose from.
-    places : ndarray of int, shape (m,)
-        Which of them are in the set, in order.
-    factors : ndarray, shape (n,)
-        Of all candidates [1].
-    title : str
-        What the dataset holds.
-    **attributes
-        What else it says.
-
-    Returns
-    -------
-    xarray.Dataset
-    """
+    """Label a set of scaled motions beside its target."""
     residuals = candidates.residuals(factors)[places]
     logarithms = residuals + candidates.target
     low, high = candidates.bounds
@@ -188,27 +170,7 @@ def spread_of(logarithms: "Array") -> "Array":
 def scaled_motions(
     suite: "MotionSuite", found: xr.Dataset
 ) -> "tuple[dict[str, GroundMotion], dict[str, GroundMotion]]":
-    """Scale the motions of a suite by the factors that were found.
-
-    Parameters
-    ----------
-    suite : MotionSuite
-        The suite that they were found for.
-    found : xarray.Dataset
-        Of :func:`scale_to_target` or :func:`select_for_target`.
-
-    Returns
-    -------
-    tuple of two dict of str to GroundMotion
-        Motions; vertical components, where components of records have common factors.
-
-    Raises
-    ------
-    SchemaError
-        No such dataset.
-    ComponentError
-        It is of motions that the suite does not have.
-    """
+    """Scale the motions of a suite by the factors that were found."""
     needed = ("scale_factor", "spectral_misfit", MOTION)
     if any(name not in found.variables for name in needed) or "combination" not in found.attrs:
         msg = "MotionSuite.scaled_to: expected a TargetSpectrum, or a dataset of scale_to_target"

@@ -153,27 +153,13 @@ def select_for_target(
 
 @dataclass(frozen=True)
 class _Search:
-    """The search for a set.
+    """The search for a set."""
 
-    Parameters
-    ----------
-    residuals : ndarray, shape (n, k)
-        Logarithms of scaled spectra over the target.
-    deviations : ndarray, shape (k,)
-        Spread that is aimed at.
-    weight : float
-        Of the spread.
-    events : ndarray of int, shape (n,)
-        Earthquakes by numbers; -1 where it is not known.
-    most : int
-        Most motions of one earthquake.
-    """
-
-    residuals: "Array"
-    deviations: "Array"
-    weight: float
-    events: "NDArray[np.intp]"
-    most: int
+    residuals: "Array"  # logarithms of scaled spectra over the target
+    deviations: "Array"  # spread that is aimed at
+    weight: float  # of the spread
+    events: "NDArray[np.intp]"  # earthquakes by numbers; -1 where it is not known
+    most: int  # most motions of one earthquake
 
     def misfit(self, chosen: "list[int]") -> float:
         """Compute :eq:`eq-set-misfit` of a set."""

@@ -55,18 +55,7 @@ _HELD: Final = {
 
 
 def suite_dataset(suite: "MotionSuite") -> xr.Dataset:
-    """Write a suite as a dataset that plain xarray can store.
-
-    Parameters
-    ----------
-    suite : MotionSuite
-        The suite.
-
-    Returns
-    -------
-    xarray.Dataset
-        See :meth:`MotionSuite.to_dataset`.
-    """
+    """Write a suite as a dataset that plain xarray can store."""
     motions = {**suite, **suite.verticals}
     dataset = build_dataset(
         known_columns(motions),
@@ -113,25 +102,7 @@ def suite_dataset(suite: "MotionSuite") -> xr.Dataset:
 
 
 def stored_motions(dataset: xr.Dataset) -> tuple[dict[str, GroundMotion], dict[str, Any]]:
-    """Read what :func:`suite_dataset` wrote.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        As written.
-
-    Returns
-    -------
-    dict of str to GroundMotion
-        All motions, the vertical ones last.
-    dict
-        How many of these are vertical, what was not read, and remarks.
-
-    Raises
-    ------
-    SchemaError
-        No such dataset, or samples that were changed since.
-    """
+    """Read what :func:`suite_dataset` wrote."""
     if dataset.attrs.get("kind") != _KIND:
         found = dataset.attrs.get("title", "a dataset of another kind")
         msg = f"found {found!r}; expected a dataset of MotionSuite.to_dataset"
@@ -169,22 +140,7 @@ def is_stored_suite(source: "Source") -> bool:
 
 
 def stored_suite(source: "Source") -> "MotionSuite":
-    """Read the netCDF file of a suite.
-
-    Parameters
-    ----------
-    source : Source
-        File.
-
-    Returns
-    -------
-    MotionSuite
-
-    Raises
-    ------
-    RecordError
-        It is damaged, or was changed since.
-    """
+    """Read the netCDF file of a suite."""
     import netCDF4
     from xarray.backends import NetCDF4DataStore
 

@@ -20,19 +20,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class AloneSetting(Setting):
-    """A body on a base.
+    """A body on a base."""
 
-    Parameters
-    ----------
-    load : Load
-        The body, with the options of its system.
-    support : Support
-        The base under it.
-    cap_offset : float, optional
-        Height of a cap's centre above that of the body, where a cap is part of the body [m].
-    """
-
-    support: Support
+    support: Support  # the base under it
 
     @property
     def model(self) -> str:
@@ -66,11 +56,6 @@ class AloneSetting(Setting):
         """Rotation at rest: a body leans to the side to which its weight turns it [rad].
 
         At small rotation on pads or a bed that of :eq:`eq-incline-lean`.
-
-        Raises
-        ------
-        AssemblyError
-            The base is too soft, or too much inclined, to carry the body.
         """
         if not self.leans:
             return 0.0

@@ -31,20 +31,11 @@ class Assembly:
     """Parts and options that have been checked and make a supported scene.
 
     Two are equal if they have equal parts, in whatever order, and equal options.
-
-    Parameters
-    ----------
-    parts : Parts
-        By what they are.
-    options : Options
-        All options, and gravity.
-    scene : Scene
-        The scene that they make.
     """
 
-    parts: Parts
-    options: Options
-    scene: Scene = field(compare=False)
+    parts: Parts  # by what they are
+    options: Options  # all options, and gravity
+    scene: Scene = field(compare=False)  # the scene that they make
 
     @cached_property
     def setting(self) -> Setting:
@@ -96,25 +87,7 @@ def assemble(
     gravity: object = None,
     inclination: object = None,
 ) -> Assembly:
-    """Check parts and options together, and find the scene they make.
-
-    Parameters
-    ----------
-    parts : sequence
-        Components, in any order; a ground motion may be one of them.
-    restraint, rotation, coupling, gravity, inclination : optional
-        As for :class:`rockframe.System`.
-
-    Returns
-    -------
-    Assembly
-
-    Raises
-    ------
-    AssemblyError
-        With every fault found; and the supported scenes, if parts are missing or do not
-        combine.
-    """
+    """Check parts and options together, and find the scene they make."""
     faults: list[str] = []
     given = sort_parts(parts, faults)
     options = Options(
@@ -130,27 +103,7 @@ def assemble(
 def assembly_of(
     given: Parts, options: Options, faults: Sequence[str] = (), wrong: Sequence[str] = ()
 ) -> Assembly:
-    """Check sorted parts against one another, and find the scene they make.
-
-    Parameters
-    ----------
-    given : Parts
-        By what they are.
-    options : Options
-        All options, and gravity.
-    faults, wrong : sequence of str, optional
-        What has been found of parts, and of options.
-
-    Returns
-    -------
-    Assembly
-
-    Raises
-    ------
-    AssemblyError
-        With every fault found; and the supported scenes, if parts are missing or do not
-        combine.
-    """
+    """Check sorted parts against one another, and find the scene they make."""
     faults = [*faults, *misfits(given)]
     scene = next((scene for scene in scenes() if scene.fits(given, options.coupling)), None)
     if scene is None and not faults:

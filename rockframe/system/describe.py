@@ -12,20 +12,7 @@ _WIDTH = 100
 
 
 def describe(setting: Setting, parts: Parts) -> str:
-    """Tell the model, its equations, its numbers and its limits.
-
-    Parameters
-    ----------
-    setting : Setting
-        The scene's numbers.
-    parts : Parts
-        The parts as given.
-
-    Returns
-    -------
-    str
-        Lines of at most 100 letters, but for words that are longer.
-    """
+    """Tell the model, its equations, its numbers and its limits."""
     words = setting.words()
     lines = [f"Model: {setting.model}"]
     lines += _section("Parts", [("", repr(part)) for part in parts.given()])

@@ -14,18 +14,7 @@ _ROUNDING_OF_DEPTHS = 1e-9
 
 
 def misfits(parts: Parts) -> list[str]:
-    """Give the faults of a combination of parts, whatever their sizes.
-
-    Parameters
-    ----------
-    parts : Parts
-        Parts of which none is given twice.
-
-    Returns
-    -------
-    list of str
-        Each names the parts and what would mend the combination.
-    """
+    """Give the faults of a combination of parts, whatever their sizes."""
     block, pads, cap, soil = parts.block, parts.pads, parts.cap, parts.soil
     faults: list[str] = []
     if parts.own():  # of a user's own scene, which says itself what goes together
@@ -122,17 +111,7 @@ def _misfits_of_stack(stack: Stack, parts: Parts) -> list[str]:
 
 
 def contradictions(parts: Parts) -> list[str]:
-    """Say which sizes of parts contradict one another, though they can be simulated.
-
-    Parameters
-    ----------
-    parts : Parts
-        Parts that make a scene.
-
-    Returns
-    -------
-    list of str
-    """
+    """Say which sizes of parts contradict one another, though they can be simulated."""
     # of each the depth that it was built with, where that is known
     depths = {
         type(part).__name__: float(depth.m_as("m"))
@@ -149,18 +128,7 @@ def contradictions(parts: Parts) -> list[str]:
 
 
 def missizes(parts: Parts) -> list[str]:
-    """Give the faults of the sizes of parts that are together.
-
-    Parameters
-    ----------
-    parts : Parts
-        Parts of which none is given twice.
-
-    Returns
-    -------
-    list of str
-        Each names the parts and their sizes.
-    """
+    """Give the faults of the sizes of parts that are together."""
     block, cap = parts.block, parts.cap
     faults: list[str] = []
     if block is not None and cap is not None:

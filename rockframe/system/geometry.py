@@ -34,49 +34,24 @@ class Geometry:
     """Sizes and places of a scene's parts, in SI units, as :eq:`eq-scene-places` needs them.
 
     Places count to the right of the middle of the lowest base, and up from it.
-
-    Parameters
-    ----------
-    outline : ndarray, shape (corners, 2)
-        Of the block, from the middle of its own base.
-    members : tuple of ndarray
-        Outlines of a frame's members, in the same coordinates.
-    half_width : float
-        Of the block's base.
-    centre : (float, float)
-        The block's centre of mass, in the coordinates of its outline.
-    moved : (float, float)
-        The centre of mass of the body that results are of, from the middle of the lowest base:
-        that of the block, or of block and cap where these are one body.
-    cap : (float, float) or None
-        Half the width and the height of the cap.
-    pads_sink, bed_sinks : float or None
-        Settlements under the weight of pads and of soil, where the scene has them.
-    stacked : bool
-        Whether pads stand between block and cap, which then move apart.
-    inclination : float
-        By which the base line rises to the right [rad].
-    small_rotation : bool
-        Whether the kinematics are expanded in the rotation.
-    lower : tuple of LowerBody
-        Bodies of a stack beneath the block, from the top down.
-    ties : tuple of LinkedPoints
-        Points that restrainers link.
     """
 
-    outline: Array
-    members: tuple[Array, ...]
-    half_width: float
-    centre: tuple[float, float]
+    outline: Array  # of the block, from the middle of its own base
+    members: tuple[Array, ...]  # outlines of a frame's members, in the same coordinates
+    half_width: float  # of the block's base
+    centre: tuple[float, float]  # the block's centre of mass, in the coordinates of its outline
+    # the centre of mass of the body that results are of, from the middle of the lowest base: that
+    # of the block, or of block and cap where these are one body
     moved: tuple[float, float]
-    cap: tuple[float, float] | None
+    cap: tuple[float, float] | None  # half the width and the height of the cap
+    # settlements under the weight of pads and of soil, where the scene has them
     pads_sink: float | None
     bed_sinks: float | None
-    stacked: bool
-    inclination: float
-    small_rotation: bool
-    lower: tuple[LowerBody, ...] = ()
-    ties: tuple[LinkedPoints, ...] = ()
+    stacked: bool  # whether pads stand between block and cap, which then move apart
+    inclination: float  # by which the base line rises to the right [rad]
+    small_rotation: bool  # whether the kinematics are expanded in the rotation
+    lower: tuple[LowerBody, ...] = ()  # bodies of a stack beneath the block, from the top down
+    ties: tuple[LinkedPoints, ...] = ()  # points that restrainers link
 
     @property
     def level(self) -> float:
@@ -121,17 +96,7 @@ def rectangle(half_width: float, height: float, x: float = 0.0, y: float = 0.0) 
 
 
 def geometry_of(scene: Assembly) -> Geometry:
-    """Give the geometry of a scene.
-
-    Parameters
-    ----------
-    scene : Assembly
-        The checked scene.
-
-    Returns
-    -------
-    Geometry
-    """
+    """Give the geometry of a scene."""
     parts, setting = scene.parts, scene.setting
     if parts.stack is not None:
         return _of_stack(parts.stack, scene)

@@ -39,29 +39,17 @@ class OwnLink(Link):
 
 @dataclass(frozen=True)
 class PlacedLink:
-    """A link between points of upright bodies.
+    """A link between points of upright bodies."""
 
-    Parameters
-    ----------
-    part : Link
-        As it was given.
-    name : str
-        What results call it.
-    on, to : int
-        Bodies, counted from 0 at the top; -1 for the ground.
-    on_point, to_point : tuple of float
-        From the centres of mass of their bodies to the right and up, or from the middle of
-        the lowest base [m].
-    ends : tuple of tuple of float
-        Both points from the middle of the lowest base [m].
-    """
-
-    part: Link
-    name: str
-    on: int
+    part: Link  # as it was given
+    name: str  # what results call it
+    on: int  # bodies, counted from 0 at the top; -1 for the ground
+    # from the centres of mass of their bodies to the right and up, or from the middle of the lowest
+    # base [m]
     on_point: tuple[float, float]
     to: int
     to_point: tuple[float, float]
+    # both points from the middle of the lowest base [m]
     ends: tuple[tuple[float, float], tuple[float, float]]
 
     @property
@@ -134,14 +122,7 @@ def placed(
     tops: Sequence[float],
     offsets: Sequence[float],
 ) -> tuple[PlacedLink, ...]:
-    """Give links between points of bodies upon one another, from the top down.
-
-    Raises
-    ------
-    AssemblyError
-        A link is on a body that there is not, both its points are on the same, two have one
-        name, or one without length has a preload; with every fault.
-    """
+    """Give links between points of bodies upon one another, from the top down."""
     names = link_labels(parts)
     faults = [f"two links are called {name!r}" for name in names if names.count(name) > 1]
     found = list[PlacedLink]()

@@ -80,17 +80,5 @@ class Load:
 
 @lru_cache(maxsize=_KEPT)
 def load_of(block: BlockSI, options: Options) -> Load:
-    """Give a block as a load; the same one for all scenes that differ in their bases alone.
-
-    Parameters
-    ----------
-    block : BlockSI
-        The block.
-    options : Options
-        Of its system.
-
-    Returns
-    -------
-    Load
-    """
+    """Give a block as a load; the same one for all scenes that differ in their bases alone."""
     return Load(body_of_block(block), options)

@@ -56,24 +56,12 @@ PointsLike: TypeAlias = Mapping[str, tuple[QuantityLike, QuantityLike]]
 
 @dataclass(frozen=True)
 class Measured:
-    """An option that is a number.
+    """An option that is a number."""
 
-    Parameters
-    ----------
-    measure : Measure
-        Its kind.
-    condition : Condition
-        Its range.
-    words : str
-        What it is.
-    otherwise : float
-        Its value unless given, in SI units.
-    """
-
-    measure: Measure
-    condition: Condition
-    words: str
-    otherwise: float
+    measure: Measure  # its kind
+    condition: Condition  # its range
+    words: str  # what it is
+    otherwise: float  # its value unless given, in SI units
 
 
 MEASURED: Final = {
@@ -124,23 +112,7 @@ Option = TypeVar("Option", bound=StrEnum)
 
 
 def read_option(kind: type[Option], value: object, name: str, faults: list[str]) -> Option:
-    """Give the option that a string names, or note the fault.
-
-    Parameters
-    ----------
-    kind : type
-        The enumeration.
-    value : object
-        What the user gave.
-    name : str
-        Argument, for the message.
-    faults : list of str
-        Appended to if `value` is none of the options.
-
-    Returns
-    -------
-    Option
-    """
+    """Give the option that a string names, or note the fault."""
     try:
         return kind(value)  # type: ignore[arg-type]
     except ValueError:
@@ -150,22 +122,7 @@ def read_option(kind: type[Option], value: object, name: str, faults: list[str])
 
 
 def read_measured(given: object, name: str, faults: list[str]) -> float:
-    """Give an option that is a number, or note the fault.
-
-    Parameters
-    ----------
-    given : str, Quantity or None
-        What the user gave.
-    name : str
-        Of the option, in `MEASURED`.
-    faults : list of str
-        Appended to if `given` is no such number.
-
-    Returns
-    -------
-    float
-        In SI units.
-    """
+    """Give an option that is a number, or note the fault."""
     one = MEASURED[name]
     if given is None:
         return one.otherwise

@@ -23,14 +23,9 @@ from rockframe.system.slots import (
 
 @dataclass(frozen=True)
 class Parts:
-    """The parts of a scene, by what they are.
+    """The parts of a scene, by what they are."""
 
-    Parameters
-    ----------
-    filled : tuple of (str, Component or GroundMotion)
-        Slots and what fills them, in the order of all slots.
-    """
-
+    # slots and what fills them, in the order of all slots
     filled: tuple[tuple[str, Component | GroundMotion], ...] = ()
 
     @classmethod
@@ -136,19 +131,7 @@ class Parts:
 
 
 def sort_parts(given: Sequence[object], faults: list[str]) -> Parts:
-    """Put each part in its slot; note doubled parts and things that are no parts.
-
-    Parameters
-    ----------
-    given : sequence
-        Parts in any order.
-    faults : list of str
-        Appended to.
-
-    Returns
-    -------
-    Parts
-    """
+    """Put each part in its slot; note doubled parts and things that are no parts."""
     found: dict[str, Any] = {}
     for part in given:
         slot = slot_of(part)

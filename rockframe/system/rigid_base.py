@@ -20,13 +20,7 @@ NO_VERTICAL_START = (
 
 @dataclass(frozen=True)
 class RigidBase(Support):
-    """A rigid base.
-
-    Parameters
-    ----------
-    load : Load
-        All that stands on it, as one body.
-    """
+    """A rigid base."""
 
     @property
     def model(self) -> str:

@@ -24,17 +24,9 @@ _REACTIONS = ("left_reaction", "right_reaction")
 
 @dataclass(frozen=True)
 class RigidGroundSetting(Setting):
-    """A block on rigid ground.
+    """A block on rigid ground."""
 
-    Parameters
-    ----------
-    load : Load
-        The block, with the options of its system.
-    restitution : Restitutions
-        eps of its corners [1].
-    """
-
-    restitution: Restitutions
+    restitution: Restitutions  # eps of its corners [1]
     flies = False
 
     @property
@@ -217,13 +209,7 @@ class RigidGroundSetting(Setting):
 
 
 def rigid_ground_setting(parts: Parts, options: Options) -> RigidGroundSetting:
-    """Resolve the parts of a scene on rigid ground.
-
-    Raises
-    ------
-    AssemblyError
-        The ground is so inclined that the block falls by its own weight.
-    """
+    """Resolve the parts of a scene on rigid ground."""
     load = load_of(parts.the_block, options)
     given = parts.ground.si.restitution if parts.ground is not None else None
     setting = RigidGroundSetting(load, resolve_restitution(given, load.body.maximum_restitution))

@@ -22,26 +22,15 @@ from rockframe.system.stacked import CascadeSetting, CoupledSetting, StackedSett
 
 @dataclass(frozen=True)
 class Scene:
-    """A combination of parts that has a model.
+    """A combination of parts that has a model."""
 
-    Parameters
-    ----------
-    title : str
-        The parts, as users write them.
-    signature : frozenset of str
-        Slots of :class:`rockframe.system.parts.Parts` that must be filled.
-    make_setting : callable
-        From parts and options to the scene's setting.
-    coupling : Coupling, optional
-        The option that picks this one of two models of the same parts.
-    made_of : mapping of str to type, optional
-        Slots and classes of the parts of a user's own scene.
-    """
-
-    title: str
-    signature: frozenset[str]
+    title: str  # the parts, as users write them
+    signature: frozenset[str]  # slots of :class:`rockframe.system.parts.Parts` that must be filled
+    # from parts and options to the scene's setting
     make_setting: Callable[[Parts, Options], Setting]
+    # the option that picks this one of two models of the same parts
     coupling: Coupling | None = None
+    # slots and classes of the parts of a user's own scene
     made_of: Mapping[str, type[Component]] | None = None
 
     def fits(self, parts: Parts, coupling: Coupling) -> bool:

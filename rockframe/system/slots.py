@@ -29,17 +29,10 @@ from rockframe.system.support import Support
 
 @dataclass(frozen=True)
 class Kind:
-    """What scenes know of a class of parts.
+    """What scenes know of a class of parts."""
 
-    Parameters
-    ----------
-    slot : str
-        That it fills.
-    support : callable, optional
-        From a part and its load to what it is under a body, where it is a base.
-    """
-
-    slot: str
+    slot: str  # that it fills
+    # from a part and its load to what it is under a body, where it is a base
     support: Callable[[Any, Load], Support] | None = None
 
 
@@ -115,19 +108,7 @@ def usual_kind(slot: str) -> type:
 
 
 def support_of(part: Component, load: Load) -> Support:
-    """Give a base as it is under a body.
-
-    Parameters
-    ----------
-    part : Component
-        Pads or soil, or a user's own.
-    load : Load
-        What stands on it.
-
-    Returns
-    -------
-    Support
-    """
+    """Give a base as it is under a body."""
     kind = known_kind(type(part))
     make = None if kind is None else _KINDS[kind].support
     if make is None:  # only bases are in the slots of bases

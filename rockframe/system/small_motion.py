@@ -12,22 +12,13 @@ from rockframe.signals.arrays import Array
 
 @dataclass(frozen=True)
 class SmallMotion:
-    """Linear equations of small motion M q'' + C q' + K q = 0.
+    """Linear equations of small motion M q'' + C q' + K q = 0."""
 
-    Parameters
-    ----------
-    coordinates : tuple of str
-        Names of the coordinates.
-    mass, damping, stiffness : ndarray, shape (n, n)
-        SI units.
-    bodies : tuple of int
-        Of a stack, whose coordinates are those of these bodies in turn, counted from 1 at the top.
-    """
-
-    coordinates: tuple[str, ...]
-    mass: Array
+    coordinates: tuple[str, ...]  # names of the coordinates
+    mass: Array  # SI units
     damping: Array
     stiffness: Array
+    # of a stack, whose coordinates are those of these bodies in turn, counted from 1 at the top
     bodies: tuple[int, ...] = field(default=(), kw_only=True)
 
 
@@ -44,19 +35,7 @@ class VibrationMode:
 
 
 def modes_of(motion: SmallMotion) -> list[VibrationMode]:
-    """Give the modes, from slow to fast.
-
-    Parameters
-    ----------
-    motion : SmallMotion
-        The equations.
-
-    Returns
-    -------
-    list of VibrationMode
-        A pair of real rates s1, s2 of like shapes counts as one overdamped mode, of the
-        frequency sqrt(s1 s2); unstable pairs stand first.
-    """
+    """Give the modes, from slow to fast."""
     size = len(motion.coordinates)
     transition = np.block(
         [

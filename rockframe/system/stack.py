@@ -35,29 +35,14 @@ NO_REST: Final = "the bodies find no rest under their weight: their bases are to
 
 @dataclass(frozen=True)
 class StackSetting(Setting):
-    """Bodies upon one another.
+    """Bodies upon one another."""
 
-    Parameters
-    ----------
-    load : Load
-        The highest body, with the options of its system.
-    bodies : tuple of SupportedBody
-        All of them, from the top down.
-    tops : tuple of float
-        Height of the top of each above its centre of mass [m].
-    offsets : tuple of float
-        How far the middle of each base is to the right of that of the body below [m].
-    bases : tuple of Support
-        What each stands on, under all that it carries.
-    ties : tuple of PlacedLink
-        What links their points.
-    """
-
-    bodies: tuple[SupportedBody, ...]
-    tops: tuple[float, ...]
+    bodies: tuple[SupportedBody, ...]  # all of them, from the top down
+    tops: tuple[float, ...]  # height of the top of each above its centre of mass [m]
+    # how far the middle of each base is to the right of that of the body below [m]
     offsets: tuple[float, ...]
-    bases: tuple[Support, ...]
-    ties: tuple[PlacedLink, ...] = ()
+    bases: tuple[Support, ...]  # what each stands on, under all that it carries
+    ties: tuple[PlacedLink, ...] = ()  # what links their points
 
     @property
     def model(self) -> str:
@@ -223,13 +208,7 @@ class StackSetting(Setting):
 
     @cached_property
     def rest_rotation(self) -> float:
-        """Rotation of the highest body at rest [rad].
-
-        Raises
-        ------
-        AssemblyError
-            The bases are too soft to carry the bodies.
-        """
+        """Rotation of the highest body at rest [rad]."""
         return math.fsum(one.state.rotation for one in self._rest) if self.leans else 0.0
 
     def small_motion(self) -> SmallMotion | None:
@@ -397,13 +376,7 @@ def combined_body(
 def block_setting(
     block: BlockSI, base: Component, options: Options, links: Sequence[Link]
 ) -> StackSetting:
-    """Give the scene of a block with restrainers on a base.
-
-    Raises
-    ------
-    AssemblyError
-        It stands on a slope, or its rotation is small; a fault of its restrainers.
-    """
+    """Give the scene of a block with restrainers on a base."""
     _refuse("a block with restrainers", options, small=False)
     load = load_of(block, options)
     support = support_of(base, load)
@@ -425,13 +398,7 @@ def _refuse(what: str, options: Options, *, small: bool) -> None:
 def stack_setting(
     stack: Stack, base: Component, options: Options, links: Sequence[Link] = ()
 ) -> StackSetting:
-    """Give the scene of a stack on a base.
-
-    Raises
-    ------
-    AssemblyError
-        It stands on a slope; a fault of its restrainers.
-    """
+    """Give the scene of a stack on a base."""
     _refuse("a Stack", options, small=not links)
     bodies = tuple(body_of_block(one) for one in stack.si.bodies)
     tops = tuple(one.height - one.centre_height for one in stack.si.bodies)

@@ -33,23 +33,11 @@ paper's example by up to 3e-3 of their peak, page "Coupled" of the manual."""
 
 @dataclass(frozen=True)
 class StackedSetting(Setting):
-    """A block on pads on a cap on soil.
+    """A block on pads on a cap on soil."""
 
-    Parameters
-    ----------
-    load : Load
-        The block, with the options of its system.
-    upper : AloneSetting
-        The block on its pads.
-    lower : AloneSetting
-        Block and cap as one body on the soil.
-    cap : Cap
-        The cap.
-    """
-
-    upper: AloneSetting
-    lower: AloneSetting
-    cap: Cap
+    upper: AloneSetting  # the block on its pads
+    lower: AloneSetting  # block and cap as one body on the soil
+    cap: Cap  # the cap
     stacked: ClassVar[bool] = True
 
     @property
@@ -98,13 +86,7 @@ class StackedSetting(Setting):
 
     @property
     def _rest(self) -> list[Stand]:
-        """How block and cap rest.
-
-        Raises
-        ------
-        AssemblyError
-            The bases are too soft, or too much inclined, to carry the block.
-        """
+        """How block and cap rest."""
         found = self._moving.rest
         if found is None:
             raise AssemblyError(["the block and the cap under it find no rest under their weight"])

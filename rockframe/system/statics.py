@@ -47,13 +47,7 @@ class Statics:
 
 
 def required_states(rotations: Sequence[float], states: Sequence[Statics | None]) -> list[Statics]:
-    """Give states at rotations, of which there must be one at each.
-
-    Raises
-    ------
-    SolverError
-        The bases cannot carry the moment at a rotation.
-    """
+    """Give states at rotations, of which there must be one at each."""
     found = list[Statics]()
     for rotation, state in zip(rotations, states, strict=True):
         if state is None:
@@ -68,21 +62,11 @@ def required_states(rotations: Sequence[float], states: Sequence[Statics | None]
 
 @dataclass(frozen=True)
 class StandingBodies:
-    """Bodies that stand on one another, in SI units.
+    """Bodies that stand on one another, in SI units."""
 
-    Parameters
-    ----------
-    chain : StandingChain
-        The bodies on their bases, as the equations take them.
-    mass : float
-        That the chain is measured by, that of its highest body [kg].
-    bases : tuple of BaseNumbers
-        Under each body, from the top down.
-    """
-
-    chain: StandingChain
-    mass: float
-    bases: "tuple[BaseNumbers, ...]"
+    chain: StandingChain  # the bodies on their bases, as the equations take them
+    mass: float  # that the chain is measured by, that of its highest body [kg]
+    bases: "tuple[BaseNumbers, ...]"  # under each body, from the top down
 
     @cached_property
     def rest(self) -> list[Stand] | None:

@@ -52,17 +52,7 @@ AMBIGUOUS: Final = (
 
 
 def foreign_quantity(value: object) -> str:
-    """Say how a quantity of another library is given; nothing of what is none.
-
-    Parameters
-    ----------
-    value : object
-        What the user gave.
-
-    Returns
-    -------
-    str
-    """
+    """Say how a quantity of another library is given; nothing of what is none."""
     home = type(value).__module__.partition(".")[0]
     unit = next((one for one in ("unit", "units") if hasattr(value, one)), None)
     if unit is None or not hasattr(value, "value"):
@@ -85,22 +75,7 @@ def _weight(given: Any, text: str, measure: Measure) -> str:
 
 
 def other_kind(given: Any, text: str, measure: Measure) -> str:
-    """Say how what is needed follows from a related quantity, where that was given.
-
-    Parameters
-    ----------
-    given : pint.Quantity
-        What the user gave.
-    text : str
-        The same as it was written.
-    measure : Measure
-        What the argument needs.
-
-    Returns
-    -------
-    str
-        In brackets, to be added to a message.
-    """
+    """Say how what is needed follows from a related quantity, where that was given."""
     return _weight(given, text, measure) or _subgrade(given, measure) or _period(given, measure)
 
 
@@ -139,20 +114,7 @@ def without_unit(measure: Measure) -> str:
 
 
 def misread(text: str, measure: Measure) -> str:
-    """Say which unit was probably meant; nothing if that is not known.
-
-    Parameters
-    ----------
-    text : str
-        What the user wrote.
-    measure : Measure
-        What the argument needs.
-
-    Returns
-    -------
-    str
-        In brackets, to be added to a message.
-    """
+    """Say which unit was probably meant; nothing if that is not known."""
     parts = number_and_unit(text)
     text = text if parts is None else parts[1]
     for pattern, meant, words in _MISREAD_UNITS:

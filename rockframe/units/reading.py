@@ -42,20 +42,7 @@ _LONGEST_FACTOR: Final = 12
 
 
 def quantity(value: "float | npt.NDArray[np.float64]", measure: Measure) -> Quantity:
-    """Give an SI value its unit back.
-
-    Parameters
-    ----------
-    value : float or ndarray
-        Value in the SI unit of `measure`.
-    measure : Measure
-        Kind of quantity.
-
-    Returns
-    -------
-    pint.Quantity
-        In the shared application registry.
-    """
+    """Give an SI value its unit back."""
     return pint.get_application_registry().Quantity(value, str(measure.unit))
 
 
@@ -67,31 +54,7 @@ def to_si(
     name: str,
     condition: "Condition | None" = None,
 ) -> float:
-    """Convert an argument to a float in SI units, or refuse it.
-
-    Parameters
-    ----------
-    value : str or pint.Quantity
-        What the user gave.
-    measure : Measure
-        What the argument needs.
-    owner, name : str
-        Class (or function) and argument, for the message.
-    condition : Condition, optional
-        Range that the value must lie in.
-
-    Returns
-    -------
-    float
-        Finite value in the SI unit of `measure`.
-
-    Raises
-    ------
-    UnitsError
-        No unit, an unknown unit, or a unit of another kind.
-    ComponentError
-        Not finite, or outside `condition`.
-    """
+    """Convert an argument to a float in SI units, or refuse it."""
     number = _in_si(value, measure)
     if number is not None:
         return _check_value(number, value, condition, owner=owner, name=name)
@@ -108,28 +71,7 @@ def to_si(
 
 
 def to_si_values(value: object, measure: Measure, *, owner: str, name: str) -> list[float]:
-    """Convert an argument that holds one or several values to floats in SI units.
-
-    Parameters
-    ----------
-    value : (sequence, unit), pint.Quantity, or sequence of str or Quantity
-        What the user gave; the values in one dimension.
-    measure : Measure
-        What the argument needs.
-    owner, name : str
-        Class (or function) and argument, for the message.
-
-    Returns
-    -------
-    list of float
-
-    Raises
-    ------
-    UnitsError
-        No unit, an unknown unit, or a unit of another kind.
-    ComponentError
-        Not finite.
-    """
+    """Convert an argument that holds one or several values to floats in SI units."""
     if isinstance(value, str):
         return [to_si(value, measure, owner=owner, name=name)]
     if isinstance(value, pint.Quantity):
@@ -205,30 +147,7 @@ def to_ratio(
     condition: "Condition | None" = None,
     example: str = "0.1",
 ) -> float:
-    """Convert a pure ratio (bare number, or a dimensionless quantity such as ``"5 %"``).
-
-    Parameters
-    ----------
-    value : float, str or pint.Quantity
-        What the user gave.
-    owner, name : str
-        Class and argument, for the message.
-    condition : Condition, optional
-        Range that the value must lie in.
-    example : str, optional
-        A number that makes sense for the argument, for the message.
-
-    Returns
-    -------
-    float
-
-    Raises
-    ------
-    UnitsError
-        Not a pure ratio.
-    ComponentError
-        Not finite, or outside `condition`.
-    """
+    """Convert a pure ratio (bare number, or a dimensionless quantity such as ``"5 %"``)."""
     number: object = value
     ratio = Measure("a pure ratio", Unit.ONE, example)
     if isinstance(value, str | pint.Quantity):

@@ -31,18 +31,10 @@ _FOREIGN: Final = re.compile(r"[^\s\w*/^()%‰°·.+⁻-]")
 
 @dataclass(frozen=True)
 class WrittenQuantity:
-    """A text that is one number and a unit.
+    """A text that is one number and a unit."""
 
-    Parameters
-    ----------
-    number : float
-        The number.
-    unit : str
-        The unit as it is written, empty where there is none.
-    """
-
-    number: float
-    unit: str
+    number: float  # the number
+    unit: str  # the unit as it is written, empty where there is none
 
     @property
     def plain(self) -> str:
@@ -51,36 +43,13 @@ class WrittenQuantity:
 
 
 def number_and_unit(text: str) -> tuple[str, str] | None:
-    """Part a text behind the number that it begins with.
-
-    Parameters
-    ----------
-    text : str
-        What the user wrote.
-
-    Returns
-    -------
-    tuple of (str, str) or None
-        The number, and all that follows it, whatever it is; None of a text that begins with no
-        number.
-    """
+    """Part a text behind the number that it begins with."""
     parts = _NUMBER_AND_UNIT.fullmatch(text)
     return None if parts is None else (parts["number"], parts["unit"])
 
 
 def parse_quantity(text: str) -> WrittenQuantity | None:
-    """Read a text as one number and a unit.
-
-    Parameters
-    ----------
-    text : str
-        What the user wrote.
-
-    Returns
-    -------
-    WrittenQuantity or None
-        None of a text that is anything else.
-    """
+    """Read a text as one number and a unit."""
     parts = number_and_unit(text)
     if parts is None or not _is_unit(parts[1]):
         return None
@@ -88,17 +57,7 @@ def parse_quantity(text: str) -> WrittenQuantity | None:
 
 
 def foreign_sign(text: str) -> str | None:
-    """Give the first sign that stands neither in numbers nor in units; None if all do.
-
-    Parameters
-    ----------
-    text : str
-        What the user wrote.
-
-    Returns
-    -------
-    str or None
-    """
+    """Give the first sign that stands neither in numbers nor in units; None if all do."""
     found = _FOREIGN.search(text.translate(_SPELLINGS))
     if found is not None:
         return found[0]

@@ -14,19 +14,7 @@ Made = TypeVar("Made")
 
 
 def arguments_of(function: Callable[..., Any], *, without: tuple[str, ...] = ()) -> dict[str, bool]:
-    """Give the arguments that a function takes by name, and whether each must be given.
-
-    Parameters
-    ----------
-    function : callable
-        A function, a method of a class, or a class.
-    without : tuple of str
-        Arguments that no table gives.
-
-    Returns
-    -------
-    dict of str to bool
-    """
+    """Give the arguments that a function takes by name, and whether each must be given."""
     named = (Parameter.POSITIONAL_OR_KEYWORD, Parameter.KEYWORD_ONLY)
     return {
         name: one.default is Parameter.empty
@@ -43,28 +31,7 @@ def checked(
     declared: Mapping[str, Declared[Any, Any]] | None = None,
     hints: Mapping[str, str] | None = None,
 ) -> bool:
-    """Note keys that mean nothing, keys that are missing, and values that cannot be read.
-
-    Parameters
-    ----------
-    file : TomlFile
-        To which faults are added.
-    where : tuple
-        Place of the table.
-    table : mapping
-        What it holds.
-    known : mapping of str to bool
-        Keys it may hold, and whether it must.
-    declared : mapping, optional
-        Parameters of a component by their names.
-    hints : mapping, optional
-        Where to give what was meant, by keys that mean nothing here.
-
-    Returns
-    -------
-    bool
-        Whether there is nothing to note.
-    """
+    """Note keys that mean nothing, keys that are missing, and values that cannot be read."""
     sound = True
     declared = declared or {}
     for name in table:
@@ -88,24 +55,7 @@ def checked(
 def made(
     file: TomlFile, where: Place, function: Callable[..., Made], table: Mapping[str, Any]
 ) -> Made | None:
-    """Call a function with a table that has been checked; note why that cannot be done.
-
-    Parameters
-    ----------
-    file : TomlFile
-        To which faults are added.
-    where : tuple
-        Place of the table.
-    function : callable
-        What to call.
-    table : mapping
-        Arguments by their names.
-
-    Returns
-    -------
-    object or None
-        None where a fault was found.
-    """
+    """Call a function with a table that has been checked; note why that cannot be done."""
     try:
         return function(**table)
     except AssemblyError as problem:

@@ -39,12 +39,7 @@ _ENTRY: Final = re.compile(
 
 
 def every_key() -> str:
-    """Write a file with every key, as a comment with its meaning.
-
-    Returns
-    -------
-    str
-    """
+    """Write a file with every key, as a comment with its meaning."""
     return "\n".join(_lines()) + "\n"
 
 

@@ -21,18 +21,7 @@ _PIECE: Final = re.compile(
 
 
 def lines_of(text: str) -> dict[Place, int]:
-    """Give the lines of tables and keys.
-
-    Parameters
-    ----------
-    text : str
-        A TOML file that is well formed.
-
-    Returns
-    -------
-    dict
-        Line, counted from 1, by place. What stands inside a value has no line of its own.
-    """
+    """Give the lines of tables and keys."""
     found: dict[Place, int] = {}
     arrays: dict[Place, int] = {}
     table: Place = ()

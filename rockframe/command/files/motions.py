@@ -22,22 +22,7 @@ def motion_keys() -> dict[str, bool]:
 
 
 def described_motion(file: TomlFile, where: Place, given: object) -> GroundMotion | None:
-    """Build the motion that a table describes.
-
-    Parameters
-    ----------
-    file : TomlFile
-        In which it stands, and to which faults are added.
-    where : tuple
-        Place of the table.
-    given : object
-        The table.
-
-    Returns
-    -------
-    GroundMotion or None
-        None where a fault was found.
-    """
+    """Build the motion that a table describes."""
     table = file.table(where, given)
     if table is None:
         return None

@@ -47,43 +47,17 @@ def keys() -> tuple[str, ...]:
 
 @dataclass(frozen=True)
 class Described:
-    """What a file describes.
+    """What a file describes."""
 
-    Parameters
-    ----------
-    system : System
-        The parts, without the motion.
-    motion : GroundMotion or None
-        Of the ground.
-    run : dict
-        Further arguments of :meth:`rockframe.System.simulate`.
-    files : tuple of Path
-        All files that it was read from.
-    """
-
-    system: System
-    motion: GroundMotion | None
+    system: System  # the parts, without the motion
+    motion: GroundMotion | None  # of the ground
+    # further arguments of :meth:`rockframe.System.simulate`
     run: dict[str, Any] = field(default_factory=dict)
-    files: tuple[Path, ...] = ()
+    files: tuple[Path, ...] = ()  # all files that it was read from
 
 
 def read_scene(path: str | Path) -> Described:
-    """Read the file of a scene.
-
-    Parameters
-    ----------
-    path : str or Path
-        Of the file.
-
-    Returns
-    -------
-    Described
-
-    Raises
-    ------
-    FileError
-        With every fault found.
-    """
+    """Read the file of a scene."""
     file = TomlFile.read(path)
     import_modules(file)  # whose parts may have tables of their own
     for name in file.values:
@@ -97,18 +71,7 @@ def read_scene(path: str | Path) -> Described:
 
 
 def described_scene(file: TomlFile) -> Described | None:
-    """Build what the tables of a file describe.
-
-    Parameters
-    ----------
-    file : TomlFile
-        To which faults are added.
-
-    Returns
-    -------
-    Described or None
-        None where a fault was found.
-    """
+    """Build what the tables of a file describe."""
     given = file.values
     parts = [described_part(file, slot, given[slot]) for slot in part_slots() if slot in given]
     motion = described_motion(file, (MOTION,), given[MOTION]) if MOTION in given else None
@@ -125,22 +88,7 @@ def described_scene(file: TomlFile) -> Described | None:
 
 
 def described_part(file: TomlFile, slot: str, given: object) -> Component | None:
-    """Build the part that a table describes.
-
-    Parameters
-    ----------
-    file : TomlFile
-        To which faults are added.
-    slot : str
-        Name of the table.
-    given : object
-        The table.
-
-    Returns
-    -------
-    Component or None
-        None where a fault was found.
-    """
+    """Build the part that a table describes."""
     where: Place = (slot,)
     table = file.table(where, given)
     if table is None:
@@ -171,35 +119,14 @@ def described_part(file: TomlFile, slot: str, given: object) -> Component | None
 
 
 def classes_in(slot: str) -> dict[str, type[Component]]:
-    """Give the classes of parts that a table may describe, the usual one first.
-
-    Parameters
-    ----------
-    slot : str
-        Name of the table.
-
-    Returns
-    -------
-    dict
-        By their names.
-    """
+    """Give the classes of parts that a table may describe, the usual one first."""
     usual = usual_kind(slot)
     fitting = {name: kind for name, kind in kinds().items() if slot_of_kind(kind) == slot}
     return {usual.__name__: fitting[usual.__name__], **fitting}
 
 
 def constructors(kind: type[Component]) -> dict[str, Callable[..., Component]]:
-    """Give the ways to build a component beside its own constructor, by their names.
-
-    Parameters
-    ----------
-    kind : type
-        The class.
-
-    Returns
-    -------
-    dict
-    """
+    """Give the ways to build a component beside its own constructor, by their names."""
     return {
         name: one
         for name, one in getmembers(kind, ismethod)
@@ -213,21 +140,7 @@ def run_keys() -> dict[str, bool]:
 
 
 def described_run(file: TomlFile, where: Place, table: dict[str, Any]) -> dict[str, Any]:
-    """Build the objects that tables inside a table of a run stand for.
-
-    Parameters
-    ----------
-    file : TomlFile
-        To which faults are added.
-    where : tuple
-        Place of the table.
-    table : dict
-        Of a run, or of a sweep.
-
-    Returns
-    -------
-    dict
-    """
+    """Build the objects that tables inside a table of a run stand for."""
     found = dict(table)
     for name, kind in _OBJECTS.items():
         inner = found.get(name)
@@ -260,13 +173,7 @@ def _run_of(file: TomlFile, given: object) -> dict[str, Any]:
 
 
 def _read_arguments(**given: Any) -> None:
-    """Read the arguments of a run before there is one, so that faults have their line.
-
-    Raises
-    ------
-    AssemblyError, UnitsError, ComponentError, SolverError
-        As :meth:`rockframe.System.simulate`.
-    """
+    """Read the arguments of a run before there is one, so that faults have their line."""
     usual: dict[str, Any] = {
         "accuracy": AccuracyLevel.STANDARD,
         "outputs": (),

@@ -46,47 +46,18 @@ Motions = Mapping[str, GroundMotion] | Sequence[GroundMotion] | GroundMotion | N
 
 @dataclass(frozen=True)
 class DescribedStudy:
-    """What the file of a study describes.
+    """What the file of a study describes."""
 
-    Parameters
-    ----------
-    system : System
-        The scene.
-    motions : object
-        As :func:`rockframe.sweep` takes them.
-    arguments : dict
-        Further arguments of it.
-    store, output : Path or None
-        Where the cases are kept, and the file of the results.
-    files : tuple of Path
-        All files, and folders of files, that it was read from.
-    """
-
-    system: System
-    motions: Motions
-    arguments: dict[str, Any]
-    store: Path | None
+    system: System  # the scene
+    motions: Motions  # as :func:`rockframe.sweep` takes them
+    arguments: dict[str, Any]  # further arguments of it
+    store: Path | None  # where the cases are kept, and the file of the results
     output: Path | None
-    files: tuple[Path, ...]
+    files: tuple[Path, ...]  # all files, and folders of files, that it was read from
 
 
 def read_study(path: str | Path) -> DescribedStudy:
-    """Read the file of a study.
-
-    Parameters
-    ----------
-    path : str or Path
-        Of the file.
-
-    Returns
-    -------
-    DescribedStudy
-
-    Raises
-    ------
-    FileError
-        With every fault found.
-    """
+    """Read the file of a study."""
     file = TomlFile.read(path)
     import_modules(file)  # whose parts may have tables of their own
     for name in file.values:

@@ -18,17 +18,7 @@ _NO_TEXT: Final = (
 
 
 class TomlFile:
-    """What stands in a file, and the faults found so far.
-
-    Parameters
-    ----------
-    path : Path
-        Of the file.
-    values : mapping
-        All tables.
-    lines : mapping
-        Lines of tables and keys.
-    """
+    """What stands in a file, and the faults found so far."""
 
     def __init__(self, path: Path, values: Mapping[str, Any], lines: Mapping[Place, int]) -> None:
         self.path = path
@@ -40,22 +30,7 @@ class TomlFile:
 
     @classmethod
     def read(cls, path: str | Path) -> Self:
-        """Read a file.
-
-        Parameters
-        ----------
-        path : str or Path
-            Of the file; ``~`` is the user's folder.
-
-        Returns
-        -------
-        TomlFile
-
-        Raises
-        ------
-        FileError
-            Missing, not readable, or no TOML.
-        """
+        """Read a file."""
         place = Path(path).expanduser()
         try:
             text = place.read_text(encoding="utf-8")
@@ -97,13 +72,7 @@ class TomlFile:
         return not self._faults
 
     def check(self) -> None:
-        """Refuse the file if a fault has been found.
-
-        Raises
-        ------
-        FileError
-            With every fault, in the order of the lines.
-        """
+        """Refuse the file if a fault has been found."""
         if self._faults:
             ordered = sorted(self._faults, key=lambda fault: fault[0] or 0)
             raise FileError(str(self.path), ordered)

@@ -14,24 +14,7 @@ _MASS_WAYS: Final = OneOf("mass", "density")
 
 
 def cylinder_body(given: Mapping[str, object], owner: str) -> ShapedBody:
-    """Find mass and inertia of a cylinder, :eq:`eq-cylinder-inertia`.
-
-    Parameters
-    ----------
-    given : mapping
-        Arguments of :meth:`rockframe.Block.cylinder`; None for those not given.
-    owner : str
-        For messages.
-
-    Returns
-    -------
-    ShapedBody
-
-    Raises
-    ------
-    UnitsError, ComponentError
-        As for :meth:`rockframe.Block.cylinder`.
-    """
+    """Find mass and inertia of a cylinder, :eq:`eq-cylinder-inertia`."""
 
     def positive(name: str, measure: Measure) -> float:
         return to_si(given[name], measure, owner=owner, name=name, condition=POSITIVE)

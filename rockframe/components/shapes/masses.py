@@ -44,19 +44,7 @@ class PlaneMass:
 
 
 def mean_by_mass(masses: Sequence[Mass], value: Callable[[Mass], float]) -> float:
-    """Give the mean of a value, weighted by mass.
-
-    Parameters
-    ----------
-    masses : sequence
-        One or more.
-    value : callable
-        From a mass to its value.
-
-    Returns
-    -------
-    float
-    """
+    """Give the mean of a value, weighted by mass."""
     # every share is at most 1: masses of any magnitude stay representable
     total = sum(one.mass for one in masses)
     return math.fsum(value(one) * (one.mass / total) for one in masses)
@@ -79,17 +67,7 @@ def centre_of_mass(masses: Sequence[Placed]) -> tuple[float, float]:
 
 
 def combined_mass(masses: Sequence[Placed]) -> PlaneMass:
-    """Make one mass of many, by the parallel-axis theorem, :eq:`eq-parts-inertia`.
-
-    Parameters
-    ----------
-    masses : sequence
-        One or more.
-
-    Returns
-    -------
-    PlaneMass
-    """
+    """Make one mass of many, by the parallel-axis theorem, :eq:`eq-parts-inertia`."""
     x, y = centre_of_mass(masses)
     total = sum(one.mass for one in masses)
     squares = mean_by_mass(

@@ -26,26 +26,7 @@ from rockframe.signals.arrays import Array
 
 
 def outline_body(points: object, given: Mapping[str, object], owner: str) -> ShapedBody:
-    """Find how a body of a given outline stands.
-
-    Parameters
-    ----------
-    points : object
-        What the user gave for the outline.
-    given : mapping
-        Arguments ``mass``, ``density`` and ``depth``; None for those not given.
-    owner : str
-        For messages.
-
-    Returns
-    -------
-    ShapedBody
-
-    Raises
-    ------
-    UnitsError, ComponentError
-        As for :meth:`rockframe.Block.from_outline`.
-    """
+    """Find how a body of a given outline stands."""
     whole, corners = outline_mass(points, given, owner, "points")
     ground = min(corner.y for corner in corners)
     slack = ROUNDING * _size(corners)
@@ -60,26 +41,7 @@ def outline_body(points: object, given: Mapping[str, object], owner: str) -> Sha
 def outline_mass(
     points: object, given: Mapping[str, object], owner: str, name: str
 ) -> tuple[PlaneMass, list[OutlineCorner]]:
-    """Read an outline, check that it is a simple polygon, and give its mass and corners.
-
-    Parameters
-    ----------
-    points : object
-        What the user gave for the outline.
-    given : mapping
-        Arguments ``mass``, ``density`` and ``depth``; None or nothing for those not given.
-    owner, name : str
-        For messages: who asks, and what the outline is called.
-
-    Returns
-    -------
-    PlaneMass, list of Corner
-
-    Raises
-    ------
-    UnitsError, ComponentError
-        Points or mass are not as they should be, or the outline is no simple polygon.
-    """
+    """Read an outline, check that it is a simple polygon, and give its mass and corners."""
     read = read_points(points, owner=owner, name=name)
     # a point that repeats the one before, as the last may repeat the first, is no corner
     kept = [k for k in range(len(read)) if (read[k] != read[k - 1]).any()]

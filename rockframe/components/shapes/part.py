@@ -67,26 +67,7 @@ class PlacedPart:
 
 
 def read_part(name: str, given: Mapping[str, Any], owner: str) -> PlacedPart:
-    """Read a part.
-
-    Parameters
-    ----------
-    name : str
-        What it is called.
-    given : mapping
-        As in :class:`Part`.
-    owner : str
-        For messages.
-
-    Returns
-    -------
-    PlacedPart
-
-    Raises
-    ------
-    UnitsError, ComponentError
-        As for :meth:`rockframe.Block.from_parts`.
-    """
+    """Read a part."""
     place = f"{owner}: part {name!r}"
     told = {word: value for word, value in given.items() if value is not None}
     kind = next((word for word in _KINDS if word in told), None)

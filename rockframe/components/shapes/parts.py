@@ -11,26 +11,7 @@ from rockframe.errors import ComponentError, shown
 
 
 def body_of_parts(given: object, base: object, owner: str) -> ShapedBody:
-    """Find how parts stand that are fixed to one another.
-
-    Parameters
-    ----------
-    given : mapping
-        Parts by their names.
-    base : pair of str or Quantity, or None
-        Ends of the base, where the parts do not tell them.
-    owner : str
-        For messages.
-
-    Returns
-    -------
-    ShapedBody
-
-    Raises
-    ------
-    UnitsError, ComponentError
-        As for :meth:`rockframe.Block.from_parts`.
-    """
+    """Find how parts stand that are fixed to one another."""
     parts = _read(given, owner)
     corners = [corner for part in parts for corner in part.corners]
     top = max(part.top for part in parts)

@@ -69,18 +69,7 @@ def is_flat(points: Array) -> bool:
 
 
 def turning_back(points: Array) -> int | None:
-    """Find a corner at which an outline turns back on itself, if there is one.
-
-    Parameters
-    ----------
-    points : ndarray, shape (n, 2)
-        Corners.
-
-    Returns
-    -------
-    int or None
-        Number of the corner.
-    """
+    """Find a corner at which an outline turns back on itself, if there is one."""
     before, after = points - np.roll(points, 1, axis=0), np.roll(points, -1, axis=0) - points
     cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
     along = (before * after).sum(axis=1)
@@ -89,18 +78,7 @@ def turning_back(points: Array) -> int | None:
 
 
 def crossing(points: Array) -> tuple[int, int] | None:
-    """Find two edges that cross or touch, other than neighbours, if there are any.
-
-    Parameters
-    ----------
-    points : ndarray, shape (n, 2)
-        Corners.
-
-    Returns
-    -------
-    tuple of int, or None
-        Numbers of the corners at which the two edges begin.
-    """
+    """Find two edges that cross or touch, other than neighbours, if there are any."""
     starts, ends = points, np.roll(points, -1, axis=0)
     left, low = np.minimum(starts, ends).T.copy()
     right, high = np.maximum(starts, ends).T.copy()

@@ -44,17 +44,6 @@ class Stance:
 
         That is for a corner beyond the end of the base about which the body rocks; no other
         comes down before the body has turned by a right angle.
-
-        Parameters
-        ----------
-        corner : OutlineCorner
-            Of the body.
-        side : float
-            1 for rocking about the right end of the base, -1 about the left one.
-
-        Returns
-        -------
-        float
         """
         end = self.right if side > 0.0 else self.left
         beyond = side * (corner.x - end)
@@ -77,17 +66,7 @@ class ShapedBody:
     cautions: tuple[str, ...] = ()
 
     def build(self, kind: Callable[..., Made]) -> Made:
-        """Make the block, and warn.
-
-        Parameters
-        ----------
-        kind : callable
-            Class of the block.
-
-        Returns
-        -------
-        Block
-        """
+        """Make the block, and warn."""
         with heard():  # a shape may reach out beside its base, beyond the bound of its inertia
             made = kind(**self.arguments)
         for caution in self.cautions:

@@ -440,13 +440,7 @@ class ChainLink(NamedTuple):
 
 
 def linked(chain: Chain, links: Sequence[ChainLink]) -> LinkedChain:
-    """Give a chain with links.
-
-    Raises
-    ------
-    TypeError
-        They do not follow one law.
-    """
+    """Give a chain with links."""
     laws = [one.numbers.law for one in links]
     if len({type(law) for law in laws}) != 1:
         names = " and ".join(sorted({type(law).__name__ for law in laws}))

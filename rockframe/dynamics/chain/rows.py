@@ -435,13 +435,7 @@ class Rows(InState, Lists):
 
 
 def row_of(body: Body, base: BaseNumbers, mass: float, top: float, beside: float) -> Vector:
-    """Give a body's row.
-
-    Raises
-    ------
-    TypeError
-        The law of its base is none of those that a chain knows.
-    """
+    """Give a body's row."""
     if isinstance(base.law, ElasticPads) and isinstance(base.law.law, Viscoelastic):
         law = ON_PADS
     elif isinstance(base.law, Rigid):
@@ -463,13 +457,7 @@ def row_of(body: Body, base: BaseNumbers, mass: float, top: float, beside: float
 
 
 def lists_of(rows: Sequence[Vector]) -> Lists:
-    """Give the lists of bodies, from the top down, with room to work in.
-
-    Raises
-    ------
-    ValueError
-        There are more bodies than a mode can tell of.
-    """
+    """Give the lists of bodies, from the top down, with room to work in."""
     if len(rows) > MOST_BODIES:
         msg = f"a chain has at most {MOST_BODIES} bodies, got {len(rows)}"
         raise ValueError(msg)

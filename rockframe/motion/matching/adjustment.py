@@ -22,40 +22,18 @@ _LEAST_WEIGHT: Final = 0.02
 
 
 class Adjustment(NamedTuple):
-    """Wavelets, and what each of them does to each peak.
+    """Wavelets, and what each of them does to each peak."""
 
-    Parameters
-    ----------
-    wavelets : ndarray, shape (n, m)
-        One for each peak, of the height that adds its target to the peak that it moves most
-        [m s^-2].
-    effects : ndarray, shape (m, m)
-        What a wavelet, by column, adds to a peak, by row, over its target and in the peak's own
-        direction [1].
-    missing : ndarray, shape (m,)
-        What the peaks lack, over their targets [1].
-    greatest : ndarray of bool, shape (m,)
-        Peaks that are to come to the target; others are not to exceed it.
-    """
-
+    # one for each peak, of the height that adds its target to the peak that it moves most [m s^-2]
     wavelets: Array
+    # what a wavelet, by column, adds to a peak, by row, over its target and in the peak's own
+    # direction [1]
     effects: Array
-    missing: Array
-    greatest: NDArray[np.bool_]
+    missing: Array  # what the peaks lack, over their targets [1]
+    greatest: NDArray[np.bool_]  # peaks that are to come to the target; others are not to exceed it
 
     def amplitudes(self, regularisation: float) -> Array:
-        """Compute the amplitudes of all wavelets, :eq:`eq-matching-step`.
-
-        Parameters
-        ----------
-        regularisation : float
-            The greater, the smaller they are [1].
-
-        Returns
-        -------
-        ndarray, shape (m,)
-            [1]
-        """
+        """Compute the amplitudes of all wavelets, :eq:`eq-matching-step`."""
         from scipy import linalg as module
 
         linalg: Any = module
@@ -81,23 +59,7 @@ class Adjustment(NamedTuple):
 def adjustment_of(
     oscillators: Oscillators, peaks: OscillatorPeaks, targets: Array, count: int
 ) -> Adjustment:
-    """Make the wavelets of all peaks, and the matrix of what they do, :eq:`eq-matching-matrix`.
-
-    Parameters
-    ----------
-    oscillators : Oscillators
-        The oscillators.
-    peaks : OscillatorPeaks
-        Their peaks, of some or of all.
-    targets : ndarray, shape (k,)
-        Pseudo-acceleration that each oscillator is to reach [m s^-2].
-    count : int
-        Samples of the motion.
-
-    Returns
-    -------
-    Adjustment
-    """
+    """Make the wavelets of all peaks, and the matrix of what they do, :eq:`eq-matching-matrix`."""
     wanted = targets[peaks.oscillators]
     scaled = oscillators.influences(peaks, count) * (np.sign(peaks.values) / wanted)[:, None]
     periods = oscillators.periods[peaks.oscillators]

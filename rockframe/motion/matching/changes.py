@@ -35,21 +35,7 @@ AT: Final = "period_of_spectral_growth"
 
 
 def changes(before: Signal, after: Signal, goal: Goal) -> dict[str, float]:
-    """Compare a motion before and after its matching.
-
-    Parameters
-    ----------
-    before, after : Signal
-        As it was scaled, and with the wavelets.
-    goal : Goal
-        What it was matched to.
-
-    Returns
-    -------
-    dict of str to float
-        Peaks [m s^-2, m s^-1, m] and the pulse indicator [1] of both; and the largest growth of the
-        spectrum [1] from the longest period of the range to five times as long, and its period [s].
-    """
+    """Compare a motion before and after its matching."""
     found: dict[str, float] = {}
     for when, signal in (("before", before), ("after", after)):
         velocity, displacement = ground_path(signal)

@@ -71,25 +71,13 @@ _POWER: Final = 4.0
 
 
 class Goal(NamedTuple):
-    """What a motion is matched to.
+    """What a motion is matched to."""
 
-    Parameters
-    ----------
-    spectrum : callable
-        Pseudo-accelerations [m s^-2] at periods [s].
-    shortest, longest : float
-        Periods between which it is to be reached [s].
-    damping_ratio : float
-        Of the oscillators [1].
-    tolerance : float
-        Greatest misfit that is aimed at, over the target [1].
-    """
-
-    spectrum: Callable[[Array], Array]
-    shortest: float
+    spectrum: Callable[[Array], Array]  # pseudo-accelerations [m s^-2] at periods [s]
+    shortest: float  # periods between which it is to be reached [s]
     longest: float
-    damping_ratio: float
-    tolerance: float
+    damping_ratio: float  # of the oscillators [1]
+    tolerance: float  # greatest misfit that is aimed at, over the target [1]
 
     @property
     def matched(self) -> Array:
@@ -112,24 +100,12 @@ class Goal(NamedTuple):
 
 
 class Matched(NamedTuple):
-    """A motion whose spectrum is the target's, or as close to it as was reached.
+    """A motion whose spectrum is the target's, or as close to it as was reached."""
 
-    Parameters
-    ----------
-    signal : Signal
-        The motion.
-    scale_factor : float
-        By which it was multiplied before wavelets were added [1].
-    ratios : ndarray, shape (c,)
-        Its spectrum over the target, where it was checked [1].
-    steps : int
-        Adjustments that were made.
-    """
-
-    signal: Signal
-    scale_factor: float
-    ratios: Array
-    steps: int
+    signal: Signal  # the motion
+    scale_factor: float  # by which it was multiplied before wavelets were added [1]
+    ratios: Array  # its spectrum over the target, where it was checked [1]
+    steps: int  # adjustments that were made
 
     @property
     def misfit(self) -> float:
@@ -138,20 +114,7 @@ class Matched(NamedTuple):
 
 
 def match(signal: Signal, goal: Goal) -> Matched:
-    """Scale a motion, and add wavelets until its spectrum is the target's.
-
-    Parameters
-    ----------
-    signal : Signal
-        The motion, which moves, joined by straight lines.
-    goal : Goal
-        What it is matched to.
-
-    Returns
-    -------
-    Matched
-        The best that was reached; the motion itself where that is within the tolerance.
-    """
+    """Scale a motion, and add wavelets until its spectrum is the target's."""
     best = Matched(signal, 1.0, goal.ratios(signal), 0)
     if best.misfit <= goal.tolerance:
         return best

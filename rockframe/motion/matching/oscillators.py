@@ -23,24 +23,12 @@ _MOST: Final = 10
 
 
 class OscillatorPeaks(NamedTuple):
-    """The greatest peaks of oscillators.
+    """The greatest peaks of oscillators."""
 
-    Parameters
-    ----------
-    oscillators : ndarray of int, shape (m,)
-        Which oscillator peaks.
-    values : ndarray, shape (m,)
-        Pseudo-acceleration, with its sign [m s^-2].
-    times : ndarray, shape (m,)
-        From the first sample [s].
-    ranks : ndarray of int, shape (m,)
-        Zero of the greatest of its oscillator, one of the next.
-    """
-
-    oscillators: NDArray[np.intp]
-    values: Array
-    times: Array
-    ranks: NDArray[np.intp]
+    oscillators: NDArray[np.intp]  # which oscillator peaks
+    values: Array  # pseudo-acceleration, with its sign [m s^-2]
+    times: Array  # from the first sample [s]
+    ranks: NDArray[np.intp]  # zero of the greatest of its oscillator, one of the next
 
     @property
     def greatest(self) -> NDArray[np.bool_]:
@@ -53,19 +41,7 @@ class OscillatorPeaks(NamedTuple):
         return np.abs(self.values[self.greatest])
 
     def looked_at(self, chosen: NDArray[np.bool_], targets: Array) -> OscillatorPeaks:
-        """Keep the greatest peaks of some oscillators, and those that exceed the target.
-
-        Parameters
-        ----------
-        chosen : ndarray of bool, shape (k,)
-            Which oscillators.
-        targets : ndarray, shape (k,)
-            Of all oscillators [m s^-2].
-
-        Returns
-        -------
-        OscillatorPeaks
-        """
+        """Keep the greatest peaks of some oscillators, and those that exceed the target."""
         exceeding = np.abs(self.values) > targets[self.oscillators]
         kept = chosen[self.oscillators] & (exceeding | (self.ranks < _FEW))
         return OscillatorPeaks(
@@ -74,17 +50,7 @@ class OscillatorPeaks(NamedTuple):
 
 
 class Oscillators:
-    """Linear oscillators on ground that moves along straight lines from sample to sample.
-
-    Parameters
-    ----------
-    periods : ndarray, shape (k,)
-        Undamped periods, above zero [s].
-    damping_ratio : float
-        Damping ratio, below one [1].
-    time_step : float
-        Time between samples [s].
-    """
+    """Linear oscillators on ground that moves along straight lines from sample to sample."""
 
     def __init__(self, periods: Array, damping_ratio: float, time_step: float) -> None:
         self.periods = periods
@@ -97,19 +63,7 @@ class Oscillators:
         self._after = math.ceil(float(periods.max()) / time_step) + 2
 
     def histories(self, samples: Array) -> Array:
-        """Follow all oscillators from rest, through the motion and after it.
-
-        Parameters
-        ----------
-        samples : ndarray, shape (n,)
-            Acceleration of the ground [m s^-2].
-
-        Returns
-        -------
-        ndarray, shape (k, n + f)
-            Relative displacements times the squared frequencies: pseudo-accelerations, with
-            their signs [m s^-2].
-        """
+        """Follow all oscillators from rest, through the motion and after it."""
         from scipy import signal as module
 
         signal: Any = module
@@ -127,20 +81,7 @@ class Oscillators:
         return found
 
     def peaks(self, samples: Array, histories: Array) -> OscillatorPeaks:
-        """Find the greatest peaks of all oscillators, between the samples too.
-
-        Parameters
-        ----------
-        samples : ndarray, shape (n,)
-            Acceleration of the ground [m s^-2].
-        histories : ndarray, shape (k, n + f)
-            As of :meth:`histories` [m s^-2].
-
-        Returns
-        -------
-        OscillatorPeaks
-            Up to ten of each oscillator, the greatest first.
-        """
+        """Find the greatest peaks of all oscillators, between the samples too."""
         size = np.abs(histories)
         top = size.max(axis=1, keepdims=True)
         inner = size[:, 1:-2]
@@ -157,21 +98,7 @@ class Oscillators:
         return OscillatorPeaks(which[kept], values[kept], times[kept], rank[few])
 
     def influences(self, peaks: OscillatorPeaks, count: int) -> Array:
-        """Compute what every sample adds to the peaks, :eq:`eq-sample-influence`.
-
-        Parameters
-        ----------
-        peaks : OscillatorPeaks
-            Oscillators and times.
-        count : int
-            Samples of the motion.
-
-        Returns
-        -------
-        ndarray, shape (m, n)
-            Pseudo-acceleration at the time of the peak for a unit of each sample, but the first
-            and the last; these are zero [1].
-        """
+        """Compute what every sample adds to the peaks, :eq:`eq-sample-influence`."""
         found = np.zeros((peaks.values.size, count))
         for place, period in enumerate(self.periods.tolist()):
             rows = np.flatnonzero(peaks.oscillators == place)

@@ -29,18 +29,10 @@ _FADE: Final = 0.25
 
 
 class Wavelet(NamedTuple):
-    """A wavelet at the samples of a motion.
+    """A wavelet at the samples of a motion."""
 
-    Parameters
-    ----------
-    first : int
-        The sample at which it begins.
-    values : ndarray, shape (m,)
-        From there on; zero elsewhere [1].
-    """
-
-    first: int
-    values: Array
+    first: int  # the sample at which it begins
+    values: Array  # from there on; zero elsewhere [1]
 
     @property
     def samples(self) -> slice:
@@ -62,27 +54,7 @@ def lead_of(period: float, damping_ratio: float) -> float:
 def wavelet_at(
     peak_time: float, period: float, damping_ratio: float, *, time_step: float, count: int
 ) -> Wavelet:
-    """Make the wavelet under which an oscillator peaks at a time, :eq:`eq-tapered-cosine`.
-
-    Parameters
-    ----------
-    peak_time : float
-        Time of the oscillator's peak from the first sample [s].
-    period : float
-        Undamped period of the oscillator [s].
-    damping_ratio : float
-        Damping ratio, below one [1].
-    time_step : float
-        Time between samples [s].
-    count : int
-        Samples of the motion, whose length is three periods at least.
-
-    Returns
-    -------
-    Wavelet
-        The first and the last sample of the motion are zero; its sum, and that of its product
-        with the time, are zero: velocity and displacement at the end are not changed.
-    """
+    """Make the wavelet under which an oscillator peaks at a time, :eq:`eq-tapered-cosine`."""
     duration = (count - 1) * time_step
     edge = _NARROWEST * period
     centre = min(max(peak_time - lead_of(period, damping_ratio), edge), duration - edge)

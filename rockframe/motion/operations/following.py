@@ -29,26 +29,7 @@ def following(
     operation: Mapping[str, Any] | None = None,
     metadata: Mapping[str, Any] | None = None,
 ) -> Made:
-    """Give the motion that an operation leads to.
-
-    Parameters
-    ----------
-    motion : GroundMotion
-        The motion before.
-    si : Motion
-        What became of it.
-    *steps : str
-        Sentences for its history.
-    operation : mapping, optional
-        Name and arguments, for the recipe; without them nothing can build the motion again.
-    metadata : mapping, optional
-        What is to be added.
-
-    Returns
-    -------
-    GroundMotion
-        Of the same class.
-    """
+    """Give the motion that an operation leads to."""
     recipe = None
     if motion.recipe is not None and operation is not None:
         done = [*motion.recipe.get("operations", ()), dict(operation)]
@@ -70,21 +51,7 @@ def lost_pieces(si: Motion) -> tuple[str, ...]:
 def with_samples(
     si: Motion, change: Callable[[Signal], Array], time_step: float | None = None
 ) -> Motion:
-    """Change the samples of both components alike; analytic pieces between them are dropped.
-
-    Parameters
-    ----------
-    si : Motion
-        The motion.
-    change : callable
-        New samples from the old component.
-    time_step : float, optional
-        The new one; the old one unless given [s].
-
-    Returns
-    -------
-    Motion
-    """
+    """Change the samples of both components alike; analytic pieces between them are dropped."""
     step = si.time_step if time_step is None else time_step
 
     def changed(signal: Signal) -> Signal:
@@ -94,26 +61,7 @@ def with_samples(
 
 
 def other_motion(other: object, si: Motion, owner: str) -> MotionValue:
-    """Check the motion that another one is to be combined with.
-
-    Parameters
-    ----------
-    other : object
-        What the user gave.
-    si : Motion
-        The motion itself.
-    owner : str
-        Class and method, for the message.
-
-    Returns
-    -------
-    GroundMotion
-
-    Raises
-    ------
-    ComponentError
-        Not a motion, or of another time step.
-    """
+    """Check the motion that another one is to be combined with."""
     if not isinstance(other, MotionValue):
         msg = f"{owner}: other needs a GroundMotion, got {type(other).__name__}"
         raise ComponentError(msg)

@@ -121,29 +121,7 @@ def velocity_pulse(
 
 
 def searched(shortest: QuantityLike, longest: QuantityLike, dt: float, *, owner: str) -> Array:
-    """Read the arguments between which periods a pulse is looked for.
-
-    Parameters
-    ----------
-    shortest, longest : str or Quantity
-        What the user gave [s].
-    dt : float
-        Time step [s].
-    owner : str
-        Class and method, for the message.
-
-    Returns
-    -------
-    ndarray, shape (k,)
-        All periods that are looked at [s].
-
-    Raises
-    ------
-    UnitsError
-        Not times.
-    ComponentError
-        In the wrong order, or too short for the motion.
-    """
+    """Read the arguments between which periods a pulse is looked for."""
     first, last = (
         to_si(value, PERIOD, owner=owner, name=name, condition=POSITIVE)
         for name, value in (("shortest_period", shortest), ("longest_period", longest))

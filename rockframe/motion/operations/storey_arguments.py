@@ -50,29 +50,7 @@ class BuildingModes(NamedTuple):
 
 
 def read_building(given: Mapping[str, Any], damping_ratio: object, *, owner: str) -> BuildingModes:
-    """Read one of the three ways in which a building is described.
-
-    Parameters
-    ----------
-    given : mapping
-        The arguments of :func:`through_storeys` that describe a building, None for those that
-        were left out.
-    damping_ratio : float, or sequence of float
-        Of all modes, or of each [1].
-    owner : str
-        Class and method, for messages.
-
-    Returns
-    -------
-    BuildingModes
-
-    Raises
-    ------
-    UnitsError
-        A value without a unit, or of another kind.
-    ComponentError
-        None or several of the ways, or a value out of range.
-    """
+    """Read one of the three ways in which a building is described."""
     told = {name: value for name, value in given.items() if value is not None}
     ways = [set(needed) <= set(told) <= {*needed, *more} for needed, more in _WAYS]
     if True not in ways:

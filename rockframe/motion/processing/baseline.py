@@ -8,19 +8,7 @@ from rockframe.signals.arrays import Array
 
 
 def without_baseline(samples: Array, order: int) -> Array:
-    """Subtract the polynomial of degree `order` that fits best (least squares).
-
-    Parameters
-    ----------
-    samples : ndarray, shape (n,)
-        Samples [m s^-2].
-    order : int
-        Degree; 0 takes the mean away.
-
-    Returns
-    -------
-    ndarray, shape (n,)
-    """
+    """Subtract the polynomial of degree `order` that fits best (least squares)."""
     place = np.linspace(-1.0, 1.0, samples.size)
     basis = np.polynomial.legendre.legvander(place, order)
     coefficients = np.linalg.lstsq(basis, samples, rcond=None)[0]
@@ -28,22 +16,7 @@ def without_baseline(samples: Array, order: int) -> Array:
 
 
 def without_drift(dt: float, samples: Array, order: int) -> Array:
-    """Subtract the slope of the polynomial that fits the velocity best (least squares).
-
-    Parameters
-    ----------
-    dt : float
-        Time step [s].
-    samples : ndarray, shape (n,)
-        Samples [m s^-2].
-    order : int
-        Degree of the polynomial, 1 or more; it is zero at the start, where the ground
-        is at rest.
-
-    Returns
-    -------
-    ndarray, shape (n,)
-    """
+    """Subtract the slope of the polynomial that fits the velocity best (least squares)."""
     slopes = np.polynomial.legendre.legvander(np.linspace(-1.0, 1.0, samples.size), order - 1)
     # integrated like the motion, so that a drift that is a polynomial goes entirely
     together = np.column_stack([slopes, samples])

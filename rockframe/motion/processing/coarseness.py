@@ -21,24 +21,7 @@ _ROUNDING: Final = 1e-9
 def say_coarse(
     signals: Iterable[Signal], shortest: float, *, owner: str, remedy: str | None = None
 ) -> None:
-    """Warn of records that are too coarse for the shortest of the periods asked for.
-
-    Parameters
-    ----------
-    signals : iterable of Signal
-        Components of motions; analytic ones are not coarse.
-    shortest : float
-        The shortest period above zero, or infinity [s].
-    owner : str
-        Function, for the message.
-    remedy : str, optional
-        What helps; to resample, unless given.
-
-    Warns
-    -----
-    RecordWarning
-        One of them has fewer than ten samples in the period.
-    """
+    """Warn of records that are too coarse for the shortest of the periods asked for."""
     steps = [one.time_step for one in signals if not one.analytic]
     coarse = [step for step in steps if shortest < FEWEST * step * (1.0 - _ROUNDING)]
     if not coarse:

@@ -22,32 +22,14 @@ _LEVELS: Final = 12
 
 
 def mother_wavelet(place: Array) -> Array:
-    """Evaluate the wavelet, :eq:`eq-two-scale`.
-
-    Parameters
-    ----------
-    place : ndarray
-        From the start of its support, 0 to 7 [1].
-
-    Returns
-    -------
-    ndarray
-        Of unit energy and zero mean; zero outside of the support [1].
-    """
+    """Evaluate the wavelet, :eq:`eq-two-scale`."""
     knots, values = _table()
     return np.interp(place, knots, values, left=0.0, right=0.0)
 
 
 @cache
 def scaling_filter() -> Array:
-    """Compute the filter of the two-scale equation, :eq:`eq-daubechies-filter`, shape (8,).
-
-    Returns
-    -------
-    ndarray
-        Of sum root two, orthogonal to its even shifts, with four vanishing moments and all
-        zeros within the unit circle (Daubechies 1988).
-    """
+    """Compute the filter of the two-scale equation, :eq:`eq-daubechies-filter`, shape (8,)."""
     # |m(y)|^2 = (1 - y)^4 P(y) with y = sin^2(w/2), P(y) = sum of binomials times y^k
     binomials = [math.comb(_MOMENTS - 1 + k, k) for k in range(_MOMENTS)]
     taps = np.array([1.0])

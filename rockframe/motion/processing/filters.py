@@ -22,29 +22,7 @@ def butterworth(
     causal: bool = False,
     keep_padding: bool = False,
 ) -> Array:
-    """Run a Butterworth filter over the zero-padded samples.
-
-    Parameters
-    ----------
-    dt : float
-        Time step [s].
-    samples : ndarray, shape (n,)
-        Samples [m s^-2].
-    low, high : float or None
-        Corners of the pass band; at least one [Hz].
-    order : int
-        Of each pass.
-    causal : bool, optional
-        Run it forwards only, instead of forwards and backwards.
-    keep_padding : bool, optional
-        Leave what the filter makes of the zeros: at both ends, of a causal one at the end and
-        one zero at the start.
-
-    Returns
-    -------
-    ndarray, shape (n,), (n + 2 p,) or (n + p + 1,)
-        Padding removed unless it is kept.
-    """
+    """Run a Butterworth filter over the zero-padded samples."""
     from scipy import signal as module
 
     signal: Any = module

@@ -16,20 +16,11 @@ DECAYED: Final = 0.01
 
 
 class FloorModes(NamedTuple):
-    """Modes of vibration of a building, as one of its floors feels them.
+    """Modes of vibration of a building, as one of its floors feels them."""
 
-    Parameters
-    ----------
-    periods : ndarray, shape (m,)
-        Undamped periods; that of a rigid mode is zero [s].
-    damping_ratios : ndarray, shape (m,)
-        Shares of critical damping, from 0 to 1 [1].
-    participations : ndarray, shape (m,)
-        Participation factors times the displacement of the floor in the mode shape [1].
-    """
-
-    periods: Array
-    damping_ratios: Array
+    periods: Array  # undamped periods; that of a rigid mode is zero [s]
+    damping_ratios: Array  # shares of critical damping, from 0 to 1 [1]
+    # participation factors times the displacement of the floor in the mode shape [1]
     participations: Array
 
     @property
@@ -45,25 +36,7 @@ class FloorModes(NamedTuple):
 
 
 def interval_matrix(time_step: float, period: float, damping: float, powers: int) -> Array:
-    """Compute what an interval makes of an oscillator's state, :eq:`eq-interval-matrix`.
-
-    Parameters
-    ----------
-    time_step : float
-        Length of the interval [s].
-    period : float
-        Undamped period, greater than zero [s].
-    damping : float
-        Damping ratio [1].
-    powers : int
-        Coefficients of the ground's polynomial.
-
-    Returns
-    -------
-    ndarray, shape (2, 2 + powers)
-        Displacement [m] and, times the period over 2 pi, velocity at the interval's end for
-        a unit of, by column, these two at its start, and the coefficients [m s^-2].
-    """
+    """Compute what an interval makes of an oscillator's state, :eq:`eq-interval-matrix`."""
     from scipy import linalg as module
 
     linalg: Any = module
@@ -85,19 +58,7 @@ def interval_matrix(time_step: float, period: float, damping: float, powers: int
 def passed_on(pieces: Array, time_step: float, modes: FloorModes) -> Array:
     """Compute what the modes add to a floor's absolute acceleration, from rest.
 
-    Parameters
-    ----------
-    pieces : ndarray, shape (n, m)
-        Acceleration of the ground in every interval [m s^-2].
-    time_step : float
-        Length of an interval [s].
-    modes : FloorModes
-        Those that move.
-
-    Returns
-    -------
-    ndarray, shape (n + 1,)
-        The sum in :eq:`eq-floor-acceleration` at the ends of all intervals [m s^-2].
+    By :eq:`eq-floor-acceleration`.
     """
     total = np.zeros(len(pieces) + 1)
     for period, damping, participation in np.column_stack(modes).tolist():
@@ -106,18 +67,7 @@ def passed_on(pieces: Array, time_step: float, modes: FloorModes) -> Array:
 
 
 def decay_time(modes: FloorModes) -> float:
-    """Give the time in which all modes come to rest, :eq:`eq-floor-decay`.
-
-    Parameters
-    ----------
-    modes : FloorModes
-        Those that move.
-
-    Returns
-    -------
-    float
-        Infinite if a mode is not damped [s].
-    """
+    """Give the time in which all modes come to rest, :eq:`eq-floor-decay`."""
     with np.errstate(divide="ignore"):
         periods = 1.0 - math.log(DECAYED) / (2.0 * math.pi * modes.damping_ratios)
     return max((modes.periods * periods).tolist(), default=0.0)

@@ -38,20 +38,7 @@ def instants_of(duration: float, time_step: float) -> Array:
 
 
 def refined(signal: Signal, time_step: float) -> Array:
-    """Sample the same function of time more finely.
-
-    Parameters
-    ----------
-    signal : Signal
-        The function.
-    time_step : float
-        New, smaller time step [s].
-
-    Returns
-    -------
-    ndarray
-        The old samples are among the new ones if the ratio is an integer.
-    """
+    """Sample the same function of time more finely."""
     place = instants_of(signal.duration, time_step) / signal.time_step
     if signal.analytic:
         return signal.at_place(place)
@@ -69,22 +56,6 @@ def refined(signal: Signal, time_step: float) -> Array:
 def band_limited(dt: float, samples: Array, time_step: float) -> Array:
     """Sample more finely the motion without frequencies beyond the old Nyquist frequency.
 
-    Parameters
-    ----------
-    dt : float
-        Present time step [s].
-    samples : ndarray, shape (n,)
-        Present samples [m s^-2].
-    time_step : float
-        New, smaller time step [s].
-
-    Returns
-    -------
-    ndarray
-        The old samples are among the new ones if the ratio is an integer.
-
-    Notes
-    -----
     A sinc of 64 old samples to each side under a Kaiser window, whose zeros fall on the old
     samples. Beyond its ends the motion is taken to go on along the straight line
     through its first and last sample, from which it differs by nothing there. A ratio that
@@ -114,21 +85,6 @@ def band_limited(dt: float, samples: Array, time_step: float) -> Array:
 def coarsened(dt: float, samples: Array, time_step: float) -> Array:
     """Sample more coarsely, after a zero-phase low-pass filter against aliasing.
 
-    Parameters
-    ----------
-    dt : float
-        Present time step [s].
-    samples : ndarray, shape (n,)
-        Present samples [m s^-2].
-    time_step : float
-        New, greater time step [s].
-
-    Returns
-    -------
-    ndarray
-
-    Notes
-    -----
     Chebyshev filter of order 9 and 0.05 dB ripple up to 0.8 of the new Nyquist
     frequency, run forwards and backwards; a ratio that is not an integer is
     then read off a cubic spline.
@@ -152,20 +108,7 @@ def coarsened(dt: float, samples: Array, time_step: float) -> Array:
 
 
 def padded(signal: Signal, count: int) -> Signal:
-    """Append zeros (a still ground) up to `count` samples.
-
-    Parameters
-    ----------
-    signal : Signal
-        The signal, of n samples.
-    count : int
-        Length wanted, at least n.
-
-    Returns
-    -------
-    Signal
-        An analytic one stops at once, a record by a straight line over one time step.
-    """
+    """Append zeros (a still ground) up to `count` samples."""
     missing = count - signal.samples.size
     if missing == 0:
         return signal
@@ -177,20 +120,7 @@ def padded(signal: Signal, count: int) -> Signal:
 
 
 def divided_signal(signal: Signal, parts: int) -> Signal:
-    """Divide every interval into equal parts.
-
-    Parameters
-    ----------
-    signal : Signal
-        The signal.
-    parts : int
-        How many.
-
-    Returns
-    -------
-    Signal
-        The same function of time; the old samples are among the new ones.
-    """
+    """Divide every interval into equal parts."""
     if parts == 1:
         return signal
     step = signal.time_step / parts

@@ -10,22 +10,7 @@ from rockframe.signals.arrays import Array
 
 
 def uniform_modes(storeys: int, floor: int, period: float) -> tuple[Array, Array]:
-    """Give the modes of equal storeys in closed form, :eq:`eq-uniform-building`.
-
-    Parameters
-    ----------
-    storeys : int
-        Number of storeys, all of one mass and one stiffness.
-    floor : int
-        The floor looked at: 1 stands on the lowest storey, the last one is the roof.
-    period : float
-        Of the first mode [s].
-
-    Returns
-    -------
-    periods, participations : ndarray, shape (storeys,)
-        From the longest period down [s]; at the floor [1].
-    """
+    """Give the modes of equal storeys in closed form, :eq:`eq-uniform-building`."""
     angles = np.pi * np.arange(1.0, 2.0 * storeys, 2.0) / (2 * storeys + 1)
     periods = period * np.sin(0.5 * angles[0]) / np.sin(0.5 * angles)
     participations = 2.0 * np.sin(floor * angles) / ((2 * storeys + 1) * np.tan(0.5 * angles))
@@ -33,23 +18,7 @@ def uniform_modes(storeys: int, floor: int, period: float) -> tuple[Array, Array
 
 
 def building_modes(masses: Array, stiffnesses: Array, floor: int) -> tuple[Array, Array]:
-    """Compute the modes of any storeys, :eq:`eq-shear-building`.
-
-    Parameters
-    ----------
-    masses : ndarray, shape (n,)
-        Of the floors, from the lowest up [kg].
-    stiffnesses : ndarray, shape (n,)
-        Of the storeys under them [N m^-1].
-    floor : int
-        The floor looked at, from 1 up.
-
-    Returns
-    -------
-    periods, participations : ndarray, shape (n,)
-        From the longest period down [s]; at the floor [1]. The period of a mode is NaN where its
-        square frequency is not above the rounding of the largest one.
-    """
+    """Compute the modes of any storeys, :eq:`eq-shear-building`."""
     from scipy import linalg as module
 
     linalg: Any = module

@@ -8,19 +8,7 @@ from rockframe.signals.arrays import Array
 
 
 def tapered(samples: Array, intervals: float) -> Array:
-    """Let a motion grow from zero and fade to zero along half a cosine.
-
-    Parameters
-    ----------
-    samples : ndarray, shape (n,)
-        Samples [m s^-2].
-    intervals : float
-        Length of each taper over the time step, at most half the motion.
-
-    Returns
-    -------
-    ndarray, shape (n,)
-    """
+    """Let a motion grow from zero and fade to zero along half a cosine."""
     place = np.arange(samples.size)
     from_end = np.minimum(place, samples.size - 1 - place)
     share = np.minimum(from_end / intervals, 1.0)

@@ -34,41 +34,21 @@ _REFINEMENT: Final = 10
 
 
 class WaveletPeak(NamedTuple):
-    """Where the wavelet transform is greatest.
+    """Where the wavelet transform is greatest."""
 
-    Parameters
-    ----------
-    period : float
-        Pseudo-period of the wavelet [s].
-    sample : int
-        Its middle.
-    direction : float
-        From the first of two components towards the second; zero of one [rad].
-    """
-
-    period: float
-    sample: int
-    direction: float
+    period: float  # pseudo-period of the wavelet [s]
+    sample: int  # its middle
+    direction: float  # from the first of two components towards the second; zero of one [rad]
 
 
 class Measures(NamedTuple):
-    """What tells whether a motion is that of a pulse.
+    """What tells whether a motion is that of a pulse."""
 
-    Parameters
-    ----------
-    peak_ratio, energy_ratio : float
-        Peak and sum of squares of what the pulse leaves of the velocity, over those of the
-        whole [1].
-    indicator : float
-        From 0, no pulse, to 1 [1].
-    pulse_start, motion_start : float
-        When a tenth of the squares of the pulse is reached, and a fifth of those of the
-        whole [s].
-    """
-
+    # peak and sum of squares of what the pulse leaves of the velocity, over those of the whole [1]
     peak_ratio: float
     energy_ratio: float
-    indicator: float
+    indicator: float  # from 0, no pulse, to 1 [1]
+    # when a tenth of the squares of the pulse is reached, and a fifth of those of the whole [s]
     pulse_start: float
     motion_start: float
 
@@ -82,20 +62,7 @@ def periods_between(shortest: float, longest: float) -> Array:
 def strongest(velocities: Array, dt: float, periods: Array) -> WaveletPeak:
     """Find where the wavelet transform is greatest, :eq:`eq-wavelet-coefficient`.
 
-    Parameters
-    ----------
-    velocities : ndarray, shape (c, n)
-        One component, or two at a right angle: then in the direction in which it is greatest,
-        :eq:`eq-pulse-direction` [m s^-1].
-    dt : float
-        Time step [s].
-    periods : ndarray, shape (k,)
-        Where it is looked for [s].
-
-    Returns
-    -------
-    WaveletPeak
-        The period is that of the greatest coefficient between the periods given, in ten steps.
+    By :eq:`eq-pulse-direction`.
     """
     from scipy import fft
 
@@ -125,19 +92,7 @@ def strongest(velocities: Array, dt: float, periods: Array) -> WaveletPeak:
 def extracted(velocity: Array, dt: float, place: WaveletPeak) -> list[tuple[int, float]]:
     """Take the strongest wavelets about a place, one after the other, out of a velocity.
 
-    Parameters
-    ----------
-    velocity : ndarray, shape (n,)
-        [m s^-1]
-    dt : float
-        Time step [s].
-    place : WaveletPeak
-        Of the first one, and the period of all.
-
-    Returns
-    -------
-    list of (int, float)
-        Middles and coefficients, :eq:`eq-extracted-pulse` [m s^-1].
+    By :eq:`eq-extracted-pulse`.
     """
     wavelet = wavelet_of(place.period, dt)
     reach = math.ceil(REACH * place.period * CENTRE_FREQUENCY / dt)
@@ -153,22 +108,7 @@ def extracted(velocity: Array, dt: float, place: WaveletPeak) -> list[tuple[int,
 
 
 def sum_of(wavelets: list[tuple[int, float]], wavelet: Array, start: int, count: int) -> Array:
-    """Add wavelets.
-
-    Parameters
-    ----------
-    wavelets : list of (int, float)
-        Middles and coefficients [m s^-1].
-    wavelet : ndarray, shape (2 m + 1,)
-        As :func:`wavelet_of` gives it.
-    start, count : int
-        First sample that is asked for, which may be negative, and how many.
-
-    Returns
-    -------
-    ndarray, shape (count,)
-        [m s^-1]
-    """
+    """Add wavelets."""
     total = np.zeros(count)
     for middle, coefficient in wavelets:
         begin = middle - wavelet.size // 2 - start
@@ -178,19 +118,7 @@ def sum_of(wavelets: list[tuple[int, float]], wavelet: Array, start: int, count:
 
 
 def measures(velocity: Array, pulse: Array, dt: float) -> Measures:
-    """Compare what the pulse leaves with the whole, :eq:`eq-pulse-indicator`.
-
-    Parameters
-    ----------
-    velocity, pulse : ndarray, shape (n,)
-        The whole, and the pulse [m s^-1].
-    dt : float
-        Time step [s].
-
-    Returns
-    -------
-    Measures
-    """
+    """Compare what the pulse leaves with the whole, :eq:`eq-pulse-indicator`."""
     left = velocity - pulse
     peak_ratio = float(np.abs(left).max() / np.abs(velocity).max())
     energy_ratio = float(left @ left / (velocity @ velocity))
@@ -208,17 +136,7 @@ def measures(velocity: Array, pulse: Array, dt: float) -> Measures:
 def wavelet_of(period: float, dt: float) -> Array:
     """Sample the wavelet of a period about its middle.
 
-    Parameters
-    ----------
-    period : float
-        Pseudo-period, :eq:`eq-pseudo-period` [s].
-    dt : float
-        Time step [s].
-
-    Returns
-    -------
-    ndarray, shape (2 m + 1,)
-        Of unit sum of squares [1].
+    By :eq:`eq-pseudo-period`.
     """
     scale = period * CENTRE_FREQUENCY / dt
     half = math.ceil(0.5 * SUPPORT * scale)

@@ -26,17 +26,7 @@ class MotionLabels(TypedDict):
 
 
 class ArgumentReader:
-    """Reader of the arguments of one constructor; remembers what it read.
-
-    Parameters
-    ----------
-    kind : type
-        Class whose constructor it is, for the messages.
-    constructor : str
-        Name of the constructor.
-    title : str
-        What it builds, in words.
-    """
+    """Reader of the arguments of one constructor; remembers what it read."""
 
     def __init__(self, kind: type, constructor: str, title: str) -> None:
         self.owner = f"{kind.__name__}.{constructor}"
@@ -54,33 +44,7 @@ class ArgumentReader:
         *,
         label: str = "",
     ) -> float:
-        """Read a quantity.
-
-        Parameters
-        ----------
-        name : str
-            Argument.
-        value : str or Quantity
-            What the user gave.
-        measure : Measure
-            What the argument needs.
-        condition : Condition, optional
-            Range that it must lie in.
-        label : str, optional
-            Words for it in name and history, where its unit does not tell what it is.
-
-        Returns
-        -------
-        float
-            In the SI unit of `measure`.
-
-        Raises
-        ------
-        UnitsError
-            A wrong unit, or none.
-        ComponentError
-            Not finite, or outside `condition`.
-        """
+        """Read a quantity."""
         number = to_si(value, measure, owner=self.owner, name=name, condition=condition)
         return self.settled(name, number, measure, label=label)
 
@@ -122,14 +86,7 @@ class ArgumentReader:
         return value
 
     def labels(self) -> MotionLabels:
-        """Tell what was read.
-
-        Returns
-        -------
-        MotionLabels
-            Keyword arguments of the motion: a name with rounded numbers, a sentence
-            for its history and the recipe with exact ones.
-        """
+        """Tell what was read."""
         return {
             "name": ", ".join([self._title, *self._short]),
             "history": (f"{self._title}: {', '.join(self._exact)}",),

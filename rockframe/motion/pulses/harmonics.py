@@ -31,31 +31,7 @@ class _Sine(NamedTuple):
 def sine(
     *, amplitude: float, frequency: float, cycles: float, phase: float = 0.0, owner: str
 ) -> Motion:
-    """Build ``a(t) = amplitude sin(2 pi frequency t + phase)``.
-
-    Parameters
-    ----------
-    amplitude : float
-        [m s^-2]
-    frequency : float
-        Cyclic frequency f [Hz].
-    cycles : float
-        Length over the period [1].
-    phase : float, optional
-        Phase at the start [rad].
-    owner : str
-        Constructor, for the message.
-
-    Returns
-    -------
-    Motion
-        Exact to 3e-13 of the amplitude.
-
-    Raises
-    ------
-    ComponentError
-        More samples than can be meant, or values that are not finite.
-    """
+    """Build ``a(t) = amplitude sin(2 pi frequency t + phase)``."""
     return sampled(
         _sum_of([_Sine(amplitude, 1.0, phase / (2.0 * math.pi))]),
         length=cycles,
@@ -69,16 +45,6 @@ def type_c_phase(order: int) -> float:
     """Find the phase with which a type C pulse brings the ground back to its place.
 
     It is the root of :eq:`eq-type-c-phase` in (0, pi/2).
-
-    Parameters
-    ----------
-    order : int
-        n, at least 1.
-
-    Returns
-    -------
-    float
-        phi [rad].
     """
     phase = 0.0
     for _ in range(_ROUNDS):  # each shrinks the error at least 21 times
@@ -89,31 +55,7 @@ def type_c_phase(order: int) -> float:
 def mavroeidis_papageorgiou(
     *, velocity: float, frequency: float, phase: float, cycles: float, owner: str
 ) -> Motion:
-    """Build the pulse of Mavroeidis and Papageorgiou as its three sines, :eq:`eq-mp-sines`.
-
-    Parameters
-    ----------
-    velocity : float
-        Amplitude A of the velocity [m s^-1].
-    frequency : float
-        Prevailing frequency f_p [Hz].
-    phase : float
-        nu [rad].
-    cycles : float
-        gamma, the length over the prevailing period [1].
-    owner : str
-        Constructor, for the message.
-
-    Returns
-    -------
-    Motion
-        Exact to 1e-12 of its peak.
-
-    Raises
-    ------
-    ComponentError
-        More samples than can be meant, or values that are not finite.
-    """
+    """Build the pulse of Mavroeidis and Papageorgiou as its three sines, :eq:`eq-mp-sines`."""
     amplitude = -math.pi * frequency * velocity
     start = phase / (2.0 * math.pi)
 
@@ -131,17 +73,7 @@ def mavroeidis_papageorgiou(
 
 
 def sine_of_turns(turns: Array) -> Array:
-    """Compute sin(2 pi x), exactly zero at every half turn.
-
-    Parameters
-    ----------
-    turns : ndarray
-        x, in full turns [1].
-
-    Returns
-    -------
-    ndarray
-    """
+    """Compute sin(2 pi x), exactly zero at every half turn."""
     rest = turns - np.round(turns)
     folded = np.where(np.abs(rest) > _QUARTER, np.copysign(_HALF, rest) - rest, rest)
     return np.sin(2.0 * math.pi * folded)

@@ -19,27 +19,7 @@ _ROUNDING: Final = 1e-9
 
 
 def impulse_duration(*, interval: float, longest: float, owner: str) -> float:
-    """Give the longest duration of which `interval` is a whole multiple.
-
-    Parameters
-    ----------
-    interval : float
-        From impulse to impulse [s].
-    longest : float
-        Upper limit [s].
-    owner : str
-        Constructor, for the message.
-
-    Returns
-    -------
-    float
-        `longest` itself where it fits, but for rounding [s].
-
-    Raises
-    ------
-    ComponentError
-        The impulses would overlap, or have more samples in between than can be meant.
-    """
+    """Give the longest duration of which `interval` is a whole multiple."""
     if longest > interval:
         msg = (
             f"{owner}: pulse_duration = {longest:.6g} s must not exceed "
@@ -56,27 +36,7 @@ def impulse_duration(*, interval: float, longest: float, owner: str) -> float:
 
 
 def opposite_impulses(*, velocity: float, interval: float, duration: float) -> Motion:
-    """Build two opposite impulses of the shape :eq:`eq-impulse`.
-
-    Parameters
-    ----------
-    velocity : float
-        Change V of the velocity by the first; the second takes it back [m s^-1].
-    interval : float
-        t_0 from impulse to impulse, a whole multiple of `duration` [s].
-    duration : float
-        Length of each [s].
-
-    Returns
-    -------
-    Motion
-        Its pieces are the shape itself.
-
-    Raises
-    ------
-    ComponentError
-        Values that are not finite.
-    """
+    """Build two opposite impulses of the shape :eq:`eq-impulse`."""
     between = (round(interval / duration) - 1) * INTERVALS_PER_IMPULSE
     step = 1.0 / INTERVALS_PER_IMPULSE
     u = np.arange(INTERVALS_PER_IMPULSE + 1) * step

@@ -21,32 +21,7 @@ Places and step count periods; the derivatives are those by the place.
 
 
 def sampled(shape: Shape, *, length: float, frequency: float, intervals: int, owner: str) -> Motion:
-    """Sample a function that is smooth from the start to the end of the motion.
-
-    Parameters
-    ----------
-    shape : callable
-        The function.
-    length : float
-        Length over the period [1].
-    frequency : float
-        One over the period [Hz].
-    intervals : int
-        Least number of polynomials per period.
-    owner : str
-        Constructor, for the message.
-
-    Returns
-    -------
-    Motion
-        With quintic Hermite pieces: value, slope and curvature are right at
-        every sample.
-
-    Raises
-    ------
-    ComponentError
-        More samples than can be meant, or values that are not finite.
-    """
+    """Sample a function that is smooth from the start to the end of the motion."""
     if length * intervals > MAXIMUM_SAMPLES:
         msg = f"{owner}: {length:.6g} cycles are more than can be sampled; shorten the motion"
         raise ComponentError(msg)
@@ -64,18 +39,7 @@ def sampled(shape: Shape, *, length: float, frequency: float, intervals: int, ow
 
 
 def hermite_pieces(value: Array, slope: Array, curvature: Array) -> Array:
-    """Compute quintic Hermite polynomials from nodal values and derivatives.
-
-    Parameters
-    ----------
-    value, slope, curvature : ndarray, shape (n,)
-        a, a' dt and a'' dt^2 at the samples [m s^-2].
-
-    Returns
-    -------
-    ndarray, shape (n - 1, 6)
-        Coefficients in u, lowest power first [m s^-2].
-    """
+    """Compute quintic Hermite polynomials from nodal values and derivatives."""
     start, s0, c0 = value[:-1], slope[:-1], curvature[:-1]
     rise = value[1:] - start - s0 - 0.5 * c0
     turn = slope[1:] - s0 - c0

@@ -36,29 +36,7 @@ ANTISYMMETRIC: Final = _Derivative(
 
 
 def ricker(*, amplitude: float, period: float, antisymmetric: bool, owner: str) -> Motion:
-    """Build a Ricker wavelet, :eq:`eq-ricker-symmetric` or :eq:`eq-ricker-antisymmetric`.
-
-    Parameters
-    ----------
-    amplitude : float
-        Peak a_p [m s^-2].
-    period : float
-        T_p, one over the frequency at which its Fourier amplitude is greatest [s].
-    antisymmetric : bool
-        Third derivative of the Gaussian instead of the second.
-    owner : str
-        Constructor, for the message.
-
-    Returns
-    -------
-    Motion
-        Five periods long, its centre in the middle; exact to 2e-13 of the amplitude.
-
-    Raises
-    ------
-    ComponentError
-        A period that cannot be sampled, or values that are not finite.
-    """
+    """Build a Ricker wavelet, :eq:`eq-ricker-symmetric` or :eq:`eq-ricker-antisymmetric`."""
     kind = ANTISYMMETRIC if antisymmetric else SYMMETRIC
     scale = 2.0 * math.pi / math.sqrt(kind.degree)  # x over t/T_p
     height = kind.sign * amplitude / kind.peak

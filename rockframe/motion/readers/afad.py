@@ -58,24 +58,7 @@ def recognises(source: Source) -> bool:
 
 
 def read(source: Source, request: Request) -> Record:
-    """Read the acceleration of one column, or of two.
-
-    Parameters
-    ----------
-    source : Source
-        File.
-    request : Request
-        What the caller asked for.
-
-    Returns
-    -------
-    Record
-
-    Raises
-    ------
-    RecordError
-        Not such a file, no sampling interval, columns or unit, or cut short.
-    """
+    """Read the acceleration of one column, or of two."""
     header = read_keys(source.top(_LONGEST_HEADER))
     time_step = needed_step(source, request, header, _STEP)
     declared, count_line = needed_count(source, header, _COUNT)

@@ -52,21 +52,11 @@ _DRIVE: Final = re.compile(r"[A-Za-z]:")
 
 @dataclass(frozen=True)
 class ArchiveMember:
-    """A file in an archive.
+    """A file in an archive."""
 
-    Parameters
-    ----------
-    name : str
-        Its path in the archive.
-    data : bytes or None
-        None where it was not unpacked.
-    reason : str
-        Why it was not.
-    """
-
-    name: str
-    data: bytes | None
-    reason: str = ""
+    name: str  # its path in the archive
+    data: bytes | None  # none where it was not unpacked
+    reason: str = ""  # why it was not
 
     @property
     def hidden(self) -> bool:
@@ -87,17 +77,7 @@ def is_gzip(start: bytes) -> bool:
 
 
 def packs_tar(file: IO[bytes]) -> bool:
-    """Tell whether a file is a tar archive packed by gzip.
-
-    Parameters
-    ----------
-    file : file object
-        Open for reading; left at its start.
-
-    Returns
-    -------
-    bool
-    """
+    """Tell whether a file is a tar archive packed by gzip."""
     start = file.read(len(_GZIP))
     file.seek(0)
     if not is_gzip(start):
@@ -111,48 +91,14 @@ def packs_tar(file: IO[bytes]) -> bool:
 
 
 def check_unpackable(name: str, start: bytes) -> None:
-    """Refuse what is packed in another way.
-
-    Parameters
-    ----------
-    name : str
-        For the message.
-    start : bytes
-        The first bytes of the file.
-
-    Raises
-    ------
-    RecordError
-        It is.
-    """
+    """Refuse what is packed in another way."""
     for mark, words in _OTHERS.items():
         if start.startswith(mark):
             raise RecordError(name, found=words, expected=_EXPECTED)
 
 
 def members(file: IO[bytes], name: str, size: int) -> Iterator[ArchiveMember]:
-    """Unpack an archive file by file.
-
-    Parameters
-    ----------
-    file : file object
-        The archive, open for reading.
-    name : str
-        For messages.
-    size : int
-        Of the archive [byte].
-
-    Yields
-    ------
-    ArchiveMember
-        Each file, those of archives in the archive too, unpacked or with the reason why it was not.
-
-    Raises
-    ------
-    RecordError
-        The archive is damaged, holds too many files, or expands to more than a hundred times
-        its size.
-    """
+    """Unpack an archive file by file."""
     budget = _Budget(name, MOST_EXPANSION * size + MAXIMUM_BYTES, MOST_MEMBERS)
     for member in _unpacked(file, name, budget):
         inner = member.data

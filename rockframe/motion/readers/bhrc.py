@@ -56,24 +56,7 @@ def recognises(source: Source) -> bool:
 
 
 def read(source: Source, request: Request) -> Record:
-    """Read the acceleration of one component, or of two.
-
-    Parameters
-    ----------
-    source : Source
-        File.
-    request : Request
-        What the caller asked for.
-
-    Returns
-    -------
-    Record
-
-    Raises
-    ------
-    RecordError
-        Not such a file, another volume, no sampling rate, or cut short.
-    """
+    """Read the acceleration of one component, or of two."""
     starts: list[int] = []
     for index, line in enumerate(source.lines):
         if line.startswith("* VOL") and _FIRST_LINE.match(line[:80]):

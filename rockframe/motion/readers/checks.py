@@ -89,22 +89,7 @@ def choose_unit(
 
 
 def check_time_step(source: Source, time_step: float, line: int | None) -> None:
-    """Refuse a time step that no record has.
-
-    Parameters
-    ----------
-    source : Source
-        File.
-    time_step : float
-        As read [s].
-    line : int or None
-        Where, from 1.
-
-    Raises
-    ------
-    RecordError
-        Not finite, not positive, or outside 1e-6 s to 10 s.
-    """
+    """Refuse a time step that no record has."""
     low, high = TIME_STEP_LIMITS
     if not (math.isfinite(time_step) and low <= time_step <= high):
         expected = f"a time step between {low:g} s and {high:g} s"
@@ -125,20 +110,7 @@ def check_asked_time_step(
 
 
 def check_no_marks(source: Source, samples: Array) -> None:
-    """Refuse marks of missing samples that stand among the samples.
-
-    Parameters
-    ----------
-    source : Source
-        File.
-    samples : ndarray, shape (n,)
-        As they stand in the file.
-
-    Raises
-    ------
-    RecordError
-        One of `MISSING` stands where the samples on both of its sides are less than half of it.
-    """
+    """Refuse marks of missing samples that stand among the samples."""
     size = np.abs(samples)
     marked = np.isin(size, MISSING)
     if not marked.any():
@@ -162,24 +134,7 @@ def check_no_marks(source: Source, samples: Array) -> None:
 
 
 def plausibility(source: Source, time_step: float, samples: Array, unit: RecordUnit) -> list[str]:
-    """Say what looks like a wrong unit or a wrong time step.
-
-    Parameters
-    ----------
-    source : Source
-        File.
-    time_step : float
-        [s]
-    samples : ndarray, shape (n,)
-        In `unit`.
-    unit : RecordUnit
-        Unit of the samples.
-
-    Returns
-    -------
-    list of str
-        Sentences, none if all is usual.
-    """
+    """Say what looks like a wrong unit or a wrong time step."""
     warnings: list[str] = []
     low, high = USUAL_PEAKS
     with np.errstate(over="ignore"):

@@ -33,55 +33,19 @@ _NOT_A_WORD: Final = re.compile(r"[-+.\d*]|(?:nan|inf|infinity)$", re.IGNORECASE
 
 @dataclass(frozen=True)
 class Table:
-    """Columns of numbers and the lines above them.
+    """Columns of numbers and the lines above them."""
 
-    Parameters
-    ----------
-    values : ndarray, shape (n, columns)
-        The numbers.
-    first_fields : list of str
-        First column as printed, with decimal points.
-    last_fields : list of str
-        The last numbers of the last column, as printed.
-    lines : sequence of int
-        Line of each row, from 1.
-    header : list of tuple of int and str
-        Line and text of header lines and of comments above the numbers.
-    separator : str or None
-        ``";"``, ``","`` or None for blanks and tabs.
-    rest : list of str
-        Fields of a last row that has fewer than the others, which end above it.
-    """
-
-    values: Array
-    first_fields: list[str]
-    last_fields: list[str]
-    lines: Sequence[int]
-    header: list[tuple[int, str]]
-    separator: str | None
-    rest: list[str]
+    values: Array  # the numbers
+    first_fields: list[str]  # first column as printed, with decimal points
+    last_fields: list[str]  # the last numbers of the last column, as printed
+    lines: Sequence[int]  # line of each row, from 1
+    header: list[tuple[int, str]]  # line and text of header lines and of comments above the numbers
+    separator: str | None  # ``";"``, ``","`` or None for blanks and tabs
+    rest: list[str]  # fields of a last row that has fewer than the others, which end above it
 
 
 def read_table(source: Source, most_columns: int) -> Table:
-    """Read columns of numbers.
-
-    Parameters
-    ----------
-    source : Source
-        File.
-    most_columns : int
-        More are refused.
-
-    Returns
-    -------
-    Table
-
-    Raises
-    ------
-    RecordError
-        No numbers, too many, a field that is not a number, rows of different
-        length but for a shorter last one, or commas that can be read in two ways.
-    """
+    """Read columns of numbers."""
     header, lines, rows = _divide(source)
     if len(rows) > MAXIMUM_SAMPLES:
         raise too_many(source, len(rows), line=lines[MAXIMUM_SAMPLES])
@@ -127,38 +91,13 @@ def read_table(source: Source, most_columns: int) -> Table:
 
 
 def check_last_row(source: Source, table: Table) -> None:
-    """Refuse columns of which the last row has fewer numbers.
-
-    Parameters
-    ----------
-    source : Source
-        File.
-    table : Table
-        Its columns.
-
-    Raises
-    ------
-    RecordError
-        The last row is shorter.
-    """
+    """Refuse columns of which the last row has fewer numbers."""
     if table.rest:
         raise _uneven(source, table.rest, table.values.shape[1], table.lines, -1)
 
 
 def split_header(text: str, separator: str | None) -> list[str]:
-    """Split a header line into the names of columns.
-
-    Parameters
-    ----------
-    text : str
-        Line, perhaps with a comment mark.
-    separator : str or None
-        Of the numbers.
-
-    Returns
-    -------
-    list of str
-    """
+    """Split a header line into the names of columns."""
     names = text.lstrip("#% \t")
     if separator is None:
         # names of columns have blanks inside, so look for wider gaps first

@@ -71,15 +71,7 @@ class FileComponent:
 
 
 class EveryComponentError(RecordError):
-    """All components of a file were asked for, not one of them.
-
-    Parameters
-    ----------
-    path : str
-        The file.
-    components : sequence of FileComponent
-        What it holds.
-    """
+    """All components of a file were asked for, not one of them."""
 
     def __init__(self, path: str, components: Sequence[FileComponent]) -> None:
         self.components = tuple(components)
@@ -87,25 +79,7 @@ class EveryComponentError(RecordError):
 
 
 def component_names(given: object, *, owner: str) -> tuple[str | None, str | None]:
-    """Take the argument ``component`` apart.
-
-    Parameters
-    ----------
-    given : str, pair of str, or None
-        What the user gave.
-    owner : str
-        Function, for the message.
-
-    Returns
-    -------
-    tuple of (str or None) and (str or None)
-        Horizontal (or only) and vertical component.
-
-    Raises
-    ------
-    ComponentError
-        Neither.
-    """
+    """Take the argument ``component`` apart."""
     if given is None:
         return None, None
     if isinstance(given, str) and given.strip():

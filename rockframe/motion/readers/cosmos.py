@@ -71,25 +71,7 @@ def recognises(source: Source) -> bool:
 
 
 def read(source: Source, request: Request) -> Record:
-    """Read the acceleration of one channel, or of two.
-
-    Parameters
-    ----------
-    source : Source
-        File.
-    request : Request
-        What the caller asked for.
-
-    Returns
-    -------
-    Record
-
-    Raises
-    ------
-    RecordError
-        Not a COSMOS file, no acceleration in it, counts without a unit, a time
-        step that is missing or contradicts the length, or cut short.
-    """
+    """Read the acceleration of one channel, or of two."""
     blocks = _blocks(source)
     if not blocks:
         found = f"{quoted_first_line(source.start)}"

@@ -29,44 +29,22 @@ _MOST_COMMENTS: Final = 200
 
 @dataclass(frozen=True)
 class Header:
-    """Header of one block of a COSMOS file.
+    """Header of one block of a COSMOS file."""
 
-    Parameters
-    ----------
-    source : Source
-        File.
-    start : int
-        Index of the block's first line, from 0.
-    text_lines : int
-        How many lines of text it begins with.
-    integers_at, reals_at : int
-        Index of the first line of the integers and of the reals.
-    integer_columns, integer_width, real_columns, real_width : int
-        Their layout.
-    integer_count, real_count : int
-        How many there are.
-    comments : tuple of str
-        Comment lines.
-    data_at : int
-        Index of the line that announces the data.
-    unknown : tuple of int and float
-        What stands for an integer and for a real that is not known.
-    """
-
-    source: Source
-    start: int
-    text_lines: int
-    integers_at: int
+    source: Source  # file
+    start: int  # index of the block's first line, from 0
+    text_lines: int  # how many lines of text it begins with
+    integers_at: int  # index of the first line of the integers and of the reals
     reals_at: int
-    integer_columns: int
+    integer_columns: int  # their layout
     integer_width: int
     real_columns: int
     real_width: int
-    integer_count: int
+    integer_count: int  # how many there are
     real_count: int
-    comments: tuple[str, ...]
-    data_at: int
-    unknown: tuple[int, float]
+    comments: tuple[str, ...]  # comment lines
+    data_at: int  # index of the line that announces the data
+    unknown: tuple[int, float]  # what stands for an integer and for a real that is not known
 
     def line(self, place: int) -> str:
         """Give a text line, from 1; empty if there is none."""
@@ -107,27 +85,7 @@ class Header:
 
 
 def read_header(source: Source, start: int, end: int, text_lines: int) -> Header:
-    """Read the header of a block.
-
-    Parameters
-    ----------
-    source : Source
-        File.
-    start, end : int
-        Index of the block's first line, and of the one behind its last.
-    text_lines : int
-        As its first line announces.
-
-    Returns
-    -------
-    Header
-
-    Raises
-    ------
-    RecordError
-        The announcements of the integers, reals or comments are not where they
-        must be, or announce more than the block has.
-    """
+    """Read the header of a block."""
     at = start + text_lines
     integers, integers_at, reals_line = _section(source, at, end, _INTEGERS, "integer header")
     reals, reals_at, comments_line = _section(source, reals_line, end, _REALS, "real header")

@@ -23,32 +23,6 @@ def record_of_counts(
 ) -> Record:
     """Build the record of one channel of a file that states no unit.
 
-    Parameters
-    ----------
-    source : Source
-        File.
-    request : Request
-        What the caller asked for; with a unit the values are accelerations already.
-    values : ndarray, shape (n,)
-        As they stand in the file.
-    time_step : float
-        [s]
-    metadata : dict
-        What the file says about itself.
-    response : InstrumentResponse or None
-        Of the instrument.
-
-    Returns
-    -------
-    Record
-
-    Raises
-    ------
-    RecordError
-        Neither a unit nor a response.
-
-    Notes
-    -----
     The counts less their mean are divided by the sensitivity: the response is taken as
     flat, which that of an accelerometer is from zero to near its corner.
     """

@@ -50,38 +50,15 @@ _WIDE_GAP: Final = re.compile(r"\s{3,}")
 
 @dataclass(frozen=True)
 class Stated:
-    """A value as a header prints it.
+    """A value as a header prints it."""
 
-    Parameters
-    ----------
-    text : str
-        The number.
-    unit : str
-        Its unit, as record files spell it.
-    line : int
-        Where it stands, from 1.
-    """
-
-    text: str
-    unit: str
-    line: int
+    text: str  # the number
+    unit: str  # its unit, as record files spell it
+    line: int  # where it stands, from 1
 
 
 def channel_of(header: list[str], first: int) -> tuple[int | None, str, int]:
-    """Find number and direction of a channel.
-
-    Parameters
-    ----------
-    header : list of str
-        Lines above the data.
-    first : int
-        Index of the first of them, from 0.
-
-    Returns
-    -------
-    tuple of int or None, str, and int
-        Number, direction (empty if there is none) and line, from 1.
-    """
+    """Find number and direction of a channel."""
     found: tuple[int | None, str, int] = (None, "", first + 1)
     for line, text in enumerate(header, start=first + 1):
         match = _CHANNEL.search(text)
@@ -100,19 +77,7 @@ def channel_of(header: list[str], first: int) -> tuple[int | None, str, int]:
 
 
 def peak_in_header(header: list[str], first: int, *, corrected: bool) -> Stated | None:
-    """Find the peak of the acceleration; arguments as for :func:`channel_of`.
-
-    Parameters
-    ----------
-    header : list of str
-    first : int
-    corrected : bool
-        Whether the data are corrected: then the uncorrected peak is not theirs.
-
-    Returns
-    -------
-    Stated or None
-    """
+    """Find the peak of the acceleration; arguments as for :func:`channel_of`."""
     for line, text in enumerate(header, start=first + 1):
         match = _PEAK.search(f"{text} ")
         if match is not None:
@@ -139,17 +104,7 @@ def is_corrected(header: list[str]) -> bool:
 
 
 def description(header: list[str]) -> Metadata:
-    """Give what goes into the metadata.
-
-    Parameters
-    ----------
-    header : list of str
-        Lines above the data.
-
-    Returns
-    -------
-    dict
-    """
+    """Give what goes into the metadata."""
     lines = [text.strip() for text in header]
     metadata: Metadata = {}
     place = next((k for k, text in enumerate(lines) if FIRST_LINE.match(text)), 0)

@@ -37,24 +37,12 @@ _LONGEST_HEADER: Final = 80
 
 @dataclass(frozen=True)
 class Pairs:
-    """Where the pairs of one channel stand.
+    """Where the pairs of one channel stand."""
 
-    Parameters
-    ----------
-    count : int
-        How many.
-    unit : str
-        Of the accelerations, as the text names it.
-    unit_line : int
-        Where it does, from 1.
-    data_at : int
-        Index of their first line, from 0.
-    """
-
-    count: int
-    unit: str
-    unit_line: int
-    data_at: int
+    count: int  # how many
+    unit: str  # of the accelerations, as the text names it
+    unit_line: int  # where it does, from 1
+    data_at: int  # index of their first line, from 0
 
     @property
     def behind(self) -> int:
@@ -63,20 +51,7 @@ class Pairs:
 
 
 def find_pairs(source: Source, first: int) -> Pairs | None:
-    """Look for pairs below a channel's first line.
-
-    Parameters
-    ----------
-    source : Source
-        File.
-    first : int
-        Index of that line, from 0.
-
-    Returns
-    -------
-    Pairs or None
-        None if the text announces none.
-    """
+    """Look for pairs below a channel's first line."""
     top = [line.rstrip() for line in source.top(_LONGEST_HEADER, first)]
     points = next((m for line in top if (m := _POINTS.search(line))), None)
     units = next(((k, m) for k, line in enumerate(top) if (m := _UNITS.search(line))), None)
@@ -98,25 +73,7 @@ def find_pairs(source: Source, first: int) -> Pairs | None:
 
 
 def read_pairs(source: Source, pairs: Pairs) -> tuple[float, Array]:
-    """Read pairs that are evenly spaced.
-
-    Parameters
-    ----------
-    source : Source
-        File.
-    pairs : Pairs
-        Where they stand.
-
-    Returns
-    -------
-    tuple of float and ndarray, shape (n,)
-        Time step [s] and accelerations.
-
-    Raises
-    ------
-    RecordError
-        Fewer than announced, no numbers, or uneven times.
-    """
+    """Read pairs that are evenly spaced."""
     line = source.lines[pairs.data_at].rstrip()
     per_line = min(_FULL, 2 * pairs.count)
     width, indent = divmod(len(line), max(per_line, 1))

@@ -61,24 +61,7 @@ def recognises(source: Source) -> bool:
 
 
 def read(source: Source, request: Request) -> Record:
-    """Read an acceleration.
-
-    Parameters
-    ----------
-    source : Source
-        File.
-    request : Request
-        What the caller asked for.
-
-    Returns
-    -------
-    Record
-
-    Raises
-    ------
-    RecordError
-        Not such a file, not an acceleration, or cut short.
-    """
+    """Read an acceleration."""
     top = source.top(_LONGEST_HEADER)
     kind, kind_line = _found(source, _KIND, "UNCORRECTED ACCELERATION   UNIT: CM/SEC/SEC")
     points, line = _found(source, _POINTS, "NO. OF POINTS: 12800 EQUALLY SPACED INTERVALS OF: ...")

@@ -71,25 +71,7 @@ def recognises(source: Source) -> bool:
 
 
 def read(source: Source, request: Request) -> Record:
-    """Read the acceleration of one column, or of two.
-
-    Parameters
-    ----------
-    source : Source
-        File.
-    request : Request
-        What the caller asked for.
-
-    Returns
-    -------
-    Record
-
-    Raises
-    ------
-    RecordError
-        Not such a file, no sampling rate, columns or unit, times that disagree
-        with the rate, or cut short.
-    """
+    """Read the acceleration of one column, or of two."""
     header, first = _header(source)
     rate, rate_line = needed_rate(source, header, "samplerate")
     time_step = 1.0 / rate

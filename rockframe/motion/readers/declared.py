@@ -14,30 +14,7 @@ _FEWEST_MISSING: Final = 5
 def settle_count(
     source: Source, *, declared: int, counted: int, what: str, line: int
 ) -> tuple[Metadata, list[str]]:
-    """Compare the announced number of samples with the data; the data count.
-
-    Parameters
-    ----------
-    source : Source
-        File.
-    declared, counted : int
-        Announced in the header, and there.
-    what : str
-        How the header calls the number.
-    line : int
-        Where it does, from 1.
-
-    Returns
-    -------
-    tuple of dict, list of str
-        Both numbers for the metadata, and a warning, if they differ.
-
-    Raises
-    ------
-    RecordError
-        More than a tenth (and more than five, one line) are missing: the file
-        was cut short; or fewer than two samples.
-    """
+    """Compare the announced number of samples with the data; the data count."""
     missing = declared - counted
     if counted < 2 or missing > max(_FEWEST_MISSING, (1.0 - _FEWEST_SHARE) * declared):
         raise source.refuse(

@@ -57,24 +57,7 @@ def recognises(source: Source) -> bool:
 
 
 def read(source: Source, request: Request) -> Record:
-    """Read an acceleration.
-
-    Parameters
-    ----------
-    source : Source
-        File.
-    request : Request
-        What the caller asked for.
-
-    Returns
-    -------
-    Record
-
-    Raises
-    ------
-    RecordError
-        Not an ESM file, not an acceleration, no sampling interval, or cut short.
-    """
+    """Read an acceleration."""
     header, first = _header(source)
     kind, kind_line = header.get("DATA_TYPE", ("", 0))
     if kind and kind.casefold().removeprefix("un").removeprefix("processed ") != "acceleration":

@@ -20,33 +20,7 @@ _WHOLE: Final = re.compile(r"[-+]?\d+", re.ASCII)
 def fixed_width(
     source: Source, first: int, count: int, *, width: int, per_line: int, indent: int = 0
 ) -> Array:
-    """Read numbers of one width that stand side by side.
-
-    Parameters
-    ----------
-    source : Source
-        File.
-    first : int
-        Index of the first line, from 0.
-    count : int
-        How many numbers the header announces.
-    width : int
-        Characters of each.
-    per_line : int
-        Numbers in a full line.
-    indent : int, optional
-        Characters at the start of each line that belong to no number.
-
-    Returns
-    -------
-    ndarray, shape (count,)
-
-    Raises
-    ------
-    RecordError
-        The file ends before, a line has another length, or a field is not a
-        finite number.
-    """
+    """Read numbers of one width that stand side by side."""
     if width < 1 or per_line < 1:
         found = f"a layout of {per_line} numbers of {width} characters in a line"
         raise source.refuse(found=found, expected="one or more of each", line=first)
@@ -90,24 +64,7 @@ def fixed_width(
 
 
 def cell(source: Source, first: int, place: int, *, width: int, per_line: int) -> str:
-    """Give one field of a header of fixed width, without blanks around it.
-
-    Parameters
-    ----------
-    source : Source
-        File.
-    first : int
-        Index of the header's first line, from 0.
-    place : int
-        Which field, from 1 as the descriptions of the formats count.
-    width, per_line : int
-        Characters of a field, fields of a line.
-
-    Returns
-    -------
-    str
-        Empty if the line is too short.
-    """
+    """Give one field of a header of fixed width, without blanks around it."""
     row, column = divmod(place - 1, per_line)
     if first + row >= len(source.lines):
         return ""
@@ -117,24 +74,7 @@ def cell(source: Source, first: int, place: int, *, width: int, per_line: int) -
 def header_number(
     source: Source, first: int, place: int, *, width: int, per_line: int, what: str
 ) -> float:
-    """Read one number of a header of fixed width.
-
-    Parameters
-    ----------
-    source, first, place, width, per_line
-        As for :func:`cell`.
-    what : str
-        What the number means, for the message.
-
-    Returns
-    -------
-    float
-
-    Raises
-    ------
-    RecordError
-        Not a number.
-    """
+    """Read one number of a header of fixed width."""
     text = cell(source, first, place, width=width, per_line=per_line)
     line = first + (place - 1) // per_line + 1
     if not text:
@@ -156,17 +96,7 @@ def header_count(
 
 
 def whole(text: str) -> int | None:
-    """Read a whole number; None if it is none, or too long to be one.
-
-    Parameters
-    ----------
-    text : str
-        Perhaps with blanks around it.
-
-    Returns
-    -------
-    int or None
-    """
+    """Read a whole number; None if it is none, or too long to be one."""
     text = text.strip()
     if len(text) > _LONGEST_COUNT or _WHOLE.fullmatch(text) is None:
         return None

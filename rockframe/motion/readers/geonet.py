@@ -87,24 +87,7 @@ def recognises(source: Source) -> bool:
 
 
 def read(source: Source, request: Request) -> Record:
-    """Read the acceleration of one component, or of two.
-
-    Parameters
-    ----------
-    source : Source
-        File.
-    request : Request
-        What the caller asked for.
-
-    Returns
-    -------
-    Record
-
-    Raises
-    ------
-    RecordError
-        Not a GeoNet file, a header that contradicts itself, or cut short.
-    """
+    """Read the acceleration of one component, or of two."""
     components = [_component(source, request, block) for block in _blocks(source)]
     return choose_component(source, request, components)
 

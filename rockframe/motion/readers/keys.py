@@ -19,20 +19,7 @@ Keys: TypeAlias = "dict[str, tuple[str, int]]"
 
 
 def read_keys(lines: Iterable[str], first: int = 1) -> Keys:
-    """Read lines ``KEY   : value``; of a key that comes twice the first counts.
-
-    Parameters
-    ----------
-    lines : iterable of str
-        Header.
-    first : int, optional
-        Number of the first of them, from 1.
-
-    Returns
-    -------
-    dict
-        By the keys without blanks around them, as printed; without lines of another kind.
-    """
+    """Read lines ``KEY   : value``; of a key that comes twice the first counts."""
     keys: Keys = {}
     for line, text in enumerate(lines, start=first):
         key, colon, value = text.partition(":")
@@ -52,27 +39,7 @@ def needed_count(source: Source, keys: Keys, key: str) -> tuple[int, int]:
 
 
 def needed(source: Source, keys: Keys, key: str) -> tuple[str, int]:
-    """Give the value of a key that must be there.
-
-    Parameters
-    ----------
-    source : Source
-        File.
-    keys : dict
-        Header.
-    key : str
-        Which.
-
-    Returns
-    -------
-    tuple of str and int
-        Value and line, from 1.
-
-    Raises
-    ------
-    RecordError
-        No such key, or no value.
-    """
+    """Give the value of a key that must be there."""
     value, line = keys.get(key, ("", 1))
     if not value:
         expected = f"a header line {key!r} with a value"

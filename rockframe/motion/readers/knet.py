@@ -80,25 +80,7 @@ def recognises(source: Source) -> bool:
 
 
 def read(source: Source, request: Request) -> Record:
-    """Read an acceleration.
-
-    Parameters
-    ----------
-    source : Source
-        File.
-    request : Request
-        What the caller asked for.
-
-    Returns
-    -------
-    Record
-
-    Raises
-    ------
-    RecordError
-        Not a K-NET file, no scale factor or sampling frequency, counts that are
-        no whole numbers, or cut short.
-    """
+    """Read an acceleration."""
     header, first = _header(source)
     rate, rate_line = needed_rate(source, header, "Sampling Freq(Hz)")
     time_step = 1.0 / rate

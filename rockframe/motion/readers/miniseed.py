@@ -67,25 +67,7 @@ def recognises(source: Source) -> bool:
 
 
 def read(source: Source, request: Request) -> Record:
-    """Read the acceleration of one channel, or of two.
-
-    Parameters
-    ----------
-    source : Source
-        File.
-    request : Request
-        What the caller asked for.
-
-    Returns
-    -------
-    Record
-
-    Raises
-    ------
-    RecordError
-        ObsPy is not installed, the file is damaged or has gaps, or there is
-        neither a response nor a unit.
-    """
+    """Read the acceleration of one channel, or of two."""
     if not recognises(source):
         found = f"a file that begins with {source.data[:8]!r}"
         raise source.refuse(found=found, expected=_EXPECTED)
@@ -103,17 +85,7 @@ def read(source: Source, request: Request) -> Record:
 
 
 def _obspy(source: Source) -> Any:
-    """Import ObsPy, or say how to get it.
-
-    Parameters
-    ----------
-    source : Source
-        File, for the message.
-
-    Returns
-    -------
-    module
-    """
+    """Import ObsPy, or say how to get it."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")

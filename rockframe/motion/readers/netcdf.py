@@ -51,24 +51,7 @@ def recognises(source: Source) -> bool:
 
 
 def read(source: Source, request: Request) -> StoredMotion:
-    """Read a motion that was stored.
-
-    Parameters
-    ----------
-    source : Source
-        File.
-    request : Request
-        What the caller asked for; it is only compared with what is stored.
-
-    Returns
-    -------
-    StoredMotion
-
-    Raises
-    ------
-    RecordError
-        No such file, no motion in it, or not the one that was asked for.
-    """
+    """Read a motion that was stored."""
     if not recognises(source):
         found = f"a file that begins with {source.data[:8]!r}"
         raise source.refuse(found=found, expected=_EXPECTED)

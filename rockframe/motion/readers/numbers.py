@@ -26,27 +26,7 @@ _CHUNK: Final = 2**20
 
 
 def free_format(source: Source, first: int, end: int | None = None) -> Array:
-    """Read all numbers from a line to the end of the file, or to another line.
-
-    Parameters
-    ----------
-    source : Source
-        File.
-    first : int
-        Index of the first line of data, from 0.
-    end : int, optional
-        Index of the first line behind them.
-
-    Returns
-    -------
-    ndarray, shape (n,)
-
-    Raises
-    ------
-    RecordError
-        A field is not a finite number, numbers run together so that where
-        one ends is not certain, or they are more than a record can have.
-    """
+    """Read all numbers from a line to the end of the file, or to another line."""
     parts: list[Array] = []
     count = 0
     for start, stop in _chunks(source, first, len(source.lines) if end is None else end):
@@ -65,17 +45,7 @@ def too_many(source: Source, count: int, line: int | None = None) -> RecordError
 
 
 def floats(fields: Sequence[str]) -> Array | None:
-    """Convert fields at once; None if one of them is not a plain finite number.
-
-    Parameters
-    ----------
-    fields : sequence of str
-        As printed.
-
-    Returns
-    -------
-    ndarray, shape (n,), or None
-    """
+    """Convert fields at once; None if one of them is not a plain finite number."""
     try:
         values = np.fromiter(map(float, fields), dtype=np.float64, count=len(fields))
     except ValueError:
@@ -89,26 +59,7 @@ def is_plain(text: str) -> bool:
 
 
 def one_number(text: str, source: Source, line: int) -> float:
-    """Read one field that must be one finite number.
-
-    Parameters
-    ----------
-    text : str
-        Field.
-    source : Source
-        File, for the message.
-    line : int
-        Counted from 1.
-
-    Returns
-    -------
-    float
-
-    Raises
-    ------
-    RecordError
-        Not a finite number.
-    """
+    """Read one field that must be one finite number."""
     if _ONE_NUMBER.fullmatch(text) is None:
         raise source.refuse(found=quoted_first_line(text), expected="a number", line=line)
     value = float(text.upper().replace("D", "E"))
@@ -122,22 +73,7 @@ def one_number(text: str, source: Source, line: int) -> float:
 
 
 def ends_inside_number(source: Source, fields: Sequence[str]) -> bool:
-    """Tell whether a file stops in the middle of its last number.
-
-    Parameters
-    ----------
-    source : Source
-        File.
-    fields : sequence of str
-        The last numbers of the file, or of its last column, as printed.
-
-    Returns
-    -------
-    bool
-        True if nothing follows the last number, and it has fewer digits than
-        the numbers before it, which all have the same. A line as long as the one
-        before it was not cut: some programs print a zero as 0 at the end of its field.
-    """
+    """Tell whether a file stops in the middle of its last number."""
     last_line = source.lines[-1]
     if not last_line or last_line[-1].isspace():
         return False
@@ -151,21 +87,7 @@ def ends_inside_number(source: Source, fields: Sequence[str]) -> bool:
 
 
 def last_fields(source: Source, first: int, count: int = _SAME_SHAPE + 1) -> list[str]:
-    """Give the last fields of a file, as printed.
-
-    Parameters
-    ----------
-    source : Source
-        File.
-    first : int
-        Index of the first line of data, from 0.
-    count : int, optional
-        How many.
-
-    Returns
-    -------
-    list of str
-    """
+    """Give the last fields of a file, as printed."""
     fields: list[str] = []
     for line in reversed(source.lines[first:]):
         fields = line.split()[-count:] + fields

@@ -31,17 +31,10 @@ _NUMBERED: Final = re.compile(r"([a-z-]+?)[. _-]?\d{1,2}", re.ASCII)
 
 @dataclass(frozen=True)
 class Orientation:
-    """Direction in which a component is positive.
+    """Direction in which a component is positive."""
 
-    Parameters
-    ----------
-    azimuth : float, optional
-        Of a horizontal component, clockwise from north [degree].
-    vertical : str, optional
-        ``"up"``, ``"down"`` or, if the file does not say which, ``"vertical"``.
-    """
-
-    azimuth: float | None = None
+    azimuth: float | None = None  # of a horizontal component, clockwise from north [degree]
+    # ``"up"``, ``"down"`` or, if the file does not say which, ``"vertical"``
     vertical: Literal["up", "down", "vertical"] | None = None
 
     def matches(self, other: Orientation) -> bool:
@@ -111,17 +104,7 @@ def orientation_of(name: str) -> Orientation:
 
 
 def azimuth_of(degrees: float) -> Orientation:
-    """Give a horizontal direction; unknown if the angle is none from 0 to 360.
-
-    Parameters
-    ----------
-    degrees : float
-        Clockwise from north [degree].
-
-    Returns
-    -------
-    Orientation
-    """
+    """Give a horizontal direction; unknown if the angle is none from 0 to 360."""
     if not (math.isfinite(degrees) and 0.0 <= degrees <= _FULL_CIRCLE):
         return UNKNOWN
     return Orientation(azimuth=degrees)

@@ -62,24 +62,6 @@ def recognises(source: Source) -> bool:
 def read(source: Source, request: Request) -> Record:
     """Read a PEER AT2 file.
 
-    Parameters
-    ----------
-    source : Source
-        File.
-    request : Request
-        What the caller asked for.
-
-    Returns
-    -------
-    Record
-
-    Raises
-    ------
-    RecordError
-        Not an AT2 file, not an acceleration, or cut short.
-
-    Notes
-    -----
     If the number of points disagrees with the data, the data count; when more
     than a tenth (and more than five points, one line) are missing, or the file
     stops in the middle of a number, it was cut short and is refused.

@@ -41,61 +41,20 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Reading:
-    """A record that was read, converted and checked.
+    """A record that was read, converted and checked."""
 
-    Parameters
-    ----------
-    si : Motion
-        In SI units.
-    metadata : dict
-        What the file says about itself, and which file it was.
-    history : tuple of str
-        One sentence, or more if something was done.
-    warnings : tuple of str
-        To be issued by the caller.
-    name : str, optional
-        Of a motion that was stored with its name.
-    recipe : mapping, optional
-        Of an analytic motion that was stored.
-    file : str
-        Name of the file, without its folder.
-    vertical : bool
-        Whether it is a vertical component, read for itself.
-    """
-
-    si: Motion
-    metadata: Metadata
-    history: tuple[str, ...]
-    warnings: tuple[str, ...] = ()
-    name: str | None = None
-    recipe: Mapping[str, Any] | None = None
-    file: str = ""
-    vertical: bool = False
+    si: Motion  # in SI units
+    metadata: Metadata  # what the file says about itself, and which file it was
+    history: tuple[str, ...]  # one sentence, or more if something was done
+    warnings: tuple[str, ...] = ()  # to be issued by the caller
+    name: str | None = None  # of a motion that was stored with its name
+    recipe: Mapping[str, Any] | None = None  # of an analytic motion that was stored
+    file: str = ""  # name of the file, without its folder
+    vertical: bool = False  # whether it is a vertical component, read for itself
 
 
 def read_record(given: RecordLike, format_name: str | None, request: Request) -> Reading:
-    """Read a record file.
-
-    Parameters
-    ----------
-    given : str, path-like, bytes or file object
-        File.
-    format_name : str or None
-        A name of :func:`formats`; recognised from the file if None.
-    request : Request
-        What the caller asked for.
-
-    Returns
-    -------
-    Reading
-
-    Raises
-    ------
-    RecordError
-        The file cannot be read as a ground-motion record.
-    ComponentError
-        No such format.
-    """
+    """Read a record file."""
     chosen = None if format_name is None else by_name(str(format_name))
     source = read_source(given)
     entry = chosen or recognised(source)
@@ -109,30 +68,7 @@ def read_record(given: RecordLike, format_name: str | None, request: Request) ->
 def read_components(
     source: Source, format_name: str | None, request: Request
 ) -> list[Reading | RecordError]:
-    """Read all components of a file.
-
-    Parameters
-    ----------
-    source : Source
-        File.
-    format_name : str or None
-        A name of :func:`formats`; recognised from the file if None.
-    request : Request
-        What the caller asked for.
-
-    Returns
-    -------
-    list of Reading or RecordError
-        One for each, vertical ones too, in the order of the file; of a component that cannot be
-        read, beside others that can, the error.
-
-    Raises
-    ------
-    RecordError
-        The file cannot be read as a ground-motion record, and none of its components can.
-    ComponentError
-        No such format.
-    """
+    """Read all components of a file."""
     entry = by_name(format_name) if format_name is not None else recognised(source)
     try:
         return [_reading(entry, source, _read(entry, source, replace(request, every=True)))]
@@ -182,25 +118,7 @@ def _reading(entry: Format, source: Source, record: Record | StoredMotion) -> Re
 
 
 def to_motion(source: Source, record: Record) -> tuple[Motion, list[str]]:
-    """Check a record and convert it to SI units.
-
-    Parameters
-    ----------
-    source : Source
-        File, for messages.
-    record : Record
-        As read.
-
-    Returns
-    -------
-    tuple of Motion and list of str
-        And what looks doubtful about it.
-
-    Raises
-    ------
-    RecordError
-        A time step that no record has, marks of missing samples, or numbers that overflow.
-    """
+    """Check a record and convert it to SI units."""
     check_time_step(source, record.time_step, None)
     held = [part for part in (record.samples, record.vertical) if part is not None]
     for samples in held:

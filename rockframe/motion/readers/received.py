@@ -28,24 +28,7 @@ _OPEN: Final = "open file"
 
 
 def received(given: RecordLike) -> tuple[str, bytes]:
-    """Give the bytes of one record file, unpacked where they are packed.
-
-    Parameters
-    ----------
-    given : str, path-like, bytes or file object
-        A file: a record as it is, or one packed by gzip or alone in a zip or tar archive.
-        ``~`` is the user's folder.
-
-    Returns
-    -------
-    tuple of str and bytes
-        Name for messages, in which a stroke parts an archive from what it holds; all bytes.
-
-    Raises
-    ------
-    RecordError
-        Missing, a directory, not readable, too large, or an archive of several files.
-    """
+    """Give the bytes of one record file, unpacked where they are packed."""
     name, data = as_given(given)
     check_unpackable(name, data)
     if is_archive(data) or packs_tar(io.BytesIO(data)):
@@ -56,22 +39,7 @@ def received(given: RecordLike) -> tuple[str, bytes]:
 
 
 def as_given(given: object) -> tuple[str, bytes]:
-    """Give name and bytes of what was given, packed or not.
-
-    Parameters
-    ----------
-    given : str, path-like, bytes or file object
-        A file.
-
-    Returns
-    -------
-    tuple of str and bytes
-
-    Raises
-    ------
-    RecordError
-        Missing, a directory, not readable, or too large.
-    """
+    """Give name and bytes of what was given, packed or not."""
     if isinstance(given, bytes | bytearray | memoryview):
         data = bytes(given)
         check_size(IN_MEMORY, len(data))
@@ -83,22 +51,7 @@ def as_given(given: object) -> tuple[str, bytes]:
 
 
 def path_of(given: object) -> Path:
-    """Read an argument that is the path of a file or a folder.
-
-    Parameters
-    ----------
-    given : str or path-like
-        What the user gave; ``~`` is the user's folder.
-
-    Returns
-    -------
-    Path
-
-    Raises
-    ------
-    RecordError
-        It names no file.
-    """
+    """Read an argument that is the path of a file or a folder."""
     try:
         return Path(cast("str", given)).expanduser()
     except (TypeError, ValueError, RuntimeError) as problem:
@@ -114,24 +67,7 @@ def check_size(name: str, size: int) -> None:
 
 
 def unzipped(name: str, data: bytes) -> bytes:
-    """Unpack what gzip packed.
-
-    Parameters
-    ----------
-    name : str
-        For messages.
-    data : bytes
-        As packed.
-
-    Returns
-    -------
-    bytes
-
-    Raises
-    ------
-    RecordError
-        Damaged, too large, or packed twice.
-    """
+    """Unpack what gzip packed."""
     try:
         with gzip.GzipFile(fileobj=io.BytesIO(data)) as file:
             unpacked = file.read(MAXIMUM_BYTES + 1)

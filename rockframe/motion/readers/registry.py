@@ -219,22 +219,7 @@ def unregister(name: str) -> None:
 
 
 def by_name(name: str) -> Format:
-    """Find a format by its name, or say which there are.
-
-    Parameters
-    ----------
-    name : str
-        Capitals and underscores are allowed.
-
-    Returns
-    -------
-    Format
-
-    Raises
-    ------
-    ComponentError
-        No such format.
-    """
+    """Find a format by its name, or say which there are."""
     wanted = name.casefold().replace("_", "-")
     for entry in formats():
         if entry.name == wanted:
@@ -245,22 +230,7 @@ def by_name(name: str) -> Format:
 
 
 def recognised(source: Source) -> Format:
-    """Find the format of a file from its content.
-
-    Parameters
-    ----------
-    source : Source
-        File.
-
-    Returns
-    -------
-    Format
-
-    Raises
-    ------
-    RecordError
-        None recognises it, or it is no text and no format for bytes does.
-    """
+    """Find the format of a file from its content."""
     known = formats()
     for entry in known:
         if entry.binary and _looks_like(source, entry):

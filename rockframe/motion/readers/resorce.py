@@ -47,24 +47,7 @@ def recognises(source: Source) -> bool:
 
 
 def read(source: Source, request: Request) -> Record:
-    """Read an acceleration.
-
-    Parameters
-    ----------
-    source : Source
-        File.
-    request : Request
-        What the caller asked for.
-
-    Returns
-    -------
-    Record
-
-    Raises
-    ------
-    RecordError
-        Not such a file, not an acceleration, no time increment, or cut short.
-    """
+    """Read an acceleration."""
     header = read_keys(source.top(_LONGEST_HEADER))
     time_step = needed_step(source, request, header, _STEP)
     count, _ = needed_count(source, header, _COUNT)

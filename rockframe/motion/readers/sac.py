@@ -97,25 +97,7 @@ def recognises(source: Source) -> bool:
 
 
 def read(source: Source, request: Request) -> Record:
-    """Read an acceleration.
-
-    Parameters
-    ----------
-    source : Source
-        File.
-    request : Request
-        What the caller asked for.
-
-    Returns
-    -------
-    Record
-
-    Raises
-    ------
-    RecordError
-        Not such a file, a velocity, a displacement or a spectrum, uneven samples, cut
-        short, or neither a unit nor a response.
-    """
+    """Read an acceleration."""
     header = _header(source)
     if header is None:
         found = f"a file that begins with {source.data[:8]!r}"

@@ -83,25 +83,7 @@ def recognises(source: Source) -> bool:
 
 
 def read(source: Source, request: Request) -> Record:
-    """Read an accelerogram.
-
-    Parameters
-    ----------
-    source : Source
-        File.
-    request : Request
-        What the caller asked for.
-
-    Returns
-    -------
-    Record
-
-    Raises
-    ------
-    RecordError
-        Not an SMC file, a velocity, displacement or spectrum, no sampling rate,
-        or cut short.
-    """
+    """Read an accelerogram."""
     _check_kind(source)
     name, direction = _component(source)
 

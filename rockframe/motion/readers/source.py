@@ -195,46 +195,17 @@ class Record:
 
 @dataclass(frozen=True)
 class StoredMotion:
-    """A motion that was written by this package and comes back as it was.
+    """A motion that was written by this package and comes back as it was."""
 
-    Parameters
-    ----------
-    si : Motion
-        In SI units.
-    name : str or None
-        Of the motion.
-    metadata : dict
-        As written.
-    history : tuple of str
-        As written.
-    recipe : mapping or None
-        Constructor and arguments of an analytic motion.
-    """
-
-    si: Motion
-    name: str | None
-    metadata: Metadata
+    si: Motion  # in SI units
+    name: str | None  # of the motion
+    metadata: Metadata  # as written
     history: tuple[str, ...]
-    recipe: Mapping[str, Any] | None
+    recipe: Mapping[str, Any] | None  # constructor and arguments of an analytic motion
 
 
 def read_source(given: RecordLike) -> Source:
-    """Read the bytes of a file, or refuse it.
-
-    Parameters
-    ----------
-    given : str, path-like, bytes or file object
-        A file, which gzip may have packed, or a zip or tar archive that holds one file.
-
-    Returns
-    -------
-    Source
-
-    Raises
-    ------
-    RecordError
-        Missing, a directory, not readable, too large, or an archive of several files.
-    """
+    """Read the bytes of a file, or refuse it."""
     return source_of(*received(given))
 
 

@@ -41,28 +41,7 @@ def compare_peak(
     line: int,
     share: float = PEAK_SHARE,
 ) -> list[str]:
-    """Hold the peak that a header states against the samples.
-
-    Parameters
-    ----------
-    source : Source
-        File.
-    samples : ndarray, shape (n,)
-        In `unit`.
-    unit : RecordUnit
-        Unit of the samples.
-    printed, printed_unit : str
-        The peak as the header prints it, with either sign, and its unit.
-    line : int
-        Where, from 1.
-    share : float, optional
-        What is let pass, as a share of the stated peak [1].
-
-    Returns
-    -------
-    list of str
-        A sentence, or none if they agree, or if the header states no peak above zero.
-    """
+    """Hold the peak that a header states against the samples."""
     said, digit = _printed(printed)
     stated_unit = acceleration_unit(printed_unit)
     if said is None or stated_unit is None or math.isclose(said, 0.0):
@@ -82,26 +61,6 @@ def compare_length(
 ) -> list[str]:
     """Hold the length that a header states against the number of samples and the time step.
 
-    Parameters
-    ----------
-    source : Source
-        File.
-    count : int
-        Number of samples.
-    time_step : float
-        [s]
-    printed : str
-        The length as the header prints it [s].
-    line : int
-        Where, from 1.
-
-    Returns
-    -------
-    list of str
-        A sentence, or none if they agree, or if the header states no length above zero.
-
-    Notes
-    -----
     Some agencies state ``n dt``, others ``(n - 1) dt``.
     """
     said, digit = _printed(printed)
@@ -117,22 +76,7 @@ def compare_length(
 
 
 def surplus(source: Source, index: int, what: str) -> list[str]:
-    """Look for rows of numbers behind the last sample that a header announces.
-
-    Parameters
-    ----------
-    source : Source
-        File.
-    index : int
-        Index of the first line behind the samples, from 0.
-    what : str
-        Where the header announces them, such as ``"line 45"``.
-
-    Returns
-    -------
-    list of str
-        A sentence, or none if something else than numbers follows.
-    """
+    """Look for rows of numbers behind the last sample that a header announces."""
     rows = 0
     for line in source.lines[index : index + _MOST_LINES]:
         if not line.strip():

@@ -46,44 +46,18 @@ _UPRIGHT: Final = 85.0
 
 @dataclass(frozen=True)
 class InstrumentResponse:
-    """What turns the counts of one channel into accelerations.
+    """What turns the counts of one channel into accelerations."""
 
-    Parameters
-    ----------
-    sensitivity : float
-        Counts per `unit`.
-    unit : RecordUnit
-        Of the acceleration.
-    orientation : Orientation
-        Of the channel.
-    file, sha256 : str
-        Where it was found.
-    """
-
-    sensitivity: float
-    unit: RecordUnit
-    orientation: Orientation
-    file: str
+    sensitivity: float  # counts per `unit`
+    unit: RecordUnit  # of the acceleration
+    orientation: Orientation  # of the channel
+    file: str  # where it was found
     sha256: str
 
 
 class InstrumentResponses:
     """The responses that go with one record; each file is read once.
 
-    Parameters
-    ----------
-    source : Source
-        File of the record.
-    request : Request
-        With the file of the response, if the caller gave one.
-
-    Raises
-    ------
-    RecordError
-        The file that the caller gave is no StationXML, or too large.
-
-    Notes
-    -----
     Without a file that was given, StationXML is looked for beside the record: in
     its folder, with the extension ``.xml``, and with the same stem or with
     ``NET.STA`` in its name.
@@ -96,26 +70,7 @@ class InstrumentResponses:
         self._read: dict[Path, _Inventory | None] = {}
 
     def of(self, name: str, time: datetime) -> InstrumentResponse | None:
-        """Find the response of a channel.
-
-        Parameters
-        ----------
-        name : str
-            ``NET.STA.LOC.CHA``.
-        time : datetime
-            Start of the record, in coordinated universal time, without a zone.
-
-        Returns
-        -------
-        InstrumentResponse or None
-            None if no file was given and none beside the record describes the channel.
-
-        Raises
-        ------
-        RecordError
-            The file that was given does not describe the channel, two files beside
-            the record do, or the channel does not record accelerations.
-        """
+        """Find the response of a channel."""
         if self._given is not None:
             found = self._given.response(name, time)
             if found is None:

@@ -70,25 +70,7 @@ def recognises(source: Source) -> bool:
 
 
 def read(source: Source, request: Request) -> Record:
-    """Read columns of numbers.
-
-    Parameters
-    ----------
-    source : Source
-        File.
-    request : Request
-        What the caller asked for.
-
-    Returns
-    -------
-    Record
-
-    Raises
-    ------
-    RecordError
-        No columns of numbers, a spectrum, an uneven time step, no unit, several
-        components and none was asked for, or columns that may be one record, row by row.
-    """
+    """Read columns of numbers."""
     first_lines = find_first_lines(source)
     if first_lines is not None:
         return _counted(source, request, first_lines)

@@ -32,40 +32,16 @@ _TIDY: Final = re.compile(r"0?\.0{0,4}[1-9]\d?(?:5|25|75)?0*", re.ASCII)
 
 @dataclass(frozen=True)
 class FirstLines:
-    """A number of samples and a time step above the samples.
+    """A number of samples and a time step above the samples."""
 
-    Parameters
-    ----------
-    count : int
-        Number of samples.
-    time_step : float
-        [s]
-    line : int
-        Where they stand, from 1.
-    data_at : int
-        Index of the first line of samples, from 0.
-    """
-
-    count: int
-    time_step: float
-    line: int
-    data_at: int
+    count: int  # number of samples
+    time_step: float  # [s]
+    line: int  # where they stand, from 1
+    data_at: int  # index of the first line of samples, from 0
 
 
 def find_first_lines(source: Source) -> FirstLines | None:
-    """Look for a number of samples and a time step above the samples.
-
-    Parameters
-    ----------
-    source : Source
-        File.
-
-    Returns
-    -------
-    FirstLines or None
-        None unless as many numbers follow as the first lines say, or, if the lines below
-        them hold another number of numbers each, about as many.
-    """
+    """Look for a number of samples and a time step above the samples."""
     rows: list[tuple[int, list[str]]] = []
     for index, line in enumerate(source.top(3 * HEADER_LINES)):
         fields = line.split()
@@ -99,19 +75,7 @@ def find_first_lines(source: Source) -> FirstLines | None:
 
 
 def looks_like_step(table: Table) -> bool:
-    """Tell whether the first number of one column looks like a time step, not a sample.
-
-    Parameters
-    ----------
-    table : Table
-        One column.
-
-    Returns
-    -------
-    bool
-        True if it is a tidy number of a usual size, printed in another way than the
-        numbers below it, which are all printed alike.
-    """
+    """Tell whether the first number of one column looks like a time step, not a sample."""
     fields: Sequence[str] = table.first_fields
     low, high = USUAL_TIME_STEPS
     if len(fields) < _FEWEST or not low <= table.values[0, 0] <= high:

@@ -41,46 +41,16 @@ _WORDS: Final = re.compile(r"[^\W_]+")
 
 @dataclass(frozen=True)
 class TextColumn:
-    """A column of accelerations.
+    """A column of accelerations."""
 
-    Parameters
-    ----------
-    place : int
-        Which column, from 0.
-    name : str
-        As the header has it, without a unit; ``column 2`` if there is none.
-    orientation : Orientation
-        Which way it is positive, if its name tells.
-    unit : str or None
-        Of this column alone.
-    """
-
-    place: int
-    name: str
-    orientation: Orientation = UNKNOWN
-    unit: str | None = None
+    place: int  # which column, from 0
+    name: str  # as the header has it, without a unit; ``column 2`` if there is none
+    orientation: Orientation = UNKNOWN  # which way it is positive, if its name tells
+    unit: str | None = None  # of this column alone
 
 
 def column_names(source: Source, table: Table) -> tuple[list[str], int]:
-    """Find the names of the columns, and refuse those of another quantity or of a spectrum.
-
-    Parameters
-    ----------
-    source : Source
-        File.
-    table : Table
-        Its columns and header.
-
-    Returns
-    -------
-    tuple of list of str, and int
-        One for each column, or none, and their line, from 1.
-
-    Raises
-    ------
-    RecordError
-        A spectrum, a velocity or a displacement, or the time behind the acceleration.
-    """
+    """Find the names of the columns, and refuse those of another quantity or of a spectrum."""
     columns = table.values.shape[1]
     names, line = _names(table, columns)
     _check_no_spectrum(source, table, names, line)
@@ -130,21 +100,7 @@ def _check_no_spectrum(source: Source, table: Table, names: list[str], line: int
 
 
 def has_times(table: Table, names: list[str]) -> bool:
-    """Tell whether the first column holds times.
-
-    Parameters
-    ----------
-    table : Table
-        Columns.
-    names : list of str
-        Of the columns, or none.
-
-    Returns
-    -------
-    bool
-        As its name or its unit says; without names, whether there are two columns, or its
-        numbers rise all along, which no acceleration does.
-    """
+    """Tell whether the first column holds times."""
     columns = table.values.shape[1]
     if columns == 1:
         return False
@@ -170,30 +126,7 @@ def is_direction(name: str) -> bool:
 def acceleration_columns(
     source: Source, table: Table, names: list[str], line: int, *, timed: bool
 ) -> list[TextColumn]:
-    """List the columns of accelerations; velocities and displacements beside them are left out.
-
-    Parameters
-    ----------
-    source : Source
-        File.
-    table : Table
-        Columns.
-    names : list of str
-        Of the columns, or none.
-    line : int
-        Of the names, from 1.
-    timed : bool
-        Whether the first column holds times.
-
-    Returns
-    -------
-    list of TextColumn
-
-    Raises
-    ------
-    RecordError
-        None of them is an acceleration.
-    """
+    """List the columns of accelerations; velocities and displacements beside them are left out."""
     columns = table.values.shape[1]
     places = range(1 if timed else 0, columns)
     if not names or len(places) == 1:
@@ -223,26 +156,7 @@ def _unit_row(table: Table, columns: int) -> list[str]:
 
 
 def time_scale(source: Source, table: Table, names: list[str]) -> float:
-    """Give the unit of the times in seconds.
-
-    Parameters
-    ----------
-    source : Source
-        File.
-    table : Table
-        Columns.
-    names : list of str
-        Of the columns, or none.
-
-    Returns
-    -------
-    float
-
-    Raises
-    ------
-    RecordError
-        Another unit than seconds and milliseconds.
-    """
+    """Give the unit of the times in seconds."""
     for name in names[:1]:
         for unit in in_brackets(name):
             known = TIME_UNITS.get(unit.casefold())
@@ -265,27 +179,7 @@ def time_scale(source: Source, table: Table, names: list[str]) -> float:
 
 
 def unit_of_header(source: Source, table: Table, *, asked: bool) -> tuple[str | None, int | None]:
-    """Find the unit of the accelerations in the header.
-
-    Parameters
-    ----------
-    source : Source
-        File.
-    table : Table
-        Columns.
-    asked : bool
-        Whether the caller gave a unit, so that two in the header do no harm.
-
-    Returns
-    -------
-    tuple of (str or None) and (int or None)
-        Its name and line, from 1.
-
-    Raises
-    ------
-    RecordError
-        The header names two.
-    """
+    """Find the unit of the accelerations in the header."""
     unknown: tuple[str, int] | None = None
     other: tuple[str, int] | None = None
     known: list[tuple[str, int, float]] = []

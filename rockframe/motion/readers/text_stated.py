@@ -34,17 +34,7 @@ _PEAK: Final = re.compile(
 
 
 def stated_step(header: list[tuple[int, str]]) -> tuple[float, int] | None:
-    """Find a time step, or a sampling rate, that the header states, and its line.
-
-    Parameters
-    ----------
-    header : list of tuple of int and str
-        Lines from 1, and their text.
-
-    Returns
-    -------
-    tuple of float [s] and int, or None
-    """
+    """Find a time step, or a sampling rate, that the header states, and its line."""
     for line, text in header:
         step, rate = _STEP.search(text), _RATE.search(text)
         if step is not None:
@@ -63,17 +53,7 @@ def stated_step(header: list[tuple[int, str]]) -> tuple[float, int] | None:
 
 
 def stated_peak(header: list[tuple[int, str]]) -> tuple[str, str, int] | None:
-    """Find a peak that the header states: the number as printed, its unit, its line.
-
-    Parameters
-    ----------
-    header : list of tuple of int and str
-        Lines from 1, and their text.
-
-    Returns
-    -------
-    tuple of str, str and int, or None
-    """
+    """Find a peak that the header states: the number as printed, its unit, its line."""
     for line, text in header:
         match = _PEAK.search(text)
         if match is not None:

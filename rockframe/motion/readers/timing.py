@@ -28,21 +28,7 @@ _LONGEST_EXPONENT: Final = 5
 
 
 def same_start(one: object, other: object, time_step: float) -> bool:
-    """Tell whether two samples were taken at the same time.
-
-    Parameters
-    ----------
-    one, other : object
-        Times as files give them, or None where they do not.
-    time_step : float
-        Of the samples [s].
-
-    Returns
-    -------
-    bool
-        False if the times are further apart than a tenth of the time step, or, where one of them
-        cannot be read, if they are written in different ways.
-    """
+    """Tell whether two samples were taken at the same time."""
     if one is None or other is None or one == other:
         return True
     first, second = epoch_seconds(one), epoch_seconds(other)
@@ -62,22 +48,6 @@ def epoch_seconds(time: object) -> float | None:
 def uniform_step(times: Array, fields: Sequence[str]) -> tuple[float, int | None]:
     """Find the time step that a column of times was printed from.
 
-    Parameters
-    ----------
-    times : ndarray, shape (n,)
-        At least two times.
-    fields : sequence of str
-        The same times as printed: their digits tell how they were rounded.
-
-    Returns
-    -------
-    float
-        Time step: the plainest number that explains all the times.
-    int or None
-        Index of the first time that does not fit, if any.
-
-    Notes
-    -----
     Times t_0 + k dt, each rounded to its last printed digit q, lie within q/2
     of a straight line through the first, or, if that one was rounded too,
     within q of one another. What rounding does not explain must stay below

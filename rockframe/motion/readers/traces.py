@@ -16,17 +16,7 @@ if TYPE_CHECKING:
 
 
 def by_channel(traces: Iterable[Any]) -> dict[str, list[Any]]:
-    """Sort traces by their channel.
-
-    Parameters
-    ----------
-    traces : iterable of obspy.Trace
-
-    Returns
-    -------
-    dict
-        By ``NET.STA.LOC.CHA``, in the order in which they come.
-    """
+    """Sort traces by their channel."""
     channels: dict[str, list[Any]] = {}
     for trace in traces:
         channels.setdefault(".".join(codes_of(str(trace.id))), []).append(trace)
@@ -45,26 +35,7 @@ def location_code(given: str) -> str:
 
 
 def joined_traces(source: Source, traces: list[Any]) -> tuple[Array, float, str]:
-    """Join the traces of one channel.
-
-    Parameters
-    ----------
-    source : Source
-        File, for messages.
-    traces : list of obspy.Trace
-        At least one.
-
-    Returns
-    -------
-    tuple of ndarray, float and str
-        Samples, time step [s] and start.
-
-    Raises
-    ------
-    RecordError
-        A gap, an overlap, two sampling rates, samples that are masked or no finite
-        numbers, or too many of them.
-    """
+    """Join the traces of one channel."""
     traces = sorted(traces, key=lambda trace: trace.stats.starttime)
     first = traces[0].stats
     time_step = float(f"{float(first.delta):.12g}")

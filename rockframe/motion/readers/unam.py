@@ -87,24 +87,7 @@ def recognises(source: Source) -> bool:
 
 
 def read(source: Source, request: Request) -> Record:
-    """Read the acceleration of one channel, or of two.
-
-    Parameters
-    ----------
-    source : Source
-        File.
-    request : Request
-        What the caller asked for.
-
-    Returns
-    -------
-    Record
-
-    Raises
-    ------
-    RecordError
-        Not such a file, no sampling interval, unit or layout, or cut short.
-    """
+    """Read the acceleration of one channel, or of two."""
     top = source.top(_LONGEST_HEADER)
     header = read_keys(top)
     lists = _Lists(**{name: _list(header, start) for name, start in _LISTS.items()})

@@ -37,21 +37,7 @@ _EQUAL: Final = (0.5, 1.5)
 
 
 def reading_order(values: Array) -> Literal["rows", "columns"] | None:
-    """Tell whether a table is one record, row by row, or one in each column.
-
-    Parameters
-    ----------
-    values : ndarray, shape (n, columns)
-        Two columns or more.
-
-    Returns
-    -------
-    str or None
-        ``"rows"``, if along rows numbers change less than along columns, from each column to the
-        next, and from the last to the first of the next row, they are correlated and change as
-        much; ``"columns"``, if it is along columns that they change less, and some column is
-        not correlated with its neighbour; each by five standard errors. None if neither is sure.
-    """
+    """Tell whether a table is one record, row by row, or one in each column."""
     rows, columns = values.shape
     if rows < _FEWEST_ROWS:
         return None

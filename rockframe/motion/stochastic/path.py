@@ -47,18 +47,7 @@ LARGEST_DISTANCE: Final = PATH_DURATIONS[-1][0] * KILOMETRE
 
 
 def saturation_length(magnitude: float) -> float:
-    """Compute how far away a large fault seems, seen from itself, :eq:`eq-saturation`.
-
-    Parameters
-    ----------
-    magnitude : float
-        Moment magnitude [1].
-
-    Returns
-    -------
-    float
-        [m]
-    """
+    """Compute how far away a large fault seems, seen from itself, :eq:`eq-saturation`."""
     (a, b), (c, d) = SMALL_FAULT, LARGE_FAULT
     start = (c - a) / (b - d) - 0.5 * TRANSITION
     within = min(max(magnitude - start, 0.0), TRANSITION)
@@ -68,36 +57,12 @@ def saturation_length(magnitude: float) -> float:
 
 
 def effective_distance(distance: float, magnitude: float) -> float:
-    """Compute the distance of the equivalent point source, :eq:`eq-effective-distance`.
-
-    Parameters
-    ----------
-    distance : float
-        Closest distance to the rupture [m].
-    magnitude : float
-        Moment magnitude [1].
-
-    Returns
-    -------
-    float
-        [m]
-    """
+    """Compute the distance of the equivalent point source, :eq:`eq-effective-distance`."""
     return math.hypot(distance, saturation_length(magnitude))
 
 
 def geometric_spreading(distance: float) -> float:
-    """Compute the geometric spreading, :eq:`eq-spreading`.
-
-    Parameters
-    ----------
-    distance : float
-        Effective distance [m].
-
-    Returns
-    -------
-    float
-        Amplitude over that at the reference distance [1].
-    """
+    """Compute the geometric spreading, :eq:`eq-spreading`."""
     beyond = max(distance / SPREADING_BREAK, 1.0)
     return REFERENCE_DISTANCE / min(distance, SPREADING_BREAK) / math.sqrt(beyond)
 
@@ -105,41 +70,13 @@ def geometric_spreading(distance: float) -> float:
 def crustal_attenuation(
     frequency: Array, distance: float, quality_factor: float, quality_exponent: float
 ) -> Array:
-    """Compute the attenuation in the crust, :eq:`eq-attenuation`, Q(f) = Q0 (f/Hz)^n.
-
-    Parameters
-    ----------
-    frequency : ndarray
-        [Hz]
-    distance : float
-        Effective distance [m].
-    quality_factor : float
-        Q0, at 1 Hz [1].
-    quality_exponent : float
-        n, from 0 to 1 [1].
-
-    Returns
-    -------
-    ndarray
-        [1]
-    """
+    """Compute the attenuation in the crust, :eq:`eq-attenuation`, Q(f) = Q0 (f/Hz)^n."""
     waves = frequency ** (1.0 - quality_exponent) * distance / QUALITY_VELOCITY
     return np.exp(-math.pi * waves / quality_factor)
 
 
 def path_duration(distance: float) -> float:
-    """Compute how much the path lengthens the motion, :eq:`eq-duration`.
-
-    Parameters
-    ----------
-    distance : float
-        Effective distance [m].
-
-    Returns
-    -------
-    float
-        [s]
-    """
+    """Compute how much the path lengthens the motion, :eq:`eq-duration`."""
     kilometres, seconds = zip(*PATH_DURATIONS, strict=True)
     beyond = max(distance - LARGEST_DISTANCE, 0.0) / KILOMETRE
     return float(np.interp(distance / KILOMETRE, kilometres, seconds)) + FINAL_SLOPE * beyond

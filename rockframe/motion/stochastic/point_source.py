@@ -17,41 +17,18 @@ class PointSource:
     """An earthquake, seen from a site: all that the stochastic model knows of both.
 
     The defaults are those of Boore and Thompson (2015) for active crustal regions.
-
-    Parameters
-    ----------
-    magnitude : float
-        Moment magnitude [1].
-    distance : float
-        Closest distance to the rupture [m].
-    stress_drop : float
-        Stress drop [Pa].
-    shear_wave_velocity : float
-        Of the crust at the source [m s^-1].
-    density : float
-        Of the crust at the source [kg m^-3].
-    quality_factor : float
-        Q0 of the crust, at 1 Hz [1].
-    quality_exponent : float
-        n of Q(f) = Q0 (f/Hz)^n [1].
-    kappa : float
-        Loss of high frequencies at the site [s].
-    site : Site
-        Ground of the site.
-    corners : Corners
-        Corner frequencies of the source.
     """
 
-    magnitude: float
-    distance: float
-    stress_drop: float = 10e6
-    shear_wave_velocity: float = 3_500.0
-    density: float = 2_720.0
-    quality_factor: float = 180.0
-    quality_exponent: float = 0.45
-    kappa: float = 0.035
-    site: site.Site = site.Site.ROCK_760
-    corners: source.Corners = source.Corners.ONE
+    magnitude: float  # moment magnitude [1]
+    distance: float  # closest distance to the rupture [m]
+    stress_drop: float = 10e6  # stress drop [Pa]
+    shear_wave_velocity: float = 3_500.0  # of the crust at the source [m s^-1]
+    density: float = 2_720.0  # of the crust at the source [kg m^-3]
+    quality_factor: float = 180.0  # Q0 of the crust, at 1 Hz [1]
+    quality_exponent: float = 0.45  # n of Q(f) = Q0 (f/Hz)^n [1]
+    kappa: float = 0.035  # loss of high frequencies at the site [s]
+    site: site.Site = site.Site.ROCK_760  # ground of the site
+    corners: source.Corners = source.Corners.ONE  # corner frequencies of the source
 
     @property
     def moment(self) -> float:
@@ -90,18 +67,7 @@ class PointSource:
         return of_source + path.path_duration(self.effective_distance)
 
     def displacement_spectrum(self, frequency: Array) -> Array:
-        """Compute the Fourier amplitude of the displacement, :eq:`eq-target-spectrum`.
-
-        Parameters
-        ----------
-        frequency : ndarray
-            From 0 on [Hz].
-
-        Returns
-        -------
-        ndarray
-            Root of the mean square over many motions [m s].
-        """
+        """Compute the Fourier amplitude of the displacement, :eq:`eq-target-spectrum`."""
         level = source.displacement_level(self.moment, self.shear_wave_velocity, self.density)
         distance = self.effective_distance
         if self.corners is source.Corners.ONE:
@@ -120,16 +86,5 @@ class PointSource:
         )
 
     def acceleration_spectrum(self, frequency: Array) -> Array:
-        """Compute the Fourier amplitude of the acceleration, like :meth:`displacement_spectrum`.
-
-        Parameters
-        ----------
-        frequency : ndarray
-            From 0 on [Hz].
-
-        Returns
-        -------
-        ndarray
-            [m s^-1]
-        """
+        """Compute the Fourier amplitude of the acceleration, like :meth:`displacement_spectrum`."""
         return (2.0 * math.pi * frequency) ** 2 * self.displacement_spectrum(frequency)

@@ -70,37 +70,11 @@ with the densities of Boore (2016), for 620 m/s.
 
 
 def amplification(frequency: Array, site: Site) -> Array:
-    """Interpolate the amplification between the crust and the surface, :eq:`eq-amplification`.
-
-    Parameters
-    ----------
-    frequency : ndarray
-        [Hz]
-    site : Site
-        Ground of the site.
-
-    Returns
-    -------
-    ndarray
-        Its logarithm is linear over the frequency, and constant outside the table [1].
-    """
+    """Interpolate the amplification between the crust and the surface, :eq:`eq-amplification`."""
     knots, values = np.transpose(AMPLIFICATIONS[site])
     return np.exp(np.interp(frequency, knots, np.log(values)))
 
 
 def diminution(frequency: Array, kappa: float) -> Array:
-    """Compute the loss of high frequencies, :eq:`eq-kappa` (Anderson and Hough 1984).
-
-    Parameters
-    ----------
-    frequency : ndarray
-        [Hz]
-    kappa : float
-        [s]
-
-    Returns
-    -------
-    ndarray
-        [1]
-    """
+    """Compute the loss of high frequencies, :eq:`eq-kappa` (Anderson and Hough 1984)."""
     return np.exp(-math.pi * kappa * frequency)

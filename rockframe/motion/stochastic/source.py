@@ -43,103 +43,29 @@ class Corners(StrEnum):
 
 
 def seismic_moment(magnitude: float) -> float:
-    """Compute the seismic moment, :eq:`eq-seismic-moment` (Hanks and Kanamori 1979).
-
-    Parameters
-    ----------
-    magnitude : float
-        Moment magnitude [1].
-
-    Returns
-    -------
-    float
-        [N m]
-    """
+    """Compute the seismic moment, :eq:`eq-seismic-moment` (Hanks and Kanamori 1979)."""
     return 10.0 ** (1.5 * magnitude + 9.05)
 
 
 def corner_frequency(moment: float, stress_drop: float, shear_wave_velocity: float) -> float:
-    """Compute the corner frequency, :eq:`eq-corner-frequency` (Brune 1970, 1971).
-
-    Parameters
-    ----------
-    moment : float
-        Seismic moment [N m].
-    stress_drop : float
-        Stress drop [Pa].
-    shear_wave_velocity : float
-        Of the crust at the source [m s^-1].
-
-    Returns
-    -------
-    float
-        [Hz]
-    """
+    """Compute the corner frequency, :eq:`eq-corner-frequency` (Brune 1970, 1971)."""
     return CORNER * shear_wave_velocity * math.cbrt(stress_drop / moment)
 
 
 def displacement_level(moment: float, shear_wave_velocity: float, density: float) -> float:
-    """Compute the level of the displacement spectrum of long waves, :eq:`eq-source-level`.
-
-    Parameters
-    ----------
-    moment : float
-        Seismic moment [N m].
-    shear_wave_velocity : float
-        Of the crust at the source [m s^-1].
-    density : float
-        Of the crust at the source [kg m^-3].
-
-    Returns
-    -------
-    float
-        At the reference distance, without attenuation [m s].
-    """
+    """Compute the level of the displacement spectrum of long waves, :eq:`eq-source-level`."""
     share = RADIATION_PATTERN * PARTITION * FREE_SURFACE
     sphere = 4.0 * math.pi * density * shear_wave_velocity**3 * REFERENCE_DISTANCE
     return share * moment / sphere
 
 
 def source_shape(frequency: Array, corner: float) -> Array:
-    """Compute the omega-squared shape of the displacement spectrum, :eq:`eq-source-shape`.
-
-    Parameters
-    ----------
-    frequency : ndarray
-        [Hz]
-    corner : float
-        Corner frequency [Hz].
-
-    Returns
-    -------
-    ndarray
-        1 for long waves [1].
-    """
+    """Compute the omega-squared shape of the displacement spectrum, :eq:`eq-source-shape`."""
     return 1.0 / (1.0 + (frequency / corner) ** 2)
 
 
 def two_corners(magnitude: float, corner: float) -> tuple[float, float, float]:
-    """Compute the corner frequencies of a large fault, :eq:`eq-two-corners`.
-
-    Parameters
-    ----------
-    magnitude : float
-        Moment magnitude [1].
-    corner : float
-        Corner frequency of the source with one corner, whose high frequencies are kept [Hz].
-
-    Returns
-    -------
-    lower, upper : float
-        Corner frequencies [Hz].
-    share : float
-        Of the upper one [1].
-
-    Raises
-    ------
-    ArithmeticError
-        The lower corner alone exceeds these high frequencies.
-    """
+    """Compute the corner frequencies of a large fault, :eq:`eq-two-corners`."""
     (a, b), (c, d) = LOWER_CORNER, SHARE_OF_UPPER
     lower = 10.0 ** (a + b * magnitude)
     share = 10.0 ** (c + d * magnitude)
@@ -151,20 +77,7 @@ def two_corners(magnitude: float, corner: float) -> tuple[float, float, float]:
 
 
 def two_corner_shape(frequency: Array, corners: tuple[float, float, float]) -> Array:
-    """Compute the shape of a displacement spectrum with two corners, :eq:`eq-two-corner-shape`.
-
-    Parameters
-    ----------
-    frequency : ndarray
-        [Hz]
-    corners : tuple of three float
-        As :func:`two_corners` gives them.
-
-    Returns
-    -------
-    ndarray
-        1 for long waves [1].
-    """
+    """Compute the shape of a displacement spectrum with two corners, :eq:`eq-two-corner-shape`."""
     lower, upper, share = corners
     of_lower, of_upper = source_shape(frequency, lower), source_shape(frequency, upper)
     return (1.0 - share) * of_lower + share * of_upper

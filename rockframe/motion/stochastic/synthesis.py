@@ -28,22 +28,6 @@ def accelerogram(source: PointSource, time_step: float, seed: int, stream: int =
     """Draw an accelerogram: windowed noise with the spectrum of `source`.
 
     :eq:`eq-noise-spectrum` and :eq:`eq-faded`.
-
-    Parameters
-    ----------
-    source : PointSource
-        Spectrum and duration.
-    time_step : float
-        [s]
-    seed : int
-        Not negative; the same seed gives the same motion.
-    stream : int, optional
-        Streams of the same seed are independent of one another.
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        From rest to rest [m s^-2].
     """
     from scipy import fft
 
@@ -67,20 +51,7 @@ def accelerogram(source: PointSource, time_step: float, seed: int, stream: int =
 
 
 def exponential_window(length: float, time_step: float) -> Array:
-    """Sample the window of Saragoni and Hart (1974), :eq:`eq-window`.
-
-    Parameters
-    ----------
-    length : float
-        [s]
-    time_step : float
-        [s]
-
-    Returns
-    -------
-    ndarray
-        1 at its peak [1].
-    """
+    """Sample the window of Saragoni and Hart (1974), :eq:`eq-window`."""
     power = -WINDOW_PEAK * math.log(WINDOW_END)
     power /= 1.0 + WINDOW_PEAK * (math.log(WINDOW_PEAK) - 1.0)
     count = math.floor(length / time_step) + 1
@@ -94,20 +65,6 @@ def normal_numbers(count: int, seed: int, stream: int) -> Array:
 
     A bit generator's raw numbers are (NEP 19); ``Generator.normal`` may change. They become
     uniform numbers, :eq:`eq-uniform`, and normal ones through the inverse of the distribution.
-
-    Parameters
-    ----------
-    count : int
-        How many.
-    seed : int
-        Not negative.
-    stream : int
-        Streams of the same seed are independent of one another.
-
-    Returns
-    -------
-    ndarray, shape (count,)
-        Of mean 0 and variance 1 [1].
     """
     from scipy import special
 
@@ -117,22 +74,7 @@ def normal_numbers(count: int, seed: int, stream: int) -> Array:
 
 
 def faded(count: int, fade: int, time_step: float) -> tuple[Array, Array, Array]:
-    """Compute a smooth step up at the start and down at the end, :eq:`eq-step`.
-
-    Parameters
-    ----------
-    count : int
-        Samples.
-    fade : int
-        Intervals over which the step rises, and falls.
-    time_step : float
-        [s]
-
-    Returns
-    -------
-    tuple of ndarray, shape (count,)
-        The step [1] and its first [s^-1] and second [s^-2] derivative by time.
-    """
+    """Compute a smooth step up at the start and down at the end, :eq:`eq-step`."""
     x = np.minimum(np.arange(fade + 1) / fade, 1.0)
     rises = (
         x**3 * (10.0 - 15.0 * x + 6.0 * x**2),

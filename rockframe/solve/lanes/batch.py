@@ -259,15 +259,7 @@ def see_to_lanes(batch: Batch) -> int:
 
 @entry
 def advance_batch(batch: Batch, steps: Bound) -> None:
-    """Make all runs of a batch.
-
-    Parameters
-    ----------
-    batch : Batch
-        The runs; their rows are changed in place.
-    steps : Bound
-        A step in all lanes, for the class of their systems.
-    """
+    """Make all runs of a batch."""
     for lane in range(LANES):
         start_next_run(batch, lane)
     found = fields.SOME_WAIT

@@ -77,24 +77,7 @@ def step_lanes(
     system_of: Callable[[Vector], Equations], lanes: int, room: Vector, pieces_x: ReadOnlyMatrix,
     pieces_y: ReadOnlyMatrix,
 ) -> int:  # fmt: skip
-    """Take all lanes that are at the end of an interval to the next, and make a step in all.
-
-    Parameters
-    ----------
-    system_of : callable
-        Gives the system of the numbers of a lane.
-    lanes : int
-        How many there are; loops of a length that is known are written out, not vectorised.
-    room : ndarray
-        All lanes, laid out in :mod:`rockframe.solve.lanes.fields`.
-    pieces_x, pieces_y : ndarray
-        The ground's polynomials of all motions.
-
-    Returns
-    -------
-    int
-        `ALL_QUIET`, `SOME_ASK` or `SOME_WAIT` of :mod:`rockframe.solve.lanes.fields`.
-    """
+    """Take all lanes that are at the end of an interval to the next, and make a step in all."""
     widest_registers()
     if enter_intervals(lanes, room, pieces_x, pieces_y) == 1:
         return fields.SOME_WAIT

@@ -37,39 +37,20 @@ Whole = NDArray[np.int64]
 
 @dataclass(frozen=True)
 class LaneRun:
-    """A run that is to be made under some motions.
+    """A run that is to be made under some motions."""
 
-    Parameters
-    ----------
-    model : ContactModel
-        The equations.
-    begun : Begun
-        Where it starts, without outputs; all runs with steps of fixed length, or none.
-    """
-
-    model: ContactModel
-    begun: Begun
+    model: ContactModel  # the equations
+    begun: Begun  # where it starts, without outputs; all runs with steps of fixed length, or none
 
 
 @dataclass(frozen=True)
 class Outcomes:
-    """What became of runs, by their number.
+    """What became of runs, by their number."""
 
-    Parameters
-    ----------
-    clock : ndarray, shape (runs, n)
-    counters : ndarray of int64, shape (runs, m)
-        Laid out in :mod:`rockframe.solve.layout`.
-    status : ndarray of int64, shape (runs,)
-        How they ended, :class:`rockframe.solve.layout.Status`.
-    endings : list of Ending
-        Where they ended.
-    """
-
-    clock: Matrix
-    counters: Whole
-    status: Whole
-    endings: list[Ending]
+    clock: Matrix  # ndarray, shape (runs, n)
+    counters: Whole  # laid out in :mod:`rockframe.solve.layout`
+    status: Whole  # how they ended, :class:`rockframe.solve.layout.Status`
+    endings: list[Ending]  # where they ended
 
 
 def kind_of(model: ContactModel) -> Any:
@@ -102,22 +83,7 @@ def integrate_lanes(
     run_of: Whole,
     motion_of: Whole,
 ) -> Outcomes:
-    """Make many runs, whose systems are of one kind.
-
-    Parameters
-    ----------
-    runs : sequence of LaneRun
-        Runs without their motions, of a kind for which :func:`lanes_compiled` has said yes.
-    motions : sequence of Motion or None
-        Motions.
-    run_of, motion_of : ndarray of int64, shape (cases,)
-        The run and the motion of each case.
-
-    Returns
-    -------
-    Outcomes
-        Of each case what :func:`rockframe.solve.integrate.integrate` gives, to the last bit.
-    """
+    """Make many runs, whose systems are of one kind."""
     made = _Rows(runs)
     clock = np.empty((len(run_of), at.CLOCK))
     counters = np.empty((len(run_of), at.COUNTERS), dtype=np.int64)

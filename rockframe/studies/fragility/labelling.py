@@ -35,18 +35,10 @@ Labels = tuple[str, dict[str, Any]]
 
 @dataclass(frozen=True)
 class Arrangement:
-    """How numbers of structures and limit states are arranged.
+    """How numbers of structures and limit states are arranged."""
 
-    Parameters
-    ----------
-    dims : tuple of str
-        Dimensions, the last one fastest.
-    shape : tuple of int
-        Their sizes.
-    """
-
-    dims: tuple[str, ...]
-    shape: tuple[int, ...]
+    dims: tuple[str, ...]  # dimensions, the last one fastest
+    shape: tuple[int, ...]  # their sizes
 
     def arranged(self, values: Generic) -> Generic:
         """Give values, whose first dimension counts, their dimensions."""
@@ -55,18 +47,10 @@ class Arrangement:
 
 @dataclass(frozen=True)
 class Means:
-    """How bounds are found.
+    """How bounds are found."""
 
-    Parameters
-    ----------
-    bands : Bands
-        From what.
-    confidence : float
-        Of the bounds [1].
-    """
-
-    bands: Bands
-    confidence: float
+    bands: Bands  # from what
+    confidence: float  # of the bounds [1]
 
     @property
     def deviations(self) -> float:
@@ -78,24 +62,13 @@ class Means:
 
 @dataclass(frozen=True, eq=False)
 class StructureTrials:
-    """What was found out of one structure against one limit state.
+    """What was found out of one structure against one limit state."""
 
-    Parameters
-    ----------
-    trials : Trials
-        What is known of its capacity.
-    runs : (ndarray, ndarray) or None
-        Intensities, and whether they were exceeded, of each run; None of capacities.
-    left_out : int
-        How many runs or capacities are no trials.
-    independent : int
-        How many trials, or motions of trials, are independent.
-    """
-
-    trials: Trials
+    trials: Trials  # what is known of its capacity
+    # intensities, and whether they were exceeded, of each run; None of capacities
     runs: tuple[Array, Array] | None
-    left_out: int
-    independent: int
+    left_out: int  # how many runs or capacities are no trials
+    independent: int  # how many trials, or motions of trials, are independent
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,25 +99,7 @@ def fragility_dataset(
     means: Means,
     attributes: Mapping[str, str | float | int],
 ) -> xr.Dataset:
-    """Fit capacities, and label what is found.
-
-    Parameters
-    ----------
-    found : sequence of StructureTrials
-        Of each structure and limit state.
-    over : mapping of str to int
-        Their dimensions and sizes, the last one fastest.
-    measures : sequence of (str, dict)
-        Names and attributes of the intensity measures.
-    means : Means
-        How bounds are found.
-    attributes : mapping
-        Further ones.
-
-    Returns
-    -------
-    xarray.Dataset
-    """
+    """Fit capacities, and label what is found."""
     every = [_Fitted.of(one, means) for one in found]
     layout = Arrangement(tuple(over), tuple(over.values()))
     counts = {

@@ -33,48 +33,23 @@ class Bands(IntEnum):
 
 @dataclass(frozen=True, eq=False)
 class Trials:
-    """What is known of capacities.
+    """What is known of capacities."""
 
-    Parameters
-    ----------
-    lower, upper : ndarray, shape (trials, measures)
-        Logarithms of the intensities between which the capacity lies; any number where an
-        end is open.
-    has_lower, has_upper : ndarray of bool, shape (trials,)
-        Which ends there are.
-    weight : ndarray, shape (trials,)
-        How often the trial was made.
-    cluster : ndarray of int, shape (trials,), or None
-        Trials of one cluster, such as those under one motion, depend on one another; None
-        where no two of them do.
-    """
-
+    # logarithms of the intensities between which the capacity lies; any number where an end is open
     lower: Array
     upper: Array
-    has_lower: Generic
+    has_lower: Generic  # which ends there are
     has_upper: Generic
-    weight: Array
+    weight: Array  # how often the trial was made
+    # trials of one cluster, such as those under one motion, depend on one another; None where no
+    # two of them do
     cluster: Generic | None
 
     @classmethod
     def of_verdicts(
         cls, logs: Array, exceeded: Array, trials: Array, cluster: Generic | None = None
     ) -> "Trials":
-        """Give the trials of counts.
-
-        Parameters
-        ----------
-        logs : ndarray, shape (points, measures)
-            Logarithms of intensities.
-        exceeded, trials : ndarray, shape (points,)
-            How many trials exceeded the limit state, of how many.
-        cluster : ndarray of int, optional
-            Of the points.
-
-        Returns
-        -------
-        Trials
-        """
+        """Give the trials of counts."""
         both = np.concatenate([logs, logs])
         over = np.repeat([True, False], len(logs))
         weight = np.concatenate([exceeded, trials - exceeded]).astype(np.float64)
@@ -90,24 +65,12 @@ class Trials:
 
 @dataclass(frozen=True, eq=False)
 class Fit:
-    """The coefficients at which the likelihood is greatest.
+    """The coefficients at which the likelihood is greatest."""
 
-    Parameters
-    ----------
-    status : FragilityStatus
-        Whether there are any.
-    coefficients : ndarray, shape (1 + measures,)
-        Intercept and slopes.
-    information : ndarray, shape (1 + measures, 1 + measures)
-        The observed one: curvature of the log-likelihood at its maximum.
-    covariance : ndarray, same shape
-        Of the coefficients.
-    """
-
-    status: FragilityStatus
-    coefficients: Array
-    information: Array
-    covariance: Array
+    status: FragilityStatus  # whether there are any
+    coefficients: Array  # intercept and slopes
+    information: Array  # the observed one: curvature of the log-likelihood at its maximum
+    covariance: Array  # of the coefficients
 
     @classmethod
     def none(cls, status: FragilityStatus, measures: int) -> "Fit":
@@ -124,17 +87,7 @@ class Fit:
 def fit(trials: Trials, bands: Bands) -> Fit:
     """Find the most likely coefficients.
 
-    Parameters
-    ----------
-    trials : Trials
-        The data.
-    bands : Bands
-        Whether the covariance is the inverse of the information, or the sandwich of the scores
-        summed over clusters, :eq:`eq-fragility-sandwich`.
-
-    Returns
-    -------
-    Fit
+    By :eq:`eq-fragility-sandwich`.
     """
     from scipy import linalg, optimize
 
@@ -180,41 +133,19 @@ def fit(trials: Trials, bands: Bands) -> Fit:
 
 
 def log_likelihood(trials: Trials, coefficients: Array) -> Array:
-    """Give the logarithm of the likelihood, :eq:`eq-fragility-likelihood`.
-
-    Parameters
-    ----------
-    trials : Trials
-        The data.
-    coefficients : ndarray, shape (1 + measures, sets)
-        Of several fits.
-
-    Returns
-    -------
-    ndarray, shape (sets,)
-    """
+    """Give the logarithm of the likelihood, :eq:`eq-fragility-likelihood`."""
     return trials.weight @ _log_shares(*_etas(trials, coefficients))
 
 
 def scores(trials: Trials, coefficients: Array) -> Array:
-    """Give the slope of each trial's share in the log-likelihood.
-
-    Returns
-    -------
-    ndarray, shape (trials, 1 + measures)
-    """
+    """Give the slope of each trial's share in the log-likelihood."""
     upper, lower = _design(trials)
     _, at_upper, _, at_lower = _ratios(trials, coefficients)
     return trials.weight[:, None] * (at_upper[:, None] * upper - at_lower[:, None] * lower)
 
 
 def information(trials: Trials, coefficients: Array) -> Array:
-    """Give the observed information, the curvature of the log-likelihood with its sign changed.
-
-    Returns
-    -------
-    ndarray, shape (1 + measures, 1 + measures)
-    """
+    """Give the observed information, the curvature of the log-likelihood with its sign changed."""
     upper, lower = _design(trials)
     eta_upper, at_upper, eta_lower, at_lower = _ratios(trials, coefficients)
     weight = trials.weight
@@ -235,19 +166,6 @@ def boundary(trials: Trials, found: Fit, level: float) -> Array:
 
     The range of any function of the coefficients in this region is its interval by profile
     likelihood.
-
-    Parameters
-    ----------
-    trials : Trials
-        The data.
-    found : Fit
-        Their fit.
-    level : float
-        Confidence of an interval of one number [1].
-
-    Returns
-    -------
-    ndarray, shape (2, directions)
     """
     from scipy import linalg
     from scipy.special import chdtri
@@ -276,18 +194,7 @@ def boundary(trials: Trials, found: Fit, level: float) -> Array:
 
 
 def gap(trials: Trials) -> tuple[float, float] | None:
-    """Give the logarithms of the intensities between which all capacities may lie.
-
-    Parameters
-    ----------
-    trials : Trials
-        Of one measure.
-
-    Returns
-    -------
-    tuple of float or None
-        None where there is no such gap.
-    """
+    """Give the logarithms of the intensities between which all capacities may lie."""
     least = float(trials.upper[trials.has_upper].min(initial=np.inf))
     most = float(trials.lower[trials.has_lower].max(initial=-np.inf))
     return (most, least) if most <= least else None

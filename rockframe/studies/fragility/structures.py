@@ -15,21 +15,12 @@ from rockframe.studies.sweeps.axes import Changes
 
 @dataclass(frozen=True, eq=False)
 class Structures:
-    """The structures of a sweep: what differs beside motion and intensity tells them apart.
+    """The structures of a sweep: what differs beside motion and intensity tells them apart."""
 
-    Parameters
-    ----------
-    groups : mapping of str to ndarray of int
-        For each dimension over which structures differ, the number of the structure at each place.
-    coordinates : mapping of str to Variable
-        What they are told apart by.
-    names : tuple of str
-        What differs from one to another.
-    """
-
+    # for each dimension over which structures differ, the number of the structure at each place
     groups: Mapping[str, Generic]
-    coordinates: Mapping[str, xr.Variable]
-    names: tuple[str, ...]
+    coordinates: Mapping[str, xr.Variable]  # what they are told apart by
+    names: tuple[str, ...]  # what differs from one to another
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -52,32 +43,7 @@ class Structures:
 def structures_of(
     runs: xr.Dataset, pooled: "Iterable[str]", given: Sequence[object], *, owner: str
 ) -> Structures:
-    """Find the structures of a sweep.
-
-    Parameters
-    ----------
-    runs : xarray.Dataset
-        The sweep.
-    pooled : iterable of str
-        Axes, columns or dimensions of which all values are taken for one structure.
-    given : sequence
-        Intensities: names, or DataArrays; an axis that is given as one tells no structures apart.
-    owner : str
-        Function, for messages.
-
-    Returns
-    -------
-    Structures
-
-    Raises
-    ------
-    ComponentError
-        Nothing of a name in `pooled` differs, or each run has a structure of its own.
-    SchemaError
-        Columns of the table of cases are gone.
-    StudyError
-        Dimensions or motions that the sweep did not have.
-    """
+    """Find the structures of a sweep."""
     asked = (pooled,) if isinstance(pooled, str) else tuple(pooled)
     axes = {one["name"]: one["changes"] for one in json.loads(runs.attrs["axes_json"])}
     own = [str(one.name) for one in given if isinstance(one, xr.DataArray)]

@@ -15,23 +15,7 @@ from rockframe.studies.lines import SCALE
 def trials_of_runs(
     exceeded: xr.DataArray, measures: Sequence[xr.DataArray], *, by_motion: bool
 ) -> tuple[Trials, int]:
-    """Give the trials of runs, each of which exceeds a limit state or does not.
-
-    Parameters
-    ----------
-    exceeded : xarray.DataArray
-        1, 0, or NaN where a run has no verdict: it is left out.
-    measures : sequence of xarray.DataArray
-        Intensities of the runs, above zero; other runs are left out.
-    by_motion : bool
-        Whether runs under one motion depend on one another.
-
-    Returns
-    -------
-    Trials
-    int
-        Under how many motions they are.
-    """
+    """Give the trials of runs, each of which exceeds a limit state or does not."""
     columns, verdict = flat(exceeded, measures)
     kept = ~np.isnan(verdict) & np.all(columns > 0.0, axis=1) & np.all(np.isfinite(columns), axis=1)
     cluster = motion_numbers(exceeded)[kept]
@@ -49,21 +33,7 @@ def trials_of_runs(
 def trials_of_capacities(
     analysis: xr.Dataset, known: xr.DataArray, measures: Sequence[xr.DataArray]
 ) -> Trials:
-    """Give the trials of a dynamic analysis: one for each motion, from its first exceedance.
-
-    Parameters
-    ----------
-    analysis : xarray.Dataset
-        Of :func:`rockframe.incremental_dynamic_analysis`, of one limit state.
-    known : xarray.DataArray
-        Which runs of its scan have a verdict.
-    measures : sequence of xarray.DataArray
-        Intensities over ``scale`` and ``motion``, or over ``motion``.
-
-    Returns
-    -------
-    Trials
-    """
+    """Give the trials of a dynamic analysis: one for each motion, from its first exceedance."""
     scales = analysis[SCALE].to_numpy()
     below, above = first_brackets(analysis, known)
     has_lower, has_upper = below > 0.0, np.isfinite(above)
@@ -78,21 +48,7 @@ def trials_of_capacities(
 
 
 def first_brackets(analysis: xr.Dataset, known: xr.DataArray) -> tuple[Array, Array]:
-    """Give for each motion the scales between which the limit state is first exceeded.
-
-    Parameters
-    ----------
-    analysis : xarray.Dataset
-        Of one limit state.
-    known : xarray.DataArray
-        Which runs of the scan have a verdict.
-
-    Returns
-    -------
-    ndarray, ndarray
-        The lower is 0 where it is exceeded at the least scale, or nothing is known; the upper
-        infinite where it is not exceeded up to the largest that has a verdict.
-    """
+    """Give for each motion the scales between which the limit state is first exceeded."""
     capacity = analysis["capacity_scale"].to_numpy()
     above = analysis["scale_above"].transpose(MOTION, "flip").to_numpy()
     below = analysis["scale_below"].transpose(MOTION, "flip").to_numpy()
@@ -106,15 +62,7 @@ def first_brackets(analysis: xr.Dataset, known: xr.DataArray) -> tuple[Array, Ar
 
 
 def flat(first: xr.DataArray, others: Sequence[xr.DataArray]) -> tuple[Array, Array]:
-    """Lay numbers of runs out in rows.
-
-    Returns
-    -------
-    ndarray, shape (runs, others)
-        The others, each repeated along the dimensions that it does not have.
-    ndarray, shape (runs,)
-        The first.
-    """
+    """Lay numbers of runs out in rows."""
     rows = [
         other.broadcast_like(first).transpose(*first.dims).to_numpy().ravel().astype(np.float64)
         for other in others

@@ -43,17 +43,7 @@ def bounded(bands: Bands, independent: int) -> bool:
 
 
 def sentences(fragility: xr.Dataset) -> str:
-    """Tell what was fitted to the last limit state, what was left out, and what bounds are.
-
-    Parameters
-    ----------
-    fragility : xarray.Dataset
-        Or part of it, such as that of one structure.
-
-    Returns
-    -------
-    str
-    """
+    """Tell what was fitted to the last limit state, what was left out, and what bounds are."""
     last = fragility.isel({dim: -1 for dim in LIMIT_STATE if dim in fragility.dims})
     status = last["fragility_status"].to_numpy().ravel()
     fitted = status == FragilityStatus.FITTED
@@ -153,26 +143,7 @@ def words_of_bounds(
     kind: str,
     measures: int = 1,
 ) -> list[str]:
-    """Tell what is wrong with bounds.
-
-    Parameters
-    ----------
-    bands : Bands
-        Where they come from.
-    confidence : float
-        That was asked for [1].
-    independent, trials : ndarray of int
-        How many trials each fit has, and how many of them are independent.
-    kind : str
-        What is independent.
-    measures : int
-        Intensity measures; shares were measured with one.
-
-    Returns
-    -------
-    list of str
-        A sentence; none where bounds are what they are called.
-    """
+    """Tell what is wrong with bounds."""
     known = COVERAGE[bands]
     least, fewest = int(independent.min()), min(known)
     if least < fewest:

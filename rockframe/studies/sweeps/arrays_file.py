@@ -25,22 +25,7 @@ _BLOCK: Final = 4096
 
 
 def write_arrays(path: Path, described: Mapping[str, Any], arrays: Mapping[str, Generic]) -> None:
-    """Write a file.
-
-    Parameters
-    ----------
-    path : Path
-        Of the file; one that is there is replaced.
-    described : mapping
-        What else is kept, fit for JSON, with words for all keys.
-    arrays : mapping of str to ndarray
-        Numbers.
-
-    Raises
-    ------
-    OSError
-        It cannot be written; then nothing has changed.
-    """
+    """Write a file."""
     plain = {name: _little(values) for name, values in arrays.items()}
     shapes = [[name, values.dtype.str, list(values.shape)] for name, values in plain.items()]
     line = json.dumps({"described": dict(described), "arrays": shapes})
@@ -50,20 +35,7 @@ def write_arrays(path: Path, described: Mapping[str, Any], arrays: Mapping[str, 
 
 
 def read_arrays(path: Path) -> tuple[dict[str, Any], dict[str, Generic]]:
-    """Read a file.
-
-    Returns
-    -------
-    dict, dict of str to ndarray
-        What :func:`write_arrays` was given.
-
-    Raises
-    ------
-    StudyError
-        It is damaged, or no such file.
-    OSError
-        It cannot be read.
-    """
+    """Read a file."""
     content = path.read_bytes()
     start = len(_HEAD) + _DIGEST + 1
     if not content.startswith(_HEAD):
@@ -89,27 +61,7 @@ def read_arrays(path: Path) -> tuple[dict[str, Any], dict[str, Generic]]:
 
 
 def write_whole(path: Path, content: bytes, *, replace: bool = True) -> bool:
-    """Write a file so that others see all of it or nothing, even if this process is killed.
-
-    Parameters
-    ----------
-    path : Path
-        Of the file.
-    content : bytes
-        All of it.
-    replace : bool
-        Whether a file that is there is replaced.
-
-    Returns
-    -------
-    bool
-        False where a file was there, and has been left alone.
-
-    Raises
-    ------
-    OSError
-        It cannot be written.
-    """
+    """Write a file so that others see all of it or nothing, even if this process is killed."""
     part = path.with_name(f".{path.name}.{os.getpid()}.{os.urandom(4).hex()}.part")
     try:
         with part.open("xb") as file:
@@ -126,13 +78,7 @@ def write_whole(path: Path, content: bytes, *, replace: bool = True) -> bool:
 
 
 def try_to_write(folder: Path) -> None:
-    """Write a block into a folder, and take it away again.
-
-    Raises
-    ------
-    OSError
-        Nothing can be written there.
-    """
+    """Write a block into a folder, and take it away again."""
     part = folder / f".{os.getpid()}.{os.urandom(4).hex()}.part"
     try:
         with part.open("xb") as file:

@@ -32,33 +32,15 @@ OF_SCENES: Final = (Changes.PART, Changes.OPTION, Changes.ARGUMENT)
 
 @dataclass(frozen=True, eq=False)
 class Axis:
-    """Something that varies from case to case.
+    """Something that varies from case to case."""
 
-    Parameters
-    ----------
-    name : str
-        As the user wrote it; the dimension, or the column, of the result.
-    values : ndarray, shape (values,)
-        Numbers in SI units, or words.
-    unit : str or None
-        Of the numbers; None for words and truth values.
-    long_name : str
-        What it is.
-    changes : Changes
-        What the values change.
-    parameter : str
-        Which parameter, option or argument.
-    slot : str
-        Of the part whose parameter it is; empty otherwise.
-    """
-
-    name: str
-    values: Generic
-    unit: str | None
-    long_name: str
-    changes: Changes
-    parameter: str
-    slot: str = ""
+    name: str  # as the user wrote it; the dimension, or the column, of the result
+    values: Generic  # numbers in SI units, or words
+    unit: str | None  # of the numbers; None for words and truth values
+    long_name: str  # what it is
+    changes: Changes  # what the values change
+    parameter: str  # which parameter, option or argument
+    slot: str = ""  # of the part whose parameter it is; empty otherwise
 
     def attributes(self) -> dict[str, str]:
         """Give the CF attributes of the coordinate."""
@@ -77,26 +59,7 @@ class Axis:
 
 
 def numbers_of(given: object, measure: Measure, name: str) -> Generic:
-    """Read the values of an axis that has a unit, or is a pure number.
-
-    Parameters
-    ----------
-    given : object
-        What the user gave: one value or several.
-    measure : Measure
-        Kind of quantity.
-    name : str
-        Of the axis, for messages.
-
-    Returns
-    -------
-    ndarray of float64
-
-    Raises
-    ------
-    UnitsError, ComponentError
-        A value has the wrong unit, or none, or is not finite.
-    """
+    """Read the values of an axis that has a unit, or is a pure number."""
     if measure.unit == Unit.ONE:
         example = measure.example
         found = [
@@ -122,42 +85,12 @@ def _refuse_bare(given: object, measure: Measure, name: str) -> None:
 
 
 def words_of(given: object, read: Callable[[object], object]) -> Generic:
-    """Read the values of an axis that are words.
-
-    Parameters
-    ----------
-    given : object
-        What the user gave: one word or several.
-    read : callable
-        Reads a word, or refuses it.
-
-    Returns
-    -------
-    ndarray of str
-    """
+    """Read the values of an axis that are words."""
     return np.array([str(read(word)) for word in _items(given)])
 
 
 def free_values(given: object, name: str) -> tuple[Generic, str | None]:
-    """Read values for an argument of which only the user knows what it is.
-
-    Parameters
-    ----------
-    given : object
-        What the user gave: bare numbers, truth values, words, or quantities.
-    name : str
-        Of the axis, for messages.
-
-    Returns
-    -------
-    ndarray, str or None
-        Whole numbers, floats, truth values or words; the unit of numbers.
-
-    Raises
-    ------
-    UnitsError, ComponentError
-        A unit that rockframe has no quantity of, values that are not finite, or a mixture.
-    """
+    """Read values for an argument of which only the user knows what it is."""
     unit = _unit_in(given)
     if unit is not None:
         measure = _measure_of(unit, name)

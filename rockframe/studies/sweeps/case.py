@@ -262,31 +262,7 @@ def unscaled_motion(
     known: Study | None,
     kept: Store | None = None,
 ) -> GroundMotion | None:
-    """Give a motion of a sweep as it was before it was scaled.
-
-    Parameters
-    ----------
-    given : GroundMotion, iterable or mapping of them, optional
-        Records among which it may be.
-    number : int
-        Of the motion.
-    attributes : mapping
-        Of the sweep.
-    known : Study or None
-        The study, if this process has made it.
-    kept : Store or None
-        Where it is kept.
-
-    Returns
-    -------
-    GroundMotion or None
-        None where the ground stands still, or the scene has motions of its own.
-
-    Raises
-    ------
-    StudyError
-        It is a record, and nothing here has it.
-    """
+    """Give a motion of a sweep as it was before it was scaled."""
     described = json.loads(attributes["motions_json"])[number]
     if described is None:
         return None

@@ -19,15 +19,7 @@ Change: TypeAlias = Callable[[Assembly, Plan], Plan]
 
 
 class CasesOfJob:
-    """Scenes and motions of a job's cases.
-
-    Parameters
-    ----------
-    job : SweepJob
-        The cases.
-    change : callable, optional
-        Gives from a scene and its plan the plan that is run.
-    """
+    """Scenes and motions of a job's cases."""
 
     def __init__(self, job: SweepJob, change: Change | None = None) -> None:
         self.job = job
@@ -94,13 +86,7 @@ class CasesOfJob:
         return self._motion[1]
 
     def planned(self, case: int) -> tuple[Assembly, list[str], Plan]:
-        """Give the scene of a case, what is warned of when it is assembled, and the plan.
-
-        Raises
-        ------
-        RockframeError
-            The case cannot be assembled, or what it is asked for does not fit.
-        """
+        """Give the scene of a case, what is warned of when it is assembled, and the plan."""
         system, said = self.scene(case)
         faults: list[str] = []
         arguments = self.job.arguments

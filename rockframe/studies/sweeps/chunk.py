@@ -39,27 +39,14 @@ class Driver(IntEnum):
 
 @dataclass(frozen=True, eq=False)
 class CaseResults:
-    """What the cases of a chunk showed, in their order.
+    """What the cases of a chunk showed, in their order."""
 
-    Parameters
-    ----------
-    status : ndarray of int8, shape (cases,)
-        How each run ended, or why there is none.
-    scalars : dict of str to ndarray of float64, shape (cases,) or (cases, points)
-        By their names in the schema, and `DRIVER`; NaN where a case has no result.
-    histories : dict of str to ndarray of float64, shape (cases, times) or (cases, points, times)
-        The same; NaN beyond a run's end too.
-    message : ndarray of int32, shape (cases,)
-        Places in `texts`.
-    texts : tuple of str
-        What is said of cases, each once; the first says nothing.
-    """
-
-    status: Generic
+    status: Generic  # how each run ended, or why there is none
+    # by their names in the schema, and `DRIVER`; NaN where a case has no result
     scalars: dict[str, Generic]
-    histories: dict[str, Generic]
-    message: Generic
-    texts: tuple[str, ...]
+    histories: dict[str, Generic]  # the same; NaN beyond a run's end too
+    message: Generic  # places in `texts`
+    texts: tuple[str, ...]  # what is said of cases, each once; the first says nothing
 
 
 def run_chunk(job: SweepJob, stopped: Callable[[], bool] = lambda: False) -> CaseResults | None:
@@ -67,18 +54,6 @@ def run_chunk(job: SweepJob, stopped: Callable[[], bool] = lambda: False) -> Cas
 
     What a case shows depends on that case alone, and is what
     :meth:`rockframe.System.simulate` gives.
-
-    Parameters
-    ----------
-    job : SweepJob
-        The cases.
-    stopped : callable
-        Whether to leave off; asked between cases.
-
-    Returns
-    -------
-    CaseResults or None
-        None where it was left off.
     """
     cases = CasesOfJob(job)
     collected = _Collector(len(cases), job.histories)

@@ -41,32 +41,7 @@ def run_chunks(
     take: Callable[[Chunk, CaseResults], None],
     executor: Executor | None,
 ) -> bool:
-    """Run chunks, and hand on what they showed as they are done.
-
-    Parameters
-    ----------
-    chunks : iterable of Chunk
-        In the order in which they are begun.
-    job_of : callable
-        Gives the job of a chunk.
-    take : callable
-        Is given each chunk with its rows, one at a time, in this thread.
-    executor : Executor or None
-        Runs them; threads of its own if None.
-
-    Returns
-    -------
-    bool
-        False where an interrupt (Ctrl-C) came in between. What was done by then has been
-        handed on.
-
-    Raises
-    ------
-    ComponentError
-        `executor` is none.
-    StudyError
-        The executor cannot run a chunk.
-    """
+    """Run chunks, and hand on what they showed as they are done."""
     if executor is not None and not hasattr(executor, "submit"):
         msg = f"{OWNER}: executor must be a concurrent.futures.Executor, got {shown(executor)}"
         raise ComponentError(msg)

@@ -19,23 +19,12 @@ MOST_CASES: Final = 1_000_000_000
 
 @dataclass(frozen=True, eq=False)
 class Grid:
-    """All combinations of values, or of the rows of a table and further values.
+    """All combinations of values, or of the rows of a table and further values."""
 
-    Parameters
-    ----------
-    axes : tuple of Axis
-        With a dimension each.
-    columns : tuple of Axis
-        Of the table, all of one length.
-    motions : int
-        Number of motions.
-    motion_column : ndarray or None
-        Number of the motion of each row of the table; else the motions have a dimension.
-    """
-
-    axes: tuple[Axis, ...]
-    columns: tuple[Axis, ...]
-    motions: int
+    axes: tuple[Axis, ...]  # with a dimension each
+    columns: tuple[Axis, ...]  # of the table, all of one length
+    motions: int  # number of motions
+    # number of the motion of each row of the table; else the motions have a dimension
     motion_column: Generic | None = None
 
     @cached_property
@@ -79,18 +68,7 @@ class Grid:
         return int(np.ravel_multi_index([place[name] for name in self.order], shape))
 
     def arranged(self, values: Generic) -> Generic:
-        """Bring values from the order of running into that of the dimensions.
-
-        Parameters
-        ----------
-        values : ndarray, shape (cases, ...)
-            In the order of running.
-
-        Returns
-        -------
-        ndarray
-            The dimensions of the grid in the place of the first.
-        """
+        """Bring values from the order of running into that of the dimensions."""
         shape = [self.sizes[name] for name in self.order]
         apart = values.reshape([*shape, *values.shape[1:]])
         moved = [self.order.index(name) for name in self.sizes]

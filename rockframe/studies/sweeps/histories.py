@@ -18,21 +18,7 @@ from rockframe.studies.sweeps.study import Histories
 def numbers_of_case(
     arguments: RunRequest, kept: Histories | None, *, screened: bool
 ) -> dict[str, float]:
-    """Tell how many numbers are kept of a case, by what they are.
-
-    Parameters
-    ----------
-    arguments : RunRequest
-        Of every run.
-    kept : Histories or None
-        What is kept beside scalars.
-    screened : bool
-        Whether cases tell of a second run.
-
-    Returns
-    -------
-    dict of str to float
-    """
+    """Tell how many numbers are kept of a case, by what they are."""
     points = len(arguments.points)
     every = [*EVENTS_AND_SCALARS, *FORCE_SCALARS, *(SWEEP if screened else ())]
     numbers = {"scalars": float(sum(not row.dims for row in every))}
@@ -51,29 +37,7 @@ def kept_histories(
     arguments: RunRequest,
     outputs: object,
 ) -> Histories | None:
-    """Find the histories that are kept, and the times that those of all cases have.
-
-    Parameters
-    ----------
-    scene : SweptScene
-        What is simulated.
-    motions : mapping of str to GroundMotion or None
-        By their names.
-    arguments : RunRequest
-        Of every run.
-    outputs : object
-        As the user gave them, and as they have been read.
-
-    Returns
-    -------
-    Histories or None
-        None where none are kept.
-
-    Raises
-    ------
-    StudyError
-        There are no such histories, or no common times.
-    """
+    """Find the histories that are kept, and the times that those of all cases have."""
     if not arguments.histories:
         return None
     named = [str(name) for name in listed(outputs)]

@@ -20,25 +20,7 @@ _OWN: Final = __name__.partition(".")[0]
 
 
 def description_of(value: object) -> Any:
-    """Describe a value, fit for JSON, so that two that differ have other descriptions.
-
-    Parameters
-    ----------
-    value : object
-        A number, a word, an array, a ground motion, a component, a function, a dataclass, or a
-        row or a mapping of such. Of a dataclass all fields are told, but for those that take no
-        part in comparing because they follow from the others.
-
-    Returns
-    -------
-    object
-        Arrays and motions by their digests; mappings keep their order.
-
-    Raises
-    ------
-    StudyError
-        Anything else, of which nothing tells whether it is the same in another process.
-    """
+    """Describe a value, fit for JSON, so that two that differ have other descriptions."""
     if value is None or isinstance(value, str | bool | int | float):
         return value
     if isinstance(value, np.generic):
@@ -80,17 +62,7 @@ def digest_of(described: object) -> str:
 
 
 def difference(one: object, other: object) -> list[str]:
-    """Name the entries in which two descriptions differ, those inside them in brackets.
-
-    Parameters
-    ----------
-    one, other : object
-        As read from JSON.
-
-    Returns
-    -------
-    list of str
-    """
+    """Name the entries in which two descriptions differ, those inside them in brackets."""
     a, b = _entries(one), _entries(other)
     found: list[str] = []
     for name in dict.fromkeys([*a, *b]):

@@ -41,27 +41,13 @@ SIDE_BY_SIDE: Final = (
 
 @dataclass(frozen=True, eq=False)
 class Labels:
-    """All that is said of a sweep beside its results.
+    """All that is said of a sweep beside its results."""
 
-    Parameters
-    ----------
-    grid : Grid
-        The cases.
-    motions : tuple of str
-        Names.
-    histories : Histories or None
-        What is kept beside scalars.
-    points : tuple of BodyPoint
-        At which there are peaks, and histories if they are kept.
-    attributes : mapping
-        Of the dataset.
-    """
-
-    grid: Grid
-    motions: tuple[str, ...]
-    histories: Histories | None
-    points: tuple[BodyPoint, ...]
-    attributes: Mapping[str, str | float | int]
+    grid: Grid  # the cases
+    motions: tuple[str, ...]  # names
+    histories: Histories | None  # what is kept beside scalars
+    points: tuple[BodyPoint, ...]  # at which there are peaks, and histories if they are kept
+    attributes: Mapping[str, str | float | int]  # of the dataset
 
 
 def sweep_labels(study: Study) -> Labels:
@@ -94,20 +80,7 @@ def every_axis(grid: Grid) -> tuple[Axis, ...]:
 
 
 def sweep_dataset(labels: Labels, found: Iterable[tuple[range, CaseResults]]) -> xr.Dataset:
-    """Label what has been found.
-
-    Parameters
-    ----------
-    labels : Labels
-        Of the sweep.
-    found : iterable of (range, CaseResults)
-        Cases, and what they showed, in the order of running; those that are not there have
-        not been run.
-
-    Returns
-    -------
-    xarray.Dataset
-    """
+    """Label what has been found."""
     grid = labels.grid
     rows = _joined(grid.count, found)
     always = ALWAYS + (SCREENED if labels.attributes["accuracy"] == SCREEN else ())

@@ -29,31 +29,7 @@ _GROUPS: Final = (
 def check_memory(
     numbers: Mapping[str, float], cases: int, remedies: str, *, owner: str, copies: float = _COPIES
 ) -> list[str]:
-    """Tell what cases need, and whether it is there.
-
-    Parameters
-    ----------
-    numbers : mapping of str to float
-        How many numbers each case has, by what they are.
-    cases : int
-        How many there are.
-    remedies : str
-        What would need less.
-    owner : str
-        Function, for the warning.
-    copies : float
-        How often each number is there at once [1].
-
-    Returns
-    -------
-    list of str
-        What is wrong: nothing, or that the memory does not suffice.
-
-    Warns
-    -----
-    SolverWarning
-        More than half of what there is.
-    """
+    """Tell what cases need, and whether it is there."""
     sizes = {what: _FLOAT * copies * each * cases for what, each in numbers.items()}
     needed, there = sum(sizes.values()), available()
     parts = ", ".join(f"{what} {_shown(size)}" for what, size in sizes.items())

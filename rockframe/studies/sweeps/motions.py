@@ -24,18 +24,10 @@ _FEW: Final = 6
 
 @dataclass(frozen=True)
 class MotionAxis:
-    """An axis that scales the motion.
+    """An axis that scales the motion."""
 
-    Parameters
-    ----------
-    argument : str
-        Of :meth:`rockframe.GroundMotion.scaled`.
-    measure : Measure
-        Kind of quantity.
-    """
-
-    argument: str
-    measure: Measure
+    argument: str  # of :meth:`rockframe.GroundMotion.scaled`
+    measure: Measure  # kind of quantity
 
 
 SPECTRAL: Final = "pseudo_spectral_acceleration"
@@ -56,23 +48,7 @@ def target_words(name: str) -> str:
 def motion_of_case(
     motion: GroundMotion, name: str, value: float, period: float | None
 ) -> GroundMotion:
-    """Give the motion of a case.
-
-    Parameters
-    ----------
-    motion : GroundMotion
-        As it was given.
-    name : str
-        One of `TARGETS`.
-    value : float
-        In SI units.
-    period : float or None
-        Of the oscillator of a spectral value [s].
-
-    Returns
-    -------
-    GroundMotion
-    """
+    """Give the motion of a case."""
     target = TARGETS[name]
     if target.measure.unit == Unit.ONE:
         return motion.scaled(value)
@@ -83,23 +59,7 @@ def motion_of_case(
 
 
 def named_motions(given: object) -> dict[str, GroundMotion]:
-    """Read the motions of a sweep.
-
-    Parameters
-    ----------
-    given : GroundMotion, iterable or mapping of them
-        As the user gave them.
-
-    Returns
-    -------
-    dict of str to GroundMotion
-        By names that tell them apart.
-
-    Raises
-    ------
-    ComponentError
-        None at all, something else, or two of one name.
-    """
+    """Read the motions of a sweep."""
     named: dict[str, Any]
     if isinstance(given, GroundMotion):
         return {given.name: given}
@@ -118,26 +78,7 @@ def named_motions(given: object) -> dict[str, GroundMotion]:
 
 
 def motion_number(wanted: object, names: Sequence[str], *, owner: str) -> int:
-    """Give the number of the motion that a name, or a number, stands for.
-
-    Parameters
-    ----------
-    wanted : object
-        Name or number.
-    names : sequence of str
-        Of the motions, in their order.
-    owner : str
-        Argument or function, for the message.
-
-    Returns
-    -------
-    int
-
-    Raises
-    ------
-    StudyError
-        There is none, or it is the number of one motion and the name of another.
-    """
+    """Give the number of the motion that a name, or a number, stands for."""
     if isinstance(wanted, str):
         if wanted in names:
             return names.index(wanted)

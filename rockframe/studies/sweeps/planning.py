@@ -60,24 +60,7 @@ def plan_study(
     period: QuantityLike | None = None,
     **asked: Any,
 ) -> Study:
-    """Check the arguments of a sweep.
-
-    Parameters
-    ----------
-    scene, motions, axes, cases, period
-        As for :func:`rockframe.sweep`.
-    **asked
-        What every run is asked for, as there.
-
-    Returns
-    -------
-    Study
-
-    Raises
-    ------
-    StudyError
-        With every fault found.
-    """
+    """Check the arguments of a sweep."""
     faults: list[str] = []
 
     def tried(read: Callable[[], Read], otherwise: Read) -> Read:

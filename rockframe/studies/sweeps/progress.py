@@ -83,26 +83,7 @@ class _Bar:
 
 @contextmanager
 def bar_of(given: object, *, owner: str, unit: str = "case") -> Generator[ProgressBar]:
-    """Show a bar while something is done.
-
-    Parameters
-    ----------
-    given : bool or None
-        Whether there is one; where it can be seen and tqdm is installed if None.
-    owner : str
-        Function that it stands for.
-    unit : str
-        What it counts.
-
-    Yields
-    ------
-    ProgressBar
-
-    Raises
-    ------
-    ComponentError
-        Neither True, False nor None; or True, and tqdm is not installed.
-    """
+    """Show a bar while something is done."""
     bar = _made(given, owner, unit)
     try:
         yield bar

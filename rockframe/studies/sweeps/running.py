@@ -39,26 +39,7 @@ def run_study(
     executor: Executor | None = None,
     chunk: int | None = None,
 ) -> xr.Dataset:
-    """Run the cases of a study that are not kept yet, and label all of them.
-
-    Parameters
-    ----------
-    study : Study
-        As planned.
-    bar : ProgressBar
-        Is told of the cases.
-    store, executor, chunk : optional
-        As for :func:`rockframe.sweep`.
-
-    Returns
-    -------
-    xarray.Dataset
-
-    Raises
-    ------
-    StudyError, ComponentError
-        As for :func:`rockframe.sweep`.
-    """
+    """Run the cases of a study that are not kept yet, and label all of them."""
     size = (
         study.chunk_size(worker_count(), as_python=_runs_as_python(study))
         if chunk is None
@@ -143,13 +124,7 @@ def stored_dataset(kept: Store) -> xr.Dataset:
 
 
 def folder_of(path: object) -> Path:
-    """Read the argument ``store``.
-
-    Raises
-    ------
-    StudyError
-        No path.
-    """
+    """Read the argument ``store``."""
     if isinstance(path, str | PathLike):
         return Path(path)  # pyright: ignore[reportUnknownArgumentType]
     msg = f"store must be the path of a folder, got {shown(path)}"

@@ -60,26 +60,12 @@ class SweptScene(Protocol):
 
 @dataclass(frozen=True)
 class SystemScene:
-    """A system whose parameters axes name.
+    """A system whose parameters axes name."""
 
-    Parameters
-    ----------
-    assembly : Assembly
-        Its parts and options, as they are where no axis changes them.
-    """
-
-    assembly: Assembly
+    assembly: Assembly  # its parts and options, as they are where no axis changes them
 
     def axis(self, name: str, given: object) -> Axis:
-        """Read an axis that names the motion's scale, an option, or a parameter of a part.
-
-        Raises
-        ------
-        StudyError
-            It names none of them, or parameters of several parts.
-        UnitsError, ComponentError
-            Of the values.
-        """
+        """Read an axis that names the motion's scale, an option, or a parameter of a part."""
         if name in TARGETS:
             return _of_motion(name, given)
         if name in STARTS:
@@ -168,15 +154,10 @@ class SystemScene:
 
 @dataclass(frozen=True)
 class FunctionScene:
-    """A function of the axes that returns a system.
+    """A function of the axes that returns a system."""
 
-    Parameters
-    ----------
-    function : callable
-        Takes values by the names of axes: floats, whole numbers, truth values, words, and
-        quantities with units.
-    """
-
+    # takes values by the names of axes: floats, whole numbers, truth values, words, and quantities
+    # with units
     function: Callable[..., object]
 
     def axis(self, name: str, given: object) -> Axis:
@@ -201,13 +182,7 @@ class FunctionScene:
         return []
 
     def assembled(self, values: Values) -> Assembly:
-        """Call the function.
-
-        Raises
-        ------
-        StudyError
-            It returned something else than a System.
-        """
+        """Call the function."""
         found = self.system(values)
         return found.assembly
 
@@ -235,13 +210,7 @@ class FunctionScene:
 
 
 def scene_of(given: object) -> SweptScene:
-    """Read the argument ``scene``.
-
-    Raises
-    ------
-    StudyError
-        Neither a System nor a function.
-    """
+    """Read the argument ``scene``."""
     if isinstance(given, System):
         return SystemScene(given.assembly)
     if callable(given) and not isinstance(given, type):

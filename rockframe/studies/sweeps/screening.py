@@ -28,21 +28,7 @@ def look_at_case(cases: CasesOfJob, run: Finished) -> Look:
 def in_doubt(
     cases: CasesOfJob, first: Mapping[int, Look], stopped: Callable[[], bool]
 ) -> list[int]:
-    """Run cases a second time, and give those whose verdict is not sure.
-
-    Parameters
-    ----------
-    cases : CasesOfJob
-        All cases of a job.
-    first : mapping of int to Look
-        What their first runs told.
-    stopped : callable
-        Whether to leave off; asked between cases.
-
-    Returns
-    -------
-    list of int
-    """
+    """Run cases a second time, and give those whose verdict is not sure."""
     doubtful = set(first)
     for run in each_run(cases.changed(second_look), sorted(first), stopped, cases.job.patience):
         if isinstance(run, Finished) and is_sure(first[run.case], look_at_case(cases, run)):

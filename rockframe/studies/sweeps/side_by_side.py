@@ -25,43 +25,22 @@ TOGETHER: Final = 512
 
 @dataclass(frozen=True)
 class Finished:
-    """A case that has run.
+    """A case that has run."""
 
-    Parameters
-    ----------
-    case : int
-        Its number in the job.
-    system : Assembly
-        Its scene.
-    summary : Summary
-        What became of it.
-    said : list of str
-        What was warned of when its scene was assembled.
-    response : Response or None
-        With the histories; of runs side by side, of which there is nothing to be warned, None.
-    """
-
-    case: int
-    system: Assembly
-    summary: Summary
-    said: list[str]
+    case: int  # its number in the job
+    system: Assembly  # its scene
+    summary: Summary  # what became of it
+    said: list[str]  # what was warned of when its scene was assembled
+    # with the histories; of runs side by side, of which there is nothing to be warned, None
     response: Response | None = None
 
 
 @dataclass(frozen=True)
 class Failed:
-    """A case without a run.
+    """A case without a run."""
 
-    Parameters
-    ----------
-    case : int
-        Its number in the job.
-    problem : Exception
-        Why.
-    """
-
-    case: int
-    problem: Exception
+    case: int  # its number in the job
+    problem: Exception  # why
 
 
 @dataclass(frozen=True)
@@ -103,24 +82,7 @@ class _Group:
 def run_side_by_side(
     cases: CasesOfJob, which: Sequence[int], stopped: Callable[[], bool], patience: float
 ) -> Iterator[Finished | Failed]:
-    """Run what can run side by side.
-
-    Parameters
-    ----------
-    cases : CasesOfJob
-        All cases of a job.
-    which : sequence of int
-        Those to run.
-    stopped : callable
-        Whether to leave off; asked now and then.
-    patience : float
-        Longest time to compile what lanes need [s].
-
-    Yields
-    ------
-    Finished or Failed
-        Cases in any order; those that are missing, and those that failed, are to run alone.
-    """
+    """Run what can run side by side."""
     scenes: dict[Any, _Scene | None] = {}
     kinds: dict[Any, bool] = {}
 
@@ -214,24 +176,7 @@ def each_run(
     stopped: Callable[[], bool],
     patience: float | None,
 ) -> Iterator[Finished | Failed]:
-    """Run cases.
-
-    Parameters
-    ----------
-    cases : CasesOfJob
-        All cases of a job.
-    which : sequence of int
-        Those to run.
-    stopped : callable
-        Whether to leave off; asked between cases.
-    patience : float or None
-        Longest time to compile what lanes need [s]; None lets no cases run in lanes.
-
-    Yields
-    ------
-    Finished or Failed
-        In any order; not all where it was left off.
-    """
+    """Run cases."""
     alone = set(which)
     faults: dict[int, Exception] = {}
     if patience is not None:

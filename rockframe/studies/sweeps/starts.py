@@ -15,24 +15,7 @@ STARTS: Final = {
 
 
 def of_start(name: str, given: object) -> Axis:
-    """Read an axis that changes the initial state.
-
-    Parameters
-    ----------
-    name : str
-        One of `STARTS`.
-    given : object
-        Its values.
-
-    Returns
-    -------
-    Axis
-
-    Raises
-    ------
-    UnitsError, ComponentError
-        Of the values.
-    """
+    """Read an axis that changes the initial state."""
     parameter, measure = STARTS[name]
     values = numbers_of(given, measure, name)
     words = name.replace("_", " ")
@@ -40,22 +23,5 @@ def of_start(name: str, given: object) -> Axis:
 
 
 def started(initial: InitialState, values: Mapping[str, float]) -> InitialState:
-    """Give an initial state with the values of a case in the place of its own.
-
-    Parameters
-    ----------
-    initial : InitialState
-        As it is where no axis changes it.
-    values : mapping of str to float
-        In SI units, by its parameters.
-
-    Returns
-    -------
-    InitialState
-
-    Raises
-    ------
-    ComponentError
-        A value is out of range.
-    """
+    """Give an initial state with the values of a case in the place of its own."""
     return initial.with_si(values) if values else initial

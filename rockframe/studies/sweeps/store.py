@@ -50,51 +50,17 @@ _SAMPLED: Final = ("horizontal", "vertical")
 
 @dataclass(frozen=True)
 class Store:
-    """A folder that holds a study.
+    """A folder that holds a study."""
 
-    Parameters
-    ----------
-    folder : Path
-        The folder.
-    digest : str
-        Of the study.
-    cases : int
-        Number of cases.
-    chunk : int
-        Cases of a chunk.
-    history : str
-        When the study was begun, for the history of its dataset.
-    """
-
-    folder: Path
-    digest: str
-    cases: int
-    chunk: int
-    history: str
+    folder: Path  # the folder
+    digest: str  # of the study
+    cases: int  # number of cases
+    chunk: int  # cases of a chunk
+    history: str  # when the study was begun, for the history of its dataset
 
     @classmethod
     def of_study(cls, path: Path, study: Study, chunk: int) -> "Store":
-        """Open the folder of a study, or make it.
-
-        Parameters
-        ----------
-        path : Path
-            Of the folder.
-        study : Study
-            Which it must be.
-        chunk : int
-            Cases of a chunk, in a new one.
-
-        Returns
-        -------
-        Store
-
-        Raises
-        ------
-        StudyError
-            It holds another study, or that of another version, is damaged, or cannot be
-            written.
-        """
+        """Open the folder of a study, or make it."""
         try:
             if not (path / _STUDY).exists():
                 _make(path, study, chunk)
@@ -108,13 +74,7 @@ class Store:
 
     @classmethod
     def at(cls, path: Path) -> "Store":
-        """Open a folder that holds a study.
-
-        Raises
-        ------
-        StudyError
-            It holds none, or is damaged.
-        """
+        """Open a folder that holds a study."""
         return cls._of_head(path, _read_head(path))
 
     @classmethod
@@ -132,13 +92,7 @@ class Store:
         return self._file(chunk).exists()
 
     def put(self, chunk: Chunk, rows: CaseResults) -> None:
-        """Keep what a chunk showed.
-
-        Raises
-        ------
-        StudyError
-            It cannot be written.
-        """
+        """Keep what a chunk showed."""
         arrays = {
             "status": rows.status,
             "message": rows.message,
@@ -155,26 +109,14 @@ class Store:
             raise StudyError(msg) from problem
 
     def check(self) -> None:
-        """Try whether anything can be kept, before hours of work.
-
-        Raises
-        ------
-        StudyError
-            The folder is read-only, or full.
-        """
+        """Try whether anything can be kept, before hours of work."""
         try:
             try_to_write(self.folder)
         except OSError as problem:
             raise _cannot_be_kept(self.folder, problem) from problem
 
     def get(self, chunk: Chunk) -> CaseResults:
-        """Read what a chunk showed.
-
-        Raises
-        ------
-        StudyError
-            The file is damaged, or of another study.
-        """
+        """Read what a chunk showed."""
         file = self._file(chunk)
         described, arrays = _read(file)
         texts = described.pop("texts")

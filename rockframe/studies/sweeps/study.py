@@ -45,21 +45,11 @@ _GOLDEN: Final = 0.6180339887498949
 
 @dataclass(frozen=True, eq=False)
 class Histories:
-    """The histories that are kept, on times that all cases have.
+    """The histories that are kept, on times that all cases have."""
 
-    Parameters
-    ----------
-    names : tuple of str or None
-        Which; all that every run has if None.
-    step : float
-        Between the times [s].
-    count : int
-        Of the times.
-    """
-
-    names: tuple[str, ...] | None
-    step: float
-    count: int
+    names: tuple[str, ...] | None  # which; all that every run has if None
+    step: float  # between the times [s]
+    count: int  # of the times
 
     @property
     def times(self) -> Generic:
@@ -69,69 +59,32 @@ class Histories:
 
 @dataclass(frozen=True, eq=False)
 class SweepJob:
-    """Some cases, with all that is needed to run them, also in another process.
+    """Some cases, with all that is needed to run them, also in another process."""
 
-    Parameters
-    ----------
-    scene : SweptScene
-        What is simulated.
-    axes : tuple of (Axis, ndarray)
-        What varies, and its value in each case.
-    motions : tuple of GroundMotion or None
-        Those of the cases; None leaves it to the scene.
-    motion_of_case : ndarray of int
-        Which of them each case has.
-    arguments : RunRequest
-        Of every run.
-    period : float or None
-        Of the oscillator, where spectral values are a target [s].
-    histories : Histories or None
-        What is kept beside scalars.
-    patience : float or None
-        Longest time to compile what lanes need [s]; None where no cases run in lanes.
-    screened : bool
-        Whether each is run twice, and again by tolerance where its verdict is in doubt.
-    """
-
-    scene: SweptScene
-    axes: tuple[tuple[Axis, Generic], ...]
-    motions: tuple[GroundMotion | None, ...]
-    motion_of_case: Generic
-    arguments: RunRequest
-    period: float | None
-    histories: Histories | None
+    scene: SweptScene  # what is simulated
+    axes: tuple[tuple[Axis, Generic], ...]  # what varies, and its value in each case
+    motions: tuple[GroundMotion | None, ...]  # those of the cases; None leaves it to the scene
+    motion_of_case: Generic  # which of them each case has
+    arguments: RunRequest  # of every run
+    period: float | None  # of the oscillator, where spectral values are a target [s]
+    histories: Histories | None  # what is kept beside scalars
+    # longest time to compile what lanes need [s]; None where no cases run in lanes
     patience: float | None
+    # whether each is run twice, and again by tolerance where its verdict is in doubt
     screened: bool
 
 
 @dataclass(frozen=True, eq=False)
 class Study:
-    """A scene, what varies, the motions, and what every run is asked for.
+    """A scene, what varies, the motions, and what every run is asked for."""
 
-    Parameters
-    ----------
-    scene : SweptScene
-        What is simulated.
-    grid : Grid
-        The cases.
-    motions : dict of str to GroundMotion or None
-        By their names.
-    arguments : RunRequest
-        Of every run.
-    period : float or None
-        Of the oscillator, where spectral values are a target [s].
-    histories : Histories or None
-        What is kept beside scalars.
-    screened : bool
-        Whether each case is run twice, and again by tolerance where its verdict is in doubt.
-    """
-
-    scene: SweptScene
-    grid: Grid
-    motions: dict[str, GroundMotion | None]
-    arguments: RunRequest
-    period: float | None = None
-    histories: Histories | None = None
+    scene: SweptScene  # what is simulated
+    grid: Grid  # the cases
+    motions: dict[str, GroundMotion | None]  # by their names
+    arguments: RunRequest  # of every run
+    period: float | None = None  # of the oscillator, where spectral values are a target [s]
+    histories: Histories | None = None  # what is kept beside scalars
+    # whether each case is run twice, and again by tolerance where its verdict is in doubt
     screened: bool = False
 
     def job(self, cases: range) -> SweepJob:

@@ -24,18 +24,7 @@ _NUMBER: Final = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w.]
 
 
 def cases_verdict(dataset: xr.Dataset) -> str:
-    """Say what became of the cases of a dataset: of a whole result as its attribute does.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        A result, or a part of a sweep.
-
-    Returns
-    -------
-    str
-        Empty where the dataset has no verdict.
-    """
+    """Say what became of the cases of a dataset: of a whole result as its attribute does."""
     said, whole = str(dataset.attrs.get("verdict", "")), dataset.attrs.get(CASE_COUNT)
     if not said or whole is None or "status" not in dataset:
         return said
@@ -52,19 +41,7 @@ def whole_verdict(dataset: xr.Dataset) -> str:
 
 
 def cases_sentence(runs: xr.Dataset, these: str) -> str:
-    """Say in one sentence what became of cases.
-
-    Parameters
-    ----------
-    runs : xarray.Dataset
-        With the cases that are meant.
-    these : str
-        How the sentence begins, which names them.
-
-    Returns
-    -------
-    str
-    """
+    """Say in one sentence what became of cases."""
     status = runs["status"].to_numpy()
     overturned = overturned_by(status)
     falls, stands = int((overturned == 1.0).sum()), int((overturned == 0.0).sum())
@@ -84,13 +61,7 @@ def cases_sentence(runs: xr.Dataset, these: str) -> str:
 
 
 def say_what_is_missing(dataset: xr.Dataset) -> None:
-    """Warn of cases without a result, and of cautions.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        A sweep.
-    """
+    """Warn of cases without a result, and of cautions."""
     status = dataset["status"].to_numpy().ravel()
     number = dataset["message_number"].to_numpy().ravel()
     texts = dataset[MESSAGE].to_numpy()
@@ -111,20 +82,7 @@ def say_what_is_missing(dataset: xr.Dataset) -> None:
 
 
 def summed_up(texts: Sequence[str], message: Generic) -> tuple[tuple[str, ...], Generic]:
-    """Tell texts that differ in their numbers alone as one, if they are more than a few.
-
-    Parameters
-    ----------
-    texts : sequence of str
-        Each once.
-    message : ndarray of int
-        Their places, for each case.
-
-    Returns
-    -------
-    tuple of str, ndarray of int
-        The same; where numbers differ they are told from the least to the greatest.
-    """
+    """Tell texts that differ in their numbers alone as one, if they are more than a few."""
     alike: dict[tuple[str, ...], list[int]] = {}
     for place, text in enumerate(texts):
         alike.setdefault(tuple(_NUMBER.split(text)), []).append(place)
