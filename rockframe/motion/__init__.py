@@ -2,8 +2,8 @@
 
 from rockframe.motion.ground_motion import GroundMotion
 from rockframe.motion.pair import HorizontalPair
-from rockframe.motion.readers import formats, register, unregister
 from rockframe.motion.velocity_pulse import VelocityPulse
+from rockframe.records import formats, register, unregister
 
 __all__ = [
     "GroundMotion",

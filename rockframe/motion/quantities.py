@@ -9,7 +9,7 @@ import pint
 import xarray as xr
 
 from rockframe.errors import ComponentError, UnitsError, shown
-from rockframe.motion.unit_names import RecordUnit, acceleration_unit
+from rockframe.records.unit_names import RecordUnit, acceleration_unit
 from rockframe.units import ACCELERATION, TIME, Measure, Quantity, foreign_quantity, to_si
 
 if TYPE_CHECKING:

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Final
 from rockframe.errors import PLEASE_REPORT, ComponentError, RecordError, RecordWarning, warn
 from rockframe.motion import GroundMotion
 from rockframe.motion.quantities import argument_unit
-from rockframe.motion.readers.reading import Reading, read_components
-from rockframe.motion.readers.source import Request, Source
-from rockframe.suites.files import Unread, files_of, unread
-from rockframe.suites.peer_table import Known, is_peer_table, read_peer_table
+from rockframe.records.files import Unread, files_of, unread
+from rockframe.records.peer_table import Known, is_peer_table, read_peer_table
+from rockframe.records.reading import Reading, read_components
+from rockframe.records.source import Request, Source
 from rockframe.suites.records import RecordedComponent, assign_records, number_in_name
 from rockframe.suites.stored import is_stored_suite, stored_suite
 from rockframe.suites.suite import MotionSuite
@@ -18,7 +18,7 @@ from rockframe.units import POSITIVE, TIME_STEP, to_si
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from rockframe.motion.readers.source import RecordLike
+    from rockframe.records.source import RecordLike
     from rockframe.units import QuantityLike
 
 _OWNER: Final = "read_suite"

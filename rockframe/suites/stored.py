@@ -16,8 +16,8 @@ import xarray as xr
 from rockframe.constants import CONVENTIONS
 from rockframe.errors import ComponentError, RecordError, SchemaError
 from rockframe.motion import GroundMotion
-from rockframe.motion.dataset import LONG_NAMES
-from rockframe.motion.readers import netcdf
+from rockframe.records import netcdf
+from rockframe.records.netcdf import LONG_NAMES
 from rockframe.results.dataset import build_dataset
 from rockframe.results.joining import MOTION
 from rockframe.signals import Motion, Signal
@@ -26,7 +26,7 @@ from rockframe.suites.columns import known_columns
 from rockframe.units import Unit
 
 if TYPE_CHECKING:
-    from rockframe.motion.readers.source import Source
+    from rockframe.records.source import Source
     from rockframe.suites.suite import MotionSuite
 
 _KIND: Final = "suite of ground motions"

@@ -11,17 +11,17 @@ import numpy as np
 from rockframe.arguments import text
 from rockframe.errors import ComponentError, RecordWarning, UnitsError
 from rockframe.motion.quantities import accelerations_to_si, argument_unit, declared_times
-from rockframe.motion.readers.components import component_names
-from rockframe.motion.readers.reading import read_record
-from rockframe.motion.readers.source import Request
 from rockframe.motion.value import UNNAMED
+from rockframe.records.components import component_names
+from rockframe.records.reading import read_record
+from rockframe.records.source import Request
 from rockframe.signals import Motion
 from rockframe.units import POSITIVE, TIME_STEP, to_si
 
 if TYPE_CHECKING:
     from rockframe.motion.quantities import ArrayLike
-    from rockframe.motion.readers.source import PathLike, RecordLike
     from rockframe.motion.value import Made
+    from rockframe.records.source import PathLike, RecordLike
     from rockframe.signals.arrays import Array
     from rockframe.units import QuantityLike
 

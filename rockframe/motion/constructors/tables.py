@@ -17,11 +17,11 @@ from rockframe.motion.quantities import (
     relative_seconds,
     times_to_si,
 )
-from rockframe.motion.readers.components import SENSE
-from rockframe.motion.readers.orientation import DOWNWARDS, orientation_of
-from rockframe.motion.readers.source import MAXIMUM_SAMPLES, Metadata
-from rockframe.motion.readers.timing import uniform_step
 from rockframe.motion.value import UNNAMED
+from rockframe.records.components import SENSE
+from rockframe.records.orientation import DOWNWARDS, orientation_of
+from rockframe.records.source import MAXIMUM_SAMPLES, Metadata
+from rockframe.records.timing import uniform_step
 from rockframe.signals import Motion
 from rockframe.units import POSITIVE, TIME_STEP, to_si
 

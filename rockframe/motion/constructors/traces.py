@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any, Final, cast
 
 from rockframe.errors import ComponentError, RecordWarning, shown
 from rockframe.motion.quantities import argument_unit
-from rockframe.motion.readers.checks import check_time_step, choose_unit
-from rockframe.motion.readers.components import FileComponent, choose_component, component_names
-from rockframe.motion.readers.orientation import orientation_of
-from rockframe.motion.readers.reading import to_motion
-from rockframe.motion.readers.source import Metadata, Record, Request, Source
-from rockframe.motion.readers.traces import by_channel, codes_of, joined_traces
+from rockframe.records.checks import check_time_step, choose_unit
+from rockframe.records.components import FileComponent, choose_component, component_names
+from rockframe.records.orientation import orientation_of
+from rockframe.records.reading import to_motion
+from rockframe.records.source import Metadata, Record, Request, Source
+from rockframe.records.traces import by_channel, codes_of, joined_traces
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

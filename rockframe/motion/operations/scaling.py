@@ -10,8 +10,8 @@ import numpy as np
 from rockframe.errors import ComponentError
 from rockframe.motion.operations.following import following
 from rockframe.motion.processing.coarseness import say_coarse
-from rockframe.motion.readers.components import SENSE
-from rockframe.motion.readers.orientation import DOWNWARDS, UPWARDS
+from rockframe.records.components import SENSE
+from rockframe.records.orientation import DOWNWARDS, UPWARDS
 from rockframe.signals.path import ground_path
 from rockframe.signals.polynomials import greatest
 from rockframe.signals.spectra import (

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from unit.motion.motion_files import numbers
 
-import rockframe.motion.readers
+import rockframe.records
 from rockframe.errors import ComponentError, RecordError
 from rockframe.motion import GroundMotion, formats
-from rockframe.motion.readers import (
+from rockframe.records import (
     Component,
     Record,
     choose_component,
@@ -19,7 +19,7 @@ from rockframe.motion.readers import (
     registry,
     unregister,
 )
-from rockframe.motion.unit_names import acceleration_unit
+from rockframe.records.unit_names import acceleration_unit
 
 VALUES = numbers(9)
 FILE = "MADE UP FORMAT\nGAL\n" + "".join(f"{value:.7f}\n" for value in VALUES)
@@ -96,9 +96,9 @@ def test_the_example_runs():
 
 
 def test_the_list_and_the_readers_are_found_by_both_names():
-    assert rockframe.motion.formats is rockframe.motion.readers.formats
-    assert rockframe.motion.register is rockframe.motion.readers.register
-    assert rockframe.motion.unregister is rockframe.motion.readers.unregister
+    assert rockframe.motion.formats is rockframe.records.formats
+    assert rockframe.motion.register is rockframe.records.register
+    assert rockframe.motion.unregister is rockframe.records.unregister
 
 
 def test_a_format_can_be_named_in_capitals(write):

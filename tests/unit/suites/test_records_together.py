@@ -10,7 +10,7 @@ from unit.motion.motion_files import at2
 
 import rockframe as rf
 from rockframe.errors import RecordError, RecordWarning
-from rockframe.motion.readers import registry
+from rockframe.records import registry
 
 UNUSUAL = "ignore:.*(usual|worth a look).*:rockframe.errors.RecordWarning"
 SWAYS = np.round(100.0 * np.sin(0.4 * np.arange(100)) * np.hanning(100)).astype(int)

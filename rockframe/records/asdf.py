@@ -1,0 +1,241 @@
+"""ASDF, the Adaptable Seismic Data Format, as gmprocess writes it: waveforms in HDF5.
+
+Under ``Waveforms/NET.STA`` each piece of a channel is an array called
+``NET.STA.LOC.CHA__start__end__tag`` with its sampling rate and its start in nanoseconds since
+1970; the tag ends in the label of the processing, or in ``unprocessed``. The format has
+no word for a unit: gmprocess states it in ``AuxiliaryData/StreamSupplementalStats``. Counts
+are made accelerations by the StationXML of the file itself, or one that is given.
+
+The arrays are read through netCDF4, which is there in any case.
+
+Reference: L. Krischer et al., "An Adaptable Seismic Data Format", Geophysical Journal
+International 207(2), 2016; U.S. Geological Survey, gmprocess, "Workspace".
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+import re
+import warnings
+from contextlib import contextmanager
+from dataclasses import dataclass
+from datetime import UTC, datetime, timedelta
+from typing import TYPE_CHECKING, Any, Final, cast
+
+import numpy as np
+
+from rockframe.errors import RecordError
+from rockframe.records.checks import (
+    check_asked_time_step,
+    check_time_step,
+    choose_unit,
+)
+from rockframe.records.components import FileComponent, choose_component
+from rockframe.records.counts import record_of_counts
+from rockframe.records.orientation import orientation_of
+from rockframe.records.source import (
+    MAXIMUM_SAMPLES,
+    Metadata,
+    Record,
+    Request,
+    Source,
+)
+from rockframe.records.station_xml import InstrumentResponses, response_in
+from rockframe.records.traces import codes_of
+
+if TYPE_CHECKING:
+    from collections.abc import Generator
+
+    from rockframe.records.station_xml import InstrumentResponse
+    from rockframe.signals.arrays import Array
+
+NAME: Final = "asdf"
+TITLE: Final = "ASDF file (HDF5), as of gmprocess"
+SUFFIXES: Final = (".h5", ".asdf")
+BINARY: Final = True
+
+_MAGIC: Final = b"\x89HDF\r\n\x1a\n"
+_MARKS: Final = (b"Waveforms", b"file_format")
+_NODES: Final = {b"SNOD": 4, b"OHDR": 1}  # what lists the objects, and how many each, about
+_MOST_OBJECTS: Final = 5_500
+_WAVEFORM: Final = re.compile(
+    r"(\w{1,8}\.\w{1,8}\.[\w-]{0,8}\.\w{1,8})__([\dT:.Z-]{10,40})__([\dT:.Z-]{10,40})__(\S{1,80})"
+)
+_STATISTICS: Final = "StreamSupplementalStats"
+_LARGEST_TEXT: Final = 4 * 2**20
+_COUNTS: Final = re.compile(r"counts?\b", re.IGNORECASE)
+_EXPECTED: Final = "an ASDF file with waveforms"
+_EPOCH: Final = datetime(1970, 1, 1, tzinfo=UTC).replace(tzinfo=None)
+
+
+@dataclass(frozen=True)
+class _Waveform:
+    """One array of the file: its codes, its tag, and where it stands."""
+
+    name: str
+    codes: str
+    tag: str
+    group: str
+
+    @property
+    def channel(self) -> str:
+        """The last of the codes."""
+        return self.codes.rpartition(".")[2]
+
+
+def recognises(source: Source) -> bool:
+    """Tell whether an HDF5 file names waveforms and a format."""
+    return source.data.startswith(_MAGIC) and all(mark in source.data for mark in _MARKS)
+
+
+def read(source: Source, request: Request) -> Record:
+    """Read the acceleration of one channel, or of two."""
+    if not recognises(source):
+        found = f"a file that begins with {source.data[:8]!r}"
+        raise source.refuse(found=found, expected=_EXPECTED)
+    if request.unit is not None and request.response is not None:
+        found = "the arguments unit and response"
+        raise source.refuse(found=found, expected="one of them: accelerations, or counts")
+    objects = sum(source.data.count(mark) * held for mark, held in _NODES.items())
+    if objects > _MOST_OBJECTS:
+        found = f"about {objects} groups and arrays"
+        expected = f"at most {_MOST_OBJECTS}; open larger files with pyasdf and use from_trace"
+        raise source.refuse(found=found, expected=expected)
+    import netCDF4
+
+    with _sound(source):
+        # left open for the components, which are read one by one, until the last of them is gone
+        file = netCDF4.Dataset("asdf", memory=source.data)
+        file.set_auto_maskandscale(False)
+        components = _components(source, request, file)
+    return choose_component(source, request, components)
+
+
+@contextmanager
+def _sound(source: Source) -> Generator[None]:
+    """Say of a file that the library cannot read that it is damaged."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            yield
+    except RecordError:
+        raise
+    except Exception as problem:
+        # the libraries fail on damaged files in ways that they do not document
+        found = f"an HDF5 file that cannot be read ({type(problem).__name__})"
+        raise source.refuse(found=found, expected=_EXPECTED) from problem
+
+
+def _components(source: Source, request: Request, file: Any) -> list[FileComponent]:
+    held = [
+        _Waveform(name, match.group(1), match.group(4), station)
+        for station, group in file.groups["Waveforms"].groups.items()
+        for name in group.variables
+        if (match := _WAVEFORM.fullmatch(name)) is not None
+    ]
+    if not held:
+        raise source.refuse(found="no waveforms", expected=_EXPECTED)
+    stations = {one.group for one in held}
+    tags = {one.tag for one in held}
+
+    def component(one: _Waveform) -> FileComponent:
+        short = one.channel if len(stations) == 1 else one.codes
+
+        def samples() -> Record:
+            with _sound(source):
+                return _samples(source, request, file, one)
+
+        return FileComponent(
+            short if len(tags) == 1 else f"{short} {one.tag}",
+            samples,
+            orientation_of(one.channel),
+            aliases=(one.name, one.codes, one.channel, f"{one.codes} {one.tag}"),
+        )
+
+    return [component(one) for one in held]
+
+
+def _samples(source: Source, request: Request, file: Any, one: _Waveform) -> Record:
+    variable = file.groups["Waveforms"].groups[one.group].variables[one.name]
+    values = _values(source, one, variable)
+    rate = float(variable.getncattr("sampling_rate"))
+    if not (math.isfinite(rate) and rate > 0.0):
+        found = f"a sampling rate of {rate!r} Hz of {one.name}"
+        raise source.refuse(found=found, expected="one above zero")
+    time_step = float(f"{1.0 / rate:.12g}")
+    check_time_step(source, time_step, None)
+    check_asked_time_step(source, request, time_step, None)
+    start = _EPOCH + timedelta(microseconds=int(variable.getncattr("starttime")) // 1000)
+    network, station, location, _ = codes_of(one.codes)
+    metadata: Metadata = {
+        "network": network,
+        "station": station,
+        **({"sensor_location": location} if location else {}),
+        "processing": one.tag,
+        "record_time": f"{start.isoformat()}Z",
+    }
+    stated = None if request.unit is not None else _stated_unit(file, one)
+    if stated is not None and _COUNTS.search(stated) is None:
+        unit, as_read, _ = choose_unit(source, request, stated, None)
+        metadata["unit_as_read"] = as_read
+        return Record(time_step, values, unit, metadata)
+    response = None if request.unit is not None else _response(source, request, file, one, start)
+    if request.unit is None and response is None:
+        found = f"no unit of {one.name}, and no response of the instrument"
+        expected = (
+            "the argument unit, which is 'cm/s^2' for what gmprocess has processed, or "
+            "StationXML, for counts"
+        )
+        raise source.refuse(found=found, expected=expected)
+    return record_of_counts(source, request, values, time_step, metadata, response)
+
+
+def _values(source: Source, one: _Waveform, variable: Any) -> Array:
+    count, *more = map(int, variable.shape)
+    kind = variable.datatype
+    if more or not 2 <= count <= MAXIMUM_SAMPLES:
+        expected = f"2 to {MAXIMUM_SAMPLES} samples in a row"
+        raise source.refuse(found=f"{one.name} of the shape {variable.shape}", expected=expected)
+    if not isinstance(kind, np.dtype) or cast("np.dtype[Any]", kind).kind not in "fiu":
+        raise source.refuse(found=f"{one.name} of no numbers", expected="whole or real numbers")
+    values = np.asarray(variable[:], dtype=np.float64)
+    if not np.isfinite(values).all():
+        raise source.refuse(found="samples that are not finite", expected="finite samples")
+    return values
+
+
+def _stated_unit(file: Any, one: _Waveform) -> str | None:
+    """Find the unit that gmprocess states for the streams of a station, if it is one."""
+    groups = file.groups.get("AuxiliaryData")
+    for name in (_STATISTICS, one.group):
+        groups = None if groups is None else groups.groups.get(name)
+    if groups is None:
+        return None
+    # the channels of a stream share a name without the last letter, and a tag
+    start = f"{one.codes[:-1]}_{one.tag}"
+    variable = groups.variables.get(start)
+    if variable is None or math.prod(map(int, variable.shape)) > _LARGEST_TEXT:
+        return None
+    text = np.asarray(variable[:]).astype(np.uint8).tobytes()
+    try:
+        told = json.loads(text.decode("utf-8", "replace"))
+    except (ValueError, RecursionError):
+        return None
+    standard = cast("dict[str, Any]", told).get("standard") if isinstance(told, dict) else None
+    unit = cast("dict[str, Any]", standard).get("units") if isinstance(standard, dict) else None
+    return unit if isinstance(unit, str) and unit.strip() else None
+
+
+def _response(
+    source: Source, request: Request, file: Any, one: _Waveform, start: datetime
+) -> InstrumentResponse | None:
+    if request.response is not None:
+        return InstrumentResponses(source, request).of(one.codes, start)
+    variable = file.groups["Waveforms"].groups[one.group].variables.get("StationXML")
+    if variable is None or math.prod(map(int, variable.shape)) > _LARGEST_TEXT:
+        return None
+    data = np.asarray(variable[:]).astype(np.uint8).tobytes()
+    xml = Source(source.path, data, hashlib.sha256(data).hexdigest())
+    return response_in(xml, one.codes, start)

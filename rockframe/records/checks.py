@@ -1,0 +1,173 @@
+"""Checks that every reader shares: units, time steps, components, plausibility."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from rockframe.constants import STANDARD_GRAVITY
+from rockframe.records.unit_names import RecordUnit, acceleration_unit, other_quantity
+
+if TYPE_CHECKING:
+    from rockframe.records.source import Request, Source
+    from rockframe.signals.arrays import Array
+
+TIME_STEP_LIMITS: Final = (1e-6, 10.0)
+"""Time steps outside are refused [s]."""
+USUAL_TIME_STEPS: Final = (1e-4, 0.1)
+"""Time steps outside are warned about [s]."""
+USUAL_PEAKS: Final = (1e-4, 1.5)
+"""Peaks outside are warned about [g].
+
+Few records exceed 1.5 g, and a file in m/s^2 that passes for one in g does from 0.15 g on.
+"""
+USUAL_OFFSET: Final = 1e-3
+"""Offsets below are not looked at [g]."""
+OFFSET_SHARE: Final = 0.15
+"""Offsets above are warned about, as a share of the largest distance from them."""
+
+MISSING: Final = (999.0, 9999.0, 99999.0, 999999.0, 12345.0, 32768.0, 1.7e38)
+"""What agencies write, with either sign, where a sample is missing."""
+
+_ROUNDING: Final = 1e-6
+_FEWEST_FOR_OFFSET: Final = 50
+_ENDS: Final = 10
+
+
+def choose_unit(
+    source: Source, request: Request, name: str | None, line: int | None
+) -> tuple[RecordUnit, str, list[str]]:
+    """Settle the unit of the samples between the file and the ``unit=`` argument.
+
+    Parameters
+    ----------
+    source : Source
+        File.
+    request : Request
+        What the caller asked for.
+    name : str or None
+        Unit that the file names, if any.
+    line : int or None
+        Where it does, from 1.
+
+    Returns
+    -------
+    tuple of RecordUnit, str, list of str
+        Unit, its name as read, warnings.
+
+    Raises
+    ------
+    RecordError
+        The file's unit is unknown or not an acceleration, or there is none.
+    """
+    known = None if name is None else acceleration_unit(name)
+    if name is not None and known is None:
+        other = other_quantity(name)
+        if other is not None:
+            raise source.refuse(found=f"{other} in {name}", expected="an acceleration", line=line)
+    if request.unit is not None and request.unit_name is not None:
+        warnings: list[str] = []
+        if known is not None and not math.isclose(known.factor, request.unit.factor):
+            where = source.path if line is None else f"{source.path}, line {line}"
+            warnings.append(
+                f"{where}: the unit of the file is {name!r}, but "
+                f"unit={request.unit_name!r} was asked for and is used"
+            )
+        return request.unit, request.unit_name, warnings
+    if name is None:
+        raise source.refuse(
+            found="no unit of the samples",
+            expected="a unit in the header, or the argument unit, for example unit='g' (on the "
+            "command line --unit g)",
+        )
+    if known is None:
+        expected = "an acceleration unit such as g, gal, cm/s^2 or m/s^2 (or the argument unit)"
+        raise source.refuse(found=f"the unknown unit {name!r}", expected=expected, line=line)
+    return known, name, []
+
+
+def check_time_step(source: Source, time_step: float, line: int | None) -> None:
+    """Refuse a time step that no record has."""
+    low, high = TIME_STEP_LIMITS
+    if not (math.isfinite(time_step) and low <= time_step <= high):
+        expected = f"a time step between {low:g} s and {high:g} s"
+        raise source.refuse(found=f"a time step of {time_step!r} s", expected=expected, line=line)
+
+
+def check_asked_time_step(
+    source: Source, request: Request, time_step: float, line: int | None
+) -> None:
+    """Refuse a ``time_step=`` argument that the file contradicts."""
+    asked = request.time_step
+    if asked is not None and not math.isclose(asked, time_step, rel_tol=_ROUNDING):
+        raise source.refuse(
+            found=f"a time step of {time_step!r} s",
+            expected=f"the {asked!r} s asked for by the argument time_step",
+            line=line,
+        )
+
+
+def check_no_marks(source: Source, samples: Array) -> None:
+    """Refuse marks of missing samples that stand among the samples."""
+    size = np.abs(samples)
+    marked = np.isin(size, MISSING)
+    if not marked.any():
+        return
+    places = np.flatnonzero(marked)
+    others = np.flatnonzero(~marked)
+    if others.size:
+        after = np.searchsorted(others, places)
+        beside = np.maximum(
+            size[others[np.maximum(after - 1, 0)]], size[others[np.minimum(after, others.size - 1)]]
+        )
+        places = places[beside < 0.5 * size[places]]
+    if places.size:
+        first = int(places[0])
+        found = (
+            f"{samples[first]:.9g} as sample {first + 1}, alone among much smaller ones, "
+            f"{places.size} times such a value"
+        )
+        expected = "samples without marks of missing ones; fill them first, see from_times"
+        raise source.refuse(found=found, expected=expected)
+
+
+def plausibility(source: Source, time_step: float, samples: Array, unit: RecordUnit) -> list[str]:
+    """Say what looks like a wrong unit or a wrong time step."""
+    warnings: list[str] = []
+    low, high = USUAL_PEAKS
+    with np.errstate(over="ignore"):
+        peak = float(np.max(np.abs(samples))) * unit.factor / STANDARD_GRAVITY
+    if not low <= peak <= high:
+        warnings.append(
+            f"{source.path}: the peak acceleration is {peak:.4g} g (usual: {low:g} g to "
+            f"{high:g} g); is the unit {unit.spelling} right?"
+        )
+    offset = _offset(samples)
+    with np.errstate(over="ignore"):
+        in_g = offset * unit.factor / STANDARD_GRAVITY
+    if abs(in_g) > USUAL_OFFSET:
+        warnings.append(
+            f"{source.path}: the samples lie around an offset of {in_g:.4g} g, from the first to "
+            "the last; baseline_corrected(order=0) subtracts their mean"
+        )
+    short, long = USUAL_TIME_STEPS
+    if not short <= time_step <= long:
+        warnings.append(
+            f"{source.path}: the time step is {time_step:.4g} s (usual: {short:g} s to {long:g} s)"
+        )
+    return warnings
+
+
+def _offset(samples: Array) -> float:
+    # the ground comes to rest: the mean of its acceleration is next to nothing, and so is that
+    # of what stands before and after the strong motion
+    if samples.size < _FEWEST_FOR_OFFSET:
+        return 0.0
+    part = max(samples.size // _ENDS, _FEWEST_FOR_OFFSET)
+    with np.errstate(over="ignore", invalid="ignore"):
+        means = [float(np.mean(piece)) for piece in (samples, samples[:part], samples[-part:])]
+        swing = float(np.max(np.abs(samples - means[0])))
+    one_sided = min(means) > 0.0 or max(means) < 0.0
+    return means[0] if one_sided and min(map(abs, means)) > OFFSET_SHARE * swing else 0.0

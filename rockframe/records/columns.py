@@ -1,0 +1,221 @@
+"""Columns of numbers in text: separators, decimal commas, headers and comments."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from rockframe.records.numbers import NUMBER, floats, is_plain, one_number, too_many, with_e
+from rockframe.records.source import HEADER_WIDTH, MAXIMUM_SAMPLES, Source, quoted_first_line
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rockframe.errors import RecordError
+    from rockframe.signals.arrays import Array
+
+HEADER_LINES: Final = 20
+_MOST_COMMENTS: Final = 2_000
+_LAST: Final = 50
+_MOST_NUMBERS: Final = 900_000
+COMMENT_MARKS: Final = ("#", "%")
+
+_NUMBER: Final = re.compile(NUMBER, re.ASCII)
+_ANY_NUMBER: Final = re.compile(rf"{NUMBER}|[-+]?\d*,\d+(?:[EeDd][-+]?\d+)?", re.ASCII)
+_WHOLE_OR_COMMA: Final = r"[-+]?\d+(?:,\d+)?(?:[EeDd][-+]?\d+)?"
+_SPREAD: Final = re.compile(rf"{_WHOLE_OR_COMMA}(?:\s+{_WHOLE_OR_COMMA})+", re.ASCII)
+_GLUED_COMMA: Final = re.compile(r"\d,\d")
+_NOT_A_WORD: Final = re.compile(r"[-+.\d*]|(?:nan|inf|infinity)$", re.IGNORECASE)
+
+
+@dataclass(frozen=True)
+class Table:
+    """Columns of numbers and the lines above them."""
+
+    values: Array  # the numbers
+    first_fields: list[str]  # first column as printed, with decimal points
+    last_fields: list[str]  # the last numbers of the last column, as printed
+    lines: Sequence[int]  # line of each row, from 1
+    header: list[tuple[int, str]]  # line and text of header lines and of comments above the numbers
+    separator: str | None  # ``";"``, ``","`` or None for blanks and tabs
+    rest: list[str]  # fields of a last row that has fewer than the others, which end above it
+
+
+def read_table(source: Source, most_columns: int) -> Table:
+    """Read columns of numbers."""
+    header, lines, rows = _divide(source)
+    if len(rows) > MAXIMUM_SAMPLES:
+        raise too_many(source, len(rows), line=lines[MAXIMUM_SAMPLES])
+    body = "\n".join(rows)
+    decimal_comma = _has_decimal_commas(source, lines, rows, body)
+    separator = _separator(body, decimal_comma=decimal_comma)
+    columns = len(_split(rows[0], separator))
+    _check_header(source, header, separator, columns)
+    if columns > most_columns:
+        expected = f"at most {most_columns}: the time, if any, and accelerations"
+        raise source.refuse(found=f"{columns} columns", expected=expected, line=lines[0])
+    if columns * len(rows) > _MOST_NUMBERS:
+        found = f"{columns} columns of {len(rows)} rows"
+        raise source.refuse(found=found, expected=f"at most {_MOST_NUMBERS} numbers in all")
+    if decimal_comma:
+        rows = [text.replace(",", ".") for text in rows]
+    plain = is_plain(body)
+    del body
+    rest = _split(rows[-1], separator)
+    if len(rest) < columns and len(rows) > 1:
+        rows = rows[:-1]
+    else:
+        rest = []
+    fields = _fields(source, rows, lines, separator, columns)
+    values = floats(fields) if plain else None
+    if values is None and plain:
+        values = floats([with_e(field) for field in fields])
+    if values is None:
+        checked = [
+            one_number(field.strip(), source, lines[place // columns])
+            for place, field in enumerate(fields)
+        ]
+        values = np.array(checked, dtype=np.float64)
+    return Table(
+        values.reshape(len(rows), columns),
+        [field.strip() for field in fields[::columns]],
+        [field.strip() for field in fields[columns - 1 :: columns][-_LAST:]],
+        lines,
+        header,
+        separator,
+        rest,
+    )
+
+
+def check_last_row(source: Source, table: Table) -> None:
+    """Refuse columns of which the last row has fewer numbers."""
+    if table.rest:
+        raise _uneven(source, table.rest, table.values.shape[1], table.lines, -1)
+
+
+def split_header(text: str, separator: str | None) -> list[str]:
+    """Split a header line into the names of columns."""
+    names = text.lstrip("#% \t")
+    if separator is None:
+        # names of columns have blanks inside, so look for wider gaps first
+        wide = [part for part in re.split(r"\t+|\s{2,}|[,;]", names.strip()) if part.strip()]
+        return [part.strip() for part in wide] if len(wide) > 1 else names.split()
+    return [part.strip().strip("\"'") for part in names.split(separator)]
+
+
+def _divide(source: Source) -> tuple[list[tuple[int, str]], list[int], list[str]]:
+    header, first = _header(source)
+    lines: list[int] = []
+    rows: list[str] = []
+    for line, raw in enumerate(source.lines[first:], start=first + 1):
+        text = raw.strip()
+        if text and not text.startswith(COMMENT_MARKS):
+            lines.append(line)
+            rows.append(text)
+    return header, lines, rows
+
+
+def _header(source: Source) -> tuple[list[tuple[int, str]], int]:
+    header: list[tuple[int, str]] = []
+    words = 0
+    for index, raw in enumerate(source.lines):
+        text = raw.strip()
+        if not text:
+            continue
+        comment = text.startswith(COMMENT_MARKS)
+        if not comment and _looks_numeric(text):
+            return header, index
+        words += not comment
+        if words > HEADER_LINES or len(header) >= _MOST_COMMENTS:
+            break
+        header.append((index + 1, text[:HEADER_WIDTH]))
+    found = f"no row of numbers below {quoted_first_line(source.start)}"
+    expected = f"columns of numbers below at most {HEADER_LINES} header lines"
+    raise source.refuse(found=found, expected=expected, line=header[0][0] if header else 1)
+
+
+def _looks_numeric(text: str) -> bool:
+    parts = [part for part in re.split(r"[;\s]+", text) if part]
+    return bool(parts) and all(
+        _ANY_NUMBER.fullmatch(part)
+        or all(not piece or _NUMBER.fullmatch(piece) for piece in part.split(","))
+        for part in parts
+    )
+
+
+def _has_decimal_commas(source: Source, lines: list[int], rows: list[str], body: str) -> bool:
+    if "," not in body:
+        return False
+    comma = next(place for place, text in enumerate(rows) if "," in text)
+    if ";" in body:
+        if "." in body:
+            point = next(place for place, text in enumerate(rows) if "." in text)
+            found = (
+                f"a comma inside {quoted_first_line(rows[comma])}, a point in line {lines[point]}"
+            )
+            expected = "one decimal sign throughout"
+            raise source.refuse(found=found, expected=expected, line=lines[comma])
+        return True
+    if "." in body or _GLUED_COMMA.search(body) is None:
+        return False
+    if not all(map(_SPREAD.fullmatch, rows)):
+        where = quoted_first_line(rows[comma])
+        found = f"{where}, where the comma may be a decimal sign or a separator"
+        expected = "decimal points, or ';' between columns with decimal commas"
+        raise source.refuse(found=found, expected=expected, line=lines[comma])
+    return True
+
+
+def _separator(body: str, *, decimal_comma: bool) -> str | None:
+    if ";" in body:
+        return ";"
+    return "," if "," in body and not decimal_comma else None
+
+
+def _fields(
+    source: Source, rows: list[str], lines: list[int], separator: str | None, columns: int
+) -> list[str]:
+    fields: list[str] = []
+    for place, text in enumerate(rows):
+        parts = text.split() if separator is None else text.removesuffix(separator).split(separator)
+        if len(parts) != columns:
+            raise _uneven(source, parts, columns, lines, place)
+        fields += parts
+    return fields
+
+
+def _uneven(
+    source: Source, parts: list[str], columns: int, lines: Sequence[int], place: int
+) -> RecordError:
+    """Build the error for a row of another length."""
+    found = f"{len(parts)} fields ({quoted_first_line(' '.join(parts))})"
+    expected = f"{columns} fields, as in line {lines[0]}"
+    return source.refuse(found=found, expected=expected, line=lines[place])
+
+
+def _split(text: str, separator: str | None) -> list[str]:
+    if separator is None:
+        return text.split()
+    return [part.strip() for part in text.removesuffix(separator).split(separator)]
+
+
+def _check_header(
+    source: Source, header: list[tuple[int, str]], separator: str | None, columns: int
+) -> None:
+    # a damaged first row must not pass for a header line and be lost
+    for line, text in header:
+        if text.startswith(COMMENT_MARKS):
+            continue
+        parts = _split(text, separator)
+        odd = [part for part in parts if not _NUMBER.fullmatch(part)]
+        mixed = len(parts) == columns and len(odd) < columns
+        single = len(text.split()) == 1 and separator is None
+        if mixed or (single and _NOT_A_WORD.match(text)):
+            raise source.refuse(
+                found=quoted_first_line(odd[0] if odd else text), expected="a number", line=line
+            )
+        if len(parts) == columns and all(_NOT_A_WORD.match(part) for part in parts):
+            raise source.refuse(found=quoted_first_line(text), expected="numbers", line=line)

@@ -1,0 +1,347 @@
+"""Which component of a file is read: chosen in one way for all formats."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Final, cast
+
+import numpy as np
+
+from rockframe.errors import ComponentError, RecordError
+from rockframe.records.orientation import (
+    DOWNWARDS,
+    UNKNOWN,
+    UPWARDS,
+    VERTICAL,
+    Orientation,
+    orientation_of,
+)
+from rockframe.records.timing import same_start
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from rockframe.records.source import Metadata, Record, Request, Source
+
+SENSE: Final = "positive"
+"""Key of the metadata of a vertical component: which way it is positive."""
+
+_CHANNEL: Final = re.compile(r"(?:channel|chan|ch)?\.?\s*#?(\d{1,4})", re.ASCII)
+_ROUNDING: Final = 1e-6
+_LISTED: Final = 40
+
+
+@dataclass(frozen=True)
+class FileComponent:
+    """A component that a file holds, not read yet.
+
+    Parameters
+    ----------
+    name : str or None
+        As the file calls it; None if it has no name.
+    read : callable
+        Reads its samples.
+    orientation : Orientation
+        Which way it is positive, as far as known.
+    channel : int, optional
+        Its number in the file.
+    aliases : tuple of str
+        Other names that it answers to.
+    line : int, optional
+        Where the file names it, from 1.
+    """
+
+    name: str | None
+    read: Callable[[], Record]
+    orientation: Orientation = UNKNOWN
+    channel: int | None = None
+    aliases: tuple[str, ...] = ()
+    line: int | None = None
+
+    @property
+    def label(self) -> str:
+        """Name, and what else tells it from the others, for messages."""
+        where = "" if self.channel is None else f"channel {self.channel}"
+        direction = str(self.orientation)
+        about = ", ".join(part for part in (where, direction) if part and part != self.name)
+        name = repr(self.name or "")
+        return f"{name} ({about})" if about else name
+
+
+class EveryComponentError(RecordError):
+    """All components of a file were asked for, not one of them."""
+
+    def __init__(self, path: str, components: Sequence[FileComponent]) -> None:
+        self.components = tuple(components)
+        super().__init__(path, found=_listed(components), expected="one component at a time")
+
+
+def component_names(given: object, *, owner: str) -> tuple[str | None, str | None]:
+    """Take the argument ``component`` apart."""
+    if given is None:
+        return None, None
+    if isinstance(given, str) and given.strip():
+        return given, None
+    if isinstance(given, tuple | list):
+        names = cast("Sequence[object]", given)
+        if len(names) == 2 and all(isinstance(name, str) and name.strip() for name in names):
+            return str(names[0]), str(names[1])
+    msg = (
+        f"{owner}: component needs a name such as component='N', or a horizontal and a "
+        f"vertical one such as component=('N', 'U'), got {given!r}"
+    )
+    raise ComponentError(msg)
+
+
+def choose_component(
+    source: Source, request: Request, components: Sequence[FileComponent]
+) -> Record:
+    """Read the component that was asked for, or the only one that can be meant.
+
+    Parameters
+    ----------
+    source : Source
+        File.
+    request : Request
+        What the caller asked for.
+    components : sequence of FileComponent
+        What the file holds; at least one.
+
+    Returns
+    -------
+    Record
+
+    Raises
+    ------
+    RecordError
+        There is no such component, there are several, or one of a pair is not
+        what it should be; also whatever the component's own reader finds.
+
+    Notes
+    -----
+    A name is looked for in this order: among the names in the file, among the
+    directions, among the channel numbers. Without a name, the only component is
+    read, or the only one that is not vertical.
+    """
+    if request.every:
+        raise EveryComponentError(source.path, components)
+    if request.vertical is not None and len(components) == 1:
+        raise source.refuse(
+            found=f"one component, {components[0].label}",
+            expected="a horizontal and a vertical one; where each has its own file, read both "
+            "and join them with with_vertical",
+            line=components[0].line,
+        )
+    chosen = _across(source, request, components)
+    if request.vertical is None:
+        return _alone(source, request, chosen, components)
+    upwards = _named(source, request.vertical, components)
+    if chosen.orientation.vertical is not None or chosen is upwards:
+        raise source.refuse(
+            found=f"the component {chosen.label}, asked for as the horizontal one",
+            expected="a horizontal component first, then the vertical one",
+            line=chosen.line,
+        )
+    if upwards.orientation.vertical is None:
+        raise source.refuse(
+            found=f"the component {upwards.label}, asked for as the vertical one",
+            expected="a vertical component",
+            line=upwards.line,
+        )
+    return _pair(source, chosen, upwards)
+
+
+def named(source: Source, component: FileComponent) -> Record:
+    """Read a component as it is, a vertical one upwards, with its name in the metadata."""
+    record = component.read()
+    done: tuple[str, ...] = ()
+    warned: tuple[str, ...] = ()
+    if component.orientation.vertical is not None:
+        record, done, warned = _upwards(source, record, component)
+    return replace(
+        record,
+        metadata={**record.metadata, **_about(component)},
+        history=(*record.history, *done),
+        warnings=(*record.warnings, *warned),
+    )
+
+
+def _across(source: Source, request: Request, components: Sequence[FileComponent]) -> FileComponent:
+    if request.component is not None:
+        return _named(source, request.component, components)
+    if len(components) == 1:
+        return components[0]
+    level = [entry for entry in components if entry.orientation.vertical is None]
+    if len(level) == 1:
+        return level[0]
+    raise source.refuse(found=_listed(components), expected=_example(components))
+
+
+def _alone(
+    source: Source, request: Request, chosen: FileComponent, components: Sequence[FileComponent]
+) -> Record:
+    record = chosen.read()
+    metadata: Metadata = {**record.metadata, **_about(chosen)}
+    history = record.history
+    warnings = record.warnings
+    if len(components) > 1:
+        names = ", ".join(str(entry.name) for entry in components[:_LISTED])
+        history = (*history, f"component {chosen.name} taken (of {names})")
+    asked = request.component
+    if chosen.orientation.vertical is not None and asked is None:
+        warnings = (
+            *warnings,
+            f"{source.path}: the component {chosen.name} is vertical, and is read as if it "
+            f"were horizontal; say component={chosen.name!r} if that is meant, and "
+            "use with_vertical to set it beside a horizontal one",
+        )
+    # asked for as upwards, not by the name that the file gives it
+    by_direction = asked is not None and not _has_name(asked, chosen)
+    sense = chosen.orientation.vertical
+    if by_direction and orientation_of(asked or "").vertical == UPWARDS:
+        record, step, warning = _upwards(source, record, chosen)
+        history, warnings, sense = (*history, *step), (*warnings, *warning), UPWARDS
+    if sense is not None:
+        metadata[SENSE] = sense
+    return replace(record, metadata=metadata, history=history, warnings=warnings)
+
+
+def _pair(source: Source, across: FileComponent, upwards: FileComponent) -> Record:
+    level, raised = across.read(), upwards.read()
+    if not math.isclose(level.time_step, raised.time_step, rel_tol=_ROUNDING):
+        found = f"time steps of {level.time_step!r} s and {raised.time_step!r} s"
+        expected = f"one time step for {across.label} and {upwards.label}"
+        raise source.refuse(found=found, expected=expected, line=upwards.line)
+    starts = [record.metadata.get("record_time") for record in (level, raised)]
+    if not same_start(starts[0], starts[1], level.time_step):
+        raise source.refuse(
+            found=f"components that start at {starts[0]} and at {starts[1]}",
+            expected="one start time for both",
+            line=upwards.line,
+        )
+    raised, turned, warned = _upwards(source, raised, upwards)
+    vertical = raised.samples
+    if not math.isclose(raised.unit.factor, level.unit.factor):
+        vertical = vertical * (raised.unit.factor / level.unit.factor)
+    count = max(level.samples.size, vertical.size)
+    steps: list[str] = []
+    for label, samples in (("horizontal", level.samples), ("vertical", vertical)):
+        if samples.size < count:
+            steps.append(f"{label} component padded with {count - samples.size} zeros")
+    metadata: Metadata = {
+        **level.metadata,
+        **_about(across),
+        "vertical_component": upwards.name or "",
+    }
+    own = tuple(sentence for sentence in raised.history if sentence not in level.history)
+    return replace(
+        level,
+        samples=np.pad(level.samples, (0, count - level.samples.size)),
+        vertical=np.pad(vertical, (0, count - vertical.size)),
+        metadata=metadata,
+        history=(
+            *level.history,
+            *(f"vertical component: {sentence}" for sentence in own),
+            f"component {across.name} taken as horizontal, {upwards.name} as vertical",
+            *turned,
+            *steps,
+        ),
+        warnings=(
+            *level.warnings,
+            *(words for words in raised.warnings if words not in level.warnings),
+            *warned,
+        ),
+    )
+
+
+def _upwards(
+    source: Source, record: Record, component: FileComponent
+) -> tuple[Record, tuple[str, ...], tuple[str, ...]]:
+    sense = component.orientation.vertical
+    if sense == DOWNWARDS:
+        sentence = f"component {component.name} turned over: positive upwards"
+        return replace(record, samples=-record.samples), (sentence,), ()
+    if sense == VERTICAL:
+        words = (
+            f"{source.path}: the file does not say whether {component.name} is positive "
+            "upwards or downwards; upwards is assumed"
+        )
+        return record, (), (words,)
+    return record, (), ()
+
+
+def _about(component: FileComponent) -> Metadata:
+    about: Metadata = {}
+    if component.name is not None:
+        about["component"] = component.name
+    if component.orientation.azimuth is not None:
+        about["azimuth"] = component.orientation.azimuth
+    if component.channel is not None:
+        about["channel"] = component.channel
+    return about
+
+
+def _named(source: Source, asked: str, components: Sequence[FileComponent]) -> FileComponent:
+    direction = orientation_of(asked)
+    number = _CHANNEL.fullmatch(asked.strip().casefold())
+    channel = None if number is None else int(number.group(1))
+    tiers: tuple[Callable[[FileComponent], bool], ...] = (
+        lambda entry: _has_name(asked, entry),
+        lambda entry: entry.orientation.matches(direction),
+        lambda entry: channel is not None and entry.channel == channel,
+    )
+    for fits in tiers:
+        found = [entry for entry in components if fits(entry)]
+        if len(found) == 1:
+            return found[0]
+        if found:
+            raise source.refuse(
+                found=f"{len(found)} components that answer to {asked!r}: {_labels(found)}",
+                expected="one; ask for its channel number",
+            )
+    raise _missing(source, asked, components)
+
+
+def _missing(source: Source, asked: str, components: Sequence[FileComponent]) -> RecordError:
+    expected = f"the component {asked!r}"
+    if len(components) > 1:
+        return source.refuse(found=_listed(components), expected=expected)
+    only = components[0]
+    if only.name is None:
+        return source.refuse(found="no name of the component", expected=expected)
+    return source.refuse(found=f"the component {only.name!r}", expected=expected, line=only.line)
+
+
+def _has_name(asked: str, component: FileComponent) -> bool:
+    names = [name for name in (component.name, *component.aliases) if name is not None]
+    return _key(asked) in map(_key, names)
+
+
+def _key(name: str) -> str:
+    key = name.split("(")[0].strip().casefold()
+    return key.lstrip("0") or "0" if key.isdigit() else key
+
+
+def _labels(components: Sequence[FileComponent]) -> str:
+    listed = ", ".join(entry.label for entry in components[:_LISTED])
+    return listed if len(components) <= _LISTED else f"{listed}, ..."
+
+
+def _listed(components: Sequence[FileComponent]) -> str:
+    return f"{len(components)} components: {_labels(components)}"
+
+
+def _example(components: Sequence[FileComponent]) -> str:
+    level = [entry for entry in components if entry.orientation.vertical is None]
+    upwards = [entry for entry in components if entry.orientation.vertical is not None]
+    names = [entry.name for entry in components]
+    first = (level or list(components))[0]
+    # where names are not unique, only the channel number tells
+    unique = names.count(first.name) == 1
+    asked = first.name if unique or first.channel is None else f"channel {first.channel}"
+    text = f"the argument component, such as component={asked!r}"
+    if level and len(upwards) == 1:
+        text += f", or component=({asked!r}, {upwards[0].name!r}) with the vertical one"
+    return text

@@ -1,0 +1,243 @@
+"""COSMOS strong-motion data files: text, integers, reals, comments, data; fixed width.
+
+A file is a row of such blocks, one per channel and quantity. Only accelerations
+are read. The time step is real header 62, in milliseconds.
+
+Reference: Consortium of Organizations for Strong-Motion Observation Systems,
+"COSMOS Strong Motion Data Format", version 1.20, August 15, 2001.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from typing import Final
+
+from rockframe.records.checks import (
+    check_asked_time_step,
+    check_time_step,
+    choose_unit,
+)
+from rockframe.records.components import FileComponent, choose_component
+from rockframe.records.cosmos_header import Header, read_header
+from rockframe.records.cosmos_tables import (
+    ACCELERATION,
+    MILLISECOND,
+    ORIENTATIONS,
+    QUANTITIES,
+    UNITS,
+)
+from rockframe.records.fixed import fixed_width, whole
+from rockframe.records.orientation import Orientation, azimuth_of, orientation_of
+from rockframe.records.source import Metadata, Record, Request, Source, quoted_first_line
+from rockframe.records.stated import compare_peak, surplus
+from rockframe.records.unit_names import acceleration_unit
+
+NAME: Final = "cosmos"
+TITLE: Final = "COSMOS v1.20 file (V1, V2)"
+SUFFIXES: Final = (".v1c", ".v2c", ".v1", ".v2")
+
+_FIRST_LINE: Final = re.compile(r"^(.{0,60}?)\(Format v?(\d[\d.]{0,8}) with (\d{1,3}) text", re.I)
+_DATA_LINE: Final = re.compile(
+    r"^\s*(\d{1,12})\s+(\S.{0,40}?)\s*\bpts\b.{0,60}?\bunits\s*=\s*([^,=]{0,40}?)\s*,?"
+    r"\s*Format\s*=\s*\(\s*(\d{0,4})\s*[A-Z](\d{1,3})(?:\.\d{1,3}[A-Z]?\d{0,2})?\s*\)",
+    re.IGNORECASE,
+)
+_UNIT_CODE: Final = re.compile(r"^(.*?)\s*\(\s*(\d{1,3})\s*\)$")
+_CHANNEL: Final = re.compile(r"Chan\s*(\S{1,8}?)\s*:\s*(.{0,30}?)\s*(?:\(|$)", re.IGNORECASE)
+_SCNL: Final = re.compile(r"\bSCNL>?:?\s*(\w{1,8})\.(\w{1,8})\.(\w{1,8})\.(\S{1,8})")
+_STATION: Final = re.compile(r"\bCode:\s*(\S{1,20})\s*(.{0,60})")
+_START: Final = re.compile(r"start time:\s*(\S.{0,30}?)\s*(?:\(|RcrdId|$)", re.IGNORECASE)
+_DAY: Final = re.compile(r"(?:Mon|Tue|Wed|Thu|Fri|Sat|Sun)\w{0,6}[ ,]+\w{3}", re.IGNORECASE)
+_LENGTH_SHARE: Final = 0.01
+_FIRST_LINE_WIDTH: Final = 120
+_MOST_BLOCKS: Final = 1_500
+
+
+@dataclass(frozen=True)
+class _Block:
+    """One channel and quantity: where it starts, and its first line."""
+
+    index: int
+    end: int
+    kind: str
+    text_lines: int
+
+
+def recognises(source: Source) -> bool:
+    """Tell whether the first lines name the format and its text lines."""
+    return any(_FIRST_LINE.search(line) for line in source.top(4))
+
+
+def read(source: Source, request: Request) -> Record:
+    """Read the acceleration of one channel, or of two."""
+    blocks = _blocks(source)
+    if not blocks:
+        found = f"{quoted_first_line(source.start)}"
+        expected = (
+            "a first line such as 'Corrected acceleration (Format v01.20 with 13 text lines)'"
+        )
+        raise source.refuse(found=found, expected=expected, line=1)
+    wanted = [block for block in blocks if "accel" in block.kind.casefold()]
+    if not wanted:
+        kinds = ", ".join(sorted({quoted_first_line(block.kind) for block in blocks})[:4])
+        expected = "an acceleration"
+        raise source.refuse(found=f"only {kinds}", expected=expected, line=blocks[0].index + 1)
+    components = [_component(source, request, block) for block in wanted]
+    return choose_component(source, request, components)
+
+
+def _blocks(source: Source) -> list[_Block]:
+    starts: list[tuple[int, re.Match[str]]] = []
+    for index, line in enumerate(source.lines):
+        if "(format v" in line[:_FIRST_LINE_WIDTH].casefold():
+            match = _FIRST_LINE.search(line)
+            if match is not None:
+                starts.append((index, match))
+            if len(starts) > _MOST_BLOCKS:
+                expected = f"at most {_MOST_BLOCKS} channels and quantities"
+                raise source.refuse(found="more of them", expected=expected, line=index + 1)
+    ends = [*(index for index, _ in starts), len(source.lines)][1:]
+    return [
+        _Block(index, end, match.group(1).strip(), int(match.group(3)))
+        for (index, match), end in zip(starts, ends, strict=True)
+    ]
+
+
+def _component(source: Source, request: Request, block: _Block) -> FileComponent:
+    header = read_header(source, block.index, block.end, block.text_lines)
+    channel, direction = _channel(header)
+    code = _SCNL.search("\n".join(header.comments))
+    name = code.group(2) if code else direction or f"channel {channel or '?'}"
+    aliases = [direction] if direction else []
+    if code:
+        aliases.append(".".join((code.group(3), code.group(1), code.group(4), code.group(2))))
+
+    def samples() -> Record:
+        return _samples(source, request, header)
+
+    return FileComponent(
+        name,
+        samples,
+        _orientation(header, direction, code.group(2) if code else ""),
+        channel=channel,
+        aliases=tuple(aliases),
+        line=min(block.index + 9, block.end),
+    )
+
+
+def _channel(header: Header) -> tuple[int | None, str]:
+    match = _CHANNEL.search(header.line(9))
+    if match is None:
+        return None, ""
+    direction = match.group(2).strip()
+    return whole(match.group(1)), "" if direction.casefold() == "other" else direction
+
+
+def _orientation(header: Header, direction: str, code: str) -> Orientation:
+    seed = orientation_of(code)
+    if seed.vertical is not None:  # files that give a vertical channel an azimuth exist
+        return seed
+    azimuth = header.integer(54)
+    if azimuth in ORIENTATIONS:
+        return ORIENTATIONS[azimuth]
+    if azimuth is not None and 1 <= azimuth <= 360:
+        return azimuth_of(float(azimuth))
+    said = orientation_of(direction)
+    return said if said != Orientation() else seed
+
+
+def _samples(source: Source, request: Request, header: Header) -> Record:
+    line, match = _data_line(source, header)
+    quantity = header.integer(2)
+    if quantity is not None and quantity != ACCELERATION and quantity in QUANTITIES:
+        found = f"{QUANTITIES[quantity]} (code {quantity})"
+        raise source.refuse(found=found, expected="an acceleration", line=header.integers_at + 1)
+    name = _unit_name(source, request, header, match.group(3), line)
+    unit, as_read, warnings = choose_unit(source, request, name, line)
+    count = int(match.group(1))
+    time_step = _time_step(source, header, count)
+    check_asked_time_step(source, request, time_step, header.real_line(62))
+    per_line = int(match.group(4) or 1)
+    values = fixed_width(source, line, count, width=int(match.group(5)), per_line=per_line)
+    peak = header.real(64)
+    if peak is not None and quantity == ACCELERATION:
+        warnings += compare_peak(
+            source,
+            values,
+            unit,
+            printed=f"{peak:.12g}",
+            printed_unit=as_read if request.unit is None else name,
+            line=header.real_line(64),
+        )
+    warnings += surplus(source, line + -(-count // per_line), f"line {line}")
+    metadata = {**_description(header), "unit_as_read": as_read}
+    return Record(time_step, values, unit, metadata, warnings=tuple(warnings))
+
+
+def _data_line(source: Source, header: Header) -> tuple[int, re.Match[str]]:
+    for index, text in enumerate(source.top(3, header.data_at), start=header.data_at):
+        match = _DATA_LINE.match(text)
+        if match is not None:
+            return index + 1, match
+    index = min(header.data_at, len(source.lines) - 1)
+    expected = "a line such as '42000 acceleration pts, ..., units=cm/sec2(04),Format=(8F10.3)'"
+    raise source.refuse(
+        found=quoted_first_line(source.lines[index]), expected=expected, line=index + 1
+    )
+
+
+def _unit_name(source: Source, request: Request, header: Header, text: str, line: int) -> str:
+    match = _UNIT_CODE.match(text)
+    name = (match.group(1) if match else text).strip().rstrip(".")
+    code = whole(match.group(2)) if match else header.integer(3)
+    known, by_code = acceleration_unit(name), acceleration_unit(UNITS.get(code or 0, ""))
+    agree = known is None or by_code is None or math.isclose(known.factor, by_code.factor)
+    if request.unit is None and not agree:
+        found = f"the unit {name!r} with the code {code}, which is {UNITS[code or 0]}"
+        raise source.refuse(found=found, expected="one unit, or the argument unit", line=line)
+    return name or UNITS.get(code or 0, "")
+
+
+def _time_step(source: Source, header: Header, count: int) -> float:
+    line = header.real_line(62)
+    milliseconds = header.real(62)
+    if milliseconds is None:
+        found = "no sample interval (real header 62)"
+        raise source.refuse(found=found, expected="the interval in milliseconds", line=line)
+    # 15 digits: 5 ms is the float 0.005, without the rounding of 5 * 1e-3
+    time_step = float(f"{milliseconds * MILLISECOND:.15g}")
+    check_time_step(source, time_step, line)
+    length = header.real(63)
+    if length is not None and length > 0.0:
+        # by the specification the length is count dt; (count - 1) dt occurs too
+        misfit = min(abs(length - count * time_step), abs(length - (count - 1) * time_step))
+        if misfit > max(2.0 * time_step, _LENGTH_SHARE * length):
+            raise source.refuse(
+                found=f"{count} samples at {time_step!r} s in {length:g} s (real headers 62, 63)",
+                expected="a sample interval in milliseconds that agrees with the length",
+                line=line,
+            )
+    return time_step
+
+
+def _description(header: Header) -> Metadata:
+    metadata: Metadata = {"description": header.line(1).split("(")[0].strip()}
+    event = re.sub(r"^(?:Record|Rcrd) of\s+", "", header.line(2).strip(), flags=re.IGNORECASE)
+    if _DAY.match(event):  # no event was found yet: the day of the record stands in its place
+        metadata["event_time"] = event
+    elif event:
+        metadata["event"] = event
+    origin = header.line(4).strip()
+    if origin.casefold().startswith("origin:") and re.search(r"\d", origin):
+        metadata["event_time"] = " ".join(origin[7:].split())
+    station = _STATION.search(header.line(5))
+    if station is not None:
+        metadata["station"] = station.group(1)
+        if station.group(2).strip():
+            metadata["station_name"] = " ".join(station.group(2).split())
+    start = _START.search(header.line(8))
+    if start is not None:
+        metadata["record_time"] = start.group(1)
+    return metadata

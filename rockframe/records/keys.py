@@ -1,0 +1,71 @@
+"""Headers made of keys and values, one per line."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, TypeAlias
+
+from rockframe.records.checks import check_asked_time_step, check_time_step
+from rockframe.records.fixed import whole
+from rockframe.records.numbers import one_number
+from rockframe.records.source import quoted_first_line
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from rockframe.records.source import Metadata, Request, Source
+
+Keys: TypeAlias = "dict[str, tuple[str, int]]"
+"""Value and line, from 1, of each key."""
+
+
+def read_keys(lines: Iterable[str], first: int = 1) -> Keys:
+    """Read lines ``KEY   : value``; of a key that comes twice the first counts."""
+    keys: Keys = {}
+    for line, text in enumerate(lines, start=first):
+        key, colon, value = text.partition(":")
+        if colon and key.strip():
+            keys.setdefault(key.strip(), (value.strip(), line))
+    return keys
+
+
+def needed_count(source: Source, keys: Keys, key: str) -> tuple[int, int]:
+    """Give a number of samples that must be there and above zero, and its line."""
+    text, line = needed(source, keys, key)
+    count = whole(text)
+    if count is None or count < 1:
+        found, expected = f"{key} {quoted_first_line(text)}", "a whole number above zero"
+        raise source.refuse(found=found, expected=expected, line=line)
+    return count, line
+
+
+def needed(source: Source, keys: Keys, key: str) -> tuple[str, int]:
+    """Give the value of a key that must be there."""
+    value, line = keys.get(key, ("", 1))
+    if not value:
+        expected = f"a header line {key!r} with a value"
+        raise source.refuse(found=f"no value of {key!r}", expected=expected, line=line)
+    return value, line
+
+
+def needed_rate(source: Source, keys: Keys, key: str) -> tuple[float, int]:
+    """Give a sampling rate that must be there and above zero, and its line [Hz]."""
+    text, line = needed(source, keys, key)
+    rate = one_number(text.casefold().removesuffix("hz").strip(), source, line)
+    if not rate > 0.0:
+        found = f"a sampling rate of {rate!r} Hz"
+        raise source.refuse(found=found, expected="one above zero", line=line)
+    return rate, line
+
+
+def needed_step(source: Source, request: Request, keys: Keys, key: str) -> float:
+    """Give a time step that must be there, and be that which the caller asked for [s]."""
+    text, line = needed(source, keys, key)
+    time_step = one_number(text, source, line)
+    check_time_step(source, time_step, line)
+    check_asked_time_step(source, request, time_step, line)
+    return time_step
+
+
+def kept(keys: Keys, names: Mapping[str, str]) -> Metadata:
+    """Give those values that go into the metadata, under their new names."""
+    return {name: keys[key][0] for key, name in names.items() if keys.get(key, ("", 0))[0]}

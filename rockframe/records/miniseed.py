@@ -1,0 +1,223 @@
+"""miniSEED, through ObsPy: counts, made accelerations by the response of the instrument.
+
+The counts are divided by the overall sensitivity of an accelerometer (StationXML,
+``InstrumentSensitivity``, input unit M/S**2), after their mean is subtracted: the
+response is taken as flat, which it is from zero to near the corner of the instrument.
+A seismometer, whose sensitivity is to velocity, is refused.
+
+References: Federation of Digital Seismograph Networks, "SEED Reference Manual",
+version 2.4, and "FDSN StationXML". ObsPy is imported only here, when such a file is
+read.
+"""
+
+from __future__ import annotations
+
+import importlib
+import io
+import re
+import struct
+import sys
+import warnings
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any, Final
+
+from rockframe.errors import RecordError
+from rockframe.records.checks import (
+    check_asked_time_step,
+    check_time_step,
+)
+from rockframe.records.components import FileComponent, choose_component
+from rockframe.records.counts import record_of_counts
+from rockframe.records.orientation import UNKNOWN, Orientation, orientation_of
+from rockframe.records.source import (
+    Metadata,
+    Record,
+    Request,
+    Source,
+)
+from rockframe.records.station_xml import InstrumentResponse, InstrumentResponses
+from rockframe.records.traces import by_channel, codes_of, joined_traces
+
+if TYPE_CHECKING:
+    from collections.abc import Generator
+
+NAME: Final = "miniseed"
+TITLE: Final = "miniSEED file (through ObsPy)"
+SUFFIXES: Final = (".mseed", ".miniseed", ".ms", ".seed")
+BINARY: Final = True
+
+# sequence number, kind, then the codes of station, location (some write --), channel and network
+_RECORD: Final = re.compile(rb"[0-9 ]{6}[DRQM][ \x00]([A-Z0-9 ]{5}(?:[A-Z0-9 ]{2}|--)[A-Z0-9 ]{5})")
+_SHORTEST_RECORD: Final = 128
+_HEADER: Final = 48
+_FIELDS: Final = "HHBBBxHHhh"  # start, number of samples, factor and multiplier of the rate
+_APART: Final = 2.0  # samples; the start may be rounded, and corrected in another field
+_VERSION_3: Final = b"MS\x03"
+_INSTALL: Final = "ObsPy to read miniSEED; install it with: pip install 'rockframe[records]'"
+_EXPECTED: Final = "miniSEED records that are complete"
+_MOST_SAMPLES_IN_ALL: Final = 4_000_000
+_MOST_TRACES: Final = 2_000
+_MOST_CHANNELS: Final = 1_000
+
+
+def recognises(source: Source) -> bool:
+    """Tell whether the file begins with the header of a data record."""
+    data = source.data
+    return _RECORD.match(data) is not None or data.startswith(_VERSION_3)
+
+
+def read(source: Source, request: Request) -> Record:
+    """Read the acceleration of one channel, or of two."""
+    if not recognises(source):
+        found = f"a file that begins with {source.data[:8]!r}"
+        raise source.refuse(found=found, expected=_EXPECTED)
+    if request.unit is not None and request.response is not None:
+        found = "the arguments unit and response"
+        raise source.refuse(found=found, expected="one of them: accelerations, or counts")
+    channels = _channels(source)
+    responses = None if request.unit is not None else InstrumentResponses(source, request)
+    stations = {name.rsplit(".", 2)[0] for name in channels}
+    components = [
+        _component(source, request, name, traces, responses, several=len(stations) > 1)
+        for name, traces in channels.items()
+    ]
+    return choose_component(source, request, components)
+
+
+def _obspy(source: Source) -> Any:
+    """Import ObsPy, or say how to get it."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            return importlib.import_module("obspy")
+    except ImportError as problem:
+        found = "miniSEED, and no ObsPy in this Python"
+        raise source.refuse(found=found, expected=_INSTALL) from problem
+
+
+def _check_pieces(source: Source) -> None:
+    """Refuse more channels or pieces than ObsPy joins in a second, from the headers alone."""
+    ends: dict[bytes, float] = {}
+    pieces = 0
+    data = source.data
+    # records begin at multiples of the shortest one
+    for at in range(0, len(data) - _HEADER, _SHORTEST_RECORD):
+        match = _RECORD.match(data, at)
+        if match is None:
+            continue
+        name = match.group(1)
+        order = ">" if 1900 <= int.from_bytes(data[at + 20 : at + 22], "big") <= 2100 else "<"
+        year, day, hour, minute, second, tenths, count, factor, multiplier = struct.unpack_from(
+            order + _FIELDS, data, at + 20
+        )
+        start = ((year * 366.0 + day) * 24.0 + hour) * 3600.0 + minute * 60.0 + second
+        start += 1e-4 * tenths
+        rate = _rate(factor, multiplier)
+        # a day that begins a year differs by more than a piece is long; it is one more piece
+        pieces += name not in ends or abs(start - ends[name]) * rate > _APART
+        ends[name] = start + (count / rate if rate else 0.0)
+        if len(ends) > _MOST_CHANNELS:
+            expected = "a file of one event or station"
+            raise source.refuse(found=f"more than {_MOST_CHANNELS} channels", expected=expected)
+        if pieces > _MOST_TRACES:
+            expected = "channels without gaps and overlaps"
+            raise source.refuse(found=f"more than {_MOST_TRACES} pieces", expected=expected)
+
+
+def _rate(factor: int, multiplier: int) -> float:
+    """Give samples per second; negative numbers stand for periods and divisors."""
+    over = float(factor) if factor >= 0 else -1.0 / factor
+    if multiplier < 0:
+        return -over / multiplier
+    return over * multiplier if multiplier else over
+
+
+@contextmanager
+def _quietly() -> Generator[None]:
+    """Keep what ObsPy says of damaged files from the terminal.
+
+    It raises errors in callbacks of the C library under it, which Python cannot pass on
+    and prints; what is wrong shows in what comes back.
+    """
+    hook = sys.unraisablehook
+    sys.unraisablehook = _unsaid
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            yield
+    finally:
+        sys.unraisablehook = hook
+
+
+def _unsaid(problem: object) -> None:
+    """Take note of nothing."""
+
+
+def _channels(source: Source) -> dict[str, list[Any]]:
+    obspy = _obspy(source)
+    _check_pieces(source)
+    try:
+        with _quietly():
+            # the headers first: they may announce more than fits in memory
+            announced = obspy.read(io.BytesIO(source.data), format="MSEED", headonly=True)
+            total = sum(int(trace.stats.npts) for trace in announced)
+            if total > _MOST_SAMPLES_IN_ALL or len(announced) > _MOST_TRACES:
+                expected = f"at most {_MOST_SAMPLES_IN_ALL} in {_MOST_TRACES} pieces"
+                found = f"{total} samples in {len(announced)} pieces"
+                raise source.refuse(found=found, expected=expected)
+            stream = obspy.read(io.BytesIO(source.data), format="MSEED")
+    except RecordError:
+        raise
+    except Exception as problem:
+        # ObsPy and the library under it fail on damaged files in many ways
+        found = f"miniSEED that cannot be read ({type(problem).__name__})"
+        raise source.refuse(found=found, expected=_EXPECTED) from problem
+    channels = by_channel(stream)
+    if not channels:
+        raise source.refuse(found="no data records", expected=_EXPECTED)
+    return channels
+
+
+def _component(
+    source: Source,
+    request: Request,
+    name: str,
+    traces: list[Any],
+    responses: InstrumentResponses | None,
+    *,
+    several: bool,
+) -> FileComponent:
+    network, station, location, channel = codes_of(name)
+    first = min(traces, key=lambda trace: trace.stats.starttime)
+    response = problem = None
+    if responses is not None:
+        try:
+            response = responses.of(name, first.stats.starttime.datetime)
+        except RecordError as refusal:  # of no matter if another channel is read
+            problem = refusal
+    direction = UNKNOWN if response is None else response.orientation
+    if direction == UNKNOWN:
+        direction = orientation_of(channel) if len(channel) == 3 else Orientation()
+    metadata: Metadata = {"network": network, "station": station, "sensor_location": location}
+
+    def samples() -> Record:
+        if problem is not None:
+            raise problem
+        return _samples(source, request, traces, response, metadata)
+
+    return FileComponent(name if several else channel, samples, direction, aliases=(name, channel))
+
+
+def _samples(
+    source: Source,
+    request: Request,
+    traces: list[Any],
+    response: InstrumentResponse | None,
+    metadata: Metadata,
+) -> Record:
+    counts, time_step, start = joined_traces(source, traces)
+    check_time_step(source, time_step, None)
+    check_asked_time_step(source, request, time_step, None)
+    about: Metadata = {key: value for key, value in metadata.items() if value}
+    about["record_time"] = start
+    return record_of_counts(source, request, counts, time_step, about, response)

@@ -1,0 +1,263 @@
+"""Motions that this package wrote itself: ``to_dataset().to_netcdf(path)``.
+
+The motion comes back as it was, to the last bit, with its own name, metadata and
+history. Nothing of the file is added to them: the metadata still name the file and
+the digest that the motion was first read from.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import warnings
+from collections.abc import Container, Mapping
+from typing import Any, Final, cast
+
+import numpy as np
+import xarray as xr
+
+from rockframe.errors import ComponentError, RecordError, SchemaError
+from rockframe.records.checks import check_asked_time_step
+from rockframe.records.components import FileComponent, choose_component
+from rockframe.records.orientation import UNKNOWN, orientation_of
+from rockframe.records.source import Record, Request, Source, StoredMotion
+from rockframe.records.unit_names import RecordUnit
+from rockframe.signals import Motion, Signal
+from rockframe.signals.arrays import OWNER, Array
+from rockframe.signals.signal import VERTICAL
+from rockframe.units import Unit
+
+NAME: Final = "netcdf"
+TITLE: Final = "netCDF file of a motion, written by rockframe"
+SUFFIXES: Final = (".nc",)
+BINARY: Final = True
+
+LONG_NAMES: Final = {
+    "acceleration": "horizontal ground acceleration",
+    "vertical_acceleration": "vertical ground acceleration, upwards",
+    "acceleration_pieces": "polynomials of the horizontal ground acceleration between samples",
+    "vertical_acceleration_pieces": (
+        "polynomials of the vertical ground acceleration between samples"
+    ),
+}
+_MAGIC: Final = (b"CDF\x01", b"CDF\x02", b"CDF\x05", b"\x89HDF\r\n\x1a\n")
+_VARIABLES: Final = ("time", *LONG_NAMES)
+_MOST_NUMBERS: Final = 4_000_000
+_MOST_VARIABLES: Final = 100
+_EXPECTED: Final = "a motion as GroundMotion.to_dataset().to_netcdf(...) writes it"
+_SI: Final = RecordUnit("m/s^2", 1.0)
+_EVEN: Final = 1e-6
+_A_MOTION: Final = "a dataset of GroundMotion.to_dataset"
+_RESULT_ATTRIBUTE: Final = "system_json"
+_OF_A_RESULT: Final = (
+    "a motion; the motion of a result is "
+    "rockframe.System.from_dataset(xarray.open_dataset(path)).motion"
+)
+
+
+class NoMotionError(SchemaError):
+    """A dataset that holds no motion."""
+
+    def __init__(self, found: str, expected: str = _A_MOTION) -> None:
+        self.found = found
+        self.expected = expected
+        super().__init__(found, expected)
+
+    def __str__(self) -> str:
+        return f"found {self.found}; expected {self.expected}"
+
+
+def check_no_result(attributes: Container[str]) -> None:
+    """Refuse the result of a system, by the attributes of its dataset."""
+    if _RESULT_ATTRIBUTE in attributes:
+        found = "the result of a system"
+        raise NoMotionError(found, _OF_A_RESULT)
+
+
+def recognises(source: Source) -> bool:
+    """Tell whether the file begins as netCDF or HDF5 files do."""
+    return source.data.startswith(_MAGIC)
+
+
+def read(source: Source, request: Request) -> StoredMotion:
+    """Read a motion that was stored."""
+    if not recognises(source):
+        found = f"a file that begins with {source.data[:8]!r}"
+        raise source.refuse(found=found, expected=_EXPECTED)
+    stored = _stored(source)
+    _compare(source, request, stored)
+    return stored
+
+
+def _stored(source: Source) -> StoredMotion:
+    import netCDF4
+    from xarray.backends import NetCDF4DataStore
+
+    try:
+        with warnings.catch_warnings():
+            # nothing that a damaged file makes the libraries say is of use
+            warnings.simplefilter("ignore")
+            # before xarray, which loads the axes at once: a file may declare more than it holds
+            with netCDF4.Dataset("in memory", memory=source.data) as file:
+                check_no_result(file.ncattrs())
+                _check_declared(source, file.variables)
+                # undecoded: the numbers as they were written
+                dataset = xr.open_dataset(NetCDF4DataStore(file), decode_cf=False)
+                arguments = stored_motion(_only_motion(dataset).load())
+    except RecordError:
+        raise
+    except NoMotionError as problem:
+        raise source.refuse(found=problem.found, expected=problem.expected) from problem
+    except Exception as problem:
+        # the libraries fail on damaged files in ways that they do not document
+        found = f"a netCDF file that cannot be read ({type(problem).__name__})"
+        raise source.refuse(found=found, expected=_EXPECTED) from problem
+    si = cast("Motion", arguments["si"])
+    metadata = cast("dict[str, Any]", arguments["metadata"])
+    for key, value in metadata.items():
+        finite = not isinstance(value, float) or math.isfinite(value)
+        if isinstance(value, bool) or not isinstance(value, str | int | float) or not finite:
+            found = f"the metadata {key!r} of the motion, {value!r}"
+            raise source.refuse(found=found, expected="strings and numbers")
+    return StoredMotion(
+        si,
+        arguments.get("name"),
+        metadata,
+        tuple(arguments["history"]),
+        arguments["recipe"],
+    )
+
+
+def _only_motion(dataset: Any) -> Any:
+    return dataset[[name for name in _VARIABLES if name in dataset.variables]]
+
+
+def _check_declared(source: Source, variables: Mapping[str, Any]) -> None:
+    if len(variables) > _MOST_VARIABLES:
+        found = f"{len(variables)} variables"
+        raise source.refuse(found=found, expected=_EXPECTED)
+    # of all variables: those that are not read are axes of those that are, or nothing of ours
+    total = sum(math.prod(map(int, variable.shape)) for variable in variables.values())
+    if total > _MOST_NUMBERS:
+        expected = f"a motion of at most {_MOST_NUMBERS} numbers in all"
+        raise source.refuse(found=f"{total} numbers declared", expected=expected)
+    for name in _VARIABLES:
+        kind = variables[name].datatype if name in variables else np.dtype(np.float64)
+        if not isinstance(kind, np.dtype) or kind.kind not in "fiu":
+            found = f"a variable {name!r} that holds no numbers"
+            raise source.refuse(found=found, expected=_EXPECTED)
+
+
+def _compare(source: Source, request: Request, stored: StoredMotion) -> None:
+    check_asked_time_step(source, request, stored.si.time_step, None)
+    if request.unit is not None and not math.isclose(request.unit.factor, 1.0):
+        found = "a stored motion in m/s^2"
+        expected = f"accelerations in the unit {request.unit_name!r} that was asked for"
+        raise source.refuse(found=found, expected=expected)
+    if request.component is None:
+        return
+    components = [
+        _placeholder(stored, key)
+        for key, signal in (
+            ("component", stored.si.horizontal),
+            ("vertical_component", stored.si.vertical),
+        )
+        if signal is not None
+    ]
+    choose_component(source, request, components)
+
+
+def _placeholder(stored: StoredMotion, key: str) -> FileComponent:
+    given = stored.metadata.get(key)
+    name = None if given is None else str(given)
+    record = Record(stored.si.time_step, np.zeros(2), _SI, {})
+    direction = UNKNOWN if name is None else orientation_of(name)
+    return FileComponent(name, lambda: record, direction)
+
+
+def stored_motion(dataset: xr.Dataset) -> dict[str, Any]:
+    """Read what :func:`to_dataset` wrote, part by part."""
+    check_no_result(dataset.attrs)
+    for name in ("acceleration", "time"):
+        if name not in dataset.variables:
+            found = f"no variable {name!r}"
+            raise NoMotionError(found)
+    attributes: dict[str, Any] = {str(key): value for key, value in dataset.attrs.items()}
+    try:
+        si = _motion(dataset, _time_step(dataset, attributes))
+    except (ComponentError, TypeError, ValueError) as problem:
+        if isinstance(problem, SchemaError):
+            raise
+        found = f"a dataset that holds no ground motion: {problem}"
+        raise NoMotionError(found) from problem
+    written = attributes.get("motion_sha256")
+    if written is not None and written != si.digest():
+        found = "samples that differ from those the attribute 'motion_sha256' was written for"
+        expected = "the same; delete the attribute if they were changed on purpose"
+        raise NoMotionError(found, expected)
+    history = str(attributes.get("history", ""))
+    arguments: dict[str, Any] = {
+        "si": si,
+        "metadata": _mapping(attributes, "metadata") or {},
+        "history": tuple(history.split("\n")) if history else (),
+        # without the digest nothing says that the recipe still gives these samples
+        "recipe": None if written is None else _mapping(attributes, "recipe"),
+    }
+    if "motion_name" in attributes:
+        arguments["name"] = str(attributes["motion_name"])
+    return arguments
+
+
+def _motion(dataset: xr.Dataset, time_step: float) -> Motion:
+    across, upwards = (_values(dataset, name) for name in ("acceleration", "vertical_acceleration"))
+    pieces, vertical_pieces = (
+        _values(dataset, name) for name in ("acceleration_pieces", "vertical_acceleration_pieces")
+    )
+    horizontal = Signal(time_step, cast("Array", across), pieces)
+    if upwards is not None:
+        return Motion(horizontal, Signal(time_step, upwards, vertical_pieces, name=VERTICAL))
+    if vertical_pieces is not None:
+        msg = f"{OWNER}: vertical_pieces without vertical samples"
+        raise ComponentError(msg)
+    return Motion(horizontal)
+
+
+def _values(dataset: xr.Dataset, name: str) -> Array | None:
+    if name not in dataset.variables:
+        return None
+    variable = dataset[name]
+    unit = variable.attrs.get("units")
+    if unit != str(Unit.METRE_PER_SECOND_SQUARED):
+        wanted = str(Unit.METRE_PER_SECOND_SQUARED)
+        found = f"{name!r} in units {unit!r}"
+        raise NoMotionError(found, repr(wanted))
+    return np.asarray(variable.values, dtype=np.float64)
+
+
+def _time_step(dataset: xr.Dataset, attributes: Mapping[str, Any]) -> float:
+    if "time_step" in attributes:
+        return float(attributes["time_step"])
+    time = np.asarray(dataset["time"].values, dtype=np.float64)
+    if time.size < 2:
+        found = "fewer than two times"
+        raise NoMotionError(found, "a sampled motion")
+    step = float((time[-1] - time[0]) / (time.size - 1))
+    if not np.all(np.abs(np.diff(time) - step) <= _EVEN * abs(step)):
+        found = "an uneven time axis"
+        raise NoMotionError(found, "a uniform time step")
+    return step
+
+
+def _mapping(attributes: Mapping[str, Any], name: str) -> dict[str, Any] | None:
+    text = attributes.get(name)
+    if text is None:
+        return None
+    try:
+        loaded: object = json.loads(str(text))
+    except ValueError as problem:
+        found = f"an attribute {name!r} that is not JSON"
+        raise NoMotionError(found) from problem
+    if not isinstance(loaded, dict):
+        found = f"an attribute {name!r} that is not a JSON object"
+        raise NoMotionError(found)
+    return cast("dict[str, Any]", loaded)

@@ -1,0 +1,181 @@
+"""PEER acceleration files (AT2): four header lines, then numbers in free format.
+
+The line with the number of points comes in several dialects::
+
+    4096    0.0100    NPTS, DT                  NGA-West1
+    NPTS=  18000, DT= .00500 SEC                strong-motion database
+    NPTS=   7999, DT=   .0050 SEC,              NGA-West2
+    NPTS=3930,DT=.005                           no blanks, also dt= in lower case
+
+Some files set marks around header and data: ``*** Begin data ***`` above that line, and
+``*** End Data ***`` below the last number.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import PurePath
+from typing import Final
+
+from rockframe.records.checks import (
+    check_asked_time_step,
+    check_time_step,
+    choose_unit,
+)
+from rockframe.records.components import FileComponent, choose_component
+from rockframe.records.declared import settle_count
+from rockframe.records.numbers import (
+    NUMBER,
+    ends_inside_number,
+    free_format,
+    last_fields,
+)
+from rockframe.records.orientation import UNKNOWN, Orientation, orientation_of
+from rockframe.records.source import Metadata, Record, Request, Source, quoted_first_line
+
+NAME: Final = "peer-at2"
+TITLE: Final = "PEER acceleration file (AT2)"
+SUFFIXES: Final = (".at2",)
+
+HEADER_LINES: Final = 20
+_POINTS: Final = re.compile(r"NPTS\s*[=:]\s*([-+]?[\d.]+)", re.IGNORECASE)
+_STEP: Final = re.compile(rf"\bDT\s*[=:]\s*({NUMBER})", re.IGNORECASE)
+_WEST1: Final = re.compile(rf"^\s*([-+]?\d+)\s+({NUMBER})\s+NPTS\b", re.IGNORECASE)
+_UNIT: Final = re.compile(
+    r"\bunits?\s*(?:\bof\b|\bare\b|\bis\b|[:=])\s*\(?\s*([^\s(),;]+)", re.IGNORECASE
+)
+_OTHER_KIND: Final = re.compile(r"\b(VELOCITY|DISPLACEMENT)\b", re.IGNORECASE)
+_END_MARK: Final = re.compile(r"\*{2,}\s*END\b.{0,20}", re.IGNORECASE)
+_LAST_LINES: Final = 50
+_SHOWN_DIGITS: Final = 40
+_UPRIGHT: Final = re.compile(r"[-_](UP|UPDO|DWN|DN|VER|VRT|VERT)$", re.IGNORECASE)
+_DATE: Final = re.compile(r"\d{1,4}[/-]\d{1,2}[/-]\d{1,4}")
+
+
+def recognises(source: Source) -> bool:
+    """Tell whether a line with NPTS stands near the top, or the name says AT2."""
+    top = source.top(HEADER_LINES)
+    other_motion = source.suffix in {*SUFFIXES, ".vt2", ".dt2"}
+    return other_motion or any(_POINTS.search(line) or _WEST1.match(line) for line in top)
+
+
+def read(source: Source, request: Request) -> Record:
+    """Read a PEER AT2 file.
+
+    If the number of points disagrees with the data, the data count; when more
+    than a tenth (and more than five points, one line) are missing, or the file
+    stops in the middle of a number, it was cut short and is refused.
+    """
+    index = _points_line(source)
+    declared, time_step = _points_and_step(source, index)
+    check_time_step(source, time_step, index + 1)
+    check_asked_time_step(source, request, time_step, index + 1)
+    _check_kind(source, index)
+    unit_name, unit_line = _unit(source, index)
+    unit, as_read, warnings = choose_unit(source, request, unit_name, unit_line)
+    metadata = _description(source, index)
+    metadata["unit_as_read"] = as_read
+    given = metadata.get("component")
+    name = None if given is None else str(given)
+
+    def samples() -> Record:
+        end = _end_mark(source)
+        values = free_format(source, index + 1, end)
+        if end is None and ends_inside_number(source, last_fields(source, index + 1)):
+            found = f"the end of the file inside a number ({values.size} of {declared} samples)"
+            raise source.refuse(found=found, expected="a complete file", line=source.last_line)
+        counts, differing = settle_count(
+            source, declared=declared, counted=int(values.size), what="NPTS", line=index + 1
+        )
+        said = (*warnings, *differing)
+        return Record(time_step, values, unit, {**metadata, **counts}, warnings=said)
+
+    direction = _by_file_name(source) if name is None else orientation_of(name)
+    return choose_component(source, request, [FileComponent(name, samples, direction)])
+
+
+def _by_file_name(source: Source) -> Orientation:
+    """Tell a vertical component by the end of the file's name, where the header does not."""
+    end = _UPRIGHT.search(PurePath(source.path).stem)
+    return UNKNOWN if end is None else orientation_of(end.group(1))
+
+
+def _points_line(source: Source) -> int:
+    for index, line in enumerate(source.top(HEADER_LINES)):
+        if "NPTS" in line.upper():
+            return index
+    raise source.refuse(
+        found=f"no number of points (NPTS) in the first {HEADER_LINES} lines, "
+        f"which begin with {quoted_first_line(source.start)}",
+        expected="a PEER header with a line such as 'NPTS=  7999, DT=   .0050 SEC'",
+        line=1,
+    )
+
+
+def _end_mark(source: Source) -> int | None:
+    """Find the mark below the last number; nothing but blank lines may follow it."""
+    for index in range(len(source.lines) - 1, max(len(source.lines) - _LAST_LINES, 0), -1):
+        text = source.lines[index].strip()
+        if text:
+            return index if _END_MARK.match(text) else None
+    return None
+
+
+def _points_and_step(source: Source, index: int) -> tuple[int, float]:
+    line = source.top(1, index)[0]
+    west1 = _WEST1.match(line)
+    points, step = _POINTS.search(line), _STEP.search(line)
+    if points is not None and step is not None:
+        count_text, step_text = points.group(1), step.group(1)
+    elif west1 is not None:
+        count_text, step_text = west1.groups()
+    else:
+        expected = "'NPTS= <count>, DT= <seconds> SEC' or '<count> <seconds> NPTS, DT'"
+        raise source.refuse(found=quoted_first_line(line), expected=expected, line=index + 1)
+    try:
+        count = int(count_text.rstrip("."))
+    except ValueError:  # a fraction, or thousands of digits
+        count = 0
+    if count < 1:
+        found = f"a number of points of {count_text[:_SHOWN_DIGITS]}"
+        raise source.refuse(
+            found=found, expected="a whole number of points above zero", line=index + 1
+        )
+    return count, float(step_text.upper().replace("D", "E"))
+
+
+def _check_kind(source: Source, index: int) -> None:
+    for number, line in enumerate(source.top(index), start=1):
+        kind = _OTHER_KIND.search(line)
+        if kind is not None and "ACCELERATION" not in line.upper():
+            found = f"a {kind.group(1).lower()} ({quoted_first_line(line)})"
+            raise source.refuse(
+                found=found, expected="an acceleration (the .AT2 file of the set)", line=number
+            )
+
+
+def _unit(source: Source, index: int) -> tuple[str | None, int | None]:
+    for number, line in enumerate(source.top(index), start=1):
+        match = _UNIT.search(line)
+        if match is not None:
+            return match.group(1).rstrip("."), number
+    return None, None
+
+
+def _description(source: Source, index: int) -> Metadata:
+    header = [line.strip() for line in source.top(index) if line.strip()]
+    if not header:
+        return {}
+    if "PEER" not in header[0].upper() or len(header) < 3:
+        return {"description": header[0]}
+    metadata: Metadata = {"description": header[1]}
+    fields = [part.strip() for part in header[1].split(",")]
+    if len(fields) < 3:
+        return metadata
+    event, *middle, component = fields
+    if len(middle) > 1 and _DATE.fullmatch(middle[0]):
+        metadata["date"] = middle.pop(0)
+    metadata |= {"event": event, "station": ", ".join(middle)}
+    if component:
+        metadata["component"] = component.split("(")[0].strip() or component
+    return metadata

@@ -1,0 +1,188 @@
+"""From a file to a record in SI units: format, reader, checks, provenance."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+
+from rockframe.errors import RecordError, RockframeError
+from rockframe.records.checks import check_no_marks, check_time_step, plausibility
+from rockframe.records.components import EveryComponentError, named
+from rockframe.records.registry import (
+    WITH_RESPONSE,
+    added_failed,
+    by_name,
+    recognised,
+)
+from rockframe.records.source import (
+    MAXIMUM_SAMPLES,
+    Metadata,
+    Record,
+    RecordLike,
+    Request,
+    Source,
+    StoredMotion,
+    base_name,
+    read_source,
+)
+from rockframe.records.unit_names import RecordUnit
+from rockframe.signals import Motion
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from rockframe.records.components import FileComponent
+    from rockframe.records.registry import Format
+    from rockframe.signals.arrays import Array
+
+
+@dataclass(frozen=True)
+class Reading:
+    """A record that was read, converted and checked."""
+
+    si: Motion  # in SI units
+    metadata: Metadata  # what the file says about itself, and which file it was
+    history: tuple[str, ...]  # one sentence, or more if something was done
+    warnings: tuple[str, ...] = ()  # to be issued by the caller
+    name: str | None = None  # of a motion that was stored with its name
+    recipe: Mapping[str, Any] | None = None  # of an analytic motion that was stored
+    file: str = ""  # name of the file, without its folder
+    vertical: bool = False  # whether it is a vertical component, read for itself
+
+
+def read_record(given: RecordLike, format_name: str | None, request: Request) -> Reading:
+    """Read a record file."""
+    chosen = None if format_name is None else by_name(str(format_name))
+    source = read_source(given)
+    entry = chosen or recognised(source)
+    if request.response is not None and entry.own and entry.name not in WITH_RESPONSE:
+        kinds = ", ".join(WITH_RESPONSE)
+        expected = f"a file of counts ({kinds}), which the argument response goes with"
+        raise source.refuse(found=f"a {entry.title}", expected=expected)
+    return _reading(entry, source, _read(entry, source, request))
+
+
+def read_components(
+    source: Source, format_name: str | None, request: Request
+) -> list[Reading | RecordError]:
+    """Read all components of a file."""
+    entry = by_name(format_name) if format_name is not None else recognised(source)
+    try:
+        return [_reading(entry, source, _read(entry, source, replace(request, every=True)))]
+    except EveryComponentError as found:
+        components = found.components
+    held = [_one_of(entry, source, component) for component in components]
+    refused = [one for one in held if isinstance(one, RecordError)]
+    if len(refused) == len(held):
+        raise refused[0]
+    return held
+
+
+def _one_of(entry: Format, source: Source, component: FileComponent) -> Reading | RecordError:
+    """Read a component, or say why not."""
+    try:
+        reading = _reading(entry, source, named(source, component))
+    except RecordError as problem:
+        where = f"{problem.path}, {component.label}"
+        return RecordError(where, found=problem.found, expected=problem.expected, line=problem.line)
+    return replace(reading, vertical=component.orientation.vertical is not None)
+
+
+def _reading(entry: Format, source: Source, record: Record | StoredMotion) -> Reading:
+    base = base_name(source.path)
+    if isinstance(record, StoredMotion):
+        return Reading(
+            record.si,
+            record.metadata,
+            record.history,
+            name=record.name,
+            recipe=record.recipe,
+            file=base,
+        )
+    si, doubts = to_motion(source, record)
+    metadata = {
+        **record.metadata,
+        "format": entry.name,
+        "source_file": base,
+        "source_sha256": source.sha256,
+    }
+    step = (
+        f"read {base} ({entry.title}, unit {record.metadata.get('unit_as_read', '')}): "
+        f"{record.samples.size} samples at {record.time_step!r} s"
+    )
+    said = tuple(dict.fromkeys((*record.warnings, *doubts)))
+    return Reading(si, metadata, (step, *record.history), said, file=base)
+
+
+def to_motion(source: Source, record: Record) -> tuple[Motion, list[str]]:
+    """Check a record and convert it to SI units."""
+    check_time_step(source, record.time_step, None)
+    held = [part for part in (record.samples, record.vertical) if part is not None]
+    for samples in held:
+        check_no_marks(source, samples)
+    doubts = [plausibility(source, record.time_step, samples, record.unit) for samples in held]
+    si = Motion.of_samples(
+        record.time_step,
+        _in_si(source, record.samples, record.unit),
+        None if record.vertical is None else _in_si(source, record.vertical, record.unit),
+    )
+    return si, [words for one in doubts for words in one]
+
+
+def _read(entry: Format, source: Source, request: Request) -> Record | StoredMotion:
+    if entry.own:
+        return entry.read(source, request)
+    try:
+        record = entry.read(source, request)
+        return _checked(record)
+    except RockframeError:
+        raise
+    except Exception as problem:
+        # code of others: whatever it does not foresee is a file that it cannot read
+        raise added_failed(source, entry, problem) from problem
+
+
+def _checked(record: object) -> Record:
+    if not isinstance(record, Record):
+        msg = f"it returned {type(record).__name__}, not a Record"
+        raise TypeError(msg)
+    if not isinstance(cast("object", record.unit), RecordUnit) or not record.unit.factor > 0.0:
+        msg = f"its unit is {record.unit!r}"
+        raise TypeError(msg)
+    step = cast("object", record.time_step)
+    if isinstance(step, bool) or not isinstance(step, int | float):
+        msg = f"its time_step is {step!r}"
+        raise TypeError(msg)
+    samples = _checked_samples(record.samples)
+    vertical = None if record.vertical is None else _checked_samples(record.vertical)
+    if vertical is not None and vertical.size != samples.size:
+        msg = f"its components have {samples.size} and {vertical.size} samples"
+        raise ValueError(msg)
+    for key, value in record.metadata.items():
+        plain = isinstance(cast("object", value), str | int | float)
+        if not plain or (isinstance(value, float) and not math.isfinite(value)):
+            msg = f"its metadata {key!r} is neither a string nor a number"
+            raise TypeError(msg)
+    return replace(record, samples=samples, vertical=vertical)
+
+
+def _checked_samples(given: object) -> Array:
+    samples = np.asarray(given, dtype=np.float64)
+    if samples.ndim != 1 or not 2 <= samples.size <= MAXIMUM_SAMPLES:
+        msg = f"its samples have the shape {samples.shape}"
+        raise ValueError(msg)
+    if not np.isfinite(samples).all():
+        msg = "its samples are not all finite"
+        raise ValueError(msg)
+    return samples
+
+
+def _in_si(source: Source, samples: Array, unit: RecordUnit) -> Array:
+    with np.errstate(over="ignore"):
+        acceleration = samples * unit.factor
+    if not np.isfinite(acceleration).all():
+        raise source.refuse(found="accelerations that overflow", expected="finite accelerations")
+    return acceleration

@@ -1,0 +1,289 @@
+"""The list of formats, and how to add one to it."""
+
+from __future__ import annotations
+
+import inspect
+import re
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Final, Protocol, cast
+
+from rockframe.errors import ComponentError, RecordError
+from rockframe.records import (
+    afad,
+    asdf,
+    bhrc,
+    cosmos,
+    csmip,
+    csmnc,
+    cwa,
+    esm,
+    geonet,
+    knet,
+    miniseed,
+    netcdf,
+    peer_at2,
+    resorce,
+    sac,
+    smc,
+    text,
+    unam,
+)
+from rockframe.records.source import Record, Request, Source, StoredMotion, quoted_first_line
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+_NAME: Final = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
+_SUFFIX: Final = re.compile(r"\.[a-z0-9]+")
+_OWNER: Final = "rockframe.motion.register"
+
+
+class Reader(Protocol):
+    """What a reader must have: a module or any other object with these names.
+
+    Attributes
+    ----------
+    NAME : str
+        What the argument ``format`` takes: small letters, digits and hyphens.
+    TITLE : str
+        In words.
+    SUFFIXES : tuple of str
+        Usual extensions, in small letters, with their dot.
+    """
+
+    NAME: str
+    TITLE: str
+    SUFFIXES: tuple[str, ...]
+
+    def recognises(self, source: Source, /) -> bool:
+        """Tell whether a file looks like this format."""
+        ...
+
+    def read(self, source: Source, request: Request, /) -> Record:
+        """Read the record, or raise what ``source.refuse`` builds."""
+        ...
+
+
+@dataclass(frozen=True)
+class Format:
+    """A file format that records can be read from.
+
+    Parameters
+    ----------
+    name : str
+        What the argument ``format`` takes.
+    title : str
+        In words.
+    suffixes : tuple of str
+        Usual extensions.
+    recognises : callable
+        Whether a file looks like this format.
+    read : callable
+        The reader.
+    binary : bool
+        Whether it reads bytes (``source.data``) instead of lines.
+    own : bool
+        Whether it is part of this package.
+    """
+
+    name: str
+    title: str
+    suffixes: tuple[str, ...]
+    recognises: Callable[[Source], bool] = field(repr=False)
+    read: Callable[[Source, Request], Record | StoredMotion] = field(repr=False)
+    binary: bool = field(default=False, repr=False)
+    own: bool = field(default=False, repr=False)
+
+
+def _own(module: Any) -> Format:
+    return Format(
+        module.NAME,
+        module.TITLE,
+        module.SUFFIXES,
+        module.recognises,
+        module.read,
+        binary=getattr(module, "BINARY", False),
+        own=True,
+    )
+
+
+# asked in this order; text takes every column of numbers, so it comes last
+_OWN: Final = tuple(
+    _own(module)
+    for module in (
+        *(peer_at2, cosmos, csmip, smc, esm, knet, geonet, cwa),
+        *(afad, bhrc, csmnc, resorce, unam),
+        *(asdf, netcdf, miniseed, sac),
+    )
+)
+_LAST: Final = _own(text)
+WITH_RESPONSE: Final = (miniseed.NAME, sac.NAME, asdf.NAME)
+"""Formats that may hold counts, which the response of the instrument makes accelerations."""
+_registered: list[Format] = []
+
+
+def formats() -> tuple[Format, ...]:
+    """List the formats that records can be read from.
+
+    Returns
+    -------
+    tuple of Format
+        Each with its ``name``, as the argument ``format`` takes it, its
+        ``title`` and its ``suffixes``, in the order in which they are tried.
+    """
+    return (*_OWN, *_registered, _LAST)
+
+
+def register(reader: Reader) -> None:
+    """Add a format, so that ``GroundMotion.read`` can read it.
+
+    It is tried after the formats of this package and before plain text. If its
+    ``read`` fails with anything but an error of this package, or returns what
+    is no record, a `RecordError` says so.
+
+    Parameters
+    ----------
+    reader : Reader
+        Module or object with ``NAME``, ``TITLE``, ``SUFFIXES``,
+        ``recognises(source)`` and ``read(source, request)``; with
+        ``BINARY = True`` if it reads ``source.data``, not ``source.lines``.
+
+    Raises
+    ------
+    ComponentError
+        One of these is missing or is not what it should be (all that is wrong
+        is listed), or the name is taken.
+
+    Examples
+    --------
+    >>> from rockframe.records import Record, choose_unit
+    >>> class Simple:
+    ...     NAME = "simple"
+    ...     TITLE = "file of the simple format"
+    ...     SUFFIXES = (".sim",)
+    ...
+    ...     @staticmethod
+    ...     def recognises(source):
+    ...         return source.lines[0] == "SIMPLE"
+    ...
+    ...     @staticmethod
+    ...     def read(source, request):
+    ...         unit, name, warnings = choose_unit(source, request, "gal", None)
+    ...         samples = [float(line) for line in source.lines[1:] if line]
+    ...         return Record(0.01, samples, unit, {"unit_as_read": name})
+    >>> register(Simple)
+    >>> "simple" in [entry.name for entry in formats()]
+    True
+    >>> unregister("simple")
+    """
+    faults = _faults(reader)
+    if faults:
+        msg = f"{_OWNER}: {'; '.join(faults)}"
+        raise ComponentError(msg)
+    if reader.NAME in {entry.name for entry in formats()}:
+        msg = (
+            f"{_OWNER}: the format {reader.NAME!r} is there already; unregister it or rename yours"
+        )
+        raise ComponentError(msg)
+    added = Format(
+        reader.NAME,
+        reader.TITLE,
+        tuple(reader.SUFFIXES),
+        reader.recognises,
+        reader.read,
+        binary=bool(getattr(reader, "BINARY", False)),
+    )
+    _registered.append(added)
+
+
+def unregister(name: str) -> None:
+    """Take a format away that was added with :func:`register`.
+
+    Parameters
+    ----------
+    name : str
+        Its name.
+
+    Raises
+    ------
+    ComponentError
+        No format of that name was added.
+    """
+    for entry in _registered:
+        if entry.name == name:
+            _registered.remove(entry)
+            return
+    known = ", ".join(repr(entry.name) for entry in _registered) or "none"
+    msg = f"{_OWNER}: no added format is called {name!r} (added: {known})"
+    raise ComponentError(msg)
+
+
+def by_name(name: str) -> Format:
+    """Find a format by its name, or say which there are."""
+    wanted = name.casefold().replace("_", "-")
+    for entry in formats():
+        if entry.name == wanted:
+            return entry
+    known = ", ".join(repr(entry.name) for entry in formats())
+    msg = f"GroundMotion.read: format must be one of {known}, got {name!r}"
+    raise ComponentError(msg)
+
+
+def recognised(source: Source) -> Format:
+    """Find the format of a file from its content."""
+    known = formats()
+    for entry in known:
+        if entry.binary and _looks_like(source, entry):
+            return entry
+    top = quoted_first_line(source.start)  # refuses what is no text either
+    for entry in known:
+        if not entry.binary and _looks_like(source, entry):
+            return entry
+    titles = "; ".join(entry.title for entry in known)
+    raise source.refuse(found=f"{top}, which no format recognises", expected=titles, line=1)
+
+
+def _looks_like(source: Source, entry: Format) -> bool:
+    if entry.own:
+        return entry.recognises(source)
+    try:
+        return bool(entry.recognises(source))
+    except RecordError:
+        raise
+    except Exception as problem:
+        raise added_failed(source, entry, problem) from problem
+
+
+def added_failed(source: Source, entry: Format, problem: Exception) -> RecordError:
+    """Build the error for an added reader that failed in a way of its own."""
+    found = f"what the added reader {entry.name!r} fails at ({type(problem).__name__}: {problem})"
+    return source.refuse(found=found, expected=entry.title)
+
+
+def _faults(reader: object) -> list[str]:
+    faults: list[str] = []
+    name = getattr(reader, "NAME", None)
+    if not (isinstance(name, str) and _NAME.fullmatch(name)):
+        faults.append(f"NAME must be small letters, digits and hyphens, got {name!r}")
+    title = getattr(reader, "TITLE", None)
+    if not (isinstance(title, str) and title.strip() and title.isprintable()):
+        faults.append(f"TITLE must be one line of words, got {title!r}")
+    suffixes = getattr(reader, "SUFFIXES", None)
+    listed = cast("tuple[object, ...]", suffixes) if isinstance(suffixes, tuple) else None
+    if listed is None or not all(isinstance(s, str) and _SUFFIX.fullmatch(s) for s in listed):
+        faults.append(f"SUFFIXES must be a tuple such as ('.abc',), got {suffixes!r}")
+    for method, arguments in (("recognises", ("source",)), ("read", ("source", "request"))):
+        call = getattr(reader, method, None)
+        wanted = f"{method} must be a function of {' and '.join(arguments)}"
+        if not callable(call):
+            faults.append(f"{wanted}, got {call!r}")
+            continue
+        try:
+            inspect.signature(call).bind(*arguments)
+        except TypeError:
+            faults.append(f"{wanted}, got the arguments {inspect.signature(call)}")
+        except ValueError:  # built-in without a signature: found out when it is called
+            continue
+    if not isinstance(getattr(reader, "BINARY", False), bool):
+        faults.append("BINARY must be True or False")
+    return faults

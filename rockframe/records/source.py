@@ -1,0 +1,279 @@
+"""A record file as bytes and as numbered lines, and what every reader hands back."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
+
+from rockframe.errors import RecordError
+from rockframe.records.archives import MAXIMUM_BYTES as MAXIMUM_BYTES
+from rockframe.records.received import PathLike as PathLike
+from rockframe.records.received import RecordLike as RecordLike
+from rockframe.records.received import received
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from rockframe.records.unit_names import RecordUnit
+    from rockframe.signals import Motion
+    from rockframe.signals.arrays import Array
+
+Metadata: TypeAlias = "dict[str, str | float | int]"
+
+# What bounds time and memory beside MAXIMUM_BYTES: no file may cost more than about a second
+# or 200 MB, whatever stands in it.
+MAXIMUM_TEXT: Final = 16 * 2**20
+"""Largest file that is read as text [byte]."""
+MAXIMUM_LINES: Final = 350_000
+"""Most lines of a text."""
+MAXIMUM_LINE: Final = 2**20
+"""Longest line of a text [character]."""
+MAXIMUM_SAMPLES: Final = 300_000
+"""Most samples of one component."""
+HEADER_WIDTH: Final = 400
+"""What stands behind in a header line is not looked at [character]."""
+
+_SHOWN: Final = 60
+_RECORD: Final = "a ground-motion record as text"
+_MARKUP: Final = ("<!doctype", "<html", "<head", "<?xml", "<body", "<!--")
+_STATION_XML: Final = "<FDSNStationXML"
+_TEXT_CONTROLS: Final = frozenset("\t\n\r\f\v\x1a")
+_START: Final = 4096
+_LONGEST: Final = 600
+
+
+@dataclass(frozen=True)
+class Source:
+    r"""A record file: its bytes, and, if it is text, its lines.
+
+    Parameters
+    ----------
+    path : str
+        As given, for messages; of a file that was packed, with its name inside.
+    data : bytes
+        All bytes of the file, unpacked.
+    sha256 : str
+        Of the bytes.
+    """
+
+    path: str
+    data: bytes = field(repr=False)
+    sha256: str
+
+    @cached_property
+    def lines(self) -> tuple[str, ...]:
+        """Lines without their ends; the last one is empty if the file ends with a line end.
+
+        Raises
+        ------
+        RecordError
+            The file is empty, binary, markup, or too long to be a record.
+        """
+        return _lines(self)
+
+    def top(self, count: int, first: int = 0) -> list[str]:
+        """Give lines of a header, cut to a width that no header needs.
+
+        Parameters
+        ----------
+        count : int
+            How many.
+        first : int, optional
+            Index of the first, from 0.
+
+        Returns
+        -------
+        list of str
+        """
+        return [line[:HEADER_WIDTH] for line in self.lines[first : first + count]]
+
+    @property
+    def start(self) -> str:
+        """The first lines, for messages."""
+        return "\n".join(self.top(20))
+
+    @property
+    def suffix(self) -> str:
+        """Extension in lower case, with its dot."""
+        return Path(self.path).suffix.lower()
+
+    @property
+    def last_line(self) -> int:
+        """Number of the last line that is not blank, from 1."""
+        count = len(self.lines)
+        while count > 1 and not self.lines[count - 1].strip():
+            count -= 1
+        return count
+
+    def refuse(self, *, found: str, expected: str, line: int | None = None) -> RecordError:
+        """Build the error for something found in this file.
+
+        Parameters
+        ----------
+        found, expected : str
+            What stands there, and what should.
+        line : int, optional
+            Counted from 1; the last one of the file if it has not so many.
+
+        Returns
+        -------
+        RecordError
+            To be raised.
+        """
+        lines = self.__dict__.get("lines")  # there once they were looked at
+        if line is not None and lines is not None:
+            # a header may announce what would stand behind the end of the file
+            line = min(max(line, 1), len(lines))
+        found = found if len(found) <= _LONGEST else f"{found[:_LONGEST]}..."
+        return RecordError(self.path, found=found, expected=expected, line=line)
+
+
+@dataclass(frozen=True)
+class Request:
+    """What the caller asked of a reader, already checked.
+
+    Parameters
+    ----------
+    unit : RecordUnit, optional
+        Unit of the samples.
+    unit_name : str, optional
+        As the caller spelt it.
+    time_step : float, optional
+        [s]
+    component : str, optional
+        Component to read.
+    vertical : str, optional
+        Component to read beside it, as the vertical one.
+    response : str, optional
+        File with the response of the instrument.
+    every : bool
+        Whether all components are asked for; they come in an `EveryComponentError`.
+    """
+
+    unit: RecordUnit | None = None
+    unit_name: str | None = None
+    time_step: float | None = None
+    component: str | None = None
+    vertical: str | None = None
+    response: str | None = None
+    every: bool = False
+
+
+@dataclass(frozen=True)
+class Record:
+    """A record as read: one component, perhaps with the vertical one.
+
+    Parameters
+    ----------
+    time_step : float
+        [s]
+    samples : ndarray, shape (n,)
+        In `unit`.
+    unit : RecordUnit
+        Unit of the samples.
+    metadata : dict
+        What the file says about itself.
+    history : tuple of str
+        Sentences about the reading.
+    warnings : tuple of str
+        What disagrees, but not so that the file had to be refused.
+    vertical : ndarray, shape (n,), optional
+        Vertical component, upwards, in `unit`.
+    """
+
+    time_step: float
+    samples: Array
+    unit: RecordUnit
+    metadata: Metadata
+    history: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
+    vertical: Array | None = None
+
+
+@dataclass(frozen=True)
+class StoredMotion:
+    """A motion that was written by this package and comes back as it was."""
+
+    si: Motion  # in SI units
+    name: str | None  # of the motion
+    metadata: Metadata  # as written
+    history: tuple[str, ...]
+    recipe: Mapping[str, Any] | None  # constructor and arguments of an analytic motion
+
+
+def read_source(given: RecordLike) -> Source:
+    """Read the bytes of a file, or refuse it."""
+    return source_of(*received(given))
+
+
+def source_of(name: str, data: bytes) -> Source:
+    """Give bytes their name and their digest."""
+    return Source(path=name, data=data, sha256=hashlib.sha256(data).hexdigest())
+
+
+def base_name(path: str) -> str:
+    """Give the file name of a path in either spelling."""
+    return path.replace("\\", "/").rstrip("/").rsplit("/", 1)[-1]
+
+
+def quoted_first_line(text: str) -> str:
+    """Quote the first line of a text, shortened, for a message."""
+    line = text.strip().split("\n", 1)[0].strip()
+    return repr(line if len(line) <= _SHOWN else line[:_SHOWN] + "...")
+
+
+def _check_size(size: int, limit: int, name: str) -> None:
+    if size > limit:
+        found = f"{size / 2**20:.3g} MiB"
+        raise RecordError(name, found=found, expected=f"a record of at most {limit // 2**20} MiB")
+
+
+def _lines(source: Source) -> tuple[str, ...]:
+    data, name = source.data, source.path
+    if b"\x00" in data:
+        kind = "UTF-16 text" if data[:2] in (b"\xff\xfe", b"\xfe\xff") else "binary data"
+        raise RecordError(name, found=kind, expected=f"{_RECORD} (ASCII or UTF-8)")
+    _check_size(len(data), MAXIMUM_TEXT, name)
+    if b"\r" in data:
+        data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    count = data.count(b"\n")
+    if count > MAXIMUM_LINES:
+        expected = f"a record of at most {MAXIMUM_LINES} lines"
+        raise RecordError(name, found=f"{count} lines", expected=expected)
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        text = data.decode("latin-1")
+    del data
+    start = text[:_START]
+    controls = sum(not c.isprintable() and c not in _TEXT_CONTROLS for c in start)
+    if controls > 0.02 * len(start):
+        raise RecordError(name, found="binary data", expected=_RECORD)
+    _check_text(text, start, source)
+    lines = tuple(text.rstrip("\x1a").split("\n"))
+    longest = max(map(len, lines))
+    if longest > MAXIMUM_LINE:
+        line = next(k for k, text in enumerate(lines, start=1) if len(text) == longest)
+        found = f"{longest} characters in one line"
+        expected = f"lines of at most {MAXIMUM_LINE} characters"
+        raise source.refuse(found=found, expected=expected, line=line)
+    return lines
+
+
+def _check_text(text: str, start: str, source: Source) -> None:
+    if not text.strip("\x1a").strip():
+        raise source.refuse(found="an empty file", expected=_RECORD)
+    shown_start = start.lstrip()
+    if not shown_start.lower().startswith(_MARKUP):
+        return
+    line = 1 + start.count("\n", 0, start.index(shown_start[0]))
+    if _STATION_XML in shown_start:
+        found = "StationXML, which describes an instrument and holds no motion"
+        expected = "the miniSEED file itself; this one goes with it as the argument response"
+        raise source.refuse(found=found, expected=expected, line=line)
+    found = f"a web page or other markup, {quoted_first_line(shown_start)}"
+    expected = f"{_RECORD}; was an error page downloaded?"
+    raise source.refuse(found=found, expected=expected, line=line)

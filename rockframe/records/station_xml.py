@@ -1,0 +1,226 @@
+"""The sensitivity of an instrument, from StationXML given or found beside a record.
+
+Reference: Federation of Digital Seismograph Networks, "FDSN StationXML": the element
+``InstrumentSensitivity`` of a channel's response; azimuth clockwise from north, dip
+positive downwards, so that -90 is a component positive upwards.
+"""
+
+from __future__ import annotations
+
+import importlib
+import math
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from functools import cached_property
+from itertools import islice
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from rockframe.records.orientation import (
+    DOWNWARDS,
+    UNKNOWN,
+    UPWARDS,
+    Orientation,
+    azimuth_of,
+)
+from rockframe.records.source import base_name, read_source
+from rockframe.records.traces import codes_of, location_code
+from rockframe.records.unit_names import RecordUnit, acceleration_unit
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from rockframe.records.source import Request, Source
+
+_LARGEST: Final = 8 * 2**20
+_MOST_FILES: Final = 20
+_MOST_LISTED: Final = 2_000
+_MOST_EPOCHS: Final = 1_000
+_LONGEST: Final = 60
+_ROOT: Final = "FDSNStationXML"
+_SENSITIVITY: Final = "{*}Response/{*}InstrumentSensitivity"
+_UNSAID: Final = ("", "none")
+_LEVEL: Final = 5.0
+_UPRIGHT: Final = 85.0
+
+
+@dataclass(frozen=True)
+class InstrumentResponse:
+    """What turns the counts of one channel into accelerations."""
+
+    sensitivity: float  # counts per `unit`
+    unit: RecordUnit  # of the acceleration
+    orientation: Orientation  # of the channel
+    file: str  # where it was found
+    sha256: str
+
+
+class InstrumentResponses:
+    """The responses that go with one record; each file is read once.
+
+    Without a file that was given, StationXML is looked for beside the record: in
+    its folder, with the extension ``.xml``, and with the same stem or with
+    ``NET.STA`` in its name.
+    """
+
+    def __init__(self, source: Source, request: Request) -> None:
+        self._source = source
+        self._given = None if request.response is None else _given(request.response)
+        self._left = _LARGEST  # bytes, of all files together
+        self._read: dict[Path, _Inventory | None] = {}
+
+    def of(self, name: str, time: datetime) -> InstrumentResponse | None:
+        """Find the response of a channel."""
+        if self._given is not None:
+            found = self._given.response(name, time)
+            if found is None:
+                expected = f"the response of {name} at {time}"
+                raise self._given.file.refuse(found="StationXML without it", expected=expected)
+            return found
+        station = ".".join(name.split(".")[:2])
+        stem = Path(self._source.path).stem
+        beside: dict[str, InstrumentResponse] = {}
+        for path in self._files:
+            if path.name.startswith(f"{stem}.") or station in path.name:
+                inventory = self._inventory(path)
+                found = None if inventory is None else inventory.response(name, time)
+                if found is not None:
+                    beside.setdefault(found.sha256, found)
+        if len(beside) > 1:
+            files = ", ".join(entry.file for entry in beside.values())
+            expected = "one; say which as the argument response"
+            found = f"several files with the response: {files}"
+            raise self._source.refuse(found=found, expected=expected)
+        return next(iter(beside.values()), None)
+
+    @cached_property
+    def _files(self) -> list[Path]:
+        try:
+            listed = list(islice(Path(self._source.path).parent.iterdir(), _MOST_LISTED))
+        except OSError:
+            return []
+        return sorted(path for path in listed if path.suffix.casefold() == ".xml")
+
+    def _inventory(self, path: Path) -> _Inventory | None:
+        if path not in self._read:
+            self._read[path] = None
+            if len(self._read) <= _MOST_FILES and path.is_file():
+                size = path.stat().st_size
+                if size <= self._left:
+                    self._left -= size
+                    self._read[path] = _inventory(read_source(path))
+        return self._read[path]
+
+
+@dataclass(frozen=True)
+class _Inventory:
+    """A StationXML file, and its channels by their names."""
+
+    file: Source
+    channels: Mapping[str, list[Any]]
+
+    def response(self, name: str, time: datetime) -> InstrumentResponse | None:
+        epochs = self.channels.get(".".join(codes_of(name)), [])[:_MOST_EPOCHS]
+        channel = next((epoch for epoch in epochs if _in_use(epoch, time)), None)
+        return None if channel is None else _response(self.file, channel, name)
+
+
+def response_in(file: Source, name: str, time: datetime) -> InstrumentResponse | None:
+    """Find the response of a channel in one StationXML, as :meth:`Responses.of` does."""
+    inventory = _inventory(file) if len(file.data) <= _LARGEST else None
+    return None if inventory is None else inventory.response(name, time)
+
+
+def _given(response: str) -> _Inventory:
+    file = read_source(response)
+    if len(file.data) > _LARGEST:
+        size = f"{len(file.data) / 2**20:.3g} MiB"
+        expected = f"StationXML of at most {_LARGEST // 2**20} MiB, such as of one station"
+        raise file.refuse(found=size, expected=expected)
+    inventory = _inventory(file)
+    if inventory is None:
+        raise file.refuse(found="no StationXML that can be read", expected="StationXML")
+    return inventory
+
+
+def _inventory(file: Source) -> _Inventory | None:
+    try:
+        etree = importlib.import_module("lxml.etree")
+    except ImportError as problem:
+        found = "StationXML, and no lxml in this Python"
+        expected = "lxml to read it; install it with: pip install 'rockframe[records]'"
+        raise file.refuse(found=found, expected=expected) from problem
+    # entities stay as they are: nothing is fetched, and nothing grows
+    parser = etree.XMLParser(resolve_entities=False, no_network=True)
+    try:
+        root = etree.fromstring(file.data, parser)
+    except (etree.XMLSyntaxError, ValueError):
+        return None
+    if etree.QName(root).localname != _ROOT:
+        return None
+    channels: dict[str, list[Any]] = {}
+    for network in root.iterfind("{*}Network"):
+        for station in network.iterfind("{*}Station"):
+            for channel in station.iterfind("{*}Channel"):
+                location = location_code(channel.get("locationCode", ""))
+                codes = (network.get("code"), station.get("code"), location, channel.get("code"))
+                channels.setdefault(".".join(map(str, codes)), []).append(channel)
+    return _Inventory(file, channels)
+
+
+def _response(file: Source, channel: Any, name: str) -> InstrumentResponse | None:
+    sensitivity = channel.find(_SENSITIVITY)
+    if sensitivity is None:
+        return None
+    line = int(sensitivity.sourceline)
+    units = _text(sensitivity, "{*}InputUnits/{*}Name")
+    unit = acceleration_unit(units)
+    if unit is None:
+        expected = "the response of an accelerometer (input unit M/S**2)"
+        found = f"{name} with the input unit {units!r}"
+        raise file.refuse(found=found, expected=expected, line=line)
+    output = _text(sensitivity, "{*}OutputUnits/{*}Name").casefold()
+    value = _number(sensitivity, "{*}Value")
+    # some archives leave the unit of the output away, or write None: an overall sensitivity
+    # is that of the digital output all the same
+    counts = "count" in output or output in _UNSAID
+    if not counts or value is None or math.isclose(value, 0.0):
+        found = f"{name} with a sensitivity of {_text(sensitivity, '{*}Value')} {output}"
+        raise file.refuse(found=found, expected="counts per acceleration, not zero", line=line)
+    return InstrumentResponse(value, unit, _orientation(channel), base_name(file.path), file.sha256)
+
+
+def _in_use(channel: Any, time: datetime) -> bool:
+    start, end = channel.get("startDate"), channel.get("endDate")
+    try:
+        return (start is None or _moment(start) <= time) and (end is None or time <= _moment(end))
+    except (ValueError, OverflowError):  # no dates
+        return False
+
+
+def _moment(text: str) -> datetime:
+    moment = datetime.fromisoformat(text.strip()[:_LONGEST])
+    return moment if moment.tzinfo is None else moment.astimezone(UTC).replace(tzinfo=None)
+
+
+def _orientation(channel: Any) -> Orientation:
+    azimuth, dip = _number(channel, "{*}Azimuth"), _number(channel, "{*}Dip")
+    if dip is None:
+        return UNKNOWN
+    if dip <= -_UPRIGHT:
+        return Orientation(vertical=UPWARDS)
+    if dip >= _UPRIGHT:
+        return Orientation(vertical=DOWNWARDS)
+    return azimuth_of(azimuth) if azimuth is not None and abs(dip) <= _LEVEL else UNKNOWN
+
+
+def _text(element: Any, path: str) -> str:
+    return str(element.findtext(path) or "").strip()[:_LONGEST]
+
+
+def _number(element: Any, path: str) -> float | None:
+    try:
+        value = float(_text(element, path))
+    except ValueError:
+        return None
+    return value if math.isfinite(value) else None

@@ -1,0 +1,274 @@
+"""Plain text: columns of numbers, one of them or none the time."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import replace
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from rockframe.records.checks import (
+    check_asked_time_step,
+    check_time_step,
+    choose_unit,
+)
+from rockframe.records.columns import HEADER_LINES, Table, check_last_row, read_table
+from rockframe.records.components import FileComponent, choose_component
+from rockframe.records.declared import settle_count
+from rockframe.records.numbers import (
+    ends_inside_number,
+    free_format,
+    last_fields,
+    one_number,
+    too_many,
+)
+from rockframe.records.source import (
+    MAXIMUM_SAMPLES,
+    Metadata,
+    Record,
+    Request,
+    Source,
+)
+from rockframe.records.stated import compare_peak
+from rockframe.records.text_first_lines import (
+    FirstLines,
+    find_first_lines,
+    looks_like_step,
+)
+from rockframe.records.text_header import (
+    TextColumn,
+    acceleration_columns,
+    column_names,
+    has_times,
+    is_direction,
+    is_rising,
+    time_scale,
+    unit_of_header,
+)
+from rockframe.records.text_stated import stated_peak, stated_step
+from rockframe.records.timing import uniform_step
+from rockframe.records.wrapping import BY_ROWS, COLUMNS, ROWS, reading_order
+
+if TYPE_CHECKING:
+    from rockframe.signals.arrays import Array
+
+NAME: Final = "text"
+TITLE: Final = "text or CSV, columns of accelerations, with or without the time"
+SUFFIXES: Final = (".txt", ".csv", ".dat", ".tsv", ".asc")
+
+MOST_COLUMNS: Final = 12
+
+_AGREEMENT: Final = 1e-3
+_ROUNDING: Final = 1e-6
+
+
+def recognises(source: Source) -> bool:
+    """Tell whether a row of numbers stands near the top."""
+    return any(re.match(r"\s*[-+.\d]", line) for line in source.top(4 * HEADER_LINES))
+
+
+def read(source: Source, request: Request) -> Record:
+    """Read columns of numbers."""
+    first_lines = find_first_lines(source)
+    if first_lines is not None:
+        return _counted(source, request, first_lines)
+    table = read_table(source, MOST_COLUMNS)
+    rows, columns = table.values.shape
+    if rows < 2:
+        found = "one row of numbers"
+        raise source.refuse(found=found, expected="at least two samples", line=table.lines[0])
+    names, line = column_names(source, table)
+    timed = has_times(table, names)
+    held = acceleration_columns(source, table, names, line, timed=timed)
+    metadata: Metadata = {}
+    if table.header:
+        metadata["description"] = table.header[0][1].lstrip("#% \t")
+    if columns > 1 and not (timed and (names or is_rising(table))):
+        order = None if any(map(is_direction, names)) else reading_order(table.values)
+        asked = (request.component or "").strip().casefold() == BY_ROWS
+        if order == ROWS or (asked and order != COLUMNS):
+            return _row_by_row(source, request, table, metadata)
+        unsaid = request.every or request.component is None
+        if order is None and unsaid and not names and not timed:
+            found = f"{columns} columns without names, in which one record may go on row by row"
+            expected = f"component={BY_ROWS!r}, or a column such as component={held[0].name!r}"
+            raise source.refuse(found=found, expected=expected, line=table.lines[0])
+    check_last_row(source, table)
+    if ends_inside_number(source, table.last_fields):
+        found = f"the end of the file inside a number ({rows} samples)"
+        raise source.refuse(found=found, expected="a complete file", line=table.lines[-1])
+    warnings: list[str] = []
+    first = 0
+    if timed:
+        scale = time_scale(source, table, names)
+        time_step = _step(source, table, scale)
+        check_asked_time_step(source, request, time_step, table.lines[1])
+        warnings += _compare_step(source, table, time_step)
+        start = float(table.values[0, 0]) * scale
+        if start != 0.0:
+            metadata["start_time"] = start
+    else:
+        time_step = _step_without_times(source, request, table)
+        first, warnings = _first_sample(source, request, table)
+
+    def samples(column: TextColumn) -> Record:
+        values = table.values[first:, column.place].copy()
+        return _record(source, request, table, column, time_step, values, metadata, warnings)
+
+    if len(held) == 1 and columns <= 2:
+        only = FileComponent(None, lambda: samples(held[0]))
+        return choose_component(source, request, [only])
+    components = [
+        FileComponent(
+            column.name,
+            lambda column=column: samples(column),
+            column.orientation,
+            channel=place,
+            line=line,
+        )
+        for place, column in enumerate(held, start=1)
+    ]
+    return choose_component(source, request, components)
+
+
+def _row_by_row(source: Source, request: Request, table: Table, metadata: Metadata) -> Record:
+    """Read a record that is wrapped to several values a line."""
+    columns = table.values.shape[1]
+    rest = [one_number(field, source, table.lines[-1]) for field in table.rest]
+    values = np.append(table.values.ravel(), rest)
+    if values.size > MAXIMUM_SAMPLES:
+        raise too_many(source, values.size, line=table.lines[-1])
+    words = f"{values.size} samples, {columns} to a line"
+    if request.component is not None and request.component.strip().casefold() != BY_ROWS:
+        found = f"one record of {words}, where numbers go on to the right"
+        expected = f"component={BY_ROWS!r}, or no component"
+        raise source.refuse(found=found, expected=expected, line=table.lines[0])
+    if ends_inside_number(source, last_fields(source, table.lines[0] - 1)):
+        found = f"the end of the file inside a number ({values.size} samples)"
+        raise source.refuse(found=found, expected="a complete file", line=source.last_line)
+    time_step = _step_without_times(source, request, table)
+    single = replace(table, values=values[:, np.newaxis], rest=[])
+
+    def samples() -> Record:
+        only = TextColumn(0, "")
+        record = _record(source, request, single, only, time_step, values, metadata, [])
+        return replace(record, history=(*record.history, f"{words}, read row by row"))
+
+    return choose_component(source, request, [FileComponent(None, samples, aliases=(BY_ROWS,))])
+
+
+def _record(
+    source: Source,
+    request: Request,
+    table: Table,
+    column: TextColumn,
+    time_step: float,
+    values: Array,
+    metadata: Metadata,
+    warnings: list[str],
+) -> Record:
+    name, line = column.unit, None
+    if name is None or table.values.shape[1] <= 2:
+        name, line = unit_of_header(source, table, asked=request.unit is not None)
+    unit, as_read, said = choose_unit(source, request, name, line)
+    peak = stated_peak(table.header) if table.values.shape[1] <= 2 else None
+    if peak is not None:
+        printed, peak_unit, peak_line = peak
+        said += compare_peak(
+            source, values, unit, printed=printed, printed_unit=peak_unit, line=peak_line
+        )
+    about: Metadata = {"unit_as_read": as_read, **metadata}
+    return Record(time_step, values, unit, about, warnings=(*said, *warnings))
+
+
+def _counted(source: Source, request: Request, head: FirstLines) -> Record:
+    check_asked_time_step(source, request, head.time_step, head.line)
+
+    def samples() -> Record:
+        unit, as_read, warnings = choose_unit(source, request, None, None)
+        values = free_format(source, head.data_at)
+        if ends_inside_number(source, last_fields(source, head.data_at)):
+            found = f"the end of the file inside a number ({values.size} samples)"
+            raise source.refuse(found=found, expected="a complete file", line=source.last_line)
+        counts, differing = settle_count(
+            source,
+            declared=head.count,
+            counted=int(values.size),
+            what="the number in front",
+            line=head.line,
+        )
+        above = [text.strip() for text in source.top(head.line - 1) if text.strip()]
+        metadata: Metadata = {"unit_as_read": as_read, **counts}
+        if above:
+            metadata["description"] = above[0].lstrip("#% \t")
+        history = (f"{head.count} samples and a time step, as line {head.line} says",)
+        return Record(
+            head.time_step, values, unit, metadata, history, warnings=(*warnings, *differing)
+        )
+
+    return choose_component(source, request, [FileComponent(None, samples)])
+
+
+def _step_without_times(source: Source, request: Request, table: Table) -> float:
+    stated = stated_step(table.header)
+    if stated is not None:
+        time_step, line = stated
+        check_time_step(source, time_step, line)
+        check_asked_time_step(source, request, time_step, line)
+        return time_step
+    if request.time_step is None:
+        found = f"{'one column' if table.values.shape[1] == 1 else 'accelerations'} and no times"
+        example = "time_step='0.005 s'"
+        if table.values.shape[1] == 1 and looks_like_step(table):
+            found += f", below {table.first_fields[0]}, which looks like a time step"
+            example = f"time_step='{table.first_fields[0]} s'"
+        expected = f"a column of times, or the argument time_step such as {example}"
+        raise source.refuse(found=found, expected=expected)
+    check_time_step(source, request.time_step, None)
+    return request.time_step
+
+
+def _first_sample(source: Source, request: Request, table: Table) -> tuple[int, list[str]]:
+    """Tell whether the samples begin in the second row, below the time step, and say so."""
+    asked = request.time_step
+    if asked is None or table.values.shape[1] > 1 or stated_step(table.header) is not None:
+        return 0, []
+    number, line = table.first_fields[0], table.lines[0]
+    where = f"{source.path}, line {line}: {number} is"
+    same = math.isclose(float(table.values[0, 0]), asked, rel_tol=_ROUNDING)
+    if same and looks_like_step(table):
+        return 1, [f"{where} the time step, as time_step says, and not read as a sample"]
+    if same:
+        return 0, [f"{where} the time step that was asked for; it is read as a sample"]
+    if looks_like_step(table):
+        raise source.refuse(
+            found=f"{number} above the samples, which looks like a time step",
+            expected=f"the {asked!r} s asked for by the argument time_step, or no such line",
+            line=line,
+        )
+    return 0, []
+
+
+def _step(source: Source, table: Table, scale: float) -> float:
+    step, misfit = uniform_step(table.values[:, 0], table.first_fields)
+    if misfit is not None:
+        before, after = table.first_fields[misfit - 1 : misfit + 1]
+        found = f"the time {after} after {before}"
+        expected = f"a uniform time step (here about {step:.6g}); resample the record first"
+        raise source.refuse(found=found, expected=expected, line=table.lines[misfit])
+    # 15 digits: a step of 5.3 ms is the float 0.0053, without the rounding of 5.3 * 1e-3
+    seconds = step if math.isclose(scale, 1.0) else float(f"{step * scale:.15g}")
+    check_time_step(source, seconds, table.lines[1])
+    return seconds
+
+
+def _compare_step(source: Source, table: Table, time_step: float) -> list[str]:
+    stated = stated_step(table.header)
+    if stated is None or math.isclose(stated[0], time_step, rel_tol=_AGREEMENT):
+        return []
+    return [
+        f"{source.path}, line {stated[1]}: the header states a time step of {stated[0]:g} s, "
+        f"but the times are {time_step:g} s apart; the times are used"
+    ]

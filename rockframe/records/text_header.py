@@ -1,0 +1,242 @@
+"""What the lines above columns of numbers say: names, units, and whether it is a spectrum."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+from rockframe.records.columns import Table, split_header
+from rockframe.records.orientation import UNKNOWN, Orientation, orientation_of
+from rockframe.records.source import Source, quoted_first_line
+from rockframe.records.text_stated import TIME_UNITS
+from rockframe.records.unit_names import acceleration_unit, other_quantity
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+# brackets inside brackets once, as in [1/(s^2)]; no blank can be matched in two ways
+_BRACKETED: Final = re.compile(r"[(\[{]([^()\[\]{}]*(?:\([^()]*\)[^()\[\]{}]*)?)[)\]}]")
+_STATED: Final = re.compile(
+    r"\bunits?\s*(?:\bof\b|\bare\b|\bis\b|[:=])\s*[(\[]?\s*([^\s()\[\],;]+)", re.IGNORECASE
+)
+_ACCELERATION_NAME: Final = re.compile(r"\W*(acc|a\b|ag\b)", re.IGNORECASE)
+_TIME_NAME: Final = re.compile(r"\W*(time|t)\b", re.IGNORECASE)
+_OTHER_KIND: Final = re.compile(r"(?<![a-z])(vel|disp)", re.IGNORECASE)
+_PERIOD_NAME: Final = re.compile(r"\W*(period|freq|omega|t_?n\b)", re.IGNORECASE)
+_SPECTRAL_NAME: Final = re.compile(
+    r"\W*(?:pseudo|p?s_?[adv](?![a-z])|f(?:ourier|as\b|ft\b))|.*spectr", re.IGNORECASE
+)
+_CERTAINLY_SPECTRAL: Final = re.compile(r"\W*(?:pseudo|psa\b)|.*spectr", re.IGNORECASE)
+_IN_TIME: Final = re.compile(r"\W*time\b", re.IGNORECASE)
+_SPECTRUM: Final = re.compile(
+    r"\b(?:response|acceleration|design|target|hazard|elastic|floor|fourier)[ -]+spectr(?:um|a)\b|"
+    r"\bspectral\s+acceleration",
+    re.IGNORECASE,
+)
+_MATCHED: Final = re.compile(r"match|compatib|artificial|time", re.IGNORECASE)
+_WORDS: Final = re.compile(r"[^\W_]+")
+
+
+@dataclass(frozen=True)
+class TextColumn:
+    """A column of accelerations."""
+
+    place: int  # which column, from 0
+    name: str  # as the header has it, without a unit; ``column 2`` if there is none
+    orientation: Orientation = UNKNOWN  # which way it is positive, if its name tells
+    unit: str | None = None  # of this column alone
+
+
+def column_names(source: Source, table: Table) -> tuple[list[str], int]:
+    """Find the names of the columns, and refuse those of another quantity or of a spectrum."""
+    columns = table.values.shape[1]
+    names, line = _names(table, columns)
+    _check_no_spectrum(source, table, names, line)
+    if not names or columns > 2:
+        return names, line
+    last = names[-1]
+    if _is_other(last):
+        raise source.refuse(
+            found=f"the column {quoted_first_line(last)}", expected="an acceleration", line=line
+        )
+    if columns == 2 and (_ACCELERATION_NAME.match(names[0]) or _TIME_NAME.match(last)):
+        both = all(map(is_direction, names))
+        if not both or _TIME_NAME.match(last):
+            found = f"the columns {names[0]!r}, {last!r}"
+            expected = "the time first, then the acceleration"
+            raise source.refuse(found=found, expected=expected, line=line)
+    return names, line
+
+
+def _names(table: Table, columns: int) -> tuple[list[str], int]:
+    for line, text in reversed(table.header):
+        names = split_header(text, table.separator)
+        if len(names) == columns and not all(map(_is_unit, names)):
+            return names, line
+        if table.separator is None:  # single blanks, and units in brackets behind the names
+            told = _BRACKETED.sub(lambda match: match.group().replace(" ", ""), text)
+            parts = re.sub(r"\s+(?=[(\[])", "", told.lstrip("#% \t")).split()
+            if len(parts) == columns > 1 and not all(map(_is_unit, parts)):
+                return parts, line
+    return [], 1
+
+
+def _check_no_spectrum(source: Source, table: Table, names: list[str], line: int) -> None:
+    expected = "accelerations over time"
+    # beside a "time" a name such as SV04 is that of a station; beside a "T" it is a spectrum
+    spectral = _CERTAINLY_SPECTRAL if _IN_TIME.match(names[0] if names else "") else _SPECTRAL_NAME
+    if len(names) > 1 and (_PERIOD_NAME.match(names[0]) or all(map(spectral.match, names[1:]))):
+        found = f"a spectrum, the columns {names[0]!r}, {names[1]!r}"
+        raise source.refuse(found=found, expected=expected, line=line)
+    if names and any(_TIME_NAME.match(name) or is_direction(name) for name in names):
+        return
+    for number, text in table.header:
+        if _SPECTRUM.search(text) and not _MATCHED.search(text) and table.values.shape[1] > 1:
+            raise source.refuse(
+                found=f"a spectrum ({quoted_first_line(text)})", expected=expected, line=number
+            )
+
+
+def has_times(table: Table, names: list[str]) -> bool:
+    """Tell whether the first column holds times."""
+    columns = table.values.shape[1]
+    if columns == 1:
+        return False
+    if names:
+        first = names[0]
+        named = _TIME_NAME.match(first) is not None or first.casefold() in TIME_UNITS
+        timed = any(unit.casefold() in TIME_UNITS for unit in in_brackets(first))
+        directions = all(map(is_direction, names))
+        return named or timed or (columns == 2 and not directions)
+    return columns == 2 or is_rising(table)
+
+
+def is_rising(table: Table) -> bool:
+    """Tell whether the numbers of the first column rise all along."""
+    return bool((table.values[1:, 0] > table.values[:-1, 0]).all())
+
+
+def is_direction(name: str) -> bool:
+    """Tell whether the name of a column tells where it points."""
+    return _direction(name) != UNKNOWN
+
+
+def acceleration_columns(
+    source: Source, table: Table, names: list[str], line: int, *, timed: bool
+) -> list[TextColumn]:
+    """List the columns of accelerations; velocities and displacements beside them are left out."""
+    columns = table.values.shape[1]
+    places = range(1 if timed else 0, columns)
+    if not names or len(places) == 1:
+        # of a single one the header as a whole tells the unit
+        return [TextColumn(place, f"column {place + 1}") for place in places]
+    units = _unit_row(table, columns)
+    found: list[TextColumn] = []
+    for place in places:
+        own = [*in_brackets(names[place])[-1:], *units[place : place + 1]]
+        if _is_other(names[place]) or any(map(other_quantity, own)):
+            continue
+        known = next((unit for unit in own if acceleration_unit(unit) is not None), None)
+        plain = _BRACKETED.sub("", names[place]).strip() or names[place]
+        found.append(TextColumn(place, plain, _direction(plain), known))
+    if not found:
+        names_found = ", ".join(names[:6])
+        raise source.refuse(found=f"the columns {names_found}", expected="accelerations", line=line)
+    return found
+
+
+def _unit_row(table: Table, columns: int) -> list[str]:
+    for _, text in reversed(table.header):
+        fields = split_header(text, table.separator)
+        if len(fields) == columns and all(map(_is_unit, fields)):
+            return fields
+    return []
+
+
+def time_scale(source: Source, table: Table, names: list[str]) -> float:
+    """Give the unit of the times in seconds."""
+    for name in names[:1]:
+        for unit in in_brackets(name):
+            known = TIME_UNITS.get(unit.casefold())
+            if known is None:
+                line = table.header[-1][0]
+                found = f"the unit {unit!r} of the times"
+                raise source.refuse(
+                    found=found, expected="seconds (s) or milliseconds (ms)", line=line
+                )
+            return known
+        if name.casefold() in TIME_UNITS:
+            return TIME_UNITS[name.casefold()]
+    units = {
+        TIME_UNITS[unit.casefold()]
+        for _, text in table.header
+        for unit in in_brackets(text)
+        if unit.casefold() in TIME_UNITS
+    }
+    return units.pop() if len(units) == 1 else 1.0
+
+
+def unit_of_header(source: Source, table: Table, *, asked: bool) -> tuple[str | None, int | None]:
+    """Find the unit of the accelerations in the header."""
+    unknown: tuple[str, int] | None = None
+    other: tuple[str, int] | None = None
+    known: list[tuple[str, int, float]] = []
+    for line, name, certain in _unit_candidates(table):
+        unit = acceleration_unit(name)
+        if unit is not None:
+            known.append((name, line, unit.factor))
+        elif certain and name.casefold() not in TIME_UNITS:
+            if other_quantity(name) is not None:
+                other = other or (name, line)
+            else:
+                unknown = unknown or (name, line)
+    if known:
+        name, line, factor = known[0]
+        differing = [entry for entry in known if not math.isclose(entry[2], factor)]
+        if differing and not asked:
+            found = f"the units {name!r} and {differing[0][0]!r} (line {differing[0][1]})"
+            raise source.refuse(found=found, expected="one unit, or the argument unit", line=line)
+        return name, line
+    return other or unknown or (None, None)
+
+
+def in_brackets(text: str) -> list[str]:
+    """Give what stands in brackets."""
+    return [name.strip() for name in _BRACKETED.findall(text)]
+
+
+def _unit_candidates(table: Table) -> Iterator[tuple[int, str, bool]]:
+    # nearest the numbers first; in brackets, after the word "unit", or as a field
+    # of its own; "certain" is a name that must be a unit
+    columns = table.values.shape[1]
+    for position, (line, text) in enumerate(reversed(table.header)):
+        fields = split_header(text, table.separator)
+        is_unit = [_is_unit(field) for field in fields]
+        for field, unit in zip(fields, is_unit, strict=True):
+            if unit and ("/" in field or (all(is_unit) and len(fields) == columns)):
+                yield line, field, True
+        for name in _STATED.findall(text):
+            yield line, name.rstrip("."), True
+        bracketed = in_brackets(text)
+        for name in bracketed:
+            yield line, name, position == 0 and name == bracketed[-1]
+
+
+def _is_other(name: str) -> bool:
+    return _OTHER_KIND.search(name) is not None and _ACCELERATION_NAME.match(name) is None
+
+
+def _direction(name: str) -> Orientation:
+    plain = _BRACKETED.sub("", name).strip()
+    whole = orientation_of(plain)
+    if whole != UNKNOWN:
+        return whole
+    words = _WORDS.findall(plain)
+    return orientation_of(words[-1]) if len(words) > 1 else UNKNOWN
+
+
+def _is_unit(name: str) -> bool:
+    known = acceleration_unit(name) is not None or other_quantity(name) is not None
+    return known or name.casefold() in TIME_UNITS

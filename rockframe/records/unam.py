@@ -1,0 +1,231 @@
+"""Mexico's standard acceleration file (archivo estandar de aceleracion, ASA).
+
+Spanish keys and values; a value that differs from channel to channel is a list behind
+slashes. The columns, one for each channel, follow below their names::
+
+    ORIENTACION C1-C6 (rumbo;orientacion)  : /V/N90E/N00E
+    INTERVALO DE MUESTREO, C1-C6 (s)       : /0.004/0.004/0.004
+    NUM. TOTAL DE MUESTRAS, C1-C6          : /17500/17500/17500
+    ACEL. MAX.(Gal), C1-C6                 : /0.47/-1.19/1.22
+    UNIDADES DE LOS DATOS                  : Gal (cm/s/s)
+    FORMATO DATOS (FORTRAN,10 campos/dato) : 3F10.3
+
+Reference: Instituto de Ingenieria, UNAM, "Archivo estandar de aceleracion", version 2.0.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+from rockframe.records.checks import (
+    check_asked_time_step,
+    check_time_step,
+    choose_unit,
+)
+from rockframe.records.components import FileComponent, choose_component
+from rockframe.records.declared import settle_count
+from rockframe.records.fixed import fixed_width, whole
+from rockframe.records.keys import Keys, kept, needed, read_keys
+from rockframe.records.numbers import one_number
+from rockframe.records.orientation import (
+    DOWNWARDS,
+    UNKNOWN,
+    UPWARDS,
+    VERTICAL,
+    Orientation,
+    azimuth_of,
+    orientation_of,
+)
+from rockframe.records.source import Metadata, Record, Request, Source, quoted_first_line
+from rockframe.records.stated import compare_length, compare_peak
+
+if TYPE_CHECKING:
+    from rockframe.signals.arrays import Array
+
+NAME: Final = "unam"
+TITLE: Final = "standard acceleration file (ASA), Mexico"
+SUFFIXES: Final = (".asa",)
+
+_TITLE: Final = re.compile(r"ARCHIVO ESTANDAR DE ACELERACION", re.IGNORECASE)
+_DATA: Final = re.compile(r"^\s*DATOS DE ACELERACION", re.IGNORECASE)
+_UNITS: Final = "UNIDADES DE LOS DATOS"
+_LAYOUT_KEY: Final = "FORMATO DATOS (FORTRAN,10 campos/dato)"
+_LAYOUT: Final = re.compile(r"(\d{1,2})F(\d{1,2})\.\d", re.IGNORECASE)
+_LISTS: Final = {
+    "directions": "ORIENTACION",
+    "steps": "INTERVALO DE MUESTREO",
+    "counts": "NUM. TOTAL DE MUESTRAS",
+    "peaks": "ACEL. MAX.(Gal)",
+    "lengths": "DURACION DEL REGISTRO",
+}
+_PEAK_UNIT: Final = "gal"
+_KEPT: Final = {
+    "CLAVE DE LA ESTACION": "station",
+    "NOMBRE DE LA ESTACION": "station_name",
+    "MODELO DEL ACELEROGRAFO": "instrument",
+}
+_LONGEST_HEADER: Final = 160
+_MOST_CHANNELS: Final = 12
+
+
+@dataclass(frozen=True)
+class _Lists:
+    """What the header says of each channel, with the line of each, from 1."""
+
+    directions: list[tuple[str, int]]
+    steps: list[tuple[str, int]]
+    counts: list[tuple[str, int]]
+    peaks: list[tuple[str, int]]
+    lengths: list[tuple[str, int]]
+
+
+def recognises(source: Source) -> bool:
+    """Tell whether the title stands near the top."""
+    return any(map(_TITLE.search, source.top(20)))
+
+
+def read(source: Source, request: Request) -> Record:
+    """Read the acceleration of one channel, or of two."""
+    top = source.top(_LONGEST_HEADER)
+    header = read_keys(top)
+    lists = _Lists(**{name: _list(header, start) for name, start in _LISTS.items()})
+    per_line, width = _layout(source, header)
+    first = _first_row(source, top)
+    channels = min(len(lists.directions), per_line)
+    if not 1 <= channels <= _MOST_CHANNELS:
+        found = f"the orientations of {channels} channels"
+        raise source.refuse(found=found, expected="one to twelve, such as '/V/N90E/N00E'", line=1)
+    metadata = _description(header)
+    tables: list[Array] = []
+
+    def samples(place: int) -> Record:
+        if not tables:
+            rows = source.last_line - first
+            if rows < 2:
+                found = f"{max(rows, 0)} rows of numbers"
+                raise source.refuse(found=found, expected="two or more", line=source.last_line)
+            values = fixed_width(source, first, rows * per_line, width=width, per_line=per_line)
+            tables.append(values.reshape(rows, per_line))
+        values = tables[0][:, place].copy()
+        return _samples(source, request, header, lists, place, values, metadata)
+
+    components: list[FileComponent] = []
+    for place, (said, line) in enumerate(lists.directions[:channels]):
+        name, direction = _direction(said)
+        components.append(
+            FileComponent(
+                name or f"channel {place + 1}",
+                lambda place=place: samples(place),
+                direction,
+                channel=place + 1,
+                line=line,
+            )
+        )
+    return choose_component(source, request, components)
+
+
+def _samples(
+    source: Source,
+    request: Request,
+    header: Keys,
+    lists: _Lists,
+    place: int,
+    values: Array,
+    metadata: Metadata,
+) -> Record:
+    text, unit_line = needed(source, header, _UNITS)
+    unit, as_read, warnings = choose_unit(source, request, text.split()[0], unit_line)
+    printed, line = _entry(source, lists.steps, place, "sampling interval")
+    time_step = one_number(printed, source, line)
+    check_time_step(source, time_step, line)
+    check_asked_time_step(source, request, time_step, line)
+    said, count_line = _entry(source, lists.counts, place, "number of samples")
+    declared = whole(said)
+    if declared is None or declared < 1:
+        found = f"{quoted_first_line(said)} samples"
+        expected = "a whole number above zero"
+        raise source.refuse(found=found, expected=expected, line=count_line)
+    counts, differing = settle_count(
+        source,
+        declared=declared,
+        counted=values.size,
+        what="NUM. TOTAL DE MUESTRAS",
+        line=count_line,
+    )
+    warnings += differing
+    for peak, peak_line in lists.peaks[place : place + 1]:
+        warnings += compare_peak(
+            source, values, unit, printed=peak, printed_unit=_PEAK_UNIT, line=peak_line
+        )
+    for length, length_line in lists.lengths[place : place + 1]:
+        warnings += compare_length(source, values.size, time_step, printed=length, line=length_line)
+    about: Metadata = {**metadata, **counts, "unit_as_read": as_read}
+    return Record(time_step, values, unit, about, warnings=tuple(warnings))
+
+
+def _list(header: Keys, start: str) -> list[tuple[str, int]]:
+    """Give the entries of a list, which may go on in a second line for channels 7 to 12."""
+    entries: list[tuple[str, int]] = []
+    for key, (text, line) in header.items():
+        if key.startswith(start) and "MUESTRA" not in key.removeprefix(start):
+            entries += [(part.strip(), line) for part in text.split("/")[1:]]
+    return entries
+
+
+def _entry(
+    source: Source, entries: list[tuple[str, int]], place: int, what: str
+) -> tuple[str, int]:
+    if place >= len(entries):
+        found = f"no {what} of channel {place + 1}"
+        raise source.refuse(found=found, expected=f"the {what} of each channel", line=1)
+    return entries[place]
+
+
+def _layout(source: Source, header: Keys) -> tuple[int, int]:
+    text, line = needed(source, header, _LAYOUT_KEY)
+    match = _LAYOUT.match(text)
+    if match is None or int(match.group(1)) < 1 or int(match.group(2)) < 1:
+        expected = "a layout such as '3F10.3'"
+        raise source.refuse(
+            found=f"the layout {quoted_first_line(text)}", expected=expected, line=line
+        )
+    return int(match.group(1)), int(match.group(2))
+
+
+def _first_row(source: Source, top: list[str]) -> int:
+    title = next((k for k, text in enumerate(top) if _DATA.match(text)), len(top))
+    rules = [k for k in range(title, len(top)) if top[k].startswith("-----")]
+    if len(rules) < 2:
+        expected = "'DATOS DE ACELERACION', and the names of the channels between two rules"
+        raise source.refuse(found="no data", expected=expected, line=source.last_line)
+    return rules[1] + 1
+
+
+def _direction(said: str) -> tuple[str, Orientation]:
+    name = said.split(";")[0].strip()
+    plain = name.lstrip("+-").strip()
+    direction = orientation_of(plain)
+    if direction.vertical == VERTICAL and name.startswith("+"):
+        return plain, Orientation(vertical=UPWARDS)
+    if not name.startswith("-"):
+        return plain, direction
+    if direction.vertical is not None:
+        return name, Orientation(vertical=DOWNWARDS)
+    if direction.azimuth is not None:
+        return name, azimuth_of((direction.azimuth + 180.0) % 360.0)
+    return name, UNKNOWN
+
+
+def _description(header: Keys) -> Metadata:
+    metadata = kept(header, _KEPT)
+    day = header.get("FECHA DEL SISMO [GMT]", ("", 0))[0]
+    clock = header.get("HORA EPICENTRO (GMT)", ("", 0))[0]
+    if day:
+        metadata["event_time"] = f"{day} {clock} GMT" if clock else day
+        metadata["event"] = f"earthquake of {metadata['event_time']}"
+    start = header.get("HORA DE LA PRIMERA MUESTRA (GMT)", ("", 0))[0]
+    if start:
+        metadata["record_time"] = f"{start} GMT"
+    return metadata
