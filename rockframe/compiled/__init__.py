@@ -6,17 +6,10 @@ the environment keeps to plain Python; ``ROCKFRAME_CACHE_DIR`` names another fol
 machine code.
 """
 
-from rockframe.compiled.arrays import IntegerMatrix as IntegerMatrix
-from rockframe.compiled.arrays import Integers as Integers
-from rockframe.compiled.arrays import Matrix as Matrix
-from rockframe.compiled.arrays import ReadOnlyMatrix as ReadOnlyMatrix
-from rockframe.compiled.arrays import Vector as Vector
 from rockframe.compiled.bound import Bound as Bound
 from rockframe.compiled.bound import bound as bound
 from rockframe.compiled.bound import bound_in_lanes as bound_in_lanes
 from rockframe.compiled.bound import numbers_in as numbers_in
-from rockframe.compiled.decorators import inlined as inlined
-from rockframe.compiled.decorators import kernel as kernel
 from rockframe.compiled.entries import COMPILED as COMPILED
 from rockframe.compiled.entries import compiled_within as compiled_within
 from rockframe.compiled.entries import compiling_for as compiling_for
@@ -24,13 +17,20 @@ from rockframe.compiled.entries import entry as entry
 from rockframe.compiled.entries import entry_at_once as entry_at_once
 from rockframe.compiled.entries import say_slow as say_slow
 from rockframe.compiled.entries import table as table
-from rockframe.compiled.lanes import LANES as LANES
-from rockframe.compiled.lanes import as_integers as as_integers
-from rockframe.compiled.lanes import lane_of as lane_of
-from rockframe.compiled.lanes import widest_registers as widest_registers
-from rockframe.compiled.tuples import constant as constant
-from rockframe.compiled.tuples import filled as filled
-from rockframe.compiled.tuples import part_of as part_of
-from rockframe.compiled.tuples import put as put
-from rockframe.compiled.tuples import stretch as stretch
-from rockframe.compiled.tuples import with_numbers as with_numbers
+from rockframe.compiled.language import LANES as LANES
+from rockframe.compiled.language import IntegerMatrix as IntegerMatrix
+from rockframe.compiled.language import Integers as Integers
+from rockframe.compiled.language import Matrix as Matrix
+from rockframe.compiled.language import ReadOnlyMatrix as ReadOnlyMatrix
+from rockframe.compiled.language import Vector as Vector
+from rockframe.compiled.language import as_integers as as_integers
+from rockframe.compiled.language import constant as constant
+from rockframe.compiled.language import filled as filled
+from rockframe.compiled.language import inlined as inlined
+from rockframe.compiled.language import kernel as kernel
+from rockframe.compiled.language import lane_of as lane_of
+from rockframe.compiled.language import part_of as part_of
+from rockframe.compiled.language import put as put
+from rockframe.compiled.language import stretch as stretch
+from rockframe.compiled.language import widest_registers as widest_registers
+from rockframe.compiled.language import with_numbers as with_numbers

@@ -10,8 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from rockframe.compiled.arrays import Vector
-from rockframe.compiled.lanes import tuple_from
+from rockframe.compiled.language import Vector, tuple_from
 
 
 def numbers_in(bundle: Any) -> Vector:

@@ -12,7 +12,7 @@ from collections.abc import Callable
 from importlib import import_module
 from typing import Any, Final
 
-from rockframe.compiled import lanes, tuples
+from rockframe.compiled import language
 
 # numba's own annotations are partial
 numba: Final[Any] = import_module("numba")
@@ -130,7 +130,7 @@ def _with_number(_: Any, numbers: Any, place: Any, number: Any) -> Any:
 @extending.intrinsic
 def _strided(_: Any, kept: Any, first: Any) -> Any:
     """Give the buffer of every element that is some lanes further, in compiled code."""
-    strided = BufferType(kept.dtype, 1, kept.writeable, lanes.LANES)
+    strided = BufferType(kept.dtype, 1, kept.writeable, language.LANES)
 
     def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
         given = cgutils.create_struct_proxy(kept)(context, builder, value=values[0])
@@ -171,27 +171,27 @@ def _widen(_: Any) -> Any:
     return numba.void(), code
 
 
-@extending.overload(lanes.widest_registers, strict=False, inline="always")
+@extending.overload(language.widest_registers, strict=False, inline="always")
 def _widest_registers() -> Callable[..., Any]:
     return lambda: _widen()
 
 
-@extending.overload(tuples.part_of, strict=False, jit_options=_INTO_CALLERS)
+@extending.overload(language.part_of, strict=False, jit_options=_INTO_CALLERS)
 def _part_of(array: Any, first: Any) -> Callable[..., Any]:
     return lambda array, first: _shifted(array, first)
 
 
-@extending.overload(tuples.stretch, strict=False, jit_options=_INTO_CALLERS)
+@extending.overload(language.stretch, strict=False, jit_options=_INTO_CALLERS)
 def _stretch_of(array: Any, first: Any, count: Any) -> Callable[..., Any]:
     return lambda array, first, count: _stretch(array, first, count)
 
 
-@extending.overload(lanes.lane_of, strict=False, jit_options=_INTO_CALLERS)
+@extending.overload(language.lane_of, strict=False, jit_options=_INTO_CALLERS)
 def _lane_of(array: Any, field: Any, lane: Any) -> Callable[..., Any]:
-    return lambda array, field, lane: _strided(array, field * lanes.LANES + lane)
+    return lambda array, field, lane: _strided(array, field * language.LANES + lane)
 
 
-@extending.overload(lanes.as_integers, strict=False, jit_options=_INTO_CALLERS)
+@extending.overload(language.as_integers, strict=False, jit_options=_INTO_CALLERS)
 def _integers_of(array: Any) -> Callable[..., Any]:
     return lambda array: _as_integers(array)
 
@@ -225,12 +225,12 @@ def _length(kept: Any) -> Callable[..., Any] | None:
     return lambda kept: kept.shape[0]
 
 
-@extending.overload(tuples.constant, strict=False, jit_options=_INTO_CALLERS)
+@extending.overload(language.constant, strict=False, jit_options=_INTO_CALLERS)
 def _constant(value: Any, like: Any) -> Callable[..., Any]:
     return _written("value, like", f"return ({'value, ' * len(like)})")
 
 
-@extending.overload(tuples.with_numbers, strict=False, jit_options=_INTO_CALLERS)
+@extending.overload(language.with_numbers, strict=False, jit_options=_INTO_CALLERS)
 def _with_numbers(numbers: Any, first: Any, others: Any) -> Callable[..., Any]:
     made = "numbers"
     for i in range(len(others)):
@@ -238,13 +238,13 @@ def _with_numbers(numbers: Any, first: Any, others: Any) -> Callable[..., Any]:
     return _written("numbers, first, others", f"return {made}")
 
 
-@extending.overload(tuples.filled, strict=False, jit_options=_INTO_CALLERS)
+@extending.overload(language.filled, strict=False, jit_options=_INTO_CALLERS)
 def _filled(like: Any, numbers: Any) -> Callable[..., Any]:
     some = ", ".join(f"numbers[{i}]" for i in range(len(like)))
     return _written("like, numbers", f"return kind({some})", kind=like.instance_class)
 
 
-@extending.overload(tuples.put, strict=False, jit_options=_INTO_CALLERS)
+@extending.overload(language.put, strict=False, jit_options=_INTO_CALLERS)
 def _put(numbers: Any, first: Any, out: Any) -> Callable[..., Any]:
     if isinstance(numbers, BufferType):
         return _written(

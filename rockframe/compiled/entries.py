@@ -8,7 +8,6 @@ import logging
 import os
 from collections.abc import Callable, Generator
 from contextlib import contextmanager, nullcontext
-from contextvars import ContextVar
 from functools import update_wrapper, wraps
 from importlib.util import find_spec
 from threading import RLock
@@ -16,14 +15,23 @@ from typing import TYPE_CHECKING, Any, Final, ParamSpec, TypeVar, cast
 
 import numpy as np
 
-from rockframe.compiled.arrays import Vector
 from rockframe.compiled.bound import Bound, Source
-from rockframe.compiled.decorators import inlined
-from rockframe.compiled.fallback import viewed
-from rockframe.compiled.meanwhile import Meanwhile
+from rockframe.compiled.language import NEEDED_BY, Vector, inlined
 
 if TYPE_CHECKING:
     from rockframe.compiled.jobs import Job
+    from rockframe.compiled.parallel import Meanwhile
+
+
+def viewed(argument: Any) -> Any:
+    """Give an argument of an entry with memory views in place of its arrays."""
+    if isinstance(argument, np.ndarray):
+        return memoryview(cast("Any", argument))
+    if isinstance(argument, tuple):
+        kind = type(cast("tuple[Any, ...]", argument))
+        return kind(*(viewed(part) for part in cast("tuple[Any, ...]", argument)))
+    return argument
+
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 P = ParamSpec("P")
@@ -37,9 +45,6 @@ WAITS: Final = _ASKED == "wait"
 PATIENCE: Final = 3.0
 """Length of a run in plain Python from which on compilation is spoken of [s]."""
 _said_slow: Final[list[bool]] = []
-
-NEEDED_BY: Final = ContextVar("needed_by", default="this")
-"""What needs the machine code that is being compiled."""
 
 _logger = logging.getLogger("rockframe")
 _lock: Final = RLock()
@@ -151,6 +156,8 @@ class Entry:
         key = structure, *map(id, sources)
         found = self._awaited.get(key)
         if found is None:
+            from rockframe.compiled.parallel import Meanwhile
+
             found = self._awaited[key] = Meanwhile(self._jobs(structure, sources))
         return found
 

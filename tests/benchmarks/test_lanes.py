@@ -35,8 +35,8 @@ def model_on(*parts):
 @pytest.mark.parametrize("fixed", [True, False])
 @pytest.mark.parametrize("base", BASES)
 def test_all_lanes_share_their_instructions(base, fixed):
+    from rockframe.compiled.calls import register_kernels
     from rockframe.compiled.jobs import Job
-    from rockframe.compiled.registration import register_kernels
     from rockframe.solve.lanes.fixed_steps import step_lanes
     from rockframe.solve.lanes.steps_by_tolerance import step_lanes_by_tolerance
 

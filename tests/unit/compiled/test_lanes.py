@@ -19,7 +19,7 @@ from rockframe.compiled import (
     numbers_in,
 )
 from rockframe.compiled.bound import structure_of
-from rockframe.compiled.lanes import tuple_from
+from rockframe.compiled.language import tuple_from
 
 pytestmark = pytest.mark.unit
 

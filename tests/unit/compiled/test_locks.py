@@ -8,7 +8,7 @@ import time
 
 import pytest
 
-from rockframe.compiled import locks, store
+from rockframe.compiled import store
 
 pytestmark = pytest.mark.unit
 
@@ -37,12 +37,12 @@ def module(tmp_path):
 
 @pytest.fixture
 def no_locks(monkeypatch):
-    """Stand for a folder of a network that knows no locks."""
+    """Stand for a folder of a network that knows no store."""
 
     def refuse(number):
         raise OSError(errno.ENOLCK, "No locks available")
 
-    monkeypatch.setattr(locks, "_lock", refuse)
+    monkeypatch.setattr(store, "_lock", refuse)
 
 
 def keep(module, seconds):
@@ -101,7 +101,7 @@ def test_a_file_stands_for_a_lock_where_there_are_none(module):
     assert not store.is_compiled_elsewhere(module)
     with store.compiling(module, lambda: True):
         assert store.is_compiled_elsewhere(module)
-        assert locks.lock(module) is None
+        assert store.lock(module) is None
     assert not store.is_compiled_elsewhere(module)
     assert list(module.parent.iterdir()) == [module]
 
@@ -111,7 +111,7 @@ def test_such_a_file_counts_no_longer_than_one_would_wait(module):
     mark = module.with_suffix(".lock")
     mark.touch()
     assert store.is_compiled_elsewhere(module)
-    old = time.time() - 2.0 * locks.LONGEST
+    old = time.time() - 2.0 * store.LONGEST
     os.utime(mark, (old, old))
     assert seconds_until_compiled(module) < AT_ONCE
     assert not mark.exists()

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import rockframe as rf
-from rockframe.compiled import COMPILED, meanwhile, parallel
-from rockframe.compiled.meanwhile import WORTHWHILE, Meanwhile
+from rockframe.compiled import COMPILED, parallel
+from rockframe.compiled.parallel import WORTHWHILE, Meanwhile
 from rockframe.solve import integrate
 
 pytestmark = [
@@ -36,7 +36,7 @@ class Job:
 
 @pytest.fixture
 def jobs(monkeypatch):
-    monkeypatch.setattr(meanwhile, "_compilers", [])
+    monkeypatch.setattr(parallel, "_compilers", [])
     monkeypatch.setattr(parallel, "processors", lambda: 2)
     monkeypatch.setattr(parallel, "time_for", lambda jobs: 8.0)
     return [Job(), Job()]

@@ -18,7 +18,6 @@ from rockframe.compiled import (
     compiled_within,
     compiling_for,
     entry,
-    sources,
     store,
 )
 
@@ -188,11 +187,11 @@ def some_function():
 
 def test_every_state_of_the_sources_has_a_folder_of_its_own(own, tmp_path, monkeypatch):
     package = tmp_path / "package"
-    for name in ("constants.py", "compiled/decorators.py", "dynamics/alone.py", "dynamics/a/b.py"):
+    for name in ("constants.py", "compiled/language.py", "dynamics/alone.py", "dynamics/a/b.py"):
         (package / name).parent.mkdir(parents=True, exist_ok=True)
         (package / name).write_text("A = 1\n")
-    monkeypatch.setattr(sources, "PACKAGE", package)
-    monkeypatch.setattr(sources, "_package_digest", sources._package_digest.__wrapped__)
+    monkeypatch.setattr(store, "PACKAGE", package)
+    monkeypatch.setattr(store, "_package_digest", store._package_digest.__wrapped__)
     module = load(own, monkeypatch)
 
     def file(text="pass", classes=(module.Law,)):
@@ -237,9 +236,9 @@ def test_a_module_counts_if_its_functions_are_named_by_it(own, monkeypatch):
 def test_every_source_of_the_package_that_is_compiled_counts():
     marks = re.compile(r"^\s*@(kernel|inlined|entry)\b", re.MULTILINE)
     counted = set(
-        itertools.chain.from_iterable(sources.PACKAGE.glob(each) for each in sources._SOURCES)
+        itertools.chain.from_iterable(store.PACKAGE.glob(each) for each in store._SOURCES)
     )
-    marked = {path for path in sources.PACKAGE.rglob("*.py") if marks.search(path.read_text())}
+    marked = {path for path in store.PACKAGE.rglob("*.py") if marks.search(path.read_text())}
     assert len(marked) > 20
     assert marked <= counted
 

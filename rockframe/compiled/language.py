@@ -1,0 +1,130 @@
+"""What functions that can be compiled are written in: marks, array types, tuples, lanes.
+
+Marked functions and methods stay plain Python: called from Python they run as Python. Methods are
+those of named tuples of numbers, and belong to their classes: other classes may have fields, or
+other methods, of the same name.
+
+Many runs lie side by side in one array that holds everything of all of them, field by field:
+element ``field * LANES + lane`` is a field of one lane. A loop over all lanes that reads and
+writes nothing but such an array is compiled to instructions for several lanes at once.
+"""
+
+from collections.abc import Callable
+from contextvars import ContextVar
+from typing import Annotated, Any, Final, TypeAlias, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+Vector: TypeAlias = NDArray[np.float64]
+Matrix: TypeAlias = NDArray[np.float64]
+ReadOnlyMatrix: TypeAlias = Annotated[NDArray[np.float64], "not written to"]
+Integers: TypeAlias = NDArray[np.int64]
+IntegerMatrix: TypeAlias = NDArray[np.int64]
+
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+KERNELS: Final[dict[Callable[..., Any], bool]] = {}
+"""Marked functions, and whether each is compiled into its callers."""
+
+
+NEEDED_BY: Final = ContextVar("needed_by", default="this")
+"""What needs the machine code that is being compiled."""
+
+
+def kernel(function: Function) -> Function:
+    """Mark a function, or a method of a named tuple, that compiled code may call."""
+    KERNELS[function] = False
+    return function
+
+
+def inlined(function: Function) -> Function:
+    """Mark a function, or a method, that is compiled into its callers.
+
+    For the few that every step calls.
+    """
+    KERNELS[function] = True
+    return function
+
+
+def is_method(function: Callable[..., Any]) -> bool:
+    """Whether a marked function was defined in the body of a class."""
+    holder = function.__qualname__.rpartition(".")[0]
+    return bool(holder) and not holder.endswith("<locals>")
+
+
+Array = TypeVar("Array", bound=NDArray[Any])
+Bundle = TypeVar("Bundle")
+
+
+def constant(value: float, like: tuple[float, ...]) -> tuple[float, ...]:
+    """Give a tuple as long as another one, of one number."""
+    return (value,) * len(like)
+
+
+def put(numbers: tuple[float, ...] | Vector, first: int, out: Vector) -> None:
+    """Write a tuple, or an array, into an array, from an index on."""
+    for i, number in enumerate(numbers):
+        out[first + i] = number
+
+
+def with_numbers(
+    numbers: tuple[float, ...], first: int, others: tuple[float, ...]
+) -> tuple[float, ...]:
+    """Give a tuple with others in place of some of its numbers, from an index on."""
+    return (*numbers[:first], *others, *numbers[first + len(others) :])
+
+
+def filled(like: Bundle, numbers: Vector) -> Bundle:
+    """Give a named tuple of the class of another one, filled with numbers from an array."""
+    kind: Any = type(like)
+    return kind(*numbers[: len(kind._fields)])
+
+
+def part_of(array: Vector, first: int) -> Vector:
+    """Give an array from an index on; no copy."""
+    return array[first:]
+
+
+def stretch(array: Array, first: int, count: int) -> Array:
+    """Give some elements of an array, or rows of a matrix, from an index on; no copy."""
+    some: Any = array[first : first + count]
+    return some
+
+
+Numbers = TypeVar("Numbers", Vector, Integers)
+
+LANES: Final = 16
+"""Lanes of a batch: two of the widest registers, four of the usual ones."""
+
+
+def lane_of(room: Numbers, field: int, lane: int) -> Numbers:
+    """Give the fields of one lane, from a field on; no copy."""
+    fields: Numbers = room[field * LANES + lane :: LANES]
+    return fields
+
+
+def as_integers(array: Vector) -> Integers:
+    """Give the same memory as whole numbers."""
+    return array.view("int64")
+
+
+def widest_registers() -> None:
+    """Have the function that calls this compiled for the widest registers there are."""
+
+
+def tuple_from(structure: tuple[Any, ...]) -> Callable[[Vector], Any]:
+    """Give the function that makes a tuple of numbers in a vector."""
+
+    def made(kind: Any, parts: tuple[Any, ...], numbers: Vector, first: int) -> tuple[Any, int]:
+        taken: list[Any] = []
+        for part in parts:
+            if isinstance(part, tuple):
+                value, first = made(part[0], part[1:], numbers, first)
+            else:
+                value, first = part(numbers[first]), first + 1
+            taken.append(value)
+        return (tuple(taken) if kind is tuple else kind(*taken)), first
+
+    return lambda numbers: made(structure[0], structure[1:], numbers, 0)[0]
