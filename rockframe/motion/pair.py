@@ -16,14 +16,15 @@ from rockframe.motion.operations.pulses import LONGEST, SHORTEST, searched, velo
 from rockframe.motion.processing.sampling import padded
 from rockframe.motion.processing.velocity_pulses import strongest
 from rockframe.motion.quantities import with_quantity
-from rockframe.records.reading import Reading, read_components
-from rockframe.records.source import Request, read_source
-from rockframe.records.timing import same_start
+from rockframe.records.files import read_source
+from rockframe.records.numbers import same_start
+from rockframe.records.read import Reading, read_components
+from rockframe.records.record_file import Request
 from rockframe.units import ANGLE
 
 if TYPE_CHECKING:
     from rockframe.motion.velocity_pulse import VelocityPulse
-    from rockframe.records.source import RecordLike
+    from rockframe.records.files import RecordLike
     from rockframe.signals import Signal
     from rockframe.units import QuantityLike
 

@@ -17,9 +17,8 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Final
 
-from rockframe.records.checks import choose_unit
-from rockframe.records.components import FileComponent, choose_component
-from rockframe.records.declared import settle_count
+from rockframe.records.checks import choose_unit, compare_peak, settle_count
+from rockframe.records.components import UNKNOWN, FileComponent, choose_component, orientation_of
 from rockframe.records.keys import Keys, kept, needed_count, needed_step, read_keys
 from rockframe.records.numbers import (
     NUMBER,
@@ -27,9 +26,7 @@ from rockframe.records.numbers import (
     free_format,
     last_fields,
 )
-from rockframe.records.orientation import UNKNOWN, orientation_of
-from rockframe.records.source import Metadata, Record, Request, Source, quoted_first_line
-from rockframe.records.stated import compare_peak
+from rockframe.records.record_file import Metadata, Record, Request, Source, quoted_first_line
 
 if TYPE_CHECKING:
     from rockframe.signals.arrays import Array

@@ -32,23 +32,19 @@ from rockframe.records.checks import (
     check_time_step,
     choose_unit,
 )
-from rockframe.records.components import FileComponent, choose_component
-from rockframe.records.counts import record_of_counts
-from rockframe.records.orientation import orientation_of
-from rockframe.records.source import (
-    MAXIMUM_SAMPLES,
-    Metadata,
-    Record,
-    Request,
-    Source,
+from rockframe.records.components import FileComponent, choose_component, orientation_of
+from rockframe.records.instruments import (
+    InstrumentResponses,
+    codes_of,
+    record_of_counts,
+    response_in,
 )
-from rockframe.records.station_xml import InstrumentResponses, response_in
-from rockframe.records.traces import codes_of
+from rockframe.records.record_file import MAXIMUM_SAMPLES, Metadata, Record, Request, Source
 
 if TYPE_CHECKING:
     from collections.abc import Generator
 
-    from rockframe.records.station_xml import InstrumentResponse
+    from rockframe.records.instruments import InstrumentResponse
     from rockframe.signals.arrays import Array
 
 NAME: Final = "asdf"

@@ -16,13 +16,19 @@ from rockframe.records.checks import (
     check_asked_time_step,
     check_time_step,
     choose_unit,
+    compare_length,
+    surplus,
 )
-from rockframe.records.components import FileComponent, choose_component
-from rockframe.records.fixed import cell, fixed_width
-from rockframe.records.numbers import one_number
-from rockframe.records.orientation import UNKNOWN, Orientation, azimuth_of, orientation_of
-from rockframe.records.source import Metadata, Record, Request, Source, quoted_first_line
-from rockframe.records.stated import compare_length, surplus
+from rockframe.records.components import (
+    UNKNOWN,
+    FileComponent,
+    Orientation,
+    azimuth_of,
+    choose_component,
+    orientation_of,
+)
+from rockframe.records.numbers import cell, fixed_width, one_number
+from rockframe.records.record_file import Metadata, Record, Request, Source, quoted_first_line
 
 if TYPE_CHECKING:
     from rockframe.errors import RecordError

@@ -11,7 +11,7 @@ acceleration is read. Each announces itself in one of these ways::
 
 The third is that of the University of Southern California, which leaves the unit away
 at times: it is then the unit of the peak that the text states. Older files of volume 1
-hold pairs of time and acceleration; see :mod:`rockframe.records.csmip_pairs`.
+hold pairs of time and acceleration; see :mod:`rockframe.records.csmip`.
 
 Reference: A. F. Shakal and M. J. Huang, "Standard Tape Format for CSMIP
 Strong-Motion Data Tapes", Report OSMS 85-03, California Division of Mines and
@@ -29,28 +29,242 @@ from rockframe.records.checks import (
     check_asked_time_step,
     check_time_step,
     choose_unit,
+    compare_length,
+    compare_peak,
+    surplus,
 )
-from rockframe.records.components import FileComponent, choose_component
-from rockframe.records.csmip_header import (
-    FIRST_LINE,
-    channel_of,
-    description,
-    is_corrected,
-    length_in_header,
-    peak_in_header,
+from rockframe.records.components import (
+    FileComponent,
+    Orientation,
+    choose_component,
+    orientation_of,
 )
-from rockframe.records.csmip_pairs import Pairs, find_pairs, read_pairs
-from rockframe.records.fixed import fixed_width
-from rockframe.records.orientation import Orientation, orientation_of
-from rockframe.records.source import Record, Request, Source, quoted_first_line
-from rockframe.records.stated import compare_length, compare_peak, surplus
+from rockframe.records.numbers import fixed_width, uniform_step, whole
+from rockframe.records.record_file import Record, Request, Source, quoted_first_line
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from rockframe.errors import RecordError
+    from rockframe.records.record_file import Metadata
     from rockframe.records.unit_names import RecordUnit
     from rockframe.signals.arrays import Array
+
+FIRST_LINE: Final = re.compile(
+    r"^\s*(?:FILE\s+\d{0,6}\s+OF\s+)?(?:UN)?CORRECTED ACCELEROGRAM", re.IGNORECASE
+)
+"""Of a file, and of each channel; of a corrected one the second line, too."""
+
+_CORRECTED: Final = re.compile(r"^\s*CORRECTED ACCELEROGRAM", re.IGNORECASE)
+_CHANNEL: Final = re.compile(
+    r"\bCHA?N\s+(\d{1,4})\s*:\s*(.{0,30}?)\s*(?:\(|FROM\b|LOCATION|$)", re.IGNORECASE
+)
+_COMPONENT: Final = re.compile(r"\bCOMP\s+(\S{1,12})", re.IGNORECASE)
+_DEGREES: Final = re.compile(r"^(\d{1,3})\s*DEG\S{0,5}$", re.IGNORECASE)
+_LOCATION: Final = re.compile(r"\bLOCATION\s*:\s*(.{1,60})", re.IGNORECASE)
+_STATION: Final = re.compile(r"\bSTATION\s+(?:NO\.?|USC\s?#)\s*(\S{1,20})", re.IGNORECASE)
+_COORDINATE: Final = re.compile(r"[\d.]+[NSEW],?", re.IGNORECASE)
+_PEAK: Final = re.compile(
+    r"\bPEAK ACCELERATION\s*=\s*([-+.\d]{1,20})\s+(CM|G)S?(/S[^\s]{0,12})?\s", re.IGNORECASE
+)
+_UNCORRECTED_PEAK: Final = re.compile(r"\bMAX\s*=\s*([-+.\d]{1,20})\s*G\s*,\s*AT", re.IGNORECASE)
+_LENGTH: Final = re.compile(
+    r"\b(?:RECORD LENGTH|DURATION)\s*=\s*([.\d]{1,12})\s*(?:SEC|$)", re.IGNORECASE
+)
+_PROCESSING: Final = re.compile(
+    r"process|\bvol\.?\s?[123]\b|[av]vol[12]|filter|prelim|to be determined|automatic|\bs/n\b",
+    re.IGNORECASE,
+)
+_RECORD_OF: Final = re.compile(r"^(?:RECORD|RCRD) OF\s+", re.IGNORECASE)
+_OF_DATE: Final = re.compile(r"^(.{3,80}?\bEARTHQUAKE)\s+OF\s+(\S.{3,40})$", re.IGNORECASE)
+_ORIGIN: Final = re.compile(r"\(ORIGIN[^:]{0,12}:\s*([^)]{4,40})\)", re.IGNORECASE)
+_DATE: Final = re.compile(
+    r"\b\d{1,4}[/-]\d{1,2}[/-]\d{2,4}\b|"
+    r"\b(?:JAN|FEB|MAR|APR|MAY|JUN|JUL|AUG|SEP|OCT|NOV|DEC)[A-Z]{0,6}\.?\s+\d|"
+    r"\b\d{1,2}\s+(?:JAN|FEB|MAR|APR|MAY|JUN|JUL|AUG|SEP|OCT|NOV|DEC)",
+    re.IGNORECASE,
+)
+_WIDE_GAP: Final = re.compile(r"\s{3,}")
+
+
+@dataclass(frozen=True)
+class Stated:
+    """A value as a header prints it."""
+
+    text: str  # the number
+    unit: str  # its unit, as record files spell it
+    line: int  # where it stands, from 1
+
+
+def channel_of(header: list[str], first: int) -> tuple[int | None, str, int]:
+    """Find number and direction of a channel."""
+    found: tuple[int | None, str, int] = (None, "", first + 1)
+    for line, text in enumerate(header, start=first + 1):
+        match = _CHANNEL.search(text)
+        if match is None:
+            continue
+        name = match.group(2).strip()
+        degrees = _DEGREES.match(name)
+        found = (whole(match.group(1)), degrees.group(1) if degrees else name, line)
+        if name:
+            return found
+    for line, text in enumerate(header, start=first + 1):
+        match = _COMPONENT.search(text)
+        if match is not None:
+            return found[0], match.group(1), line
+    return found
+
+
+def peak_in_header(header: list[str], first: int, *, corrected: bool) -> Stated | None:
+    """Find the peak of the acceleration; arguments as for :func:`channel_of`."""
+    for line, text in enumerate(header, start=first + 1):
+        match = _PEAK.search(f"{text} ")
+        if match is not None:
+            number, name, per_time = match.groups()
+            return Stated(number, f"{name}{per_time or ''}".casefold(), line)
+        match = None if corrected else _UNCORRECTED_PEAK.search(text)
+        if match is not None:
+            return Stated(match.group(1), "g", line)
+    return None
+
+
+def length_in_header(header: list[str], first: int) -> Stated | None:
+    """Find the length of the record; arguments as for :func:`channel_of`."""
+    for line, text in enumerate(header, start=first + 1):
+        match = _LENGTH.search(text)
+        if match is not None:
+            return Stated(match.group(1), "s", line)
+    return None
+
+
+def is_corrected(header: list[str]) -> bool:
+    """Tell whether the first line of a header calls the data corrected."""
+    return any(_CORRECTED.match(text) for text in header)
+
+
+def description(header: list[str]) -> Metadata:
+    """Give what goes into the metadata."""
+    lines = [text.strip() for text in header]
+    metadata: Metadata = {}
+    place = next((k for k, text in enumerate(lines) if FIRST_LINE.match(text)), 0)
+    second = place + 1 < len(lines) and FIRST_LINE.match(lines[place + 1]) is not None
+    if lines:
+        metadata["description"] = "corrected" if is_corrected(lines) else "uncorrected"
+    metadata |= _event(lines, place + (2 if second else 1))
+    for number, text in enumerate(lines):
+        station = _STATION.search(text)
+        if station is None:
+            continue
+        if _COORDINATE.fullmatch(station.group(1)) is None:
+            metadata["station"] = station.group(1)
+        if number + 1 < len(lines) and lines[number + 1]:
+            name = _WIDE_GAP.split(lines[number + 1])[0]
+            if _PROCESSING.search(name) is None:
+                metadata["station_name"] = name
+        break
+    location = next((match for text in lines if (match := _LOCATION.search(text))), None)
+    if location is not None:
+        metadata["sensor_location"] = " ".join(location.group(1).split())
+    return metadata
+
+
+def _event(lines: list[str], place: int) -> Metadata:
+    # The two lines hold a name and a time, or, before an event is known, words about the
+    # processing. What is neither a name nor a time is not passed off as one.
+    name, time = "", ""
+    for text in lines[place : place + 2]:
+        told = _RECORD_OF.sub("", _WIDE_GAP.split(text.split("(")[0].strip())[0])
+        if _DATE.search(told):
+            time = time or told
+        elif not name and _PROCESSING.search(told) is None and re.search("[a-z]{3}", told, re.I):
+            name = told
+    for text in lines:
+        said = _OF_DATE.match(_WIDE_GAP.split(text)[0])
+        if said is not None:
+            name, time = name or said.group(1), time or said.group(2)
+        origin = _ORIGIN.search(text)
+        if origin is not None and not time and _DATE.search(origin.group(1)):
+            time = origin.group(1).strip()
+    found = {"event": " ".join(name.split()), "event_time": " ".join(time.split())}
+    return {key: value for key, value in found.items() if value}
+
+
+_POINTS: Final = re.compile(r"\bNO\. OF POINTS\s*=\s*(\d{1,9})", re.IGNORECASE)
+_UNITS: Final = re.compile(
+    r"\bUNITS\b.{0,20}?\bARE\s+SEC(?:ONDS)?\s+AND\s+([^\s,;]{1,12})", re.IGNORECASE
+)
+_WHOLE_NUMBERS: Final = re.compile(r"[-\d\s]*\d[-\d\s]*", re.ASCII)
+_REAL_NUMBERS: Final = re.compile(r"[-.\d\s]*\.[-.\d\s]*", re.ASCII)
+_FULL: Final = 10
+_REALS: Final = 50
+_PAIR_WIDTHS: Final = range(6, 11)
+_LONGEST_PAIR_HEADER: Final = 80
+
+
+@dataclass(frozen=True)
+class Pairs:
+    """Where the pairs of one channel stand."""
+
+    count: int  # how many
+    unit: str  # of the accelerations, as the text names it
+    unit_line: int  # where it does, from 1
+    data_at: int  # index of their first line, from 0
+
+    @property
+    def behind(self) -> int:
+        """Index of the first line behind them, from 0."""
+        return self.data_at + -(-2 * self.count // _FULL)
+
+
+def find_pairs(source: Source, first: int) -> Pairs | None:
+    """Look for pairs below a channel's first line."""
+    top = [line.rstrip() for line in source.top(_LONGEST_PAIR_HEADER, first)]
+    points = next((m for line in top if (m := _POINTS.search(line))), None)
+    units = next(((k, m) for k, line in enumerate(top) if (m := _UNITS.search(line))), None)
+    if points is None or units is None:
+        return None
+    place = units[0]
+    while place < len(top) and _WHOLE_NUMBERS.fullmatch(top[place]) is None:
+        place += 1
+    while place < len(top) and _WHOLE_NUMBERS.fullmatch(top[place]):
+        place += 1
+    reals = 0
+    while place < len(top) and reals < _REALS and _REAL_NUMBERS.fullmatch(top[place]):
+        reals += len(top[place].split())
+        place += 1
+    if reals < _REALS or place >= len(top):
+        return None
+    unit = units[1].group(1).rstrip(".")
+    return Pairs(int(points.group(1)), unit, first + units[0] + 1, first + place)
+
+
+def read_pairs(source: Source, pairs: Pairs) -> tuple[float, Array]:
+    """Read pairs that are evenly spaced."""
+    line = source.lines[pairs.data_at].rstrip()
+    per_line = min(_FULL, 2 * pairs.count)
+    width, indent = divmod(len(line), max(per_line, 1))
+    if width not in _PAIR_WIDTHS or indent > 1 or line[:indent].strip():
+        raise source.refuse(
+            found=f"a line of {len(line)} characters ({quoted_first_line(line)})",
+            expected=f"{per_line} numbers of one width, pairs of time and acceleration",
+            line=pairs.data_at + 1,
+        )
+    layout = {"width": width, "per_line": _FULL, "indent": indent}
+    values = fixed_width(source, pairs.data_at, 2 * pairs.count, **layout).reshape(-1, 2)
+    rows = source.lines[pairs.data_at : pairs.behind]
+    printed = [
+        row[indent + place : indent + place + width].strip()
+        for row in rows
+        for place in range(0, len(row.rstrip()) - indent, 2 * width)
+    ]
+    time_step, misfit = uniform_step(values[:, 0], printed)
+    if misfit is not None:
+        found = f"the time {printed[misfit]} after {printed[misfit - 1]}, unevenly sampled"
+        expected = "even times; the corrected record of the set, or from_times, has them"
+        place = pairs.data_at + 2 * misfit // _FULL + 1
+        raise source.refuse(found=found, expected=expected, line=place)
+    return time_step, values[:, 1].copy()
+
 
 NAME: Final = "csmip"
 TITLE: Final = "CSMIP volume file (V1, V2), also of USC and RENADIC"

@@ -19,9 +19,11 @@ from rockframe.records.checks import (
     check_asked_time_step,
     check_time_step,
     choose_unit,
+    compare_length,
+    compare_peak,
+    settle_count,
 )
-from rockframe.records.components import FileComponent, choose_component
-from rockframe.records.declared import settle_count
+from rockframe.records.components import UNKNOWN, FileComponent, choose_component, orientation_of
 from rockframe.records.numbers import (
     NUMBER,
     ends_inside_number,
@@ -29,9 +31,7 @@ from rockframe.records.numbers import (
     last_fields,
     one_number,
 )
-from rockframe.records.orientation import UNKNOWN, orientation_of
-from rockframe.records.source import Metadata, Record, Request, Source, quoted_first_line
-from rockframe.records.stated import compare_length, compare_peak
+from rockframe.records.record_file import Metadata, Record, Request, Source, quoted_first_line
 
 NAME: Final = "csmnc"
 TITLE: Final = "file of the China Strong Motion Networks Centre"

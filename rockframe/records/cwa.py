@@ -25,20 +25,20 @@ from rockframe.records.checks import (
     check_asked_time_step,
     check_time_step,
     choose_unit,
+    compare_peak,
+    settle_count,
 )
-from rockframe.records.components import FileComponent, choose_component
-from rockframe.records.declared import settle_count
-from rockframe.records.fixed import fixed_width
-from rockframe.records.keys import Keys, kept, needed, needed_rate
-from rockframe.records.numbers import one_number
-from rockframe.records.orientation import (
+from rockframe.records.components import (
     DOWNWARDS,
+    FileComponent,
     Orientation,
     azimuth_of,
+    choose_component,
     orientation_of,
 )
-from rockframe.records.source import Metadata, Record, Request, Source, quoted_first_line
-from rockframe.records.stated import compare_peak
+from rockframe.records.keys import Keys, kept, needed, needed_rate
+from rockframe.records.numbers import fixed_width, one_number
+from rockframe.records.record_file import Metadata, Record, Request, Source, quoted_first_line
 
 if TYPE_CHECKING:
     from rockframe.records.unit_names import RecordUnit

@@ -13,18 +13,15 @@ from __future__ import annotations
 import re
 from typing import Final
 
-from rockframe.records.checks import choose_unit
-from rockframe.records.components import FileComponent, choose_component
-from rockframe.records.declared import settle_count
+from rockframe.records.checks import choose_unit, compare_length, compare_peak, settle_count
+from rockframe.records.components import FileComponent, choose_component, orientation_of
 from rockframe.records.keys import Keys, kept, needed_count, needed_step
 from rockframe.records.numbers import (
     ends_inside_number,
     free_format,
     last_fields,
 )
-from rockframe.records.orientation import orientation_of
-from rockframe.records.source import Metadata, Record, Request, Source, quoted_first_line
-from rockframe.records.stated import compare_length, compare_peak
+from rockframe.records.record_file import Metadata, Record, Request, Source, quoted_first_line
 
 NAME: Final = "esm"
 TITLE: Final = "ESM or ITACA file (DYNA ASCII)"

@@ -1,21 +1,166 @@
-"""The files behind a suite: in folders, in archives, in memory."""
+"""Where the bytes of records come from: a path, a folder, an archive, memory or an open file."""
 
+from __future__ import annotations
+
+import gzip
 import io
+import os
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO, Any, Final, cast
+from typing import IO, Any, Final, TypeAlias, cast
 
 from rockframe.errors import RecordError, shown
-from rockframe.records.archives import check_unpackable, is_archive, members, packs_tar
-from rockframe.records.received import IN_MEMORY, path_of
-from rockframe.records.source import Source, read_source, source_of
+from rockframe.records.archives import (
+    MAXIMUM_BYTES,
+    check_unpackable,
+    is_archive,
+    is_gzip,
+    members,
+    packs_tar,
+)
+from rockframe.records.record_file import Source, source_of
+
+PathLike: TypeAlias = "str | os.PathLike[str]"
+RecordLike: TypeAlias = "PathLike | bytes | IO[bytes] | IO[str]"
+"""A file by its path, its bytes, or an open file."""
+
+IN_MEMORY: Final = "bytes"
+"""What bytes without a file are called in messages."""
+_OPEN: Final = "open file"
+
+
+def read_source(given: RecordLike) -> Source:
+    """Read the bytes of a file, or refuse it."""
+    return source_of(*received(given))
+
+
+def received(given: RecordLike) -> tuple[str, bytes]:
+    """Give the bytes of one record file, unpacked where they are packed."""
+    name, data = as_given(given)
+    check_unpackable(name, data)
+    if is_archive(data) or packs_tar(io.BytesIO(data)):
+        return _only_member(name, data)
+    if is_gzip(data):
+        return f"{name}/{_unpacked_name(name)}", unzipped(name, data)
+    return name, data
+
+
+def as_given(given: object) -> tuple[str, bytes]:
+    """Give name and bytes of what was given, packed or not."""
+    if isinstance(given, bytes | bytearray | memoryview):
+        data = bytes(given)
+        check_size(IN_MEMORY, len(data))
+        return IN_MEMORY, data
+    if hasattr(given, "read"):
+        return _from_open(cast("IO[bytes]", given))
+    path = path_of(given)
+    return str(path), _from_path(path)
+
+
+def path_of(given: object) -> Path:
+    """Read an argument that is the path of a file or a folder."""
+    try:
+        return Path(cast("str", given)).expanduser()
+    except (TypeError, ValueError, RuntimeError) as problem:
+        raise _no_name(given) from problem
+
+
+def check_size(name: str, size: int) -> None:
+    """Refuse a file that is larger than any record."""
+    if size > MAXIMUM_BYTES:
+        found = f"{size / 2**20:.3g} MiB"
+        expected = f"a record of at most {MAXIMUM_BYTES // 2**20} MiB"
+        raise RecordError(name, found=found, expected=expected)
+
+
+def unzipped(name: str, data: bytes) -> bytes:
+    """Unpack what gzip packed."""
+    try:
+        with gzip.GzipFile(fileobj=io.BytesIO(data)) as file:
+            unpacked = file.read(MAXIMUM_BYTES + 1)
+    except Exception as problem:  # the libraries do not document all that damaged files raise
+        found = f"a gzip file that cannot be unpacked ({type(problem).__name__})"
+        raise RecordError(name, found=found, expected="a record file") from problem
+    check_size(name, len(unpacked))
+    if is_archive(unpacked) or is_gzip(unpacked):
+        found = "a file that is packed twice"
+        raise RecordError(name, found=found, expected="a record file")
+    return unpacked
+
+
+def _only_member(name: str, data: bytes) -> tuple[str, bytes]:
+    found: list[tuple[str, bytes]] = []
+    for member in members(io.BytesIO(data), name, len(data)):
+        if member.hidden:
+            continue
+        if member.data is None:
+            path = f"{name}/{member.name}"
+            raise RecordError(path, found=member.reason, expected="a record file")
+        found.append((f"{name}/{member.name}", member.data))
+        if len(found) > 1:
+            held = (
+                f"an archive of several files, {', '.join(one.split('/')[-1] for one, _ in found)}"
+            )
+            expected = "one record; rockframe.read_suite reads all that are in an archive"
+            raise RecordError(name, found=held, expected=expected)
+    if not found:
+        raise RecordError(name, found="an archive without files", expected="a record file")
+    return found[0]
+
+
+def _unpacked_name(name: str) -> str:
+    base = name.replace("\\", "/").rsplit("/", 1)[-1]
+    return base[:-3] if base.casefold().endswith(".gz") and len(base) > 3 else base
+
+
+def _from_open(file: IO[bytes]) -> tuple[str, bytes]:
+    told = getattr(file, "name", None)
+    name = told if isinstance(told, str) and told else _OPEN
+    try:
+        data: Any = file.read(MAXIMUM_BYTES + 1)
+    except (OSError, ValueError) as problem:  # closed, or not open for reading
+        found = f"an open file that cannot be read ({problem})"
+        raise RecordError(name, found=found, expected="a file open for reading") from problem
+    if isinstance(data, str):
+        data = data.encode()
+    if not isinstance(data, bytes):
+        found = f"a file object that gives {type(data).__name__}"
+        raise RecordError(name, found=found, expected="bytes")
+    check_size(name, len(data))
+    return name, data
+
+
+def _from_path(path: Path) -> bytes:
+    name = str(path)
+    try:
+        if path.is_dir():
+            expected = "a record file; rockframe.read_suite reads folders"
+            raise RecordError(name, found="a directory", expected=expected)
+        if path.exists() and not path.is_file():
+            raise RecordError(name, found="no ordinary file", expected="a record file")
+        check_size(name, path.stat().st_size)
+        return path.read_bytes()
+    except FileNotFoundError as problem:
+        raise RecordError(name, found="no such file", expected="a record file") from problem
+    except OSError as problem:
+        found = f"a file that cannot be read ({problem.strerror})"
+        raise RecordError(name, found=found, expected="a readable record file") from problem
+    except ValueError as problem:
+        if isinstance(problem, RecordError):
+            raise
+        raise _no_name(name) from problem
+
+
+def _no_name(given: object) -> RecordError:
+    found = f"{given!r}, which names no file"
+    return RecordError(str(given), found=found, expected="the path of a record file")
+
 
 MOST_FILES: Final = 20_000
 """Most files of a folder."""
 
 _START: Final = 512
-_OPEN: Final = "open file"
 
 
 @dataclass(frozen=True)

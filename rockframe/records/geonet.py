@@ -20,18 +20,20 @@ from rockframe.records.checks import (
     check_asked_time_step,
     check_time_step,
     choose_unit,
+    compare_length,
+    compare_peak,
 )
-from rockframe.records.components import FileComponent, choose_component
-from rockframe.records.fixed import cell, fixed_width, header_count, header_number, whole
-from rockframe.records.orientation import (
+from rockframe.records.components import (
     UNKNOWN,
     VERTICAL,
+    FileComponent,
     Orientation,
     azimuth_of,
+    choose_component,
     orientation_of,
 )
-from rockframe.records.source import Metadata, Record, Request, Source, quoted_first_line
-from rockframe.records.stated import compare_length, compare_peak
+from rockframe.records.numbers import cell, fixed_width, header_count, header_number, whole
+from rockframe.records.record_file import Metadata, Record, Request, Source, quoted_first_line
 
 NAME: Final = "geonet"
 TITLE: Final = "GeoNet accelerogram (V1A, V2A)"

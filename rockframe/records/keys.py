@@ -5,14 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, TypeAlias
 
 from rockframe.records.checks import check_asked_time_step, check_time_step
-from rockframe.records.fixed import whole
-from rockframe.records.numbers import one_number
-from rockframe.records.source import quoted_first_line
+from rockframe.records.numbers import one_number, whole
+from rockframe.records.record_file import quoted_first_line
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from rockframe.records.source import Metadata, Request, Source
+    from rockframe.records.record_file import Metadata, Request, Source
 
 Keys: TypeAlias = "dict[str, tuple[str, int]]"
 """Value and line, from 1, of each key."""

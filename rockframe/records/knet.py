@@ -23,13 +23,12 @@ from rockframe.records.checks import (
     check_asked_time_step,
     check_time_step,
     choose_unit,
+    settle_count,
 )
-from rockframe.records.components import FileComponent, choose_component
-from rockframe.records.declared import settle_count
+from rockframe.records.components import FileComponent, choose_component, orientation_of
 from rockframe.records.keys import Keys, needed, needed_rate
 from rockframe.records.numbers import NUMBER, free_format, last_fields, one_number
-from rockframe.records.orientation import orientation_of
-from rockframe.records.source import Metadata, Record, Request, Source, quoted_first_line
+from rockframe.records.record_file import Metadata, Record, Request, Source, quoted_first_line
 
 if TYPE_CHECKING:
     from rockframe.signals.arrays import Array

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import importlib
 import io
+import math
 import re
 import struct
 import sys
@@ -21,25 +22,29 @@ import warnings
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, Final
 
+import numpy as np
+
 from rockframe.errors import RecordError
-from rockframe.records.checks import (
-    check_asked_time_step,
-    check_time_step,
+from rockframe.records.checks import check_asked_time_step, check_time_step
+from rockframe.records.components import (
+    UNKNOWN,
+    FileComponent,
+    Orientation,
+    choose_component,
+    orientation_of,
 )
-from rockframe.records.components import FileComponent, choose_component
-from rockframe.records.counts import record_of_counts
-from rockframe.records.orientation import UNKNOWN, Orientation, orientation_of
-from rockframe.records.source import (
-    Metadata,
-    Record,
-    Request,
-    Source,
+from rockframe.records.instruments import (
+    InstrumentResponse,
+    InstrumentResponses,
+    codes_of,
+    record_of_counts,
 )
-from rockframe.records.station_xml import InstrumentResponse, InstrumentResponses
-from rockframe.records.traces import by_channel, codes_of, joined_traces
+from rockframe.records.record_file import MAXIMUM_SAMPLES, Metadata, Record, Request, Source
 
 if TYPE_CHECKING:
-    from collections.abc import Generator
+    from collections.abc import Generator, Iterable
+
+    from rockframe.signals.arrays import Array
 
 NAME: Final = "miniseed"
 TITLE: Final = "miniSEED file (through ObsPy)"
@@ -221,3 +226,45 @@ def _samples(
     about: Metadata = {key: value for key, value in metadata.items() if value}
     about["record_time"] = start
     return record_of_counts(source, request, counts, time_step, about, response)
+
+
+def by_channel(traces: Iterable[Any]) -> dict[str, list[Any]]:
+    """Sort traces by their channel."""
+    channels: dict[str, list[Any]] = {}
+    for trace in traces:
+        channels.setdefault(".".join(codes_of(str(trace.id))), []).append(trace)
+    return channels
+
+
+def joined_traces(source: Source, traces: list[Any]) -> tuple[Array, float, str]:
+    """Join the traces of one channel."""
+    traces = sorted(traces, key=lambda trace: trace.stats.starttime)
+    first = traces[0].stats
+    time_step = float(f"{float(first.delta):.12g}")
+    parts: list[Array] = []
+    count = 0
+    for trace in traces:
+        rate = float(trace.stats.sampling_rate)
+        if not math.isclose(rate, float(first.sampling_rate), rel_tol=1e-6):
+            found = f"sampling rates of {float(first.sampling_rate):g} Hz and {rate:g} Hz"
+            raise source.refuse(found=found, expected="one sampling rate in a channel")
+        shift = float(trace.stats.starttime - first.starttime) - count * time_step
+        if abs(shift) > 0.5 * time_step:
+            what = "gap" if shift > 0.0 else "overlap"
+            found = f"a {what} of {abs(shift):.6g} s before {trace.stats.starttime}"
+            raise source.refuse(found=found, expected="a channel without gaps and overlaps")
+        if np.ma.is_masked(trace.data):
+            raise source.refuse(found="masked samples", expected="a channel without gaps")
+        data = np.asarray(trace.data)
+        if data.ndim != 1 or data.dtype.kind not in "iuf":
+            found = f"samples of the kind {data.dtype}"
+            raise source.refuse(found=found, expected="whole or real numbers")
+        parts.append(data.astype(np.float64))
+        count += data.size
+    if not 2 <= count <= MAXIMUM_SAMPLES:
+        expected = f"2 to {MAXIMUM_SAMPLES} samples in a channel"
+        raise source.refuse(found=f"{count} samples", expected=expected)
+    counts = np.concatenate(parts)
+    if not np.isfinite(counts).all():
+        raise source.refuse(found="samples that are not finite", expected="finite samples")
+    return counts, time_step, str(first.starttime)

@@ -18,9 +18,8 @@ import xarray as xr
 
 from rockframe.errors import ComponentError, RecordError, SchemaError
 from rockframe.records.checks import check_asked_time_step
-from rockframe.records.components import FileComponent, choose_component
-from rockframe.records.orientation import UNKNOWN, orientation_of
-from rockframe.records.source import Record, Request, Source, StoredMotion
+from rockframe.records.components import UNKNOWN, FileComponent, choose_component, orientation_of
+from rockframe.records.record_file import Record, Request, Source, StoredMotion
 from rockframe.records.unit_names import RecordUnit
 from rockframe.signals import Motion, Signal
 from rockframe.signals.arrays import OWNER, Array

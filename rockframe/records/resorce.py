@@ -16,13 +16,11 @@ from __future__ import annotations
 import re
 from typing import Final
 
-from rockframe.records.checks import choose_unit
-from rockframe.records.components import FileComponent, choose_component
-from rockframe.records.fixed import fixed_width
+from rockframe.records.checks import choose_unit, compare_peak, surplus
+from rockframe.records.components import FileComponent, choose_component, orientation_of
 from rockframe.records.keys import kept, needed_count, needed_step, read_keys
-from rockframe.records.orientation import orientation_of
-from rockframe.records.source import Metadata, Record, Request, Source, quoted_first_line
-from rockframe.records.stated import compare_peak, surplus
+from rockframe.records.numbers import fixed_width
+from rockframe.records.record_file import Metadata, Record, Request, Source, quoted_first_line
 
 NAME: Final = "resorce"
 TITLE: Final = "RESORCE file (.cor.acc)"

@@ -21,24 +21,17 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from rockframe.records.checks import check_asked_time_step, check_time_step
-from rockframe.records.components import FileComponent, choose_component
-from rockframe.records.counts import record_of_counts
-from rockframe.records.orientation import (
+from rockframe.records.components import (
     DOWNWARDS,
     UPWARDS,
+    FileComponent,
     Orientation,
     azimuth_of,
+    choose_component,
     orientation_of,
 )
-from rockframe.records.source import (
-    MAXIMUM_SAMPLES,
-    Metadata,
-    Record,
-    Request,
-    Source,
-)
-from rockframe.records.station_xml import InstrumentResponses
-from rockframe.records.traces import location_code
+from rockframe.records.instruments import InstrumentResponses, location_code, record_of_counts
+from rockframe.records.record_file import MAXIMUM_SAMPLES, Metadata, Record, Request, Source
 
 if TYPE_CHECKING:
     from rockframe.signals.arrays import Array

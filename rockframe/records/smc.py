@@ -19,26 +19,29 @@ from rockframe.records.checks import (
     check_asked_time_step,
     check_time_step,
     choose_unit,
+    compare_peak,
+    surplus,
 )
-from rockframe.records.components import FileComponent, choose_component
-from rockframe.records.fixed import (
+from rockframe.records.components import (
+    DOWNWARDS,
+    UNKNOWN,
+    UPWARDS,
+    FileComponent,
+    Orientation,
+    azimuth_of,
+    choose_component,
+    orientation_of,
+)
+from rockframe.records.numbers import (
+    NUMBER,
     cell,
     fixed_width,
     header_count,
     header_number,
     whole,
+    with_e,
 )
-from rockframe.records.numbers import NUMBER, with_e
-from rockframe.records.orientation import (
-    DOWNWARDS,
-    UNKNOWN,
-    UPWARDS,
-    Orientation,
-    azimuth_of,
-    orientation_of,
-)
-from rockframe.records.source import Metadata, Record, Request, Source, quoted_first_line
-from rockframe.records.stated import compare_peak, surplus
+from rockframe.records.record_file import Metadata, Record, Request, Source, quoted_first_line
 
 if TYPE_CHECKING:
     from rockframe.records.unit_names import RecordUnit

@@ -13,29 +13,31 @@ from rockframe.records.checks import (
     check_asked_time_step,
     check_time_step,
     choose_unit,
+    compare_peak,
+    settle_count,
 )
-from rockframe.records.columns import HEADER_LINES, Table, check_last_row, read_table
 from rockframe.records.components import FileComponent, choose_component
-from rockframe.records.declared import settle_count
 from rockframe.records.numbers import (
     ends_inside_number,
     free_format,
     last_fields,
     one_number,
     too_many,
+    uniform_step,
 )
-from rockframe.records.source import (
-    MAXIMUM_SAMPLES,
-    Metadata,
-    Record,
-    Request,
-    Source,
-)
-from rockframe.records.stated import compare_peak
-from rockframe.records.text_first_lines import (
+from rockframe.records.record_file import MAXIMUM_SAMPLES, Metadata, Record, Request, Source
+from rockframe.records.text_columns import (
+    BY_ROWS,
+    COLUMNS,
+    HEADER_LINES,
+    ROWS,
     FirstLines,
+    Table,
+    check_last_row,
     find_first_lines,
     looks_like_step,
+    read_table,
+    reading_order,
 )
 from rockframe.records.text_header import (
     TextColumn,
@@ -44,12 +46,11 @@ from rockframe.records.text_header import (
     has_times,
     is_direction,
     is_rising,
+    stated_peak,
+    stated_step,
     time_scale,
     unit_of_header,
 )
-from rockframe.records.text_stated import stated_peak, stated_step
-from rockframe.records.timing import uniform_step
-from rockframe.records.wrapping import BY_ROWS, COLUMNS, ROWS, reading_order
 
 if TYPE_CHECKING:
     from rockframe.signals.arrays import Array

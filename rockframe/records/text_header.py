@@ -1,4 +1,4 @@
-"""What the lines above columns of numbers say: names, units, and whether it is a spectrum."""
+"""What the lines above columns say: names, units, step, peak, and whether it is a spectrum."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from rockframe.records.columns import Table, split_header
-from rockframe.records.orientation import UNKNOWN, Orientation, orientation_of
-from rockframe.records.source import Source, quoted_first_line
-from rockframe.records.text_stated import TIME_UNITS
+from rockframe.records.components import UNKNOWN, Orientation, orientation_of
+from rockframe.records.numbers import NUMBER, with_e
+from rockframe.records.record_file import Source, quoted_first_line
+from rockframe.records.text_columns import Table, split_header
 from rockframe.records.unit_names import acceleration_unit, other_quantity
 
 if TYPE_CHECKING:
@@ -240,3 +240,59 @@ def _direction(name: str) -> Orientation:
 def _is_unit(name: str) -> bool:
     known = acceleration_unit(name) is not None or other_quantity(name) is not None
     return known or name.casefold() in TIME_UNITS
+
+
+TIME_UNITS: Final = {
+    **dict.fromkeys(("s", "sec", "secs", "sec.", "second", "seconds"), 1.0),
+    **dict.fromkeys(("ms", "msec", "millisecond", "milliseconds"), 1e-3),
+}
+
+_OTHER_TIME_UNITS: Final = ("us", "ns", "min", "minutes", "h", "hours", "hz")
+
+_STEP: Final = re.compile(
+    rf"(?:\bd_?t|\bdelta[ _]?t|\btime[ _-]?(?:step|increment|interval)|"
+    rf"\bsampl(?:ing|e)[ _-]?(?:interval|period))\s*(?:[(\[]\s*([a-z]{{1,7}})\.?\s*[)\]])?"
+    rf"\s*[:=]\s*({NUMBER})\s*([a-z]{{0,7}})",
+    re.IGNORECASE | re.ASCII,
+)
+_RATE: Final = re.compile(
+    rf"(?:\bsampl(?:ing|e)[ _-]?(?:rate|frequency))\s*(?:[(\[]\s*(?:hz|sps)\s*[)\]])?"
+    rf"\s*[:=]\s*({NUMBER})",
+    re.IGNORECASE | re.ASCII,
+)
+_PEAK: Final = re.compile(
+    rf"\b(?:pga|peak(?: ground)? acceleration)\s*(?:[(\[]\s*([^()\[\]]{{1,12}})[)\]])?"
+    rf"\s*[:=]\s*({NUMBER})\s*([a-z][a-z0-9/^*-]{{0,11}})?",
+    re.IGNORECASE | re.ASCII,
+)
+
+
+def stated_step(header: list[tuple[int, str]]) -> tuple[float, int] | None:
+    """Find a time step, or a sampling rate, that the header states, and its line."""
+    for line, text in header:
+        step, rate = _STEP.search(text), _RATE.search(text)
+        if step is not None:
+            before, printed, behind = step.groups()
+            named = (before or behind or "s").casefold()
+            if named in _OTHER_TIME_UNITS:
+                continue
+            scale = TIME_UNITS.get(named, 1.0)  # another word begins another statement
+            value = float(with_e(printed))
+            return float(f"{value * scale:.15g}"), line
+        if rate is not None:
+            value = float(with_e(rate.group(1)))
+            if 0.0 < value < math.inf:
+                return 1.0 / value, line
+    return None
+
+
+def stated_peak(header: list[tuple[int, str]]) -> tuple[str, str, int] | None:
+    """Find a peak that the header states: the number as printed, its unit, its line."""
+    for line, text in header:
+        match = _PEAK.search(text)
+        if match is not None:
+            before, printed, behind = match.groups()
+            unit = (before or behind or "").strip()
+            if unit:
+                return printed, unit, line
+    return None

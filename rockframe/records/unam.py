@@ -23,23 +23,24 @@ from rockframe.records.checks import (
     check_asked_time_step,
     check_time_step,
     choose_unit,
+    compare_length,
+    compare_peak,
+    settle_count,
 )
-from rockframe.records.components import FileComponent, choose_component
-from rockframe.records.declared import settle_count
-from rockframe.records.fixed import fixed_width, whole
-from rockframe.records.keys import Keys, kept, needed, read_keys
-from rockframe.records.numbers import one_number
-from rockframe.records.orientation import (
+from rockframe.records.components import (
     DOWNWARDS,
     UNKNOWN,
     UPWARDS,
     VERTICAL,
+    FileComponent,
     Orientation,
     azimuth_of,
+    choose_component,
     orientation_of,
 )
-from rockframe.records.source import Metadata, Record, Request, Source, quoted_first_line
-from rockframe.records.stated import compare_length, compare_peak
+from rockframe.records.keys import Keys, kept, needed, read_keys
+from rockframe.records.numbers import fixed_width, one_number, whole
+from rockframe.records.record_file import Metadata, Record, Request, Source, quoted_first_line
 
 if TYPE_CHECKING:
     from rockframe.signals.arrays import Array

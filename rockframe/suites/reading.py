@@ -7,9 +7,9 @@ from rockframe.errors import PLEASE_REPORT, ComponentError, RecordError, RecordW
 from rockframe.motion import GroundMotion
 from rockframe.motion.quantities import argument_unit
 from rockframe.records.files import Unread, files_of, unread
-from rockframe.records.peer_table import Known, is_peer_table, read_peer_table
-from rockframe.records.reading import Reading, read_components
-from rockframe.records.source import Request, Source
+from rockframe.records.peer import Known, is_peer_table, read_peer_table
+from rockframe.records.read import Reading, read_components
+from rockframe.records.record_file import Request, Source
 from rockframe.suites.records import RecordedComponent, assign_records, number_in_name
 from rockframe.suites.stored import is_stored_suite, stored_suite
 from rockframe.suites.suite import MotionSuite
@@ -18,7 +18,7 @@ from rockframe.units import POSITIVE, TIME_STEP, to_si
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from rockframe.records.source import RecordLike
+    from rockframe.records.files import RecordLike
     from rockframe.units import QuantityLike
 
 _OWNER: Final = "read_suite"

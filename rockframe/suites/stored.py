@@ -26,7 +26,7 @@ from rockframe.suites.columns import known_columns
 from rockframe.units import Unit
 
 if TYPE_CHECKING:
-    from rockframe.records.source import Source
+    from rockframe.records.record_file import Source
     from rockframe.suites.suite import MotionSuite
 
 _KIND: Final = "suite of ground motions"

@@ -13,15 +13,15 @@ from rockframe.errors import ComponentError, RecordWarning, UnitsError
 from rockframe.motion.quantities import accelerations_to_si, argument_unit, declared_times
 from rockframe.motion.value import UNNAMED
 from rockframe.records.components import component_names
-from rockframe.records.reading import read_record
-from rockframe.records.source import Request
+from rockframe.records.read import read_record
+from rockframe.records.record_file import Request
 from rockframe.signals import Motion
 from rockframe.units import POSITIVE, TIME_STEP, to_si
 
 if TYPE_CHECKING:
     from rockframe.motion.quantities import ArrayLike
     from rockframe.motion.value import Made
-    from rockframe.records.source import PathLike, RecordLike
+    from rockframe.records.files import PathLike, RecordLike
     from rockframe.signals.arrays import Array
     from rockframe.units import QuantityLike
 

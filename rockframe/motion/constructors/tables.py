@@ -18,10 +18,9 @@ from rockframe.motion.quantities import (
     times_to_si,
 )
 from rockframe.motion.value import UNNAMED
-from rockframe.records.components import SENSE
-from rockframe.records.orientation import DOWNWARDS, orientation_of
-from rockframe.records.source import MAXIMUM_SAMPLES, Metadata
-from rockframe.records.timing import uniform_step
+from rockframe.records.components import DOWNWARDS, SENSE, orientation_of
+from rockframe.records.numbers import uniform_step
+from rockframe.records.record_file import MAXIMUM_SAMPLES, Metadata
 from rockframe.signals import Motion
 from rockframe.units import POSITIVE, TIME_STEP, to_si
 

@@ -8,11 +8,16 @@ from typing import TYPE_CHECKING, Any, Final, cast
 from rockframe.errors import ComponentError, RecordWarning, shown
 from rockframe.motion.quantities import argument_unit
 from rockframe.records.checks import check_time_step, choose_unit
-from rockframe.records.components import FileComponent, choose_component, component_names
-from rockframe.records.orientation import orientation_of
-from rockframe.records.reading import to_motion
-from rockframe.records.source import Metadata, Record, Request, Source
-from rockframe.records.traces import by_channel, codes_of, joined_traces
+from rockframe.records.components import (
+    FileComponent,
+    choose_component,
+    component_names,
+    orientation_of,
+)
+from rockframe.records.instruments import codes_of
+from rockframe.records.miniseed import by_channel, joined_traces
+from rockframe.records.read import to_motion
+from rockframe.records.record_file import Metadata, Record, Request, Source
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

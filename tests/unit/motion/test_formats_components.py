@@ -16,7 +16,7 @@ from unit.motion.format_samples import (
 
 from rockframe.errors import ComponentError, RecordError, RecordWarning
 from rockframe.motion import GroundMotion
-from rockframe.records.orientation import UNKNOWN, Orientation, orientation_of
+from rockframe.records.components import UNKNOWN, Orientation, orientation_of
 
 GAL = 0.01
 NORTH, EAST, UP = (VALUES[key] * GAL for key in ("N", "E", "U"))

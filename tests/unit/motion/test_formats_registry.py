@@ -15,8 +15,8 @@ from rockframe.records import (
     Record,
     choose_component,
     choose_unit,
+    known_formats,
     register,
-    registry,
     unregister,
 )
 from rockframe.records.unit_names import acceleration_unit
@@ -91,8 +91,8 @@ def test_a_list_of_formats_can_be_printed():
 
 
 def test_the_example_runs():
-    assert doctest.testmod(registry).attempted
-    assert not doctest.testmod(registry).failed
+    assert doctest.testmod(known_formats).attempted
+    assert not doctest.testmod(known_formats).failed
 
 
 def test_the_list_and_the_readers_are_found_by_both_names():

@@ -10,9 +10,10 @@ from unit.motion.motion_files import G, rows
 import rockframe as rf
 from rockframe.errors import RecordError
 from rockframe.motion import GroundMotion
-from rockframe.records.reading import read_components
-from rockframe.records.source import Request, read_source
-from rockframe.records.wrapping import COLUMNS, ROWS, reading_order
+from rockframe.records.files import read_source
+from rockframe.records.read import read_components
+from rockframe.records.record_file import Request
+from rockframe.records.text_columns import COLUMNS, ROWS, reading_order
 
 ASKED = {"unit": "g", "time_step": "0.02 s"}
 WRAPPED = GroundMotion.example("loma-prieta").si.horizontal.samples[:2998]

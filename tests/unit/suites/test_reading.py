@@ -228,8 +228,8 @@ def test_the_published_records():
 
 def test_the_published_table():
     path = record_path("more/PEER_SearchResults.csv")
-    from rockframe.records.peer_table import is_peer_table, read_peer_table
-    from rockframe.records.source import read_source
+    from rockframe.records.files import read_source
+    from rockframe.records.peer import is_peer_table, read_peer_table
 
     source = read_source(path)
     assert is_peer_table(source.data)

@@ -10,7 +10,7 @@ from unit.motion.motion_files import at2
 
 import rockframe as rf
 from rockframe.errors import RecordError, RecordWarning
-from rockframe.records import registry
+from rockframe.records import known_formats
 
 UNUSUAL = "ignore:.*(usual|worth a look).*:rockframe.errors.RecordWarning"
 SWAYS = np.round(100.0 * np.sin(0.4 * np.arange(100)) * np.hanning(100)).astype(int)
@@ -168,8 +168,8 @@ class TestOneBadFile:
         def failing(*_):
             raise fault
 
-        entry = registry._LAST
-        monkeypatch.setattr(registry, "_LAST", type(entry)(**{**vars(entry), where: failing}))
+        entry = known_formats._LAST
+        monkeypatch.setattr(known_formats, "_LAST", type(entry)(**{**vars(entry), where: failing}))
         with pytest.warns(RecordWarning, match=f"1 files not read .*{type(fault).__name__}"):
             suite = rf.read_suite(tmp_path)
         assert list(suite) == ["good"]

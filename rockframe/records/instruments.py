@@ -1,4 +1,6 @@
-"""The sensitivity of an instrument, from StationXML given or found beside a record.
+"""From the counts of a digitiser to accelerations, by the sensitivity of the instrument.
+
+The sensitivity stands in StationXML, given or found beside a record.
 
 Reference: Federation of Digital Seismograph Networks, "FDSN StationXML": the element
 ``InstrumentSensitivity`` of a channel's response; azimuth clockwise from north, dip
@@ -16,21 +18,16 @@ from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from rockframe.records.orientation import (
-    DOWNWARDS,
-    UNKNOWN,
-    UPWARDS,
-    Orientation,
-    azimuth_of,
-)
-from rockframe.records.source import base_name, read_source
-from rockframe.records.traces import codes_of, location_code
+from rockframe.records.components import DOWNWARDS, UNKNOWN, UPWARDS, Orientation, azimuth_of
+from rockframe.records.files import read_source
+from rockframe.records.record_file import Metadata, Record, Source, base_name
 from rockframe.records.unit_names import RecordUnit, acceleration_unit
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from rockframe.records.source import Request, Source
+    from rockframe.records.record_file import Request, Source
+    from rockframe.signals.arrays import Array
 
 _LARGEST: Final = 8 * 2**20
 _MOST_FILES: Final = 20
@@ -123,6 +120,17 @@ class _Inventory:
         epochs = self.channels.get(".".join(codes_of(name)), [])[:_MOST_EPOCHS]
         channel = next((epoch for epoch in epochs if _in_use(epoch, time)), None)
         return None if channel is None else _response(self.file, channel, name)
+
+
+def codes_of(name: str) -> tuple[str, str, str, str]:
+    """Take ``NET.STA.LOC.CHA`` apart; what is missing is empty, and so is a location ``--``."""
+    network, station, location, channel = (*name.split("."), "", "", "", "")[:4]
+    return network, station, location_code(location), channel
+
+
+def location_code(given: str) -> str:
+    """Give the code of a sensor's location; two hyphens or blanks stand for none."""
+    return given.strip(" -")
 
 
 def response_in(file: Source, name: str, time: datetime) -> InstrumentResponse | None:
@@ -224,3 +232,46 @@ def _number(element: Any, path: str) -> float | None:
     except ValueError:
         return None
     return value if math.isfinite(value) else None
+
+
+def record_of_counts(
+    source: Source,
+    request: Request,
+    values: Array,
+    time_step: float,
+    metadata: Metadata,
+    response: InstrumentResponse | None,
+) -> Record:
+    """Build the record of one channel of a file that states no unit.
+
+    The counts less their mean are divided by the sensitivity: the response is taken as
+    flat, which that of an accelerometer is from zero to near its corner.
+    """
+    if request.unit is not None and request.unit_name is not None:
+        about: Metadata = {**metadata, "unit_as_read": request.unit_name}
+        history = (f"the samples taken as accelerations in {request.unit_name}, as asked for",)
+        return Record(time_step, values, request.unit, about, history)
+    if response is None:
+        found = "counts, and no response of the instrument"
+        expected = (
+            "StationXML beside the file or as the argument response, or the argument unit if "
+            "the samples are accelerations"
+        )
+        raise source.refuse(found=found, expected=expected)
+    offset = float(math.fsum(values) / values.size)
+    about = {
+        **metadata,
+        "unit_as_read": "counts",
+        "sensitivity": response.sensitivity,
+        "offset_removed": offset,
+        "response_file": response.file,
+        "response_sha256": response.sha256,
+    }
+    history = (
+        f"counts less their mean of {offset:.9g}, divided by the sensitivity of "
+        f"{response.sensitivity:.9g} counts per {response.unit.spelling} ({response.file}); "
+        "the response of the instrument is taken as flat",
+    )
+    return Record(
+        time_step, (values - offset) / response.sensitivity, response.unit, about, history
+    )

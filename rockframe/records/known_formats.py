@@ -21,14 +21,14 @@ from rockframe.records import (
     knet,
     miniseed,
     netcdf,
-    peer_at2,
+    peer,
     resorce,
     sac,
     smc,
     text,
     unam,
 )
-from rockframe.records.source import Record, Request, Source, StoredMotion, quoted_first_line
+from rockframe.records.record_file import Record, Request, Source, StoredMotion, quoted_first_line
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -111,7 +111,7 @@ def _own(module: Any) -> Format:
 _OWN: Final = tuple(
     _own(module)
     for module in (
-        *(peer_at2, cosmos, csmip, smc, esm, knet, geonet, cwa),
+        *(peer, cosmos, csmip, smc, esm, knet, geonet, cwa),
         *(afad, bhrc, csmnc, resorce, unam),
         *(asdf, netcdf, miniseed, sac),
     )

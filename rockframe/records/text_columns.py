@@ -1,20 +1,34 @@
-"""Columns of numbers in text: separators, decimal commas, headers and comments."""
+"""Columns of numbers in text, and what stands above them.
+
+Separators, decimal commas, headers and comments; one record that is wrapped to several values a
+line; a number of samples and a time step above the samples.
+"""
 
 from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, Literal
 
 import numpy as np
 
-from rockframe.records.numbers import NUMBER, floats, is_plain, one_number, too_many, with_e
-from rockframe.records.source import HEADER_WIDTH, MAXIMUM_SAMPLES, Source, quoted_first_line
+from rockframe.records.checks import USUAL_TIME_STEPS
+from rockframe.records.numbers import (
+    NUMBER,
+    floats,
+    is_plain,
+    one_number,
+    shape_of,
+    too_many,
+    with_e,
+)
+from rockframe.records.record_file import HEADER_WIDTH, MAXIMUM_SAMPLES, Source, quoted_first_line
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from rockframe.errors import RecordError
+    from rockframe.records.record_file import Source
     from rockframe.signals.arrays import Array
 
 HEADER_LINES: Final = 20
@@ -219,3 +233,129 @@ def _check_header(
             )
         if len(parts) == columns and all(_NOT_A_WORD.match(part) for part in parts):
             raise source.refuse(found=quoted_first_line(text), expected="numbers", line=line)
+
+
+BY_ROWS: Final = "row by row"
+"""What the argument ``component`` takes for a record that is wrapped."""
+
+ROWS: Final = "rows"
+COLUMNS: Final = "columns"
+
+_PIECES: Final = 32
+_FEWEST_ROWS: Final = 64
+"""Pieces of a table of which means are compared; rows below which nothing is said."""
+
+# Of 112 recorded components, each wrapped into 2 to 12 columns, these bounds know 93 %, and take
+# none for columns. Of 3170 tables of two to twelve components that were recorded together, some
+# on floors of one building, with each sample or each second to twentieth, which is like noise, they
+# take none for one record.
+_SURE: Final = 5.0  # standard errors
+_SMOOTHER: Final = 0.2
+_ROUGHER: Final = 0.1
+_ALIKE: Final = 0.4
+_APART: Final = 0.3
+_EQUAL: Final = (0.5, 1.5)
+
+
+def reading_order(values: Array) -> Literal["rows", "columns"] | None:
+    """Tell whether a table is one record, row by row, or one in each column."""
+    rows, columns = values.shape
+    if rows < _FEWEST_ROWS:
+        return None
+    flat = values.ravel() - values.mean()
+    count = (rows - 1) * columns
+    before, after, below = flat[:count], flat[1 : count + 1], flat[columns:]
+    steps = ((after - before) ** 2).reshape(-1, columns)
+    down = ((below - before) ** 2).reshape(-1, columns).sum(axis=1)
+    along = steps.sum(axis=1)
+    if not along.any():
+        return None
+    # each row counts as much as any other: the strong ones are few
+    smoothness = _share(down - along, down + along)
+    size = (before**2 + after**2).reshape(-1, columns)
+    likeness = _share(2.0 * (before * after).reshape(-1, columns), size)
+    shares = _share(steps, along[:, None])[along > 0.0].mean(axis=0) * columns
+    smoother, sure = _mean(smoothness[:, None])
+    alike, certain = _mean(likeness)
+    surely = abs(float(sure[0])) > _SURE
+    least, most = _EQUAL
+    if surely and smoother[0] > _SMOOTHER and alike.min() > _ALIKE and certain.min() > _SURE:
+        return ROWS if shares.min() > least and shares.max() < most else None
+    if surely and smoother[0] < -_ROUGHER and np.abs(alike).min() < _APART:
+        return COLUMNS
+    return None
+
+
+def _share(part: Array, whole: Array) -> Array:
+    """Divide, with zero where nothing moves."""
+    return np.divide(part, whole, out=np.zeros_like(part), where=whole > 0.0)
+
+
+def _mean(values: Array) -> tuple[Array, Array]:
+    """Give the means of columns, and how many of their standard errors they are from zero."""
+    pieces = np.array([piece.mean(axis=0) for piece in np.array_split(values, _PIECES)])
+    mean = pieces.mean(axis=0)
+    error = pieces.std(axis=0, ddof=1) / np.sqrt(_PIECES)
+    return mean, mean / np.maximum(error, np.finfo(np.float64).tiny)
+
+
+_WHOLE: Final = re.compile(r"\d{1,7}", re.ASCII)
+_ONE_NUMBER: Final = re.compile(NUMBER, re.ASCII)
+_FEWEST: Final = 4
+_LOOKED_AT: Final = 20
+_TIDY: Final = re.compile(r"0?\.0{0,4}[1-9]\d?(?:5|25|75)?0*", re.ASCII)
+
+
+@dataclass(frozen=True)
+class FirstLines:
+    """A number of samples and a time step above the samples."""
+
+    count: int  # number of samples
+    time_step: float  # [s]
+    line: int  # where they stand, from 1
+    data_at: int  # index of the first line of samples, from 0
+
+
+def find_first_lines(source: Source) -> FirstLines | None:
+    """Look for a number of samples and a time step above the samples."""
+    rows: list[tuple[int, list[str]]] = []
+    for index, line in enumerate(source.top(3 * HEADER_LINES)):
+        fields = line.split()
+        if not fields or line.lstrip().startswith(COMMENT_MARKS):
+            continue
+        if all(_ONE_NUMBER.fullmatch(field) for field in fields):
+            rows.append((index, fields))
+        elif rows:
+            break
+        if len(rows) == 3:
+            break
+    if len(rows) < 2:
+        return None
+    one_line = len(rows[0][1]) == 2
+    two_lines = len(rows) > 2 and len(rows[0][1]) == len(rows[1][1]) == 1
+    if not (one_line or two_lines):
+        return None
+    head = rows[0][1] if one_line else [rows[0][1][0], rows[1][1][0]]
+    below = rows[1 if one_line else 2]
+    for first, second in (head, head[::-1]):
+        step = float(second.upper().replace("D", "E"))
+        low, high = USUAL_TIME_STEPS
+        if _WHOLE.fullmatch(first) is None or int(first) < 2 or not low <= step <= high:
+            continue
+        held = sum(len(line.split()) for line in source.lines[below[0] :])
+        count = int(first)
+        apart = len(below[1]) != len(rows[0][1])
+        if held == count or (apart and len(below[1]) > 2):
+            return FirstLines(count, step, rows[0][0] + 1, below[0])
+    return None
+
+
+def looks_like_step(table: Table) -> bool:
+    """Tell whether the first number of one column looks like a time step, not a sample."""
+    fields: Sequence[str] = table.first_fields
+    low, high = USUAL_TIME_STEPS
+    if len(fields) < _FEWEST or not low <= table.values[0, 0] <= high:
+        return False
+    shapes = {shape_of(field) for field in fields[1 : _LOOKED_AT + 1]}
+    tidy = _TIDY.fullmatch(fields[0]) is not None
+    return tidy and len(shapes) == 1 and shape_of(fields[0]) not in shapes

@@ -1,4 +1,4 @@
-"""A record file as bytes and as numbered lines, and what every reader hands back."""
+"""A record file as bytes and lines; what is asked of its reader, and what comes back."""
 
 from __future__ import annotations
 
@@ -9,10 +9,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 from rockframe.errors import RecordError
-from rockframe.records.archives import MAXIMUM_BYTES as MAXIMUM_BYTES
-from rockframe.records.received import PathLike as PathLike
-from rockframe.records.received import RecordLike as RecordLike
-from rockframe.records.received import received
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -202,11 +198,6 @@ class StoredMotion:
     metadata: Metadata  # as written
     history: tuple[str, ...]
     recipe: Mapping[str, Any] | None  # constructor and arguments of an analytic motion
-
-
-def read_source(given: RecordLike) -> Source:
-    """Read the bytes of a file, or refuse it."""
-    return source_of(*received(given))
 
 
 def source_of(name: str, data: bytes) -> Source:

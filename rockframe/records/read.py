@@ -11,22 +11,16 @@ import numpy as np
 from rockframe.errors import RecordError, RockframeError
 from rockframe.records.checks import check_no_marks, check_time_step, plausibility
 from rockframe.records.components import EveryComponentError, named
-from rockframe.records.registry import (
-    WITH_RESPONSE,
-    added_failed,
-    by_name,
-    recognised,
-)
-from rockframe.records.source import (
+from rockframe.records.files import RecordLike, read_source
+from rockframe.records.known_formats import WITH_RESPONSE, added_failed, by_name, recognised
+from rockframe.records.record_file import (
     MAXIMUM_SAMPLES,
     Metadata,
     Record,
-    RecordLike,
     Request,
     Source,
     StoredMotion,
     base_name,
-    read_source,
 )
 from rockframe.records.unit_names import RecordUnit
 from rockframe.signals import Motion
@@ -35,7 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from rockframe.records.components import FileComponent
-    from rockframe.records.registry import Format
+    from rockframe.records.known_formats import Format
     from rockframe.signals.arrays import Array
 
 
