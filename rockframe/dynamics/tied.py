@@ -18,6 +18,9 @@ from rockframe.dynamics.trigonometry import sine_cosine
 if TYPE_CHECKING:
     from rockframe.dynamics.statics import Stand, StandingBody
 
+Ends = tuple[tuple[float, float], tuple[float, float]]
+"""Both points of a link."""
+
 STEP = 1e-3
 """Rate by which the force's change with the rate is found [m s^-1]."""
 
@@ -65,20 +68,19 @@ def tied(
 ) -> list[Tied]:
     """Give how links are stretched between bodies that stand."""
     frames = _frames(links, stands)
-    return [
-        _tied(one, stands, frames, None if states is None else states[i])
-        for i, one in enumerate(ties)
-    ]
+    found = list[Tied]()
+    for i, one in enumerate(ties):
+        on, on_way = _point(one.on, one.on_point, stands, frames)
+        to, to_way = _point(one.to, one.to_point, stands, frames)
+        state = None if states is None else states[i]
+        found.append(pulled(one, on - to, on_way - to_way, state))
+    return found
 
 
-def _tied(
-    tie: ChainLink, stands: "Sequence[Stand]", frames: Sequence[_Frame], state: int | None
-) -> Tied:
+def pulled(tie: ChainLink, moved: Vector, way: Matrix, state: int | None = None) -> Tied:
+    """Give how a link is stretched as its first point has moved from its second."""
     law: Any = tie.numbers.law
     apart, given = np.array(tie.apart), math.hypot(*tie.apart)
-    on, on_way = _point(tie.on, tie.on_point, stands, frames)
-    to, to_way = _point(tie.to, tie.to_point, stands, frames)
-    moved = on - to
     now = apart + moved
     length = math.hypot(*now)
     elongation = 0.0 if length == 0.0 else float((2.0 * apart + moved) @ moved) / (length + given)
@@ -91,9 +93,36 @@ def _tied(
     faster, slower = (law.force(found, stretch._replace(rate=rate), own) for rate in (STEP, -STEP))
     direction = np.zeros(2) if length == 0.0 else now / length
     return Tied(
-        law.force(found, stretch, own), elongation, found, 0.5 * (faster - slower) / STEP,
-        on_way - to_way, direction,
+        law.force(found, stretch, own), elongation, found, 0.5 * (faster - slower) / STEP, way,
+        direction,
     )  # fmt: skip
+
+
+def at_rest(ties: Sequence[ChainLink]) -> list[Tied]:
+    """Give how links are stretched as they are given."""
+    return [pulled(one, np.zeros(2), np.zeros((2, 1))) for one in ties]
+
+
+def rocked(
+    ties: Sequence[ChainLink], ends: Sequence[Ends], upper: int, pivot: tuple[float, float],
+    rotation: float,
+) -> list[Tied]:  # fmt: skip
+    """Give how links are stretched as some bodies rotate as one about a fixed point.
+
+    Those from the top down to `upper`. `ends` are both points of each link, upright.
+    """
+    sine, versine = math.sin(rotation), 2.0 * math.sin(0.5 * rotation) ** 2
+    found = list[Tied]()
+    for tie, both in zip(ties, ends, strict=True):
+        moved, way = np.zeros(2), np.zeros((2, 1))
+        for k, end, sign in ((tie.on, both[0], 1.0), (tie.to, both[1], -1.0)):
+            if GROUND < k <= upper:
+                x, y = end[0] - pivot[0], end[1] - pivot[1]
+                turned = np.array([y * sine - x * versine, -x * sine - y * versine])
+                moved += sign * turned
+                way[:, 0] += sign * np.array([y + turned[1], -x - turned[0]])
+        found.append(pulled(tie, moved, way))
+    return found
 
 
 def _frames(links: "Sequence[StandingBody]", stands: "Sequence[Stand]") -> list[_Frame]:

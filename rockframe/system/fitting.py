@@ -50,21 +50,21 @@ def _misfits_of_links(parts: Parts) -> list[str]:
     """Give the faults of links with other parts."""
     faults: list[str] = []
     base = next((one for one in (parts.pads, parts.soil) if one is not None), None)
-    interfaces = () if parts.stack is None else parts.stack.interfaces
-    if base is None or any(slot_of(one) == "ground" for one in interfaces):
-        faults.append(
-            "a Restrainer is given in a scene on rigid ground, which has no equations with "
-            "restrainers yet; put the body on a stiff TwoSpringSupport or on a WinklerSoil"
-        )
     if parts.cap is not None:
         faults.append(
             "a Restrainer and a CushionCap are both given; give the cap as the lowest body of a "
             "Stack"
         )
+    if parts.stack is None and parts.ground is not None:
+        base = parts.ground
+        if base.si.restitution is not None:
+            faults.append(
+                "RigidGround: beside restrainers impacts are plastic; restitution must not be given"
+            )
     if isinstance(base, OwnBase):
         faults.append(
-            "a body with a Restrainer stands on TwoSpringSupport or WinklerSoil, not on "
-            f"{type(base).__name__}"
+            "a body with a Restrainer stands on TwoSpringSupport, WinklerSoil or RigidGround, not "
+            f"on {type(base).__name__}"
         )
     if base is not None and getattr(base.si, "friction", None) is not None:
         faults.append(

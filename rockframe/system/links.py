@@ -141,7 +141,7 @@ def placed(
             continue
         ends, points = [], []
         for k, (x, y) in ((on, part.si.on), (to, part.si.to)):
-            middle, base = (0.0, 0.0) if k < 0 else _base_of(k, bodies, tops, offsets)
+            middle, base = (0.0, 0.0) if k < 0 else base_of(k, bodies, tops, offsets)
             ends.append((middle + x, base + y))
             points.append((x, y) if k < 0 else (x - bodies[k].eccentricity,
                                                 y - bodies[k].centre_height))  # fmt: skip
@@ -159,7 +159,7 @@ def link_labels(parts: Sequence[Link]) -> list[str]:
     return [part.si.name or f"restrainer {i}" for i, part in enumerate(parts, 1)]
 
 
-def _base_of(
+def base_of(
     k: int, bodies: Sequence[SupportedBody], tops: Sequence[float], offsets: Sequence[float]
 ) -> tuple[float, float]:
     """Give the middle of the base of an upright body from that of the lowest one."""

@@ -1,16 +1,21 @@
-"""Rigid ground under a body of a stack: what it is called, and the law of its equations."""
+"""Rigid bases under bodies of a stack: their words, the law of their equations, and statics."""
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rockframe.components import RigidGround
 from rockframe.system.load import Load
+from rockframe.system.statics import Statics
 from rockframe.system.support import BaseWords, Support
 from rockframe.system.words import uplift_words
 
 if TYPE_CHECKING:
     from rockframe.dynamics.base_numbers import BaseNumbers
     from rockframe.dynamics.body import Body
+    from rockframe.dynamics.tied import Tied
+    from rockframe.system.stack import StackSetting
 
 NO_VERTICAL_START = (
     "InitialState: vertical_displacement and vertical_velocity need a base that gives way; on "
@@ -74,3 +79,85 @@ class RigidBase(Support):
 def rigid_under(part: RigidGround, load: Load) -> RigidBase:
     """Give a rigid base under a body."""
     return RigidBase(load)
+
+
+REACTIONS = ("left_reaction", "right_reaction")
+
+
+class Pressed(NamedTuple):
+    """What a rigid base carries in full contact, and the couples that lift its corners [N, N m]."""
+
+    force: float
+    to_left: float  # couple on what stands on it that lifts the right corner, to the left
+    to_right: float
+
+    def bears(self, couple: float) -> bool:
+        """Whether both corners press under a couple to the right."""
+        return -self.to_left <= couple <= self.to_right
+
+
+def pressed(setting: "StackSetting", k: int, tied: "Sequence[Tied]") -> Pressed:
+    """Give what the rigid base under body `k` carries, :eq:`eq-link-rest`.
+
+    All above it, and what links pull where their points are upright.
+    """
+    load = setting.bases[k].load
+    force, couple = load.weight, 0.0
+    level = setting.base_of(k)
+    foot = level[0] + load.body.eccentricity  # below the centre of mass
+    for one, pull in zip(setting.ties, tied, strict=True):
+        for body, end, sign in ((one.on, one.ends[0], -1.0), (one.to, one.ends[1], 1.0)):
+            if 0 <= body <= k:
+                x, y = sign * setting.body.mass * pull.force * pull.direction
+                force -= y
+                couple += x * (end[1] - level[1]) - y * (end[0] - foot)
+    return Pressed(force, force * load.body.left + couple, force * load.body.right - couple)
+
+
+def rocked_statics(setting: "StackSetting", rotation: float) -> Statics:
+    """Give the equilibrium where all bases are rigid: all above the weakest one rocks."""
+    from rockframe.dynamics.tied import at_rest, rocked
+
+    right, mass = rotation > 0.0, setting.body.mass
+    side = 1.0 if right else -1.0
+    tied = at_rest(setting.chain_ties)
+    capacities = [
+        of.to_right if right else of.to_left
+        for of in (pressed(setting, j, tied) for j in range(len(setting.bases)))
+    ]
+    k = capacities.index(min(capacities))
+    load, (middle, foot) = setting.bases[k].load, setting.base_of(k)
+    half = load.body.right if right else load.body.left
+    corner = middle + side * load.body.half_width
+    sine, versine = math.sin(abs(rotation)), 2.0 * math.sin(0.5 * rotation) ** 2
+    arm = half * (1.0 - versine) - load.body.centre_height * sine
+    moment = 0.0
+    if rotation != 0.0:
+        ends = [one.ends for one in setting.ties]
+        tied = rocked(setting.chain_ties, ends, k, (corner, foot), rotation)
+        pull = sum(float(one.loads[0]) for one in tied)
+        moment = side * load.weight * arm - mass * pull
+    # of each centre of mass beside the middle of the lowest base; of the highest its rise
+    rise, base_moment = 0.0, moment
+    for j in range(len(setting.bodies) - 1, -1, -1):
+        one, (place, level) = setting.bodies[j], setting.base_of(j)
+        across, up = place + one.eccentricity, level + one.centre_height
+        if j <= k and rotation != 0.0:
+            away, above = side * (corner - across), up - foot
+            across = corner - side * (away * (1.0 - versine) - above * sine)
+            rise = away * sine - above * versine
+        base_moment += setting.gravity * one.mass * across
+    down = math.fsum(setting.gravity * one.mass for one in setting.bodies)
+    for one, pull in zip(setting.ties, tied, strict=True):  # those to the ground, which stays
+        if one.to < 0:
+            x, y = -mass * pull.force * pull.direction
+            base_moment += x * one.ends[1][1] - y * one.ends[1][0]
+            down -= y
+    alone = len(setting.bodies) == 1
+    state = "full" if rotation == 0.0 or k > 0 else "right" if right else "left"
+    shift = base_moment / setting.bodies[-1].half_width
+    reactions = (0.5 * (down - shift), 0.5 * (down + shift))
+    if rotation != 0.0:
+        reactions = (0.0, down) if right else (down, 0.0)
+    shown: dict[str, float] = dict(zip(REACTIONS, map(float, reactions), strict=True))
+    return Statics(rise, float(base_moment), float(moment), state, shown if alone else {})

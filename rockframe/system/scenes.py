@@ -79,9 +79,9 @@ def _stacked(kind: type[StackedSetting], parts: Parts, options: Options) -> Stac
 
 def _upon_one_another(slot: str, parts: Parts, options: Options) -> StackSetting:
     """Put a stack, or a block with restrainers, on the base in a slot."""
-    if parts.stack is None:
-        return block_setting(parts.the_block, parts[slot], options, parts.links)
     base = parts.components().get(slot, RigidGround())
+    if parts.stack is None:
+        return block_setting(parts.the_block, base, options, parts.links)
     return stack_setting(parts.stack, base, options, parts.links)
 
 
@@ -121,12 +121,16 @@ _SHIPPED: Final = (
     Scene("Stack + WinklerSoil", frozenset({"stack", "soil"}), partial(_upon_one_another, "soil")),
     *(
         Scene(
-            f"{upper} + {lower} + Restrainer (one or several)",
-            frozenset({slot, under, RESTRAINER}),
+            f"{upper} + {lower}Restrainer (one or several)",
+            frozenset({slot, under, RESTRAINER}) - {"ground"},
             partial(_upon_one_another, under),
         )
         for upper, slot in (("Block", "block"), ("Stack", "stack"))
-        for lower, under in (("TwoSpringSupport", "pads"), ("WinklerSoil", "soil"))
+        for lower, under in (
+            ("", "ground"),
+            ("TwoSpringSupport + ", "pads"),
+            ("WinklerSoil + ", "soil"),
+        )
     ),
 )
 

@@ -11,12 +11,12 @@ from rockframe.components.block_numbers import BlockSI
 from rockframe.dynamics.statics import Stand, StandingBody, StandingChain, link_of
 from rockframe.errors import AssemblyError
 from rockframe.system.bodies import SupportedBody, body_of_block
-from rockframe.system.links import PlacedLink, placed
+from rockframe.system.links import PlacedLink, base_of, placed
 from rockframe.system.load import Load, load_of
 from rockframe.system.options import Options
 from rockframe.system.overturning_energy import least_overturning_energy
 from rockframe.system.restraints import restraint_words
-from rockframe.system.rigid_base import RigidBase
+from rockframe.system.rigid_base import REACTIONS, RigidBase, pressed, rocked_statics
 from rockframe.system.setting import Setting
 from rockframe.system.slots import support_of
 from rockframe.system.small_motion import SmallMotion
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from rockframe.dynamics.chain.linked import ChainLink
     from rockframe.dynamics.chain.model import AtRest, ChainBody
     from rockframe.dynamics.protocol import ContactModel
+    from rockframe.dynamics.tied import Tied
 
 NO_REST: Final = "the bodies find no rest under their weight: their bases are too soft for them"
 
@@ -173,8 +174,27 @@ class StackSetting(Setting):
             numbers.append(self.bases[lowest].law(law, mass, carried))
             part = OnBase(law, numbers[-1].law)
             found.append(link_of(part, body.mass / mass, height - body.centre_height, beside))
-        chain = StandingChain(tuple(found), self.slope.along_gravity, self.chain_ties)
+        ties = tuple(self._between_groups(one) for one in self.ties)
+        chain = StandingChain(tuple(found), self.slope.along_gravity, ties)
         return StandingBodies(chain, mass, tuple(numbers))
+
+    def _between_groups(self, tie: PlacedLink) -> "ChainLink":
+        """Give a tie between bodies that rigid bases make one; what is on the ground stays."""
+        found = tie.chain_link(self.body.mass)
+        if not any(self.rigid):
+            return found
+        which, points = [-1, -1], [(0.0, 0.0), (0.0, 0.0)]
+        for i, (body, (x, y)) in enumerate(zip((tie.on, tie.to), tie.ends, strict=True)):
+            for number, some in enumerate(self.groups):
+                if body in some:
+                    one, (place, level) = self._together(some), self.base_of(some[-1])
+                    which[i] = number
+                    points[i] = (x - place - one.eccentricity, y - level - one.centre_height)
+        return found._replace(on=which[0], on_point=points[0], to=which[1], to_point=points[1])
+
+    def base_of(self, k: int) -> tuple[float, float]:
+        """Give the middle of the base of an upright body from that of the lowest one [m]."""
+        return base_of(k, self.bodies, self.tops, self.offsets)
 
     def _together(self, some: range) -> SupportedBody:
         """Give bodies that rigid bases make one."""
@@ -190,6 +210,15 @@ class StackSetting(Setting):
         found = self._standing.rest if self.groups else []
         if found is None:
             raise AssemblyError([NO_REST])
+        faults = list[str]()
+        for k, rigid in enumerate(self.rigid):
+            if rigid and not (carried := pressed(self, k, self._tied_at_rest)).bears(0.0):
+                side = "right" if carried.to_right < 0.0 else "left"
+                faults.append(
+                    f"weights and restrainers tip body {k + 1} to the {side}, off its rigid base"
+                )
+        if faults:
+            raise AssemblyError(faults)
         return found
 
     def _placed_at_rest(self) -> "list[AtRest]":
@@ -256,59 +285,29 @@ class StackSetting(Setting):
         On rigid bases beside others, up to the couple at which a corner lifts from one.
         """
         if not self.groups:
-            return [self._on_rigid_bases(rotation) for rotation in rotations]
+            return [rocked_statics(self, rotation) for rotation in rotations]
         found = self._standing.held(rotations)
         if len(self.bodies) == 1:
             return found
+        held = [pressed(self, k, self._tied_at_rest) for k, rigid in enumerate(self.rigid) if rigid]
         return [
             replace(one, reactions={})
-            if one is not None and self._bear(one.restoring_moment) else None
+            if one is not None and all(base.bears(one.restoring_moment) for base in held)
+            else None
             for one in found
-        ]  # fmt: skip
-
-    def _bear(self, moment: float) -> bool:
-        """Whether rigid bases bear a couple on the highest body in full contact."""
-        loads = [base.load for base in self._rigid_bases]
-        return all(
-            -one.weight * one.body.left <= moment <= one.weight * one.body.right for one in loads
-        )
-
-    def _on_rigid_bases(self, rotation: float) -> Statics:
-        """Give the equilibrium where all bases are rigid: all above the weakest one rocks."""
-        right = rotation > 0.0
-        side = 1.0 if right else -1.0
-
-        def half_of(base: Support) -> float:
-            return base.load.body.right if right else base.load.body.left
-
-        capacities = [base.load.weight * half_of(base) for base in self.bases]
-        k = capacities.index(min(capacities))
-        load, half = self.bases[k].load, half_of(self.bases[k])
-        sine, versine = math.sin(abs(rotation)), 2.0 * math.sin(0.5 * rotation) ** 2
-        arm = half * (1.0 - versine) - load.body.centre_height * sine
-        moment = side * load.weight * arm if rotation != 0.0 else 0.0
-        # of each centre of mass beside the middle of the lowest base; of the highest its rise
-        place = level = rise = corner = foot = 0.0
-        base_moment = moment
-        for j in range(len(self.bodies) - 1, -1, -1):
-            one = self.bodies[j]
-            place += self.offsets[j]
-            across, up = place + one.eccentricity, level + one.centre_height
-            if j == k:
-                corner, foot = place + side * one.half_width, level
-            if j <= k and rotation != 0.0:
-                away, above = side * (corner - across), up - foot
-                across = corner - side * (away * (1.0 - versine) - above * sine)
-                rise = away * sine - above * versine
-            base_moment += self.gravity * one.mass * across
-            level += one.centre_height + self.tops[j]
-        state = "full" if rotation == 0.0 or k > 0 else "right" if right else "left"
-        return Statics(rise, base_moment, moment, state)
+        ]
 
     def equilibrium(self) -> dict[str, float]:
         """Give what the one base and the ties show at rest; each of several has its own."""
         found = dict[str, Any]()
-        if len(self.bodies) == 1:
+        if len(self.bodies) == 1 and not self.groups:
+            carried = pressed(self, 0, self._tied_at_rest)
+            left, right = self.body.left, self.body.right
+            reactions = (carried.to_right / (left + right), carried.to_left / (left + right))
+            found = {"uplift_moment": carried.force * self.body.half_width} | {
+                f"static_{name}": value for name, value in zip(REACTIONS, reactions, strict=True)
+            }
+        elif len(self.bodies) == 1:
             shown = self._standing.reactions(self._rest)
             found = {
                 self.bases[0].settlement_name: self.bases[0].settlement,
@@ -316,11 +315,20 @@ class StackSetting(Setting):
             }
         return found | self.tied_at_rest()
 
+    @cached_property
+    def _tied_at_rest(self) -> "list[Tied]":
+        """How the ties are stretched at rest."""
+        from rockframe.dynamics.tied import at_rest
+
+        if not self.groups:
+            return at_rest(self.chain_ties)
+        return self._standing.chain.tied(self._standing.rest or [])
+
     def tied_at_rest(self) -> dict[str, Any]:
         """Give forces and elongations of ties at rest, by their names in the schema."""
         if not self.ties:
             return {}
-        tied = self._standing.chain.tied(self._rest)
+        tied = self._tied_at_rest
         return {
             "restrainer": [one.name for one in self.ties],
             "static_restrainer_force": [self.body.mass * one.force for one in tied],
@@ -338,7 +346,7 @@ class StackSetting(Setting):
         ]
         return chain(
             self.links, self.body.mass, rest if self.leans else None, limits, self.chain_ties,
-            self._held_height if self.ties and len(self.bodies) == 1 else None,
+            self._held_height if self.ties and len(self.bodies) == 1 and self.groups else None,
         )  # fmt: skip
 
     def _held_height(self, rotation: float) -> float:

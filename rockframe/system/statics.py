@@ -52,8 +52,8 @@ def required_states(rotations: Sequence[float], states: Sequence[Statics | None]
     for rotation, state in zip(rotations, states, strict=True):
         if state is None:
             msg = (
-                "no equilibrium of cap and soil was found with the block held at "
-                f"{rotation:.6g} rad: the soil cannot carry the moment"
+                "no equilibrium was found with the highest body held at "
+                f"{rotation:.6g} rad: what it stands on cannot carry the moment"
             )
             raise SolverError(msg)
         found.append(state)

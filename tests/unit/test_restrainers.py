@@ -65,7 +65,8 @@ def test_what_makes_no_tie_is_refused(changes, words):
 @pytest.mark.parametrize(
     ("parts", "words"),
     [
-        ((BLOCK, TIE), "on rigid ground"),
+        ((BLOCK, rf.RigidGround(restitution=0.9), TIE), "restitution must not be given"),
+        ((BLOCK, PRELOADED.replace(preload="20 kN")), "tip body 1 to the right"),
         ((BLOCK, PADS, TIE, TIE), "two links are called 'upper'"),
         ((BLOCK, PADS, TIE.replace(on_body=2)), "there is no body 2"),
         ((BLOCK, PADS, TIE.replace(to_body=1)), "both its points are on body 1"),
@@ -104,6 +105,98 @@ def test_the_mirror_image_moves_as_the_mirror_image():
     other = run(BLOCK, PADS, *map(mirrored, ties), motion=PULSE.scaled(-1.0))
     np.testing.assert_allclose(found.rotation, -other.rotation, rtol=0, atol=1e-9)
     np.testing.assert_allclose(found.restrainer_force, other.restrainer_force, atol=1e-3)
+
+
+def test_on_rigid_ground_a_tie_that_never_pulls_changes_nothing():
+    far = TIE.replace(slack="1 km")
+    options = {"motion": PULSE.scaled(0.6), "accuracy": "reference", "outputs": ("energy",)}
+    free, found = run(BLOCK, **options), run(BLOCK, far, **options)
+    np.testing.assert_allclose(found.rotation, free.rotation, rtol=0, atol=1e-10)
+    assert int(found.impact_count) == int(free.impact_count) > 1
+    assert imbalance(found) < 1e-8
+
+
+def test_on_rigid_ground_the_mirror_image_moves_as_the_mirror_image():
+    ties = (TIE.replace(brittle=False), TIE.replace(on=("0.2 m", "4 m"), name="top"))
+    found = run(BLOCK, *ties)
+    other = run(BLOCK, *map(mirrored, ties), motion=PULSE.scaled(-1.0))
+    np.testing.assert_allclose(found.rotation, -other.rotation, rtol=0, atol=1e-9)
+    assert float(abs(found.restrainer_force).max()) == pytest.approx(5000.0)
+    yielded = found.event_kind == EventKind.RESTRAINER_YIELD
+    assert int(yielded.sum()) > 0
+
+
+def test_on_rigid_ground_ties_a_million_times_stiffer_than_the_weight_hold():
+    ties = [
+        rf.Restrainer(on=(f"{x} m", "0 m"), to=(f"{x} m", "0 m"), stiffness="40 GN/m")
+        for x in (-0.5, 0.5)
+    ]
+    pulse = rf.GroundMotion.sine_pulse(amplitude="5 m/s^2", frequency="20 Hz")
+    system = rf.System(BLOCK, *ties)
+    found = system.simulate(pulse, duration="0.05 s", outputs=("energy",))
+    assert 0.0 < float(found.peak_rotation) < 1e-6
+    assert float(found.energy_residual) < 1e-8
+    # as those that can break, if not at any force there is
+    strong = rf.System(BLOCK, *(one.replace(strength="1e12 N") for one in ties))
+    again = strong.simulate(pulse, duration="0.05 s", outputs=("energy",))
+    np.testing.assert_array_equal(again.rotation, found.rotation)
+
+
+def test_ties_on_rigid_ground_add_their_closed_forms():
+    b, k, z = 0.5, 2e5, 3.0
+    angles = np.array([0.02, 0.1, 0.2])
+    free = rf.System(BLOCK).moment_rotation((angles, "rad"))
+    corner = rf.Restrainer(on=("-0.5 m", "0 m"), to=("-0.5 m", "0 m"), stiffness=f"{k} N/m")
+    tied = rf.System(BLOCK, corner).moment_rotation((angles, "rad"))
+    np.testing.assert_allclose(
+        tied.restoring_moment - free.restoring_moment, 4.0 * k * b**2 * np.sin(angles), rtol=1e-12
+    )
+    # all the vertical load stands on the corner
+    np.testing.assert_allclose(tied.base_moment, tied.held_right_reaction * b, rtol=1e-12)
+    level = rf.Restrainer(on=("-0.5 m", f"{z} m"), to=("-1e9 m", f"{z} m"), stiffness=f"{k} N/m")
+    tied = rf.System(BLOCK, level).moment_rotation((angles, "rad"))
+    stretch = 2.0 * b * (1.0 - np.cos(angles)) + z * np.sin(angles)
+    moment = k * stretch * (2.0 * b * np.sin(angles) + z * np.cos(angles))
+    np.testing.assert_allclose(tied.restoring_moment - free.restoring_moment, moment, rtol=1e-6)
+
+
+def test_a_preload_raises_the_acceleration_at_which_a_block_uplifts():
+    half = [PRELOADED, mirrored(PRELOADED).replace(name="left")]
+    down = [
+        one.replace(on=(one.on[0], "1 m"), to=(one.on[0], "-2 m"), preload="5 kN") for one in half
+    ]
+    system = rf.System(BLOCK, *down)
+    rest = system.equilibrium()
+    weight = 4000.0 * 9.80665
+    np.testing.assert_allclose(rest.static_left_reaction, 0.5 * weight + 5000.0)
+    assert float(rest.uplift_moment) == pytest.approx(0.5 * (weight + 10000.0))
+    threshold = 9.80665 * 0.25 * (1.0 + 10000.0 / weight)
+    for scale, starts in ((0.999, False), (1.001, True)):
+        motion = rf.GroundMotion.from_arrays(
+            ([0.0, scale * threshold, 0.0], "m/s^2"), time_step="0.5 s"
+        )
+        found = run(BLOCK, *down, motion=motion)
+        assert (float(found.peak_rotation) > 0.0) is starts
+    assert system.setting.overturning_energy > rf.System(BLOCK).setting.overturning_energy
+
+
+def test_a_stack_on_rigid_bases_is_tied():
+    plinth = rf.Block(width="1.4 m", height="1 m", mass="5 t")
+    stack = rf.Stack(BLOCK, plinth, interfaces=[rf.RigidGround()])
+    anchor = rf.Restrainer(
+        on=("-0.5 m", "1 m"), to=("-0.6 m", "0.5 m"), stiffness="1 MN/m", to_body=2,
+        slack="1 mm", strength="20 kN", brittle=False, name="anchor",
+    )  # fmt: skip
+    for base in (rf.RigidGround(), PADS):
+        found = run(stack, base, anchor, TIE, outputs=("energy",))
+        assert float(found.peak_restrainer_force.min()) > 0.0
+        assert imbalance(found) < 1e-8
+        assert rf.System(stack, base, anchor, TIE).setting.overturning_energy > 0.0
+        free, tied = (
+            rf.System(stack, base, *some).moment_rotation(([0.002], "rad"))
+            for some in ((), (anchor, TIE))
+        )
+        assert float(tied.restoring_moment[0]) > float(free.restoring_moment[0])
 
 
 def test_a_corner_tie_adds_its_closed_form():

@@ -14,6 +14,7 @@ from rockframe.compiled import Vector, filled, inlined, kernel, part_of, stretch
 from rockframe.dynamics.bodies import DEGREES
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.motion import place_bodies
+from rockframe.dynamics.chain.rigid import RigidChain
 from rockframe.dynamics.chain.rows import COLUMNS, CONSTRAINT, MODES, MOST_CONSTRAINTS, PLACES, ROW
 from rockframe.dynamics.chain.rows import GUARDS as BODY_GUARDS
 from rockframe.dynamics.chain.system import Chain
@@ -95,14 +96,16 @@ class LinkedLists(NamedTuple):
     rows: Vector  # those of a chain; then of the links, and room to work in
 
 
-class LinkedChain(LinkedLists, Chain):  # pyright: ignore[reportGeneralTypeIssues]
-    """Bodies upon one another, and what links them: a system.
+class Linked(Chain):
+    """What bodies upon one another have of what links them. A mixin of systems.
 
     The horizontal coordinate of the lowest body moves wherever that is held, as those of all
     others do, for links ask where it is.
     """
 
     __slots__ = ()
+    link_count: int
+    law: Any
 
     @inlined
     def first_link(self) -> int:
@@ -187,12 +190,13 @@ class LinkedChain(LinkedLists, Chain):  # pyright: ignore[reportGeneralTypeIssue
         return stretch(state, 2 * DEGREES * self.body_count + i * each, each)
 
     @kernel
-    def lay(self, state: Vector, room: Vector) -> None:
+    def lay(self, mode: int, state: Vector, room: Vector) -> None:
         """Write how all bodies lie, from where they are given, after they are placed."""
         lies, x, y, rate, angle = self.lies(), 0.0, 0.0, 0.0, 0.0
         for k in range(self.body_count - 1, -1, -1):
             i, j = k * PLACES, k * LIES
-            body, sine, cosine = self.state_of(k, state), room[i + at.SINE], room[i + at.COSINE]
+            body = self.standing_state(k, self.part_mode(mode, k), state)
+            sine, cosine = room[i + at.SINE], room[i + at.COSINE]
             y = self.rise_of(k, y, body.vertical, room)
             if k + 1 < self.body_count:
                 across = room[i + at.ACROSS]
@@ -258,7 +262,7 @@ class LinkedChain(LinkedLists, Chain):  # pyright: ignore[reportGeneralTypeIssue
     def pull(self, mode: int, state: Vector, room: Vector) -> float:
         """Load all bodies by their links, :eq:`eq-link-loads`; give what these dissipate."""
         lies, out, lost = self.lies(), self.slopes(), 0.0
-        self.lay(state, room)
+        self.lay(mode, state, room)
         for k in range(self.body_count):
             lies[k * LIES + PULLED_X] = lies[k * LIES + PULLED_Y] = 0.0
         for i in range(self.link_count):
@@ -344,15 +348,16 @@ class LinkedChain(LinkedLists, Chain):  # pyright: ignore[reportGeneralTypeIssue
     @kernel
     def switch(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:
         """Carry out the switch that a guard calls for; give the new mode."""
-        shown = HELD_PLACE + self.body_count
+        shown, place = HELD_PLACE + self.body_count, self.link_place()
         first = BODY_GUARDS * self.body_count
         if guard < first:
-            memory[shown + 1] = 0.0
-            return self.switch_on_base(mode, guard, state, ground, memory)
+            memory[place] = 0.0
+            return self.switch_body(mode, guard, state, ground, memory)
+        self.begin_event(memory)
         i = (guard - first) // GUARDS
         row, own, room = self.row_of_link(i), self.of_link(i, state), self.places()
         place_bodies(self, mode, state, room)
-        self.lay(state, room)
+        self.lay(mode, state, room)
         on, to = self.points_of(row, room)
         standing, value = self.link_state(mode, row), int(row[PLACE_VALUE])
         found = filled(self.law, part_of(row, NUMBERS)).switch(
@@ -360,14 +365,14 @@ class LinkedChain(LinkedLists, Chain):  # pyright: ignore[reportGeneralTypeIssue
         )
         memory[LAST_EVENT] = found.event
         memory[LINK_LOSS] += found.lost
-        memory[shown], memory[shown + 1] = 0.0, i + 1.0
+        memory[shown], memory[place] = 0.0, i + 1.0
         return mode + value * (found.state - standing)
 
     @kernel
     def energies(self, mode: int, state: Vector) -> Energies:
         """Give the energies of all bodies, bases and links."""
         found, room = self.energies_of_bodies(mode, state), self.places()
-        self.lay(state, room)
+        self.lay(mode, state, room)
         elastic, change = found.elastic, found.from_rest
         for i in range(self.link_count):
             row, own = self.row_of_link(i), self.of_link(i, state)
@@ -399,7 +404,7 @@ class LinkedChain(LinkedLists, Chain):  # pyright: ignore[reportGeneralTypeIssue
         """Keep what links store at rest, from which energies are told."""
         room = self.places()
         place_bodies(self, mode, state, room)
-        self.lay(state, room)
+        self.lay(mode, state, room)
         for i in range(self.link_count):
             row, own = self.row_of_link(i), self.of_link(i, state)
             stretched = self.drawn(row, *self.points_of(row, room)).stretch
@@ -411,7 +416,7 @@ class LinkedChain(LinkedLists, Chain):  # pyright: ignore[reportGeneralTypeIssue
         """Give the mode with the states in which links start; sets their variables."""
         room = self.places()
         place_bodies(self, mode, state, room)
-        self.lay(state, room)
+        self.lay(mode, state, room)
         for i in range(self.link_count):
             row, own = self.row_of_link(i), self.of_link(i, state)
             on, to = self.points_of(row, room)
@@ -420,6 +425,21 @@ class LinkedChain(LinkedLists, Chain):  # pyright: ignore[reportGeneralTypeIssue
             )
             mode += int(row[PLACE_VALUE]) * (found - self.link_state(mode, row))
         return mode
+
+
+class LinkedChain(LinkedLists, Linked):  # pyright: ignore[reportGeneralTypeIssues]
+    """Bodies upon one another, and what links them: a system."""
+
+    __slots__ = ()
+
+
+class LinkedRigidChain(LinkedLists, Linked, RigidChain):  # pyright: ignore[reportGeneralTypeIssues]
+    """The same where some bodies stand on rigid bases.
+
+    Forces of links are finite: impacts are those without them.
+    """
+
+    __slots__ = ()
 
 
 @inlined
@@ -439,7 +459,7 @@ class ChainLink(NamedTuple):
     numbers: LinkNumbers
 
 
-def linked(chain: Chain, links: Sequence[ChainLink]) -> LinkedChain:
+def linked(chain: Chain, links: Sequence[ChainLink]) -> LinkedChain | LinkedRigidChain:
     """Give a chain with links."""
     laws = [one.numbers.law for one in links]
     if len({type(law) for law in laws}) != 1:
@@ -453,7 +473,8 @@ def linked(chain: Chain, links: Sequence[ChainLink]) -> LinkedChain:
     room = (LIES + DEGREES + 2 * BODY_GUARDS + COLUMNS) * chain.body_count
     room += variables + POWERS + (2 * GUARDS + LINK_COLUMNS) * count
     numbers = np.concatenate([chain.rows, *rows, np.zeros(room)])
-    return LinkedChain(chain.body_count, count, law, numbers)
+    kind = LinkedRigidChain if isinstance(chain, RigidChain) else LinkedChain
+    return kind(chain.body_count, count, law, numbers)
 
 
 def _row_of(link: ChainLink, value: int) -> Vector:

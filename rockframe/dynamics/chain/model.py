@@ -18,7 +18,7 @@ from rockframe.dynamics.bed import Rigid, both_contacts
 from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, DEGREES, ROTATION, VERTICAL
 from rockframe.dynamics.body import Body, BodyState
 from rockframe.dynamics.chain import rows as at
-from rockframe.dynamics.chain.linked import ChainLink, LinkedChain, linked
+from rockframe.dynamics.chain.linked import ChainLink, Linked, linked
 from rockframe.dynamics.chain.rigid import KEPT, RigidChain
 from rockframe.dynamics.chain.rows import GUARDS, OBSERVED, lists_of, row_of
 from rockframe.dynamics.chain.system import Chain
@@ -109,15 +109,12 @@ def chain(
     system = linked(bare, ties) if ties else bare
     fastest, damping_rate = fastest_vibration(links, ties)
     rigid = some_rigid(links)
-    if rigid and ties:
-        msg = "links of bodies on rigid bases have no equations yet"
-        raise TypeError(msg)
     carried = np.cumsum([one.mass for one in links])
     starts = Starts(links, rest, held)
-    if isinstance(system, LinkedChain):
+    if isinstance(system, Linked):
         mode, state, _ = _initial(system, starts, Start())
         system.keep_energies(mode, state)
-    tied = system.link_count if isinstance(system, LinkedChain) else 0
+    tied = system.link_count if isinstance(system, Linked) else 0
     scales = [size for one in ties for size in one.numbers.variable_scales]
     return ContactModel(
         name="stack",
@@ -331,7 +328,7 @@ class Starts(NamedTuple):
 def _initial(system: Chain, starts: Starts, start: Start) -> tuple[int, Vector, Vector]:
     """Start a run: all at rest but the first body, which is as told."""
     count, rest = len(starts.links), starts.rest
-    tied = isinstance(system, LinkedChain)
+    tied = isinstance(system, Linked)
     n = DEGREES * count
     placed = list(rest or [AtRest(0.0, 0.0)] * count)
     below = sum(one.rotation for one in placed[1:])
@@ -348,7 +345,7 @@ def _initial(system: Chain, starts: Starts, start: Start) -> tuple[int, Vector, 
             lift = part.body.left * attitude.sine, -part.body.right * attitude.sine
             height = part.base.resting_height(*lift, ()) - attitude.rise
         placed[0] = AtRest(rotation, height)
-    state, memory = np.zeros(2 * n + system.variables()), np.zeros(len(MEMORY) + count + tied)
+    state, memory = np.zeros(2 * n + system.variables()), np.zeros(len(MEMORY) + count)
     mode = 0
     for k, one in enumerate(placed):
         part, moving = system.on_base(k), k == 0
@@ -385,6 +382,7 @@ def _initial(system: Chain, starts: Starts, start: Start) -> tuple[int, Vector, 
     if isinstance(system, RigidChain):
         memory = np.concatenate([memory, [1.0, 0.0, 0.0]])
         system.write_contacts(mode, state, memory)
-    if isinstance(system, LinkedChain):
+    if isinstance(system, Linked):
+        memory = np.append(memory, 0.0)
         mode = system.start_links(mode, state)
     return mode, state, memory

@@ -72,6 +72,16 @@ class RigidChain(Chain):
         return self.number(k, at.LAW) == at.ON_RIGID
 
     @inlined
+    def begin_event(self, memory: Vector) -> None:
+        """Forget what the last event left: unless told, one set of corners was admissible."""
+        memory[HELD_PLACE + self.body_count + ADMISSIBLE] = 1.0
+
+    @inlined
+    def link_place(self) -> int:
+        """Give the place of the last event's link in the memory of a chain that has links."""
+        return HELD_PLACE + self.body_count + 1 + len(KEPT)
+
+    @inlined
     def band(self) -> int:
         """Give how far apart constraints that have a body in common may stand."""
         return 5
@@ -153,8 +163,8 @@ class RigidChain(Chain):
         return self.on_base(k).observed_base(standing, body, ())
 
     @kernel
-    def guards_in(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
-        """Give the guards of each body in turn, and their rates."""
+    def guards_of_bodies(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
+        """Write the guards of each body in turn, and their rates."""
         values, changes = self.guard_room(0), self.guard_room(1)
         self.accelerate(mode, state, ground)
         for k in range(self.body_count):
@@ -255,10 +265,12 @@ class RigidChain(Chain):
         return least < -NOISE * all_of_them
 
     @kernel
-    def switch(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:
-        """Carry out the switch that a guard calls for; give the new mode."""
+    def switch_body(
+        self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector
+    ) -> int:
+        """Carry out the switch that a guard of a body calls for; give the new mode."""
         k, count = guard // GUARDS, self.body_count
-        memory[HELD_PLACE + count + ADMISSIBLE] = 1.0
+        self.begin_event(memory)
         contact, which = self.part_mode(mode, k).contact, guard - k * GUARDS
         left = which < CORNER_GUARDS
         if (

@@ -274,7 +274,23 @@ class Chain(Rows):
     @kernel
     def switch(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:
         """Carry out the switch that a guard calls for; give the new mode."""
+        return self.switch_body(mode, guard, state, ground, memory)
+
+    @inlined
+    def switch_body(
+        self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector
+    ) -> int:
+        """Carry out the switch that a guard of a body calls for; give the new mode."""
         return self.switch_on_base(mode, guard, state, ground, memory)
+
+    @inlined
+    def begin_event(self, memory: Vector) -> None:
+        """Forget what the last event left: nothing here."""
+
+    @inlined
+    def link_place(self) -> int:
+        """Give the place of the last event's link in the memory of a chain that has links."""
+        return HELD_PLACE + self.body_count + 1
 
     @inlined
     def switch_on_base(

@@ -1,0 +1,139 @@
+"""A block on rigid ground with ties against an equation written by hand, in random scenes."""
+
+import math
+from collections import Counter
+
+import numpy as np
+import pytest
+
+import rockframe as rf
+from rockframe.dynamics.events import EventKind
+
+from .monoliths import tied_rigid_block, ties
+
+GRAVITY = 9.80665
+TIME_STEP = 0.05
+DURATION = 1.5
+SCENES = (1, 2, 5, 14, 15)
+AGREES = 1e-6
+
+
+def draw(number: int) -> dict:
+    """Draw a block, one to three ties, a start and a motion."""
+    rng = np.random.default_rng([1202, number])
+    width = rng.uniform(0.4, 1.5)
+    height = width * rng.uniform(1.5, 5.0)
+    some = []
+    for _ in range(int(rng.integers(1, 4))):
+        side = 1.0 if rng.random() < 0.5 else -1.0
+        up = height * rng.uniform(0.1, 1.0)
+        # stiff enough to hold, and not so that it cannot be seen
+        stiffness = GRAVITY * width / height**2 * 10.0 ** rng.uniform(0.0, 3.0)
+        stretch = 0.1 * width * rng.uniform(0.1, 1.0)
+        rod, kind = rng.random() < 0.25, rng.integers(3)
+        some.append(
+            {
+                "on": (0.5 * side * width, up),
+                "to": (side * width * rng.uniform(0.6, 1.5), up * rng.uniform(-0.5, 1.0)),
+                "stiffness": stiffness,
+                "damping": float(rng.choice([0.0, 0.02])) * math.sqrt(stiffness),
+                "slack": 0.0 if rod else float(stretch * rng.choice([1e-2, 0.3])),
+                "strength": math.inf if kind == 0 else stiffness * stretch,
+                "brittle": bool(kind == 2),
+                "compression": bool(rod),
+            }
+        )
+    motion = rng.normal(size=16) * rng.uniform(0.5, 3.0) * GRAVITY * width / height
+    start = rng.choice([0.0, 1.0]) * rng.uniform(-0.5, 0.5) * math.atan2(width, height)
+    return {
+        "width": width, "height": height, "rotation": float(start), "ties": some,
+        "motion": [0.0, *motion, 0.0],
+    }  # fmt: skip
+
+
+def scene_of(drawn: dict) -> tuple[rf.System, rf.GroundMotion]:
+    """Give the scene of a mass of 1 kg."""
+    block = rf.Block(width=f"{drawn['width']!r} m", height=f"{drawn['height']!r} m", mass="1 kg")
+    parts = []
+    for one in drawn["ties"]:
+        kept = {
+            "slack": f"{one['slack']!r} m" if one["slack"] else None,
+            "strength": f"{one['strength']!r} N" if math.isfinite(one["strength"]) else None,
+            "damping": f"{float(one['damping'])!r} N s/m" if one["damping"] else None,
+        }
+        (x, y), (to_x, to_y) = one["on"], one["to"]
+        parts.append(
+            rf.Restrainer(
+                on=(f"{float(x)!r} m", f"{float(y)!r} m"),
+                to=(f"{float(to_x)!r} m", f"{float(to_y)!r} m"),
+                stiffness=f"{one['stiffness']!r} N/m", brittle=one["brittle"],
+                compression=one["compression"], **kept,
+            )
+        )  # fmt: skip
+    motion = rf.GroundMotion.from_arrays(
+        (np.array(drawn["motion"]), "m/s^2"), time_step=f"{TIME_STEP} s"
+    )
+    return rf.System(block, *parts), motion
+
+
+def by_hand(drawn: dict, times: np.ndarray) -> tied_rigid_block.Found:
+    """Run it by hand."""
+    b, h = 0.5 * drawn["width"], 0.5 * drawn["height"]
+    some = [
+        ties.Tie(
+            (one["on"][0], one["on"][1] - h), one["to"], one["stiffness"], one["damping"],
+            one["slack"], 0.0, one["strength"], one["brittle"], one["compression"],
+        )
+        for one in drawn["ties"]
+    ]  # fmt: skip
+    block = tied_rigid_block.Block(b, h, (b * b + h * h) / 3.0, GRAVITY, some)
+    return tied_rigid_block.simulate(
+        block, drawn["motion"], TIME_STEP, drawn["rotation"], times, limit=block.theta
+    )
+
+
+def compare(number: int) -> dict | None:
+    """Give how far both are apart over the peak, and their events; None where it flies."""
+    drawn = draw(number)
+    system, motion = scene_of(drawn)
+    start = rf.InitialState(rotation=f"{drawn['rotation']!r} rad") if drawn["rotation"] else None
+    run = system.simulate(
+        motion, initial=start, accuracy="reference", output_step="10 ms", duration=f"{DURATION} s",
+        overturning="stop", outputs=("energy",),
+    )  # fmt: skip
+    theirs = by_hand(drawn, run.time.values)
+    kinds = Counter(EventKind(int(one)).name for one in run.event_kind.values)
+    if theirs.lifted or kinds["SEPARATION"]:
+        return None
+    ours, other = run.rotation.values, theirs.rotation
+    both = ~np.isnan(ours) & ~np.isnan(other)
+    peak = max(float(np.abs(ours[both]).max()), 1e-3)
+    return {
+        "number": number,
+        "difference": float(np.abs(ours - other)[both].max()) / peak,
+        "energy_residual": float(run.energy_residual),
+        "events": kinds,
+        "their_events": Counter(kind for _, kind in theirs.events),
+        "overturned": (bool(run.overturned), theirs.overturned),
+    }
+
+
+@pytest.fixture(scope="module")
+def compared() -> list[dict]:
+    return [found for number in SCENES if (found := compare(number)) is not None]
+
+
+def test_rotations_are_those_written_by_hand(compared):
+    assert len(compared) == len(SCENES)
+    off = {one["number"]: one["difference"] for one in compared if one["difference"] > AGREES}
+    assert off == {}
+    assert np.median([one["difference"] for one in compared]) < 1e-9
+
+
+def test_so_are_the_verdicts_and_the_energies(compared):
+    kinds = Counter()
+    for one in compared:
+        assert one["energy_residual"] < 1e-8, one["number"]
+        assert one["overturned"][0] == one["overturned"][1], one["number"]
+        kinds += one["events"]
+    assert min(kinds[name] for name in ("RESTRAINER_TAUT", "RESTRAINER_SLACK", "IMPACT")) > 3
