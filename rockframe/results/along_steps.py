@@ -15,7 +15,7 @@ import numpy as np
 from rockframe.compiled import Integers
 from rockframe.results.outcome import Generic
 from rockframe.signals.arrays import Array
-from rockframe.solve.steps import Steps
+from rockframe.solve.trajectory import Steps
 
 Values = Mapping[str, Generic]
 

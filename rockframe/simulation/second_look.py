@@ -9,9 +9,8 @@ from rockframe.results.outcome import peak_of
 from rockframe.results.variables.runs import Direction
 from rockframe.simulation.certificate import SAFETY
 from rockframe.simulation.plan import Plan
-from rockframe.solve.accuracy import Accuracy, AccuracyLevel
+from rockframe.solve.accuracy import Accuracy, AccuracyLevel, substeps_of
 from rockframe.solve.integrate import STILL_INTERVAL
-from rockframe.solve.substeps import substeps_of
 from rockframe.solve.trajectory import Summary
 from rockframe.system.assembly import Assembly
 from rockframe.system.setting import Setting

@@ -18,10 +18,9 @@ from rockframe.dynamics.protocol import (
     Start,
 )
 from rockframe.solve import layout as at
-from rockframe.solve.accuracy import Accuracy
+from rockframe.solve.accuracy import Accuracy, substeps_of
 from rockframe.solve.bookkeeping import ROUNDING
 from rockframe.solve.driver import FIXED_STEPS
-from rockframe.solve.substeps import substeps_of
 
 FIRST_SCALE: Final = 1e-6
 """Share of its typical size that counts as a variable's size before it has moved."""

@@ -16,11 +16,9 @@ from rockframe.dynamics.protocol import (
     Ground,
 )
 from rockframe.solve import layout as at
+from rockframe.solve.crossings import extremum, interpolate
 from rockframe.solve.equations import BoundEquations, KnownMode, energies_at, slope_at
-from rockframe.solve.ground import ground_in
-from rockframe.solve.guards import LEFT_LIMIT, RIGHT_LIMIT, WEIGHTS
-from rockframe.solve.hermite import extremum, interpolate
-from rockframe.solve.peaks import RotationInStep
+from rockframe.solve.guards import LEFT_LIMIT, RIGHT_LIMIT, WEIGHTS, RotationInStep
 from rockframe.solve.workspace import (
     EventTable,
     Output,
@@ -28,6 +26,7 @@ from rockframe.solve.workspace import (
     Span,
     Work,
     Workspace,
+    ground_in,
 )
 
 ROUNDING: Final = 4.0 * sys.float_info.epsilon

@@ -1,18 +1,41 @@
-"""One step of the Dormand-Prince pair, page "Numerics" of the manual."""
+"""One step of the Dormand-Prince pair, its error, and the length of the next one.
 
-from typing import TypeAlias
+Page "Numerics" of the manual.
+"""
 
-from rockframe.compiled import Vector, inlined, put
+import math
+from typing import Final, TypeAlias
+
+from rockframe.compiled import Vector, inlined, kernel, put, table
 from rockframe.dynamics.protocol import POWERS, Equations
-from rockframe.solve.dormand_prince_tableau import (
-    ERROR_WEIGHTS,
-    NODES,
-    STAGE_WEIGHTS,
-    STAGES,
-    WEIGHTS,
+from rockframe.solve import layout as at
+from rockframe.solve.workspace import ERRORS, Span, ground_in
+
+ORDER: Final = 5
+STAGES: Final = 7
+
+NODES: Final = table([0.0, 1 / 5, 3 / 10, 4 / 5, 8 / 9, 1.0, 1.0])
+"""Share of the step at which each stage stands."""
+
+# weights of the stages before, by which each is made; the last makes the step
+STAGE_1: Final = (1 / 5,)
+STAGE_2: Final = (3 / 40, 9 / 40)
+STAGE_3: Final = (44 / 45, -56 / 15, 32 / 9)
+STAGE_4: Final = (19372 / 6561, -25360 / 2187, 64448 / 6561, -212 / 729)
+STAGE_5: Final = (9017 / 3168, -355 / 33, 46732 / 5247, 49 / 176, -5103 / 18656)
+STAGE_6: Final = (35 / 384, 0.0, 500 / 1113, 125 / 192, -2187 / 6784, 11 / 84)
+
+STAGE_WEIGHTS: Final = table([*STAGE_1, *STAGE_2, *STAGE_3, *STAGE_4, *STAGE_5, *STAGE_6])
+"""The same, one after the other: those of stage s, which has s stages before, from s(s-1)/2 on."""
+
+WEIGHTS: Final = table([*STAGE_6, 0.0])
+"""Weights of the fifth order."""
+
+ERROR_WEIGHTS: Final = table(
+    [71 / 57600, 0.0, -71 / 16695, 71 / 1920, -17253 / 339200, 22 / 525, -1 / 40]
 )
-from rockframe.solve.ground import ground_in
-from rockframe.solve.workspace import ERRORS, Span
+"""Weights of the fifth order less those of the fourth."""
+
 
 Weights: TypeAlias = Vector | tuple[float, ...]
 """Of the stages before one; of a tuple the number is known when it is compiled."""
@@ -128,3 +151,43 @@ def runge_kutta_step(
     end_works(system, span.h, stages, last, works)
     errors_of_places(system, span.h, stages, works)
     errors_of_rates(system, span.h, stages, works)
+
+
+# step-size control, after Hairer, Norsett, Wanner, "Solving Ordinary Differential
+# Equations I", 2nd ed., section II.4
+SAFETY: Final = 0.9
+SMALLEST_FACTOR: Final = 0.2
+LARGEST_FACTOR: Final = 5.0
+EASY: Final = 0.5
+"""Error below which a step that spans its whole interval needs no new step size."""
+
+
+@inlined
+def excess_error(
+    system: Equations, count: int, imbalance: float, new: Vector, works: Vector, reference: Vector,
+    controls: Vector,
+) -> float:  # fmt: skip
+    """Give the largest error of a step, of the state or of its works, over the error allowed.
+
+    `imbalance` is the error of the works over the largest energy.
+    """
+    size, floor = system.coordinates(), controls[at.FLOOR]
+    largest, total = abs(imbalance), imbalance
+    for i in range(2 * size + system.variables()):
+        # what does not move has no error
+        moves = (i < count) | ((size <= i) & (i < size + count)) | (i >= 2 * size)
+        error = abs(works[ERRORS + i]) if moves else 0.0
+        largest = max(largest, error / max(abs(new[i]), floor * reference[i]))
+        total += error
+    return largest / controls[at.RTOL] if math.isfinite(total) else math.inf
+
+
+@kernel
+def next_step(h: float, h_next: float, excess: float) -> float:
+    """Give the step size that a step's error suggests."""
+    growth = LARGEST_FACTOR
+    if excess > 0.0:
+        growth = min(growth, max(SMALLEST_FACTOR, SAFETY * excess ** (-1.0 / ORDER)))
+    if h < h_next and growth >= 1.0:  # cut short by its interval: it says little of longer ones
+        return max(h_next, h * growth)
+    return h * growth

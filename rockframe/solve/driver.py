@@ -30,7 +30,6 @@ from rockframe.solve.equations import (
     slope_at,
     write_guards,
 )
-from rockframe.solve.ground import ground_in, load_interval
 from rockframe.solve.march import (
     AT_END,
     EXHAUSTED,
@@ -52,8 +51,10 @@ from rockframe.solve.workspace import (
     StepTable,
     Work,
     Workspace,
+    ground_in,
     has_no_room,
     keep_row,
+    load_interval,
     swapped,
 )
 

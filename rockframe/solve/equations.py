@@ -18,11 +18,10 @@ from rockframe.compiled import (
     put,
 )
 from rockframe.dynamics.protocol import BODY_COLUMNS, BODY_FORCES, Energies, Equations, Ground
-from rockframe.solve.ground import ground_in
+from rockframe.solve.accuracy import STABLE
 from rockframe.solve.guards import guards_at
 from rockframe.solve.march import march_by_tolerance, march_fixed
-from rockframe.solve.substeps import STABLE
-from rockframe.solve.workspace import Span, Workspace
+from rockframe.solve.workspace import Span, Workspace, ground_in
 
 
 @kernel

@@ -6,27 +6,29 @@ from time import perf_counter
 import numpy as np
 
 from rockframe.compiled import COMPILED, Integers, Matrix, Vector, say_slow
-from rockframe.dynamics.protocol import ContactModel, Ending, Start
+from rockframe.dynamics.protocol import POWERS, ContactModel, Ending, Start
 from rockframe.signals import Motion
 from rockframe.solve import layout as at
 from rockframe.solve.accuracy import Accuracy
 from rockframe.solve.beginning import begun
 from rockframe.solve.bookkeeping import ON_SAMPLE
+from rockframe.solve.dormand_prince import STAGES
 from rockframe.solve.driver import advance
-from rockframe.solve.equations import equations_of, has_machine_code, runs_as_python
+from rockframe.solve.equations import BoundEquations, equations_of, has_machine_code, runs_as_python
 from rockframe.solve.layout import Status
-from rockframe.solve.steps import steps_of
-from rockframe.solve.trajectory import Events, Trajectory, run_counts
+from rockframe.solve.trajectory import Events, Trajectory, run_counts, steps_of
 from rockframe.solve.workspace import (
     BESIDE,
     CODES,
+    ERRORS,
+    TERMS,
     EventTable,
     Output,
     Pieces,
     Progress,
     StepTable,
+    Workspace,
     has_no_room,
-    make_workspace,
     no_steps,
 )
 
@@ -167,6 +169,38 @@ def integrate(
         steps=steps_of(steps, int(counters[at.STEPS_KEPT]), width, exact=accuracy.rtol is not None)
         if keep_steps
         else None,
+    )
+
+
+def make_workspace(
+    equations: BoundEquations, state: Vector, reference: Vector, limits: Vector
+) -> Workspace:
+    """Allocate the arrays beside those that a run begins with."""
+    size = equations.coordinate_count
+    slope = size + equations.variable_count + POWERS
+    guards = 2 * (equations.guard_count + 1)
+    parts = [len(state), len(state) + slope, len(state) + slope + guards]
+    ends = np.zeros(2 * parts[-1])
+    start, end = ends[: parts[-1]], ends[parts[-1] :]
+    start[: parts[0]] = state
+    return Workspace(
+        both_ends=ends,
+        state=start[: parts[0]],
+        first=start[parts[0] : parts[1]],
+        before=start[parts[1] :],
+        new=end[: parts[0]],
+        last=end[parts[0] : parts[1]],
+        after=end[parts[1] :],
+        stages=np.zeros(STAGES * (size + slope)),
+        works=np.zeros(ERRORS + len(state)),
+        reference=reference,
+        limits=limits,
+        scratch=state.copy(),
+        scratch_rates=np.zeros(slope),
+        inside=np.zeros(guards),
+        powers=np.zeros(slope),
+        ground=np.zeros(2 * TERMS),
+        answers=np.zeros(4),
     )
 
 

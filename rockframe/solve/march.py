@@ -9,12 +9,10 @@ from typing import Final, TypeAlias
 from rockframe.compiled import Integers, ReadOnlyMatrix, Vector, inlined, kernel, part_of
 from rockframe.dynamics.protocol import POWERS, Equations
 from rockframe.solve import layout as at
-from rockframe.solve.ground import ground_in, load_interval
-from rockframe.solve.guards import guards_at, may_fall
-from rockframe.solve.peaks import rotation_in_step
+from rockframe.solve.dormand_prince import next_step
+from rockframe.solve.guards import guards_at, may_fall, rotation_in_step
 from rockframe.solve.schemes import FixedSteps, StepsByTolerance
-from rockframe.solve.step_control import next_step
-from rockframe.solve.workspace import TERMS, Span, has_no_room, keep_row
+from rockframe.solve.workspace import TERMS, Span, ground_in, has_no_room, keep_row, load_interval
 
 Scheme: TypeAlias = FixedSteps | StepsByTolerance
 

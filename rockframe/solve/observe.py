@@ -18,8 +18,7 @@ from rockframe.compiled import (
 )
 from rockframe.dynamics.protocol import BODY_FORCES, POWERS, Column, ContactModel, Equations
 from rockframe.solve.equations import energies, forces, observed, slope
-from rockframe.solve.steps import Steps
-from rockframe.solve.trajectory import Trajectory
+from rockframe.solve.trajectory import Steps, Trajectory
 from rockframe.solve.workspace import BESIDE
 
 

@@ -1,6 +1,9 @@
-"""The arrays of a run, in named tuples: what the integrator reads, works on and fills."""
+"""The arrays of a run, in named tuples: what the integrator reads, works on and fills.
 
-from typing import TYPE_CHECKING, Final, NamedTuple
+Also the ground acceleration inside one interval of the motion, a polynomial.
+"""
+
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -12,12 +15,8 @@ from rockframe.compiled import (
     Vector,
     inlined,
 )
-from rockframe.dynamics.protocol import POWERS, Ground
+from rockframe.dynamics.protocol import Ground
 from rockframe.solve import layout as at
-from rockframe.solve.dormand_prince_tableau import STAGES
-
-if TYPE_CHECKING:
-    from rockframe.solve.equations import BoundEquations
 
 TERMS: Final = 6
 """Most coefficients per direction and interval; a record needs two, an analytic pulse six."""
@@ -156,33 +155,37 @@ class Work(NamedTuple):
     supplied: float
 
 
-def make_workspace(
-    equations: "BoundEquations", state: Vector, reference: Vector, limits: Vector
-) -> Workspace:
-    """Allocate the arrays beside those that a run begins with."""
-    size = equations.coordinate_count
-    slope = size + equations.variable_count + POWERS
-    guards = 2 * (equations.guard_count + 1)
-    parts = [len(state), len(state) + slope, len(state) + slope + guards]
-    ends = np.zeros(2 * parts[-1])
-    start, end = ends[: parts[-1]], ends[parts[-1] :]
-    start[: parts[0]] = state
-    return Workspace(
-        both_ends=ends,
-        state=start[: parts[0]],
-        first=start[parts[0] : parts[1]],
-        before=start[parts[1] :],
-        new=end[: parts[0]],
-        last=end[parts[0] : parts[1]],
-        after=end[parts[1] :],
-        stages=np.zeros(STAGES * (size + slope)),
-        works=np.zeros(ERRORS + len(state)),
-        reference=reference,
-        limits=limits,
-        scratch=state.copy(),
-        scratch_rates=np.zeros(slope),
-        inside=np.zeros(guards),
-        powers=np.zeros(slope),
-        ground=np.zeros(2 * TERMS),
-        answers=np.zeros(4),
+@inlined
+def load_interval(index: int, pieces: ReadOnlyMatrix, first: int, coefficients: Vector) -> int:
+    """Write the polynomial of one direction in interval `index`; give its degree.
+
+    The polynomial is in u, from 0 to 1 over the interval. A direction without
+    samples, and the time after the last sample, have a ground that stands still.
+    """
+    if index >= len(pieces):
+        coefficients[first] = 0.0
+        return 0
+    coefficients[first] = pieces[index, 0]
+    coefficients[first + 1] = pieces[index, 1]
+    for j in range(2, pieces.shape[1]):
+        coefficients[first + j] = pieces[index, j]
+    return pieces.shape[1] - 1
+
+
+@inlined
+def polynomial(u: float, degree: int, first: int, coefficients: Vector) -> float:
+    """Give a polynomial, of which the coefficients stand from index `first` on."""
+    value = coefficients[first + degree]
+    for j in range(degree - 1, -1, -1):
+        value = value * u + coefficients[first + j]
+    return value
+
+
+@inlined
+def ground_in(fraction: float, span: Span, coefficients: Vector) -> Ground:
+    """Give the ground acceleration at a fraction of a step."""
+    u = span.u + fraction * span.du
+    return Ground(
+        polynomial(u, span.degree_x, 0, coefficients),
+        polynomial(u, span.degree_y, TERMS, coefficients),
     )

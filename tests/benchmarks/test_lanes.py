@@ -37,8 +37,7 @@ def model_on(*parts):
 def test_all_lanes_share_their_instructions(base, fixed):
     from rockframe.compiled.calls import register_kernels
     from rockframe.compiled.jobs import Job
-    from rockframe.solve.lanes.fixed_steps import step_lanes
-    from rockframe.solve.lanes.steps_by_tolerance import step_lanes_by_tolerance
+    from rockframe.solve.lanes.steps import step_lanes, step_lanes_by_tolerance
 
     structure = structure_of(model_on(*BASES[base]).system)
     register_kernels()

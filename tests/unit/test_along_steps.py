@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rockframe.results.along_steps import FRACTIONS, AlongSteps
-from rockframe.solve.steps import Steps
+from rockframe.solve.trajectory import Steps
 
 
 def along(ends, starts, inside=None, length=0.5, events=None):

@@ -14,18 +14,16 @@ from rockframe.signals import Motion
 from rockframe.solve import layout as at
 from rockframe.solve.beginning import Begun
 from rockframe.solve.equations import BoundEquations, equations_of
-from rockframe.solve.integrate import EVENT_ROOM, pieces_of
+from rockframe.solve.integrate import EVENT_ROOM, make_workspace, pieces_of
 from rockframe.solve.lanes import fields
 from rockframe.solve.lanes.batch import Batch, BatchSizes, advance_batch
 from rockframe.solve.lanes.fields import Places, places_of
-from rockframe.solve.lanes.fixed_steps import step_lanes
-from rockframe.solve.lanes.steps_by_tolerance import step_lanes_by_tolerance
+from rockframe.solve.lanes.steps import step_lanes, step_lanes_by_tolerance
 from rockframe.solve.workspace import (
     EventTable,
     Output,
     Pieces,
     Workspace,
-    make_workspace,
     no_steps,
 )
 

@@ -1,4 +1,4 @@
-"""One step of the Dormand-Prince pair in all lanes at once.
+"""Steps in all lanes at once, of a fixed length or of the Dormand-Prince pair.
 
 The loops over lanes hold nothing but arithmetic on one array, so that they are compiled to
 instructions for several lanes at once. A lane does what :func:`rockframe.solve.march.march`
@@ -21,14 +21,6 @@ from rockframe.compiled import (
 from rockframe.dynamics.protocol import POWERS, Equations, Ground
 from rockframe.solve import layout as at
 from rockframe.solve.dormand_prince import (
-    begin_stages,
-    end_works,
-    errors_of_places,
-    errors_of_rates,
-    stage_places,
-    stage_rates,
-)
-from rockframe.solve.dormand_prince_tableau import (
     NODES,
     STAGE_1,
     STAGE_2,
@@ -37,22 +29,182 @@ from rockframe.solve.dormand_prince_tableau import (
     STAGE_5,
     STAGE_6,
     STAGES,
+    begin_stages,
+    end_works,
+    errors_of_places,
+    errors_of_rates,
+    excess_error,
+    next_step,
+    stage_places,
+    stage_rates,
 )
+from rockframe.solve.guards import may_fall, put_guards, rotation_in_step
 from rockframe.solve.lanes import fields
-from rockframe.solve.lanes.fields import Places, places_of
-from rockframe.solve.lanes.ground import evaluate_ground
-from rockframe.solve.lanes.intervals import enter_intervals
-from rockframe.solve.lanes.taking import (
-    account_for,
-    is_quiet,
-    is_spent,
-    slides,
-    take_step_if_quiet,
-    take_steps,
-)
+from rockframe.solve.lanes.fields import Places, enter_intervals, evaluate_ground, places_of
 from rockframe.solve.march import SHORTEST, fit_step
-from rockframe.solve.schemes import adapted
-from rockframe.solve.step_control import excess_error, next_step
+from rockframe.solve.schemes import adapted, fixed_step, rest_of
+
+
+@inlined
+def slides(system: Equations, room: Vector, lane: int) -> bool:
+    """Whether an end slides in a lane."""
+    return system.some_end_slides(lane_of(as_integers(room), fields.COUNTERS, lane)[at.MODE])
+
+
+@inlined
+def is_quiet(system: Equations, room: Vector, lane: int) -> bool:
+    """Whether nothing happens in a lane's step but motion; its guards are written."""
+    there = places_of(system)
+    own, whole = lane_of(room, fields.OWN, lane), as_integers(room)
+    clock, counters = lane_of(room, fields.CLOCK, lane), lane_of(whole, fields.COUNTERS, lane)
+    state, new = lane_of(room, there.state, lane), lane_of(room, there.new, lane)
+    limits = lane_of(room, fields.LIMITS, lane)
+    after, h = lane_of(room, there.after, lane), own[fields.STEP]
+    ground = Ground(own[fields.NOW_X], own[fields.NOW_Y])
+    held = system.without_sliding(counters[at.MODE])
+    found = system.guards_in(held, new, lane_of(room, there.last, lane), ground)
+    put_guards(system, found, new, limits, after)
+    falls = may_fall(system, h, lane_of(room, there.before, lane), after)
+    rotation = rotation_in_step(system, limits, state, new)
+    peaks = rotation.may_peak(h, clock[at.PEAK_LEFT], clock[at.PEAK_RIGHT])
+    return not (falls | peaks | slides(system, room, lane))
+
+
+@inlined
+def is_spent(room: Vector, lane: int) -> bool:
+    """Whether a lane has made all the steps that it may make."""
+    counters = lane_of(as_integers(room), fields.COUNTERS, lane)
+    return counters[at.STEPS] + counters[at.REJECTED] >= counters[at.MAX_STEPS]
+
+
+@inlined
+def account_for(system: Equations, room: Vector, lane: int) -> None:
+    """Write what a step that is taken changes in the account of its run, but the next step."""
+    there = places_of(system)
+    own, whole = lane_of(room, fields.OWN, lane), as_integers(room)
+    clock = lane_of(room, fields.CLOCK, lane)
+    start, end, works, new = (
+        lane_of(room, there.state, lane), lane_of(room, there.new, lane),
+        lane_of(room, there.works, lane), lane_of(room, there.clock, lane),
+    )  # fmt: skip
+    limits, h = lane_of(room, fields.LIMITS, lane), own[fields.STEP]
+    rotation = rotation_in_step(system, limits, start, end)
+    flight, flies = clock[at.FLIGHT_TIME], lane_of(whole, fields.OWN_WHOLE, lane)[fields.FLIES]
+    supplied = clock[at.SUPPLIED] + works[1]
+    new[at.INTO_INTERVAL] = clock[at.INTO_INTERVAL] + h
+    new[at.FLIGHT_TIME] = flight + h if flies == 1 else flight
+    new[at.PEAK_LEFT] = max(clock[at.PEAK_LEFT], rotation.largest_left())
+    new[at.PEAK_RIGHT] = max(clock[at.PEAK_RIGHT], rotation.largest_right())
+    new[at.DISSIPATED] = clock[at.DISSIPATED] + works[0]
+    new[at.SUPPLIED] = supplied
+    new[at.LARGEST_MOVED] = max(clock[at.LARGEST_MOVED], abs(supplied))
+    new[at.GROUND_X] = own[fields.NOW_X]
+    new[at.GROUND_Y] = own[fields.NOW_Y]
+
+
+@inlined
+def take_steps(lanes: int, room: Vector, there: Places) -> None:
+    """Make the end of a step the start of the next one, in all lanes."""
+    for i in range(lanes * (there.new - there.state)):
+        room[lanes * there.state + i] = room[lanes * there.new + i]
+    for i in range(lanes * at.OF_STEPS):
+        room[lanes * fields.CLOCK + i] = room[lanes * there.clock + i]
+    for lane in range(lanes):
+        lane_of(as_integers(room), fields.COUNTERS, lane)[at.STEPS] += 1
+
+
+@inlined
+def take_step_if_quiet(system: Equations, room: Vector, lane: int) -> None:
+    """Make the end of a step the start of the next one where it is taken.
+
+    Bit by bit: numbers that are written under a condition take their time on processors
+    without registers for conditions.
+    """
+    there, whole = places_of(system), as_integers(room)
+    taken = lane_of(whole, fields.OWN_WHOLE, lane)[fields.TAKEN]
+    start, end = lane_of(whole, there.state, lane), lane_of(whole, there.new, lane)
+    clock, new = lane_of(whole, fields.CLOCK, lane), lane_of(whole, there.clock, lane)
+    for i in range(there.new - there.state):
+        start[i] = (end[i] & taken) | (start[i] & ~taken)
+    for i in range(at.OF_STEPS):
+        clock[i] = (new[i] & taken) | (clock[i] & ~taken)
+    lane_of(whole, fields.COUNTERS, lane)[at.STEPS] -= taken
+
+
+@inlined
+def choose_step(room: Vector, lane: int) -> None:
+    """Choose the length of a lane's step."""
+    clock, controls = lane_of(room, fields.CLOCK, lane), lane_of(room, fields.CONTROLS, lane)
+    own = lane_of(room, fields.OWN, lane)
+    remaining = own[fields.LENGTH] - clock[at.INTO_INTERVAL]
+    asked = fit_step(min(clock[at.NEXT_STEP], controls[at.MAX_STEP]), remaining)
+    clock[at.ASKED] = asked
+    own[fields.STEP] = min(asked, own[fields.LONGEST])
+
+
+@inlined
+def make_step(system: Equations, room: Vector, lane: int) -> bool:
+    """Take one lane to the end of its step; give whether that ended in numbers."""
+    there = places_of(system)
+    own, whole = lane_of(room, fields.OWN, lane), as_integers(room)
+    mode = system.without_sliding(lane_of(whole, fields.COUNTERS, lane)[at.MODE])
+    count = lane_of(whole, fields.OWN_WHOLE, lane)[fields.ACTIVE]
+    return fixed_step(
+        system, mode, count, own[fields.STEP],
+        Ground(own[fields.MIDDLE_X], own[fields.MIDDLE_Y]),
+        Ground(own[fields.NOW_X], own[fields.NOW_Y]),
+        lane_of(room, there.state, lane), lane_of(room, there.first, lane),
+        lane_of(room, there.new, lane), lane_of(room, there.last, lane),
+        lane_of(room, there.stages, lane), lane_of(room, there.works, lane),
+    )  # fmt: skip
+
+
+@inlined
+def account_for_rest(system: Equations, room: Vector, lane: int) -> None:
+    """Write what a step changes in the account of its run, with what is left of the sub-step."""
+    clock, controls = lane_of(room, fields.CLOCK, lane), lane_of(room, fields.CONTROLS, lane)
+    h = lane_of(room, fields.OWN, lane)[fields.STEP]
+    new = lane_of(room, places_of(system).clock, lane)
+    account_for(system, room, lane)
+    new[at.NEXT_STEP] = rest_of(clock[at.ASKED], h, SHORTEST * controls[at.DURATION], controls)
+
+
+@inlined
+def step_lanes(
+    system_of: Callable[[Vector], Equations], lanes: int, room: Vector, pieces_x: ReadOnlyMatrix,
+    pieces_y: ReadOnlyMatrix,
+) -> int:  # fmt: skip
+    """Take all lanes that are at the end of an interval to the next, and make a step in all."""
+    widest_registers()
+    if enter_intervals(lanes, room, pieces_x, pieces_y) == 1:
+        return fields.SOME_WAIT
+    there = places_of(system_of(lane_of(room, 0, 0)))
+    for lane in range(lanes):
+        choose_step(room, lane)
+    evaluate_ground(lanes, room, pieces_x, pieces_y, 0.5, fields.MIDDLE_X, fields.MIDDLE_Y)
+    evaluate_ground(lanes, room, pieces_x, pieces_y, 1.0, fields.NOW_X, fields.NOW_Y)
+    for lane in range(lanes):
+        system = system_of(lane_of(room, there.numbers, lane))
+        done = make_step(system, room, lane)
+        lane_of(as_integers(room), fields.OWN_WHOLE, lane)[fields.REFUSED] = 0 if done else 1
+    some = 0
+    for lane in range(lanes):
+        system = system_of(lane_of(room, there.numbers, lane))
+        own = lane_of(as_integers(room), fields.OWN_WHOLE, lane)
+        quiet = is_quiet(system, room, lane) & (own[fields.REFUSED] == 0)
+        quiet = quiet & (not is_spent(room, lane))
+        asks = 0 if quiet else own[fields.BUSY]
+        own[fields.TAKEN] = -1 if quiet else 0
+        own[fields.ASKS] = asks
+        some |= asks
+    for lane in range(lanes):
+        account_for_rest(system_of(lane_of(room, there.numbers, lane)), room, lane)
+    if some == 0:
+        take_steps(lanes, room, there)
+        return fields.ALL_QUIET
+    for lane in range(lanes):
+        take_step_if_quiet(system_of(lane_of(room, there.numbers, lane)), room, lane)
+    return fields.SOME_ASK
 
 
 @inlined
@@ -220,7 +372,7 @@ def step_lanes_by_tolerance(
     system_of: Callable[[Vector], Equations], lanes: int, room: Vector, pieces_x: ReadOnlyMatrix,
     pieces_y: ReadOnlyMatrix,
 ) -> int:  # fmt: skip
-    """Try a step in all lanes, see :func:`rockframe.solve.lanes.fixed_steps.step_lanes`."""
+    """Try a step in all lanes, see :func:`rockframe.solve.lanes.steps.step_lanes`."""
     widest_registers()
     if enter_intervals(lanes, room, pieces_x, pieces_y) == 1:
         return fields.SOME_WAIT
