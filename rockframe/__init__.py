@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from rockframe.components import RegularFrame as RegularFrame
     from rockframe.components import Restrainer as Restrainer
     from rockframe.components import RigidGround as RigidGround
+    from rockframe.components import RockingFrame as RockingFrame
     from rockframe.components import Stack as Stack
     from rockframe.components import TwoSpringSupport as TwoSpringSupport
     from rockframe.components import WinklerSoil as WinklerSoil
@@ -112,7 +113,7 @@ _HOMES = {
         "RegularFrame",
         "Restrainer",
         "RigidGround",
-        "Stack",
+        "RockingFrame",
         "Stack",
         "TwoSpringSupport",
         "WinklerSoil",

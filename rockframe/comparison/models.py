@@ -25,6 +25,7 @@ _UPON: Final = (
     ("stack on {two pads}", ("stack", "pads"), Coupling.COUPLED),
     ("stack on {soil}", ("stack", "soil"), Coupling.COUPLED),
 )
+_FRAME: Final = (("rigid ground", ("frame",), Coupling.COUPLED),)
 _WORDS: Final = {"two pads": "pads", "pads": "pads", "soil": "soil"}
 """Words of rungs, and the slots of the bases that they name."""
 
@@ -75,6 +76,7 @@ def model_ladder(system: System) -> dict[str, System]:
     present = system.parts.signature
     rows = _STACK if {"pads", "cap"} <= present or "soil" not in present else _BED
     rows = _UPON if "stack" in present else rows
+    rows = _FRAME if "frame" in present else rows
     if system.parts.own():
         rows = _STACK[:1]
     options: dict[str, Any] = {
@@ -89,7 +91,7 @@ def model_ladder(system: System) -> dict[str, System]:
                 continue
             for bases in _bases(given, slots):
                 parts = {**{slot: given[slot] for slot in slots}, **bases}
-                if slots == ("block",) and "ground" in given:
+                if slots in (("block",), ("frame",)) and "ground" in given:
                     parts["ground"] = given["ground"]
                 words = name.format(**_named(bases))
                 for rotation in Rotation.SMALL, Rotation.FINITE:

@@ -13,6 +13,7 @@ from rockframe.components.link import Link, Restrainer
 from rockframe.components.pads import TwoSpringSupport
 from rockframe.components.parameters import DERIVED, Choice, Parameter, Ratio, Text
 from rockframe.components.registry import component_from_dict
+from rockframe.components.rocking_frame import RockingFrame
 from rockframe.components.soil import Separation, WinklerSoil
 from rockframe.components.stack import Stack
 
@@ -32,6 +33,7 @@ __all__ = [
     "RegularFrame",
     "Restrainer",
     "RigidGround",
+    "RockingFrame",
     "Separation",
     "Stack",
     "Text",

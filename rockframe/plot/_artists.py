@@ -39,9 +39,12 @@ class SceneArtist:
     def frame(self, shown: Iterable[Placement]) -> None:
         """Set limits that hold the scene at all instants."""
         found = [self.drawer.lay_out(at) for at in shown]
-        corners = np.vstack(
-            [np.vstack([one.block, one.ground, *one.lower, *one.ties]) for one in found]
-        )
+        shown_parts = [
+            part
+            for one in found
+            for part in (one.block, one.ground, *one.lower, *one.ties, *one.others)
+        ]
+        corners = np.vstack(shown_parts)
         low, high = corners.min(axis=0), corners.max(axis=0)
         widest = float(max(-low[0], high[0]))
         if widest > self.drawer.reach:
@@ -54,9 +57,10 @@ class SceneArtist:
         """Draw the block at rest behind everything."""
         from matplotlib.patches import Polygon
 
-        outline = self.drawer.lay_out(at).block
-        dashed = Polygon(outline, fill=False, edgecolor=GREY, linestyle="--", linewidth=0.8)
-        self.axes.add_patch(dashed).set_zorder(1)
+        found = self.drawer.lay_out(at)
+        for outline in (found.block, *found.others):
+            dashed = Polygon(outline, fill=False, edgecolor=GREY, linestyle="--", linewidth=0.8)
+            self.axes.add_patch(dashed).set_zorder(1)
 
     def mark(self, points: Mapping[str, tuple[float, ...]]) -> None:
         """Name the points of the body that are to be marked."""
@@ -76,6 +80,8 @@ class SceneArtist:
         self._polygon("block", found.block, BLUE, 4, alpha=0.08 if found.members else 0.22)
         for number, member in enumerate(found.members):
             self._polygon(f"member {number}", member, BLUE, 4, alpha=0.3)
+        for number, other in enumerate(found.others):
+            self._polygon(f"other {number}", other, BLUE, 4, alpha=0.22)
         for number, ends in enumerate(found.ties):
             self._line(f"tie {number}", ends, color=VERMILLION, linewidth=1.4, zorder=5)
         self._dots("centre", found.centre[None], marker="P", color=ink(), markersize=6.0)
@@ -112,8 +118,9 @@ class SceneArtist:
         lines = [one for one in found.touching if len(one) > 1]
         nowhere = np.full((1, 2), np.nan)
         self._dots("touching", np.vstack(dots or [nowhere]), color=CONTACT, markersize=6.0)
+        apart = [part for one in lines for part in (one, nowhere)] or [nowhere]
         self._line(
-            "bearing", np.vstack(lines or [nowhere]), color=CONTACT, linewidth=3.0, zorder=5,
+            "bearing", np.vstack(apart), color=CONTACT, linewidth=3.0, zorder=5,
             solid_capstyle="butt",
         )  # fmt: skip
 
@@ -161,6 +168,8 @@ def part_labels(parts: Parts, geometry: Geometry) -> dict[str, str]:
     found: dict[str, str] = {}
     lower = () if parts.stack is None else parts.stack.bodies
     named = {slot: parts.components().get(slot) for slot in ("block", "pads", "cap", "soil")}
+    if parts.frame is not None:
+        named["block"] = parts.frame
     named |= {f"stack {k - 1}" if k else "block": body for k, body in enumerate(lower)}
     for slot, part in named.items():
         if part is not None:

@@ -35,6 +35,7 @@ class Layout:
     ground: Array  # surface of rigid ground, where there is no soil
     lower: tuple[Array, ...] = ()  # outlines of the bodies of a stack beneath the block
     ties: tuple[Array, ...] = ()  # both ends of each restrainer, shape (2, 2)
+    others: tuple[Array, ...] = ()  # outlines of a frame's other columns and of its beam
 
 
 @dataclass(frozen=True)
@@ -74,11 +75,19 @@ class Drawer:
         cap = None if outline is None else self._moved(at.cap, outline)
         pads, bear = self._pads(at)
         soil, touching = self._soil(at)
-        ends = tuple(block[k : k + 1] for k in (0, 1) if at.bearing()[k])
+        columns = tuple(block + np.array([x, 0.0]) for x in geometry.columns)
+        others: tuple[Array, ...] = ()
+        if geometry.beam is not None:
+            block, others = columns[0], (*columns[1:], self._moved(at.beam, geometry.beam))
+            moves = (at.values["horizontal_displacement"], at.values["vertical_displacement"])
+            centre = np.array(geometry.moved) + self.magnify * np.array(moves)
+        ends = tuple(
+            one[k : k + 1] for one in columns or (block,) for k in (0, 1) if at.bearing()[k]
+        )
         if pads:
             touching = (*touching, *ends)
         elif soil is None:
-            touching = (block[:2],) if len(ends) > 1 else ends
+            touching = tuple(one[:2] for one in columns or (block,)) if all(at.bearing()) else ends
         floor = 0.0 if geometry.stacked else -self.pad_thickness
         ground = np.array([(-self.reach, floor), (self.reach, floor)])
         found = Layout(block, cap, members, centre, pads, bear, soil, touching, ground)
@@ -86,7 +95,7 @@ class Drawer:
             self._moved(partial(at.lower, k), one.outline) for k, one in enumerate(geometry.lower)
         )
         ties = tuple(self._tie(at, one) for one in geometry.ties)
-        return self._inclined(replace(found, lower=lower, ties=ties))
+        return self._inclined(replace(found, lower=lower, ties=ties, others=others))
 
     def _tie(self, at: Placement, tie: LinkedPoints) -> Array:
         """Lay out a restrainer, from one body to another or to the ground."""
@@ -101,6 +110,9 @@ class Drawer:
         geometry = self.geometry
         below = geometry.place if geometry.stacked or geometry.lower else np.zeros(2)
         drawn = self._moved(at.block, places + below) + self._lift(at)
+        if geometry.columns:  # points of a column are drawn on the first
+            beside = np.where(places[:, 1:] > geometry.height, 0.0, geometry.columns[0])
+            drawn = drawn + beside * np.array([1.0, 0.0])
         return self._turned(drawn)
 
     def _moved(self, place: object, points: Array) -> Array:
@@ -183,6 +195,7 @@ class Drawer:
             ground=turn(found.ground),
             lower=tuple(turn(one) for one in found.lower),
             ties=tuple(turn(one) for one in found.ties),
+            others=tuple(turn(one) for one in found.others),
         )
 
 

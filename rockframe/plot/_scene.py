@@ -239,8 +239,8 @@ class Moving:
 
     def corners(self, places: Array) -> Array:
         """Give all corners of the block at samples, which a drawing must hold."""
-        found = [self.drawer.lay_out(self.at(int(place))).block for place in places]
-        return np.vstack(found)
+        found = [self.drawer.lay_out(self.at(int(place))) for place in places]
+        return np.vstack([part for one in found for part in (one.block, *one.others)])
 
 
 def figure_size(drawer: Drawer, *, wide: bool) -> tuple[float, float]:

@@ -80,6 +80,12 @@ LIMITS: Final = (
         lambda parts: isinstance(parts.block, FrameEquivalent),
     ),
     Limit(
+        "Rocking frames",
+        "Columns and beam are rigid, the columns equal; the beam stays level and on the columns, "
+        "and neither it nor they slide.",
+        lambda parts: parts.frame is not None,
+    ),
+    Limit(
         "Floors",
         "A motion of a floor is that of an elastic building which does not feel the object.",
     ),

@@ -54,9 +54,10 @@ def force_histories(values: Values, ground: Array, load: Load) -> dict[str, Gene
     found: dict[str, Generic] = {
         "absolute_horizontal_acceleration": values["horizontal_acceleration"] + ground[:, 0],
         "absolute_vertical_acceleration": values["vertical_acceleration"] + ground[:, 1],
-        "base_overturning_moment": weight_arm * press
-        - thrust_arm * thrust
-        - body.inertia * values["angular_acceleration"],
+        "base_overturning_moment": body.base_ratio
+        * (
+            weight_arm * press - thrust_arm * thrust - body.inertia * values["angular_acceleration"]
+        ),
     }
     return found | friction_demands(values, load)
 

@@ -35,8 +35,30 @@ class Placement:
     def block(self, points: Array) -> Array:
         """Give where points of the block are, and of all that it is one body with."""
         values = self.values
+        if self.geometry.columns:
+            return self._about_corner(points)
         moves = values["horizontal_displacement"], values["vertical_displacement"]
         return self._moved(points, self.geometry.moved, values["rotation"], moves)
+
+    def _about_corner(self, points: Array) -> Array:
+        """Give where points of a column are, as if it stood in the middle of the frame.
+
+        Those above it are of the beam, which moves as the upper corner that bears it.
+        """
+        rotation = np.array(self.values["rotation"])
+        pivot, top = self.geometry.half_width * float(np.sign(rotation)), self.geometry.height
+        of_beam = points[:, 1] > top
+        right = np.where(of_beam, -2.0 * pivot, points[:, 0] - pivot)
+        moves = rotated_points(
+            right, np.where(of_beam, top, points[:, 1]), rotation,
+            small_rotation=self.geometry.small_rotation,
+        )  # fmt: skip
+        return points + np.column_stack(moves)
+
+    def beam(self, points: Array) -> Array:
+        """Give where points of the beam are that columns carry."""
+        above = np.array([(0.0, 2.0 * self.geometry.height)])
+        return points + self._about_corner(above) - above
 
     def lower(self, k: int, points: Array) -> Array:
         """Give where points of a body of a stack are, the `k`-th beneath the block."""

@@ -53,8 +53,8 @@ def point_histories(
     rotation, rate = values["rotation"], values["angular_velocity"]
     angular = values["angular_acceleration"]
     body, small = load.body, load.options.small
-    right = np.array([point.x for point in points])[:, None] - body.eccentricity
-    up = np.array([point.y for point in points])[:, None] - body.centre_height
+    places = np.array([(point.x, point.y) for point in points])[:, :, None]
+    right, up = body.arms(places[:, 0], places[:, 1], rotation)
     sine, cosine = sines_cosines(rotation, small=small)
     # derivatives of the place about the centre of mass by the rotation
     across_rate, up_rate = up * cosine - right * sine, -right * cosine - up * sine

@@ -202,11 +202,10 @@ def _labels(system: "System", levels: Array, frequencies: Array) -> dict[str, An
     }
     found["frequency"][2]["long_name"] = "cyclic frequency of the pulse"
     setting = system.setting
-    block = system.parts.block
-    if isinstance(setting, RigidGroundSetting) and block is not None:
+    if isinstance(setting, RigidGroundSetting):
         uplift = min(setting.uplift_accelerations)
         angular = 2.0 * math.pi * frequencies
-        own = block.si.frequency_at(system.gravity_si)
+        own = setting.body.frequency_at(system.gravity_si)
         for name, dim, values in (
             ("relative_peak_ground_acceleration", SCALE, levels / uplift),
             ("relative_pulse_frequency", MOTION, angular / own),

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from rockframe.components.block_numbers import BlockSI, BodyGeometry, greatest_restitutions
 from rockframe.components.cap import CushionCapSI
+from rockframe.signals.arrays import Array
 from rockframe.signals.slope import Slope
 from rockframe.system.impact import Restitutions
 
@@ -38,6 +39,15 @@ class SupportedBody(BodyGeometry):
     def maximum_restitution(self) -> Restitutions:
         """eps_max of impacts on either end, Eq. (4) or :eq:`eq-eccentric-impact`."""
         return Restitutions(*greatest_restitutions(self))
+
+    @property
+    def base_ratio(self) -> float:
+        """Half the width that bears over b; 1 unless the body stands for several [1]."""
+        return 1.0
+
+    def arms(self, x: Array, y: Array, rotation: Array) -> tuple[Array, Array]:
+        """Give where points, from the middle of the base, are from the centre of mass [m]."""
+        return x - self.eccentricity, y - self.centre_height
 
     @property
     def base_inertia(self) -> float:

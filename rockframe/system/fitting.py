@@ -21,6 +21,8 @@ def misfits(parts: Parts) -> list[str]:
         return ["no Block is given"] if block is None else []
     if parts.stack is not None:
         faults += _misfits_of_stack(parts.stack, parts)
+    elif parts.frame is not None:
+        faults += _misfits_of_frame(parts)
     elif block is None:
         faults.append("no Block is given")
     given = parts.components()
@@ -76,6 +78,21 @@ def _misfits_of_links(parts: Parts) -> list[str]:
             f"the links of a scene follow one law, got {' and '.join(kinds)}; give those of one"
         )
     return faults
+
+
+def _misfits_of_frame(parts: Parts) -> list[str]:
+    """Give the faults of columns under a beam with other parts."""
+    others = [
+        type(part).__name__
+        for slot, part in parts.components().items()
+        if slot not in ("frame", "ground")
+    ]
+    if not others:
+        return []
+    return [
+        f"a RockingFrame and {' and '.join(others)} are both given; a RockingFrame stands on rigid "
+        "ground, with nothing else"
+    ]
 
 
 def _misfits_of_stack(stack: Stack, parts: Parts) -> list[str]:

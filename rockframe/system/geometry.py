@@ -1,11 +1,12 @@
 """Where the parts of a scene are, upright and at rest: what a drawing of it shows."""
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from rockframe.components import FrameEquivalent, Stack
+from rockframe.components import FrameEquivalent, RockingFrame, Stack
+from rockframe.components.rocking_frame import column_places, frame_outlines
 from rockframe.signals.arrays import Array
 from rockframe.system.assembly import Assembly
 from rockframe.system.setting import Setting
@@ -52,6 +53,9 @@ class Geometry:
     small_rotation: bool  # whether the kinematics are expanded in the rotation
     lower: tuple[LowerBody, ...] = ()  # bodies of a stack beneath the block, from the top down
     ties: tuple[LinkedPoints, ...] = ()  # points that restrainers link
+    # of columns under a beam, how far each is to the right of the middle; the block is one of them
+    columns: tuple[float, ...] = ()
+    beam: Array | None = None  # outline of the beam on them
 
     @property
     def level(self) -> float:
@@ -76,6 +80,8 @@ class Geometry:
         """Of the lowest base [m]."""
         if self.lower:
             return float(self.lower[-1].outline[:, 0].max())
+        if self.columns:
+            return self.columns[-1] + self.half_width
         return self.half_width if self.cap is None else self.cap[0]
 
     @property
@@ -117,7 +123,16 @@ def geometry_of(scene: Assembly) -> Geometry:
         inclination=scene.options.inclination,
         small_rotation=scene.options.small,
         ties=_ties_of(setting),
+        **_of_frame(parts.frame),
     )
+
+
+def _of_frame(frame: RockingFrame | None) -> dict[str, Any]:
+    """Give what is drawn of columns under a beam."""
+    if frame is None:
+        return {}
+    beam = np.array(frame_outlines(frame.si)[-1])
+    return {"columns": tuple(column_places(frame.si)), "beam": beam}
 
 
 def _ties_of(setting: Setting) -> tuple[LinkedPoints, ...]:

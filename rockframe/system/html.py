@@ -53,7 +53,11 @@ def shapes_of(geometry: Geometry) -> list[Polygon]:
         for side in (-0.83, 0.83):
             place = side * geometry.half_width
             found.append(("pad", rectangle(0.17 * geometry.half_width, pad, place, level)))
-    found.append(("block", geometry.block + raised))
+    if geometry.beam is not None:
+        found += [("member", geometry.block + np.array([x, 0.0])) for x in geometry.columns]
+        found.append(("member", geometry.beam))
+    else:
+        found.append(("block", geometry.block + raised))
     level_up = geometry.place
     found += [("member", member + level_up + raised) for member in geometry.members]
     centre = np.array([geometry.centre]) + level_up + raised

@@ -4,7 +4,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, cast
 
-from rockframe.components import Block, Component, CushionCap, Link, RigidGround, Stack
+from rockframe.components import (
+    Block,
+    Component,
+    CushionCap,
+    Link,
+    RigidGround,
+    RockingFrame,
+    Stack,
+)
 from rockframe.components.block_numbers import BlockSI
 from rockframe.errors import shown
 from rockframe.motion import GroundMotion
@@ -59,6 +67,11 @@ class Parts:
         return self._in("stack")
 
     @property
+    def frame(self) -> RockingFrame | None:
+        """Columns under a beam."""
+        return self._in("frame")
+
+    @property
     def pads(self) -> Component | None:
         """The pads under it."""
         return self._in("pads")
@@ -110,12 +123,21 @@ class Parts:
 
     @property
     def the_block(self) -> BlockSI:
-        """The numbers of the block, the highest one of a stack, which every scene has."""
+        """The numbers of the block: the highest one of a stack, a column of a frame."""
         if self.stack is not None:
             return self.stack.si.bodies[0]
+        if self.frame is not None:
+            return self.frame.si.column
         if self.block is None:
             raise TypeError
         return self.block.si
+
+    @property
+    def the_frame(self) -> RockingFrame:
+        """Columns under a beam, in a scene that has them."""
+        if self.frame is None:
+            raise TypeError
+        return self.frame
 
     @property
     def the_cap(self) -> Cap:

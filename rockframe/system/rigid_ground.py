@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 from rockframe.errors import AssemblyError
 from rockframe.system.impact import Restitutions, resolve_restitution, restitution_cautions
@@ -28,6 +28,10 @@ class RigidGroundSetting(Setting):
 
     restitution: Restitutions  # eps of its corners [1]
     flies = False
+    source: ClassVar[str] = "Housner; Eq. (6) for omega"
+    """Of the equation of motion."""
+    greatest: ClassVar[str] = "Eq. (4) is the greatest value"
+    """Said of the restitution."""
 
     @property
     def model(self) -> str:
@@ -105,7 +109,11 @@ class RigidGroundSetting(Setting):
             # the moments of weight and reactions about the middle of the base
             moment = weight * body.eccentricity - thrust * body.centre_height
             return Statics(
-                0.0, moment, 0.0, "full", dict(zip(_REACTIONS, self.shares, strict=True))
+                0.0,
+                body.base_ratio * moment,
+                0.0,
+                "full",
+                dict(zip(_REACTIONS, self.shares, strict=True)),
             )
         side = math.copysign(1.0, rotation)
         theta, lean = body.overturning_angles.on_side_of(rotation), abs(rotation)
@@ -123,7 +131,7 @@ class RigidGroundSetting(Setting):
         reactions = (0.0, weight) if side > 0.0 else (weight, 0.0)
         return Statics(
             vertical_displacement=rise,
-            base_moment=moment + side * weight * weight_arm,
+            base_moment=body.base_ratio * (moment + side * weight * weight_arm),
             restoring_moment=moment + thrust * thrust_arm,
             contact_state="right" if side > 0.0 else "left",
             reactions=dict(zip(_REACTIONS, reactions, strict=True)),
@@ -131,7 +139,7 @@ class RigidGroundSetting(Setting):
 
     def equilibrium(self) -> dict[str, float]:
         """Give the reactions at rest and the moment at uplift, by their names in the schema."""
-        uplift = self.load.weight * self.body.half_width
+        uplift = self.load.weight * self.body.half_width * self.body.base_ratio
         shares = zip(_REACTIONS, self.shares, strict=True)
         return {"uplift_moment": uplift} | {f"static_{name}": force for name, force in shares}
 
@@ -154,9 +162,9 @@ class RigidGroundSetting(Setting):
         return Words(
             equations=[
                 ("full", self._start_words()),
-                ("left, right", f"{rocking}, s = sgn(a) (Housner; Eq. (6) for omega)"),
+                ("left, right", f"{rocking}, s = sgn(a) ({self.source})"),
                 ("impact", f"a' after = {self.restitution.words()} a' before, at a = 0 "
-                 "(Eq. (4) is the greatest value)"),
+                 f"({self.greatest})"),
             ],
             restraint="the bearing corner does not slide (the restraint options make no "
             "difference)",
@@ -213,11 +221,11 @@ def rigid_ground_setting(parts: Parts, options: Options) -> RigidGroundSetting:
     load = load_of(parts.the_block, options)
     given = parts.ground.si.restitution if parts.ground is not None else None
     setting = RigidGroundSetting(load, resolve_restitution(given, load.body.maximum_restitution))
-    _refuse_fall(setting)
+    refuse_fall(setting)
     return setting
 
 
-def _refuse_fall(setting: RigidGroundSetting) -> None:
+def refuse_fall(setting: RigidGroundSetting) -> None:
     """Refuse a block whose weight passes beside its base, :eq:`eq-incline-standing`."""
     slope, tangents = setting.slope, setting.tangents
     if slope.level:

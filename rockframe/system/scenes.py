@@ -14,6 +14,7 @@ from rockframe.system.options import Coupling, Options
 from rockframe.system.own_scene import OwnScene
 from rockframe.system.parts import Parts
 from rockframe.system.rigid_ground import rigid_ground_setting
+from rockframe.system.rocking_frame import rocking_frame_setting
 from rockframe.system.setting import Setting
 from rockframe.system.slots import RESTRAINER, support_of
 from rockframe.system.stack import StackSetting, block_setting, stack_setting
@@ -112,6 +113,7 @@ _SHIPPED: Final = (
         partial(_stacked, CascadeSetting),
         Coupling.CASCADE,
     ),
+    Scene("RockingFrame (on rigid ground)", frozenset({"frame"}), rocking_frame_setting),
     Scene("Stack (on rigid ground)", frozenset({"stack"}), partial(_upon_one_another, "ground")),
     Scene(
         "Stack + TwoSpringSupport",

@@ -6,9 +6,11 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import Any, Final, Protocol, TypeAlias
 
+import numpy as np
+
 from rockframe.arguments import one_of_words
 from rockframe.components import Component
-from rockframe.components.parameters import Choice, Declared, Text
+from rockframe.components.parameters import Choice, Count, Declared, Text
 from rockframe.errors import ModelWarning, StudyError, shown, warn
 from rockframe.motion import GroundMotion
 from rockframe.results.outcome import Generic
@@ -267,6 +269,9 @@ def _option(name: str, value: Any) -> Any:
 def _declared_values(
     given: object, one: Declared[Any, Any], name: str
 ) -> tuple[Generic, str | None]:
+    if isinstance(one, Count):
+        numbers = numbers_of(given, Measure("a whole number", Unit.ONE, "2"), name)
+        return np.array([one.read(number, OWNER) for number in numbers.tolist()]), str(Unit.ONE)
     if one.measure is None:
         return words_of(given, lambda word: one.read(word, OWNER)), None
     return numbers_of(given, one.measure, name), str(one.measure.unit)

@@ -1,0 +1,203 @@
+"""Columns that rock together under a beam."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar, Final, Self
+
+from rockframe.components.base import Component
+from rockframe.components.block import Block
+from rockframe.components.block_numbers import BlockSI
+from rockframe.components.parameters import REQUIRED, Count, Declared, Missing, Parameter
+from rockframe.components.registry import component_from_dict
+from rockframe.components.values import SIValues
+from rockframe.errors import ComponentError, shown
+from rockframe.notebook import Polygon
+from rockframe.units import LENGTH, MASS, NOT_NEGATIVE, POSITIVE, QuantityLike
+
+FEWEST_COLUMNS: Final = 2
+"""A beam on one column would not stay level."""
+SPACING: Final = 1.0
+"""Distance of the columns in drawings, over their height."""
+BEAM_HEIGHT: Final = 0.2
+"""Height of the beam in drawings, over that of the columns."""
+_OF_COLUMN: Final = " of column"
+
+
+class _Column(Declared[Block, Missing]):
+    """The parameter that is a block."""
+
+    written_as = "Block"
+    annotation = Block
+
+    def __init__(self, *, doc: str) -> None:
+        super().__init__(None, None, doc=doc, default=REQUIRED)
+
+    def read(self, given: object, owner: str) -> Block:
+        """Take the block, or what describes it."""
+        if isinstance(given, Mapping):
+            given = component_from_dict({"type": Block.__name__, **given})
+        if not isinstance(given, Block):
+            msg = f"{owner}: {self.name} must be a Block, got {shown(given)}"
+            raise ComponentError(msg)
+        if given.si.eccentricity != 0.0:
+            msg = (
+                f"{owner}: the centre of mass of the {self.name} is "
+                f"{given.si.eccentricity:.6g} m beside the middle of its base; it must be above it"
+            )
+            raise ComponentError(msg)
+        return given
+
+    def write(self, value: Block) -> Any:
+        """Describe the block."""
+        return value.to_dict()
+
+
+@dataclass(frozen=True)
+class RockingFrameSI:
+    """Columns under a beam in SI units."""
+
+    column: BlockSI  # each of them
+    columns: int  # how many
+    beam_mass: float  # [kg]
+    spacing: float  # from axis to axis, in drawings [m]
+    beam_height: float  # in drawings [m]
+
+
+class RockingFrame(Component):
+    """Equal columns that rock together under a rigid beam, as those of a bridge bent.
+
+    The columns stand free on the ground and the beam free on the columns. All rotate by the same
+    angle, each about a lower corner; the beam, on their upper corners, stays level,
+    :eq:`eq-rocking-frame`.
+
+    Raises
+    ------
+    UnitsError
+        A value has the wrong unit, or none.
+    ComponentError
+        The column is no :class:`Block` whose centre of mass is above the middle of its base, or
+        there are fewer than two.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> pier = rf.Block(width="1.6 m", height="9.6 m", mass="60 t")
+    >>> bent = rf.RockingFrame(pier, columns=3, beam_mass="200 t")
+    >>> bent.beam_mass.to("t")
+    <Quantity(200.0, 'metric_ton')>
+    """
+
+    si: RockingFrameSI
+    noun: ClassVar[str] = "frame"
+
+    column = _Column(doc="Each of the columns.")
+    columns = Count(doc="How many columns there are, from 2 on.")
+    beam_mass = Parameter(MASS, NOT_NEGATIVE, doc="Mass of the beam, with what it carries.")
+    spacing = Parameter(
+        LENGTH,
+        POSITIVE,
+        doc="From axis to axis of the columns, in drawings, for the motion does not depend on it; "
+        "their height unless given.",
+        default=None,
+    )
+    beam_height = Parameter(
+        LENGTH,
+        POSITIVE,
+        doc="Height of the beam, in drawings likewise; 0.2 times that of the columns unless given.",
+        default=None,
+    )
+
+    def __init__(
+        self,
+        column: Block,
+        *,
+        columns: int,
+        beam_mass: QuantityLike,
+        spacing: QuantityLike | None = None,
+        beam_height: QuantityLike | None = None,
+    ) -> None:
+        super().__init__(
+            column=column, columns=columns, beam_mass=beam_mass, spacing=spacing,
+            beam_height=beam_height,
+        )  # fmt: skip
+
+    def _numbers(self, given: SIValues) -> RockingFrameSI:
+        if given.columns < FEWEST_COLUMNS:
+            msg = f"RockingFrame: it has {FEWEST_COLUMNS} columns or more, got {given.columns}"
+            raise ComponentError(msg)
+        si = given.column.si
+        spacing = SPACING * si.height if given.spacing is None else given.spacing
+        depth = BEAM_HEIGHT * si.height if given.beam_height is None else given.beam_height
+        return RockingFrameSI(si, given.columns, given.beam_mass, spacing, depth)
+
+    def cautions(self) -> list[str]:
+        """Say what is unusual about the column.
+
+        Returns
+        -------
+        list of str
+        """
+        return self.given.column.cautions()
+
+    def parameters(self) -> tuple[str, ...]:
+        """Name the numbers that the motion depends on, other than zero.
+
+        Returns
+        -------
+        tuple of str
+            As "height of column", and "beam_mass".
+        """
+        of_column = (f"{name}{_OF_COLUMN}" for name in self.given.column.parameters())
+        return (*of_column, *(["beam_mass"] if self.si.beam_mass else []))
+
+    def with_scaled(self, name: str, factor: float) -> Self:
+        """Build a frame of which one number is larger or smaller.
+
+        Parameters
+        ----------
+        name : str
+            One of :meth:`parameters`.
+        factor : float
+            New value over old [1].
+
+        Returns
+        -------
+        RockingFrame
+
+        Raises
+        ------
+        ComponentError
+            No such parameter, or its new value is out of range.
+        """
+        own = name.removesuffix(_OF_COLUMN)
+        if own == name:
+            return super().with_scaled(name, factor)
+        column = self.given.column.with_scaled(own, factor)
+        return self.from_dict({**self._arguments(), "column": column})
+
+    def __repr__(self) -> str:
+        given = {**self._arguments(), "column": self.given.column}
+        column, *others = (f"{name}={value!r}" for name, value in given.items())
+        return f"RockingFrame({column.removeprefix('column=')}, {', '.join(others)})"
+
+    def __hash__(self) -> int:
+        return hash(repr(self))
+
+    def _shapes(self) -> list[Polygon]:
+        return [Polygon("member", one) for one in frame_outlines(self.si)]
+
+
+def frame_outlines(si: RockingFrameSI) -> list[list[tuple[float, float]]]:
+    """Give the corners of all columns and of the beam, from the middle of the ground [m]."""
+    half, height = si.column.half_width, si.column.height
+    places = column_places(si)
+    reach, top = places[-1] + 2.0 * half, height + si.beam_height
+    found = [
+        [(x - half, 0.0), (x + half, 0.0), (x + half, height), (x - half, height)] for x in places
+    ]
+    return [*found, [(-reach, height), (reach, height), (reach, top), (-reach, top)]]
+
+
+def column_places(si: RockingFrameSI) -> list[float]:
+    """Give how far the axes of the columns are to the right of the middle of the frame [m]."""
+    return [(k - 0.5 * (si.columns - 1)) * si.spacing for k in range(si.columns)]

@@ -1,0 +1,181 @@
+"""Columns under a beam: the part, the scene, and what runs, figures and files make of it."""
+
+import json
+import pickle
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import rockframe as rf
+from rockframe.command.files.scenes import read_scene
+from rockframe.plot._layout import Drawer
+from rockframe.plot._scene import Moving
+from rockframe.reports.limits import limits_of
+from rockframe.results.placement import UPRIGHT, Placement
+from rockframe.simulation.perturbations import parameters
+from rockframe.system.geometry import geometry_of
+from rockframe.system.options import Restraint
+
+PIER = rf.Block(width="1.6 m", height="9.6 m", mass="60 t")
+BENT = rf.RockingFrame(PIER, columns=3, beam_mass="200 t", spacing="7 m", beam_height="1.5 m")
+PULSE = rf.GroundMotion.sine_pulse("4 m/s^2", "0.7 Hz")
+
+
+def test_a_frame_gives_back_what_it_was_made_of():
+    assert BENT.column == PIER
+    assert BENT.columns == 3
+    assert BENT.beam_mass.m_as("t") == pytest.approx(200.0)
+    described = json.loads(json.dumps(BENT.to_dict()))
+    assert rf.RockingFrame.from_dict(described) == BENT
+    assert pickle.loads(pickle.dumps(BENT)) == BENT  # noqa: S301
+    assert len({BENT, BENT.replace(columns=4), BENT.replace(columns=3)}) == 2
+    assert eval(repr(BENT), vars(rf)) == BENT  # noqa: S307
+    assert "<svg" in BENT._repr_html_()
+
+
+@pytest.mark.parametrize(
+    ("column", "given", "words"),
+    [
+        (PIER, {"columns": 1}, "2 columns or more, got 1"),
+        (PIER, {"columns": 2.5}, "whole number"),
+        (PIER, {"beam_mass": "-1 t"}, "beam_mass"),
+        ("1.6 m", {}, "column must be a Block"),
+        (PIER.replace(eccentricity="0.1 m"), {}, "0.1 m beside the middle"),
+    ],
+)
+def test_what_makes_no_frame_is_refused(column, given, words):
+    with pytest.raises(rf.ComponentError, match=words):
+        rf.RockingFrame(column, **({"columns": 3, "beam_mass": "200 t"} | given))
+
+
+def test_what_a_frame_does_not_go_with():
+    pads = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
+    with pytest.raises(rf.AssemblyError, match="a RockingFrame stands on rigid ground"):
+        rf.System(BENT, pads)
+    with pytest.raises(rf.AssemblyError, match="RockingFrame and Block are both given"):
+        rf.System(BENT, PIER)
+    squat = rf.Block(width="1 m", height="0.9 m", mass="1 t")
+    with pytest.raises(rf.AssemblyError, match="so squat that the frame cannot rock"):
+        rf.System(rf.RockingFrame(squat, columns=2, beam_mass="50 t"))
+
+
+@pytest.mark.parametrize(
+    ("gamma", "frequency", "restitution"),
+    [
+        (0, 1.0, 0.911765), (1, 0.866025, 0.889706), (4, 0.832050, 0.884615),
+        (10, 0.823055, 0.883302),
+    ],
+)  # fmt: skip
+def test_the_numbers_of_the_closed_form(gamma, frequency, restitution):
+    column = rf.Block(width="1 m", height="4 m", mass="1 t")
+    frame = rf.RockingFrame(column, columns=2, beam_mass=f"{2 * gamma} t")
+    setting = rf.System(frame).setting
+    assert setting.overturning_angle == pytest.approx(np.arctan(0.25), rel=1e-15)
+    ratio = setting.body.frequency_at(9.81) / column.si.frequency_at(9.81)
+    exact = np.sqrt((1 + 2 * gamma) / (1 + 3 * gamma))
+    assert ratio == pytest.approx(exact, rel=1e-14)
+    assert ratio == pytest.approx(frequency, abs=6e-7)
+    angle = np.arctan(0.25)
+    closed = 1 - 1.5 * np.sin(angle) ** 2 + 3 * gamma * np.cos(2 * angle)
+    assert setting.restitution.left == pytest.approx(closed / (1 + 3 * gamma), rel=1e-14)
+    assert setting.restitution.left == pytest.approx(restitution, abs=6e-7)
+
+
+def test_columns_without_a_beam_rock_as_one_alone():
+    plan = {"free_vibration": "6 s", "outputs": ("reaction", "acceleration", "energy")}
+    frame = rf.RockingFrame(PIER, columns=3, beam_mass="0 t")
+    pulse = PULSE.scaled(0.6)
+    several = rf.System(frame).simulate(pulse, **plan)
+    alone = rf.System(PIER).simulate(pulse, **plan)
+    assert int(alone.impact_count) == 3
+    np.testing.assert_allclose(several.rotation, alone.rotation, rtol=0.0, atol=1e-11)
+    shared = ("vertical_reaction", "base_shear", "base_overturning_moment", "kinetic_energy")
+    for name in shared:
+        scale = float(abs(alone[name]).max())
+        np.testing.assert_allclose(several[name], 3.0 * alone[name], rtol=0.0, atol=1e-9 * scale)
+
+
+def test_a_run_keeps_its_energy_tells_the_scene_and_goes_to_a_file(tmp_path):
+    system = rf.System(BENT)
+    run = system.simulate(
+        PULSE, free_vibration="6 s", accuracy="reference", outputs=("energy", "reaction")
+    )
+    assert float(run.energy_residual) < 1e-8
+    assert "rocking frame" in run.attrs["model"]
+    run.to_netcdf(tmp_path / "bent.nc")
+    with xr.open_dataset(tmp_path / "bent.nc") as read:
+        again = rf.System.from_dataset(read)
+        assert again.parts.frame == BENT
+        np.testing.assert_array_equal(
+            again.simulate(free_vibration="6 s", accuracy="reference").rotation, read.rotation
+        )
+    text = system.describe()
+    for words in ("Makris and Vassiliou", "gamma = m_b/(N m)  1.11111", "6.54421 m"):
+        assert words in text
+    assert "<svg" in system._repr_html_()
+    assert "Rocking frames" in [one.title for one in limits_of(system.parts)]
+
+
+def test_statics():
+    system = rf.System(BENT)
+    weight, half = 380e3 * system.gravity_si, 0.8
+    at = system.moment_rotation(["0.05 rad"])
+    # the weight of the beam rises twice as fast as that of the columns
+    lever = (180.0 + 2.0 * 200.0) / 380.0 * np.hypot(0.8, 4.8)
+    angle = np.arctan(1.0 / 6.0)
+    assert at.restoring_moment.item() == pytest.approx(weight * lever * np.sin(angle - 0.05))
+    assert at.base_moment.item() == pytest.approx(weight * half * np.cos(0.05))
+    assert system.equilibrium().uplift_moment.item() == pytest.approx(weight * half)
+
+
+def test_columns_and_beam_are_drawn_where_they_are():
+    run = rf.System(BENT).simulate(
+        PULSE, free_vibration="3 s", points={"deck": ("0 m", "11 m"), "head": ("0.8 m", "9.6 m")}
+    )
+    for place in (0, run.sizes["time"] // 3, int(np.abs(run.rotation.to_numpy()).argmax())):
+        moving = Moving(run, "state", 1.0)
+        at = moving.at(place)
+        found = moving.drawer.lay_out(at)
+        first, others, beam = found.block, found.others[:-1], found.others[-1]
+        assert len(others) == 2
+        for k, one in enumerate(others, 1):
+            np.testing.assert_allclose(one, first + np.array([7.0 * k, 0.0]), atol=1e-12)
+        assert np.ptp(beam[:2, 1]) == pytest.approx(0.0, abs=1e-12)
+        # it lies on the higher of the upper corners
+        assert beam[0, 1] == pytest.approx(first[2:, 1].max(), abs=1e-12)
+        deck, head = (run.isel(point=k, time=place) for k in (0, 1))
+        for name, point, rest in (("deck", deck, (0.0, 11.0)), ("head", head, (-6.2, 9.6))):
+            shown = [point.point_horizontal_displacement, point.point_vertical_displacement]
+            drawn = moving.drawer.points(at, np.array([moving.points[name]]))[0]
+            np.testing.assert_allclose(drawn - rest, shown, atol=1e-9)
+    upright = Placement(geometry_of(rf.System(BENT).assembly), UPRIGHT, Restraint.CONTACT_STATE)
+    assert len(Drawer(upright.geometry).lay_out(upright).touching) == 3
+    rf.plot.scene(rf.System(BENT))
+    rf.plot.state(run, "1 s")
+
+
+def test_sweeps_certificates_and_files(tmp_path):
+    runs = rf.sweep(
+        rf.System(BENT), motions=[PULSE], beam_mass=["0 t", "200 t"], columns=[2, 3],
+        accuracy="fast", progress=False,
+    )  # fmt: skip
+    assert runs.peak_rotation.shape == (2, 2, 1)
+    one = rf.System(BENT.replace(columns=2)).simulate(PULSE, accuracy="fast", outputs=None)
+    assert float(runs.peak_rotation[1, 0, 0]) == float(one.peak_rotation)
+    names = [name for name, _ in parameters(rf.System(BENT).assembly)]
+    assert names == [
+        "width of column of the frame", "height of column of the frame",
+        "mass of column of the frame", "beam mass of the frame",
+    ]  # fmt: skip
+    assert all(at(0.01) is not None for _, at in parameters(rf.System(BENT).assembly))
+    assert list(rf.model_ladder(rf.System(BENT))) == [
+        "rigid ground, small rotations",
+        "rigid ground",
+    ]
+    file = tmp_path / "bent.toml"
+    file.write_text(
+        "[frame]\ncolumns = 3\nbeam_mass = '200 t'\nspacing = '7 m'\nbeam_height = '1.5 m'\n"
+        "[frame.column]\nwidth = '1.6 m'\nheight = '9.6 m'\nmass = '60 t'\n"
+    )
+    assert read_scene(file).system == rf.System(BENT)
