@@ -10,7 +10,7 @@ import xarray as xr
 
 from rockframe.arguments import checked_dataset
 from rockframe.constants import CONVENTIONS
-from rockframe.records.netcdf import LONG_NAMES, stored_motion
+from rockframe.records import LONG_NAMES, stored_motion
 from rockframe.units import Unit
 
 if TYPE_CHECKING:

@@ -16,15 +16,12 @@ from rockframe.motion.operations.pulses import LONGEST, SHORTEST, searched, velo
 from rockframe.motion.processing.sampling import padded
 from rockframe.motion.processing.velocity_pulses import strongest
 from rockframe.motion.quantities import with_quantity
-from rockframe.records.files import read_source
-from rockframe.records.numbers import same_start
-from rockframe.records.read import Reading, read_components
-from rockframe.records.record_file import Request
+from rockframe.records import Reading, read_components, read_source, same_start
 from rockframe.units import ANGLE
 
 if TYPE_CHECKING:
     from rockframe.motion.velocity_pulse import VelocityPulse
-    from rockframe.records.files import RecordLike
+    from rockframe.records import RecordLike
     from rockframe.signals import Signal
     from rockframe.units import QuantityLike
 
@@ -111,7 +108,7 @@ class HorizontalPair:
         """
         source = read_source(path)
         readings: list[Reading] = []
-        for one in read_components(source, format, Request()):
+        for one in read_components(source, format):
             if isinstance(one, RecordError):
                 raise one
             readings.append(one)

@@ -9,7 +9,7 @@ import pint
 import xarray as xr
 
 from rockframe.errors import ComponentError, UnitsError, shown
-from rockframe.records.unit_names import RecordUnit, acceleration_unit
+from rockframe.records import acceleration_unit
 from rockframe.units import ACCELERATION, TIME, Measure, Quantity, foreign_quantity, to_si
 
 if TYPE_CHECKING:
@@ -23,7 +23,6 @@ ArrayLike: TypeAlias = "Quantity | xr.DataArray | tuple[Sequence[float] | npt.ND
 
 _TIME_AXES: Final = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
 _EXAMPLE: Final = "(values, 'm/s^2')"
-_TRY_UNIT: Final = Measure("an acceleration", ACCELERATION.unit, "m/s^2")
 
 
 def with_quantity(value: float | Array, measure: Measure) -> Quantity:
@@ -65,28 +64,6 @@ def accelerations_to_si(value: object, *, owner: str, name: str) -> Array:
         f"{ACCELERATION.unit}, got {found}; write for example {name}={_EXAMPLE}"
     )
     raise UnitsError(msg)
-
-
-def argument_unit(unit: object, *, owner: str) -> RecordUnit:
-    """Read the ``unit=`` argument that goes with a record file."""
-    text = str(unit)
-    known = acceleration_unit(text)
-    if known is not None:
-        return known
-    try:
-        factor = to_si(f"1 {text}", _TRY_UNIT, owner=owner, name="unit")
-    except (UnitsError, ComponentError) as problem:
-        factor = 0.0
-        cause: Exception | None = problem
-    else:
-        cause = None
-    if factor > 0.0:
-        return RecordUnit(text, factor)
-    msg = (
-        f"{owner}: unit needs the unit of an acceleration, got {shown(text)}; "
-        "write for example unit='g', unit='cm/s^2' or unit='m/s^2'"
-    )
-    raise UnitsError(msg) from cause
 
 
 def times_to_si(value: object, *, owner: str, name: str) -> Array:

@@ -1,21 +1,83 @@
-"""Readers of record files: one module per format, one list of them.
+r"""Files of ground motions, read: what stands in them, before it is a motion.
 
-What a reader of another format needs is here, too; see :func:`register`.
+This is the door of the package: what it offers is imported from here, and nothing behind it.
+
+>>> from io import BytesIO
+>>> text = b"time (s),acceleration (g)\n0,0\n0.01,0.1\n0.02,-0.1\n"
+>>> reading = read_record(BytesIO(text))
+>>> reading.si.time_step, reading.metadata["format"]
+(0.01, 'text')
+
+``read_record`` reads one component, ``read_components`` all of a file, ``files_of`` opens the
+files of a folder or an archive. What a reader of another format needs is here, too; see
+:func:`register`.
 """
 
-from rockframe.records.checks import choose_unit as choose_unit
-from rockframe.records.components import FileComponent as FileComponent
-from rockframe.records.components import choose_component as choose_component
-from rockframe.records.components import orientation_of as orientation_of
-from rockframe.records.known_formats import Format as Format
-from rockframe.records.known_formats import Reader as Reader
-from rockframe.records.known_formats import formats as formats
-from rockframe.records.known_formats import register as register
-from rockframe.records.known_formats import unregister as unregister
-from rockframe.records.read import read_record as read_record
-from rockframe.records.record_file import Record as Record
-from rockframe.records.record_file import Request as Request
-from rockframe.records.record_file import Source as Source
+from rockframe.records.components import (
+    DOWNWARDS,
+    SENSE,
+    UPWARDS,
+    VERTICAL,
+    FileComponent,
+    choose_component,
+    orientation_of,
+)
+from rockframe.records.files import PathLike, RecordLike, Unread, files_of, read_source
+from rockframe.records.known_formats import Format, Reader, formats, register, unregister
+from rockframe.records.netcdf import LONG_NAMES, is_netcdf, stored_motion
+from rockframe.records.numbers import epoch_seconds, same_start, uniform_step
+from rockframe.records.peer import Known, peer_table
+from rockframe.records.read import (
+    Reading,
+    read_components,
+    read_record,
+    read_traces,
+    request_of,
+)
+from rockframe.records.record_file import MAXIMUM_SAMPLES, Metadata, Record, Request, Source
+from rockframe.records.unit_names import acceleration_unit, argument_unit, choose_unit
+
+__all__ = [
+    "DOWNWARDS",
+    "LONG_NAMES",
+    "MAXIMUM_SAMPLES",
+    "SENSE",
+    "UPWARDS",
+    "VERTICAL",
+    "Component",
+    "FileComponent",
+    "Format",
+    "Known",
+    "Metadata",
+    "PathLike",
+    "Reader",
+    "Reading",
+    "Record",
+    "RecordLike",
+    "Request",
+    "Source",
+    "Unread",
+    "acceleration_unit",
+    "argument_unit",
+    "choose_component",
+    "choose_unit",
+    "epoch_seconds",
+    "files_of",
+    "formats",
+    "is_netcdf",
+    "orientation_of",
+    "peer_table",
+    "read_components",
+    "read_record",
+    "read_source",
+    "read_traces",
+    "register",
+    "request_of",
+    "same_start",
+    "stored_motion",
+    "uniform_step",
+    "unregister",
+]
 
 Component = FileComponent
 """The same, as readers of users' own have called it before."""

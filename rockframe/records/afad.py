@@ -17,7 +17,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Final
 
-from rockframe.records.checks import choose_unit, compare_peak, settle_count
+from rockframe.records.checks import compare_peak, settle_count
 from rockframe.records.components import UNKNOWN, FileComponent, choose_component, orientation_of
 from rockframe.records.keys import Keys, kept, needed_count, needed_step, read_keys
 from rockframe.records.numbers import (
@@ -27,6 +27,7 @@ from rockframe.records.numbers import (
     last_fields,
 )
 from rockframe.records.record_file import Metadata, Record, Request, Source, quoted_first_line
+from rockframe.records.unit_names import choose_unit
 
 if TYPE_CHECKING:
     from rockframe.signals.arrays import Array

@@ -27,11 +27,7 @@ from typing import TYPE_CHECKING, Any, Final, cast
 import numpy as np
 
 from rockframe.errors import RecordError
-from rockframe.records.checks import (
-    check_asked_time_step,
-    check_time_step,
-    choose_unit,
-)
+from rockframe.records.checks import check_asked_time_step, check_time_step
 from rockframe.records.components import FileComponent, choose_component, orientation_of
 from rockframe.records.instruments import (
     InstrumentResponses,
@@ -40,6 +36,7 @@ from rockframe.records.instruments import (
     response_in,
 )
 from rockframe.records.record_file import MAXIMUM_SAMPLES, Metadata, Record, Request, Source
+from rockframe.records.unit_names import choose_unit
 
 if TYPE_CHECKING:
     from collections.abc import Generator

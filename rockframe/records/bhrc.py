@@ -12,13 +12,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Final
 
-from rockframe.records.checks import (
-    check_asked_time_step,
-    check_time_step,
-    choose_unit,
-    compare_length,
-    surplus,
-)
+from rockframe.records.checks import check_asked_time_step, check_time_step, compare_length, surplus
 from rockframe.records.components import (
     UNKNOWN,
     FileComponent,
@@ -29,6 +23,7 @@ from rockframe.records.components import (
 )
 from rockframe.records.numbers import cell, fixed_width, one_number
 from rockframe.records.record_file import Metadata, Record, Request, Source, quoted_first_line
+from rockframe.records.unit_names import choose_unit
 
 if TYPE_CHECKING:
     from rockframe.errors import RecordError

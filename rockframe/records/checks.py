@@ -14,7 +14,7 @@ import numpy as np
 
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.records.numbers import NUMBER
-from rockframe.records.unit_names import RecordUnit, acceleration_unit, other_quantity
+from rockframe.records.unit_names import RecordUnit, acceleration_unit
 
 if TYPE_CHECKING:
     from rockframe.records.record_file import Metadata, Request, Source
@@ -41,58 +41,6 @@ MISSING: Final = (999.0, 9999.0, 99999.0, 999999.0, 12345.0, 32768.0, 1.7e38)
 _ROUNDING: Final = 1e-6
 _FEWEST_FOR_OFFSET: Final = 50
 _ENDS: Final = 10
-
-
-def choose_unit(
-    source: Source, request: Request, name: str | None, line: int | None
-) -> tuple[RecordUnit, str, list[str]]:
-    """Settle the unit of the samples between the file and the ``unit=`` argument.
-
-    Parameters
-    ----------
-    source : Source
-        File.
-    request : Request
-        What the caller asked for.
-    name : str or None
-        Unit that the file names, if any.
-    line : int or None
-        Where it does, from 1.
-
-    Returns
-    -------
-    tuple of RecordUnit, str, list of str
-        Unit, its name as read, warnings.
-
-    Raises
-    ------
-    RecordError
-        The file's unit is unknown or not an acceleration, or there is none.
-    """
-    known = None if name is None else acceleration_unit(name)
-    if name is not None and known is None:
-        other = other_quantity(name)
-        if other is not None:
-            raise source.refuse(found=f"{other} in {name}", expected="an acceleration", line=line)
-    if request.unit is not None and request.unit_name is not None:
-        warnings: list[str] = []
-        if known is not None and not math.isclose(known.factor, request.unit.factor):
-            where = source.path if line is None else f"{source.path}, line {line}"
-            warnings.append(
-                f"{where}: the unit of the file is {name!r}, but "
-                f"unit={request.unit_name!r} was asked for and is used"
-            )
-        return request.unit, request.unit_name, warnings
-    if name is None:
-        raise source.refuse(
-            found="no unit of the samples",
-            expected="a unit in the header, or the argument unit, for example unit='g' (on the "
-            "command line --unit g)",
-        )
-    if known is None:
-        expected = "an acceleration unit such as g, gal, cm/s^2 or m/s^2 (or the argument unit)"
-        raise source.refuse(found=f"the unknown unit {name!r}", expected=expected, line=line)
-    return known, name, []
 
 
 def check_time_step(source: Source, time_step: float, line: int | None) -> None:

@@ -14,13 +14,7 @@ import re
 from dataclasses import dataclass
 from typing import Final
 
-from rockframe.records.checks import (
-    check_asked_time_step,
-    check_time_step,
-    choose_unit,
-    compare_peak,
-    surplus,
-)
+from rockframe.records.checks import check_asked_time_step, check_time_step, compare_peak, surplus
 from rockframe.records.components import (
     DOWNWARDS,
     UPWARDS,
@@ -33,7 +27,7 @@ from rockframe.records.components import (
 )
 from rockframe.records.numbers import fixed_width, one_number, whole
 from rockframe.records.record_file import Metadata, Record, Request, Source, quoted_first_line
-from rockframe.records.unit_names import acceleration_unit
+from rockframe.records.unit_names import acceleration_unit, choose_unit
 
 MILLISECOND: Final = 1e-3
 

@@ -28,7 +28,6 @@ from typing import TYPE_CHECKING, Final
 from rockframe.records.checks import (
     check_asked_time_step,
     check_time_step,
-    choose_unit,
     compare_length,
     compare_peak,
     surplus,
@@ -41,6 +40,7 @@ from rockframe.records.components import (
 )
 from rockframe.records.numbers import fixed_width, uniform_step, whole
 from rockframe.records.record_file import Record, Request, Source, quoted_first_line
+from rockframe.records.unit_names import choose_unit
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -18,7 +18,6 @@ from typing import Final
 from rockframe.records.checks import (
     check_asked_time_step,
     check_time_step,
-    choose_unit,
     compare_length,
     compare_peak,
     settle_count,
@@ -32,6 +31,7 @@ from rockframe.records.numbers import (
     one_number,
 )
 from rockframe.records.record_file import Metadata, Record, Request, Source, quoted_first_line
+from rockframe.records.unit_names import choose_unit
 
 NAME: Final = "csmnc"
 TITLE: Final = "file of the China Strong Motion Networks Centre"

@@ -24,7 +24,6 @@ import numpy as np
 from rockframe.records.checks import (
     check_asked_time_step,
     check_time_step,
-    choose_unit,
     compare_peak,
     settle_count,
 )
@@ -39,6 +38,7 @@ from rockframe.records.components import (
 from rockframe.records.keys import Keys, kept, needed, needed_rate
 from rockframe.records.numbers import fixed_width, one_number
 from rockframe.records.record_file import Metadata, Record, Request, Source, quoted_first_line
+from rockframe.records.unit_names import choose_unit
 
 if TYPE_CHECKING:
     from rockframe.records.unit_names import RecordUnit

@@ -13,7 +13,7 @@ from __future__ import annotations
 import re
 from typing import Final
 
-from rockframe.records.checks import choose_unit, compare_length, compare_peak, settle_count
+from rockframe.records.checks import compare_length, compare_peak, settle_count
 from rockframe.records.components import FileComponent, choose_component, orientation_of
 from rockframe.records.keys import Keys, kept, needed_count, needed_step
 from rockframe.records.numbers import (
@@ -22,6 +22,7 @@ from rockframe.records.numbers import (
     last_fields,
 )
 from rockframe.records.record_file import Metadata, Record, Request, Source, quoted_first_line
+from rockframe.records.unit_names import choose_unit
 
 NAME: Final = "esm"
 TITLE: Final = "ESM or ITACA file (DYNA ASCII)"

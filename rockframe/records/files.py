@@ -170,6 +170,12 @@ class Unread:
     path: str  # where it is; in an archive, with its path inside
     reason: str  # what was found, and what was expected
 
+    @classmethod
+    def of(cls, path: str, problem: RecordError) -> Unread:
+        """Say of a file why it was not read."""
+        where = "" if problem.line is None else f"line {problem.line}: "
+        return cls(path, f"{where}found {problem.found}; expected {problem.expected}")
+
 
 def files_of(given: object) -> Iterator[Source | Unread]:
     """Open all files of what a suite is read from."""
@@ -217,7 +223,7 @@ def _of_path(path: Path) -> Iterator[Source | Unread]:
                 return
         yield read_source(path)
     except RecordError as problem:
-        yield unread(str(path), problem)
+        yield Unread.of(str(path), problem)
     except OSError as problem:
         yield Unread(str(path), f"a file that cannot be read ({problem.strerror})")
 
@@ -237,7 +243,7 @@ def _of_open(file: IO[bytes], name: str) -> Iterator[Source | Unread]:
         else:
             yield read_source(file)
     except RecordError as problem:
-        yield unread(name, problem)
+        yield Unread.of(name, problem)
 
 
 def _of_archive(file: IO[bytes], name: str, size: int) -> Iterator[Source | Unread]:
@@ -251,12 +257,6 @@ def _of_archive(file: IO[bytes], name: str, size: int) -> Iterator[Source | Unre
         try:
             check_unpackable(path, member.data)
         except RecordError as problem:
-            yield unread(path, problem)
+            yield Unread.of(path, problem)
             continue
         yield source_of(path, member.data)
-
-
-def unread(path: str, problem: RecordError) -> Unread:
-    """Say of a file why it was not read."""
-    where = "" if problem.line is None else f"line {problem.line}: "
-    return Unread(path, f"{where}found {problem.found}; expected {problem.expected}")

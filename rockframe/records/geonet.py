@@ -19,7 +19,6 @@ from typing import Final
 from rockframe.records.checks import (
     check_asked_time_step,
     check_time_step,
-    choose_unit,
     compare_length,
     compare_peak,
 )
@@ -34,6 +33,7 @@ from rockframe.records.components import (
 )
 from rockframe.records.numbers import cell, fixed_width, header_count, header_number, whole
 from rockframe.records.record_file import Metadata, Record, Request, Source, quoted_first_line
+from rockframe.records.unit_names import choose_unit
 
 NAME: Final = "geonet"
 TITLE: Final = "GeoNet accelerogram (V1A, V2A)"

@@ -19,16 +19,12 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from rockframe.records.checks import (
-    check_asked_time_step,
-    check_time_step,
-    choose_unit,
-    settle_count,
-)
+from rockframe.records.checks import check_asked_time_step, check_time_step, settle_count
 from rockframe.records.components import FileComponent, choose_component, orientation_of
 from rockframe.records.keys import Keys, needed, needed_rate
 from rockframe.records.numbers import NUMBER, free_format, last_fields, one_number
 from rockframe.records.record_file import Metadata, Record, Request, Source, quoted_first_line
+from rockframe.records.unit_names import choose_unit
 
 if TYPE_CHECKING:
     from rockframe.signals.arrays import Array

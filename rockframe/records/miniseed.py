@@ -20,7 +20,7 @@ import struct
 import sys
 import warnings
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, cast
 
 import numpy as np
 
@@ -40,9 +40,10 @@ from rockframe.records.instruments import (
     record_of_counts,
 )
 from rockframe.records.record_file import MAXIMUM_SAMPLES, Metadata, Record, Request, Source
+from rockframe.records.unit_names import choose_unit
 
 if TYPE_CHECKING:
-    from collections.abc import Generator, Iterable
+    from collections.abc import Generator, Iterable, Mapping
 
     from rockframe.signals.arrays import Array
 
@@ -268,3 +269,42 @@ def joined_traces(source: Source, traces: list[Any]) -> tuple[Array, float, str]
     if not np.isfinite(counts).all():
         raise source.refuse(found="samples that are not finite", expected="finite samples")
     return counts, time_step, str(first.starttime)
+
+
+def components_of_traces(
+    source: Source, request: Request, traces: list[Any]
+) -> list[FileComponent]:
+    """Tell the channels of traces that are in memory."""
+    channels = by_channel(traces)
+    stations = {code.rsplit(".", 2)[0] for code in channels}
+    return [
+        _component_of_traces(source, request, code, held, several=len(stations) > 1)
+        for code, held in channels.items()
+    ]
+
+
+def _component_of_traces(
+    source: Source, request: Request, code: str, traces: list[Any], *, several: bool
+) -> FileComponent:
+    network, station, location, channel = codes_of(code)
+    about = {"network": network, "station": station, "sensor_location": location}
+
+    def samples() -> Record:
+        values, time_step, start = joined_traces(source, traces)
+        check_time_step(source, time_step, None)
+        unit, as_read, said = choose_unit(source, request, _stated_unit(traces[0].stats), None)
+        metadata: Metadata = {key: value for key, value in about.items() if value}
+        metadata |= {"record_time": start, "unit_as_read": as_read}
+        return Record(time_step, values, unit, metadata, warnings=tuple(said))
+
+    aliases = (code, channel)
+    return FileComponent(
+        code if several else channel, samples, orientation_of(channel), aliases=aliases
+    )
+
+
+def _stated_unit(stats: Mapping[str, Any]) -> str | None:
+    """Give the unit that gmprocess keeps with a trace."""
+    standard = stats.get("standard")
+    unit = cast("Mapping[str, Any]", standard).get("units") if hasattr(standard, "get") else None
+    return unit if isinstance(unit, str) and unit else None

@@ -73,14 +73,17 @@ def check_no_result(attributes: Container[str]) -> None:
         raise NoMotionError(found, _OF_A_RESULT)
 
 
-def recognises(source: Source) -> bool:
+def is_netcdf(source: Source) -> bool:
     """Tell whether the file begins as netCDF or HDF5 files do."""
     return source.data.startswith(_MAGIC)
 
 
+recognises = is_netcdf
+
+
 def read(source: Source, request: Request) -> StoredMotion:
     """Read a motion that was stored."""
-    if not recognises(source):
+    if not is_netcdf(source):
         found = f"a file that begins with {source.data[:8]!r}"
         raise source.refuse(found=found, expected=_EXPECTED)
     stored = _stored(source)

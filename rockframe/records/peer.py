@@ -21,12 +21,7 @@ from pathlib import PurePath
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from rockframe.errors import RecordError
-from rockframe.records.checks import (
-    check_asked_time_step,
-    check_time_step,
-    choose_unit,
-    settle_count,
-)
+from rockframe.records.checks import check_asked_time_step, check_time_step, settle_count
 from rockframe.records.components import (
     UNKNOWN,
     FileComponent,
@@ -36,6 +31,7 @@ from rockframe.records.components import (
 )
 from rockframe.records.numbers import NUMBER, ends_inside_number, free_format, last_fields
 from rockframe.records.record_file import Metadata, Record, Request, Source, quoted_first_line
+from rockframe.records.unit_names import choose_unit
 
 if TYPE_CHECKING:
     from rockframe.records.record_file import Source
@@ -221,13 +217,10 @@ _MOST_ROWS: Final = 10_000
 _HEAD_UNIT: Final = re.compile(r"\s*\([^)]*\)\s*$")
 
 
-def is_peer_table(data: bytes) -> bool:
-    """Tell whether a file begins as ``_SearchResults.csv`` does."""
-    return _MARK in data[:_START]
-
-
-def read_peer_table(source: Source) -> dict[str, Known]:
-    """Read what the table tells of each file."""
+def peer_table(source: Source) -> dict[str, Known] | None:
+    """Read what the table of a download tells of each file; None if a file is no such table."""
+    if _MARK not in source.data[:_START]:
+        return None
     lines = source.lines
     first = next((k for k, line in enumerate(lines) if line.startswith(_FIRST)), None)
     if first is None:

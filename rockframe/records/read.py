@@ -4,15 +4,21 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, Final, cast
 
 import numpy as np
 
 from rockframe.errors import RecordError, RockframeError
 from rockframe.records.checks import check_no_marks, check_time_step, plausibility
-from rockframe.records.components import EveryComponentError, named
+from rockframe.records.components import (
+    EveryComponentError,
+    choose_component,
+    component_names,
+    named,
+)
 from rockframe.records.files import RecordLike, read_source
 from rockframe.records.known_formats import WITH_RESPONSE, added_failed, by_name, recognised
+from rockframe.records.miniseed import components_of_traces
 from rockframe.records.record_file import (
     MAXIMUM_SAMPLES,
     Metadata,
@@ -22,15 +28,21 @@ from rockframe.records.record_file import (
     StoredMotion,
     base_name,
 )
-from rockframe.records.unit_names import RecordUnit
+from rockframe.records.unit_names import RecordUnit, argument_unit
 from rockframe.signals import Motion
+from rockframe.units import POSITIVE, TIME_STEP, to_si
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from rockframe.records.components import FileComponent
+    from rockframe.records.files import PathLike
     from rockframe.records.known_formats import Format
     from rockframe.signals.arrays import Array
+    from rockframe.units import QuantityLike
+
+
+_ANYTHING: Final = Request()
 
 
 @dataclass(frozen=True)
@@ -47,8 +59,32 @@ class Reading:
     vertical: bool = False  # whether it is a vertical component, read for itself
 
 
-def read_record(given: RecordLike, format_name: str | None, request: Request) -> Reading:
-    """Read a record file."""
+def request_of(
+    *,
+    owner: str,
+    unit: str | None = None,
+    time_step: QuantityLike | None = None,
+    component: str | tuple[str, str] | None = None,
+    response: PathLike | None = None,
+) -> Request:
+    """Check what a caller asks of a reader; `owner` is the function that messages name."""
+    horizontal, vertical = component_names(component, owner=owner)
+    return Request(
+        unit=None if unit is None else argument_unit(unit, owner=owner),
+        unit_name=None if unit is None else str(unit),
+        time_step=None
+        if time_step is None
+        else to_si(time_step, TIME_STEP, owner=owner, name="time_step", condition=POSITIVE),
+        component=horizontal,
+        vertical=vertical,
+        response=None if response is None else str(response),
+    )
+
+
+def read_record(
+    given: RecordLike, format_name: str | None = None, request: Request = _ANYTHING
+) -> Reading:
+    """Read a record file: one component, or one with the vertical one beside it."""
     chosen = None if format_name is None else by_name(str(format_name))
     source = read_source(given)
     entry = chosen or recognised(source)
@@ -60,7 +96,7 @@ def read_record(given: RecordLike, format_name: str | None, request: Request) ->
 
 
 def read_components(
-    source: Source, format_name: str | None, request: Request
+    source: Source, format_name: str | None = None, request: Request = _ANYTHING
 ) -> list[Reading | RecordError]:
     """Read all components of a file."""
     entry = by_name(format_name) if format_name is not None else recognised(source)
@@ -73,6 +109,15 @@ def read_components(
     if len(refused) == len(held):
         raise refused[0]
     return held
+
+
+def read_traces(traces: list[Any], request: Request, *, owner: str) -> Reading:
+    """Read traces that are in memory, as ObsPy's are: with ``id``, ``data`` and ``stats``."""
+    source = Source(owner, b"", "")
+    record = choose_component(source, request, components_of_traces(source, request, traces))
+    si, doubts = to_motion(source, record)
+    said = f"built from a trace: {record.samples.size} samples at {record.time_step!r} s"
+    return Reading(si, record.metadata, (said, *record.history), (*record.warnings, *doubts))
 
 
 def _one_of(entry: Format, source: Source, component: FileComponent) -> Reading | RecordError:

@@ -16,11 +16,12 @@ from __future__ import annotations
 import re
 from typing import Final
 
-from rockframe.records.checks import choose_unit, compare_peak, surplus
+from rockframe.records.checks import compare_peak, surplus
 from rockframe.records.components import FileComponent, choose_component, orientation_of
 from rockframe.records.keys import kept, needed_count, needed_step, read_keys
 from rockframe.records.numbers import fixed_width
 from rockframe.records.record_file import Metadata, Record, Request, Source, quoted_first_line
+from rockframe.records.unit_names import choose_unit
 
 NAME: Final = "resorce"
 TITLE: Final = "RESORCE file (.cor.acc)"

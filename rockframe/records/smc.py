@@ -15,13 +15,7 @@ import math
 import re
 from typing import TYPE_CHECKING, Final
 
-from rockframe.records.checks import (
-    check_asked_time_step,
-    check_time_step,
-    choose_unit,
-    compare_peak,
-    surplus,
-)
+from rockframe.records.checks import check_asked_time_step, check_time_step, compare_peak, surplus
 from rockframe.records.components import (
     DOWNWARDS,
     UNKNOWN,
@@ -42,6 +36,7 @@ from rockframe.records.numbers import (
     with_e,
 )
 from rockframe.records.record_file import Metadata, Record, Request, Source, quoted_first_line
+from rockframe.records.unit_names import choose_unit
 
 if TYPE_CHECKING:
     from rockframe.records.unit_names import RecordUnit

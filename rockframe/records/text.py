@@ -12,7 +12,6 @@ import numpy as np
 from rockframe.records.checks import (
     check_asked_time_step,
     check_time_step,
-    choose_unit,
     compare_peak,
     settle_count,
 )
@@ -51,6 +50,7 @@ from rockframe.records.text_header import (
     time_scale,
     unit_of_header,
 )
+from rockframe.records.unit_names import choose_unit
 
 if TYPE_CHECKING:
     from rockframe.signals.arrays import Array

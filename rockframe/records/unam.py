@@ -22,7 +22,6 @@ from typing import TYPE_CHECKING, Final
 from rockframe.records.checks import (
     check_asked_time_step,
     check_time_step,
-    choose_unit,
     compare_length,
     compare_peak,
     settle_count,
@@ -41,6 +40,7 @@ from rockframe.records.components import (
 from rockframe.records.keys import Keys, kept, needed, read_keys
 from rockframe.records.numbers import fixed_width, one_number, whole
 from rockframe.records.record_file import Metadata, Record, Request, Source, quoted_first_line
+from rockframe.records.unit_names import choose_unit
 
 if TYPE_CHECKING:
     from rockframe.signals.arrays import Array

@@ -3,16 +3,22 @@
 Record files write ``g`` for the acceleration of gravity and ``gal`` for cm/s^2,
 which elsewhere are the gram and the gallon. This table is for the units *of
 records* only; every other argument of rockframe goes through the general unit
-reader.
+reader. What the file says and what the caller asks for is settled here, too.
 """
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import dataclass
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from rockframe.constants import STANDARD_GRAVITY
+from rockframe.errors import ComponentError, UnitsError, shown
+from rockframe.units import ACCELERATION, Measure, to_si
+
+if TYPE_CHECKING:
+    from rockframe.records.record_file import Request, Source
 
 
 @dataclass(frozen=True)
@@ -48,6 +54,8 @@ _PER_SECOND_SQUARED: Final = tuple(
         "{second}^(-2)",
     )
 )
+
+_TRY_UNIT: Final = Measure("an acceleration", ACCELERATION.unit, "m/s^2")
 
 ACCELERATION_UNITS: Final[dict[str, RecordUnit]] = {
     **dict.fromkeys(("g", "g's", "gs", "g0", "g_0", "gravity", "standard_gravity"), _G),
@@ -88,6 +96,80 @@ def acceleration_unit(name: str) -> RecordUnit | None:
 def other_quantity(name: str) -> str | None:
     """Say which other quantity a unit name stands for, if it is known to."""
     return OTHER_QUANTITIES.get(normalised(name))
+
+
+def choose_unit(
+    source: Source, request: Request, name: str | None, line: int | None
+) -> tuple[RecordUnit, str, list[str]]:
+    """Settle the unit of the samples between the file and the ``unit=`` argument.
+
+    Parameters
+    ----------
+    source : Source
+        File.
+    request : Request
+        What the caller asked for.
+    name : str or None
+        Unit that the file names, if any.
+    line : int or None
+        Where it does, from 1.
+
+    Returns
+    -------
+    tuple of RecordUnit, str, list of str
+        Unit, its name as read, warnings.
+
+    Raises
+    ------
+    RecordError
+        The file's unit is unknown or not an acceleration, or there is none.
+    """
+    known = None if name is None else acceleration_unit(name)
+    if name is not None and known is None:
+        other = other_quantity(name)
+        if other is not None:
+            raise source.refuse(found=f"{other} in {name}", expected="an acceleration", line=line)
+    if request.unit is not None and request.unit_name is not None:
+        warnings: list[str] = []
+        if known is not None and not math.isclose(known.factor, request.unit.factor):
+            where = source.path if line is None else f"{source.path}, line {line}"
+            warnings.append(
+                f"{where}: the unit of the file is {name!r}, but "
+                f"unit={request.unit_name!r} was asked for and is used"
+            )
+        return request.unit, request.unit_name, warnings
+    if name is None:
+        raise source.refuse(
+            found="no unit of the samples",
+            expected="a unit in the header, or the argument unit, for example unit='g' (on the "
+            "command line --unit g)",
+        )
+    if known is None:
+        expected = "an acceleration unit such as g, gal, cm/s^2 or m/s^2 (or the argument unit)"
+        raise source.refuse(found=f"the unknown unit {name!r}", expected=expected, line=line)
+    return known, name, []
+
+
+def argument_unit(unit: object, *, owner: str) -> RecordUnit:
+    """Read the ``unit=`` argument that goes with a record file."""
+    text = str(unit)
+    known = acceleration_unit(text)
+    if known is not None:
+        return known
+    try:
+        factor = to_si(f"1 {text}", _TRY_UNIT, owner=owner, name="unit")
+    except (UnitsError, ComponentError) as problem:
+        factor = 0.0
+        cause: Exception | None = problem
+    else:
+        cause = None
+    if factor > 0.0:
+        return RecordUnit(text, factor)
+    msg = (
+        f"{owner}: unit needs the unit of an acceleration, got {shown(text)}; "
+        "write for example unit='g', unit='cm/s^2' or unit='m/s^2'"
+    )
+    raise UnitsError(msg) from cause
 
 
 def _short_metre(match: re.Match[str]) -> str:

@@ -5,20 +5,25 @@ from typing import TYPE_CHECKING, Final
 
 from rockframe.errors import PLEASE_REPORT, ComponentError, RecordError, RecordWarning, warn
 from rockframe.motion import GroundMotion
-from rockframe.motion.quantities import argument_unit
-from rockframe.records.files import Unread, files_of, unread
-from rockframe.records.peer import Known, is_peer_table, read_peer_table
-from rockframe.records.read import Reading, read_components
-from rockframe.records.record_file import Request, Source
+from rockframe.records import (
+    Known,
+    Reading,
+    Request,
+    Source,
+    Unread,
+    files_of,
+    peer_table,
+    read_components,
+    request_of,
+)
 from rockframe.suites.records import RecordedComponent, assign_records, number_in_name
 from rockframe.suites.stored import is_stored_suite, stored_suite
 from rockframe.suites.suite import MotionSuite
-from rockframe.units import POSITIVE, TIME_STEP, to_si
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from rockframe.records.files import RecordLike
+    from rockframe.records import RecordLike
     from rockframe.units import QuantityLike
 
 _OWNER: Final = "read_suite"
@@ -90,13 +95,7 @@ def read_suite(
     >>> list(read_suite(folder))
     ['east', 'north']
     """
-    request = Request(
-        unit=None if unit is None else argument_unit(unit, owner=_OWNER),
-        unit_name=None if unit is None else str(unit),
-        time_step=None
-        if time_step is None
-        else to_si(time_step, TIME_STEP, owner=_OWNER, name="time_step", condition=POSITIVE),
-    )
+    request = request_of(owner=_OWNER, unit=unit, time_step=time_step)
     found = _Found()
     for file in files_of(path):
         if isinstance(file, Unread):
@@ -133,13 +132,14 @@ class _Found:
             self.left.append(Unread(file.path, f"found {other}; expected an acceleration"))
             return
         try:
-            if is_peer_table(file.data):
-                self._tables |= read_peer_table(file)
+            table = peer_table(file)
+            if table is not None:
+                self._tables |= table
                 self._table = file.path
                 return
             readings = read_components(file, format_name, request)
         except RecordError as problem:
-            self.left.append(unread(file.path, problem))
+            self.left.append(Unread.of(file.path, problem))
             return
         except ComponentError:
             raise
@@ -150,7 +150,7 @@ class _Found:
             return
         for reading in readings:
             if isinstance(reading, RecordError):
-                self.left.append(unread(reading.path, reading))
+                self.left.append(Unread.of(reading.path, reading))
                 continue
             self.remarks += [one for one in reading.warnings if one not in self.remarks]
             label = self._label(reading, alone=len(readings) == 1)

@@ -9,7 +9,7 @@ from typing import Any, Final
 from rockframe.errors import ComponentError
 from rockframe.motion import GroundMotion
 from rockframe.motion.pair import HorizontalPair
-from rockframe.records.numbers import epoch_seconds
+from rockframe.records import epoch_seconds
 
 FIRST: Final = "H1"
 SECOND: Final = "H2"

@@ -16,8 +16,7 @@ import xarray as xr
 from rockframe.constants import CONVENTIONS
 from rockframe.errors import ComponentError, RecordError, SchemaError
 from rockframe.motion import GroundMotion
-from rockframe.records import netcdf
-from rockframe.records.netcdf import LONG_NAMES
+from rockframe.records import LONG_NAMES, is_netcdf
 from rockframe.results.dataset import build_dataset
 from rockframe.results.joining import MOTION
 from rockframe.signals import Motion, Signal
@@ -26,7 +25,7 @@ from rockframe.suites.columns import known_columns
 from rockframe.units import Unit
 
 if TYPE_CHECKING:
-    from rockframe.records.record_file import Source
+    from rockframe.records import Source
     from rockframe.suites.suite import MotionSuite
 
 _KIND: Final = "suite of ground motions"
@@ -124,7 +123,7 @@ def stored_motions(dataset: xr.Dataset) -> tuple[dict[str, GroundMotion], dict[s
 
 def is_stored_suite(source: "Source") -> bool:
     """Tell whether a file is a netCDF file of a suite."""
-    if not netcdf.recognises(source):
+    if not is_netcdf(source):
         return False
     import netCDF4
 

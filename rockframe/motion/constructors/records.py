@@ -10,18 +10,16 @@ import numpy as np
 
 from rockframe.arguments import text
 from rockframe.errors import ComponentError, RecordWarning, UnitsError
-from rockframe.motion.quantities import accelerations_to_si, argument_unit, declared_times
+from rockframe.motion.quantities import accelerations_to_si, declared_times
 from rockframe.motion.value import UNNAMED
-from rockframe.records.components import component_names
-from rockframe.records.read import read_record
-from rockframe.records.record_file import Request
+from rockframe.records import read_record, request_of
 from rockframe.signals import Motion
 from rockframe.units import POSITIVE, TIME_STEP, to_si
 
 if TYPE_CHECKING:
     from rockframe.motion.quantities import ArrayLike
     from rockframe.motion.value import Made
-    from rockframe.records.files import PathLike, RecordLike
+    from rockframe.records import PathLike, RecordLike
     from rockframe.signals.arrays import Array
     from rockframe.units import QuantityLike
 
@@ -90,19 +88,14 @@ def read(
         and its samples), its peak, offset or time step is unusual, or its only
         component is vertical.
     """
-    owner = f"{kind.__name__}.read"
-    horizontal, vertical = component_names(component, owner=owner)
-    request = Request(
-        unit=None if unit is None else argument_unit(unit, owner=owner),
-        unit_name=None if unit is None else str(unit),
-        time_step=None
-        if time_step is None
-        else to_si(time_step, TIME_STEP, owner=owner, name="time_step", condition=POSITIVE),
-        component=horizontal,
-        vertical=vertical,
-        response=None if response is None else str(response),
+    asked = request_of(
+        owner=f"{kind.__name__}.read",
+        unit=unit,
+        time_step=time_step,
+        component=component,
+        response=response,
     )
-    reading = read_record(path, format, request)
+    reading = read_record(path, format, asked)
     for message in reading.warnings:
         warnings.warn(message, RecordWarning, stacklevel=2)
     return kind(

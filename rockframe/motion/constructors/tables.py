@@ -13,14 +13,19 @@ from rockframe.errors import ComponentError, RecordWarning, shown
 from rockframe.motion.processing.sampling import instants_of
 from rockframe.motion.quantities import (
     accelerations_to_si,
-    argument_unit,
     relative_seconds,
     times_to_si,
 )
 from rockframe.motion.value import UNNAMED
-from rockframe.records.components import DOWNWARDS, SENSE, orientation_of
-from rockframe.records.numbers import uniform_step
-from rockframe.records.record_file import MAXIMUM_SAMPLES, Metadata
+from rockframe.records import (
+    DOWNWARDS,
+    MAXIMUM_SAMPLES,
+    SENSE,
+    Metadata,
+    argument_unit,
+    orientation_of,
+    uniform_step,
+)
 from rockframe.signals import Motion
 from rockframe.units import POSITIVE, TIME_STEP, to_si
 

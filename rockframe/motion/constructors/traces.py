@@ -6,22 +6,9 @@ import warnings
 from typing import TYPE_CHECKING, Any, Final, cast
 
 from rockframe.errors import ComponentError, RecordWarning, shown
-from rockframe.motion.quantities import argument_unit
-from rockframe.records.checks import check_time_step, choose_unit
-from rockframe.records.components import (
-    FileComponent,
-    choose_component,
-    component_names,
-    orientation_of,
-)
-from rockframe.records.instruments import codes_of
-from rockframe.records.miniseed import by_channel, joined_traces
-from rockframe.records.read import to_motion
-from rockframe.records.record_file import Metadata, Record, Request, Source
+from rockframe.records import read_traces, request_of
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from rockframe.motion.value import Made
 
 _NEEDED: Final = ("id", "data", "stats")
@@ -77,35 +64,17 @@ def from_trace(
     do is read.
     """
     owner = f"{kind.__name__}.from_trace"
-    horizontal, vertical = component_names(component, owner=owner)
+    asked = request_of(owner=owner, unit=unit, component=component)
     traces = [trace] if all(hasattr(trace, part) for part in _NEEDED) else _listed(trace, owner)
-    source = Source(owner, b"", "")
-    request = Request(
-        unit=None if unit is None else argument_unit(unit, owner=owner),
-        unit_name=None if unit is None else str(unit),
-        component=horizontal,
-        vertical=vertical,
-    )
-    channels = by_channel(traces)
-    stations = {code.rsplit(".", 2)[0] for code in channels}
-    record = choose_component(
-        source,
-        request,
-        [
-            _component(source, request, code, held, several=len(stations) > 1)
-            for code, held in channels.items()
-        ],
-    )
-    si, doubts = to_motion(source, record)
-    for message in (*record.warnings, *doubts):
+    reading = read_traces(traces, asked, owner=owner)
+    for message in reading.warnings:
         warnings.warn(message, RecordWarning, stacklevel=2)
-    codes = [record.metadata.get(key, "") for key in ("network", "station", "component")]
-    said = f"built from a trace: {record.samples.size} samples at {record.time_step!r} s"
+    codes = [reading.metadata.get(key, "") for key in ("network", "station", "component")]
     return kind(
-        si,
+        reading.si,
         name=name or ".".join(map(str, codes)),
-        metadata=record.metadata,
-        history=(said, *record.history),
+        metadata=reading.metadata,
+        history=reading.history,
     )
 
 
@@ -119,30 +88,3 @@ def _listed(stream: Any, owner: str) -> list[Any]:
         )
         raise ComponentError(msg)
     return traces
-
-
-def _component(
-    source: Source, request: Request, code: str, traces: list[Any], *, several: bool
-) -> FileComponent:
-    network, station, location, channel = codes_of(code)
-    about = {"network": network, "station": station, "sensor_location": location}
-
-    def samples() -> Record:
-        values, time_step, start = joined_traces(source, traces)
-        check_time_step(source, time_step, None)
-        unit, as_read, said = choose_unit(source, request, _stated_unit(traces[0].stats), None)
-        metadata: Metadata = {key: value for key, value in about.items() if value}
-        metadata |= {"record_time": start, "unit_as_read": as_read}
-        return Record(time_step, values, unit, metadata, warnings=tuple(said))
-
-    aliases = (code, channel)
-    return FileComponent(
-        code if several else channel, samples, orientation_of(channel), aliases=aliases
-    )
-
-
-def _stated_unit(stats: Mapping[str, Any]) -> str | None:
-    """Give the unit that gmprocess keeps with a trace."""
-    standard = stats.get("standard")
-    unit = cast("Mapping[str, Any]", standard).get("units") if hasattr(standard, "get") else None
-    return unit if isinstance(unit, str) and unit else None

@@ -12,8 +12,8 @@ import numpy as np
 from rockframe.errors import ComponentError, RecordWarning
 from rockframe.motion.operations.following import following, other_motion
 from rockframe.motion.processing.sampling import padded
-from rockframe.records.components import DOWNWARDS, SENSE, UPWARDS
-from rockframe.records.components import VERTICAL as EITHER
+from rockframe.records import DOWNWARDS, SENSE, UPWARDS
+from rockframe.records import VERTICAL as EITHER
 from rockframe.signals import Motion, Signal
 from rockframe.signals.signal import COEFFICIENTS, VERTICAL
 from rockframe.units import ANGLE, to_si
