@@ -9,7 +9,7 @@ of :class:`~rockframe.dynamics.protocol.Equations`, in a :class:`ContactModel`.
 
 from rockframe.compiled import Vector, inlined, kernel
 from rockframe.components import Choice, Component, OneOf, Parameter, Ratio, Text
-from rockframe.components.damping import DampingRatio
+from rockframe.components.values import DampingRatio
 from rockframe.dynamics.base import Base, BaseForce, EndEvent
 from rockframe.dynamics.base_numbers import BaseNumbers, pads_over, springs_under
 from rockframe.dynamics.bed import Bed

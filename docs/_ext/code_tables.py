@@ -10,7 +10,7 @@ from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
 import rockframe as rf
-from rockframe.command.files.every_key import every_key
+from rockframe.command.files.templates import every_key
 from rockframe.dynamics.events import ContactState, EventKind
 from rockframe.results.variables.analyses import (
     DYNAMIC_ANALYSIS,
@@ -35,11 +35,13 @@ from rockframe.results.variables.runs import (
     CERTIFICATE,
     ENERGY_HISTORIES,
     EVENTS_AND_SCALARS,
+    HELD,
     HISTORIES,
+    MODES,
+    REST,
     Direction,
     RunStatus,
 )
-from rockframe.results.variables.statics import HELD, MODES, REST
 from rockframe.results.variables.studies import (
     COMPARISON,
     CRITICAL_SCALE,

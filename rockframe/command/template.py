@@ -2,8 +2,7 @@
 
 import argparse
 
-from rockframe.command.files.every_key import every_key
-from rockframe.command.files.templates import TEMPLATES
+from rockframe.command.files.templates import TEMPLATES, every_key
 
 
 def execute(arguments: argparse.Namespace) -> int:

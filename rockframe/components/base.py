@@ -1,17 +1,43 @@
-"""What all components share: values, immutability, equality, and the way to text and back."""
+"""What all components share: values, immutability, equality, text; words on their parameters."""
 
-from collections.abc import Collection, Mapping
+import re
+from collections.abc import Collection, Iterable, Mapping
 from inspect import Parameter as Argument
-from inspect import Signature
-from typing import Any, ClassVar, NoReturn, Self
+from inspect import Signature, cleandoc
+from textwrap import fill
+from typing import Any, ClassVar, Final, NoReturn, Self
 
 from rockframe.components.alternatives import OneOf
-from rockframe.components.docstrings import with_parameters
 from rockframe.components.parameters import DERIVED, REQUIRED, Declared
 from rockframe.components.registry import register_class
 from rockframe.components.values import SIValues
 from rockframe.errors import ComponentError, ModelWarning, shown, warn
 from rockframe.notebook import Polygon, arguments_in_words, card, drawing
+
+_SECTION: Final = re.compile(r"^\w[\w ]*\n-{3,}$", re.MULTILINE)
+_WIDTH: Final = 79
+_INDENT: Final = "    "
+
+
+def with_parameters(text: str, declared: Iterable[Declared[Any, Any]]) -> str:
+    """Insert the section "Parameters" where numpydoc has it."""
+    rows = [_row(parameter) for parameter in declared]
+    clean = cleandoc(text)
+    found = _SECTION.search(clean)
+    if not rows or (found and found[0].startswith("Parameters\n")):
+        return text
+    place = found.start() if found else len(clean)
+    section = "\n".join(["Parameters", "----------", *rows])
+    return f"{clean[:place].rstrip()}\n\n{section}\n\n{clean[place:]}".rstrip() + "\n"
+
+
+def _row(parameter: Declared[Any, Any]) -> str:
+    optional = "" if parameter.default is REQUIRED else ", optional"
+    unit = f"[{parameter.unit}]"
+    whole = parameter.words.replace(unit, unit.replace(" ", "~"))  # not broken between lines
+    lines = fill(whole, _WIDTH, initial_indent=_INDENT, subsequent_indent=_INDENT)
+    words = lines.replace(unit.replace(" ", "~"), unit)
+    return f"{parameter.name} : {parameter.written_as}{optional}\n{words}"
 
 
 class Component:

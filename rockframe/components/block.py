@@ -14,10 +14,8 @@ from rockframe.components.block_numbers import (
     unphysical_inertia,
 )
 from rockframe.components.parameters import DERIVED, Parameter, Ratio
-from rockframe.components.shapes.cylinder import cylinder_body
-from rockframe.components.shapes.outline import outline_body
-from rockframe.components.shapes.part import Part
-from rockframe.components.shapes.parts import body_of_parts
+from rockframe.components.shapes.outline import cylinder_body, outline_body
+from rockframe.components.shapes.parts import Part, body_of_parts
 from rockframe.components.shapes.reading import Place, Points
 from rockframe.components.values import SIProperty, SIValues
 from rockframe.errors import ComponentError, ModelWarning, shown, warn

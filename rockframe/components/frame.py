@@ -9,9 +9,8 @@ import xarray as xr
 from rockframe.components.base import replaced
 from rockframe.components.block import Block
 from rockframe.components.frame_building import Building, building_of
-from rockframe.components.frame_members import Member
+from rockframe.components.frame_members import Member, members_table
 from rockframe.components.frame_regular import INFILL_THICKNESS, SLAB_THICKNESS, RegularFrame
-from rockframe.components.frame_table import members_table
 from rockframe.components.parameters import DERIVED, Ratio
 from rockframe.errors import ComponentError, SchemaError, shown
 from rockframe.notebook import Polygon

@@ -3,8 +3,8 @@
 from typing import ClassVar
 
 from rockframe.components.base import Component
-from rockframe.components.friction import Friction
 from rockframe.components.parameters import Ratio
+from rockframe.components.values import Friction
 from rockframe.units import UNIT_INTERVAL, RatioLike
 
 

@@ -4,9 +4,8 @@ from typing import ClassVar
 
 from rockframe.components.alternatives import OneOf
 from rockframe.components.base import Component
-from rockframe.components.damping import DampingRatio
-from rockframe.components.friction import Friction
 from rockframe.components.parameters import Parameter, Ratio
+from rockframe.components.values import DampingRatio, Friction
 from rockframe.units import (
     DAMPING,
     NOT_NEGATIVE,

@@ -6,9 +6,8 @@ from typing import ClassVar, Literal, Self, TypeAlias
 from rockframe.arguments import hinted
 from rockframe.components.alternatives import OneOf
 from rockframe.components.base import Component
-from rockframe.components.damping import DampingRatio
-from rockframe.components.friction import Friction
 from rockframe.components.parameters import Choice, Parameter
+from rockframe.components.values import DampingRatio, Friction
 from rockframe.units import (
     BED_DAMPING,
     BED_STIFFNESS,

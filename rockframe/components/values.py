@@ -1,9 +1,10 @@
-"""Numbers of components in SI units, and properties that give them their units back."""
+"""Numbers of components in SI units; damping ratios and coefficients of friction."""
 
 from types import SimpleNamespace
-from typing import Any, NoReturn, Self, overload
+from typing import Any, Final, NoReturn, Self, overload
 
-from rockframe.units import Measure, Quantity, quantity
+from rockframe.components.parameters import Ratio
+from rockframe.units import NOT_NEGATIVE, Measure, Quantity, quantity
 
 
 class SIValues(SimpleNamespace):
@@ -36,3 +37,40 @@ class SIProperty:
         if instance is None:
             return self
         return quantity(getattr(instance.si, self._name), self._measure)
+
+
+class Friction(Ratio[None]):
+    """A coefficient of friction that runs are held to; it changes no motion."""
+
+    def __init__(self, *, of: str) -> None:
+        words = (
+            f"Coefficient of friction under {of}: a run that needs more of it warns; the model "
+            "holds the base all the same."
+        )
+        super().__init__(NOT_NEGATIVE, doc=words, default=None, example="0.5")
+
+
+CRITICAL: Final = 1.0
+"""Damping ratio beyond which nothing vibrates [1]."""
+
+
+class DampingRatio(Ratio[None]):
+    """A damping ratio that stands for a damping coefficient; a large one brings a warning.
+
+    Parameters
+    ----------
+    doc : str
+        What it is, in a sentence.
+    """
+
+    def __init__(self, *, doc: str) -> None:
+        super().__init__(NOT_NEGATIVE, doc=doc, default=None)
+
+    def caution(self, value: float) -> str | None:
+        """Ask whether per cent were meant, above 1."""
+        if value <= CRITICAL:
+            return None
+        return (
+            f"{self.name} = {value:.6g} is {100.0 * value:.6g} % of critical; "
+            f"was '{value:.6g} %' meant?"
+        )

@@ -1,18 +1,141 @@
-"""The steps of a fit: start values, and then the peaks, or the history."""
+"""The steps of a fit, by least squares: start values, and then the peaks, or the history."""
 
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Final
+from typing import Any, Final, cast
 
 import numpy as np
 
-from rockframe.identification.least_squares import Solution, minimize
 from rockframe.identification.measured import History, MeasuredPeaks
 from rockframe.identification.prediction import Prediction
 from rockframe.identification.swings import Swings
 from rockframe.identification.unknowns import Circumstance, Unknown, started_at
 from rockframe.signals.arrays import Array
+
+DIFFERENCE: Final = 1e-4
+"""Step of the differences by which derivatives are taken, as a share of an unknown's size.
+
+Runs are accurate to some 1e-8 of the rotation, so that smaller steps would do. But contact
+changes are kinks, and to a derivative at a kink both sides belong; and steps above 1e-3 no
+longer see the end of a decay, where the phase depends most on the parameters."""
+_FIRST_STEP: Final = 0.05
+"""Longest first step, as a share of an unknown's size: a longer one would leave the valley."""
+TIGHT: Final = 1e-10
+"""Tolerance of a fit that is to be the result."""
+MOST_EVALUATIONS: Final = 100
+"""Trials after which a fit is given up; those for derivatives do not count."""
+_SINGULAR: Final = 1e-7
+"""Ratio of singular values below which unknowns cannot be told apart."""
+_UNSEEN: Final = 1e-8
+"""Share of the greatest derivative below which an unknown has no effect but rounding."""
+_AT_BOUND: Final = 1e-5
+"""Share of an unknown's size within which it stands at a bound."""
+
+
+@dataclass(frozen=True)
+class Solution:
+    """Where a fit ended."""
+
+    values: Array  # in SI units
+    jacobian: Array  # derivatives of the weighted residuals there
+    residuals: Array  # weighted
+    status: int  # of :func:`scipy.optimize.least_squares`
+    evaluations: int  # number of trials, without those for derivatives
+    at_bound: Any  # which unknowns stand at a bound, and which have an effect on the residuals
+    seen: Any
+
+
+@dataclass(frozen=True)
+class Uncertainty:
+    """How far the values of a fit are certain."""
+
+    standard_error: Array  # NaN where the data cannot tell
+    correlation: Array  # of the values' errors
+    reach: float  # standard errors to each side that make the confidence interval
+
+
+def minimize(
+    residuals: Callable[[Array], Array],
+    unknowns: Sequence[Unknown],
+    *,
+    tolerance: float = TIGHT,
+) -> Solution:
+    """Find the unknowns for which the sum of the squared residuals is least."""
+    # loaded here, since it is slow to load and few scripts need it
+    from scipy.optimize import least_squares
+
+    start, scale, lower, upper = (
+        np.array([getattr(one, name) for one in unknowns])
+        for name in ("start", "scale", "lower", "upper")
+    )
+
+    def values_at(point: Array) -> Array:
+        return np.clip(start + scale * (point - _FIRST_STEP), lower, upper)
+
+    def misfit(point: Array) -> Array:
+        return residuals(values_at(point))
+
+    least, greatest = ((bound - start) / scale + _FIRST_STEP for bound in (lower, upper))
+
+    def slopes(point: Array) -> Any:
+        columns: list[Array] = []
+        for index in range(start.size):
+            down, up = point.copy(), point.copy()
+            down[index] = max(point[index] - DIFFERENCE, least[index])
+            up[index] = min(point[index] + DIFFERENCE, greatest[index])
+            columns.append((misfit(up) - misfit(down)) / (up[index] - down[index]))
+        return np.stack(columns, axis=1)
+
+    # SciPy makes the first step no longer than the distance of the start from zero
+    found = least_squares(
+        misfit,
+        np.full(start.size, _FIRST_STEP),
+        jac=cast("Any", slopes),
+        bounds=(least, greatest),
+        ftol=tolerance,
+        xtol=tolerance,
+        gtol=tolerance,
+        max_nfev=MOST_EVALUATIONS,
+    )
+    length = np.linalg.norm(found.jac, axis=0)
+    seen = length > _UNSEEN * np.max(length)
+    # what has no effect wanders by rounding
+    values = np.where(seen, values_at(found.x), start)
+    room = np.minimum(values - lower, upper - values) / scale
+    return Solution(
+        values=values,
+        jacobian=np.asarray(found.jac) / scale,
+        residuals=np.asarray(found.fun),
+        status=int(found.status),
+        evaluations=int(found.nfev),
+        at_bound=seen & (room < _AT_BOUND),
+        seen=seen,
+    )
+
+
+def uncertainty_of(solution: Solution, confidence: float) -> Uncertainty:
+    """Estimate the errors of a fit's values from its residuals, :eq:`eq-fit-covariance`."""
+    from scipy.special import stdtrit
+
+    count, size = solution.jacobian.shape
+    freedom = count - size
+    reach = float(stdtrit(freedom, 0.5 * (1.0 + confidence)))
+    length = np.linalg.norm(solution.jacobian, axis=0)
+    seen = solution.seen
+    directions = np.where(seen, solution.jacobian, 0.0) / np.where(seen, length, 1.0)
+    _, singular, rows = np.linalg.svd(directions, full_matrices=False)
+    told = singular > _SINGULAR * singular[0]
+    # an unknown that has a share in what the data do not tell is itself not told
+    lost = ~seen | (np.sum(rows[~told] ** 2, axis=0) > _SINGULAR)
+    inverse = (rows[told].T / singular[told] ** 2) @ rows[told]
+    variance = float(solution.residuals @ solution.residuals) / freedom
+    spread = np.sqrt(np.diag(inverse))
+    error = math.sqrt(variance) * spread / np.where(seen, length, 1.0)
+    correlation = inverse / np.where(spread > 0.0, np.outer(spread, spread), 1.0)
+    correlation[lost, :] = correlation[:, lost] = math.nan
+    return Uncertainty(np.where(lost, math.nan, error), correlation, reach)
+
 
 _FIRST_WEIGHT: Final = 0.01
 """Noise that is assumed before residuals tell it: a share of the first peak, and of the time

@@ -15,9 +15,8 @@ from rockframe.identification.measured import (
     read_history,
     read_peaks,
 )
-from rockframe.identification.prediction import Prediction
+from rockframe.identification.prediction import Prediction, starts_of
 from rockframe.identification.report import fit_dataset
-from rockframe.identification.starts import starts_of
 from rockframe.identification.swings import swings_of
 from rockframe.identification.unknowns import Circumstance, TrialSystems
 from rockframe.simulation.system import System

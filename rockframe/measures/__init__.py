@@ -5,7 +5,7 @@ from rockframe.measures.average import (
 )
 from rockframe.measures.directions import principal_axes as principal_axes
 from rockframe.measures.directions import rotated_spectrum as rotated_spectrum
-from rockframe.measures.fourier import fourier_spectrum as fourier_spectrum
+from rockframe.measures.histories import fourier_spectrum as fourier_spectrum
 from rockframe.measures.histories import velocity_and_displacement as velocity_and_displacement
 from rockframe.measures.intensity import intensity_measures as intensity_measures
 from rockframe.measures.response import response_spectrum as response_spectrum

@@ -18,10 +18,10 @@ from rockframe.measures.response import (
     shortest_of,
 )
 from rockframe.motion.pair import HorizontalPair
-from rockframe.motion.processing.coarseness import say_coarse
+from rockframe.motion.processing.samples import say_coarse
 from rockframe.results.dataset import build_dataset
-from rockframe.signals.accumulation import arias_history
 from rockframe.signals.arrays import Array
+from rockframe.signals.integrals import arias_history
 from rockframe.signals.rotated import rotated_displacements, rotated_peaks, unit_vectors
 from rockframe.signals.spectra import check_cost, pseudo_spectra, spectral_peaks
 

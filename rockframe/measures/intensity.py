@@ -12,19 +12,18 @@ from rockframe.errors import ComponentError, shown
 from rockframe.measures.common import GroundComponent, component_of, read_inputs
 from rockframe.results.dataset import build_dataset
 from rockframe.signals import Signal
-from rockframe.signals.accumulation import (
-    absolute_velocity_history,
-    arias_history,
-    standardized_absolute_velocity,
-)
-from rockframe.signals.durations import exceedance, time_between_shares
-from rockframe.signals.path import ground_path
-from rockframe.signals.periods import (
+from rockframe.signals.integrals import (
     HOUSNER_PERIODS,
     PREDOMINANT_PERIODS,
+    absolute_velocity_history,
+    arias_history,
+    exceedance,
+    ground_path,
     housner_intensity,
     mean_period,
     predominant_period,
+    standardized_absolute_velocity,
+    time_between_shares,
 )
 from rockframe.signals.polynomials import greatest
 from rockframe.signals.spectra import DAMPING_RATIO, check_cost

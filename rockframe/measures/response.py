@@ -11,8 +11,7 @@ from rockframe.arguments import one_of_words
 from rockframe.errors import ComponentError, shown
 from rockframe.measures.common import Inputs, build_over, read_inputs
 from rockframe.motion.operations.timing import Interpolation
-from rockframe.motion.processing.coarseness import say_coarse
-from rockframe.motion.processing.sampling import band_limited
+from rockframe.motion.processing.samples import band_limited, say_coarse
 from rockframe.signals import Signal
 from rockframe.signals.arrays import Array
 from rockframe.signals.spectra import DAMPING_RATIO, check_cost, pseudo_spectra, spectral_peaks

@@ -1,18 +1,65 @@
-"""A ground motion in plain values, and back: the constructor, and what was done since."""
+"""A ground motion in plain values, and back; its name as people see it; as notebooks show it."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+import re
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import SchemaError, shown
+from rockframe.notebook import card, curve
 from rockframe.signals import Motion, Signal
 from rockframe.signals.signal import VERTICAL
 
 if TYPE_CHECKING:
     from rockframe.motion.value import Made, MotionValue
+
+
+_SCALED: Final = re.compile(r"scaled by (\S+)(?: to .*)?")
+
+
+def shown_name(name: str, history: Iterable[str]) -> str:
+    """Put the factor of a scaled motion before its name."""
+    steps = [_SCALED.fullmatch(step) for step in history]
+    factor = math.prod(float(step[1]) for step in steps if step is not None)
+    return name if factor == 1.0 else f"{factor:.6g} times {name}"
+
+
+_TOLD: tuple[str, ...] = ("event", "station", "component")
+"""Metadata that stand on a card, where a file told them."""
+
+
+def motion_html(motion: MotionValue) -> str:
+    """Give name, curve and numbers of a motion as HTML."""
+    si = motion.si
+    samples = np.asarray(si.horizontal.samples)
+    rows: dict[str, Any] = {
+        "peak": peak_words(motion),
+        "duration": f"{(samples.size - 1) * si.time_step:.6g} s",
+        "samples": f"{samples.size}, each {si.time_step:.6g} s",
+    }
+    if si.vertical is not None:
+        upwards = float(np.abs(np.asarray(si.vertical.samples)).max(initial=0.0))
+        rows["vertical peak"] = _in_gravity(upwards)
+    rows |= {name: str(motion.metadata[name]) for name in _TOLD if name in motion.metadata}
+    drawn = curve(samples.tolist())
+    title = f"{type(motion).__name__}: {shown_name(motion.name, motion.history)}"
+    return f"<div>{card(title, rows)}{drawn}</div>"
+
+
+def peak_words(motion: MotionValue) -> str:
+    """Tell the largest horizontal acceleration."""
+    samples = np.asarray(motion.si.horizontal.samples)
+    return _in_gravity(float(np.abs(samples).max(initial=0.0)))
+
+
+def _in_gravity(peak: float) -> str:
+    return f"{peak:.4g} m/s² ({peak / STANDARD_GRAVITY:.3g} g)"
+
 
 ANALYTIC: Final = (
     "sine_pulse",

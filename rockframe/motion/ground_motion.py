@@ -9,11 +9,9 @@ from rockframe.errors import ComponentError, shown
 from rockframe.motion import dataset, description
 from rockframe.motion.constructors import (
     cycloidal,
-    embedded,
     records,
     synthetic,
     tables,
-    traces,
     wavelets,
 )
 from rockframe.motion.operations import (
@@ -86,11 +84,11 @@ class GroundMotion(MotionValue):
     # argument is the class, or the motion.
 
     read = classmethod(records.read)
-    example = classmethod(embedded.example)
+    example = classmethod(records.example)
     from_arrays = classmethod(records.from_arrays)
     from_times = classmethod(tables.from_times)
     from_frame = classmethod(tables.from_frame)
-    from_trace = classmethod(traces.from_trace)
+    from_trace = classmethod(tables.from_trace)
 
     sine_pulse = classmethod(cycloidal.sine_pulse)
     cosine_pulse = classmethod(cycloidal.cosine_pulse)

@@ -13,7 +13,7 @@ from rockframe.errors import ComponentError, RecordError, RecordWarning, shown
 from rockframe.motion.ground_motion import GroundMotion
 from rockframe.motion.operations.following import SAME_STEP
 from rockframe.motion.operations.pulses import LONGEST, SHORTEST, searched, velocity_of
-from rockframe.motion.processing.sampling import padded
+from rockframe.motion.processing.samples import padded
 from rockframe.motion.processing.velocity_pulses import strongest
 from rockframe.motion.quantities import with_quantity
 from rockframe.records import Reading, read_components, read_source, same_start

@@ -130,7 +130,7 @@ class MotionValue:
         return [name for name in super().__dir__() if not name.startswith("_")]
 
     def _repr_html_(self) -> str:
-        from rockframe.motion.html import motion_html
+        from rockframe.motion.description import motion_html
 
         return motion_html(self)
 

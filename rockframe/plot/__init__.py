@@ -2,9 +2,8 @@
 
 from rockframe.plot._animation import Animation, animation
 from rockframe.plot._diagrams import energies, moment_rotation, phase
-from rockframe.plot._ensembles import ensemble, probability
-from rockframe.plot._fragility import fragility
-from rockframe.plot._motion import motion
+from rockframe.plot._ensembles import ensemble, fragility, probability
+from rockframe.plot._motion import motion, velocity_pulse
 from rockframe.plot._overturning import (
     dynamic_analysis,
     overturning_map,
@@ -15,11 +14,9 @@ from rockframe.plot._panels import Panels
 from rockframe.plot._response import response
 from rockframe.plot._scene import scene, state
 from rockframe.plot._selection import selection
-from rockframe.plot._spectra import spectra
+from rockframe.plot._spectra import spectra, suite
 from rockframe.plot._studies import critical_scale, free_decay, sweep
-from rockframe.plot._suites import suite
 from rockframe.plot._tradeoff import tradeoff
-from rockframe.plot._velocity_pulse import velocity_pulse
 
 __all__ = [
     "Animation",

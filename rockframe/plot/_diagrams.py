@@ -6,12 +6,23 @@ import numpy as np
 import xarray as xr
 
 from rockframe.errors import SchemaError
-from rockframe.plot._axes import COLOURS, GREY, axis_label, colour_of, grid, ink, key, zero_line
+from rockframe.plot._axes import (
+    COLOURS,
+    GREY,
+    RELATIVE,
+    Shown,
+    axis_label,
+    colour_of,
+    grid,
+    ink,
+    key,
+    unit_of,
+    zero_line,
+)
 from rockframe.plot._checks import overturning_angles, refuse, system_of_run
 from rockframe.plot._panels import single
 from rockframe.plot._response import of_rotation, relative
 from rockframe.plot._runs import Run, runs_of, runs_title
-from rockframe.plot._units import RELATIVE, Shown, unit_of
 from rockframe.results.schema import ENERGIES, SCHEMA
 from rockframe.units import ANGLE, Measure, Unit
 

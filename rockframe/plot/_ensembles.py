@@ -1,14 +1,17 @@
-"""Ensembles: empirical distributions, and what overturning depends on."""
+"""Empirical distributions, what overturning depends on, and fragilities."""
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import xarray as xr
 
-from rockframe.plot._axes import COLOURS, grid, label_of
+from rockframe.errors import SchemaError
+from rockframe.plot._axes import COLOURS, colour_of, grid, label_of, label_of_intensity, style_of
 from rockframe.plot._checks import check_study
-from rockframe.plot._panels import Panels, sheet, single
+from rockframe.plot._panels import Panels, Sheet, sheet, single
 from rockframe.results.outcome import overturns
+from rockframe.results.variables.analyses import FragilityStatus
+from rockframe.studies.fragility.words import measures_of, sentences
 from rockframe.studies.sweeps.words import cases_verdict
 
 if TYPE_CHECKING:
@@ -115,3 +118,151 @@ def probability(
         grid(axes)
     on.entitle(cases_verdict(given), title)
     return on.panels
+
+
+_NAME: Final = "exceedance_probability"
+_LEVELS: Final = (0.05, 0.16, 0.5, 0.84, 0.95)
+_MOST_STRUCTURES: Final = 12
+"""That colours and lines tell apart."""
+_KNOWN: Final = (FragilityStatus.FITTED, FragilityStatus.SEPARATED)
+
+
+def fragility(
+    dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None = None
+) -> "Axes | Panels":
+    """Draw the probability that limit states are exceeded.
+
+    Over one measure, a curve for each limit state with its band, where it has bounds, and the
+    shares that were counted, with the bounds of Clopper and Pearson. Of several structures, a panel
+    for each limit state, and a curve for each structure in it. Over two measures, contours of the
+    probability, in a panel for each limit state that has a fit.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        Of :func:`rockframe.fragility`.
+    ax : Axes, or one for each limit state, optional
+        What is drawn in; a new figure unless given.
+    title : str, optional
+        Title of the figure; the verdict unless given.
+
+    Returns
+    -------
+    matplotlib.axes.Axes, or Panels
+        The latter over two measures, and of several structures.
+
+    Raises
+    ------
+    SchemaError
+        The dataset is no fragility; the message names the function that draws what was given. Or
+        it has more structures than a figure shows: twelve, over two measures one.
+    """
+    given = check_study(dataset, "fragility")
+    if "limit_state" not in given.dims:
+        given = given.expand_dims("limit_state")
+    alone = [dim for dim, size in given["fragility_status"].sizes.items() if size == 1]
+    given = given.isel({dim: 0 for dim in alone if dim != "limit_state"})
+    measures = measures_of(given)
+    states = [given.isel(limit_state=k) for k in range(given.sizes["limit_state"])]
+    structures = [str(dim) for dim in states[0]["fragility_status"].dims]
+    _check_structures(states[0], structures, 1 if len(measures) > 1 else _MOST_STRUCTURES)
+    if len(measures) == 1 and not structures:
+        on = single(ax, "fragility", (6.0, 4.1))
+        _curves(on.axes, [(_name(one), one) for one in states], measures[0])
+    elif structures:
+        on = _sheet(ax, states)
+        for axes, one in zip(on.panels, states, strict=True):
+            _curves(axes, _each(one, structures), measures[0])
+            axes.set_title(_name(one))
+    else:
+        fitted = FragilityStatus.FITTED
+        drawn = [one for one in states if int(one["fragility_status"]) == fitted] or states[-1:]
+        on = _sheet(ax, drawn)
+        for axes, one in zip(on.panels, drawn, strict=True):
+            _contours(axes, one, measures)
+    known = "independent_count" in given
+    on.entitle(sentences(given) if known else str(dataset.attrs.get("verdict", "")), title)
+    return on.axes if len(measures) == 1 and not structures else on.panels
+
+
+def _check_structures(one: xr.Dataset, structures: list[str], most: int) -> None:
+    count = int(np.prod([one.sizes[dim] for dim in structures]))
+    if count > most:
+        msg = (
+            f"rf.plot.fragility: found {count} structures, by {', '.join(structures)}; a figure "
+            f"shows {most}: pick some, for example with fragility.isel({structures[0]}=0)"
+        )
+        raise SchemaError(msg)
+
+
+def _sheet(ax: "AxesLike", states: list[xr.Dataset]) -> Sheet:
+    """Take a panel for each limit state."""
+    return sheet(
+        ax, "fragility", [_name(one) for one in states], (0.8 + 3.6 * len(states), 3.8),
+        lambda figure: figure.subplots(1, len(states)),
+    )  # fmt: skip
+
+
+def _each(one: xr.Dataset, structures: list[str]) -> list[tuple[str, xr.Dataset]]:
+    """Give each structure with the words that tell it apart."""
+    found: list[tuple[str, xr.Dataset]] = []
+    for place in np.ndindex(*(one.sizes[dim] for dim in structures)):
+        part = one.isel(dict(zip(structures, place, strict=True)))
+        words = [
+            f"{str(name).replace('_', ' ')} {part[name].item():.4g}"
+            if part[name].dtype.kind == "f"
+            else f"{str(name).replace('_', ' ')} {part[name].item()}"
+            for name in one.coords
+            if set(one[name].dims) & set(structures)
+        ]
+        found.append((", ".join(words), part))
+    return found
+
+
+def _curves(axes: "Axes", named: list[tuple[str, xr.Dataset]], measure: str) -> None:
+    for number, (name, one) in enumerate(named):
+        colour, dashes = colour_of(number), style_of(number // len(COLOURS))
+        along = one[measure].to_numpy()
+        if int(one["fragility_status"]) in _KNOWN:
+            low, high = (one[f"{_NAME}_{end}_bound"].to_numpy() for end in ("lower", "upper"))
+            axes.fill_between(along, low, high, color=colour, alpha=0.15, linewidth=0.0)
+            parted = int(one["fragility_status"]) == FragilityStatus.SEPARATED
+            words = f"{name}: separated, no bounds" if parted else name
+            axes.plot(along, one[_NAME].to_numpy(), color=colour, linestyle=dashes, label=words)
+        else:
+            axes.plot([], [], color=colour, label=f"{name}: no fit")
+        fraction = one["stripe_fraction"].to_numpy()
+        ends = [one[f"stripe_fraction_{end}_bound"].to_numpy() for end in ("lower", "upper")]
+        reach = np.abs(np.stack(ends) - fraction)
+        # side by side where limit states were counted at one intensity
+        place = one["stripe_intensity"].to_numpy() * 1.012 ** (number - 0.5 * (len(named) - 1))
+        axes.errorbar(place, fraction, yerr=reach, fmt="o", color=colour, ms=3.0, lw=0.8, alpha=0.7)
+    axes.set(
+        xlabel=label_of_intensity(named[0][1][measure], named[0][1]),
+        ylabel="probability of exceedance [-]",
+        ylim=(-0.02, 1.02),
+    )
+    axes.set_xlim(left=0.0)
+    axes.legend(frameon=False, fontsize="small", loc="best")
+    grid(axes)
+
+
+def _contours(axes: "Axes", one: xr.Dataset, measures: list[str]) -> None:
+    across, up = measures
+    surface = one[_NAME].transpose(up, across)
+    axes.contourf(
+        one[across], one[up], surface, levels=np.linspace(0.0, 1.0, 21), cmap="Blues", alpha=0.8
+    )
+    lines = axes.contour(
+        one[across], one[up], surface, levels=_LEVELS, colors=COLOURS[0], linewidths=0.9
+    )
+    axes.clabel(lines, fontsize="small", fmt="%.2f")
+    axes.set(
+        xlabel=label_of_intensity(one[across], one),
+        ylabel=label_of_intensity(one[up], one),
+        title=_name(one),
+    )
+
+
+def _name(one: xr.Dataset) -> str:
+    return str(one["limit_state"].item()) if "limit_state" in one.coords else "counted"

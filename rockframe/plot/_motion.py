@@ -1,23 +1,97 @@
-"""Acceleration, velocity and displacement of the ground along time."""
+"""Motions along time: acceleration, velocity, displacement; the strongest pulse in the velocity."""
 
-from typing import TYPE_CHECKING, Any, Final
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final, TypeAlias, cast
 
 import numpy as np
 import xarray as xr
 
-from rockframe.plot._axes import BLUE, GREEN, GREY, axis_label, ink, zero_line
-from rockframe.plot._motions import columns_of, drawn_motions, motions_title
+from rockframe.errors import ComponentError, shown
+from rockframe.motion.description import shown_name
+from rockframe.plot._axes import (
+    BLUE,
+    GREEN,
+    GREY,
+    Shown,
+    axis_label,
+    colour_of,
+    grid,
+    ink,
+    style_of,
+    unit_of,
+    zero_line,
+)
+from rockframe.plot._checks import check_motion
 from rockframe.plot._panels import Panels, sheet
 from rockframe.plot._runs import window_of
-from rockframe.plot._units import Shown, unit_of
 from rockframe.units import ACCELERATION, LENGTH, VELOCITY
 
 if TYPE_CHECKING:
+    from rockframe.motion import GroundMotion
+
+    MotionsLike: TypeAlias = GroundMotion | Sequence[GroundMotion] | Mapping[Any, GroundMotion]
     from matplotlib.axes import Axes
 
-    from rockframe.plot._motions import MotionsLike
+    from rockframe.motion import GroundMotion, VelocityPulse
     from rockframe.plot._panels import AxesLike
     from rockframe.plot._runs import Window
+
+
+_LETTERS: Final = 90
+"""That a row of a legend has room for."""
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """A motion with its label, colour and dashes; without a label where there is but one."""
+
+    motion: "GroundMotion"
+    label: str | None
+    colour: str
+    style: Any
+
+
+def columns_of(given: list[Drawn]) -> int:
+    """Give the columns of a legend that names motions below a figure."""
+    longest = max(len(one.label or "") for one in given)
+    return max(1, min(len(given), _LETTERS // (longest + 6)))
+
+
+def motions_title(given: list[Drawn]) -> str:
+    """Give the title of a figure: the name of the one motion that it shows."""
+    if len(given) != 1:
+        return ""
+    (one,) = given
+    return shown_name(one.motion.name, one.motion.history)
+
+
+def drawn_motions(given: object, function: str) -> list[Drawn]:
+    """Read one or several motions."""
+    from rockframe.motion import GroundMotion
+
+    labelled: dict[str, Any] = {}
+    if isinstance(given, Mapping):
+        labelled = {str(key): one for key, one in cast("Mapping[Any, Any]", given).items()}
+    elif isinstance(given, list | tuple):
+        several = cast("Sequence[Any]", given)
+        names = [
+            shown_name(str(getattr(one, "name", "")), getattr(one, "history", ()))
+            for one in several
+        ]
+        alike = len(set(names)) < len(names)
+        labelled = {
+            f"{name} ({number})" if alike else name: one
+            for number, (name, one) in enumerate(zip(names, several, strict=True), start=1)
+        }
+    if labelled and all(isinstance(one, GroundMotion) for one in labelled.values()):
+        return [
+            Drawn(one, label, colour_of(number), style_of(number))
+            for number, (label, one) in enumerate(labelled.items())
+        ]
+    check_motion(given, function)
+    return [Drawn(cast("GroundMotion", given), None, colour_of(0), "-")]
+
 
 _ROWS: Final = ("acceleration", "velocity", "displacement")
 
@@ -136,3 +210,71 @@ def _mark_peak(axes: "Axes", dataset: xr.Dataset, name: str, unit: Shown, colour
         fontsize="small",
         color=colour,
     )
+
+
+_MOTION: Final = "#999999"
+_PULSE: Final = "#cc6677"
+_RESIDUAL: Final = "#222255"
+
+
+def velocity_pulse(
+    pulse: "VelocityPulse[GroundMotion]",
+    *,
+    ax: "AxesLike" = None,
+    title: str | None = None,
+) -> Panels:
+    """Draw the velocity of a motion with its pulse, and the residual velocity below.
+
+    Parameters
+    ----------
+    pulse : VelocityPulse
+        As :meth:`rockframe.GroundMotion.velocity_pulse` gives it.
+    ax : two Axes, optional
+        What is drawn in; a new figure unless given.
+    title : str, optional
+        Title of a new figure; name of the motion, period and verdict unless given.
+
+    Returns
+    -------
+    Panels
+        Time is that of the motion, the still ground before it is at negative times.
+
+    Raises
+    ------
+    ComponentError
+        Not a velocity pulse, or not two Axes.
+    """
+    from rockframe.measures import velocity_and_displacement
+    from rockframe.motion import VelocityPulse
+
+    if not isinstance(cast("object", pulse), VelocityPulse):
+        msg = (
+            "rf.plot.velocity_pulse needs a VelocityPulse, as motion.velocity_pulse() gives it, "
+            f"got {shown(pulse)}"
+        )
+        raise ComponentError(msg)
+    on = sheet(
+        ax, "velocity_pulse", ("the motion", "the residual motion"), (8.0, 4.6),
+        lambda figure: figure.subplots(2, 1, sharex=True, sharey=True),
+    )  # fmt: skip
+    on.entitle(f"{pulse.extracted.name}: {pulse}", title)
+    above, below = on.panels
+    extracted, residual = (
+        velocity_and_displacement(motion) for motion in (pulse.extracted, pulse.residual)
+    )
+    time = extracted["time"].to_numpy() - float(pulse.lead.m_as("s"))
+    of_pulse = extracted["ground_velocity"].to_numpy()
+    left = residual["ground_velocity"].to_numpy()
+    above.plot(time, of_pulse + left, color=_MOTION, linewidth=1.0, label="motion")
+    words = f"pulse, $T_p$ = {pulse.period.m_as('s'):.3g} s"
+    above.plot(time, of_pulse, color=_PULSE, linewidth=1.8, label=words)
+    below.plot(time, left, color=_RESIDUAL, linewidth=1.0, label="residual motion")
+    reach = 1.1 * max(float(np.abs(of_pulse + left).max()), float(np.abs(left).max()))
+    for axes in (above, below):
+        axes.axhline(0.0, color="0.8", linewidth=0.5, zorder=0)
+        axes.set(ylabel="ground velocity [m s$^{-1}$]", xlim=(time[0], time[-1]))
+        axes.set_ylim(-reach, reach)
+        axes.legend(loc="upper right", fontsize="small", frameon=False)
+        grid(axes)
+    below.set_xlabel("time [s]")
+    return on.panels

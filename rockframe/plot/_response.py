@@ -1,4 +1,7 @@
-"""The response along time, laid out as in Figs. 7-15 of the paper."""
+"""The response along time, laid out as in Figs. 7-15 of the paper.
+
+Events are marked on the rotation, and strips below it show the contact states.
+"""
 
 from typing import TYPE_CHECKING, Any, Final
 
@@ -7,22 +10,24 @@ import xarray as xr
 
 from rockframe.errors import ComponentError, shown
 from rockframe.plot._axes import (
+    BLUE,
     COLOURS,
     GREEN,
     GREY,
     ORANGE,
+    PURPLE,
+    RELATIVE,
     VERMILLION,
+    Shown,
     axis_label,
     ink,
     key,
+    unit_of,
     zero_line,
 )
 from rockframe.plot._checks import overturning_angles
-from rockframe.plot._contact import draw_contact, draw_contact_legend
-from rockframe.plot._events import draw_events
 from rockframe.plot._panels import Panels, sheet
 from rockframe.plot._runs import Run, runs_of, runs_title
-from rockframe.plot._units import RELATIVE, Shown, unit_of
 from rockframe.units import ACCELERATION, ANGLE, LENGTH
 
 if TYPE_CHECKING:
@@ -31,6 +36,118 @@ if TYPE_CHECKING:
 
     from rockframe.plot._panels import AxesLike
     from rockframe.plot._runs import RunsLike, Window
+
+
+CONTACT_COLOURS: Final = {
+    "full": "0.85",
+    "left": "#4477aa",
+    "right": "#cc6677",
+    "flight": "#ddcc77",
+}
+"""Of each state, by its name in the schema."""
+
+_COLUMNS: Final = 1 << 14
+"""More than a figure has pixels, so that what is narrower than a pixel is averaged twice only."""
+
+
+def draw_contact(axes: "Axes", state: xr.DataArray, name: str) -> None:
+    """Draw which corner bears, in the colour of the state.
+
+    Where states change faster than the figure can show, the colours are mixed by the shares
+    of time: bars would show whichever was painted last.
+    """
+    time = state["time"].to_numpy()
+    axes.imshow(
+        mixed_colours(state, _COLUMNS)[np.newaxis],
+        extent=(time[0], time[-1], 0.0, 1.0),
+        aspect="auto",
+        interpolation="antialiased",
+    )
+    axes.set_ylim(0.0, 1.0)
+    axes.set_yticks([])
+    axes.set_ylabel(name, rotation=0, ha="right", va="center")
+
+
+def draw_contact_legend(axes: "Axes", state: xr.DataArray) -> None:
+    """Name the colours below the strip."""
+    from matplotlib.patches import Patch
+
+    names = [name for _, name in _states(state)]
+    axes.legend(
+        handles=[Patch(facecolor=CONTACT_COLOURS[name], label=name) for name in names],
+        loc="upper center", bbox_to_anchor=(0.5, -1.6), ncols=len(names),
+        fontsize="small", frameon=False,
+    )  # fmt: skip
+
+
+def mixed_colours(state: xr.DataArray, columns: int) -> Any:
+    """Give the mean colour of equal parts of the time."""
+    from matplotlib.colors import to_rgb
+
+    time, values = state["time"].to_numpy(), state.to_numpy()
+    edges = np.linspace(time[0], time[-1], columns + 1)
+    colours = np.zeros((columns, 3))
+    for value, name in _states(state):
+        held = np.concatenate([[0.0], np.cumsum(np.diff(time) * (values[:-1] == value))])
+        share = np.diff(np.interp(edges, time, held)) / np.diff(edges)
+        colours += share[:, np.newaxis] * np.array(to_rgb(CONTACT_COLOURS[name]))
+    return np.clip(colours, 0.0, 1.0)
+
+
+def _states(state: xr.DataArray) -> list[tuple[int, str]]:
+    meanings = str(state.attrs["flag_meanings"]).split()
+    return list(zip(state.attrs["flag_values"], meanings, strict=True))
+
+
+MARKS: Final = {
+    "uplift": ("^", GREEN),
+    "separation": ("^", ORANGE),
+    "impact": ("o", VERMILLION),
+    "reengagement": ("v", BLUE),
+    "rest": ("s", GREY),
+    "overturning": ("X", VERMILLION),
+    "toppled": ("X", GREY),
+    "soil_separation": ("2", PURPLE),
+    "soil_contact": ("1", PURPLE),
+}
+"""Marker and colour of each kind of event that is drawn, by its name in the schema. Changes of the
+horizontal restraint are not drawn: they come with a separation or a contact."""
+
+
+def draw_events(axes: "Axes", runs: list[Run], unit: "Shown | None") -> None:
+    """Mark events where they happened on the rotation, and name them in the legend."""
+    named: set[str] = set()
+    for run in runs:
+        dataset = run.dataset
+        if "event_kind" not in dataset:
+            continue
+        rotation = dataset["event_rotation"].to_numpy()
+        left, right = overturning_angles(dataset)
+        drawn = rotation / np.where(rotation < 0.0, left, right)
+        drawn = drawn if unit is None else unit.of(rotation)
+        when = dataset["event_time"].to_numpy()
+        for name, chosen in events_by_kind(run).items():
+            marker, colour = MARKS[name]
+            label = None if name in named else name.replace("_", " ")
+            named.add(name)
+            face = "none" if marker in "^v" else colour
+            axes.plot(
+                when[chosen], drawn[chosen], marker, color=colour, markerfacecolor=face,
+                markersize=4.5, markeredgewidth=0.9, label=label, zorder=3,
+            )  # fmt: skip
+    if named:
+        key(axes, ncols=2)
+
+
+def events_by_kind(run: Run) -> "dict[str, np.ndarray]":
+    """Give which events of a run are of each kind that is drawn."""
+    kinds = run.dataset["event_kind"]
+    values = kinds.to_numpy()
+    meanings = str(kinds.attrs["flag_meanings"]).split()
+    named = zip(kinds.attrs["flag_values"], meanings, strict=True)
+    found = {name: values == value for value, name in named if name in MARKS}
+    return {name: chosen for name, chosen in found.items() if chosen.any()}
+
 
 CONTACTS: Final = {"contact_state": "pads", "soil_contact_state": "soil"}
 """Strips of contact states, and what they are called where there are two."""

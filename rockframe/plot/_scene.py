@@ -6,11 +6,10 @@ import numpy as np
 import xarray as xr
 
 from rockframe.errors import ComponentError, SchemaError, shown
-from rockframe.plot._artists import SceneArtist, part_labels
+from rockframe.plot._artists import Drawer, SceneArtist, part_labels
 from rockframe.plot._checks import check_run, require_system, system_of_run
-from rockframe.plot._layout import Drawer
 from rockframe.plot._panels import single
-from rockframe.results.placement import UPRIGHT, Placement
+from rockframe.results.points import UPRIGHT, Placement
 from rockframe.signals.arrays import Array
 from rockframe.system.geometry import Geometry, geometry_of
 from rockframe.units import LENGTH, TIME, QuantityLike, to_si

@@ -18,11 +18,11 @@ from rockframe.plot._axes import (
     key,
     label_of,
     style_of,
+    unit_of,
     zero_line,
 )
 from rockframe.plot._checks import check_study
 from rockframe.plot._panels import Panels, sheet, single
-from rockframe.plot._units import unit_of
 from rockframe.results.outcome import overturns
 from rockframe.results.variables.studies import Outcome
 from rockframe.studies.sweeps.words import cases_verdict

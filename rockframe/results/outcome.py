@@ -18,8 +18,7 @@ from rockframe.dynamics.protocol import (
     column_of,
 )
 from rockframe.results.schema import SCHEMA
-from rockframe.results.variables.bodies import OF_EACH
-from rockframe.results.variables.restrainers import OF_EACH as OF_EACH_LINK
+from rockframe.results.variables.bodies import OF_EACH_BODY, OF_EACH_LINK
 from rockframe.results.variables.runs import Direction
 from rockframe.signals.arrays import Array
 from rockframe.solve.layout import Status
@@ -69,7 +68,8 @@ def body_histories(
         return kept
     bodies = range(model.system.bodies())
     found: dict[str, Generic] = {
-        name: np.array([values[column_of(one, k)] for k in bodies]) for name, one in OF_EACH.items()
+        name: np.array([values[column_of(one, k)] for k in bodies])
+        for name, one in OF_EACH_BODY.items()
     }
     found["body_contact_state"] = np.array(
         [model.contact_states(run.mode, k) for k in bodies], dtype=np.int8

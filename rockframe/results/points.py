@@ -1,15 +1,20 @@
-"""The motion of points of a rigid body, from that of its centre of mass, :eq:`eq-point-motion`."""
+"""The motion of points of a body, :eq:`eq-point-motion`, and where the parts of a scene are."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from rockframe.dynamics.events import ContactState
+from rockframe.dynamics.restraint import PIVOT_LEFT, PIVOT_RIGHT, pivot_of
 from rockframe.results.along_steps import AlongSteps
 from rockframe.results.outcome import Generic, sines_cosines
 from rockframe.results.variables.requests import POINT_PEAKS
 from rockframe.signals.arrays import Array
+from rockframe.system.geometry import Geometry
 from rockframe.system.load import Load
+from rockframe.system.options import Restraint
+from rockframe.system.restraints import restraint_code
 
 
 @dataclass(frozen=True)
@@ -86,3 +91,104 @@ def point_peaks(points: Sequence[BodyPoint], along: AlongSteps, load: Load) -> d
         row.name: one
         for row, one in zip(POINT_PEAKS, np.split(peaks, len(POINT_PEAKS)), strict=True)
     }
+
+
+UPRIGHT: Mapping[str, float] = {
+    "rotation": 0.0,
+    "horizontal_displacement": 0.0,
+    "vertical_displacement": 0.0,
+    "contact_state": float(ContactState.FULL),
+}
+"""The values of a scene that is upright and at rest."""
+
+
+@dataclass(frozen=True)
+class Placement:
+    """A scene at an instant: the moves of its bodies, and which ends bear."""
+
+    geometry: Geometry  # of the scene
+    values: Mapping[str, float]  # of the instant, by their names in the schema
+    restraint: Restraint  # which point of the base is held horizontally
+    # of all bodies of a stack rotation and both displacements; None at rest
+    bodies: Array | None = None
+
+    def block(self, points: Array) -> Array:
+        """Give where points of the block are, and of all that it is one body with."""
+        values = self.values
+        if self.geometry.columns:
+            return self._about_corner(points)
+        moves = values["horizontal_displacement"], values["vertical_displacement"]
+        return self._moved(points, self.geometry.moved, values["rotation"], moves)
+
+    def _about_corner(self, points: Array) -> Array:
+        """Give where points of a column are, as if it stood in the middle of the frame.
+
+        Those above it are of the beam, which moves as the upper corner that bears it.
+        """
+        rotation = np.array(self.values["rotation"])
+        pivot, top = self.geometry.half_width * float(np.sign(rotation)), self.geometry.height
+        of_beam = points[:, 1] > top
+        right = np.where(of_beam, -2.0 * pivot, points[:, 0] - pivot)
+        moves = rotated_points(
+            right, np.where(of_beam, top, points[:, 1]), rotation,
+            small_rotation=self.geometry.small_rotation,
+        )  # fmt: skip
+        return points + np.column_stack(moves)
+
+    def beam(self, points: Array) -> Array:
+        """Give where points of the beam are that columns carry."""
+        above = np.array([(0.0, 2.0 * self.geometry.height)])
+        return points + self._about_corner(above) - above
+
+    def lower(self, k: int, points: Array) -> Array:
+        """Give where points of a body of a stack are, the `k`-th beneath the block."""
+        rotation, right, up = np.zeros(3) if self.bodies is None else self.bodies[k + 1]
+        return self._moved(points, self.geometry.lower[k].centre, float(rotation), (right, up))
+
+    def cap(self, points: Array) -> Array:
+        """Give where points of the cap are, as :meth:`block` does."""
+        if not self.geometry.stacked or self.geometry.cap is None:
+            return self.block(points)
+        half_width, height = self.geometry.cap
+        rotation = self.values.get("cap_rotation", 0.0)
+        pin = half_width * self._held_side(rotation)
+        # the centre of mass about the held point, which does not move, as in eq-kinematics
+        across, _ = rotated_points(
+            np.array(-pin), np.array(0.5 * height), np.array(rotation),
+            small_rotation=self.geometry.small_rotation,
+        )  # fmt: skip
+        moves = float(across), self.values.get("cap_vertical_displacement", 0.0)
+        return self._moved(points, (0.0, 0.5 * height), rotation, moves)
+
+    @property
+    def cap_rotation(self) -> float:
+        """Of what the block stands on [rad]."""
+        return self.values.get("cap_rotation", 0.0) if self.geometry.stacked else 0.0
+
+    def bearing(self, name: str = "contact_state") -> tuple[bool, bool]:
+        """Tell whether the left and the right end of a base bear."""
+        state = self.values.get(name, float(ContactState.FULL))
+        full = state == ContactState.FULL
+        return full or state == ContactState.LEFT, full or state == ContactState.RIGHT
+
+    def _held_side(self, rotation: float) -> float:
+        """Give -1, 0 or 1 for the left end, the middle or the right end of the cap's base."""
+        left, right = self.bearing("soil_contact_state")
+        if not (left or right):
+            return 0.0
+        rate = self.values.get("cap_angular_velocity", 0.0)
+        pivot = pivot_of(restraint_code(self.restraint), left, right, rotation, rate)
+        return {PIVOT_LEFT: -1.0, PIVOT_RIGHT: 1.0}.get(pivot, 0.0)
+
+    def _moved(
+        self,
+        points: Array,
+        centre: tuple[float, float],
+        rotation: float,
+        moves: tuple[float, float],
+    ) -> Array:
+        right, up = (points - np.array(centre)).T
+        across, above = rotated_points(
+            right, up, np.array(rotation), small_rotation=self.geometry.small_rotation
+        )
+        return points + np.column_stack([across + moves[0], above + moves[1]])

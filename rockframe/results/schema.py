@@ -12,9 +12,8 @@ from rockframe.results.variables.analyses import (
     SEQUENCES,
     SPECTRA,
 )
-from rockframe.results.variables.bodies import BODIES
-from rockframe.results.variables.directions import DIRECTIONS
-from rockframe.results.variables.motions import MEASURES
+from rockframe.results.variables.bodies import BODIES, RESTRAINER_SCALARS, RESTRAINERS
+from rockframe.results.variables.motions import DIRECTIONS, MEASURES
 from rockframe.results.variables.requests import (
     ACCELERATIONS,
     FORCE_SCALARS,
@@ -24,15 +23,16 @@ from rockframe.results.variables.requests import (
     POINTS,
     REACTIONS,
 )
-from rockframe.results.variables.restrainers import RESTRAINER_SCALARS, RESTRAINERS
 from rockframe.results.variables.runs import (
     CERTIFICATE,
     ENERGY_HISTORIES,
     EVENTS_AND_SCALARS,
+    HELD,
     HISTORIES,
+    MODES,
     MOTION_AFTER_END,
+    REST,
 )
-from rockframe.results.variables.statics import HELD, MODES, REST
 from rockframe.results.variables.studies import (
     CASE,
     COMPARISON,

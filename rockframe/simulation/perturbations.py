@@ -8,7 +8,7 @@ from typing import Final
 from rockframe.dynamics.protocol import Ending
 from rockframe.errors import RockframeError
 from rockframe.motion import GroundMotion
-from rockframe.motion.processing.sampling import divided_signal
+from rockframe.motion.processing.samples import divided_signal
 from rockframe.simulation.plan import Plan
 from rockframe.solve.accuracy import LEVELS, Accuracy, AccuracyLevel
 from rockframe.solve.integrate import STILL_INTERVAL

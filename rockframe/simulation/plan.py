@@ -1,26 +1,195 @@
-"""The arguments of a run, checked against the system and one another."""
+"""The arguments of a run, checked against the system and one another.
+
+Also what is asked of it beside the usual, and where it starts: at rest, released, or where another
+run ended.
+"""
 
 import json
+import math
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from os import PathLike
-from typing import Any, Final, Unpack
+from typing import Any, Final, TypeAlias, Unpack, cast
 
+import numpy as np
 import xarray as xr
 
 from rockframe.components import InitialState
-from rockframe.errors import AssemblyError, shown
+from rockframe.dynamics.protocol import Ending, Start
+from rockframe.errors import AssemblyError, RockframeError, shown
 from rockframe.motion import GroundMotion
-from rockframe.results.diagnostics import Diagnostic
+from rockframe.results.diagnostics import DIAGNOSTICS, Diagnostic
+from rockframe.results.forces import OF_SOIL_FRICTION
+from rockframe.results.outcome import verdict_of
 from rockframe.results.points import BodyPoint
-from rockframe.results.schema import ENERGIES
-from rockframe.simulation.beginning import Beginning, beginning_to_dict, continuation_of
+from rockframe.results.schema import ENERGIES, GROUPS, ON_REQUEST, SCHEMA, SCHEMA_VERSION
+from rockframe.results.variables.requests import POINT_TIME
+from rockframe.results.variables.variable import TIME as OVER_TIME
 from rockframe.simulation.friction import has_limit
-from rockframe.simulation.outputs import diagnostics_of, lacking, names_of, points_of
 from rockframe.simulation.run_arguments import RunArguments
 from rockframe.solve.accuracy import Accuracy, AccuracyLevel, accuracy_of
 from rockframe.system.assembly import Assembly
 from rockframe.system.options import Overturning, read_option
 from rockframe.units import LENGTH, POSITIVE, TIME, TIME_STEP, Measure, QuantityLike, to_si
+
+EXAMPLE: Final = 'points={"roof": ("0 m", "18 m")}'
+
+
+def listed(outputs: object) -> list[object]:
+    """Give what the argument ``outputs`` names, one by one."""
+    if outputs is None:
+        return []
+    if isinstance(outputs, Iterable) and not isinstance(outputs, str):
+        return list(cast("Iterable[object]", outputs))
+    return [outputs]
+
+
+def names_of(outputs: object, points: object, faults: list[str]) -> tuple[str, ...]:
+    """Read the argument ``outputs``: names of variables and of groups; note what is unknown."""
+    wanted: set[str] = set()
+    for name in listed(outputs):
+        if isinstance(name, str) and _has_dimensions(name, POINT_TIME):
+            if not points:
+                faults.append(f"{name!r} is of points, and there are none; give {EXAMPLE}")
+        elif isinstance(name, str) and name in GROUPS:
+            wanted.update(GROUPS[name])
+        elif isinstance(name, str) and name in DIAGNOSTICS:
+            continue  # see diagnostics_of
+        elif isinstance(name, str) and (name in ON_REQUEST or _has_dimensions(name, OVER_TIME)):
+            wanted.add(name)
+        else:
+            known = ", ".join(repr(other) for other in (*GROUPS, *ON_REQUEST, *DIAGNOSTICS))
+            faults.append(
+                f"outputs has no {shown(name)}; every run has its response, and on request {known}"
+            )
+    return tuple(name for name in ON_REQUEST if name in wanted)
+
+
+def diagnostics_of(outputs: object) -> tuple[Diagnostic, ...]:
+    """Give the diagnostics that the argument ``outputs`` names, in the order of registration."""
+    named = [name for name in listed(outputs) if isinstance(name, str)]
+    return tuple(one for name, one in DIAGNOSTICS.items() if name in named)
+
+
+def _has_dimensions(name: str, dims: tuple[str, ...]) -> bool:
+    return name in SCHEMA and SCHEMA[name].dims == dims
+
+
+NEEDED: Final = {
+    "toe_pressure": (("toe_pressure",), "a WinklerSoil"),
+    "soil_friction_demand": (OF_SOIL_FRICTION, "a CushionCap between block and WinklerSoil"),
+}
+"""Columns of a model without which it has no such output, and what gives them."""
+
+
+def lacking(system: Assembly, names: Iterable[str]) -> list[str]:
+    """Give the faults of asking for outputs that the scene does not have."""
+    depend = [name for name in names if name in NEEDED]
+    if not depend:
+        return []
+    columns = {column.name for column in system.model.columns}
+    of_stack = " and no Stack" if system.model.shows_bodies else ""
+    return [
+        f"there is no {name!r} in this scene; it needs {NEEDED[name][1]}{of_stack}"
+        for name in depend
+        if not columns.issuperset(NEEDED[name][0])
+    ]
+
+
+def points_of(given: object, faults: list[str]) -> tuple[BodyPoint, ...]:
+    """Read the argument ``points``: names and places on the body; note what is wrong."""
+    if given is None:
+        return ()
+    if not isinstance(given, Mapping):
+        faults.append(f"points must name places, such as {EXAMPLE}, got {shown(given)}")
+        return ()
+    points: list[BodyPoint] = []
+    for name, place in cast("Mapping[Any, Any]", given).items():
+        if not (isinstance(name, str) and name.strip()):
+            faults.append(f"points needs names, such as {EXAMPLE}, got {shown(name)}")
+        elif not (isinstance(place, tuple | list) and len(cast("tuple[object]", place)) == 2):
+            faults.append(
+                f"point {name!r} needs two lengths, to the right of the middle of the base and "
+                f"above it, such as {EXAMPLE}, got {shown(place)}"
+            )
+        else:
+            try:
+                x, y = (
+                    to_si(each, LENGTH, owner="simulate", name=f"points[{name!r}]")
+                    for each in cast("tuple[Any, Any]", place)
+                )
+                points.append(BodyPoint(name, x, y))
+            except RockframeError as problem:
+                faults.append(str(problem))
+    return tuple(points)
+
+
+_ATTRIBUTE = "end_state"
+
+
+Beginning: TypeAlias = InitialState | Ending
+"""An initial state, or the end of another run of the same system."""
+
+
+def start_of(beginning: Beginning) -> Start | Ending:
+    """Give a beginning as the integrator takes it."""
+    if isinstance(beginning, Ending):
+        return beginning
+    si = beginning.si
+    return Start(si.rotation, si.angular_velocity, si.vertical_displacement, si.vertical_velocity)
+
+
+def beginning_to_dict(beginning: Beginning) -> dict[str, Any]:
+    """Give a beginning as plain values, fit for JSON."""
+    if isinstance(beginning, Ending):
+        return {"type": "Continuation", "ending": _plain(beginning)}
+    return beginning.to_dict()
+
+
+def end_attributes(ending: Ending) -> dict[str, str]:
+    """Give the end of a run as an attribute that a later run can begin with."""
+    return {_ATTRIBUTE: json.dumps(_plain(ending))}
+
+
+def continuation_of(dataset: xr.Dataset, system: Assembly, faults: list[str]) -> Beginning:
+    """Read where a run ended, or note why none can go on from there."""
+    attributes: Mapping[str, Any] = cast("Mapping[str, Any]", dataset.attrs)
+    if _ATTRIBUTE not in attributes or "system_json" not in attributes:
+        faults.append("initial is a dataset that holds no end of a run; expected one of simulate()")
+        return InitialState()
+    if attributes.get("schema_version") != SCHEMA_VERSION:
+        faults.append(
+            f"initial is the end of a run of rockframe {attributes.get('rockframe_version')}, "
+            "which kept states in another way; run it again"
+        )
+    stored: dict[str, Any] = json.loads(attributes[_ATTRIBUTE])
+    ending = Ending(
+        stored["mode"],
+        np.array(stored["state"], dtype=np.float64),
+        np.array(stored["memory"], dtype=np.float64),
+    )
+    passed = not math.isnan(float(attributes.get("overturning_time", math.nan)))
+    if json.loads(attributes["system_json"]) != system.to_dict():
+        faults.append("initial is the end of a run of another system")
+    elif passed and not _came_back(dataset, system, ending):
+        faults.append("initial is the end of a run that overturned")
+    return ending
+
+
+def _came_back(dataset: xr.Dataset, system: Assembly, ending: Ending) -> bool:
+    """Whether a run that passed the overturning angle stands, and ends within it."""
+    rotation = system.model.rotation_in(ending.state)
+    within = abs(rotation) < system.setting.overturning_angles.on_side_of(rotation)
+    return within and "status" in dataset and verdict_of(dataset) is False
+
+
+def _plain(ending: Ending) -> dict[str, Any]:
+    return {
+        "mode": ending.mode,
+        "state": ending.state.tolist(),
+        "memory": ending.memory.tolist(),
+    }
+
 
 MOST_SAMPLES = 1e8
 """Samples of the histories beyond which a run is refused: some ten gigabytes."""

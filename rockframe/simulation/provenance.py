@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from rockframe.components import InitialState
 from rockframe.errors import RecordWarning, SchemaError, warn
 from rockframe.motion import GroundMotion
-from rockframe.motion.shown_name import shown_name
+from rockframe.motion.description import shown_name
 from rockframe.solve.accuracy import Accuracy
 from rockframe.units import TIME, Unit
 

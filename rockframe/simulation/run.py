@@ -19,21 +19,22 @@ from rockframe.results.slope import ground_on_slope, slope_attributes
 from rockframe.results.variables.runs import Direction
 from rockframe.signals import Motion
 from rockframe.simulation.answers import Answers, answers_of, ground_at
-from rockframe.simulation.beginning import end_attributes, start_of
 from rockframe.simulation.certificate import certify
 from rockframe.simulation.friction import friction_words, slips
-from rockframe.simulation.plan import Plan
+from rockframe.simulation.plan import Plan, end_attributes, start_of
 from rockframe.simulation.provenance import motion_after_end, motion_attributes
 from rockframe.simulation.run_arguments import Certification
 from rockframe.simulation.run_summary import RunSummary, run_summary
 from rockframe.simulation.second_look import doubts, peak_error, second_look
 from rockframe.simulation.soundness import (
+    NOT_LOOKED_AT,
     STILL_MOVING,
+    Uniqueness,
     doubtful_residual,
     may_overturn_later,
     unbalanced,
+    uniqueness_of,
 )
-from rockframe.simulation.uniqueness import NOT_LOOKED_AT, Uniqueness, uniqueness_of
 from rockframe.solve.accuracy import LEVELS, AccuracyLevel
 from rockframe.solve.integrate import STILL_INTERVAL, integrate
 from rockframe.solve.trajectory import Summary, Trajectory

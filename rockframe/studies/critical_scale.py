@@ -33,7 +33,7 @@ from rockframe.studies.flips import (
     unfinished,
 )
 from rockframe.studies.intensities import ScaledIntensity, of_study
-from rockframe.studies.sweeps.progress import ProgressBar, bar_of
+from rockframe.studies.sweeps.execution import ProgressBar, bar_of
 from rockframe.system.rigid_ground import RigidGroundSetting
 from rockframe.units import POSITIVE, Condition, to_ratio
 

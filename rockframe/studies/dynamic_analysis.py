@@ -14,10 +14,18 @@ from rockframe.results.variables.studies import MOTION
 from rockframe.shared_arguments import takes
 from rockframe.signals.arrays import Array
 from rockframe.simulation.friction import share_words
-from rockframe.studies.brackets import bracket_arrays, least_exceeding
 from rockframe.studies.intensities import Intensity, intensity_in, of_study
 from rockframe.studies.limit_states import LimitState, exceeds, limit_states
-from rockframe.studies.lines import INTERRUPTED, SCALE, VERDICT, Lines, read_scales, read_width
+from rockframe.studies.lines import (
+    INTERRUPTED,
+    SCALE,
+    VERDICT,
+    Lines,
+    bracket_arrays,
+    least_exceeding,
+    read_scales,
+    read_width,
+)
 from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.studies.sweeps.motions import named_motions
 

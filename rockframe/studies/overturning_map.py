@@ -16,9 +16,8 @@ from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.studies import MOTION
 from rockframe.shared_arguments import takes
 from rockframe.signals.arrays import Array
-from rockframe.studies.brackets import bracket_arrays
 from rockframe.studies.limit_states import overturns
-from rockframe.studies.lines import SCALE, VERDICT, Lines, read_width
+from rockframe.studies.lines import SCALE, VERDICT, Lines, bracket_arrays, read_width
 from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.studies.sweeps.axes import numbers_of
 from rockframe.system.options import Overturning

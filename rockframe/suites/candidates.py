@@ -12,7 +12,7 @@ from rockframe.errors import ComponentError, shown
 from rockframe.measures import rotated_spectrum
 from rockframe.measures.common import read_inputs
 from rockframe.measures.response import checked_periods, shortest_of, spectra_of
-from rockframe.motion.processing.coarseness import say_coarse
+from rockframe.motion.processing.samples import say_coarse
 from rockframe.signals.arrays import Array
 from rockframe.suites.suite import MotionSuite
 from rockframe.suites.target import TargetSpectrum

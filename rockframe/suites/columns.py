@@ -1,14 +1,23 @@
-"""The table of a suite: what is known of each motion."""
+"""The table of a suite: what is known of each motion, and motions chosen by that."""
 
 import math
-from collections.abc import Mapping
-from typing import Any, Final
+from collections.abc import Callable, Collection, Mapping
+from html import escape
+from typing import TYPE_CHECKING, Any, Final, cast
 
 import numpy as np
 
+from rockframe.errors import ComponentError, shown
 from rockframe.motion import GroundMotion
+from rockframe.motion.description import peak_words
+from rockframe.notebook import CELL, TABLE, card, curve
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.suites import RECORDS
+from rockframe.units import Measure, Unit, to_ratio, to_si
+
+if TYPE_CHECKING:
+    from rockframe.suites.suite import MotionSuite
+
 
 _COMPUTED: Final = ("time_step", "duration", "sample_count", "peak_ground_acceleration")
 COLUMNS: Final = (*(row.name for row in RECORDS), "peak_ground_acceleration")
@@ -63,3 +72,111 @@ def _as_number(value: object) -> float | None:
         return float(str(value))
     except ValueError:
         return None
+
+
+_OWNER: Final = "MotionSuite.select"
+_EXAMPLES: Final = {
+    Unit.METRE: ("a length", "20 km"),
+    Unit.SECOND: ("a time", "0.01 s"),
+    Unit.HERTZ: ("a cyclic frequency", "0.1 Hz"),
+    Unit.RADIAN: ("an angle", "90 deg"),
+    Unit.METRE_PER_SECOND: ("a velocity", "760 m/s"),
+    Unit.METRE_PER_SECOND_SQUARED: ("an acceleration", "0.1 g_0"),
+}
+
+Test = Callable[[Any], bool]
+
+
+def chosen(motions: Mapping[str, GroundMotion], criteria: Mapping[str, object]) -> list[str]:
+    """Give the labels of the motions that meet all criteria."""
+    for name in criteria:
+        check_column(motions, name, owner=_OWNER)
+    tests = {name: _test(name, given) for name, given in criteria.items()}
+    return [
+        label
+        for label, motion in motions.items()
+        if all(_passes(test, column(name, motion)) for name, test in tests.items())
+    ]
+
+
+def check_column(motions: Mapping[str, GroundMotion], name: object, *, owner: str) -> None:
+    """Refuse the name of a column that no motion knows."""
+    known = dict.fromkeys([*COLUMNS, *(key for one in motions.values() for key in one.metadata)])
+    if name not in known:
+        msg = f"{owner}: there is no column {shown(name)}; known are {', '.join(known)}"
+        raise ComponentError(msg)
+
+
+def order(motions: Mapping[str, GroundMotion], name: str, *, descending: bool) -> list[str]:
+    """Give the labels in the order of a column; motions without a value stand last."""
+    known = {label: column(name, motion) for label, motion in motions.items()}
+    there = [label for label, value in known.items() if not _missing(value)]
+    as_text = any(isinstance(known[label], str) for label in there)
+    there.sort(key=lambda label: str(known[label]) if as_text else known[label], reverse=descending)
+    return [*there, *(label for label in known if label not in set(there))]
+
+
+def _passes(test: Test, value: Any) -> bool:
+    return not _missing(value) and bool(test(value))
+
+
+def _missing(value: Any) -> bool:
+    return value is None or value == "" or (isinstance(value, float) and math.isnan(value))
+
+
+def _test(name: str, given: Any) -> Test:
+    if callable(given):
+        return cast("Test", given)
+    if isinstance(given, tuple):
+        bounds = cast("tuple[Any, ...]", given)
+        if len(bounds) != 2:
+            msg = f"{_OWNER}: {name} needs a range of two values, got {shown(given)}"
+            raise ComponentError(msg)
+        low, high = (None if bound is None else _value(name, bound) for bound in bounds)
+        return lambda value: (low is None or low <= value) and (high is None or value <= high)
+    if isinstance(given, Collection) and not isinstance(given, str):
+        wanted = [_value(name, one) for one in cast("Collection[Any]", given)]
+        return lambda value: _key(value) in map(_key, wanted)
+    one = _value(name, given)
+    return lambda value: _key(value) == _key(one)
+
+
+def _value(name: str, given: Any) -> Any:
+    row = SCHEMA.get(name) if name in COLUMNS else None
+    if row is None or row.dtype == "str":
+        return given
+    if row.unit in _EXAMPLES:
+        words, example = _EXAMPLES[Unit(str(row.unit))]
+        return to_si(given, Measure(words, Unit(str(row.unit)), example), owner=_OWNER, name=name)
+    return to_ratio(given, owner=_OWNER, name=name, example="6")
+
+
+def _key(value: Any) -> Any:
+    if isinstance(value, str):
+        return value.strip().casefold()
+    if isinstance(value, int | float):
+        return float(f"{float(value):.12g}")  # but for rounding of a change of unit
+    return value
+
+
+_SHOWN: Final = 8
+"""Motions that have a row of their own."""
+
+
+def suite_html(suite: "MotionSuite") -> str:
+    """Give number, and curves of the first motions, of a suite as HTML."""
+    rows = {"motions": str(len(suite))}
+    if suite.verticals:
+        rows["vertical ones beside them"] = str(len(suite.verticals))
+    if suite.unread:
+        rows["files that could not be read"] = str(len(suite.unread))
+    lines = "".join(
+        f'<tr style="background:transparent"><td style="{CELL}">{escape(label)}</td>'
+        f'<td style="{CELL}">{escape(peak_words(motion))}</td><td style="{CELL}">'
+        f"{curve(motion.si.horizontal.samples.tolist(), width=160.0, height=24.0)}</td></tr>"
+        for label, motion in list(suite.items())[:_SHOWN]
+    )
+    left = len(suite) - _SHOWN
+    more = f"<div>and {left} more; <code>suite.table</code> has all</div>" if left > 0 else ""
+    table = f'<table style="{TABLE}">{lines}</table>{more}'
+    return card(type(suite).__name__, rows, more=table)

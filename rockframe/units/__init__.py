@@ -1,6 +1,5 @@
 """The boundary where quantities become floats, and units of which kinds there are."""
 
-from rockframe.units.hints import foreign_quantity
 from rockframe.units.kinds import (
     ACCELERATION,
     ANGLE,
@@ -32,6 +31,7 @@ from rockframe.units.reading import (
     Quantity,
     QuantityLike,
     RatioLike,
+    foreign_quantity,
     quantity,
     to_ratio,
     to_si,

@@ -5,9 +5,14 @@ import pytest
 from scipy import integrate, signal
 
 import rockframe as rf
-from rockframe.motion.matching.adjustment import adjustment_of
-from rockframe.motion.matching.oscillators import OscillatorPeaks, Oscillators
-from rockframe.motion.matching.wavelets import lead_of, wavelet_at, width_of
+from rockframe.motion.matching.adjustment import (
+    OscillatorPeaks,
+    Oscillators,
+    adjustment_of,
+    lead_of,
+    wavelet_at,
+    width_of,
+)
 from rockframe.signals.spectra import spectral_peaks
 
 STEP = 0.01

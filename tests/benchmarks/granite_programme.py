@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 import rockframe as rf
-from rockframe.signals.path import ground_path
+from rockframe.signals.integrals import ground_path
 from rockframe.signals.polynomials import greatest
 
 VARIABLE = "ROCKFRAME_GRANITE"

@@ -265,7 +265,7 @@ def test_nothing_is_lost_where_the_output_is_not_read(closed, folder):
 WRITES = {"write_text", "write_bytes", "to_netcdf", "to_csv", "savefig", "savetxt", "save"}
 THEMSELVES = {
     "writing.py": "the mechanism",
-    "studies/sweeps/arrays_file.py": "the folder of a study, whole or not at all by itself",
+    "studies/sweeps/store.py": "the folder of a study, whole or not at all by itself",
     "compiled/store.py": "machine code, in a folder of its own",
     "command/shared.py": "to the place that the mechanism gives",
     "command/plot.py": "to memory",

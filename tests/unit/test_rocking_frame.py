@@ -9,10 +9,10 @@ import xarray as xr
 
 import rockframe as rf
 from rockframe.command.files.scenes import read_scene
-from rockframe.plot._layout import Drawer
+from rockframe.plot._artists import Drawer
 from rockframe.plot._scene import Moving
 from rockframe.reports.limits import limits_of
-from rockframe.results.placement import UPRIGHT, Placement
+from rockframe.results.points import UPRIGHT, Placement
 from rockframe.simulation.perturbations import parameters
 from rockframe.system.geometry import geometry_of
 from rockframe.system.options import Restraint

@@ -8,17 +8,16 @@ from typing import Any, Final
 
 import pandas as pd
 
-from rockframe.command.files.calls import arguments_of, checked, made
-from rockframe.command.files.motions import described_motion
 from rockframe.command.files.scenes import (
     Described,
+    described_motion,
     described_run,
     described_scene,
     import_modules,
     read_scene,
 )
 from rockframe.command.files.scenes import keys as scene_keys
-from rockframe.command.files.tables import TomlFile
+from rockframe.command.files.tables import TomlFile, arguments_of, checked, made
 from rockframe.errors import FileError, RockframeError, shown
 from rockframe.motion import GroundMotion
 from rockframe.simulation.system import System

@@ -1,14 +1,105 @@
-"""A TOML file with what is wrong in it, each fault with its line."""
+"""A TOML file with what is wrong in it, each fault with its line; functions called with a table."""
 
 import re
 import tomllib
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from difflib import get_close_matches
+from inspect import Parameter, signature
 from pathlib import Path
-from typing import Any, Final, Self
+from typing import Any, Final, Self, TypeAlias, TypeVar
 
-from rockframe.command.files.lines import Place, lines_of
-from rockframe.errors import FileError, shown
+from rockframe.components.parameters import Declared
+from rockframe.errors import AssemblyError, FileError, RockframeError, StudyError, shown
+
+Place: TypeAlias = tuple[str | int, ...]
+"""Keys from the outermost table inwards; a number counts the tables of an array."""
+
+_PIECE: Final = re.compile(
+    r'"""(?:\\.|[^\\])*?"""'
+    r"|'''.*?'''"
+    r'|"(?:\\.|[^"\\\n])*"'
+    r"|'[^'\n]*'"
+    r"|\#[^\n]*"
+    r"|.",
+    re.DOTALL,
+)
+"""A text, a comment, or a letter."""
+
+
+def lines_of(text: str) -> dict[Place, int]:
+    """Give the lines of tables and keys."""
+    found: dict[Place, int] = {}
+    arrays: dict[Place, int] = {}
+    table: Place = ()
+    for line, statement in _statements(text):
+        if statement.startswith("["):
+            names, several = _header(statement)
+            table = _resolved(names[:-1], arrays) + names[-1:]
+            if several:
+                arrays[table] = arrays.get(table, -1) + 1
+                found.setdefault(table, line)
+                table = (*table, arrays[table])
+            found[table] = line
+        else:
+            key = _until_equals(statement)
+            names = _names(tomllib.loads(f"{key} = 0"))
+            for depth in range(1, len(names) + 1):
+                found.setdefault(table + names[:depth], line)
+    return found
+
+
+def _statements(text: str) -> Iterator[tuple[int, str]]:
+    """Cut a file into headers and assignments, without comments, each with its line."""
+    line, begun, depth, statement = 1, 1, 0, ""
+    for match in _PIECE.finditer(text + "\n"):
+        piece = match[0]
+        if piece == "\n" and depth == 0:
+            if statement.strip():
+                yield begun, statement.strip()
+            statement = ""
+        elif not piece.startswith("#"):
+            if not statement.strip() and piece.strip():
+                begun = line
+            statement += piece
+            depth += (piece in "[{") - (piece in "]}")
+        line += piece.count("\n")
+
+
+def _header(statement: str) -> tuple[Place, bool]:
+    several = statement.startswith("[[")
+    return _names(tomllib.loads(statement)), several
+
+
+def _names(nested: Any) -> Place:
+    """Give the keys of tables of which each holds one."""
+    names: list[str] = []
+    while isinstance(nested, dict | list) and nested:
+        if isinstance(nested, list):
+            nested = nested[0]
+            continue
+        name, nested = next(iter(nested.items()))
+        names.append(name)
+    return tuple(names)
+
+
+def _resolved(names: Place, arrays: dict[Place, int]) -> Place:
+    """Give a path with the numbers of tables in arrays: a header speaks of the last one so far."""
+    place: Place = ()
+    for name in names:
+        place = (*place, name)
+        if place in arrays:
+            place = (*place, arrays[place])
+    return place
+
+
+def _until_equals(statement: str) -> str:
+    key = ""
+    for match in _PIECE.finditer(statement):
+        if match[0] == "=":
+            break
+        key += match[0]
+    return key
+
 
 _WHERE: Final = re.compile(r"\s*\(at line (\d+), column \d+\)")
 _NO_TEXT: Final = (
@@ -103,3 +194,78 @@ class TomlFile:
 def table_title(where: Place) -> str:
     """Name a table as its header does."""
     return ".".join(name for name in where if isinstance(name, str))
+
+
+Made = TypeVar("Made")
+
+
+def arguments_of(function: Callable[..., Any], *, without: tuple[str, ...] = ()) -> dict[str, bool]:
+    """Give the arguments that a function takes by name, and whether each must be given."""
+    named = (Parameter.POSITIONAL_OR_KEYWORD, Parameter.KEYWORD_ONLY)
+    return {
+        name: one.default is Parameter.empty
+        for name, one in signature(function).parameters.items()
+        if one.kind in named and name not in ("self", *without)
+    }
+
+
+def checked(
+    file: TomlFile,
+    where: Place,
+    table: Mapping[str, Any],
+    known: Mapping[str, bool],
+    declared: Mapping[str, Declared[Any, Any]] | None = None,
+    hints: Mapping[str, str] | None = None,
+) -> bool:
+    """Note keys that mean nothing, keys that are missing, and values that cannot be read."""
+    sound = True
+    declared = declared or {}
+    for name in table:
+        if name not in known:
+            file.unknown(where, name, known, (hints or {}).get(name, ""))
+            sound = False
+    for name, required in known.items():
+        if required and name not in table:
+            file.fault(where, f"[{table_title(where)}] lacks {name!r}{_wanted(declared.get(name))}")
+            sound = False
+    for name, value in table.items():
+        if name in known and name in declared:
+            try:
+                declared[name].accept(value, f"[{table_title(where)}]")
+            except RockframeError as problem:
+                file.fault((*where, name), str(problem))
+                sound = False
+    return sound
+
+
+def made(
+    file: TomlFile, where: Place, function: Callable[..., Made], table: Mapping[str, Any]
+) -> Made | None:
+    """Call a function with a table that has been checked; note why that cannot be done."""
+    try:
+        return function(**table)
+    except AssemblyError as problem:
+        for words in problem.faults:
+            file.fault(_key_in(words, where, table), words)
+    except StudyError as problem:
+        for words in problem.faults:
+            file.fault(_key_in(words, where, table), words)
+    except (RockframeError, TypeError, ValueError) as problem:
+        file.fault(_key_in(str(problem), where, table), str(problem))
+    return None
+
+
+def _wanted(one: Declared[Any, Any] | None) -> str:
+    if one is None:
+        return ""
+    if one.measure is None:
+        return f" ({one.words.rstrip('.')})"
+    example = one.measure.example if one.unit == "1" else f'"{one.measure.example}"'
+    return f" ({one.words.rstrip('.')}); write for example {one.name} = {example}"
+
+
+def _key_in(words: str, where: Place, table: Mapping[str, Any]) -> Place:
+    """Give the place of the first key of a table that a message names; else of the table."""
+    found = {name: re.search(rf"\b{re.escape(name)}\b", words) for name in table}
+    starts = {name: match.start() for name, match in found.items() if match is not None}
+    return (*where, min(starts, key=lambda name: starts[name])) if starts else where

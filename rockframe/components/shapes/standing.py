@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any, Final, TypeVar
 
-from rockframe.components.shapes.masses import PlaneMass
+from rockframe.components.shapes.reading import PlaneMass
 from rockframe.errors import ComponentError, ModelWarning, heard, warn
 from rockframe.units import INERTIA, LENGTH, MASS
 

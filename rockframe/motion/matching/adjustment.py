@@ -2,14 +2,239 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any, Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rockframe.motion.matching.oscillators import OscillatorPeaks, Oscillators
-from rockframe.motion.matching.wavelets import wavelet_at
+from rockframe.motion.processing.floors import interval_matrix
 from rockframe.signals.arrays import Array
+from rockframe.signals.oscillator import turning_value
+
+WIDTH: Final = 1.178
+"""Width of the taper at a period of one second [s] (Al Atik and Abrahamson 2010)."""
+
+WIDTH_POWER: Final = 0.93
+"""Power of the period with which it grows [1] (the same)."""
+
+REACH: Final = 4.0
+"""Widths after which a wavelet is taken for over: 10^-7 of its height are left [1]."""
+
+_ROOM: Final = 3.0
+"""Widths for which there must be room before the end of the motion; else it is narrower [1]."""
+
+_NARROWEST: Final = 0.5
+"""Least width over the period, at which the wavelet still swings once to both sides [1]."""
+
+_FADE: Final = 0.25
+"""Share of the period in which what reaches an end of the motion fades [1]."""
+
+
+class Wavelet(NamedTuple):
+    """A wavelet at the samples of a motion."""
+
+    first: int  # the sample at which it begins
+    values: Array  # from there on; zero elsewhere [1]
+
+    @property
+    def samples(self) -> slice:
+        """The samples where it is not zero."""
+        return slice(self.first, self.first + self.values.size)
+
+
+def width_of(period: float) -> float:
+    """Compute the width of the taper, :eq:`eq-taper-width` [s]."""
+    return WIDTH * period**WIDTH_POWER
+
+
+def lead_of(period: float, damping_ratio: float) -> float:
+    """Compute how long before the oscillator the wavelet peaks, :eq:`eq-wavelet-lead` [s]."""
+    share = math.sqrt(1.0 - damping_ratio**2)
+    return math.atan2(share, damping_ratio) * period / (2.0 * math.pi * share)
+
+
+def wavelet_at(
+    peak_time: float, period: float, damping_ratio: float, *, time_step: float, count: int
+) -> Wavelet:
+    """Make the wavelet under which an oscillator peaks at a time, :eq:`eq-tapered-cosine`."""
+    duration = (count - 1) * time_step
+    edge = _NARROWEST * period
+    centre = min(max(peak_time - lead_of(period, damping_ratio), edge), duration - edge)
+    room = min(centre, duration - centre)
+    width = max(min(width_of(period), room / _ROOM), edge)
+    first = max(math.ceil((centre - REACH * width) / time_step), 0)
+    last = min(math.floor((centre + REACH * width) / time_step), count - 1)
+    times = np.arange(first, last + 1) * time_step
+    place = (times - centre) / width
+    from_end = np.minimum(times, duration - times) / (_FADE * period)
+    taper = np.exp(-(place**2)) * np.sin(0.5 * math.pi * np.clip(from_end, 0.0, 1.0)) ** 2
+    frequency = 2.0 * math.pi / period * math.sqrt(1.0 - damping_ratio**2)
+    cosine = np.cos(frequency * (times - centre))
+    uneven = taper * place
+    zeroth, first_moment, second = taper.sum(), uneven.sum(), uneven @ place
+    driven, driven_unevenly = taper @ cosine, uneven @ cosine
+    determinant = zeroth * second - first_moment**2
+    mean = (second * driven - first_moment * driven_unevenly) / determinant
+    slope = (zeroth * driven_unevenly - first_moment * driven) / determinant
+    return Wavelet(first, taper * (cosine - mean - slope * place))
+
+
+_RIVAL: Final = 0.75
+"""Share of the greatest peak from which on others may come to exceed it [1]."""
+
+_FEW: Final = 3
+"""Peaks of an oscillator that are looked at in any case."""
+
+_MOST: Final = 10
+"""Peaks of an oscillator that are looked at if they exceed its target."""
+
+
+class OscillatorPeaks(NamedTuple):
+    """The greatest peaks of oscillators."""
+
+    oscillators: NDArray[np.intp]  # which oscillator peaks
+    values: Array  # pseudo-acceleration, with its sign [m s^-2]
+    times: Array  # from the first sample [s]
+    ranks: NDArray[np.intp]  # zero of the greatest of its oscillator, one of the next
+
+    @property
+    def greatest(self) -> NDArray[np.bool_]:
+        """Whether it is the greatest of its oscillator, shape (m,)."""
+        return self.ranks == 0
+
+    @property
+    def spectrum(self) -> Array:
+        """The greatest pseudo-acceleration of each oscillator, shape (k,) [m s^-2]."""
+        return np.abs(self.values[self.greatest])
+
+    def looked_at(self, chosen: NDArray[np.bool_], targets: Array) -> OscillatorPeaks:
+        """Keep the greatest peaks of some oscillators, and those that exceed the target."""
+        exceeding = np.abs(self.values) > targets[self.oscillators]
+        kept = chosen[self.oscillators] & (exceeding | (self.ranks < _FEW))
+        return OscillatorPeaks(
+            self.oscillators[kept], self.values[kept], self.times[kept], self.ranks[kept]
+        )
+
+
+class Oscillators:
+    """Linear oscillators on ground that moves along straight lines from sample to sample."""
+
+    def __init__(self, periods: Array, damping_ratio: float, time_step: float) -> None:
+        self.periods = periods
+        self.damping_ratio = damping_ratio
+        self.time_step = time_step
+        self._intervals = np.array(
+            [interval_matrix(time_step, period, damping_ratio, 2) for period in periods.tolist()]
+        )
+        # as response spectra do: the free vibration in a period after the motion
+        self._after = math.ceil(float(periods.max()) / time_step) + 2
+
+    def histories(self, samples: Array) -> Array:
+        """Follow all oscillators from rest, through the motion and after it."""
+        from scipy import signal as module
+
+        signal: Any = module
+        start, rise = self._lines(samples)
+        found = np.zeros((len(self._intervals), start.size + 1))
+        for row, (interval, period) in enumerate(
+            zip(self._intervals.tolist(), self.periods.tolist(), strict=True)
+        ):
+            (uu, uv, up, uq), (vu, vv, vp, vq) = interval
+            # Cayley and Hamilton: the displacement alone obeys an equation of second order
+            driven = up * start + uq * rise
+            driven[1:] += (uv * vp - vv * up) * start[:-1] + (uv * vq - vv * uq) * rise[:-1]
+            history = signal.lfilter([1.0], [1.0, -(uu + vv), uu * vv - uv * vu], driven)
+            found[row, 1:] = (2.0 * math.pi / period) ** 2 * history
+        return found
+
+    def peaks(self, samples: Array, histories: Array) -> OscillatorPeaks:
+        """Find the greatest peaks of all oscillators, between the samples too."""
+        size = np.abs(histories)
+        top = size.max(axis=1, keepdims=True)
+        inner = size[:, 1:-2]
+        turns = (inner >= size[:, :-3]) & (inner > size[:, 2:-1]) & (inner >= _RIVAL * top)
+        lost = np.flatnonzero(~turns.any(axis=1))  # still moving away when last seen
+        turns[lost, np.clip(size[lost].argmax(axis=1) - 1, 0, turns.shape[1] - 1)] = True
+        which, places = np.nonzero(turns)
+        values, times = self._turns(samples, histories, which, places + 1)
+        order = np.lexsort((-np.abs(values), which))
+        first = np.searchsorted(which, np.arange(len(histories)))
+        rank = np.arange(which.size) - first[which]
+        few = rank < _MOST
+        kept = order[few]
+        return OscillatorPeaks(which[kept], values[kept], times[kept], rank[few])
+
+    def influences(self, peaks: OscillatorPeaks, count: int) -> Array:
+        """Compute what every sample adds to the peaks, :eq:`eq-sample-influence`."""
+        found = np.zeros((peaks.values.size, count))
+        for place, period in enumerate(self.periods.tolist()):
+            rows = np.flatnonzero(peaks.oscillators == place)
+            if rows.size:
+                found[rows] = self._influences_of(period, peaks.times[rows], count)
+        found[:, [0, -1]] = 0.0
+        return found
+
+    def _influences_of(self, period: float, times: Array, count: int) -> Array:
+        step, damping = self.time_step, self.damping_ratio
+        frequency = 2.0 * math.pi / period
+        damped = frequency * math.sqrt(1.0 - damping**2)
+        root = complex(-damping * frequency, damped)
+        # displacement under ground whose acceleration rises with slope one, but for its line
+        swing = 1j / (root**2 * damped)
+        whole = np.floor(times / step).astype(int)
+        decays = np.exp(root * step * np.arange(whole.max() + 1))
+        kink = swing * 4.0 * np.sinh(0.5 * root * step) ** 2 / step * frequency**2
+
+        def under_a_ramp(since: Array) -> Array:
+            after = np.maximum(since, 0.0)
+            line = 2.0 * damping / frequency - after
+            return line + frequency**2 * np.real(swing * np.exp(root * after))
+
+        found = np.zeros((times.size, count))
+        for row, (knot, time) in enumerate(zip(whole.tolist(), times.tolist(), strict=True)):
+            early = min(knot, count)  # samples whose hats are over before the peak
+            offset = np.exp(root * (time - knot * step))
+            found[row, :early] = np.real(kink * offset * decays[knot : knot - early : -1])
+            ramps = under_a_ramp(time - (knot + np.arange(-1, 3)) * step)
+            for place, hat in enumerate(np.diff(ramps, 2).tolist(), start=knot):
+                if place < count:
+                    found[row, place] = hat / step
+        return found
+
+    def _lines(self, samples: Array) -> tuple[Array, Array]:
+        """Give where the lines between the samples start and how they rise, and still ground."""
+        still = np.zeros(self._after)
+        return np.append(samples[:-1], still), np.append(np.diff(samples), still)
+
+    def _turns(
+        self,
+        samples: Array,
+        histories: Array,
+        which: NDArray[np.intp],
+        knots: NDArray[np.intp],
+    ) -> tuple[Array, Array]:
+        """Find values and times of the extrema next to some knots of some oscillators."""
+        start, rise = self._lines(samples)
+        (uu, uv, up, uq), _ = self._intervals[which].transpose(1, 2, 0)
+        kappa = 2.0 * math.pi * self.time_step / self.periods[which]
+        square = (kappa / self.time_step) ** 2
+
+        def slope(at: NDArray[np.intp]) -> Array:
+            driven = square * (up * start[at] + uq * rise[at])
+            return kappa / uv * (histories[which, at + 1] - uu * histories[which, at] - driven)
+
+        rows = np.where(slope(knots) * histories[which, knots] > 0.0, knots, knots - 1)
+        value, end_value = histories[which, rows], histories[which, rows + 1]
+        first, last = slope(rows), slope(rows + 1)
+        drag, stiffness = 2.0 * self.damping_ratio * kappa, kappa**2
+        bend = -drag * first - stiffness * (value + start[rows])
+        end_bend = -drag * last - stiffness * (end_value + start[rows] + rise[rows])
+        values: Any = turning_value(value, first, bend, end_value, last, end_bend)
+        change = first - last
+        inside = np.divide(first, change, out=np.zeros_like(first), where=change != 0.0)
+        return values, (rows + np.clip(inside, 0.0, 1.0)) * self.time_step
+
 
 _ROUNDS: Final = 4
 """Rounds in which rivals of the greatest peaks come to be held down."""

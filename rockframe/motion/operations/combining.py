@@ -11,7 +11,7 @@ import numpy as np
 
 from rockframe.errors import ComponentError, RecordWarning
 from rockframe.motion.operations.following import following, other_motion
-from rockframe.motion.processing.sampling import padded
+from rockframe.motion.processing.samples import padded
 from rockframe.records import DOWNWARDS, SENSE, UPWARDS
 from rockframe.records import VERTICAL as EITHER
 from rockframe.signals import Motion, Signal

@@ -8,8 +8,12 @@ from typing import TYPE_CHECKING, Final, cast
 from rockframe.arguments import one_of_words, whole_number
 from rockframe.errors import ComponentError, shown
 from rockframe.motion.operations.following import following, lost_pieces, with_samples
-from rockframe.motion.processing.baseline import without_baseline, without_drift
-from rockframe.motion.processing.filters import butterworth, padding_samples
+from rockframe.motion.processing.samples import (
+    butterworth,
+    padding_samples,
+    without_baseline,
+    without_drift,
+)
 from rockframe.signals.signal import MAXIMUM_SAMPLES
 from rockframe.units import FREQUENCY, POSITIVE, to_si
 

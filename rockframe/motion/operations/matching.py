@@ -10,10 +10,9 @@ import numpy as np
 
 from rockframe.arguments import hinted
 from rockframe.errors import ComponentError, RecordWarning, shown, warn
-from rockframe.motion.matching.changes import changes, unusual
-from rockframe.motion.matching.iteration import Goal, Matched, match
+from rockframe.motion.matching.iteration import Goal, Matched, changes, match, unusual
 from rockframe.motion.operations.following import following, lost_pieces
-from rockframe.motion.processing.coarseness import finer, say_coarse
+from rockframe.motion.processing.samples import finer, say_coarse
 from rockframe.signals.spectra import check_cost
 from rockframe.units import PERIOD, Condition, to_ratio, to_si_values
 

@@ -13,7 +13,7 @@ from rockframe.motion.processing import velocity_pulses
 from rockframe.motion.quantities import with_quantity
 from rockframe.motion.velocity_pulse import VelocityPulse
 from rockframe.signals import Motion
-from rockframe.signals.path import ground_path
+from rockframe.signals.integrals import ground_path
 from rockframe.signals.polynomials import knots_of
 from rockframe.units import PERIOD, POSITIVE, TIME, VELOCITY, to_si
 

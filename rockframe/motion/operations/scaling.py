@@ -9,9 +9,9 @@ import numpy as np
 
 from rockframe.errors import ComponentError
 from rockframe.motion.operations.following import following
-from rockframe.motion.processing.coarseness import say_coarse
+from rockframe.motion.processing.samples import say_coarse
 from rockframe.records import DOWNWARDS, SENSE, UPWARDS
-from rockframe.signals.path import ground_path
+from rockframe.signals.integrals import ground_path
 from rockframe.signals.polynomials import greatest
 from rockframe.signals.spectra import (
     DAMPING_RATIO,

@@ -15,8 +15,7 @@ from rockframe.motion.operations.following import (
     lost_pieces,
     with_samples,
 )
-from rockframe.motion.processing.sampling import band_limited, coarsened, refined
-from rockframe.motion.processing.tapers import tapered
+from rockframe.motion.processing.samples import band_limited, coarsened, refined, tapered
 from rockframe.signals.signal import MAXIMUM_SAMPLES
 from rockframe.units import POSITIVE, TIME, TIME_STEP, to_si
 

@@ -1,9 +1,9 @@
-"""Variables of all bodies of a stack."""
+"""Variables of all bodies of a stack, and of all restrainers."""
 
 from typing import Final
 
-from rockframe.dynamics.events import ContactState
-from rockframe.results.variables.variable import EVENT, Variable, counting, flag
+from rockframe.dynamics.events import ContactState, LinkState
+from rockframe.results.variables.variable import EVENT, Variable, count, counting, flag
 from rockframe.units import Unit
 
 BODY: Final = ("body",)
@@ -48,7 +48,7 @@ BODIES: Final = (
 )
 """What a run of a stack has beside that of its highest body."""
 
-OF_EACH: Final = {
+OF_EACH_BODY: Final = {
     "body_rotation": "rotation",
     "body_angular_velocity": "angular_velocity",
     "body_horizontal_displacement": "horizontal_displacement",
@@ -58,3 +58,52 @@ OF_EACH: Final = {
     "body_vertical_reaction": "vertical_reaction",
 }
 """Histories of all bodies, and the columns of each that they are made of."""
+
+
+RESTRAINER: Final = ("restrainer",)
+RESTRAINER_TIME: Final = ("restrainer", "time")
+
+RESTRAINERS: Final = (
+    Variable("restrainer", RESTRAINER, None, "name of the restrainer", dtype="str"),
+    Variable(
+        "restrainer_force",
+        RESTRAINER_TIME,
+        Unit.NEWTON,
+        "force with which each restrainer pulls its points together",
+    ),
+    Variable(
+        "restrainer_elongation",
+        RESTRAINER_TIME,
+        Unit.METRE,
+        "elongation of each restrainer from where it was given",
+    ),
+    flag("restrainer_state", RESTRAINER_TIME, "state of each restrainer", LinkState),
+    Variable(
+        "peak_restrainer_force",
+        RESTRAINER,
+        Unit.NEWTON,
+        "largest absolute force of each restrainer up to overturning",
+    ),
+    Variable(
+        "event_restrainer",
+        EVENT,
+        Unit.ONE,
+        "number of the restrainer that changed, 0 at events of bodies",
+        dtype="int64",
+    ),
+    Variable(
+        "static_restrainer_force", RESTRAINER, Unit.NEWTON, "force of each restrainer at rest"
+    ),
+    Variable(
+        "static_restrainer_elongation",
+        RESTRAINER,
+        Unit.METRE,
+        "elongation of each restrainer at rest from where it was given",
+    ),
+)
+"""What a scene with restrainers has beside others."""
+
+RESTRAINER_SCALARS: Final = (count("broken_restrainer_count", "number of restrainers that broke"),)
+
+OF_EACH_LINK: Final = ("restrainer_force", "restrainer_elongation", "restrainer_state")
+"""Histories of all restrainers, and the columns of each that they are made of."""

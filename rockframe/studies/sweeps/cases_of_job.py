@@ -10,7 +10,7 @@ from rockframe.motion import GroundMotion
 from rockframe.simulation.plan import Plan, fit_plan
 from rockframe.studies.sweeps.axes import OF_SCENES, Changes
 from rockframe.studies.sweeps.motions import motion_of_case
-from rockframe.studies.sweeps.starts import started
+from rockframe.studies.sweeps.scenes import started
 from rockframe.studies.sweeps.study import SweepJob
 from rockframe.system.assembly import Assembly
 

@@ -18,8 +18,14 @@ from rockframe.simulation.run import NONE, in_motion, scalars_of
 from rockframe.simulation.second_look import Look
 from rockframe.simulation.soundness import STILL_MOVING
 from rockframe.studies.sweeps.cases_of_job import CasesOfJob
-from rockframe.studies.sweeps.screening import in_doubt, look_at_case, repeated
-from rockframe.studies.sweeps.side_by_side import Failed, Finished, each_run
+from rockframe.studies.sweeps.side_by_side import (
+    Failed,
+    Finished,
+    each_run,
+    in_doubt,
+    look_at_case,
+    repeated,
+)
 from rockframe.studies.sweeps.study import FEWEST_IN_LANES, Histories, SweepJob
 
 NO_TEXT: Final = 0

@@ -18,11 +18,10 @@ from rockframe.results.variables.runs import EVENTS_AND_SCALARS, RunStatus
 from rockframe.results.variables.studies import CASE, MESSAGE, MOTION
 from rockframe.results.variables.variable import TIME
 from rockframe.simulation.run import NONE
-from rockframe.studies.sweeps.axes import Axis
+from rockframe.studies.sweeps.axes import Axis, Grid
 from rockframe.studies.sweeps.chunk import DRIVER, CaseResults, Driver
-from rockframe.studies.sweeps.grid import Grid
 from rockframe.studies.sweeps.scenes import FunctionScene, SystemScene
-from rockframe.studies.sweeps.screening import SCREEN
+from rockframe.studies.sweeps.side_by_side import SCREEN
 from rockframe.studies.sweeps.study import Histories, Study
 from rockframe.studies.sweeps.words import SCREENED, summed_up, whole_verdict
 

@@ -9,7 +9,7 @@ import numpy as np
 from rockframe.arguments import by_words
 from rockframe.errors import ComponentError, StudyError, shown
 from rockframe.motion import GroundMotion
-from rockframe.motion.shown_name import shown_name
+from rockframe.motion.description import shown_name
 from rockframe.results.schema import SCHEMA
 from rockframe.studies.sweeps.axes import OWNER
 from rockframe.units import ACCELERATION, TIME, VELOCITY, Measure, Unit

@@ -1,30 +1,42 @@
-"""From the arguments of a sweep to the study that they describe; all faults are told at once."""
+"""From the arguments of a sweep to the study that they describe; all faults are told at once.
 
+Also which histories are kept, and whether there is memory for them.
+"""
+
+import math
+import os
 from collections.abc import Callable, Iterable, Mapping
+from contextlib import suppress
+from pathlib import Path
 from typing import Any, Final, TypeVar, cast
 
 import numpy as np
 import xarray as xr
 
-from rockframe.errors import RockframeError, StudyError, shown
+from rockframe.errors import RockframeError, SolverWarning, StudyError, shown, warn
 from rockframe.motion import GroundMotion
 from rockframe.results.outcome import Generic
+from rockframe.results.schema import GROUPS, SCHEMA
 from rockframe.results.variables.requests import (
     ACCELERATIONS,
     FORCE_SCALARS,
     OTHERS,
     POINT_PEAKS,
+    POINT_TIME,
     POINTS,
     REACTIONS,
 )
 from rockframe.results.variables.runs import ENERGY_HISTORIES, EVENTS_AND_SCALARS, HISTORIES
 from rockframe.results.variables.studies import MOTION, SWEEP
 from rockframe.results.variables.variable import EVENT, TIME
-from rockframe.simulation.plan import RunRequest, read_arguments
-from rockframe.studies.sweeps.axes import OWNER, Axis, Changes
-from rockframe.studies.sweeps.grid import MOST_CASES, Grid
-from rockframe.studies.sweeps.histories import kept_histories, numbers_of_case
-from rockframe.studies.sweeps.memory import check_memory
+from rockframe.simulation.plan import (
+    STILL_GROUND_OUTPUT_STEP,
+    RunRequest,
+    listed,
+    read_arguments,
+    run_length,
+)
+from rockframe.studies.sweeps.axes import MOST_CASES, OWNER, Axis, Changes, Grid
 from rockframe.studies.sweeps.motions import (
     NO_MOTION,
     OF_THE_SCENE,
@@ -33,9 +45,119 @@ from rockframe.studies.sweeps.motions import (
     named_motions,
 )
 from rockframe.studies.sweeps.scenes import FunctionScene, SweptScene, own_motion, scene_of
-from rockframe.studies.sweeps.screening import FIRST, SCREEN
+from rockframe.studies.sweeps.side_by_side import FIRST, SCREEN
 from rockframe.studies.sweeps.study import Histories, Study
 from rockframe.units import PERIOD, POSITIVE, QuantityLike, to_si
+
+_FLOAT: Final = 8.0
+"""Size of a number [bytes]."""
+_COPIES: Final = 2.5
+"""How often a number is there at once: of its chunk, of all, some in the order of the axes too."""
+_TOLD: Final = 0.5
+"""Share of what there is from which on it is told what a study needs."""
+_MEMORY: Final = Path("/proc/meminfo")
+_GROUPS: Final = (
+    # most, and now, of a container or a job: control groups of both versions
+    (Path("/sys/fs/cgroup/memory.max"), Path("/sys/fs/cgroup/memory.current")),
+    (
+        Path("/sys/fs/cgroup/memory/memory.limit_in_bytes"),
+        Path("/sys/fs/cgroup/memory/memory.usage_in_bytes"),
+    ),
+)
+
+
+def check_memory(
+    numbers: Mapping[str, float], cases: int, remedies: str, *, owner: str, copies: float = _COPIES
+) -> list[str]:
+    """Tell what cases need, and whether it is there."""
+    sizes = {what: _FLOAT * copies * each * cases for what, each in numbers.items()}
+    needed, there = sum(sizes.values()), available()
+    parts = ", ".join(f"{what} {_shown(size)}" for what, size in sizes.items())
+    told = (
+        f"{cases} cases need about {_shown(needed)} of memory ({parts}); {_shown(there)} are "
+        "available"
+    )
+    if needed > there:
+        return [f"{told}; {remedies}"]
+    if needed > _TOLD * there:
+        warn(f"{owner}: {told}", SolverWarning)
+    return []
+
+
+def available() -> float:
+    """Give what this process may still use; infinite where the system does not tell [bytes]."""
+    found = [math.inf]
+    with suppress(OSError, ValueError, IndexError):
+        (line,) = (one for one in _MEMORY.read_text().splitlines() if "MemAvailable" in one)
+        found.append(1024.0 * float(line.split()[1]))
+    if len(found) == 1 and hasattr(os, "sysconf"):
+        with suppress(OSError, ValueError):
+            found.append(float(os.sysconf("SC_PHYS_PAGES")) * os.sysconf("SC_PAGE_SIZE"))
+    for most, now in _GROUPS:
+        with suppress(OSError, ValueError):  # "max" where there is no limit
+            found.append(max(float(most.read_text()) - float(now.read_text()), 0.0))
+    return min(found)
+
+
+def _shown(size: float) -> str:
+    """Show a size as people do."""
+    for unit, large in (("TB", 1e12), ("GB", 1e9)):
+        if size >= large:
+            return f"{size / large:.3g} {unit}"
+    return f"{size / 1e6:.3g} MB"
+
+
+def numbers_of_case(
+    arguments: RunRequest, kept: Histories | None, *, screened: bool
+) -> dict[str, float]:
+    """Tell how many numbers are kept of a case, by what they are."""
+    points = len(arguments.points)
+    every = [*EVENTS_AND_SCALARS, *FORCE_SCALARS, *(SWEEP if screened else ())]
+    numbers = {"scalars": float(sum(not row.dims for row in every))}
+    if points:
+        numbers[f"peaks at {points} points"] = float(len(POINT_PEAKS) * points)
+    if kept is not None:
+        names = kept.names or [row.name for row in (*HISTORIES, *POINTS) if TIME[0] in row.dims]
+        several = sum(points if SCHEMA[name].dims == POINT_TIME else 1 for name in names)
+        numbers[f"{several} histories of {kept.count} times"] = float(several * kept.count)
+    return numbers
+
+
+def kept_histories(
+    scene: SweptScene,
+    motions: Mapping[str, GroundMotion | None],
+    arguments: RunRequest,
+    outputs: object,
+) -> Histories | None:
+    """Find the histories that are kept, and the times that those of all cases have."""
+    if not arguments.histories:
+        return None
+    named = [str(name) for name in listed(outputs)]
+    names = tuple(dict.fromkeys(one for name in named for one in GROUPS.get(name, (name,))))
+    wrong = [name for name in names if SCHEMA[name].dims not in (TIME, POINT_TIME)]
+    if wrong:
+        msg = f"outputs: {', '.join(wrong)} are no histories, which a sweep could keep"
+        raise StudyError(msg)
+    own = isinstance(scene, FunctionScene) and None in motions.values()
+    if own and (arguments.duration is None or arguments.output_step is None):
+        msg = "histories of motions that the function makes need a duration and an output_step"
+        raise StudyError(msg)
+    step = arguments.output_step
+    if step is None:
+        steps = {
+            STILL_GROUND_OUTPUT_STEP if motion is None else motion.si.time_step
+            for motion in motions.values()
+        }
+        if len(steps) > 1:
+            msg = (
+                "the motions have different time steps, so that their histories have no common "
+                "times; give an output_step"
+            )
+            raise StudyError(msg)
+        (step,) = steps
+    longest = max(run_length(arguments, motion) for motion in motions.values())
+    return Histories(names or None, step, 1 + int(longest / step * (1.0 + 1e-12)))
+
 
 Read = TypeVar("Read")
 

@@ -12,14 +12,12 @@ from rockframe.arguments import whole_number
 from rockframe.compiled import COMPILED
 from rockframe.errors import SolverWarning, StudyError, shown, warn
 from rockframe.simulation.run import respond
-from rockframe.studies.sweeps.axes import OWNER
+from rockframe.studies.sweeps.axes import OWNER, chunks_of
 from rockframe.studies.sweeps.case import remember
 from rockframe.studies.sweeps.cases_of_job import CasesOfJob
 from rockframe.studies.sweeps.chunk import CaseResults
-from rockframe.studies.sweeps.execution import Chunk, run_chunks
-from rockframe.studies.sweeps.grid import chunks_of
+from rockframe.studies.sweeps.execution import Chunk, ProgressBar, run_chunks
 from rockframe.studies.sweeps.labelling import sweep_dataset, sweep_labels
-from rockframe.studies.sweeps.progress import ProgressBar
 from rockframe.studies.sweeps.store import Store, begin_with
 from rockframe.studies.sweeps.study import Study, worker_count
 from rockframe.studies.sweeps.words import say_what_is_missing

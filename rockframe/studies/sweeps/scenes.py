@@ -1,4 +1,4 @@
-"""From the values of a case to the scene: a system with other parameters, or a user's function."""
+"""From the values of a case to the scene, and to where its run starts."""
 
 import inspect
 from collections.abc import Callable, Iterable, Mapping
@@ -9,7 +9,7 @@ from typing import Any, Final, Protocol, TypeAlias
 import numpy as np
 
 from rockframe.arguments import one_of_words
-from rockframe.components import Component
+from rockframe.components import Component, InitialState
 from rockframe.components.parameters import Choice, Count, Declared, Text
 from rockframe.errors import ModelWarning, StudyError, shown, warn
 from rockframe.motion import GroundMotion
@@ -27,10 +27,30 @@ from rockframe.studies.sweeps.axes import (
 )
 from rockframe.studies.sweeps.identity import name_of
 from rockframe.studies.sweeps.motions import TARGETS, target_words
-from rockframe.studies.sweeps.starts import STARTS, of_start
 from rockframe.system.assembly import Assembly, assembly_of
 from rockframe.system.options import MEASURED, Coupling, Restraint, Rotation
 from rockframe.units import Measure, Unit, quantity
+
+STARTS: Final = {
+    f"initial_{name}": (name, one.measure)
+    for name, one in InitialState.declared().items()
+    if one.measure is not None
+}
+"""Axes by their names: which parameter of an initial state each changes, and its kind."""
+
+
+def of_start(name: str, given: object) -> Axis:
+    """Read an axis that changes the initial state."""
+    parameter, measure = STARTS[name]
+    values = numbers_of(given, measure, name)
+    words = name.replace("_", " ")
+    return Axis(name, values, str(measure.unit), words, Changes.START, parameter)
+
+
+def started(initial: InitialState, values: Mapping[str, float]) -> InitialState:
+    """Give an initial state with the values of a case in the place of its own."""
+    return initial.with_si(values) if values else initial
+
 
 Values: TypeAlias = Mapping[Axis, Any]
 """Of one case, by the axes that change the scene."""

@@ -1,7 +1,7 @@
-"""Cases whose runs go side by side, those of a job that cannot one by one."""
+"""Cases whose runs go side by side, those that cannot one by one, and which of them run again."""
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
 import numpy as np
@@ -9,8 +9,10 @@ import numpy as np
 from rockframe.compiled import compiling_for
 from rockframe.errors import PLEASE_REPORT, RockframeError
 from rockframe.signals import Motion
-from rockframe.simulation.beginning import start_of
+from rockframe.simulation.plan import Plan, run_length, start_of
 from rockframe.simulation.run import Response, has_no_cautions, respond
+from rockframe.simulation.second_look import Look, is_sure, look_at, second_look
+from rockframe.solve.accuracy import LEVELS, AccuracyLevel
 from rockframe.solve.beginning import begun
 from rockframe.solve.integrate import STILL_INTERVAL
 from rockframe.solve.lanes.integrate import LaneRun, integrate_lanes, kind_of, lanes_compiled
@@ -203,3 +205,33 @@ def _not_beside_others(problem: Exception) -> str:
     """Say of a case that ran alone why it did not run in a lane."""
     kind = type(problem).__name__
     return f"its run beside others failed ({kind}: {problem}), and it ran alone: {PLEASE_REPORT}"
+
+
+SCREEN: Final = "screen"
+"""What stands for the accuracy of screened sweeps."""
+FIRST: Final = AccuracyLevel.FAST
+"""Level at which all cases run."""
+AGAIN: Final = AccuracyLevel.STANDARD
+"""Level at which cases run again whose verdict is in doubt."""
+
+
+def look_at_case(cases: CasesOfJob, run: Finished) -> Look:
+    """Take from a run of a case what tells of its verdict."""
+    duration = run_length(cases.job.arguments, cases.unscaled(run.case))
+    return look_at(run.system.setting, run.summary, duration)
+
+
+def in_doubt(
+    cases: CasesOfJob, first: Mapping[int, Look], stopped: Callable[[], bool]
+) -> list[int]:
+    """Run cases a second time, and give those whose verdict is not sure."""
+    doubtful = set(first)
+    for run in each_run(cases.changed(second_look), sorted(first), stopped, cases.job.patience):
+        if isinstance(run, Finished) and is_sure(first[run.case], look_at_case(cases, run)):
+            doubtful.discard(run.case)
+    return sorted(doubtful)
+
+
+def repeated(_: Assembly, plan: Plan) -> Plan:
+    """Give the same run by tolerance."""
+    return replace(plan, accuracy=LEVELS[AGAIN])

@@ -12,8 +12,7 @@ from rockframe.errors import heard
 from rockframe.motion import GroundMotion
 from rockframe.results.outcome import Generic
 from rockframe.simulation.plan import STILL_GROUND_OUTPUT_STEP, RunRequest, run_length
-from rockframe.studies.sweeps.axes import OF_SCENES, Axis
-from rockframe.studies.sweeps.grid import Grid
+from rockframe.studies.sweeps.axes import OF_SCENES, Axis, Grid
 from rockframe.studies.sweeps.identity import description_of, digest_of
 from rockframe.studies.sweeps.scenes import FunctionScene, SweptScene
 from rockframe.version import __version__

@@ -12,8 +12,8 @@ from rockframe.shared_arguments import documented_by
 from rockframe.solve.accuracy import AccuracyLevel
 from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.studies.sweeps.axes import OWNER
+from rockframe.studies.sweeps.execution import bar_of
 from rockframe.studies.sweeps.planning import plan_study
-from rockframe.studies.sweeps.progress import bar_of
 from rockframe.studies.sweeps.running import folder_of, run_study, stored_dataset
 from rockframe.studies.sweeps.store import Store
 from rockframe.system.options import Overturning

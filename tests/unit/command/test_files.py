@@ -4,11 +4,10 @@ import numpy as np
 import pytest
 
 import rockframe as rf
-from rockframe.command.files.every_key import every_key
-from rockframe.command.files.lines import lines_of
 from rockframe.command.files.scenes import classes_in, part_slots, read_scene
 from rockframe.command.files.studies import read_study
-from rockframe.command.files.templates import TEMPLATES
+from rockframe.command.files.tables import lines_of
+from rockframe.command.files.templates import TEMPLATES, every_key
 
 pytestmark = pytest.mark.unit
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from rockframe.comparison.errors import (
+from rockframe.comparison.tradeoff import (
     event_time_error,
     history_error,
     relative_peak_error,

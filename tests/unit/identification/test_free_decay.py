@@ -8,8 +8,8 @@ import xarray as xr
 
 import rockframe as rf
 from rockframe.errors import ComponentError, UnitsError
-from rockframe.identification.free_motion import let_go
 from rockframe.identification.measured import History
+from rockframe.identification.prediction import let_go
 from rockframe.identification.swings import swings_of
 from rockframe.results.schema import SCHEMA
 from rockframe.solve.accuracy import accuracy_of

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from rockframe.identification.least_squares import Solution, uncertainty_of
+from rockframe.identification.fitting import Solution, uncertainty_of
 
 
 @pytest.mark.parametrize(("count", "size"), [(4, 2), (6, 3), (30, 2)])

@@ -10,7 +10,7 @@ from records import record_path
 
 from rockframe.errors import ComponentError, RecordError
 from rockframe.motion import GroundMotion
-from rockframe.motion.constructors.embedded import record_sources
+from rockframe.motion.constructors.records import record_sources
 
 FOLDER = resources.files("rockframe.motion") / "embedded"
 MOST_BYTES = 300_000

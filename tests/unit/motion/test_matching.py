@@ -9,8 +9,8 @@ from scipy import signal
 
 import rockframe as rf
 from rockframe.errors import ComponentError, RecordWarning, UnitsError
-from rockframe.motion.matching.changes import PEAKS, unusual
-from rockframe.signals.path import ground_path
+from rockframe.motion.matching.iteration import PEAKS, unusual
+from rockframe.signals.integrals import ground_path
 from rockframe.signals.polynomials import knots_of
 
 # that other things change beside the spectrum is looked at in one test

@@ -10,8 +10,7 @@ from records import record_path
 import rockframe as rf
 from rockframe.errors import ComponentError, UnitsError
 from rockframe.motion import GroundMotion
-from rockframe.motion.processing.daubechies import mother_wavelet, scaling_filter
-from rockframe.motion.processing.velocity_pulses import measures
+from rockframe.motion.processing.velocity_pulses import measures, mother_wavelet, scaling_filter
 
 STEP = 0.01
 # printed by PyWavelets 1.9, Wavelet("db4").rec_lo and .wavefun(level=14)

@@ -8,12 +8,12 @@ from matplotlib.colors import to_rgb
 from records import record_path
 
 import rockframe as rf
-from rockframe.plot._contact import COLOURS, mixed_colours
+from rockframe.plot._response import CONTACT_COLOURS, mixed_colours
 from rockframe.solve.layout import Status
 
 BLOCK = rf.Block(width="1 m", height="6 m", mass="10 t")
 PULSE = rf.GroundMotion.sine_pulse("-2 m/s^2", "1 Hz")
-FULL, LEFT, RIGHT = (np.array(to_rgb(COLOURS[name])) for name in ("full", "left", "right"))
+FULL, LEFT, RIGHT = (np.array(to_rgb(CONTACT_COLOURS[name])) for name in ("full", "left", "right"))
 
 
 def strip(times, states):

@@ -8,9 +8,9 @@ from matplotlib.patches import Polygon
 
 import rockframe as rf
 from rockframe.errors import ComponentError, FileError, UnitsError
-from rockframe.plot._layout import Drawer
+from rockframe.plot._artists import Drawer
 from rockframe.plot._scene import Moving
-from rockframe.results.placement import UPRIGHT, Placement
+from rockframe.results.points import UPRIGHT, Placement
 from rockframe.system.geometry import geometry_of
 from rockframe.system.options import Restraint
 

@@ -11,8 +11,8 @@ import rockframe as rf
 from rockframe.errors import ComponentError, SchemaError, StudyError
 from rockframe.results.schema import SCHEMA
 from rockframe.studies import lines
-from rockframe.studies.brackets import Bracket, bracket_arrays, brackets_of, narrowed
-from rockframe.studies.spread import ranked
+from rockframe.studies.lines import Bracket, bracket_arrays, brackets_of, narrowed
+from rockframe.studies.probability import ranked
 from rockframe.studies.sweeps import execution
 
 BLOCK = rf.Block(width="0.5 m", height="2 m", mass="400 kg")

@@ -7,8 +7,7 @@ import rockframe as rf
 from rockframe.errors import ComponentError
 from rockframe.results.variables.runs import RunStatus
 from rockframe.studies.dynamic_analysis import _sentence
-from rockframe.studies.probability import _counted
-from rockframe.studies.spread import ranked
+from rockframe.studies.probability import _counted, ranked
 
 SYSTEM = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
 HOW = {"free_vibration": "3 s", "progress": False}

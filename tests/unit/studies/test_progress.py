@@ -8,7 +8,7 @@ import pytest
 
 import rockframe as rf
 from rockframe.errors import ComponentError
-from rockframe.studies.sweeps import progress
+from rockframe.studies.sweeps import execution
 
 tqdm_auto = pytest.importorskip("tqdm.auto", reason="tqdm is not installed")
 
@@ -55,9 +55,9 @@ ANALYSES = {
 @pytest.mark.parametrize("name", ANALYSES)
 def test_one_bar_counts_all_rounds(name, bars, monkeypatch):
     ran = []
-    whole = progress._Bar.expect
+    whole = execution._Bar.expect
     monkeypatch.setattr(
-        progress._Bar, "expect", lambda bar, n, done=0: ran.append(n) or whole(bar, n, done)
+        execution._Bar, "expect", lambda bar, n, done=0: ran.append(n) or whole(bar, n, done)
     )
     ANALYSES[name](progress=True)
     (bar,) = bars
@@ -104,7 +104,7 @@ def test_a_bar_is_closed_when_something_fails(bars):
     def stops(*_):
         raise RuntimeError
 
-    with pytest.raises(RuntimeError), progress.bar_of(True, owner="some") as bar:
+    with pytest.raises(RuntimeError), execution.bar_of(True, owner="some") as bar:
         stops(bar.expect(3))
     assert bars[0].disable  # as tqdm leaves a bar that is closed
 
@@ -124,7 +124,7 @@ def test_in_a_notebook_the_widget_grows_too(monkeypatch):
             pass
 
     monkeypatch.setattr(tqdm_auto, "tqdm", Notebook)
-    with progress.bar_of(True, owner="some") as bar:
+    with execution.bar_of(True, owner="some") as bar:
         bar.expect(2)
         bar.expect(5, 1)
     assert widget.max == 7

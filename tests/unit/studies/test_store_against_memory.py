@@ -16,7 +16,7 @@ from kept_sweep import alike
 import rockframe as rf
 from rockframe.errors import ComponentError, StudyError
 from rockframe.studies.sweeps import case as of_cases
-from rockframe.studies.sweeps.arrays_file import read_arrays, write_arrays
+from rockframe.studies.sweeps.store import read_arrays, write_arrays
 
 pytestmark = [
     pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning"),

@@ -11,7 +11,7 @@ import rockframe as rf
 from rockframe.errors import SolverWarning, StudyError
 from rockframe.results.variables.runs import RunStatus
 from rockframe.studies.sweeps import case as of_cases
-from rockframe.studies.sweeps.arrays_file import read_arrays, write_arrays, write_whole
+from rockframe.studies.sweeps.store import read_arrays, write_arrays, write_whole
 
 pytestmark = pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning")
 

@@ -1,16 +1,26 @@
-"""Other time steps and lengths for the same motion."""
+"""What changes the samples of a motion: other steps, filters, baselines, tapers.
+
+Also whether the steps are short enough for what is asked of them.
+"""
 
 from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from rockframe.errors import RecordWarning, warn
 from rockframe.signals import polynomials
 from rockframe.signals.arrays import Array
 from rockframe.signals.signal import Signal
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from rockframe.signals import Signal
+
 
 _INTEGER_RATIO: Final = 1e-9
 _ANTI_ALIAS_ORDER: Final = 9  # of even order it would take 0.1 dB from the slowest motion
@@ -130,3 +140,101 @@ def divided_signal(signal: Signal, parts: int) -> Signal:
     samples = np.append(pieces[:, 0], signal.samples[-1])
     samples[::parts] = signal.samples
     return replace(signal, time_step=step, samples=samples, polynomials=pieces)
+
+
+_PADDING_PERIODS: Final = 1.5
+
+
+def butterworth(
+    dt: float,
+    samples: Array,
+    *,
+    low: float | None,
+    high: float | None,
+    order: int,
+    causal: bool = False,
+    keep_padding: bool = False,
+) -> Array:
+    """Run a Butterworth filter over the zero-padded samples."""
+    from scipy import signal as module
+
+    signal: Any = module
+    if low is None:
+        corners: Any = high
+        kind = "lowpass"
+    elif high is None:
+        corners, kind = low, "highpass"
+    else:
+        corners, kind = [low, high], "bandpass"
+    sos = signal.butter(order, corners, btype=kind, fs=1.0 / dt, output="sos")
+    lowest = min(corner for corner in (low, high) if corner is not None)
+    padding = padding_samples(dt, lowest, order)
+    rest = np.zeros(padding)
+    if causal:  # at rest before the motion, which zeros would not change
+        # but for one of them: a motion that starts with a jump rises to it from there
+        once: Array = signal.sosfilt(sos, np.concatenate([[0.0], samples, rest]))
+        return once if keep_padding else once[1 : samples.size + 1]
+    padded = np.concatenate([rest, samples, rest])
+    result: Array = signal.sosfiltfilt(sos, padded, padtype=None)
+    return result if keep_padding else result[padding : padding + samples.size]
+
+
+def padding_samples(dt: float, lowest: float, order: int) -> int:
+    """Count the zeros to put at each end: 1.5 order/f of the lowest corner."""
+    return math.ceil(_PADDING_PERIODS * order / (lowest * dt))
+
+
+def without_baseline(samples: Array, order: int) -> Array:
+    """Subtract the polynomial of degree `order` that fits best (least squares)."""
+    place = np.linspace(-1.0, 1.0, samples.size)
+    basis = np.polynomial.legendre.legvander(place, order)
+    coefficients = np.linalg.lstsq(basis, samples, rcond=None)[0]
+    return samples - basis @ coefficients
+
+
+def without_drift(dt: float, samples: Array, order: int) -> Array:
+    """Subtract the slope of the polynomial that fits the velocity best (least squares)."""
+    slopes = np.polynomial.legendre.legvander(np.linspace(-1.0, 1.0, samples.size), order - 1)
+    # integrated like the motion, so that a drift that is a polynomial goes entirely
+    together = np.column_stack([slopes, samples])
+    steps = 0.5 * dt * (together[1:] + together[:-1])
+    path = np.concatenate([np.zeros((1, order + 1)), np.cumsum(steps, axis=0)])
+    shares = np.linalg.lstsq(path[:, :-1], path[:, -1], rcond=None)[0]
+    return samples - slopes @ shares
+
+
+def tapered(samples: Array, intervals: float) -> Array:
+    """Let a motion grow from zero and fade to zero along half a cosine."""
+    place = np.arange(samples.size)
+    from_end = np.minimum(place, samples.size - 1 - place)
+    share = np.minimum(from_end / intervals, 1.0)
+    return samples * np.sin(0.5 * np.pi * share) ** 2
+
+
+FEWEST: Final = 10
+"""Samples per period below which straight lines lower an ordinate by more than 3 %."""
+
+_ROUNDING: Final = 1e-9
+
+
+def say_coarse(
+    signals: Iterable[Signal], shortest: float, *, owner: str, remedy: str | None = None
+) -> None:
+    """Warn of records that are too coarse for the shortest of the periods asked for."""
+    steps = [one.time_step for one in signals if not one.analytic]
+    coarse = [step for step in steps if shortest < FEWEST * step * (1.0 - _ROUNDING)]
+    if not coarse:
+        return
+    which = f"{len(coarse)} of {len(steps)} records are" if len(steps) > 1 else "the record is"
+    helps = remedy or f"resampled('{finer(max(coarse), shortest):.4g} s') refines a record"
+    msg = (
+        f"{owner}: {which} sampled every {max(coarse):.4g} s, which is coarse for periods "
+        f"from {shortest:.4g} s: straight lines between samples lower ordinates by 3 % at ten "
+        f"samples per period and 13 % at five; {helps}"
+    )
+    warn(msg, RecordWarning)
+
+
+def finer(time_step: float, shortest: float) -> float:
+    """Give the whole part of a time step that is fine enough for a period [s]."""
+    return time_step / math.ceil(FEWEST * time_step / shortest * (1.0 - _ROUNDING))

@@ -1,0 +1,330 @@
+"""What is integrated over a component of the ground, exactly, whatever its polynomials.
+
+Velocity and displacement, Arias intensity and cumulative absolute velocity, how long a motion is
+strong, and its characteristic periods from the Fourier transform.
+"""
+
+import math
+from typing import Any, Final
+
+import numpy as np
+
+from rockframe.errors import ComponentError
+from rockframe.signals.arrays import Array
+from rockframe.signals.polynomials import integral_of, knots_of, roots_of, turning_points
+from rockframe.signals.signal import MAXIMUM_SAMPLES, Signal
+from rockframe.signals.spectra import spectral_peaks
+
+
+def ground_path(signal: Signal) -> tuple[Array, Array]:
+    """Integrate the acceleration of ground that starts from rest.
+
+    Parameters
+    ----------
+    signal : Signal
+        The acceleration.
+
+    Returns
+    -------
+    velocity : ndarray, shape (n, m + 1)
+        Polynomials from sample to sample [m s^-1].
+    displacement : ndarray, shape (n, m + 2)
+        Polynomials from sample to sample [m].
+    """
+    velocity = integral_of(signal.pieces, signal.time_step)
+    return velocity, integral_of(velocity, signal.time_step)
+
+
+def arias_history(signal: Signal, gravity: float) -> Array:
+    """Compute the Arias intensity up to every sample, :eq:`eq-arias`.
+
+    Parameters
+    ----------
+    signal : Signal
+        Acceleration of the ground.
+    gravity : float
+        [m s^-2]
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        Starts at zero [m s^-1].
+    """
+    if signal.analytic:
+        exponents = np.arange(signal.pieces.shape[1])
+        weights = 1.0 / (exponents[:, None] + exponents + 1.0)  # integral of x^j x^k
+        square = ((signal.pieces @ weights) * signal.pieces).sum(axis=1)
+    else:
+        square = _trapezoids(signal.samples**2)
+    return _summed(square) * (signal.time_step * 0.5 * math.pi / gravity)
+
+
+def absolute_velocity_history(signal: Signal) -> Array:
+    """Compute the cumulative absolute velocity up to every sample, :eq:`eq-cav`.
+
+    Parameters
+    ----------
+    signal : Signal
+        Acceleration of the ground.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        Starts at zero [m s^-1].
+    """
+    if not signal.analytic:
+        return _summed(_trapezoids(np.abs(signal.samples))) * signal.time_step
+    # the way that the velocity goes up and down, turning included
+    velocity = integral_of(signal.pieces, signal.time_step)
+    knots = knots_of(velocity)
+    ways = np.abs(np.diff(knots))
+    rows, turned = turning_points(velocity)
+    ways[rows] = np.abs(turned - knots[rows]) + np.abs(turned - knots[rows + 1])
+    return _summed(ways)
+
+
+def standardized_absolute_velocity(signal: Signal, threshold: float) -> float:
+    """Sum the absolute velocity of the seconds whose peak reaches a threshold, :eq:`eq-cav`.
+
+    Parameters
+    ----------
+    signal : Signal
+        Acceleration of the ground.
+    threshold : float
+        [m s^-2]
+
+    Returns
+    -------
+    float
+        [m s^-1]
+    """
+    times = signal.times
+    seconds = np.arange(0.0, math.ceil(times[-1]) + 1.0)
+    at_seconds = np.interp(seconds, times, absolute_velocity_history(signal))
+    size = np.abs(signal.samples)
+    # a sample at a full second belongs to the seconds on both its sides
+    rounding = 1e-9 * signal.time_step
+    first = np.searchsorted(times, seconds[:-1] - rounding, side="left")
+    last = np.searchsorted(times, seconds[1:] + rounding, side="right")
+    strong = [
+        bool(np.any(size[start:end] >= threshold))
+        for start, end in zip(first.tolist(), last.tolist(), strict=True)
+    ]
+    return float(np.sum(np.diff(at_seconds)[strong]))
+
+
+def _trapezoids(values: Array) -> Array:
+    return 0.5 * (values[:-1] + values[1:])
+
+
+def _summed(steps: Array) -> Array:
+    return np.concatenate([[0.0], np.cumsum(steps)])
+
+
+def time_between_shares(history: Array, time_step: float, start: float, end: float) -> float:
+    """Give the time in which a growing quantity goes from one share of its total to another.
+
+    Parameters
+    ----------
+    history : ndarray, shape (n,)
+        The quantity at every sample; starts at zero and never falls.
+    time_step : float
+        Between samples [s].
+    start, end : float
+        Shares of the last value, between 0 and 1 [1].
+
+    Returns
+    -------
+    float
+        Zero if nothing grows [s].
+    """
+    if history[-1] <= 0.0:
+        return 0.0
+    shares = history / history[-1]
+    places = []
+    for share in (start, end):
+        after = int(np.searchsorted(shares, share))
+        before = after - 1
+        inside = (share - shares[before]) / (shares[after] - shares[before])
+        places.append(before + inside)
+    return float(places[1] - places[0]) * time_step
+
+
+def exceedance(signal: Signal, level: float) -> tuple[float, float]:
+    """Measure how long the absolute acceleration exceeds a level.
+
+    Parameters
+    ----------
+    signal : Signal
+        Acceleration of the ground.
+    level : float
+        [m s^-2]
+
+    Returns
+    -------
+    bracketed : float
+        From the first to the last exceedance; zero if there is none [s].
+    total : float
+        Sum of the times of exceedance [s].
+    """
+    first, last, total = np.inf, -np.inf, 0.0
+    for side in (1.0, -1.0):
+        above = side * signal.pieces
+        above[:, 0] -= level
+        starts_above, ends_above = above[:, 0] > 0.0, above.sum(axis=1) > 0.0
+        enter, leave = np.zeros(len(above)), np.ones(len(above))
+        crossed = starts_above != ends_above
+        at = roots_of(above[crossed])
+        enter[crossed] = np.where(starts_above[crossed], 0.0, at)
+        leave[crossed] = np.where(starts_above[crossed], at, 1.0)
+        rows = np.flatnonzero(starts_above | ends_above)
+        if rows.size:
+            total += float(np.sum(leave[rows] - enter[rows]))
+            first = min(first, float(rows[0] + enter[rows[0]]))
+            last = max(last, float(rows[-1] + leave[rows[-1]]))
+    bracketed = max(0.0, last - first)
+    return bracketed * signal.time_step, total * signal.time_step
+
+
+_TERMS: Final = 40
+
+
+def transform_of(signal: Signal, resolution: float) -> tuple[Array, Any]:
+    """Compute the Fourier transform, :eq:`eq-fourier`.
+
+    Parameters
+    ----------
+    signal : Signal
+        Acceleration of the ground.
+    resolution : float
+        Greatest distance between frequencies; 0 for one over the length [Hz].
+
+    Returns
+    -------
+    frequency : ndarray, shape (k,)
+        [Hz]
+    transform : ndarray of complex, shape (k,)
+        [m s^-1]
+
+    Raises
+    ------
+    ComponentError
+        A resolution that needs too many samples.
+    """
+    dt, count = signal.time_step, signal.samples.size
+    if resolution > 0.0:
+        count = max(count, math.ceil(min(1.0 / resolution / dt, 2.0 * MAXIMUM_SAMPLES)))
+    if count > MAXIMUM_SAMPLES:
+        msg = (
+            f"Fourier transform: a resolution of {resolution:.4g} Hz needs too many samples at "
+            f"{dt:.4g} s; give a coarser one"
+        )
+        raise ComponentError(msg)
+    frequency = np.arange(float(count // 2 + 1)) / (count * dt)
+    if not signal.analytic:
+        return frequency, dt * np.fft.rfft(signal.samples, count)
+    by_power = np.fft.rfft(signal.pieces, count, axis=0)
+    moments = _moments(2.0 * np.pi * frequency * dt, by_power.shape[1])
+    return frequency, dt * (by_power * moments).sum(axis=1)
+
+
+def _moments(angle: Array, powers: int) -> Any:
+    """Integrate x^j exp(-i angle x) from 0 to 1, for j = 0, 1, ...; angle up to pi."""
+    moments = np.zeros((angle.size, powers), dtype=complex)
+    term = np.ones(angle.size, dtype=complex)
+    for n in range(_TERMS):
+        moments += term[:, None] / (n + 1 + np.arange(powers))
+        term *= -1j * angle / (n + 1)
+    return moments
+
+
+MEAN_PERIOD_BAND: Final = (0.25, 20.0)
+"""Frequencies that the mean period looks at [Hz] (Rathje et al. 1998)."""
+
+MEAN_PERIOD_RESOLUTION: Final = 0.05
+"""Greatest distance between them [Hz] (Rathje et al. 2004)."""
+
+HOUSNER_BAND: Final = (0.1, 2.5)
+"""Periods over which the velocity spectrum is integrated [s] (Housner 1952)."""
+
+HOUSNER_PERIODS: Final = np.linspace(*HOUSNER_BAND, 241)
+"""Where the velocity spectrum is computed for its integral [s]."""
+
+PREDOMINANT_PERIODS: Final = 10.0 ** (np.arange(-100, 131) / 100.0)
+"""Where the peak of the velocity spectrum is looked for: 0.1 s to 20 s [s]."""
+
+
+def mean_period(signal: Signal) -> float:
+    """Compute the mean period, :eq:`eq-mean-period`.
+
+    Parameters
+    ----------
+    signal : Signal
+        Acceleration of the ground.
+
+    Returns
+    -------
+    float
+        NaN for ground that stands still in this band [s].
+    """
+    frequency, transform = transform_of(signal, MEAN_PERIOD_RESOLUTION)
+    low, high = MEAN_PERIOD_BAND
+    inside = (frequency >= low) & (frequency <= high)
+    power = np.abs(transform[inside]) ** 2
+    total = float(np.sum(power))
+    return float(np.sum(power / frequency[inside])) / total if total > 0.0 else math.nan
+
+
+def housner_intensity(signal: Signal, damping_ratio: float) -> float:
+    """Integrate the pseudo-velocity spectrum, :eq:`eq-housner-intensity`.
+
+    Parameters
+    ----------
+    signal : Signal
+        Acceleration of the ground.
+    damping_ratio : float
+        Damping ratio [1].
+
+    Returns
+    -------
+    float
+        [m]
+    """
+    from scipy.integrate import trapezoid
+
+    velocity = _pseudo_velocity(signal, HOUSNER_PERIODS, damping_ratio)
+    return float(trapezoid(velocity, HOUSNER_PERIODS))
+
+
+def predominant_period(signal: Signal, damping_ratio: float) -> float:
+    """Find the period where the pseudo-velocity spectrum has its peak.
+
+    Parameters
+    ----------
+    signal : Signal
+        Acceleration of the ground.
+    damping_ratio : float
+        Damping ratio [1].
+
+    Returns
+    -------
+    float
+        Between 0.1 s and 20 s; NaN for ground that stands still [s].
+    """
+    velocity = _pseudo_velocity(signal, PREDOMINANT_PERIODS, damping_ratio)
+    if not velocity.max() > 0.0:
+        return math.nan
+    top = int(np.argmax(velocity))
+    if not 0 < top < velocity.size - 1:
+        return float(PREDOMINANT_PERIODS[top])
+    # vertex of the parabola through three points, evenly spaced in log T
+    left, middle, right = velocity[top - 1 : top + 2].tolist()
+    shift = 0.5 * (left - right) / (left - 2.0 * middle + right)
+    return float(
+        PREDOMINANT_PERIODS[top] * (PREDOMINANT_PERIODS[1] / PREDOMINANT_PERIODS[0]) ** shift
+    )
+
+
+def _pseudo_velocity(signal: Signal, periods: Array, damping_ratio: float) -> Array:
+    peaks = spectral_peaks(signal, periods, damping_ratio)
+    return 2.0 * np.pi / periods * peaks[:, 0]
