@@ -27,7 +27,7 @@ from typing import TYPE_CHECKING, Any, Final, cast
 import numpy as np
 
 from rockframe.errors import RecordError
-from rockframe.records.checks import check_asked_time_step, check_time_step
+from rockframe.records.checks import settle_time_step
 from rockframe.records.components import FileComponent, choose_component, orientation_of
 from rockframe.records.instruments import (
     InstrumentResponses,
@@ -35,7 +35,7 @@ from rockframe.records.instruments import (
     record_of_counts,
     response_in,
 )
-from rockframe.records.record_file import MAXIMUM_SAMPLES, Metadata, Record, Request, Source
+from rockframe.records.record_file import MAXIMUM_SAMPLES, Format, Metadata, Record, Request, Source
 from rockframe.records.unit_names import choose_unit
 
 if TYPE_CHECKING:
@@ -44,10 +44,6 @@ if TYPE_CHECKING:
     from rockframe.records.instruments import InstrumentResponse
     from rockframe.signals.arrays import Array
 
-NAME: Final = "asdf"
-TITLE: Final = "ASDF file (HDF5), as of gmprocess"
-SUFFIXES: Final = (".h5", ".asdf")
-BINARY: Final = True
 
 _MAGIC: Final = b"\x89HDF\r\n\x1a\n"
 _MARKS: Final = (b"Waveforms", b"file_format")
@@ -78,14 +74,12 @@ class _Waveform:
         return self.codes.rpartition(".")[2]
 
 
-def recognises(source: Source) -> bool:
-    """Tell whether an HDF5 file names waveforms and a format."""
+def _recognises(source: Source) -> bool:
     return source.data.startswith(_MAGIC) and all(mark in source.data for mark in _MARKS)
 
 
-def read(source: Source, request: Request) -> Record:
-    """Read the acceleration of one channel, or of two."""
-    if not recognises(source):
+def _read(source: Source, request: Request) -> Record:
+    if not _recognises(source):
         found = f"a file that begins with {source.data[:8]!r}"
         raise source.refuse(found=found, expected=_EXPECTED)
     if request.unit is not None and request.response is not None:
@@ -158,8 +152,7 @@ def _samples(source: Source, request: Request, file: Any, one: _Waveform) -> Rec
         found = f"a sampling rate of {rate!r} Hz of {one.name}"
         raise source.refuse(found=found, expected="one above zero")
     time_step = float(f"{1.0 / rate:.12g}")
-    check_time_step(source, time_step, None)
-    check_asked_time_step(source, request, time_step, None)
+    settle_time_step(source, request, time_step, None)
     start = _EPOCH + timedelta(microseconds=int(variable.getncattr("starttime")) // 1000)
     network, station, location, _ = codes_of(one.codes)
     metadata: Metadata = {
@@ -232,3 +225,8 @@ def _response(
     data = np.asarray(variable[:]).astype(np.uint8).tobytes()
     xml = Source(source.path, data, hashlib.sha256(data).hexdigest())
     return response_in(xml, one.codes, start)
+
+
+ASDF: Final = Format(
+    "asdf", "ASDF file (HDF5), as of gmprocess", (".h5", ".asdf"), _recognises, _read, binary=True
+)

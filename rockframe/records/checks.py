@@ -8,17 +8,19 @@ from __future__ import annotations
 
 import math
 import re
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.records.numbers import NUMBER
+from rockframe.records.record_file import Record
 from rockframe.records.unit_names import RecordUnit, acceleration_unit
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from rockframe.records.record_file import Metadata, Request, Source
-    from rockframe.records.unit_names import RecordUnit
     from rockframe.signals.arrays import Array
 
 TIME_STEP_LIMITS: Final = (1e-6, 10.0)
@@ -38,6 +40,17 @@ OFFSET_SHARE: Final = 0.15
 MISSING: Final = (999.0, 9999.0, 99999.0, 999999.0, 12345.0, 32768.0, 1.7e38)
 """What agencies write, with either sign, where a sample is missing."""
 
+PEAK_SHARE: Final = 0.015
+"""Stated peaks differ from the samples' by 1.1 % at most in 275 channels as published."""
+LENGTH_SHARE: Final = 0.01
+"""Stated lengths are those of the samples to this share, or to two time steps."""
+
+_ONE_NUMBER: Final = re.compile(NUMBER, re.ASCII)
+_NUMBERS_ONLY: Final = re.compile(r"[-+.\dEeDd\s]*\d[-+.\dEeDd\s]*", re.ASCII)
+_LONGEST: Final = 30
+_MOST_LINES: Final = 200
+_FEWEST_SHARE: Final = 0.9
+_FEWEST_MISSING: Final = 5
 _ROUNDING: Final = 1e-6
 _FEWEST_FOR_OFFSET: Final = 50
 _ENDS: Final = 10
@@ -62,6 +75,12 @@ def check_asked_time_step(
             expected=f"the {asked!r} s asked for by the argument time_step",
             line=line,
         )
+
+
+def settle_time_step(source: Source, request: Request, time_step: float, line: int | None) -> None:
+    """Refuse a time step that no record has, or that is not the one asked for."""
+    check_time_step(source, time_step, line)
+    check_asked_time_step(source, request, time_step, line)
 
 
 def check_no_marks(source: Source, samples: Array) -> None:
@@ -128,57 +147,57 @@ def _offset(samples: Array) -> float:
     return means[0] if one_sided and min(map(abs, means)) > OFFSET_SHARE * swing else 0.0
 
 
-PEAK_SHARE: Final = 0.015
-"""Stated peaks differ from the samples' by 1.1 % at most in 275 channels as published."""
-LENGTH_SHARE: Final = 0.01
-"""Stated lengths are those of the samples to this share, or to two time steps."""
-
-_ONE_NUMBER: Final = re.compile(NUMBER, re.ASCII)
-_NUMBERS_ONLY: Final = re.compile(r"[-+.\dEeDd\s]*\d[-+.\dEeDd\s]*", re.ASCII)
-_LONGEST: Final = 30
-_MOST_LINES: Final = 200
+LENGTH: Final = "a length [s]"
 
 
-def compare_peak(
-    source: Source,
-    samples: Array,
-    unit: RecordUnit,
-    *,
-    printed: str,
-    printed_unit: str,
-    line: int,
-    share: float = PEAK_SHARE,
+class Stated(NamedTuple):
+    """What a header prints of the peak or the length of its samples."""
+
+    text: str
+    unit: str  # of a peak as record files spell it, or `LENGTH`
+    line: int  # from 1
+
+
+def doubts_of(
+    source: Source, samples: Array, unit: RecordUnit, time_step: float, stated: Iterable[Stated]
 ) -> list[str]:
-    """Hold the peak that a header states against the samples."""
-    said, digit = _printed(printed)
-    stated_unit = acceleration_unit(printed_unit)
+    """Hold the peaks and lengths that a header states against the samples."""
+    return [
+        words
+        for one in stated
+        for words in (
+            _compare_length(source, samples.size, time_step, one)
+            if one.unit == LENGTH
+            else _compare_peak(source, samples, unit, one)
+        )
+    ]
+
+
+def _compare_peak(source: Source, samples: Array, unit: RecordUnit, stated: Stated) -> list[str]:
+    said, digit = _printed(stated.text)
+    stated_unit = acceleration_unit(stated.unit)
     if said is None or stated_unit is None or math.isclose(said, 0.0):
         return []
     with np.errstate(over="ignore"):
         peak = float(np.max(np.abs(samples))) * (unit.factor / stated_unit.factor)
-    if abs(peak - abs(said)) <= share * abs(said) + digit:
+    if abs(peak - abs(said)) <= PEAK_SHARE * abs(said) + digit:
         return []
     return [
-        f"{source.path}, line {line}: the header states a peak of {abs(said):g} {printed_unit}, "
-        f"but the samples have {peak:.6g} {printed_unit}"
+        f"{source.path}, line {stated.line}: the header states a peak of {abs(said):g} "
+        f"{stated.unit}, but the samples have {peak:.6g} {stated.unit}"
     ]
 
 
-def compare_length(
-    source: Source, count: int, time_step: float, *, printed: str, line: int
-) -> list[str]:
-    """Hold the length that a header states against the number of samples and the time step.
-
-    Some agencies state ``n dt``, others ``(n - 1) dt``.
-    """
-    said, digit = _printed(printed)
+def _compare_length(source: Source, count: int, time_step: float, stated: Stated) -> list[str]:
+    # some agencies state n dt, others (n - 1) dt
+    said, digit = _printed(stated.text)
     if said is None or said <= 0.0:
         return []
     length = count * time_step
     if abs(length - said) <= max(2.0 * time_step, LENGTH_SHARE * said) + digit:
         return []
     return [
-        f"{source.path}, line {line}: the header states a length of {said:g} s, but "
+        f"{source.path}, line {stated.line}: the header states a length of {said:g} s, but "
         f"{count} samples at {time_step:g} s last {length - time_step:.6g} s"
     ]
 
@@ -213,10 +232,6 @@ def _printed(text: str) -> tuple[float | None, float]:
     return (value if math.isfinite(value) else None), digit
 
 
-_FEWEST_SHARE: Final = 0.9
-_FEWEST_MISSING: Final = 5
-
-
 def settle_count(
     source: Source, *, declared: int, counted: int, what: str, line: int
 ) -> tuple[Metadata, list[str]]:
@@ -235,3 +250,34 @@ def settle_count(
         f"holds {counted}; the {counted} are used"
     )
     return {"declared_samples": declared, "counted_samples": counted}, [words]
+
+
+def record_of(
+    source: Source,
+    values: Array,
+    time_step: float,
+    chosen: tuple[RecordUnit, str, list[str]],
+    metadata: Metadata,
+    *,
+    count: tuple[int, str, int] | None = None,
+    said: Iterable[str] = (),
+    stated: Iterable[Stated] = (),
+    behind: Iterable[str] = (),
+) -> Record:
+    """Put a record together, with what its header states held against its samples.
+
+    `chosen` is what :func:`choose_unit` gives; `count` the number of samples that is announced,
+    what announces it and in which line; `said` and `behind` are warnings before and behind those
+    about what is `stated`.
+    """
+    unit, as_read, warnings = chosen
+    counts: Metadata = {}
+    if count is not None:
+        declared, what, line = count
+        counts, differing = settle_count(
+            source, declared=declared, counted=values.size, what=what, line=line
+        )
+        warnings = [*warnings, *differing]
+    doubts = doubts_of(source, values, unit, time_step, stated)
+    about: Metadata = {**metadata, "unit_as_read": as_read, **counts}
+    return Record(time_step, values, unit, about, warnings=(*warnings, *said, *doubts, *behind))

@@ -56,6 +56,12 @@ class Orientation:
         turn = (self.azimuth - other.azimuth) % _FULL_CIRCLE
         return min(turn, _FULL_CIRCLE - turn) < 1e-6
 
+    def reversed(self) -> Orientation:
+        """Give the opposite direction, for a sign before a name; downwards if it is vertical."""
+        if self.vertical is not None:
+            return Orientation(vertical=DOWNWARDS)
+        return self if self.azimuth is None else azimuth_of((self.azimuth + 180.0) % _FULL_CIRCLE)
+
     def __str__(self) -> str:
         if self.vertical is not None:
             return self.vertical

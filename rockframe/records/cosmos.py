@@ -14,7 +14,13 @@ import re
 from dataclasses import dataclass
 from typing import Final
 
-from rockframe.records.checks import check_asked_time_step, check_time_step, compare_peak, surplus
+from rockframe.records.checks import (
+    Stated,
+    check_asked_time_step,
+    check_time_step,
+    record_of,
+    surplus,
+)
 from rockframe.records.components import (
     DOWNWARDS,
     UPWARDS,
@@ -25,8 +31,15 @@ from rockframe.records.components import (
     choose_component,
     orientation_of,
 )
-from rockframe.records.numbers import fixed_width, one_number, whole
-from rockframe.records.record_file import Metadata, Record, Request, Source, quoted_first_line
+from rockframe.records.numbers import FixedWidth, one_number, whole
+from rockframe.records.record_file import (
+    Format,
+    Metadata,
+    Record,
+    Request,
+    Source,
+    quoted_first_line,
+)
 from rockframe.records.unit_names import acceleration_unit, choose_unit
 
 MILLISECOND: Final = 1e-3
@@ -97,10 +110,8 @@ class Header:
     text_lines: int  # how many lines of text it begins with
     integers_at: int  # index of the first line of the integers and of the reals
     reals_at: int
-    integer_columns: int  # their layout
-    integer_width: int
-    real_columns: int
-    real_width: int
+    integers: FixedWidth  # their layout
+    reals: FixedWidth
     integer_count: int  # how many there are
     real_count: int
     comments: tuple[str, ...]  # comment lines
@@ -116,15 +127,13 @@ class Header:
         """Give an integer header value, from 1; None if it is unknown."""
         if not 1 <= place <= self.integer_count:
             return None
-        row, column = divmod(place - 1, self.integer_columns)
-        line = self.source.lines[self.integers_at + row]
-        text = line[column * self.integer_width : (column + 1) * self.integer_width]
+        text = self.integers.cell(self.source, self.integers_at, place)
         value = whole(text)
-        if value is None and text.strip():
+        if value is None and text:
             raise self.source.refuse(
                 found=f"{quoted_first_line(text)} for integer header {place}",
                 expected="a whole number",
-                line=self.integers_at + row + 1,
+                line=self.integers.line(self.integers_at, place),
             )
         return None if value == self.unknown[0] else value
 
@@ -132,17 +141,11 @@ class Header:
         """Give a real header value, from 1; None if it is unknown."""
         if not 1 <= place <= self.real_count:
             return None
-        row, column = divmod(place - 1, self.real_columns)
-        line = self.source.lines[self.reals_at + row]
-        text = line[column * self.real_width : (column + 1) * self.real_width].strip()
+        text = self.reals.cell(self.source, self.reals_at, place)
         if not text:
             return None
-        value = one_number(text, self.source, self.reals_at + row + 1)
+        value = one_number(text, self.source, self.reals.line(self.reals_at, place))
         return None if math.isclose(value, self.unknown[1]) else value
-
-    def real_line(self, place: int) -> int:
-        """Give the line of a real header value, both from 1."""
-        return self.reals_at + (place - 1) // self.real_columns + 1
 
 
 def read_header(source: Source, start: int, end: int, text_lines: int) -> Header:
@@ -163,10 +166,8 @@ def read_header(source: Source, start: int, end: int, text_lines: int) -> Header
         text_lines=min(text_lines, end - start),
         integers_at=integers_at,
         reals_at=reals_at,
-        integer_columns=integers[1],
-        integer_width=integers[2],
-        real_columns=reals[1],
-        real_width=reals[2],
+        integers=integers[1],
+        reals=reals[1],
         integer_count=integers[0],
         real_count=reals[0],
         comments=comments,
@@ -177,7 +178,7 @@ def read_header(source: Source, start: int, end: int, text_lines: int) -> Header
 
 def _section(
     source: Source, at: int, end: int, announcement: re.Pattern[str], what: str
-) -> tuple[tuple[int, int, int], int, int]:
+) -> tuple[tuple[int, FixedWidth], int, int]:
     # one line of slack: some files have a text line more than they announce
     for index in (at, at + 1, at - 1):
         if not 0 <= index < end:
@@ -191,7 +192,7 @@ def _section(
             found = f"{count} values on {lines} lines of {columns} ({what})"
             expected = "as many lines as these values need, and as many as follow"
             raise source.refuse(found=found, expected=expected, line=index + 1)
-        return (count, columns, width), first, first + lines
+        return (count, FixedWidth(width, columns)), first, first + lines
     index = min(max(at, 0), end - 1)
     raise source.refuse(
         found=quoted_first_line(source.lines[index]),
@@ -215,10 +216,6 @@ def _unknown(lines: list[str]) -> tuple[int, float]:
             continue
     return _USUAL_UNKNOWN
 
-
-NAME: Final = "cosmos"
-TITLE: Final = "COSMOS v1.20 file (V1, V2)"
-SUFFIXES: Final = (".v1c", ".v2c", ".v1", ".v2")
 
 _FIRST_LINE: Final = re.compile(r"^(.{0,60}?)\(Format v?(\d[\d.]{0,8}) with (\d{1,3}) text", re.I)
 _DATA_LINE: Final = re.compile(
@@ -247,13 +244,11 @@ class _Block:
     text_lines: int
 
 
-def recognises(source: Source) -> bool:
-    """Tell whether the first lines name the format and its text lines."""
+def _recognises(source: Source) -> bool:
     return any(_FIRST_LINE.search(line) for line in source.top(4))
 
 
-def read(source: Source, request: Request) -> Record:
-    """Read the acceleration of one channel, or of two."""
+def _read(source: Source, request: Request) -> Record:
     blocks = _blocks(source)
     if not blocks:
         found = f"{quoted_first_line(source.start)}"
@@ -337,25 +332,20 @@ def _samples(source: Source, request: Request, header: Header) -> Record:
         found = f"{QUANTITIES[quantity]} (code {quantity})"
         raise source.refuse(found=found, expected="an acceleration", line=header.integers_at + 1)
     name = _unit_name(source, request, header, match.group(3), line)
-    unit, as_read, warnings = choose_unit(source, request, name, line)
+    chosen = choose_unit(source, request, name, line)
     count = int(match.group(1))
     time_step = _time_step(source, header, count)
-    check_asked_time_step(source, request, time_step, header.real_line(62))
-    per_line = int(match.group(4) or 1)
-    values = fixed_width(source, line, count, width=int(match.group(5)), per_line=per_line)
+    check_asked_time_step(source, request, time_step, header.reals.line(header.reals_at, 62))
+    layout = FixedWidth(int(match.group(5)), int(match.group(4) or 1))
+    values = layout.read(source, line, count)
     peak = header.real(64)
+    stated: list[Stated] = []
     if peak is not None and quantity == ACCELERATION:
-        warnings += compare_peak(
-            source,
-            values,
-            unit,
-            printed=f"{peak:.12g}",
-            printed_unit=as_read if request.unit is None else name,
-            line=header.real_line(64),
-        )
-    warnings += surplus(source, line + -(-count // per_line), f"line {line}")
-    metadata = {**_description(header), "unit_as_read": as_read}
-    return Record(time_step, values, unit, metadata, warnings=tuple(warnings))
+        peak_unit = chosen[1] if request.unit is None else name
+        stated.append(Stated(f"{peak:.12g}", peak_unit, header.reals.line(header.reals_at, 64)))
+    behind = surplus(source, line + layout.rows(count), f"line {line}")
+    about = _description(header)
+    return record_of(source, values, time_step, chosen, about, stated=stated, behind=behind)
 
 
 def _data_line(source: Source, header: Header) -> tuple[int, re.Match[str]]:
@@ -383,7 +373,7 @@ def _unit_name(source: Source, request: Request, header: Header, text: str, line
 
 
 def _time_step(source: Source, header: Header, count: int) -> float:
-    line = header.real_line(62)
+    line = header.reals.line(header.reals_at, 62)
     milliseconds = header.real(62)
     if milliseconds is None:
         found = "no sample interval (real header 62)"
@@ -423,3 +413,8 @@ def _description(header: Header) -> Metadata:
     if start is not None:
         metadata["record_time"] = start.group(1)
     return metadata
+
+
+COSMOS: Final = Format(
+    "cosmos", "COSMOS v1.20 file (V1, V2)", (".v1c", ".v2c", ".v1", ".v2"), _recognises, _read
+)

@@ -26,10 +26,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from rockframe.records.checks import (
+    LENGTH,
+    Stated,
     check_asked_time_step,
     check_time_step,
-    compare_length,
-    compare_peak,
+    record_of,
+    settle_time_step,
     surplus,
 )
 from rockframe.records.components import (
@@ -38,16 +40,16 @@ from rockframe.records.components import (
     choose_component,
     orientation_of,
 )
-from rockframe.records.numbers import fixed_width, uniform_step, whole
-from rockframe.records.record_file import Record, Request, Source, quoted_first_line
+from rockframe.records.headers import first_match
+from rockframe.records.numbers import FixedWidth, uniform_step, whole
+from rockframe.records.record_file import Format, Record, Request, Source, quoted_first_line
 from rockframe.records.unit_names import choose_unit
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from rockframe.errors import RecordError
-    from rockframe.records.record_file import Metadata
-    from rockframe.records.unit_names import RecordUnit
+    from rockframe.records.record_file import Format, Metadata
     from rockframe.signals.arrays import Array
 
 FIRST_LINE: Final = re.compile(
@@ -87,15 +89,6 @@ _DATE: Final = re.compile(
 _WIDE_GAP: Final = re.compile(r"\s{3,}")
 
 
-@dataclass(frozen=True)
-class Stated:
-    """A value as a header prints it."""
-
-    text: str  # the number
-    unit: str  # its unit, as record files spell it
-    line: int  # where it stands, from 1
-
-
 def channel_of(header: list[str], first: int) -> tuple[int | None, str, int]:
     """Find number and direction of a channel."""
     found: tuple[int | None, str, int] = (None, "", first + 1)
@@ -115,8 +108,8 @@ def channel_of(header: list[str], first: int) -> tuple[int | None, str, int]:
     return found
 
 
-def peak_in_header(header: list[str], first: int, *, corrected: bool) -> Stated | None:
-    """Find the peak of the acceleration; arguments as for :func:`channel_of`."""
+def _peak_in_header(header: list[str], first: int) -> Stated | None:
+    corrected = is_corrected(header)
     for line, text in enumerate(header, start=first + 1):
         match = _PEAK.search(f"{text} ")
         if match is not None:
@@ -128,13 +121,11 @@ def peak_in_header(header: list[str], first: int, *, corrected: bool) -> Stated 
     return None
 
 
-def length_in_header(header: list[str], first: int) -> Stated | None:
-    """Find the length of the record; arguments as for :func:`channel_of`."""
-    for line, text in enumerate(header, start=first + 1):
-        match = _LENGTH.search(text)
-        if match is not None:
-            return Stated(match.group(1), "s", line)
-    return None
+def _stated(header: list[str], first: int) -> list[Stated]:
+    """Give peak and length of a record, where its header states them."""
+    peak, length = _peak_in_header(header, first), first_match(_LENGTH, header, first + 1)
+    stated = [] if peak is None else [peak]
+    return stated if length is None else [*stated, Stated(length[0][1], LENGTH, length[1])]
 
 
 def is_corrected(header: list[str]) -> bool:
@@ -249,8 +240,8 @@ def read_pairs(source: Source, pairs: Pairs) -> tuple[float, Array]:
             expected=f"{per_line} numbers of one width, pairs of time and acceleration",
             line=pairs.data_at + 1,
         )
-    layout = {"width": width, "per_line": _FULL, "indent": indent}
-    values = fixed_width(source, pairs.data_at, 2 * pairs.count, **layout).reshape(-1, 2)
+    layout = FixedWidth(width, _FULL, indent)
+    values = layout.read(source, pairs.data_at, 2 * pairs.count).reshape(-1, 2)
     rows = source.lines[pairs.data_at : pairs.behind]
     printed = [
         row[indent + place : indent + place + width].strip()
@@ -265,10 +256,6 @@ def read_pairs(source: Source, pairs: Pairs) -> tuple[float, Array]:
         raise source.refuse(found=found, expected=expected, line=place)
     return time_step, values[:, 1].copy()
 
-
-NAME: Final = "csmip"
-TITLE: Final = "CSMIP volume file (V1, V2), also of USC and RENADIC"
-SUFFIXES: Final = (".v1", ".v2", ".raw")
 
 _SMC: Final = re.compile(r"^\s*\d\s")
 _SPECTRA: Final = re.compile(r"^\s*RESPONSE AND FOURIER", re.IGNORECASE)
@@ -300,15 +287,13 @@ class _Block:
     rate: str
 
 
-def recognises(source: Source) -> bool:
-    """Tell whether the first line calls itself an accelerogram, without SMC's digit."""
+def _recognises(source: Source) -> bool:
     first = next((line for line in source.top(4) if line.strip()), "")
     named = FIRST_LINE.match(first) is not None and "GNS" not in first
     return (named and _SMC.match(first) is None) or _SPECTRA.match(first) is not None
 
 
-def read(source: Source, request: Request) -> Record:
-    """Read the acceleration of one channel, or of two."""
+def _read(source: Source, request: Request) -> Record:
     if _SPECTRA.match(source.top(1)[0]):
         found = "response spectra (volume 3)"
         raise source.refuse(found=found, expected="an acceleration (volume 1 or 2)", line=1)
@@ -366,45 +351,27 @@ def _named(header: list[str], first: int, samples: Callable[[], Record]) -> File
 
 
 def _samples(source: Source, request: Request, block: _Block) -> Record:
-    line = block.line + 1
     text = source.top(1, block.line)[0]
     said = _UNIT.search(text)
-    name = said.group(1).rstrip(".") if said else None
-    peak = peak_in_header(block.header, block.first, corrected=is_corrected(block.header))
+    name, line = said.group(1).rstrip(".") if said else None, block.line + 1
+    peak = _peak_in_header(block.header, block.first)
     if name is None and peak is not None:
         name, line = peak.unit, peak.line
-    unit, as_read, warnings = choose_unit(source, request, name, line)
+    chosen = choose_unit(source, request, name, line)
     line = block.line + 1
     time_step = _time_step(source, block)
     check_asked_time_step(source, request, time_step, line)
-    per_line, width = _layout(source, block, text)
-    values = fixed_width(source, line, block.count, width=width, per_line=per_line)
-    behind = surplus(source, line + -(-block.count // per_line), f"line {line}")
-    doubts = _doubts(source, block.header, block.first, time_step, values, unit)
-    metadata = {**description(block.header), "unit_as_read": as_read}
-    return Record(time_step, values, unit, metadata, warnings=(*warnings, *doubts, *behind))
-
-
-def _doubts(
-    source: Source,
-    header: list[str],
-    first: int,
-    time_step: float,
-    values: Array,
-    unit: RecordUnit,
-) -> list[str]:
-    doubts: list[str] = []
-    peak = peak_in_header(header, first, corrected=is_corrected(header))
-    if peak is not None:
-        doubts += compare_peak(
-            source, values, unit, printed=peak.text, printed_unit=peak.unit, line=peak.line
-        )
-    length = length_in_header(header, first)
-    if length is not None:
-        doubts += compare_length(
-            source, values.size, time_step, printed=length.text, line=length.line
-        )
-    return doubts
+    layout = _layout(source, block, text)
+    values = layout.read(source, line, block.count)
+    return record_of(
+        source,
+        values,
+        time_step,
+        chosen,
+        description(block.header),
+        stated=_stated(block.header, block.first),
+        behind=surplus(source, line + layout.rows(block.count), f"line {line}"),
+    )
 
 
 def _components_of_pairs(source: Source, request: Request) -> list[FileComponent]:
@@ -428,15 +395,12 @@ def _component_of_pairs(
     header = source.top(min(pairs.data_at - first, _LONGEST_HEADER), first)
 
     def samples() -> Record:
-        unit, as_read, warnings = choose_unit(source, request, pairs.unit, pairs.unit_line)
+        chosen = choose_unit(source, request, pairs.unit, pairs.unit_line)
         time_step, values = read_pairs(source, pairs)
-        line = pairs.data_at + 1
-        check_time_step(source, time_step, line)
-        check_asked_time_step(source, request, time_step, line)
-        doubts = _doubts(source, header, first, time_step, values, unit)
-        doubts += surplus(source, pairs.behind, "'NO. OF POINTS'")
-        metadata = {**description(header), "unit_as_read": as_read}
-        return Record(time_step, values, unit, metadata, warnings=(*warnings, *doubts))
+        settle_time_step(source, request, time_step, pairs.data_at + 1)
+        stated, behind = _stated(header, first), surplus(source, pairs.behind, "'NO. OF POINTS'")
+        about = description(header)
+        return record_of(source, values, time_step, chosen, about, stated=stated, behind=behind)
 
     return _named(header, first, samples)
 
@@ -472,10 +436,10 @@ def _seconds(source: Source, text: str, line: int) -> float:
         raise source.refuse(found=found, expected="a time step", line=line) from None
 
 
-def _layout(source: Source, block: _Block, text: str) -> tuple[int, int]:
+def _layout(source: Source, block: _Block, text: str) -> FixedWidth:
     said = _LAYOUT.search(text)
     if said is not None:
-        return int(said.group(1)), int(said.group(2))
+        return FixedWidth(int(said.group(2)), int(said.group(1)))
     # not said in the older files: eight in a line, 9 characters each in volume 1,
     # 10 in volume 2; a full line tells
     per_line = min(_PER_LINE, max(block.count, 1))
@@ -487,4 +451,13 @@ def _layout(source: Source, block: _Block, text: str) -> tuple[int, int]:
             expected=f"{per_line} numbers of one width",
             line=block.line + 2,
         )
-    return _PER_LINE, width
+    return FixedWidth(width, _PER_LINE)
+
+
+CSMIP: Final = Format(
+    "csmip",
+    "CSMIP volume file (V1, V2), also of USC and RENADIC",
+    (".v1", ".v2", ".raw"),
+    _recognises,
+    _read,
+)

@@ -17,36 +17,33 @@ Reference: the header of the files itself; the columns follow ``#DataSequence``.
 from __future__ import annotations
 
 import re
+from functools import cache
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from rockframe.records.checks import (
-    check_asked_time_step,
-    check_time_step,
-    compare_peak,
-    settle_count,
-)
+from rockframe.records.checks import Stated, record_of
 from rockframe.records.components import (
-    DOWNWARDS,
     FileComponent,
     Orientation,
-    azimuth_of,
     choose_component,
     orientation_of,
 )
-from rockframe.records.keys import Keys, kept, needed, needed_rate
-from rockframe.records.numbers import fixed_width, one_number
-from rockframe.records.record_file import Metadata, Record, Request, Source, quoted_first_line
+from rockframe.records.headers import NOTHING, Keys, kept, needed, needed_rate
+from rockframe.records.numbers import FixedWidth, one_number
+from rockframe.records.record_file import (
+    Format,
+    Metadata,
+    Record,
+    Request,
+    Source,
+    quoted_first_line,
+)
 from rockframe.records.unit_names import choose_unit
 
 if TYPE_CHECKING:
-    from rockframe.records.unit_names import RecordUnit
     from rockframe.signals.arrays import Array
 
-NAME: Final = "cwa"
-TITLE: Final = "file of the Central Weather Administration, Taiwan"
-SUFFIXES: Final = (".dat", ".txt")
 
 _KEY: Final = re.compile(r"^#\s*([A-Za-z][A-Za-z ]{2,40}?)\s*(\([^()]{0,20}\))?\s*:\s*(.*?)\s*$")
 _MARKS: Final = frozenset(("stationcode", "samplerate", "datasequence", "amplitudeunit"))
@@ -65,114 +62,75 @@ _KEPT: Final = {
 }
 
 
-def recognises(source: Source) -> bool:
-    """Tell whether the keys that the format needs stand near the top."""
+def _recognises(source: Source) -> bool:
     return len(_MARKS & set(_header(source)[0])) >= 2
 
 
-def read(source: Source, request: Request) -> Record:
-    """Read the acceleration of one column, or of two."""
+def _read(source: Source, request: Request) -> Record:
     header, first = _header(source)
-    rate, rate_line = needed_rate(source, header, "samplerate")
-    time_step = 1.0 / rate
-    check_time_step(source, time_step, rate_line)
-    check_asked_time_step(source, request, time_step, rate_line)
+    rate = needed_rate(source, request, header, "samplerate")
     unit_text, unit_line = needed(source, header, "amplitudeunit")
     named = _UNIT.match(unit_text)
-    unit, as_read, warnings = choose_unit(
-        source, request, named.group(1) if named else None, unit_line
-    )
+    chosen = choose_unit(source, request, named.group(1) if named else None, unit_line)
     columns, columns_line = _columns(source, header)
-    metadata: Metadata = {**_description(header), "unit_as_read": as_read}
+    metadata: Metadata = {**_description(header), "unit_as_read": chosen[1]}
     if named is not None and "dcoffset(corr)" in named.group(2).casefold().replace(" ", ""):
         metadata["baseline_correction"] = named.group(2).strip(" .")
-    table = _Table(source, header, first, len(columns) + 1, rate)
 
-    def reader(place: int) -> Record:
-        values = table.read()
-        name = columns[place - 1][0]
-        doubts = _compare_peaks(source, name, values[:, place], unit, as_read)
-        said = (*warnings, *table.warnings, *doubts)
-        about: Metadata = {**metadata, **table.metadata}
-        return Record(time_step, values[:, place].copy(), unit, about, warnings=said)
+    @cache
+    def table() -> tuple[Array, tuple[int, str, int] | None]:
+        values = _table(source, header, first, len(columns) + 1, rate)
+        return values, _announced(source, header, rate)
+
+    def samples(place: int) -> Record:
+        values, count = table()
+        column = values[:, place].copy()
+        stated = _stated_peak(source, columns[place - 1][0], chosen[1])
+        return record_of(source, column, 1.0 / rate, chosen, metadata, count=count, stated=stated)
 
     components = [
-        FileComponent(
-            name,
-            lambda place=place: reader(place),
-            direction,
-            line=columns_line,
-        )
+        FileComponent(name, lambda place=place: samples(place), direction, line=columns_line)
         for place, (name, direction) in enumerate(columns, start=1)
     ]
     return choose_component(source, request, components)
 
 
-class _Table:
-    """The rows of numbers, read once however many columns are wanted."""
+def _table(source: Source, header: Keys, first: int, columns: int, rate: float) -> Array:
+    """Read the rows of numbers, times in the first column."""
+    rows = source.last_line - first
+    if rows < 2:
+        found = f"{max(rows, 0)} rows of numbers"
+        raise source.refuse(found=found, expected="two or more", line=source.last_line)
+    text, line = needed(source, header, "data")
+    match = _LAYOUT.match(text)
+    if match is None or int(match.group(1)) != columns:
+        raise source.refuse(
+            found=f"the layout {quoted_first_line(text)}",
+            expected=f"{columns} columns, such as '{columns}F10.3'",
+            line=line,
+        )
+    layout = FixedWidth(int(match.group(2)), columns)
+    values = layout.read(source, first, rows * columns).reshape(rows, columns)
+    expected = values[0, 0] + np.arange(rows) / rate
+    digit = 0.51 * 10.0 ** -int(match.group(3)) + 1e-9
+    wrong = np.flatnonzero(np.abs(values[:, 0] - expected) > digit)
+    if wrong.size:
+        row = int(wrong[0])
+        raise source.refuse(
+            found=f"the time {values[row, 0]:g} s in row {row + 1}",
+            expected=f"{expected[row]:g} s, by the sampling rate of {rate:g} Hz",
+            line=first + row + 1,
+        )
+    return values
 
-    def __init__(
-        self,
-        source: Source,
-        header: Keys,
-        first: int,
-        columns: int,
-        rate: float,
-    ) -> None:
-        self._source = source
-        self._header = header
-        self._first = first
-        self._columns = columns
-        self._rate = rate
-        self._values: Array | None = None
-        self.metadata: Metadata = {}
-        self.warnings: tuple[str, ...] = ()
 
-    def read(self) -> Array:
-        """Give the table, times in the first column."""
-        if self._values is None:
-            self._values = self._read()
-        return self._values
-
-    def _read(self) -> Array:
-        source = self._source
-        rows = source.last_line - self._first
-        if rows < 2:
-            found = f"{max(rows, 0)} rows of numbers"
-            raise source.refuse(found=found, expected="two or more", line=source.last_line)
-        width, digit = self._layout()
-        values = fixed_width(
-            source, self._first, rows * self._columns, width=width, per_line=self._columns
-        ).reshape(rows, self._columns)
-        expected = values[0, 0] + np.arange(rows) / self._rate
-        wrong = np.flatnonzero(np.abs(values[:, 0] - expected) > digit)
-        if wrong.size:
-            row = int(wrong[0])
-            raise source.refuse(
-                found=f"the time {values[row, 0]:g} s in row {row + 1}",
-                expected=f"{expected[row]:g} s, by the sampling rate of {self._rate:g} Hz",
-                line=self._first + row + 1,
-            )
-        if "recordlength" in self._header:
-            text, line = self._header["recordlength"]
-            announced = one_number(text, source, line) * self._rate
-            if 0.0 < announced < 1e12:
-                self.metadata, said = settle_count(
-                    source, declared=round(announced), counted=rows, what="RecordLength", line=line
-                )
-                self.warnings = tuple(said)
-        return values
-
-    def _layout(self) -> tuple[int, float]:
-        text, line = needed(self._source, self._header, "data")
-        match = _LAYOUT.match(text)
-        if match is None or int(match.group(1)) != self._columns:
-            raise self._source.refuse(
-                found=f"the layout {quoted_first_line(text)}",
-                expected=f"{self._columns} columns, such as '{self._columns}F10.3'",
-                line=line,
-            )
-        return int(match.group(2)), 0.51 * 10.0 ** -int(match.group(3)) + 1e-9
+def _announced(source: Source, header: Keys, rate: float) -> tuple[int, str, int] | None:
+    """Give the number of samples by the length of the record, if that is stated."""
+    if "recordlength" not in header:
+        return None
+    text, line = header["recordlength"]
+    announced = one_number(text, source, line) * rate
+    return (round(announced), "RecordLength", line) if 0.0 < announced < 1e12 else None
 
 
 def _header(source: Source) -> tuple[Keys, int]:
@@ -197,25 +155,18 @@ def _columns(source: Source, header: Keys) -> tuple[list[tuple[str, Orientation]
     columns: list[tuple[str, Orientation]] = []
     for name, sign in names[1:]:
         direction = orientation_of(name)
-        if sign == "-" and direction.vertical is not None:
-            direction = Orientation(vertical=DOWNWARDS)
-        elif sign == "-" and direction.azimuth is not None:
-            direction = azimuth_of((direction.azimuth + 180.0) % 360.0)
+        if sign == "-":
+            direction = direction.reversed()
         columns.append((name if sign != "-" else f"-{name}", direction))
     return columns, line
 
 
-def _compare_peaks(
-    source: Source, name: str, values: Array, unit: RecordUnit, unit_name: str
-) -> list[str]:
+def _stated_peak(source: Source, name: str, unit: str) -> list[Stated]:
+    """Give the larger of the largest and the smallest value of a column, as printed."""
     for line, text in enumerate(source.top(_LONGEST_HEADER), start=1):
         match = _PEAKS.match(text)
         if match is not None and match.group(1).casefold() == name.lstrip("-").casefold():
-            # the largest and the smallest value
-            larger = max(match.groups()[1:], key=lambda printed: _size(printed))
-            return compare_peak(
-                source, values, unit, printed=larger, printed_unit=unit_name, line=line
-            )
+            return [Stated(max(match.groups()[1:], key=_size), unit, line)]
     return []
 
 
@@ -228,11 +179,20 @@ def _size(printed: str) -> float:
 
 def _description(header: Keys) -> Metadata:
     metadata = kept(header, _KEPT)
-    origin = header.get("origintime", ("", 0))[0]
+    origin = header.get("origintime", NOTHING)[0]
     if origin:
         metadata["event"] = f"earthquake of {origin} (GMT+08)"
         metadata["event_time"] = f"{origin} (GMT+08)"
-    start = header.get("starttime", ("", 0))[0]
+    start = header.get("starttime", NOTHING)[0]
     if start:
         metadata["record_time"] = f"{start} (GMT+08)"
     return metadata
+
+
+CWA: Final = Format(
+    "cwa",
+    "file of the Central Weather Administration, Taiwan",
+    (".dat", ".txt"),
+    _recognises,
+    _read,
+)

@@ -19,22 +19,23 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from rockframe.records.checks import check_asked_time_step, check_time_step, settle_count
+from rockframe.records.checks import settle_count
 from rockframe.records.components import FileComponent, choose_component, orientation_of
-from rockframe.records.keys import Keys, needed, needed_rate
-from rockframe.records.numbers import NUMBER, free_format, last_fields, one_number
-from rockframe.records.record_file import Metadata, Record, Request, Source, quoted_first_line
+from rockframe.records.headers import NOTHING, Keys, needed, needed_rate
+from rockframe.records.numbers import NUMBER, cut_short, free_format, last_fields, one_number
+from rockframe.records.record_file import (
+    Format,
+    Metadata,
+    Record,
+    Request,
+    Source,
+    quoted_first_line,
+)
 from rockframe.records.unit_names import choose_unit
 
 if TYPE_CHECKING:
     from rockframe.signals.arrays import Array
 
-NAME: Final = "k-net"
-TITLE: Final = "K-NET or KiK-net file (ASCII)"
-SUFFIXES: Final = (
-    *(".ns", ".ew", ".ud"),
-    *(".ns1", ".ew1", ".ud1", ".ns2", ".ew2", ".ud2"),
-)
 
 UNIT: Final = "gal"
 
@@ -68,19 +69,14 @@ _PEAK_TOLERANCE: Final = 0.01
 _PEAK_DIGIT: Final = 1e-3
 
 
-def recognises(source: Source) -> bool:
-    """Tell whether the keys that the format needs stand near the top."""
+def _recognises(source: Source) -> bool:
     keys = set(_header(source)[0])
     return {"Scale Factor", "Sampling Freq(Hz)"} <= keys
 
 
-def read(source: Source, request: Request) -> Record:
-    """Read an acceleration."""
+def _read(source: Source, request: Request) -> Record:
     header, first = _header(source)
-    rate, rate_line = needed_rate(source, header, "Sampling Freq(Hz)")
-    time_step = 1.0 / rate
-    check_time_step(source, time_step, rate_line)
-    check_asked_time_step(source, request, time_step, rate_line)
+    rate = needed_rate(source, request, header, "Sampling Freq(Hz)")
     scale = _scale(source, header)
     unit, as_read, warnings = choose_unit(source, request, UNIT, header["Scale Factor"][1])
     metadata = {**_description(header), "unit_as_read": as_read}
@@ -90,16 +86,17 @@ def read(source: Source, request: Request) -> Record:
         metadata["sensor_location"] = place
 
     def samples() -> Record:
-        counts, said, differing = _counts(source, header, first, rate)
+        counts, held, differing = _counts(source, header, first, rate)
         offset = math.fsum(counts) / counts.size
         values = (counts - offset) * scale
         words = _compare_peak(source, header, values)
-        about: Metadata = {**metadata, **said, "scale_factor": scale, "offset_removed": offset}
+        about: Metadata = {**metadata, **held, "scale_factor": scale, "offset_removed": offset}
         history = (
             f"counts times the scale factor {header['Scale Factor'][0]}, "
             f"less their mean of {offset:.9g} counts ({offset * scale:.6g} gal)",
         )
-        return Record(time_step, values, unit, about, history, (*warnings, *differing, *words))
+        said = (*warnings, *differing, *words)
+        return Record(1.0 / rate, values, unit, about, history, said)
 
     component = FileComponent(
         name,
@@ -157,8 +154,7 @@ def _counts(
     open_end = bool(source.lines[-1]) and not source.lines[-1][-1].isspace()
     # of whole numbers nothing but their length shows that the last one was cut
     if open_end and counts.size <= declared and len(fields[-1]) < _shortest(fields[:-1]):
-        found = f"the end of the file inside a number ({counts.size} of {declared} samples)"
-        raise source.refuse(found=found, expected="a complete file", line=source.last_line)
+        raise cut_short(source, f"{counts.size} of {declared} samples")
     return counts, said, differing
 
 
@@ -181,14 +177,14 @@ def _compare_peak(source: Source, header: Keys, values: Array) -> list[str]:
 
 def _description(header: Keys) -> Metadata:
     metadata: Metadata = {}
-    station = header.get("Station Code", ("", 0))[0]
+    station = header.get("Station Code", NOTHING)[0]
     if station:
         metadata["station"] = station
-    origin = header.get("Origin Time", ("", 0))[0]
+    origin = header.get("Origin Time", NOTHING)[0]
     if origin:
         metadata["event"] = f"earthquake of {origin} JST"
         metadata["event_time"] = _iso(origin) or f"{origin} JST"
-    recorded = header.get("Record Time", ("", 0))[0]
+    recorded = header.get("Record Time", NOTHING)[0]
     if recorded:
         metadata["record_time"] = _iso(recorded, _DELAY) or f"{recorded} JST, less 15 s"
     return metadata
@@ -200,3 +196,15 @@ def _iso(printed: str, delay: timedelta = timedelta(0)) -> str | None:
     except (ValueError, OverflowError):
         return None
     return moment.isoformat() + _ZONE
+
+
+KNET: Final = Format(
+    "k-net",
+    "K-NET or KiK-net file (ASCII)",
+    (
+        *(".ns", ".ew", ".ud"),
+        *(".ns1", ".ew1", ".ud1", ".ns2", ".ew2", ".ud2"),
+    ),
+    _recognises,
+    _read,
+)

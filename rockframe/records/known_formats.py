@@ -4,34 +4,34 @@ from __future__ import annotations
 
 import inspect
 import re
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Final, Protocol, cast
+from dataclasses import replace
+from typing import TYPE_CHECKING, Final, Protocol, cast
 
 from rockframe.errors import ComponentError, RecordError
-from rockframe.records import (
-    afad,
-    asdf,
-    bhrc,
-    cosmos,
-    csmip,
-    csmnc,
-    cwa,
-    esm,
-    geonet,
-    knet,
-    miniseed,
-    netcdf,
-    peer,
-    resorce,
-    sac,
-    smc,
-    text,
-    unam,
+from rockframe.records.asdf import ASDF
+from rockframe.records.cosmos import COSMOS
+from rockframe.records.csmip import CSMIP
+from rockframe.records.cwa import CWA
+from rockframe.records.keyed import AFAD, CSMNC, ESM, RESORCE
+from rockframe.records.knet import KNET
+from rockframe.records.miniseed import MINISEED
+from rockframe.records.netcdf import NETCDF
+from rockframe.records.peer import PEER_AT2
+from rockframe.records.record_file import (
+    Format,
+    Record,
+    Request,
+    Source,
+    quoted_first_line,
 )
-from rockframe.records.record_file import Record, Request, Source, StoredMotion, quoted_first_line
+from rockframe.records.sac import SAC
+from rockframe.records.smc import SMC
+from rockframe.records.text import TEXT
+from rockframe.records.unam import UNAM
+from rockframe.records.volumes import BHRC, GEONET
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    pass
 
 _NAME: Final = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
 _SUFFIX: Final = re.compile(r"\.[a-z0-9]+")
@@ -64,60 +64,17 @@ class Reader(Protocol):
         ...
 
 
-@dataclass(frozen=True)
-class Format:
-    """A file format that records can be read from.
-
-    Parameters
-    ----------
-    name : str
-        What the argument ``format`` takes.
-    title : str
-        In words.
-    suffixes : tuple of str
-        Usual extensions.
-    recognises : callable
-        Whether a file looks like this format.
-    read : callable
-        The reader.
-    binary : bool
-        Whether it reads bytes (``source.data``) instead of lines.
-    own : bool
-        Whether it is part of this package.
-    """
-
-    name: str
-    title: str
-    suffixes: tuple[str, ...]
-    recognises: Callable[[Source], bool] = field(repr=False)
-    read: Callable[[Source, Request], Record | StoredMotion] = field(repr=False)
-    binary: bool = field(default=False, repr=False)
-    own: bool = field(default=False, repr=False)
-
-
-def _own(module: Any) -> Format:
-    return Format(
-        module.NAME,
-        module.TITLE,
-        module.SUFFIXES,
-        module.recognises,
-        module.read,
-        binary=getattr(module, "BINARY", False),
-        own=True,
-    )
-
-
 # asked in this order; text takes every column of numbers, so it comes last
 _OWN: Final = tuple(
-    _own(module)
-    for module in (
-        *(peer, cosmos, csmip, smc, esm, knet, geonet, cwa),
-        *(afad, bhrc, csmnc, resorce, unam),
-        *(asdf, netcdf, miniseed, sac),
+    replace(one, own=True)
+    for one in (
+        *(PEER_AT2, COSMOS, CSMIP, SMC, ESM, KNET, GEONET, CWA),
+        *(AFAD, BHRC, CSMNC, RESORCE, UNAM),
+        *(ASDF, NETCDF, MINISEED, SAC),
     )
 )
-_LAST: Final = _own(text)
-WITH_RESPONSE: Final = (miniseed.NAME, sac.NAME, asdf.NAME)
+_LAST: Final = replace(TEXT, own=True)
+WITH_RESPONSE: Final = (MINISEED.name, SAC.name, ASDF.name)
 """Formats that may hold counts, which the response of the instrument makes accelerations."""
 _registered: list[Format] = []
 

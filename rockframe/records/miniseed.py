@@ -25,7 +25,7 @@ from typing import TYPE_CHECKING, Any, Final, cast
 import numpy as np
 
 from rockframe.errors import RecordError
-from rockframe.records.checks import check_asked_time_step, check_time_step
+from rockframe.records.checks import check_time_step, settle_time_step
 from rockframe.records.components import (
     UNKNOWN,
     FileComponent,
@@ -39,7 +39,7 @@ from rockframe.records.instruments import (
     codes_of,
     record_of_counts,
 )
-from rockframe.records.record_file import MAXIMUM_SAMPLES, Metadata, Record, Request, Source
+from rockframe.records.record_file import MAXIMUM_SAMPLES, Format, Metadata, Record, Request, Source
 from rockframe.records.unit_names import choose_unit
 
 if TYPE_CHECKING:
@@ -47,10 +47,6 @@ if TYPE_CHECKING:
 
     from rockframe.signals.arrays import Array
 
-NAME: Final = "miniseed"
-TITLE: Final = "miniSEED file (through ObsPy)"
-SUFFIXES: Final = (".mseed", ".miniseed", ".ms", ".seed")
-BINARY: Final = True
 
 # sequence number, kind, then the codes of station, location (some write --), channel and network
 _RECORD: Final = re.compile(rb"[0-9 ]{6}[DRQM][ \x00]([A-Z0-9 ]{5}(?:[A-Z0-9 ]{2}|--)[A-Z0-9 ]{5})")
@@ -66,15 +62,13 @@ _MOST_TRACES: Final = 2_000
 _MOST_CHANNELS: Final = 1_000
 
 
-def recognises(source: Source) -> bool:
-    """Tell whether the file begins with the header of a data record."""
+def _recognises(source: Source) -> bool:
     data = source.data
     return _RECORD.match(data) is not None or data.startswith(_VERSION_3)
 
 
-def read(source: Source, request: Request) -> Record:
-    """Read the acceleration of one channel, or of two."""
-    if not recognises(source):
+def _read(source: Source, request: Request) -> Record:
+    if not _recognises(source):
         found = f"a file that begins with {source.data[:8]!r}"
         raise source.refuse(found=found, expected=_EXPECTED)
     if request.unit is not None and request.response is not None:
@@ -222,8 +216,7 @@ def _samples(
     metadata: Metadata,
 ) -> Record:
     counts, time_step, start = joined_traces(source, traces)
-    check_time_step(source, time_step, None)
-    check_asked_time_step(source, request, time_step, None)
+    settle_time_step(source, request, time_step, None)
     about: Metadata = {key: value for key, value in metadata.items() if value}
     about["record_time"] = start
     return record_of_counts(source, request, counts, time_step, about, response)
@@ -308,3 +301,13 @@ def _stated_unit(stats: Mapping[str, Any]) -> str | None:
     standard = stats.get("standard")
     unit = cast("Mapping[str, Any]", standard).get("units") if hasattr(standard, "get") else None
     return unit if isinstance(unit, str) and unit else None
+
+
+MINISEED: Final = Format(
+    "miniseed",
+    "miniSEED file (through ObsPy)",
+    (".mseed", ".miniseed", ".ms", ".seed"),
+    _recognises,
+    _read,
+    binary=True,
+)

@@ -19,17 +19,12 @@ import xarray as xr
 from rockframe.errors import ComponentError, RecordError, SchemaError
 from rockframe.records.checks import check_asked_time_step
 from rockframe.records.components import UNKNOWN, FileComponent, choose_component, orientation_of
-from rockframe.records.record_file import Record, Request, Source, StoredMotion
+from rockframe.records.record_file import Format, Record, Request, Source, StoredMotion
 from rockframe.records.unit_names import RecordUnit
 from rockframe.signals import Motion, Signal
 from rockframe.signals.arrays import OWNER, Array
 from rockframe.signals.signal import VERTICAL
 from rockframe.units import Unit
-
-NAME: Final = "netcdf"
-TITLE: Final = "netCDF file of a motion, written by rockframe"
-SUFFIXES: Final = (".nc",)
-BINARY: Final = True
 
 LONG_NAMES: Final = {
     "acceleration": "horizontal ground acceleration",
@@ -78,11 +73,7 @@ def is_netcdf(source: Source) -> bool:
     return source.data.startswith(_MAGIC)
 
 
-recognises = is_netcdf
-
-
-def read(source: Source, request: Request) -> StoredMotion:
-    """Read a motion that was stored."""
+def _read(source: Source, request: Request) -> StoredMotion:
     if not is_netcdf(source):
         found = f"a file that begins with {source.data[:8]!r}"
         raise source.refuse(found=found, expected=_EXPECTED)
@@ -263,3 +254,13 @@ def _mapping(attributes: Mapping[str, Any], name: str) -> dict[str, Any] | None:
         found = f"an attribute {name!r} that is not a JSON object"
         raise NoMotionError(found)
     return cast("dict[str, Any]", loaded)
+
+
+NETCDF: Final = Format(
+    "netcdf",
+    "netCDF file of a motion, written by rockframe",
+    (".nc",),
+    is_netcdf,
+    _read,
+    binary=True,
+)

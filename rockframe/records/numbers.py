@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 import re
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Final
 
@@ -27,6 +28,22 @@ _SHAPE: Final = re.compile(r"[-+]?\d*(\.\d*)?(?:[EeDd][-+]?(\d+))?", re.ASCII)
 _SAME_SHAPE: Final = 20
 _FEWEST: Final = 4
 _CHUNK: Final = 2**20
+_LONGEST_COUNT: Final = 12
+_WHOLE: Final = re.compile(r"[-+]?\d+", re.ASCII)
+
+_EPOCH: Final = datetime(1970, 1, 1, tzinfo=UTC)
+_SAME: Final = 0.1 * (1.0 + 1e-6)
+"""Time steps that samples of one time may be apart: clocks of digitisers round to 0.1 ms."""
+
+_JITTER: Final = 1e-6
+_FLOAT_ULPS: Final = 8.0
+_TIES: Final = 1.0 + 1e-6
+_COARSEST_DIGIT: Final = 0.5
+_ROUNDED_AT_ALL: Final = 0.05
+_PLAIN_DIGITS: Final = 4
+_SMALLEST: Final = 1e-9
+_LARGEST: Final = 1e9
+_LONGEST_EXPONENT: Final = 5
 
 
 def free_format(source: Source, first: int, end: int | None = None) -> Array:
@@ -40,6 +57,27 @@ def free_format(source: Source, first: int, end: int | None = None) -> Array:
             raise too_many(source, count, line=stop)
         parts.append(part)
     return np.concatenate(parts) if parts else np.empty(0)
+
+
+def all_numbers(source: Source, first: int, end: int | None = None, *, of: object = None) -> Array:
+    """Read all numbers from a line on, of as many as are announced, and refuse a file cut short."""
+    values = free_format(source, first, end)
+    if end is None:
+        announced = "" if of is None else f" of {of}"
+        check_end(source, last_fields(source, first), f"{values.size}{announced} samples")
+    return values
+
+
+def check_end(source: Source, fields: Sequence[str], held: str, line: int | None = None) -> None:
+    """Refuse a file that stops in the middle of its last number."""
+    if ends_inside_number(source, fields):
+        raise cut_short(source, held, line)
+
+
+def cut_short(source: Source, held: str, line: int | None = None) -> RecordError:
+    """Build the error for a file that stops in the middle of a number."""
+    found, line = f"the end of the file inside a number ({held})", line or source.last_line
+    return source.refuse(found=found, expected="a complete file", line=line)
 
 
 def too_many(source: Source, count: int, line: int | None = None) -> RecordError:
@@ -172,86 +210,84 @@ def _careful(field: str, source: Source, line: int) -> list[float]:
     return [one_number(piece, source, line) for piece in pieces]
 
 
-_LONGEST_COUNT: Final = 12
-_WHOLE: Final = re.compile(r"[-+]?\d+", re.ASCII)
+@dataclass(frozen=True)
+class FixedWidth:
+    """Numbers of one width that stand side by side, as Fortran writes them: not split at blanks."""
 
+    width: int
+    per_line: int
+    indent: int = 0
 
-def fixed_width(
-    source: Source, first: int, count: int, *, width: int, per_line: int, indent: int = 0
-) -> Array:
-    """Read numbers of one width that stand side by side."""
-    if width < 1 or per_line < 1:
-        found = f"a layout of {per_line} numbers of {width} characters in a line"
-        raise source.refuse(found=found, expected="one or more of each", line=first)
-    if count < 2:
-        found = f"{count} samples announced"
-        raise source.refuse(found=found, expected="two or more", line=first)
-    if count > MAXIMUM_SAMPLES:
-        raise too_many(source, count, line=first)
-    needed = -(-count // per_line)
-    lines = [line.rstrip()[indent:] for line in source.lines[first : first + needed]]
-    if len(lines) < needed or not lines[-1]:
-        held = min(sum(len(line) // width for line in lines), count - 1)
-        raise source.refuse(
-            found=f"the end of the file after {held} samples",
-            expected=f"{count} samples",
-            line=source.last_line,
-        )
-    full = width * per_line
-    last = width * (count - per_line * (needed - 1))
-    for index, line in enumerate(lines):
-        length = full if index < needed - 1 else last
-        if len(line) != length:
-            fields = length // width
-            raise source.refuse(
-                found=f"{len(line)} characters ({quoted_first_line(line)})",
-                expected=f"{length}: {fields} numbers of {width} characters",
-                line=first + index + 1,
-            )
-    body = "".join(lines)
-    fields = [body[place : place + width] for place in range(0, len(body), width)]
-    if is_plain(body):
-        for attempt in (fields, map(with_e, fields)):
-            values = floats(list(attempt))
-            if values is not None:
-                return values
-    checked = [
-        one_number(field.strip(), source, first + index // per_line + 1)
-        for index, field in enumerate(fields)
-    ]
-    return np.array(checked, dtype=np.float64)
+    def rows(self, count: int) -> int:
+        """Give how many lines so many numbers take."""
+        return -(-count // self.per_line)
 
+    def read(self, source: Source, first: int, count: int) -> Array:
+        """Read numbers from a line on."""
+        width, per_line = self.width, self.per_line
+        if width < 1 or per_line < 1:
+            found = f"a layout of {per_line} numbers of {width} characters in a line"
+            raise source.refuse(found=found, expected="one or more of each", line=first)
+        if count < 2:
+            found = f"{count} samples announced"
+            raise source.refuse(found=found, expected="two or more", line=first)
+        if count > MAXIMUM_SAMPLES:
+            raise too_many(source, count, line=first)
+        needed = self.rows(count)
+        lines = [line.rstrip()[self.indent :] for line in source.lines[first : first + needed]]
+        if len(lines) < needed or not lines[-1]:
+            held = min(sum(len(line) // width for line in lines), count - 1)
+            found = f"the end of the file after {held} samples"
+            raise source.refuse(found=found, expected=f"{count} samples", line=source.last_line)
+        last = count - per_line * (needed - 1)
+        for index, line in enumerate(lines):
+            fields = per_line if index < needed - 1 else last
+            if len(line) != width * fields:
+                raise source.refuse(
+                    found=f"{len(line)} characters ({quoted_first_line(line)})",
+                    expected=f"{width * fields}: {fields} numbers of {width} characters",
+                    line=first + index + 1,
+                )
+        body = "".join(lines)
+        printed = [body[place : place + width] for place in range(0, len(body), width)]
+        if is_plain(body):
+            for attempt in (printed, map(with_e, printed)):
+                values = floats(list(attempt))
+                if values is not None:
+                    return values
+        checked = [
+            one_number(field.strip(), source, first + index // per_line + 1)
+            for index, field in enumerate(printed)
+        ]
+        return np.array(checked, dtype=np.float64)
 
-def cell(source: Source, first: int, place: int, *, width: int, per_line: int) -> str:
-    """Give one field of a header of fixed width, without blanks around it."""
-    row, column = divmod(place - 1, per_line)
-    if first + row >= len(source.lines):
-        return ""
-    return source.lines[first + row][column * width : (column + 1) * width].strip()
+    def line(self, first: int, place: int) -> int:
+        """Give the line of a field of a header, from 1."""
+        return first + (place - 1) // self.per_line + 1
 
+    def cell(self, source: Source, first: int, place: int) -> str:
+        """Give one field of a header, without blanks around it."""
+        row, column = divmod(place - 1, self.per_line)
+        if first + row >= len(source.lines):
+            return ""
+        return source.lines[first + row][column * self.width : (column + 1) * self.width].strip()
 
-def header_number(
-    source: Source, first: int, place: int, *, width: int, per_line: int, what: str
-) -> float:
-    """Read one number of a header of fixed width."""
-    text = cell(source, first, place, width=width, per_line=per_line)
-    line = first + (place - 1) // per_line + 1
-    if not text:
-        raise source.refuse(found=f"no {what}", expected=f"a number ({what})", line=line)
-    return one_number(text, source, line)
+    def number(self, source: Source, first: int, place: int, what: str) -> float:
+        """Read one number of a header."""
+        text, line = self.cell(source, first, place), self.line(first, place)
+        if not text:
+            raise source.refuse(found=f"no {what}", expected=f"a number ({what})", line=line)
+        return one_number(text, source, line)
 
-
-def header_count(
-    source: Source, first: int, place: int, *, width: int, per_line: int, what: str
-) -> int:
-    """Read one whole number of a header of fixed width, like :func:`header_number`."""
-    text = cell(source, first, place, width=width, per_line=per_line)
-    line = first + (place - 1) // per_line + 1
-    value = whole(text)
-    if value is None:
-        found = f"{quoted_first_line(text)} for the {what}"
-        raise source.refuse(found=found, expected="a whole number", line=line)
-    return value
+    def count(self, source: Source, first: int, place: int, what: str) -> int:
+        """Read one whole number of a header."""
+        text = self.cell(source, first, place)
+        value = whole(text)
+        if value is None:
+            found = f"{quoted_first_line(text)} for the {what}"
+            line = self.line(first, place)
+            raise source.refuse(found=found, expected="a whole number", line=line)
+        return value
 
 
 def whole(text: str) -> int | None:
@@ -260,21 +296,6 @@ def whole(text: str) -> int | None:
     if len(text) > _LONGEST_COUNT or _WHOLE.fullmatch(text) is None:
         return None
     return int(text)
-
-
-_EPOCH: Final = datetime(1970, 1, 1, tzinfo=UTC)
-_SAME: Final = 0.1 * (1.0 + 1e-6)
-"""Time steps that samples of one time may be apart: clocks of digitisers round to 0.1 ms."""
-
-_JITTER: Final = 1e-6
-_FLOAT_ULPS: Final = 8.0
-_TIES: Final = 1.0 + 1e-6
-_COARSEST_DIGIT: Final = 0.5
-_ROUNDED_AT_ALL: Final = 0.05
-_PLAIN_DIGITS: Final = 4
-_SMALLEST: Final = 1e-9
-_LARGEST: Final = 1e9
-_LONGEST_EXPONENT: Final = 5
 
 
 def same_start(one: object, other: object, time_step: float) -> bool:

@@ -21,7 +21,7 @@ from pathlib import PurePath
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from rockframe.errors import RecordError
-from rockframe.records.checks import check_asked_time_step, check_time_step, settle_count
+from rockframe.records.checks import record_of, settle_time_step
 from rockframe.records.components import (
     UNKNOWN,
     FileComponent,
@@ -29,16 +29,21 @@ from rockframe.records.components import (
     choose_component,
     orientation_of,
 )
-from rockframe.records.numbers import NUMBER, ends_inside_number, free_format, last_fields
-from rockframe.records.record_file import Metadata, Record, Request, Source, quoted_first_line
+from rockframe.records.numbers import NUMBER, all_numbers
+from rockframe.records.record_file import (
+    Format,
+    Metadata,
+    Record,
+    Request,
+    Source,
+    quoted_first_line,
+)
 from rockframe.records.unit_names import choose_unit
 
 if TYPE_CHECKING:
-    from rockframe.records.record_file import Source
+    from rockframe.records.record_file import Format, Source
 
-NAME: Final = "peer-at2"
-TITLE: Final = "PEER acceleration file (AT2)"
-SUFFIXES: Final = (".at2",)
+_SUFFIX: Final = ".at2"
 
 HEADER_LINES: Final = 20
 _POINTS: Final = re.compile(r"NPTS\s*[=:]\s*([-+]?[\d.]+)", re.IGNORECASE)
@@ -55,43 +60,27 @@ _UPRIGHT: Final = re.compile(r"[-_](UP|UPDO|DWN|DN|VER|VRT|VERT)$", re.IGNORECAS
 _DATE: Final = re.compile(r"\d{1,4}[/-]\d{1,2}[/-]\d{1,4}")
 
 
-def recognises(source: Source) -> bool:
-    """Tell whether a line with NPTS stands near the top, or the name says AT2."""
+def _recognises(source: Source) -> bool:
     top = source.top(HEADER_LINES)
-    other_motion = source.suffix in {*SUFFIXES, ".vt2", ".dt2"}
+    other_motion = source.suffix in {_SUFFIX, ".vt2", ".dt2"}
     return other_motion or any(_POINTS.search(line) or _WEST1.match(line) for line in top)
 
 
-def read(source: Source, request: Request) -> Record:
-    """Read a PEER AT2 file.
-
-    If the number of points disagrees with the data, the data count; when more
-    than a tenth (and more than five points, one line) are missing, or the file
-    stops in the middle of a number, it was cut short and is refused.
-    """
+def _read(source: Source, request: Request) -> Record:
     index = _points_line(source)
     declared, time_step = _points_and_step(source, index)
-    check_time_step(source, time_step, index + 1)
-    check_asked_time_step(source, request, time_step, index + 1)
+    settle_time_step(source, request, time_step, index + 1)
     _check_kind(source, index)
     unit_name, unit_line = _unit(source, index)
-    unit, as_read, warnings = choose_unit(source, request, unit_name, unit_line)
+    chosen = choose_unit(source, request, unit_name, unit_line)
     metadata = _description(source, index)
-    metadata["unit_as_read"] = as_read
     given = metadata.get("component")
     name = None if given is None else str(given)
 
     def samples() -> Record:
-        end = _end_mark(source)
-        values = free_format(source, index + 1, end)
-        if end is None and ends_inside_number(source, last_fields(source, index + 1)):
-            found = f"the end of the file inside a number ({values.size} of {declared} samples)"
-            raise source.refuse(found=found, expected="a complete file", line=source.last_line)
-        counts, differing = settle_count(
-            source, declared=declared, counted=int(values.size), what="NPTS", line=index + 1
-        )
-        said = (*warnings, *differing)
-        return Record(time_step, values, unit, {**metadata, **counts}, warnings=said)
+        values = all_numbers(source, index + 1, _end_mark(source), of=declared)
+        count = (declared, "NPTS", index + 1)
+        return record_of(source, values, time_step, chosen, metadata, count=count)
 
     direction = _by_file_name(source) if name is None else orientation_of(name)
     return choose_component(source, request, [FileComponent(name, samples, direction)])
@@ -182,6 +171,9 @@ def _description(source: Source, index: int) -> Metadata:
     if component:
         metadata["component"] = component.split("(")[0].strip() or component
     return metadata
+
+
+PEER_AT2: Final = Format("peer-at2", "PEER acceleration file (AT2)", (_SUFFIX,), _recognises, _read)
 
 
 Known: TypeAlias = "dict[str, str | float | int]"

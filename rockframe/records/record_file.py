@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias
 from rockframe.errors import RecordError
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     from rockframe.records.unit_names import RecordUnit
     from rockframe.signals import Motion
@@ -198,6 +198,37 @@ class StoredMotion:
     metadata: Metadata  # as written
     history: tuple[str, ...]
     recipe: Mapping[str, Any] | None  # constructor and arguments of an analytic motion
+
+
+@dataclass(frozen=True)
+class Format:
+    """A file format that records can be read from.
+
+    Parameters
+    ----------
+    name : str
+        What the argument ``format`` takes.
+    title : str
+        In words.
+    suffixes : tuple of str
+        Usual extensions.
+    recognises : callable
+        Whether a file looks like this format.
+    read : callable
+        The reader.
+    binary : bool
+        Whether it reads bytes (``source.data``) instead of lines.
+    own : bool
+        Whether it is part of this package.
+    """
+
+    name: str
+    title: str
+    suffixes: tuple[str, ...]
+    recognises: Callable[[Source], bool] = field(repr=False)
+    read: Callable[[Source, Request], Record | StoredMotion] = field(repr=False)
+    binary: bool = field(default=False, repr=False)
+    own: bool = field(default=False, repr=False)
 
 
 def source_of(name: str, data: bytes) -> Source:

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from rockframe.records.checks import check_asked_time_step, check_time_step
+from rockframe.records.checks import settle_time_step
 from rockframe.records.components import (
     DOWNWARDS,
     UPWARDS,
@@ -31,15 +31,11 @@ from rockframe.records.components import (
     orientation_of,
 )
 from rockframe.records.instruments import InstrumentResponses, location_code, record_of_counts
-from rockframe.records.record_file import MAXIMUM_SAMPLES, Metadata, Record, Request, Source
+from rockframe.records.record_file import MAXIMUM_SAMPLES, Format, Metadata, Record, Request, Source
 
 if TYPE_CHECKING:
     from rockframe.signals.arrays import Array
 
-NAME: Final = "sac"
-TITLE: Final = "SAC file (binary)"
-SUFFIXES: Final = (".sac",)
-BINARY: Final = True
 
 _FLOATS: Final = 70
 _INTEGERS: Final = 40
@@ -84,13 +80,11 @@ class _Header:
         return "" if set(text.split()) <= {str(_UNKNOWN)} else text
 
 
-def recognises(source: Source) -> bool:
-    """Tell whether the file has a SAC header of a known version, in one of the byte orders."""
+def _recognises(source: Source) -> bool:
     return _header(source) is not None
 
 
-def read(source: Source, request: Request) -> Record:
-    """Read an acceleration."""
+def _read(source: Source, request: Request) -> Record:
     header = _header(source)
     if header is None:
         found = f"a file that begins with {source.data[:8]!r}"
@@ -139,8 +133,7 @@ def _samples(source: Source, request: Request, header: _Header, name: str) -> Re
         raise source.refuse(found=found, expected=f"{count} samples")
     # a step printed with 7 digits is what the 32-bit float was made from
     time_step = float(f"{header.floats[_DELTA]:.7g}")
-    check_time_step(source, time_step, None)
-    check_asked_time_step(source, request, time_step, None)
+    settle_time_step(source, request, time_step, None)
     with np.errstate(invalid="ignore"):
         values = np.frombuffer(source.data, f"{header.order}f4", count, _HEADER).astype(np.float64)
     if not np.isfinite(values).all():
@@ -224,3 +217,6 @@ def _description(header: _Header) -> tuple[Metadata, datetime | None]:
         return metadata, None
     metadata["record_time"] = f"{start.isoformat()}Z"
     return metadata, start
+
+
+SAC: Final = Format("sac", "SAC file (binary)", (".sac",), _recognises, _read, binary=True)

@@ -15,7 +15,7 @@ import math
 import re
 from typing import TYPE_CHECKING, Final
 
-from rockframe.records.checks import check_asked_time_step, check_time_step, compare_peak, surplus
+from rockframe.records.checks import Stated, record_of, settle_time_step, surplus
 from rockframe.records.components import (
     DOWNWARDS,
     UNKNOWN,
@@ -26,25 +26,20 @@ from rockframe.records.components import (
     choose_component,
     orientation_of,
 )
-from rockframe.records.numbers import (
-    NUMBER,
-    cell,
-    fixed_width,
-    header_count,
-    header_number,
-    whole,
-    with_e,
+from rockframe.records.numbers import NUMBER, FixedWidth, whole, with_e
+from rockframe.records.record_file import (
+    Format,
+    Metadata,
+    Record,
+    Request,
+    Source,
+    quoted_first_line,
 )
-from rockframe.records.record_file import Metadata, Record, Request, Source, quoted_first_line
 from rockframe.records.unit_names import choose_unit
 
 if TYPE_CHECKING:
-    from rockframe.records.unit_names import RecordUnit
-    from rockframe.signals.arrays import Array
+    pass
 
-NAME: Final = "smc"
-TITLE: Final = "USGS SMC file"
-SUFFIXES: Final = (".smc",)
 
 UNIT: Final = "cm/sec/sec"
 """Of the data, by the specification."""
@@ -63,9 +58,9 @@ _EVENT: Final = re.compile(r"^\s*(\d{4})\s+(\d{1,2})\s+(\d{1,2})\s+(\d{1,4})?\s*
 _INTEGERS: Final = 11
 _REALS: Final = 17
 _COMMENTS: Final = 27
-_INTEGER_LAYOUT: Final = {"width": 10, "per_line": 8}
-_REAL_LAYOUT: Final = {"width": 15, "per_line": 5}
-_DATA_LAYOUT: Final = {"width": 10, "per_line": 8}
+_INTEGER_LAYOUT: Final = FixedWidth(10, 8)
+_REAL_LAYOUT: Final = FixedWidth(15, 5)
+_DATA_LAYOUT: Final = FixedWidth(10, 8)
 _UNKNOWN_INTEGER: Final = -32768
 _UNKNOWN_REAL: Final = 1.7e38
 _FASTEST: Final = 1e5
@@ -75,13 +70,11 @@ _HORIZONTAL: Final = 90
 _DOWN: Final = 180
 
 
-def recognises(source: Source) -> bool:
-    """Tell whether the first line is one of the format's own."""
+def _recognises(source: Source) -> bool:
     return _KIND.match(source.top(1)[0]) is not None
 
 
-def read(source: Source, request: Request) -> Record:
-    """Read an accelerogram."""
+def _read(source: Source, request: Request) -> Record:
     _check_kind(source)
     name, direction = _component(source)
 
@@ -113,8 +106,8 @@ def _component(source: Source) -> tuple[str | None, Orientation]:
     if direction != UNKNOWN:
         return name, direction
     # where the text does not tell: integer 13 is the angle from the vertical, 14 the azimuth
-    slope = whole(cell(source, _INTEGERS, 13, **_INTEGER_LAYOUT))
-    azimuth = whole(cell(source, _INTEGERS, 14, **_INTEGER_LAYOUT))
+    slope = whole(_INTEGER_LAYOUT.cell(source, _INTEGERS, 13))
+    azimuth = whole(_INTEGER_LAYOUT.cell(source, _INTEGERS, 14))
     if slope == 0:
         return name or "UP", Orientation(vertical=UPWARDS)
     if slope == _DOWN:
@@ -129,12 +122,8 @@ def _aliases(direction: Orientation) -> tuple[str, ...]:
 
 
 def _samples(source: Source, request: Request) -> Record:
-    comments = header_count(
-        source, _INTEGERS, 16, **_INTEGER_LAYOUT, what="number of comment lines (integer 16)"
-    )
-    count = header_count(
-        source, _INTEGERS, 17, **_INTEGER_LAYOUT, what="number of samples (integer 17)"
-    )
+    comments = _INTEGER_LAYOUT.count(source, _INTEGERS, 16, "number of comment lines (integer 16)")
+    count = _INTEGER_LAYOUT.count(source, _INTEGERS, 17, "number of samples (integer 17)")
     if comments == _UNKNOWN_INTEGER:
         comments = 0
     first = _COMMENTS + comments
@@ -146,40 +135,37 @@ def _samples(source: Source, request: Request) -> Record:
         if not line.startswith("|"):
             found = f"{quoted_first_line(line)} among {comments} comment lines"
             raise source.refuse(found=found, expected="a line that begins with '|'", line=index)
-    time_step = _time_step(source)
-    check_asked_time_step(source, request, time_step, _REALS + 1)
-    unit, as_read, warnings = choose_unit(source, request, UNIT, None)
-    values = fixed_width(source, first, count, **_DATA_LAYOUT)
-    problem = whole(cell(source, _INTEGERS, 18, **_INTEGER_LAYOUT))
+    time_step = _time_step(source, request)
+    chosen = choose_unit(source, request, UNIT, None)
+    values = _DATA_LAYOUT.read(source, first, count)
     kind = _KIND.match(source.top(1)[0])
+    said, behind = [], surplus(source, first + _DATA_LAYOUT.rows(count), "integer 17 (line 14)")
     if kind is not None and kind.group(2).upper() == UNKNOWN_KIND:
         words = f"{source.path}, line 1: the file does not say what it holds; an accelerogram "
-        warnings.append(f"{words}in {as_read} is assumed")
-    warnings += _doubts(source, values, unit)
-    warnings += surplus(
-        source, first + -(-count // _DATA_LAYOUT["per_line"]), "integer 17 (line 14)"
-    )
-    if problem == 1:
+        said = [f"{words}in {chosen[1]} is assumed"]
+    if whole(_INTEGER_LAYOUT.cell(source, _INTEGERS, 18)) == 1:
         words = f"{source.path}, line 14: the file marks a problem (integer 18); see its comments"
-        warnings.append(words)
-    metadata = {**_description(source), "unit_as_read": as_read}
-    return Record(time_step, values, unit, metadata, warnings=tuple(warnings))
+        behind.append(words)
+    stated = _stated_peak(source)
+    about = _description(source)
+    return record_of(
+        source, values, time_step, chosen, about, said=said, stated=stated, behind=behind
+    )
 
 
-def _doubts(source: Source, values: Array, unit: RecordUnit) -> list[str]:
-    """Hold the largest of the peaks in reals 30 and 32 against the samples."""
-    printed = [cell(source, _REALS, place, **_REAL_LAYOUT) for place in _PEAKS]
+def _stated_peak(source: Source) -> list[Stated]:
+    """Give the larger of the peaks in reals 30 and 32."""
+    printed = [_REAL_LAYOUT.cell(source, _REALS, place) for place in _PEAKS]
     stated = [abs(float(with_e(text))) for text in printed if _REAL.fullmatch(text)]
     known = [value for value in stated if value < _UNKNOWN_REAL / 10.0]
     if len(known) < len(_PEAKS):
         return []
-    peak, line = f"{max(known):.9g}", _REALS + 1 + (_PEAKS[0] - 1) // _REAL_LAYOUT["per_line"]
-    return compare_peak(source, values, unit, printed=peak, printed_unit=UNIT, line=line)
+    return [Stated(f"{max(known):.9g}", UNIT, _REAL_LAYOUT.line(_REALS, _PEAKS[0]))]
 
 
-def _time_step(source: Source) -> float:
+def _time_step(source: Source, request: Request) -> float:
     line = _REALS + 1
-    rate = header_number(source, _REALS, 2, **_REAL_LAYOUT, what="sampling rate (real 2)")
+    rate = _REAL_LAYOUT.number(source, _REALS, 2, "sampling rate (real 2)")
     if math.isclose(rate, _UNKNOWN_REAL):
         found = "no sampling rate (real 2): pairs of time and acceleration, unevenly sampled"
         expected = "an evenly sampled record, such as the corrected one of the set"
@@ -188,9 +174,8 @@ def _time_step(source: Source) -> float:
         found = f"a sampling rate of {rate!r} per second"
         expected = f"a rate above zero, at most {_FASTEST:g} per second"
         raise source.refuse(found=found, expected=expected, line=line)
-    time_step = 1.0 / rate
-    check_time_step(source, time_step, line)
-    return time_step
+    settle_time_step(source, request, 1.0 / rate, line)
+    return 1.0 / rate
 
 
 def _description(source: Source) -> Metadata:
@@ -212,3 +197,6 @@ def _description(source: Source) -> Metadata:
         if station is not None and station.group(1):
             metadata["station_name"] = station.group(1)
     return metadata
+
+
+SMC: Final = Format("smc", "USGS SMC file", (".smc",), _recognises, _read)

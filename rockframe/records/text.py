@@ -12,19 +12,20 @@ import numpy as np
 from rockframe.records.checks import (
     check_asked_time_step,
     check_time_step,
-    compare_peak,
-    settle_count,
+    doubts_of,
+    record_of,
+    settle_time_step,
 )
 from rockframe.records.components import FileComponent, choose_component
 from rockframe.records.numbers import (
-    ends_inside_number,
-    free_format,
+    all_numbers,
+    check_end,
     last_fields,
     one_number,
     too_many,
     uniform_step,
 )
-from rockframe.records.record_file import MAXIMUM_SAMPLES, Metadata, Record, Request, Source
+from rockframe.records.record_file import MAXIMUM_SAMPLES, Format, Metadata, Record, Request, Source
 from rockframe.records.text_columns import (
     BY_ROWS,
     COLUMNS,
@@ -55,9 +56,6 @@ from rockframe.records.unit_names import choose_unit
 if TYPE_CHECKING:
     from rockframe.signals.arrays import Array
 
-NAME: Final = "text"
-TITLE: Final = "text or CSV, columns of accelerations, with or without the time"
-SUFFIXES: Final = (".txt", ".csv", ".dat", ".tsv", ".asc")
 
 MOST_COLUMNS: Final = 12
 
@@ -65,13 +63,11 @@ _AGREEMENT: Final = 1e-3
 _ROUNDING: Final = 1e-6
 
 
-def recognises(source: Source) -> bool:
-    """Tell whether a row of numbers stands near the top."""
+def _recognises(source: Source) -> bool:
     return any(re.match(r"\s*[-+.\d]", line) for line in source.top(4 * HEADER_LINES))
 
 
-def read(source: Source, request: Request) -> Record:
-    """Read columns of numbers."""
+def _read(source: Source, request: Request) -> Record:
     first_lines = find_first_lines(source)
     if first_lines is not None:
         return _counted(source, request, first_lines)
@@ -97,9 +93,7 @@ def read(source: Source, request: Request) -> Record:
             expected = f"component={BY_ROWS!r}, or a column such as component={held[0].name!r}"
             raise source.refuse(found=found, expected=expected, line=table.lines[0])
     check_last_row(source, table)
-    if ends_inside_number(source, table.last_fields):
-        found = f"the end of the file inside a number ({rows} samples)"
-        raise source.refuse(found=found, expected="a complete file", line=table.lines[-1])
+    check_end(source, table.last_fields, f"{rows} samples", table.lines[-1])
     warnings: list[str] = []
     first = 0
     if timed:
@@ -146,9 +140,7 @@ def _row_by_row(source: Source, request: Request, table: Table, metadata: Metada
         found = f"one record of {words}, where numbers go on to the right"
         expected = f"component={BY_ROWS!r}, or no component"
         raise source.refuse(found=found, expected=expected, line=table.lines[0])
-    if ends_inside_number(source, last_fields(source, table.lines[0] - 1)):
-        found = f"the end of the file inside a number ({values.size} samples)"
-        raise source.refuse(found=found, expected="a complete file", line=source.last_line)
+    check_end(source, last_fields(source, table.lines[0] - 1), f"{values.size} samples")
     time_step = _step_without_times(source, request, table)
     single = replace(table, values=values[:, np.newaxis], rest=[])
 
@@ -176,10 +168,7 @@ def _record(
     unit, as_read, said = choose_unit(source, request, name, line)
     peak = stated_peak(table.header) if table.values.shape[1] <= 2 else None
     if peak is not None:
-        printed, peak_unit, peak_line = peak
-        said += compare_peak(
-            source, values, unit, printed=printed, printed_unit=peak_unit, line=peak_line
-        )
+        said += doubts_of(source, values, unit, time_step, [peak])
     about: Metadata = {"unit_as_read": as_read, **metadata}
     return Record(time_step, values, unit, about, warnings=(*said, *warnings))
 
@@ -188,26 +177,16 @@ def _counted(source: Source, request: Request, head: FirstLines) -> Record:
     check_asked_time_step(source, request, head.time_step, head.line)
 
     def samples() -> Record:
-        unit, as_read, warnings = choose_unit(source, request, None, None)
-        values = free_format(source, head.data_at)
-        if ends_inside_number(source, last_fields(source, head.data_at)):
-            found = f"the end of the file inside a number ({values.size} samples)"
-            raise source.refuse(found=found, expected="a complete file", line=source.last_line)
-        counts, differing = settle_count(
-            source,
-            declared=head.count,
-            counted=int(values.size),
-            what="the number in front",
-            line=head.line,
-        )
+        chosen = choose_unit(source, request, None, None)
+        values = all_numbers(source, head.data_at)
+        count = (head.count, "the number in front", head.line)
+        record = record_of(source, values, head.time_step, chosen, {}, count=count)
         above = [text.strip() for text in source.top(head.line - 1) if text.strip()]
-        metadata: Metadata = {"unit_as_read": as_read, **counts}
+        metadata = record.metadata
         if above:
             metadata["description"] = above[0].lstrip("#% \t")
         history = (f"{head.count} samples and a time step, as line {head.line} says",)
-        return Record(
-            head.time_step, values, unit, metadata, history, warnings=(*warnings, *differing)
-        )
+        return replace(record, history=history)
 
     return choose_component(source, request, [FileComponent(None, samples)])
 
@@ -216,8 +195,7 @@ def _step_without_times(source: Source, request: Request, table: Table) -> float
     stated = stated_step(table.header)
     if stated is not None:
         time_step, line = stated
-        check_time_step(source, time_step, line)
-        check_asked_time_step(source, request, time_step, line)
+        settle_time_step(source, request, time_step, line)
         return time_step
     if request.time_step is None:
         found = f"{'one column' if table.values.shape[1] == 1 else 'accelerations'} and no times"
@@ -273,3 +251,12 @@ def _compare_step(source: Source, table: Table, time_step: float) -> list[str]:
         f"{source.path}, line {stated[1]}: the header states a time step of {stated[0]:g} s, "
         f"but the times are {time_step:g} s apart; the times are used"
     ]
+
+
+TEXT: Final = Format(
+    "text",
+    "text or CSV, columns of accelerations, with or without the time",
+    (".txt", ".csv", ".dat", ".tsv", ".asc"),
+    _recognises,
+    _read,
+)

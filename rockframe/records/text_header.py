@@ -7,6 +7,7 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
+from rockframe.records.checks import Stated
 from rockframe.records.components import UNKNOWN, Orientation, orientation_of
 from rockframe.records.numbers import NUMBER, with_e
 from rockframe.records.record_file import Source, quoted_first_line
@@ -286,13 +287,13 @@ def stated_step(header: list[tuple[int, str]]) -> tuple[float, int] | None:
     return None
 
 
-def stated_peak(header: list[tuple[int, str]]) -> tuple[str, str, int] | None:
-    """Find a peak that the header states: the number as printed, its unit, its line."""
+def stated_peak(header: list[tuple[int, str]]) -> Stated | None:
+    """Find a peak that the header states."""
     for line, text in header:
         match = _PEAK.search(text)
         if match is not None:
             before, printed, behind = match.groups()
             unit = (before or behind or "").strip()
             if unit:
-                return printed, unit, line
+                return Stated(printed, unit, line)
     return None

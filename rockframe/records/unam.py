@@ -17,37 +17,33 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from functools import cache
 from typing import TYPE_CHECKING, Final
 
-from rockframe.records.checks import (
-    check_asked_time_step,
-    check_time_step,
-    compare_length,
-    compare_peak,
-    settle_count,
-)
+from rockframe.records.checks import LENGTH, Stated, record_of, settle_count, settle_time_step
 from rockframe.records.components import (
-    DOWNWARDS,
-    UNKNOWN,
     UPWARDS,
     VERTICAL,
     FileComponent,
     Orientation,
-    azimuth_of,
     choose_component,
     orientation_of,
 )
-from rockframe.records.keys import Keys, kept, needed, read_keys
-from rockframe.records.numbers import fixed_width, one_number, whole
-from rockframe.records.record_file import Metadata, Record, Request, Source, quoted_first_line
+from rockframe.records.headers import NOTHING, Keys, kept, needed, read_keys
+from rockframe.records.numbers import FixedWidth, one_number, whole
+from rockframe.records.record_file import (
+    Format,
+    Metadata,
+    Record,
+    Request,
+    Source,
+    quoted_first_line,
+)
 from rockframe.records.unit_names import choose_unit
 
 if TYPE_CHECKING:
     from rockframe.signals.arrays import Array
 
-NAME: Final = "unam"
-TITLE: Final = "standard acceleration file (ASA), Mexico"
-SUFFIXES: Final = (".asa",)
 
 _TITLE: Final = re.compile(r"ARCHIVO ESTANDAR DE ACELERACION", re.IGNORECASE)
 _DATA: Final = re.compile(r"^\s*DATOS DE ACELERACION", re.IGNORECASE)
@@ -82,48 +78,41 @@ class _Lists:
     lengths: list[tuple[str, int]]
 
 
-def recognises(source: Source) -> bool:
-    """Tell whether the title stands near the top."""
+def _recognises(source: Source) -> bool:
     return any(map(_TITLE.search, source.top(20)))
 
 
-def read(source: Source, request: Request) -> Record:
-    """Read the acceleration of one channel, or of two."""
+def _read(source: Source, request: Request) -> Record:
     top = source.top(_LONGEST_HEADER)
     header = read_keys(top)
     lists = _Lists(**{name: _list(header, start) for name, start in _LISTS.items()})
-    per_line, width = _layout(source, header)
+    layout = _layout(source, header)
     first = _first_row(source, top)
-    channels = min(len(lists.directions), per_line)
+    channels = min(len(lists.directions), layout.per_line)
     if not 1 <= channels <= _MOST_CHANNELS:
         found = f"the orientations of {channels} channels"
         raise source.refuse(found=found, expected="one to twelve, such as '/V/N90E/N00E'", line=1)
     metadata = _description(header)
-    tables: list[Array] = []
+
+    @cache
+    def table() -> Array:
+        rows = source.last_line - first
+        if rows < 2:
+            found = f"{max(rows, 0)} rows of numbers"
+            raise source.refuse(found=found, expected="two or more", line=source.last_line)
+        values = layout.read(source, first, rows * layout.per_line)
+        return values.reshape(rows, layout.per_line)
 
     def samples(place: int) -> Record:
-        if not tables:
-            rows = source.last_line - first
-            if rows < 2:
-                found = f"{max(rows, 0)} rows of numbers"
-                raise source.refuse(found=found, expected="two or more", line=source.last_line)
-            values = fixed_width(source, first, rows * per_line, width=width, per_line=per_line)
-            tables.append(values.reshape(rows, per_line))
-        values = tables[0][:, place].copy()
+        values = table()[:, place].copy()
         return _samples(source, request, header, lists, place, values, metadata)
 
     components: list[FileComponent] = []
     for place, (said, line) in enumerate(lists.directions[:channels]):
         name, direction = _direction(said)
-        components.append(
-            FileComponent(
-                name or f"channel {place + 1}",
-                lambda place=place: samples(place),
-                direction,
-                channel=place + 1,
-                line=line,
-            )
-        )
+        name = name or f"channel {place + 1}"
+        read = lambda place=place: samples(place)  # noqa: E731
+        components.append(FileComponent(name, read, direction, channel=place + 1, line=line))
     return choose_component(source, request, components)
 
 
@@ -137,33 +126,28 @@ def _samples(
     metadata: Metadata,
 ) -> Record:
     text, unit_line = needed(source, header, _UNITS)
-    unit, as_read, warnings = choose_unit(source, request, text.split()[0], unit_line)
+    chosen = choose_unit(source, request, text.split()[0], unit_line)
     printed, line = _entry(source, lists.steps, place, "sampling interval")
     time_step = one_number(printed, source, line)
-    check_time_step(source, time_step, line)
-    check_asked_time_step(source, request, time_step, line)
-    said, count_line = _entry(source, lists.counts, place, "number of samples")
-    declared = whole(said)
+    settle_time_step(source, request, time_step, line)
+    announced, count_line = _entry(source, lists.counts, place, "number of samples")
+    declared = whole(announced)
     if declared is None or declared < 1:
-        found = f"{quoted_first_line(said)} samples"
-        expected = "a whole number above zero"
+        found, expected = f"{quoted_first_line(announced)} samples", "a whole number above zero"
         raise source.refuse(found=found, expected=expected, line=count_line)
-    counts, differing = settle_count(
+    counts, said = settle_count(
         source,
         declared=declared,
         counted=values.size,
         what="NUM. TOTAL DE MUESTRAS",
         line=count_line,
     )
-    warnings += differing
-    for peak, peak_line in lists.peaks[place : place + 1]:
-        warnings += compare_peak(
-            source, values, unit, printed=peak, printed_unit=_PEAK_UNIT, line=peak_line
-        )
-    for length, length_line in lists.lengths[place : place + 1]:
-        warnings += compare_length(source, values.size, time_step, printed=length, line=length_line)
-    about: Metadata = {**metadata, **counts, "unit_as_read": as_read}
-    return Record(time_step, values, unit, about, warnings=tuple(warnings))
+    about: Metadata = {**metadata, **counts}
+    stated = [
+        *(Stated(text, _PEAK_UNIT, line) for text, line in lists.peaks[place : place + 1]),
+        *(Stated(text, LENGTH, line) for text, line in lists.lengths[place : place + 1]),
+    ]
+    return record_of(source, values, time_step, chosen, about, said=said, stated=stated)
 
 
 def _list(header: Keys, start: str) -> list[tuple[str, int]]:
@@ -184,7 +168,7 @@ def _entry(
     return entries[place]
 
 
-def _layout(source: Source, header: Keys) -> tuple[int, int]:
+def _layout(source: Source, header: Keys) -> FixedWidth:
     text, line = needed(source, header, _LAYOUT_KEY)
     match = _LAYOUT.match(text)
     if match is None or int(match.group(1)) < 1 or int(match.group(2)) < 1:
@@ -192,7 +176,7 @@ def _layout(source: Source, header: Keys) -> tuple[int, int]:
         raise source.refuse(
             found=f"the layout {quoted_first_line(text)}", expected=expected, line=line
         )
-    return int(match.group(1)), int(match.group(2))
+    return FixedWidth(int(match.group(2)), int(match.group(1)))
 
 
 def _first_row(source: Source, top: list[str]) -> int:
@@ -210,23 +194,22 @@ def _direction(said: str) -> tuple[str, Orientation]:
     direction = orientation_of(plain)
     if direction.vertical == VERTICAL and name.startswith("+"):
         return plain, Orientation(vertical=UPWARDS)
-    if not name.startswith("-"):
-        return plain, direction
-    if direction.vertical is not None:
-        return name, Orientation(vertical=DOWNWARDS)
-    if direction.azimuth is not None:
-        return name, azimuth_of((direction.azimuth + 180.0) % 360.0)
-    return name, UNKNOWN
+    return (name, direction.reversed()) if name.startswith("-") else (plain, direction)
 
 
 def _description(header: Keys) -> Metadata:
     metadata = kept(header, _KEPT)
-    day = header.get("FECHA DEL SISMO [GMT]", ("", 0))[0]
-    clock = header.get("HORA EPICENTRO (GMT)", ("", 0))[0]
+    day = header.get("FECHA DEL SISMO [GMT]", NOTHING)[0]
+    clock = header.get("HORA EPICENTRO (GMT)", NOTHING)[0]
     if day:
         metadata["event_time"] = f"{day} {clock} GMT" if clock else day
         metadata["event"] = f"earthquake of {metadata['event_time']}"
-    start = header.get("HORA DE LA PRIMERA MUESTRA (GMT)", ("", 0))[0]
+    start = header.get("HORA DE LA PRIMERA MUESTRA (GMT)", NOTHING)[0]
     if start:
         metadata["record_time"] = f"{start} GMT"
     return metadata
+
+
+UNAM: Final = Format(
+    "unam", "standard acceleration file (ASA), Mexico", (".asa",), _recognises, _read
+)

@@ -14,7 +14,6 @@ SHARED_CLASSES = {
 SHARED_FUNCTIONS = {
     # the same for each of several
     "execute",  # commands
-    "read", "recognises",  # formats of records; GroundMotion.read
     "fastest_vibration", "small_motion_matrices", "solve_motion",  # equations of several bodies
     "matched",  # a motion, and a suite
     # public names that users have known from the beginning

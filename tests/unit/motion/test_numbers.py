@@ -7,7 +7,7 @@ from unit.motion.motion_files import at2, rows
 from rockframe.errors import RecordError
 from rockframe.motion import GroundMotion
 from rockframe.records import numbers
-from rockframe.records.numbers import fixed_width, free_format
+from rockframe.records.numbers import FixedWidth, free_format
 from rockframe.records.record_file import source_of
 
 # all negative: no blank is left between numbers that fill their width
@@ -42,7 +42,7 @@ class TestNumbersThatTouch:
     def test_in_fixed_width(self, form, per_line):
         width = len(FORMS[form].format(-0.1))
         given = source(text(form, per_line))
-        found = fixed_width(given, 0, FULL.size, width=width, per_line=per_line)
+        found = FixedWidth(width, per_line).read(given, 0, FULL.size)
         assert found.tolist() == printed(form)
 
     @pytest.mark.filterwarnings("ignore::rockframe.errors.RecordWarning")
@@ -59,9 +59,9 @@ def test_numbers_of_a_fixed_width_need_no_sign_between_them():
     given = source(
         "head\n" + "".join(f"--{row}" for row in rows(values, 2, "{:7.4f}").splitlines(True))
     )
-    assert fixed_width(given, 1, 5, width=7, per_line=2, indent=2).tolist() == values.tolist()
+    assert FixedWidth(7, 2, indent=2).read(given, 1, 5).tolist() == values.tolist()
     with pytest.raises(RecordError, match="14: 2 numbers of 7 characters"):
-        fixed_width(source("12.345698.7654\n12.34569.7654\n1.0\n"), 0, 5, width=7, per_line=2)
+        FixedWidth(7, 2).read(source("12.345698.7654\n12.34569.7654\n1.0\n"), 0, 5)
 
 
 @pytest.mark.parametrize("last", ["5", ".5"])

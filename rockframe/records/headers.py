@@ -1,10 +1,11 @@
-"""Headers made of keys and values, one per line."""
+"""Headers in text: lines that a pattern finds, and keys with values, one per line."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, TypeAlias
+import re
+from typing import TYPE_CHECKING, Final, TypeAlias
 
-from rockframe.records.checks import check_asked_time_step, check_time_step
+from rockframe.records.checks import settle_time_step
 from rockframe.records.numbers import one_number, whole
 from rockframe.records.record_file import quoted_first_line
 
@@ -15,6 +16,18 @@ if TYPE_CHECKING:
 
 Keys: TypeAlias = "dict[str, tuple[str, int]]"
 """Value and line, from 1, of each key."""
+
+
+NOTHING: Final = ("", 0)
+"""Of a key that is not there."""
+
+
+def first_match(
+    pattern: re.Pattern[str], lines: Iterable[str], first: int = 1
+) -> tuple[re.Match[str], int] | None:
+    """Find the first line in which a pattern is found, and its number, counted from `first`."""
+    matches = ((pattern.search(text), line) for line, text in enumerate(lines, start=first))
+    return next(((match, line) for match, line in matches if match is not None), None)
 
 
 def read_keys(lines: Iterable[str], first: int = 1) -> Keys:
@@ -46,25 +59,25 @@ def needed(source: Source, keys: Keys, key: str) -> tuple[str, int]:
     return value, line
 
 
-def needed_rate(source: Source, keys: Keys, key: str) -> tuple[float, int]:
-    """Give a sampling rate that must be there and above zero, and its line [Hz]."""
+def needed_rate(source: Source, request: Request, keys: Keys, key: str) -> float:
+    """Give a sampling rate that must be there and above zero, and fit what is asked for [Hz]."""
     text, line = needed(source, keys, key)
     rate = one_number(text.casefold().removesuffix("hz").strip(), source, line)
     if not rate > 0.0:
         found = f"a sampling rate of {rate!r} Hz"
         raise source.refuse(found=found, expected="one above zero", line=line)
-    return rate, line
+    settle_time_step(source, request, 1.0 / rate, line)
+    return rate
 
 
 def needed_step(source: Source, request: Request, keys: Keys, key: str) -> float:
     """Give a time step that must be there, and be that which the caller asked for [s]."""
     text, line = needed(source, keys, key)
     time_step = one_number(text, source, line)
-    check_time_step(source, time_step, line)
-    check_asked_time_step(source, request, time_step, line)
+    settle_time_step(source, request, time_step, line)
     return time_step
 
 
 def kept(keys: Keys, names: Mapping[str, str]) -> Metadata:
     """Give those values that go into the metadata, under their new names."""
-    return {name: keys[key][0] for key, name in names.items() if keys.get(key, ("", 0))[0]}
+    return {name: keys[key][0] for key, name in names.items() if keys.get(key, NOTHING)[0]}

@@ -1,0 +1,365 @@
+"""Text below a header of words, one component or a table: ESM and ITACA, RESORCE, AFAD, CSMNC.
+
+References: Engineering Strong-Motion Database (ESM) and Italian Accelerometric Archive (ITACA),
+ASCII format ``HEADER_FORMAT: DYNA 1.2``; of the others the headers of the files themselves.
+"""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from typing import TYPE_CHECKING, Final
+
+from rockframe.records.checks import LENGTH, Stated, record_of, settle_time_step, surplus
+from rockframe.records.components import UNKNOWN, FileComponent, choose_component, orientation_of
+from rockframe.records.headers import (
+    NOTHING,
+    Keys,
+    first_match,
+    kept,
+    needed_count,
+    needed_step,
+    read_keys,
+)
+from rockframe.records.numbers import (
+    NUMBER,
+    FixedWidth,
+    all_numbers,
+    check_end,
+    free_format,
+    last_fields,
+    one_number,
+)
+from rockframe.records.record_file import (
+    Format,
+    Metadata,
+    Record,
+    Request,
+    Source,
+    quoted_first_line,
+)
+from rockframe.records.unit_names import choose_unit
+
+if TYPE_CHECKING:
+    from rockframe.signals.arrays import Array
+
+_LONGEST_HEADER: Final = 40
+
+# ESM and ITACA: lines ``KEY: value``, then one number per line. The header of DYNA 1.0 to 1.2 has
+# 64 lines or fewer. That of ITACA 1.1, which came before, calls the component ``COMPONENT``
+# instead of ``STREAM``, its version ``DATA_VERSION``, and its data ``UNPROCESSED`` or ``PROCESSED
+# ACCELERATION``.
+
+_ESM_KEY: Final = re.compile(r"^([A-Z][A-Z0-9_/^ ]{2,60}?)\s*:\s*(.*?)\s*$")
+_ESM_MARKS: Final = frozenset(
+    ("SAMPLING_INTERVAL_S", "NDATA", "STREAM", "DATABASE_VERSION", "DATA_VERSION")
+)
+_ESM_LONGEST_HEADER: Final = 120
+_ESM_PEAK_UNIT: Final = "cm/s^2"  # as its key says, whatever the samples are in
+_ESM_KEPT: Final = {
+    "EVENT_NAME": "event",
+    "EVENT_ID": "event_id",
+    "NETWORK": "network",
+    "STATION_CODE": "station",
+    "STATION_NAME": "station_name",
+    "DATE_TIME_FIRST_SAMPLE_YYYYMMDD_HHMMSS": "record_time",
+    "BASELINE_CORRECTION": "baseline_correction",
+    "PROCESSING": "processing",
+}
+
+
+def _is_esm(source: Source) -> bool:
+    top = source.top(_ESM_LONGEST_HEADER)
+    return len(_ESM_MARKS & {match[1] for line in top if (match := _ESM_KEY.match(line))}) >= 2
+
+
+def _read_esm(source: Source, request: Request) -> Record:
+    header, first = _esm_header(source)
+    kind, kind_line = header.get("DATA_TYPE", NOTHING)
+    if kind and kind.casefold().removeprefix("un").removeprefix("processed ") != "acceleration":
+        found = f"DATA_TYPE {quoted_first_line(kind)}"
+        raise source.refuse(found=found, expected="an acceleration", line=kind_line)
+    time_step = needed_step(source, request, header, "SAMPLING_INTERVAL_S")
+    unit_name, unit_line = header.get("UNITS", NOTHING)
+    chosen = choose_unit(source, request, unit_name or None, unit_line or None)
+    declared, count_line = needed_count(source, header, "NDATA")
+    metadata = kept(header, _ESM_KEPT)
+    day = header.get("EVENT_DATE_YYYYMMDD", NOTHING)[0]
+    clock = header.get("EVENT_TIME_HHMMSS", NOTHING)[0]
+    if day:
+        metadata["event_time"] = f"{day}_{clock}" if clock else day
+    name, name_line = header.get("STREAM", header.get("COMPONENT", NOTHING))
+    peak, peak_line = header.get("PGA_CM/S^2", NOTHING)
+    length, length_line = header.get("DURATION_S", NOTHING)
+
+    def samples() -> Record:
+        values = all_numbers(source, first, of=declared)
+        count = (declared, "NDATA", count_line)
+        stated = (Stated(peak, _ESM_PEAK_UNIT, peak_line), Stated(length, LENGTH, length_line))
+        return record_of(source, values, time_step, chosen, metadata, count=count, stated=stated)
+
+    component = FileComponent(name or None, samples, orientation_of(name), line=name_line or None)
+    return choose_component(source, request, [component])
+
+
+def _esm_header(source: Source) -> tuple[Keys, int]:
+    header: Keys = {}
+    for line, text in enumerate(source.top(_ESM_LONGEST_HEADER), start=1):
+        match = _ESM_KEY.match(text)
+        if match is not None:
+            header.setdefault(match[1], (match[2], line))
+        elif text.strip():
+            return header, line - 1
+    found = f"no data in the first {_ESM_LONGEST_HEADER} lines"
+    expected = "numbers below a header of 64 lines"
+    raise source.refuse(found=found, expected=expected, line=source.last_line)
+
+
+ESM: Final = Format("esm", "ESM or ITACA file (DYNA ASCII)", (".asc", ".dat"), _is_esm, _read_esm)
+
+
+# RESORCE and SIGMA: lines ``KEY : value``, then five numbers in a line, which fill their width, so
+# that they run together where they are negative (the spelling of "acceleration" is theirs):
+#
+#     Time Increment (s)            : 0.005
+#     Number of Data                : 12400
+#     PGA (m/s/s)                   : 1.0022000E-02
+#     Accelaration time series in m/s/s
+#      4.1965000E-05 4.1963000E-05 4.1971000E-05 4.1993000E-05 4.2032000E-05
+
+_RESORCE_STEP: Final = "Time Increment (s)"
+_RESORCE_COUNT: Final = "Number of Data"
+_SERIES: Final = re.compile(r"^\s*acc?el\w{3,10} time series in (\S{1,20})", re.IGNORECASE)
+_RESORCE_PEAK: Final = re.compile(r"^PGA \((\S{1,20})\)$", re.IGNORECASE)
+_RESORCE_LAYOUT: Final = FixedWidth(14, 5)
+_RESORCE_KEPT: Final = {
+    "Event Date & Time": "event_time",
+    "Network": "network",
+    "Processing Info": "processing",
+}
+
+
+def _is_resorce(source: Source) -> bool:
+    return {_RESORCE_STEP, _RESORCE_COUNT} <= set(read_keys(source.top(_LONGEST_HEADER)))
+
+
+def _read_resorce(source: Source, request: Request) -> Record:
+    header = read_keys(source.top(_LONGEST_HEADER))
+    time_step = needed_step(source, request, header, _RESORCE_STEP)
+    count, _ = needed_count(source, header, _RESORCE_COUNT)
+    series = first_match(_SERIES, source.top(_LONGEST_HEADER))
+    if series is None:
+        found = f"no line with the unit below {quoted_first_line(source.start)}"
+        expected = "'Accelaration time series in m/s/s' above the numbers"
+        raise source.refuse(found=found, expected=expected, line=1)
+    unit_match, line = series
+    chosen = choose_unit(source, request, unit_match[1], line)
+    metadata: Metadata = {**kept(header, _RESORCE_KEPT), "unit_as_read": chosen[1]}
+    code, _, place = header.get("Station Code / Name", NOTHING)[0].partition("/")
+    if code.strip():
+        metadata["station"] = code.strip()
+    if place.strip():
+        metadata["station_name"] = place.strip()
+    if "event_time" in metadata:
+        metadata["event"] = f"earthquake of {metadata['event_time']}"
+    name, name_line = header.get("Orientation", NOTHING)
+    stated = [
+        Stated(printed, match[1], peak_line)
+        for key, (printed, peak_line) in header.items()
+        if (match := _RESORCE_PEAK.match(key)) is not None
+    ]
+
+    def samples() -> Record:
+        values = _RESORCE_LAYOUT.read(source, line, count)
+        said = surplus(source, line + _RESORCE_LAYOUT.rows(count), _RESORCE_COUNT)
+        return record_of(source, values, time_step, chosen, metadata, said=said, stated=stated)
+
+    component = FileComponent(name or None, samples, orientation_of(name), line=name_line or None)
+    return choose_component(source, request, [component])
+
+
+RESORCE: Final = Format("resorce", "RESORCE file (.cor.acc)", (".acc",), _is_resorce, _read_resorce)
+
+
+# Turkey's Disaster and Emergency Management Presidency (AFAD), until 2018: lines ``KEY : value``,
+# then the names of three columns, then the columns, in the unit of the peaks. Later files are
+# those of ESM.
+#
+#     NUMBER OF DATA          : 13494
+#     SAMPLING INTERVAL (sec) : 0.01
+#     RAW PGA VALUES (gal)    : (N-S) 21.838512 (E-W) 26.042589 (U-D) 9.799439
+#            N-S          E-W          U-D
+
+_AFAD_STEP: Final = "SAMPLING INTERVAL (sec)"
+_AFAD_COUNT: Final = "NUMBER OF DATA"
+_AFAD_PEAKS: Final = re.compile(r"^RAW PGA VALUES? \((\S{1,12})\)$", re.IGNORECASE)
+_AFAD_PEAK: Final = re.compile(rf"\(\s*([A-Z-]{{1,6}})\s*\)\s*({NUMBER})", re.IGNORECASE | re.ASCII)
+_AFAD_KEPT: Final = {
+    "STATION ID": "station",
+    "PLACE": "station_name",
+    "EARTHQUAKE DATE": "event_time",
+    "RECORD TIME": "record_time",
+    "RECORDER TYPE": "instrument",
+}
+
+
+def _is_afad(source: Source) -> bool:
+    return {_AFAD_STEP, _AFAD_COUNT} <= set(read_keys(source.top(_LONGEST_HEADER)))
+
+
+def _read_afad(source: Source, request: Request) -> Record:
+    header = read_keys(source.top(_LONGEST_HEADER))
+    time_step = needed_step(source, request, header, _AFAD_STEP)
+    declared, count_line = needed_count(source, header, _AFAD_COUNT)
+    names, first = _afad_columns(source)
+    peaks, unit_name, peaks_line = _afad_peaks(header)
+    chosen = choose_unit(source, request, unit_name, peaks_line)
+    metadata: Metadata = {**kept(header, _AFAD_KEPT), "unit_as_read": chosen[1]}
+    if "event_time" in metadata:
+        metadata["event"] = f"earthquake of {metadata['event_time']}"
+
+    @cache
+    def table() -> Array:
+        return _afad_table(source, first, len(names))
+
+    def samples(place: int) -> Record:
+        values = table()[:, place].copy()
+        count = (declared, _AFAD_COUNT, count_line)
+        stated = [Stated(peaks.get(names[place], ""), unit_name or "", peaks_line or 1)]
+        return record_of(source, values, time_step, chosen, metadata, count=count, stated=stated)
+
+    components = [
+        FileComponent(name, lambda place=place: samples(place), orientation_of(name), line=first)
+        for place, name in enumerate(names)
+    ]
+    return choose_component(source, request, components)
+
+
+def _afad_columns(source: Source) -> tuple[list[str], int]:
+    for line, text in enumerate(source.top(_LONGEST_HEADER), start=1):
+        names = text.split()
+        if len(names) > 1 and all(orientation_of(name) != UNKNOWN for name in names):
+            return names, line
+    found = f"no columns below {quoted_first_line(source.start)}"
+    expected = "a line with the names of the columns, such as 'N-S E-W U-D'"
+    raise source.refuse(found=found, expected=expected, line=1)
+
+
+def _afad_peaks(header: Keys) -> tuple[dict[str, str], str | None, int | None]:
+    for key, (text, line) in header.items():
+        match = _AFAD_PEAKS.match(key)
+        if match is not None:
+            return dict(_AFAD_PEAK.findall(text)), match[1], line
+    return {}, None, None
+
+
+def _afad_table(source: Source, first: int, columns: int) -> Array:
+    for index in range(first, source.last_line):
+        fields = len(source.lines[index].split())
+        if fields != columns:
+            found, expected = f"{fields} fields", f"{columns}, one for each component"
+            raise source.refuse(found=found, expected=expected, line=index + 1)
+    values = free_format(source, first)
+    if values.size % columns or values.size < columns:
+        found, expected = f"{values.size} numbers", f"{columns} in each line"
+        raise source.refuse(found=found, expected=expected, line=source.last_line)
+    last = last_fields(source, first)[columns - 1 :: columns]
+    check_end(source, last, f"{values.size // columns} samples")
+    return values.reshape(-1, columns)
+
+
+AFAD: Final = Format("afad", "AFAD file, Turkey, in three columns", (".txt",), _is_afad, _read_afad)
+
+
+# China Strong Motion Networks Centre: one component below sixteen lines such as
+#
+#     COMP. EW
+#     UNCORRECTED ACCELERATION          UNIT: CM/SEC/SEC
+#     NO. OF POINTS:  12800  EQUALLY SPACED INTERVALS OF:  0.005  SEC
+#     PEAK VALUE:    -16.986   AT   27.06 SEC    DURATION:  64 SEC
+
+_KIND: Final = re.compile(
+    r"^\s*(?:UN)?(?:CORRECTED|PROCESSED) (ACCELERATION|VELOCITY|DISPLACEMENT)\s+UNIT:\s*(\S{1,20})",
+    re.IGNORECASE,
+)
+_POINTS: Final = re.compile(
+    rf"^\s*NO\. OF POINTS:\s*(\d{{1,9}})\s+EQUALLY SPACED INTERVALS OF:\s*({NUMBER})\s*SEC",
+    re.IGNORECASE | re.ASCII,
+)
+_PEAK: Final = re.compile(rf"^\s*PEAK VALUE:\s*({NUMBER})", re.IGNORECASE | re.ASCII)
+_LENGTH: Final = re.compile(rf"\bDURATION:\s*({NUMBER})\s*SEC", re.IGNORECASE | re.ASCII)
+_COMPONENT: Final = re.compile(r"^\s*COMP\.?\s*(\S{1,12})", re.IGNORECASE)
+_STATION: Final = re.compile(r"^\s*STATION:\s*(\S{1,12})", re.IGNORECASE)
+_TIME: Final = re.compile(r"\b(\d{4}-\d{1,2}-\d{1,2} \d{1,2}:\d{2}:[\d.]{2,8}(?: [A-Z]{2,4})?)")
+_NUMBERS: Final = re.compile(r"[-+.\dEeDd\s]*\d[-+.\dEeDd\s]*", re.ASCII)
+
+
+def _is_csmnc(source: Source) -> bool:
+    top = source.top(_LONGEST_HEADER)
+    return any(map(_KIND.match, top)) and any(map(_POINTS.match, top))
+
+
+def _read_csmnc(source: Source, request: Request) -> Record:
+    top = source.top(_LONGEST_HEADER)
+    kind, kind_line = _csmnc_line(source, _KIND, "UNCORRECTED ACCELERATION   UNIT: CM/SEC/SEC")
+    such_as = "NO. OF POINTS: 12800 EQUALLY SPACED INTERVALS OF: ..."
+    points, line = _csmnc_line(source, _POINTS, such_as)
+    if kind[1].upper() != "ACCELERATION":
+        found = f"a {kind[1].lower()}"
+        raise source.refuse(found=found, expected="an acceleration", line=kind_line)
+    time_step = one_number(points[2], source, line)
+    settle_time_step(source, request, time_step, line)
+    chosen = choose_unit(source, request, kind[2], kind_line)
+    first = next((k for k in range(line, len(top)) if _NUMBERS.fullmatch(top[k])), len(top))
+    metadata = _csmnc_description(top)
+    named = first_match(_COMPONENT, top)
+    stated: list[Stated] = []
+    for place, text in enumerate(top, start=1):
+        peak, length = _PEAK.match(text), _LENGTH.search(text)
+        if peak is not None:
+            stated.append(Stated(peak[1], kind[2], place))
+        if length is not None:
+            stated.append(Stated(length[1], LENGTH, place))
+
+    def samples() -> Record:
+        values = all_numbers(source, first)
+        count = (int(points[1]), "NO. OF POINTS", line)
+        return record_of(source, values, time_step, chosen, metadata, count=count, stated=stated)
+
+    name, name_line = (None, None) if named is None else (named[0][1], named[1])
+    component = FileComponent(name, samples, orientation_of(name or ""), line=name_line)
+    return choose_component(source, request, [component])
+
+
+def _csmnc_line(
+    source: Source, pattern: re.Pattern[str], such_as: str
+) -> tuple[re.Match[str], int]:
+    found = first_match(pattern, source.top(_LONGEST_HEADER))
+    if found is None:
+        words = f"no such line below {quoted_first_line(source.start)}"
+        raise source.refuse(found=words, expected=f"a line such as {such_as!r}", line=1)
+    return found
+
+
+def _csmnc_description(top: list[str]) -> Metadata:
+    metadata: Metadata = {}
+    if len(top) > 2 and re.search("[A-Za-z]", top[2]):
+        metadata["event"] = top[2].strip()
+    time = _TIME.search(top[1]) if len(top) > 1 else None
+    if time is not None:
+        metadata["event_time"] = time[1]
+    for text in top:
+        station = _STATION.match(text)
+        start = _TIME.search(text) if "RECORDER TIME" in text.upper() else None
+        if station is not None:
+            metadata["station"] = station[1]
+        if start is not None:
+            metadata["record_time"] = start[1]
+        if _KIND.match(text):
+            metadata["description"] = text.split("UNIT")[0].strip().lower()
+    return metadata
+
+
+CSMNC: Final = Format(
+    "csmnc", "file of the China Strong Motion Networks Centre", (".dat",), _is_csmnc, _read_csmnc
+)

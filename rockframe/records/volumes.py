@@ -1,0 +1,348 @@
+"""Components one after another: text, integers, reals, then data in fixed width. GeoNet and BHRC.
+
+References: W. J. Cousins, "GNS Accelerogram Data Files, Standard Format", GNS Science,
+22 January 2008; GeoNet, "Strong Motion File Formats"; Iran Strong Motion Network, the header of
+the files itself.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+from rockframe.records.checks import (
+    LENGTH,
+    Stated,
+    check_asked_time_step,
+    check_time_step,
+    record_of,
+    settle_time_step,
+    surplus,
+)
+from rockframe.records.components import (
+    UNKNOWN,
+    VERTICAL,
+    FileComponent,
+    Orientation,
+    azimuth_of,
+    choose_component,
+    orientation_of,
+)
+from rockframe.records.headers import first_match
+from rockframe.records.numbers import FixedWidth, one_number, whole
+from rockframe.records.record_file import (
+    Format,
+    Metadata,
+    Record,
+    Request,
+    Source,
+    quoted_first_line,
+)
+from rockframe.records.unit_names import choose_unit
+
+if TYPE_CHECKING:
+    from rockframe.errors import RecordError
+
+_MOST_COMPONENTS: Final = 12
+
+# GeoNet (GNS Science), V1A and V2A: 16 lines of text, 40 integers and 60 reals (ten of 8
+# characters in a line), then the accelerations [mm/s^2], and, in a corrected file, the velocities
+# and displacements, which are skipped. Integers 31 and 34 to 36 count the digitised samples and
+# the accelerations, velocities and displacements; real 26 is the time step.
+
+_GEONET_UNIT: Final = "mm/s^2"
+_GEONET_FIRST: Final = re.compile(r"^\s*(un)?corrected accelerogram\b", re.IGNORECASE)
+_GEONET_NAME: Final = re.compile(r"^\s*Component\s+(\S{1,12})", re.IGNORECASE)
+_SITE: Final = re.compile(r"^\s*Site\s+(\S{1,12})", re.IGNORECASE)
+_COUNT: Final = re.compile(r"Number of points\s+(\d{1,9})", re.IGNORECASE)
+_INTERVAL: Final = re.compile(r"data at\s+([\d.]{1,9})\s+sec interval", re.IGNORECASE)
+_PEAK: Final = re.compile(
+    r"^\s*Acceleration:\s*peak\s+([-+.\d]{1,15})\s+(\S{1,10}/s/s)\b", re.IGNORECASE
+)
+_DURATION: Final = re.compile(r"\bDuration\s+([.\d]{1,12})\s*sec", re.IGNORECASE)
+_GEONET_TEXT: Final = 16
+_GEONET_LAYOUT: Final = FixedWidth(8, 10)
+_DIGIT: Final = 5.1e-4
+
+
+@dataclass(frozen=True)
+class _Block:
+    """One component: where it starts, and how many accelerations it has."""
+
+    index: int
+    count: int
+    corrected: bool
+
+    @property
+    def integers(self) -> int:
+        """Index of the first line of the integers."""
+        return self.index + _GEONET_TEXT
+
+    @property
+    def reals(self) -> int:
+        """Index of the first line of the reals."""
+        return self.index + 20
+
+    @property
+    def data(self) -> int:
+        """Index of the first line of the accelerations."""
+        return self.index + 26
+
+
+def _is_geonet(source: Source) -> bool:
+    return any(_GEONET_FIRST.match(line) and "GNS" in line for line in source.top(4))
+
+
+def _read_geonet(source: Source, request: Request) -> Record:
+    components = [_geonet_component(source, request, block) for block in _geonet_blocks(source)]
+    return choose_component(source, request, components)
+
+
+def _geonet_blocks(source: Source) -> list[_Block]:
+    blocks: list[_Block] = []
+    index = next((k for k, line in enumerate(source.top(4)) if _GEONET_FIRST.match(line)), 0)
+    while index < len(source.lines):
+        text = source.top(1, index)[0]
+        if blocks and not text.strip():
+            index += 1
+            continue
+        first = _GEONET_FIRST.match(text)
+        if first is None or len(blocks) == _MOST_COMPONENTS:
+            expected = "'Corrected accelerogram' or 'Uncorrected accelerogram'"
+            if blocks:
+                expected += (
+                    f", the next component, or the end of the file (component {len(blocks)})"
+                )
+            raise source.refuse(found=quoted_first_line(text), expected=expected, line=index + 1)
+        corrected = first[1] is None
+        block = _Block(index, _geonet_count(source, index, corrected=corrected), corrected)
+        blocks.append(block)
+        counts = [block.count]
+        if corrected:
+            counts += [
+                _quantity(source, block, 35, "velocities"),
+                _quantity(source, block, 36, "displacements"),
+            ]
+        index = block.data + sum(map(_GEONET_LAYOUT.rows, counts))
+    return blocks
+
+
+def _geonet_count(source: Source, index: int, *, corrected: bool) -> int:
+    block = _Block(index, 0, corrected)
+    count = _quantity(source, block, 34, "accelerations")
+    said = _COUNT.search("\n".join(source.top(_GEONET_TEXT, index)))
+    announced = None if said is None else int(said[1])
+    if not corrected and count != announced:
+        # an uncorrected file holds what was digitised
+        digitised = _quantity(source, block, 31, "digitised samples")
+        if count == 0 or digitised == announced:
+            count = digitised
+    if announced is not None and announced != count:
+        found = f"{count} accelerations in the integers, {announced} points in the text"
+        expected = "one number of samples"
+        raise source.refuse(found=found, expected=expected, line=block.integers + 4)
+    return count
+
+
+def _quantity(source: Source, block: _Block, place: int, what: str) -> int:
+    name = f"number of {what} (integer {place})"
+    count = _GEONET_LAYOUT.count(source, block.integers, place, name)
+    if count < 0:
+        line = block.integers + 4
+        raise source.refuse(found=f"{count} {what}", expected="none or more", line=line)
+    return count
+
+
+def _geonet_component(source: Source, request: Request, block: _Block) -> FileComponent:
+    found = first_match(_GEONET_NAME, source.top(_GEONET_TEXT, block.index), block.index + 1)
+    name, direction, line = "", UNKNOWN, block.index + 13
+    if found is not None:
+        match, line = found
+        name, direction = match[1], orientation_of(match[1])
+        if direction == UNKNOWN and "vertical" in match.string.casefold():
+            direction = Orientation(vertical=VERTICAL)
+    if direction == UNKNOWN:
+        azimuth = whole(_GEONET_LAYOUT.cell(source, block.integers, 28))
+        direction = UNKNOWN if azimuth is None else azimuth_of(float(azimuth))
+        name = name or f"{azimuth}"
+    return FileComponent(
+        name, lambda: _geonet_samples(source, request, block), direction, line=line
+    )
+
+
+def _geonet_samples(source: Source, request: Request, block: _Block) -> Record:
+    line = block.reals + 3
+    text = source.top(_GEONET_TEXT, block.index)
+    time_step = _GEONET_LAYOUT.number(source, block.reals, 26, "time step (real 26)")
+    check_time_step(source, time_step, line)
+    said = _INTERVAL.search("\n".join(text))
+    if said is not None:
+        printed = _number_or_none(said[1])
+        if printed is None or not math.isclose(printed, time_step, rel_tol=1e-6, abs_tol=_DIGIT):
+            stated_step = quoted_first_line(said[0])
+            found = f"a time step of {time_step!r} s, and {stated_step} in the text"
+            raise source.refuse(found=found, expected="one time step", line=line)
+    check_asked_time_step(source, request, time_step, line)
+    chosen = choose_unit(source, request, _GEONET_UNIT, None)
+    values = _GEONET_LAYOUT.read(source, block.data, block.count)
+    stated: list[Stated] = []
+    for number, row in enumerate(text, start=block.index + 1):
+        peak, length = _PEAK.match(row), _DURATION.search(row)
+        if peak is not None:
+            stated.append(Stated(peak[1], peak[2], number))
+        if length is not None:
+            stated.append(Stated(length[1], LENGTH, number))
+    metadata = _geonet_description(source, block)
+    return record_of(source, values, time_step, chosen, metadata, stated=stated)
+
+
+def _number_or_none(text: str) -> float | None:
+    try:
+        return float(text)
+    except ValueError:
+        return None
+
+
+def _geonet_description(source: Source, block: _Block) -> Metadata:
+    text = [line.strip() for line in source.top(_GEONET_TEXT, block.index)]
+    metadata: Metadata = {"description": "corrected" if block.corrected else "uncorrected"}
+    site = _SITE.match(text[1]) if len(text) > 1 else None
+    if site is not None:
+        metadata["station"] = site[1]
+    for place, key in ((3, "station_name"), (7, "event"), (8, "event_time")):
+        if len(text) >= place and text[place - 1]:
+            metadata[key] = " ".join(text[place - 1].split())
+    year, month, day, hour, minute, thousandths = (
+        _GEONET_LAYOUT.count(source, block.integers, place, "start of the record")
+        for place in (9, 10, 19, 20, 39, 40)
+    )
+    metadata["record_time"] = (
+        f"{year:04d}-{month:02d}-{day:02d}T{hour:02d}:{minute:02d}:{thousandths / 1000:06.3f}Z"
+    )
+    return metadata
+
+
+GEONET: Final = Format(
+    "geonet", "GeoNet accelerogram (V1A, V2A)", (".v1a", ".v2a"), _is_geonet, _read_geonet
+)
+
+
+# Iran's Building and Housing Research Center (BHRC), volume 1: three components, each closed by a
+# line ``/&``. Each has thirteen lines of text, seven of integers, seven of reals, which may be
+# cut at column 70, then ten numbers of 13 characters in a line. Real 7, the first of the second
+# line, is the sampling rate.
+
+_BHRC_FIRST: Final = re.compile(r"^\* VOL(\d)\S{0,4}\s+FILE:\s*(\S{1,20})", re.IGNORECASE)
+_BHRC_NAME: Final = re.compile(r"^COMP\s+(\S{1,12})", re.IGNORECASE)
+_POINTS: Final = re.compile(
+    r"^NO\. OF POINTS\s*=\s*(\d{1,9})\s+DURATION\s*=\s*([.\d]{1,12})", re.IGNORECASE
+)
+_UNITS: Final = re.compile(r"^UNITS ARE SEC\w{0,4} AND (\S{1,12})", re.IGNORECASE)
+_AZIMUTHS: Final = re.compile(r"\bAzimuth\s+L\s*(\d{1,3})\s+T\s*(\d{1,3})", re.IGNORECASE)
+_ORIGIN: Final = re.compile(r"^Origin Time\s*:\s*(\S.{3,40}?)\s*$", re.IGNORECASE)
+_STATION: Final = re.compile(r"^(\S.{0,60}?)\s{2,}Station\b")
+_BHRC_TEXT: Final = 13
+_BHRC_REALS_AT: Final = 20
+_BHRC_DATA_AT: Final = 27
+_BHRC_REALS: Final = FixedWidth(13, 6)
+_BHRC_LAYOUT: Final = FixedWidth(13, 10)
+_RATE: Final = 7
+
+
+def _is_bhrc(source: Source) -> bool:
+    return _BHRC_FIRST.match(source.top(1)[0]) is not None
+
+
+def _read_bhrc(source: Source, request: Request) -> Record:
+    starts: list[int] = []
+    for index, line in enumerate(source.lines):
+        if line.startswith("* VOL") and _BHRC_FIRST.match(line[:80]):
+            starts.append(index)
+        if len(starts) > _MOST_COMPONENTS:
+            expected = f"at most {_MOST_COMPONENTS} components"
+            raise source.refuse(found="more", expected=expected, line=index + 1)
+    if not starts:
+        expected = "a first line such as '* VOL1DS FILE:  5526/01'"
+        raise source.refuse(found=quoted_first_line(source.start), expected=expected, line=1)
+    components = [_bhrc_component(source, request, first) for first in starts]
+    return choose_component(source, request, components)
+
+
+def _bhrc_component(source: Source, request: Request, first: int) -> FileComponent:
+    text = source.top(_BHRC_TEXT, first)
+    found = first_match(_BHRC_NAME, text, first + 1)
+    if found is None:
+        raise _missing(source, first, "'COMP L1'")
+    name = found[0][1]
+    return FileComponent(
+        name,
+        lambda: _bhrc_samples(source, request, first, text),
+        _bhrc_orientation(name, text),
+        aliases=(name.rstrip("0123456789"),),
+        line=found[1],
+    )
+
+
+def _bhrc_orientation(name: str, text: list[str]) -> Orientation:
+    letter = name[:1].upper()
+    if letter == "V":
+        return orientation_of("V")
+    said = first_match(_AZIMUTHS, text)
+    if said is None or letter not in "LT":
+        return UNKNOWN
+    return azimuth_of(float(said[0][1 if letter == "L" else 2]))
+
+
+def _bhrc_samples(source: Source, request: Request, first: int, text: list[str]) -> Record:
+    volume = _BHRC_FIRST.match(text[0])
+    if volume is None or volume[1] != "1":
+        expected = "uncorrected accelerations (volume 1)"
+        raise source.refuse(found=quoted_first_line(text[0]), expected=expected, line=first + 1)
+    such_as = "'NO. OF POINTS =   9472  DURATION = 47.36'"
+    points, line = _bhrc_line(source, first, text, _POINTS, such_as)
+    units, unit_line = _bhrc_line(source, first, text, _UNITS, "'UNITS ARE SECONDS AND G/10'")
+    chosen = choose_unit(source, request, units[1], unit_line)
+    time_step = _bhrc_time_step(source, request, first)
+    count, data = int(points[1]), first + _BHRC_DATA_AT
+    values = _BHRC_LAYOUT.read(source, data, count)
+    metadata: Metadata = {"station": volume[2].split("/")[0], "unit_as_read": chosen[1]}
+    for one in text:
+        origin, station = _ORIGIN.match(one), _STATION.match(one)
+        if origin is not None:
+            metadata["event_time"] = " ".join(origin[1].split())
+            metadata["event"] = f"earthquake of {metadata['event_time']}"
+        if station is not None:
+            metadata["station_name"] = station[1]
+    stated = [Stated(points[2], LENGTH, line)]
+    behind = surplus(source, data + _BHRC_LAYOUT.rows(count), f"line {line}")
+    return record_of(source, values, time_step, chosen, metadata, stated=stated, behind=behind)
+
+
+def _bhrc_time_step(source: Source, request: Request, first: int) -> float:
+    line = first + _BHRC_REALS_AT + 2
+    printed = _BHRC_REALS.cell(source, first + _BHRC_REALS_AT, _RATE)
+    rate = one_number(printed or "no sampling rate (real 7)", source, line)
+    if not rate > 0.0:
+        found = f"a sampling rate of {rate!r} Hz (real 7)"
+        raise source.refuse(found=found, expected="one above zero", line=line)
+    settle_time_step(source, request, 1.0 / rate, line)
+    return 1.0 / rate
+
+
+def _bhrc_line(
+    source: Source, first: int, text: list[str], pattern: re.Pattern[str], such_as: str
+) -> tuple[re.Match[str], int]:
+    found = first_match(pattern, text, first + 1)
+    if found is None:
+        raise _missing(source, first, such_as)
+    return found
+
+
+def _missing(source: Source, first: int, such_as: str) -> RecordError:
+    found = f"no such line among the {_BHRC_TEXT} below"
+    return source.refuse(found=found, expected=f"a line such as {such_as}", line=first + 1)
+
+
+BHRC: Final = Format("bhrc", "BHRC file, Iran (volume 1)", (".v1",), _is_bhrc, _read_bhrc)
