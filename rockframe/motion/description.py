@@ -11,13 +11,13 @@ import numpy as np
 
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import SchemaError, shown
+from rockframe.motion.constructors.analytic import PULSES
 from rockframe.notebook import card, curve
 from rockframe.signals import Motion, Signal
 from rockframe.signals.signal import VERTICAL
 
 if TYPE_CHECKING:
     from rockframe.motion.value import Made, MotionValue
-
 
 _SCALED: Final = re.compile(r"scaled by (\S+)(?: to .*)?")
 
@@ -61,21 +61,7 @@ def _in_gravity(peak: float) -> str:
     return f"{peak:.4g} m/s² ({peak / STANDARD_GRAVITY:.3g} g)"
 
 
-ANALYTIC: Final = (
-    "sine_pulse",
-    "cosine_pulse",
-    "half_sine_pulse",
-    "harmonic",
-    "type_a_pulse",
-    "type_b_pulse",
-    "type_c_pulse",
-    "ricker_wavelet",
-    "mavroeidis_papageorgiou_pulse",
-    "double_impulse",
-)
-"""Constructors of pulses."""
-
-CONSTRUCTORS: Final = (*ANALYTIC, "stochastic")
+CONSTRUCTORS: Final = (*PULSES, "stochastic")
 """Constructors that a recipe may name."""
 
 OPERATIONS: Final = (

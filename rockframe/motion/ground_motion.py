@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING
 from rockframe.errors import ComponentError, shown
 from rockframe.motion import dataset, description
 from rockframe.motion.constructors import (
-    cycloidal,
+    analytic,
     records,
     synthetic,
     tables,
-    wavelets,
 )
 from rockframe.motion.operations import (
     combining,
@@ -90,16 +89,16 @@ class GroundMotion(MotionValue):
     from_frame = classmethod(tables.from_frame)
     from_trace = classmethod(tables.from_trace)
 
-    sine_pulse = classmethod(cycloidal.sine_pulse)
-    cosine_pulse = classmethod(cycloidal.cosine_pulse)
-    half_sine_pulse = classmethod(cycloidal.half_sine_pulse)
-    harmonic = classmethod(cycloidal.harmonic)
-    type_a_pulse = classmethod(cycloidal.type_a_pulse)
-    type_b_pulse = classmethod(cycloidal.type_b_pulse)
-    type_c_pulse = classmethod(cycloidal.type_c_pulse)
-    ricker_wavelet = classmethod(wavelets.ricker_wavelet)
-    mavroeidis_papageorgiou_pulse = classmethod(wavelets.mavroeidis_papageorgiou_pulse)
-    double_impulse = classmethod(wavelets.double_impulse)
+    sine_pulse = classmethod(analytic.sine_pulse)
+    cosine_pulse = classmethod(analytic.cosine_pulse)
+    half_sine_pulse = classmethod(analytic.half_sine_pulse)
+    harmonic = classmethod(analytic.harmonic)
+    type_a_pulse = classmethod(analytic.type_a_pulse)
+    type_b_pulse = classmethod(analytic.type_b_pulse)
+    type_c_pulse = classmethod(analytic.type_c_pulse)
+    ricker_wavelet = classmethod(analytic.ricker_wavelet)
+    mavroeidis_papageorgiou_pulse = classmethod(analytic.mavroeidis_papageorgiou_pulse)
+    double_impulse = classmethod(analytic.double_impulse)
     stochastic = classmethod(synthetic.stochastic)
 
     to_dataset = dataset.to_dataset

@@ -8,8 +8,7 @@ import pytest
 import sympy as sp
 
 from rockframe.motion import GroundMotion
-from rockframe.motion.pulses.harmonics import type_c_phase
-from rockframe.motion.pulses.wavelets import ANTISYMMETRIC
+from rockframe.motion.pulses import ANTISYMMETRIC, type_c_phase
 
 pytestmark = pytest.mark.analytical
 

@@ -7,7 +7,8 @@ import pytest
 
 from rockframe.errors import ComponentError, SchemaError, UnitsError
 from rockframe.motion import GroundMotion
-from rockframe.motion.description import ANALYTIC, CONSTRUCTORS
+from rockframe.motion.constructors.analytic import PULSES
+from rockframe.motion.description import CONSTRUCTORS
 
 MOTIONS = {
     "sine_pulse": GroundMotion.sine_pulse("0.3 g_0", "1.7 Hz", "130 %"),
@@ -37,7 +38,7 @@ def test_every_constructor_may_stand_in_a_recipe():
     built = {name for name, member in vars(GroundMotion).items() if isinstance(member, classmethod)}
     read = {"read", "example", *(name for name in built if name.startswith("from_"))}
     assert built - read == set(CONSTRUCTORS)
-    assert set(MOTIONS) == set(ANALYTIC)
+    assert set(MOTIONS) == set(PULSES)
 
 
 @pytest.mark.parametrize("motion", [*MOTIONS.values(), *DEFAULTS])
@@ -59,7 +60,7 @@ def test_through_a_file_bit_for_bit(motion, tmp_path):
     assert GroundMotion.from_dict(again.to_dict()) == motion
 
 
-@pytest.mark.parametrize("constructor", ANALYTIC)
+@pytest.mark.parametrize("constructor", PULSES)
 def test_what_was_done_to_a_motion_is_described_too(constructor):
     motion = MOTIONS[constructor].scaled(peak="0.2 g_0").window("0.1 s", "0.3 s")
     again = GroundMotion.from_dict(json.loads(json.dumps(motion.to_dict())))
@@ -153,7 +154,7 @@ def test_cosine_is_a_harmonic_of_a_quarter_turn():
     assert cosine.si.horizontal.samples[[0, 64, -1]].tolist() == [2.0, -2.0, 2.0]
 
 
-@pytest.mark.parametrize("constructor", ANALYTIC)
+@pytest.mark.parametrize("constructor", PULSES)
 def test_the_opposite_amplitude_is_the_opposite_motion(constructor):
     recipe = MOTIONS[constructor].to_dict()
     first = "velocity" if "velocity" in recipe else "amplitude"

@@ -1,0 +1,488 @@
+"""Analytic motions: each constructor a row of title, formula, parameters, units and source.
+
+What is read of the arguments is told in the name, the history and the recipe of the motion.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from functools import partial, wraps
+from inspect import cleandoc, signature
+from typing import TYPE_CHECKING, Any, Final, TypeVar, cast
+
+from rockframe.arguments import whole_number
+from rockframe.errors import ComponentError, shown
+from rockframe.motion.pulses import (
+    QUARTER_TURN,
+    impulse_duration,
+    mavroeidis_papageorgiou,
+    opposite_impulses,
+    ricker,
+    sine,
+    type_c,
+)
+from rockframe.units import (
+    ACCELERATION,
+    ANGLE,
+    FREQUENCY,
+    PERIOD,
+    POSITIVE,
+    VELOCITY,
+    Condition,
+    Measure,
+    Unit,
+    to_ratio,
+    to_si,
+)  # fmt: skip
+
+if TYPE_CHECKING:
+    from rockframe.motion.value import Made
+    from rockframe.signals import Motion
+    from rockframe.units import QuantityLike, RatioLike
+
+Constructor = TypeVar("Constructor", bound=Callable[..., Any])
+
+PULSES: Final[list[str]] = []
+"""Names of the constructors, in the order in which they stand here."""
+
+_MEASURES: Final[dict[str, tuple[Measure, Condition | None, str]]] = {
+    # of each parameter that is a quantity; and the word before it, where its unit leaves a doubt
+    "amplitude": (ACCELERATION, None, ""),
+    "velocity": (VELOCITY, None, ""),
+    "frequency": (FREQUENCY, POSITIVE, ""),
+    "period": (PERIOD, POSITIVE, ""),
+    "duration": (PERIOD, POSITIVE, ""),
+    "interval": (PERIOD, POSITIVE, "interval "),
+    "pulse_duration": (PERIOD, POSITIVE, "impulses of "),
+    "phase": (ANGLE, None, "phase "),
+}
+_SPELLED: Final = {
+    Unit.METRE_PER_SECOND_SQUARED: "m/s^2",
+    Unit.METRE_PER_SECOND: "m/s",
+}
+_AT_LEAST_ONE: Final = Condition("at least 1", lambda value: value >= 1.0)
+_HIGHEST_ORDER: Final = 1000
+_RAISES: Final = """
+
+Raises
+------
+UnitsError
+    A wrong unit, or none.
+ComponentError
+    Not finite, or a frequency, period or length that is not positive."""
+
+
+def _pulse(
+    title: str, formula: Callable[..., Motion], cycles: Condition = POSITIVE
+) -> Callable[[Constructor], Constructor]:
+    """Make a constructor of a formula: its arguments are read by their names, in SI units."""
+
+    def decorate(declared: Constructor) -> Constructor:
+        own = signature(declared)
+        PULSES.append(declared.__name__)
+
+        @wraps(declared)
+        def construct(kind: type[Any], *given: Any, **named: Any) -> Any:
+            declared(kind, *given, **named)  # says what is missing, or too much
+            values = own.bind(kind, *given, **named)
+            values.apply_defaults()
+            reader = _Reader(f"{kind.__name__}.{declared.__name__}", cycles)
+            for name in list(own.parameters)[1:]:
+                reader.read(name, values.arguments[name])
+            return kind(
+                formula(reader.owner, **reader.numbers),
+                name=", ".join([title, *reader.short]),
+                history=(f"{title}: {', '.join(reader.exact)}",),
+                recipe={"constructor": declared.__name__, **reader.recipe},
+            )
+
+        construct.__doc__ = _with_raises(declared.__doc__ or "")
+        return cast("Constructor", construct)
+
+    return decorate
+
+
+def _with_raises(text: str) -> str:
+    """Say, behind what is returned, what is raised by most of them."""
+    clean = cleandoc(text)
+    if not clean or "\nRaises\n" in clean:
+        return clean
+    places = (clean.find(f"\n\n{head}\n") for head in ("See Also", "Notes"))
+    end = min((place for place in places if place >= 0), default=len(clean))
+    return clean[:end] + _RAISES + clean[end:]
+
+
+class _Reader:
+    """Reads the arguments of one call, and remembers what it has read."""
+
+    def __init__(self, owner: str, cycles: Condition) -> None:
+        self.owner = owner
+        self.numbers: dict[str, Any] = {}  # in SI units, for the formula
+        self.recipe: dict[str, Any] = {}  # for the way back from plain values
+        self.short: list[str] = []
+        self.exact: list[str] = []
+        self._cycles = cycles
+
+    def read(self, name: str, value: Any) -> None:
+        """Read the argument of a name."""
+        owner = self.owner
+        if name in _MEASURES:
+            self._read_quantity(name, value, *_MEASURES[name])
+        elif name == "cycles":
+            number = to_ratio(value, owner=owner, name=name, condition=self._cycles, example="2")
+            self._keep(name, number, number, f"{name}: {number:.6g}", f"{name}: {number!r}")
+        elif name == "order":
+            order = whole_number(value, owner=owner, name=name, lowest=1, highest=_HIGHEST_ORDER)
+            self._keep(name, order, order, *[f"{name}: {order}"] * 2)
+        elif isinstance(value, bool):
+            self._keep(name, value, value, *[name if value else f"not {name}"] * 2)
+        else:
+            msg = f"{owner}: {name} must be True or False, got {shown(value)}"
+            raise ComponentError(msg)
+
+    def _read_quantity(
+        self, name: str, value: Any, measure: Measure, condition: Condition | None, words: str
+    ) -> None:
+        number = None
+        if value is not None or name not in ("phase", "pulse_duration"):
+            number = to_si(value, measure, owner=self.owner, name=name, condition=condition)
+        if name == "pulse_duration":
+            number = impulse_duration(self.owner, number, self.numbers["interval"])
+        if number is None:  # left to the formula, and not told
+            return
+        unit = _SPELLED.get(measure.unit, str(measure.unit))
+        kept = f"{number!r} {measure.unit}"
+        self._keep(name, number, kept, f"{words}{number:.6g} {unit}", f"{words}{number!r} {unit}")
+
+    def _keep(self, name: str, number: Any, kept: Any, short: str, exact: str) -> None:
+        self.numbers[name] = number
+        self.recipe[name] = kept
+        self.short.append(short)
+        self.exact.append(exact)
+
+
+@_pulse("sine pulse", sine)
+def sine_pulse(
+    kind: type[Made],
+    amplitude: QuantityLike = "-9.81 m/s^2",
+    frequency: QuantityLike = "1 Hz",
+    cycles: RatioLike = 1,
+) -> Made:
+    """Build ``amplitude sin(2 pi frequency t)`` over some cycles, then nothing.
+
+    Parameters
+    ----------
+    amplitude : str or Quantity, optional
+        Amplitude; the defaults are those of Eq. (17) [m s^-2].
+    frequency : str or Quantity, optional
+        Cyclic frequency [Hz].
+    cycles : float, optional
+        Length over the period [1].
+
+    Returns
+    -------
+    GroundMotion
+        With polynomial pieces between samples: exact to 3e-13 of the amplitude.
+    """
+    ...
+
+
+@_pulse("cosine pulse", partial(sine, phase=QUARTER_TURN))
+def cosine_pulse(
+    kind: type[Made], amplitude: QuantityLike, frequency: QuantityLike, cycles: RatioLike = 1
+) -> Made:
+    """Build ``amplitude cos(2 pi frequency t)`` over some cycles, then nothing.
+
+    Parameters
+    ----------
+    amplitude : str or Quantity
+        Amplitude, with which the pulse begins at once [m s^-2].
+    frequency : str or Quantity
+        Cyclic frequency [Hz].
+    cycles : float, optional
+        Length over the period [1].
+
+    Returns
+    -------
+    GroundMotion
+        It jumps where it begins and, unless its last value is zero, where it ends.
+
+    See Also
+    --------
+    type_b_pulse : One cycle, given by its velocity.
+    """
+    ...
+
+
+@_pulse(
+    "half-sine pulse",
+    lambda owner, amplitude, duration: sine(owner, amplitude, 0.5 / duration, 0.5),
+)
+def half_sine_pulse(kind: type[Made], amplitude: QuantityLike, duration: QuantityLike) -> Made:
+    """Build ``amplitude sin(pi t/duration)``, half a cycle, then nothing.
+
+    Parameters
+    ----------
+    amplitude : str or Quantity
+        Peak [m s^-2].
+    duration : str or Quantity
+        Length, half the period [s].
+
+    Returns
+    -------
+    GroundMotion
+        Its ground does not stop: the velocity at the end is
+        ``2 amplitude duration/pi``.
+    """
+    ...
+
+
+@_pulse(
+    "harmonic motion",
+    lambda owner, amplitude, frequency, duration, phase=0.0: sine(
+        owner, amplitude, frequency, duration * frequency, phase
+    ),
+)
+def harmonic(
+    kind: type[Made],
+    amplitude: QuantityLike,
+    frequency: QuantityLike,
+    duration: QuantityLike,
+    phase: QuantityLike | None = None,
+) -> Made:
+    """Build ``amplitude sin(2 pi frequency t + phase)`` for some time.
+
+    Parameters
+    ----------
+    amplitude : str or Quantity
+        Amplitude [m s^-2].
+    frequency : str or Quantity
+        Cyclic frequency [Hz].
+    duration : str or Quantity
+        Length [s].
+    phase : str or Quantity, optional
+        Phase at the start; zero unless given [rad].
+
+    Returns
+    -------
+    GroundMotion
+        With polynomial pieces between samples: exact to 3e-13 of the amplitude.
+    """
+    ...
+
+
+@_pulse(
+    "type A pulse",
+    lambda owner, velocity, period: sine(owner, math.pi * velocity / period, 1.0 / period, 1.0),
+)
+def type_a_pulse(kind: type[Made], velocity: QuantityLike, period: QuantityLike) -> Made:
+    """Build the forward pulse, one sine: ``pi velocity/period sin(2 pi t/period)``.
+
+    Parameters
+    ----------
+    velocity : str or Quantity
+        Peak velocity v_p of the ground, at half the period [m s^-1].
+    period : str or Quantity
+        Period T_p, the length of the pulse [s].
+
+    Returns
+    -------
+    GroundMotion
+        The ground comes to rest ``velocity period/2`` ahead of where it was.
+
+    Notes
+    -----
+    Type A of Makris and Chang (2000), :eq:`eq-type-a`.
+    """
+    ...
+
+
+@_pulse(
+    "type B pulse",
+    lambda owner, velocity, period: sine(
+        owner, 2.0 * math.pi * velocity / period, 1.0 / period, 1.0, QUARTER_TURN
+    ),
+)
+def type_b_pulse(kind: type[Made], velocity: QuantityLike, period: QuantityLike) -> Made:
+    """Build the forward-and-back pulse: ``2 pi velocity/period cos(2 pi t/period)``.
+
+    Parameters
+    ----------
+    velocity : str or Quantity
+        Peak velocity v_p of the ground, at a quarter of the period [m s^-1].
+    period : str or Quantity
+        Period T_p, the length of the pulse [s].
+
+    Returns
+    -------
+    GroundMotion
+        The ground comes to rest where it was. The acceleration jumps at both ends.
+
+    Notes
+    -----
+    Type B of Makris and Chang (2000), :eq:`eq-type-b`.
+    """
+    ...
+
+
+@_pulse("type C pulse", type_c)
+def type_c_pulse(
+    kind: type[Made], velocity: QuantityLike, period: QuantityLike, order: int = 1
+) -> Made:
+    """Build a pulse of `order` cycles in the displacement of the ground.
+
+    Parameters
+    ----------
+    velocity : str or Quantity
+        v_p, the amplitude with which the velocity swings; its greatest value, backwards,
+        is ``1 + sin(phi)`` times as much: 1.217 for order 1, 1.128 for order 2 [m s^-1].
+    period : str or Quantity
+        Period T_p; the pulse is 1.430 T_p long for order 1, 2.459 T_p for order 2 [s].
+    order : int, optional
+        n of the type C_n [1].
+
+    Returns
+    -------
+    GroundMotion
+        The ground comes to rest where it was. The acceleration jumps at both ends.
+
+    Raises
+    ------
+    UnitsError
+        A wrong unit, or none.
+    ComponentError
+        Not finite, a period that is not positive, or an order that is not a whole
+        number from 1 to 1000.
+
+    Notes
+    -----
+    Type C_n of Makris and Chang (2000), :eq:`eq-type-c`, with the phase phi of
+    :eq:`eq-type-c-phase`.
+    """
+    ...
+
+
+@_pulse("Ricker wavelet", ricker)
+def ricker_wavelet(
+    kind: type[Made], amplitude: QuantityLike, period: QuantityLike, *, antisymmetric: bool = False
+) -> Made:
+    """Build a Ricker wavelet: the second or third derivative of a Gaussian.
+
+    Parameters
+    ----------
+    amplitude : str or Quantity
+        Peak a_p: of the symmetric wavelet in its middle, of the antisymmetric one
+        0.205 periods before it, followed by the opposite peak [m s^-2].
+    period : str or Quantity
+        T_p, one over the frequency at which its Fourier amplitude is greatest [s].
+    antisymmetric : bool, optional
+        The third derivative. Otherwise the second, the "Mexican hat".
+
+    Returns
+    -------
+    GroundMotion
+        Five periods long; at both ends 7e-16 of the amplitude is left. Exact to
+        2e-13 of the amplitude. The ground comes to rest where it was.
+
+    Raises
+    ------
+    UnitsError
+        A wrong unit, or none.
+    ComponentError
+        Not finite, a period that is not positive, or `antisymmetric` is not a bool.
+
+    Notes
+    -----
+    Wavelets of Ricker (1943) with the parameters of Vassiliou and Makris (2011),
+    :eq:`eq-ricker-symmetric` and :eq:`eq-ricker-antisymmetric`; its velocity and
+    displacement are :eq:`eq-ricker-path`.
+    """
+    ...
+
+
+@_pulse("pulse of Mavroeidis and Papageorgiou", mavroeidis_papageorgiou, cycles=_AT_LEAST_ONE)
+def mavroeidis_papageorgiou_pulse(
+    kind: type[Made],
+    velocity: QuantityLike,
+    frequency: QuantityLike,
+    cycles: RatioLike,
+    phase: QuantityLike | None = None,
+) -> Made:
+    """Build a harmonic velocity under an envelope of one cosine.
+
+    Parameters
+    ----------
+    velocity : str or Quantity
+        Amplitude A of the velocity, reached in the middle if `phase` is
+        zero [m s^-1].
+    frequency : str or Quantity
+        Prevailing frequency f_p [Hz].
+    cycles : float
+        gamma, the length over the prevailing period; at least 1 [1].
+    phase : str or Quantity, optional
+        Phase nu of the velocity in the middle; zero unless given [rad].
+
+    Returns
+    -------
+    GroundMotion
+        Exact to 1e-12 of its peak. The ground comes to rest: where it was for a
+        phase of 90 degrees, or if `cycles` is a whole number beyond 1.
+
+    Raises
+    ------
+    UnitsError
+        A wrong unit, or none.
+    ComponentError
+        Not finite, a frequency that is not positive, or fewer cycles than one.
+
+    Notes
+    -----
+    Pulse of Mavroeidis and Papageorgiou (2003), :eq:`eq-mp-velocity` and
+    :eq:`eq-mp-acceleration`. It leaves the ground at :eq:`eq-mp-offset`.
+    """
+    ...
+
+
+@_pulse("double impulse", opposite_impulses)
+def double_impulse(
+    kind: type[Made],
+    velocity: QuantityLike,
+    interval: QuantityLike,
+    pulse_duration: QuantityLike | None = None,
+) -> Made:
+    """Build two impulses: the ground starts at a velocity, and stops again.
+
+    Parameters
+    ----------
+    velocity : str or Quantity
+        V, exactly the change of velocity by the first impulse; the second takes it
+        back [m s^-1].
+    interval : str or Quantity
+        Time t_0 from impulse to impulse [s].
+    pulse_duration : str or Quantity, optional
+        Longest length of an impulse; shortened until `interval` is a whole multiple
+        of it. A hundredth of `interval` unless given [s].
+
+    Returns
+    -------
+    GroundMotion
+        It ends with the second impulse. The ground comes to rest
+        ``velocity interval`` ahead of where it was.
+
+    Raises
+    ------
+    UnitsError
+        A wrong unit, or none.
+    ComponentError
+        Not finite, times that are not positive, impulses that overlap, or impulses
+        too short to be sampled.
+
+    Notes
+    -----
+    Double impulse of Kojima and Takewaki (2015), :eq:`eq-double-impulse`. Each has
+    the shape :eq:`eq-impulse`, with a peak of 1.875 V over its length. An oscillator
+    of the angular frequency omega takes the impulses for weaker by
+    ``(omega pulse_duration)^2/56``, as long as that is small.
+    """
+    ...

@@ -1,1 +1,0 @@
-"""Analytic motions, sampled so finely that a simulation cannot tell the difference."""
