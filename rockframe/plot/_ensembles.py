@@ -227,7 +227,7 @@ def _curves(axes: "Axes", named: list[tuple[str, xr.Dataset]], measure: str) -> 
             low, high = (one[f"{_NAME}_{end}_bound"].to_numpy() for end in ("lower", "upper"))
             axes.fill_between(along, low, high, color=colour, alpha=0.15, linewidth=0.0)
             parted = int(one["fragility_status"]) == FragilityStatus.SEPARATED
-            words = f"{name}: separated, no bounds" if parted else name
+            words = f"{name}: separated" if parted else name
             axes.plot(along, one[_NAME].to_numpy(), color=colour, linestyle=dashes, label=words)
         else:
             axes.plot([], [], color=colour, label=f"{name}: no fit")

@@ -163,6 +163,8 @@ def _alike(columns: Sequence[Generic], size: int, apart: bool) -> tuple[Generic,
 _OWNER: Final = "fragility"
 _COUNTS: Final = "fragility_of_counts"
 _MOST_MEASURES: Final = 2
+_MOST_LEFT_OUT: Final = 80
+"""Motions up to which each is left out in turn; of more the sandwich holds as often."""
 
 
 def fragility(
@@ -198,13 +200,15 @@ def fragility(
     pooled : iterable of str, optional
         Axes of the sweep, or columns of its table, of which all values are taken for one
         structure, whose dispersion then holds their differences too.
-    bands : {"profile", "sandwich"}, optional
+    bands : {"profile", "jackknife", "sandwich"}, optional
         Where confidence bounds come from: the profile of the likelihood, which takes all runs
-        for independent; or the sandwich covariance with clusters of runs under one motion.
-        The latter where motions were run more than once, unless given.
+        for independent; fits that leave out each motion in turn; or the sandwich covariance with
+        clusters of runs under one motion. Where motions were run more than once, unless given,
+        the second, and the third of more than 80 motions.
     confidence : float, optional
-        Of all bounds [1]. It is nominal: with few motions bounds hold the true value less
-        often, which the verdict tells.
+        Of all bounds [1]. It is nominal: how often such bounds hold the true value with few
+        motions was measured, :ref:`coverage of bounds <coverage>`; the verdict tells where it
+        is less often.
 
     Returns
     -------
@@ -236,9 +240,9 @@ def fragility(
     by ``fragility_status``, with NaN in its place: no run exceeded, all did, those that did
     are separated from those that did not, so that beta would be zero, or
     exceedances grow rarer with the intensity. Where they are separated, the median is in the middle
-    of the gap, the dispersion 0, at which the likelihood is greatest, and there are no bounds;
-    nor are there with fewer than ten motions, or five of which each was run once. Runs without a
-    verdict are left out, ``left_out_count``.
+    of the gap, the dispersion 0, at which the likelihood is greatest, and the bounds are those by
+    profile of one bracket for each motion. With fewer than five motions there are no bounds.
+    Runs without a verdict are left out, ``left_out_count``.
 
     Rows of a table of cases that differ in motion and scale alone are of one structure, which
     ``case`` calls by the first of them.
@@ -268,9 +272,11 @@ def fragility(
         raise ComponentError(msg)
     verdicts = [exceeds(runs, state) for state in states]
     repeated = not of_capacities and any(map(_repeated, structures.parts(verdicts[-1])))
-    usual = Bands.SANDWICH if repeated else Bands.PROFILE
+    most = max(len(np.unique(motion_numbers(one))) for one in structures.parts(verdicts[-1]))
+    of_runs = Bands.JACKKNIFE if most <= _MOST_LEFT_OUT else Bands.SANDWICH
+    usual = of_runs if repeated else Bands.PROFILE
     means = Means(_bands(bands, usual, len(measures)), read_level(confidence, owner=_OWNER))
-    by_motion = means.bands is Bands.SANDWICH and repeated
+    by_motion = means.bands is not Bands.PROFILE and repeated
     parts = zip(*(structures.parts(one) for one in (*verdicts, *measures)), strict=True)
     found: list[StructureTrials] = []
     for part in parts:
@@ -473,11 +479,12 @@ def _repeated(runs: xr.DataArray) -> bool:
 
 def _bands(given: str | None, usual: Bands, measures: int) -> Bands:
     if given is None:
-        return usual if measures == 1 else Bands.SANDWICH
-    if given not in ("profile", "sandwich"):
-        msg = f"{_OWNER}: bands must be 'profile' or 'sandwich', got {shown(given)}"
+        return usual if measures == 1 or usual is not Bands.PROFILE else Bands.SANDWICH
+    names = [one.name.lower() for one in Bands]
+    if given not in names:
+        msg = f"{_OWNER}: bands must be {', '.join(map(repr, names))}, got {shown(given)}"
         raise ComponentError(msg)
     if given == "profile" and measures > 1:
-        msg = f"{_OWNER}: bands by profile are those of one intensity measure; use 'sandwich'"
+        msg = f"{_OWNER}: bands by profile are those of one intensity measure; use 'jackknife'"
         raise ComponentError(msg)
     return Bands[given.upper()]

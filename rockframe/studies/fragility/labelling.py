@@ -13,13 +13,23 @@ from rockframe.results.outcome import Generic
 from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.signals.arrays import Array
 from rockframe.studies.confidence import clopper_pearson
-from rockframe.studies.fragility.likelihood import Bands, Fit, Trials, boundary, fit, gap
+from rockframe.studies.fragility.likelihood import (
+    Bands,
+    Fit,
+    Trials,
+    boundary,
+    fit,
+    gap,
+    jackknife,
+)
 from rockframe.studies.fragility.words import bounded
 
 _POINTS: Final = 101
 """Intensities at which a curve is given."""
 _SIDE: Final = 41
 """Intensities of each of two measures."""
+_NO_DISPERSION: Final = 1e6
+"""Slopes beyond which a dispersion is none: rays of a region without an end go far beyond."""
 _MOST_STRIPES: Final = 30
 _BINS: Final = 10
 """Groups into which intensities are sorted that differ from run to run."""
@@ -52,12 +62,12 @@ class Means:
     bands: Bands  # from what
     confidence: float  # of the bounds [1]
 
-    @property
-    def deviations(self) -> float:
-        """Standard errors from an estimate to its bound."""
-        from scipy.special import ndtri
+    def deviations(self, clusters: float = math.inf) -> float:
+        """Give standard errors from an estimate to its bound, by Student's t of few clusters."""
+        from scipy.special import ndtri, stdtrit
 
-        return float(ndtri(0.5 + 0.5 * self.confidence))
+        share = 0.5 + 0.5 * self.confidence
+        return float(ndtri(share) if math.isinf(clusters) else stdtrit(clusters - 1.0, share))
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,13 +93,16 @@ class _Fitted:
     @classmethod
     def of(cls, found: StructureTrials, means: Means) -> "_Fitted":
         """Fit, and look for the region where bounds come from it."""
-        made = fit(found.trials, means.bands)
-        fitted = made.status is FragilityStatus.FITTED
-        bounds = fitted and bounded(means.bands, found.independent)
+        trials, made = found.trials, fit(found.trials, means.bands)
+        separated = made.status is FragilityStatus.SEPARATED and trials.measures == 1
+        # separated trials of one motion do not contradict one another: they are one bracket
+        bands = Bands.PROFILE if separated else means.bands
+        bounds = separated or made.status is FragilityStatus.FITTED
+        bounds = bounds and bounded(bands, found.independent) and made.complete
         edge = None
-        if bounds and means.bands is Bands.PROFILE:
-            edge = boundary(found.trials, made, means.confidence)
-        return cls(found.trials, made, edge, bounds)
+        if bounds and bands is Bands.PROFILE:
+            edge = boundary(trials.of_clusters() if separated else trials, made, means.confidence)
+        return cls(trials, made, edge, bounds)
 
 
 def fragility_dataset(
@@ -142,23 +155,24 @@ def _with_parameters(
 
 def _parameters(each: _Fitted, means: Means) -> dict[str, float]:
     ends = (math.nan, math.nan)
-    errors, bounds = np.full(2, np.nan), np.full((2, 2), np.nan)
+    errors, log_errors, bounds = np.full(2, np.nan), np.full(2, np.nan), np.full((2, 2), np.nan)
     if each.fit.status is FragilityStatus.SEPARATED:
         # the likelihood rises as the dispersion falls; every median between the ends is as likely
         ends = gap(each.trials) or ends
         log_median, spread = 0.5 * sum(ends), 0.0
     else:
-        intercept, slope = (float(one) for one in each.fit.coefficients)
-        log_median, spread = -intercept / slope, 1.0 / slope
-        turn = np.array([[-1.0 / slope, intercept / slope**2], [0.0, -1.0 / slope**2]])
-        errors = np.sqrt(np.diag(turn @ each.fit.covariance @ turn.T))
+        (log_median, log_spread), covariance = _log_parameters(each.fit)
+        spread, log_errors = math.exp(log_spread), np.sqrt(np.diag(covariance))
+        errors = log_errors * np.array([1.0, spread])
     if each.edge is not None:
         bounds = _extremes(each.edge)
     elif each.bounded:
-        reach = means.deviations * errors
-        bounds = np.array([[log_median], [spread]]) + reach[:, None] * np.array([-1.0, 1.0])
+        clusters = each.fit.clusters
         # a dispersion is above zero: its logarithm has the interval
-        bounds[1] = spread * np.exp(reach[1] / spread * np.array([-1.0, 1.0]))
+        middle = np.array([log_median, math.log(spread) + _lacking(clusters)])
+        reach: Array = means.deviations(clusters) * log_errors
+        bounds = middle[:, None] + reach[:, None] * np.array([-1.0, 1.0])
+        bounds[1] = np.exp(bounds[1])
     return {
         "median_intensity": math.exp(log_median),
         "median_intensity_lower_bound": float(np.exp(bounds[0, 0])),
@@ -173,13 +187,40 @@ def _parameters(each: _Fitted, means: Means) -> dict[str, float]:
     }
 
 
+def _log_parameters(fit: Fit) -> tuple[Array, Array]:
+    """Give the logarithms of median and dispersion, and their covariance."""
+    best = _logs_of(fit.coefficients)
+    if fit.without is not None and fit.complete:
+        rows, alike = fit.without
+        return best, jackknife(best, _logs_of(rows.T).T, alike)
+    intercept, slope = (float(one) for one in fit.coefficients)
+    turn = np.array([[-1.0 / slope, intercept / slope**2], [0.0, -1.0 / slope]])
+    return best, turn @ fit.covariance @ turn.T
+
+
+def _logs_of(coefficients: Array) -> Array:
+    intercept, slope = coefficients
+    with np.errstate(invalid="ignore"):
+        return np.stack([-intercept / slope, -np.log(slope)])
+
+
+def _lacking(clusters: float) -> float:
+    """Give what the logarithm of a dispersion lacks on average, :eq:`eq-fragility-lacking` [1]."""
+    from scipy.special import digamma
+
+    if math.isinf(clusters):
+        return 0.0
+    return 0.5 * (math.log(0.5 * clusters) - float(digamma(0.5 * (clusters - 1.0))))
+
+
 def _extremes(edge: Array) -> Array:
     """Give the ranges of log-median and dispersion in a region of the coefficients."""
     intercept, slope = edge
+    least = 0.0 if slope.max() > _NO_DISPERSION else 1.0 / slope.max()
     if slope.min() <= 0.0:  # also what does not rise is likely enough
-        return np.array([[-np.inf, np.inf], [1.0 / slope.max(), np.inf]])
+        return np.array([[-np.inf, np.inf], [least, np.inf]])
     medians = -intercept / slope
-    return np.array([[medians.min(), medians.max()], [1.0 / slope.max(), 1.0 / slope.min()]])
+    return np.array([[medians.min(), medians.max()], [least, 1.0 / slope.min()]])
 
 
 def _with_curves(
@@ -200,18 +241,20 @@ def _curve(each: _Fitted, rows: Array, means: Means) -> Array:
     if each.fit.status is FragilityStatus.SEPARATED:
         low, high = gap(each.trials) or (math.nan, math.nan)
         eta = np.where(rows[1] < 0.5 * (low + high), -np.inf, np.inf)
-        return np.stack([eta, *np.full((2, len(eta)), np.nan)])
-    eta = each.fit.coefficients @ rows
+    else:
+        eta = each.fit.coefficients @ rows
     if each.edge is not None:
         at = each.edge.T @ rows
         return np.stack([eta, at.min(axis=0), at.max(axis=0)])
+    if each.fit.status is FragilityStatus.SEPARATED:
+        return np.stack([eta, *np.full((2, len(eta)), np.nan)])
     return _with_errors(each, rows, means)
 
 
 def _with_errors(each: _Fitted, rows: Array, means: Means) -> Array:
     """Give eta and its bounds by the covariance of the coefficients."""
     eta = each.fit.coefficients @ rows
-    deviations = means.deviations if each.bounded else math.nan
+    deviations = means.deviations(each.fit.clusters) if each.bounded else math.nan
     reach = deviations * np.sqrt(np.einsum("ik,ij,jk->k", rows, each.fit.covariance, rows))
     return np.stack([eta, eta - reach, eta + reach])
 

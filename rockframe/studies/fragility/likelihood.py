@@ -8,8 +8,8 @@ log-concave in the coefficients, so that there is one maximum, or none.
 """
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from enum import IntEnum
 from typing import Any, Final, cast
 
@@ -24,6 +24,8 @@ from rockframe.studies.lines import SCALE
 
 DIRECTIONS: Final = 360
 """Rays on which the boundary of a confidence region is found."""
+_DOUBLINGS: Final = 30
+"""Of the length of a ray; one that is within the region still has no end."""
 _BLOCK: Final = 2_000_000
 """Most values that are held at once."""
 
@@ -33,6 +35,7 @@ class Bands(IntEnum):
 
     PROFILE = 0
     SANDWICH = 1
+    JACKKNIFE = 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,6 +64,27 @@ class Trials:
         numbers = None if cluster is None else np.tile(cluster, 2)[kept]
         return cls(both[kept], both[kept], ~over[kept], over[kept], weight[kept], numbers)
 
+    def of_weights(self, weight: Array) -> "Trials":
+        """Give the trials that have a weight above zero, with that weight."""
+        kept = weight > 0.0
+        return Trials(
+            self.lower[kept], self.upper[kept], self.has_lower[kept], self.has_upper[kept],
+            weight[kept], None if self.cluster is None else self.cluster[kept],
+        )  # fmt: skip
+
+    def of_clusters(self) -> "Trials":
+        """Give one trial for each cluster whose trials do not contradict one another: a bracket."""
+        if self.cluster is None:
+            return self
+        names, place = np.unique(self.cluster, return_inverse=True)
+        lower, upper = np.full((2, len(names), self.measures), -np.inf)
+        upper = -upper
+        np.maximum.at(lower, place[self.has_lower], self.lower[self.has_lower])
+        np.minimum.at(upper, place[self.has_upper], self.upper[self.has_upper])
+        has_lower, has_upper = np.isfinite(lower[:, 0]), np.isfinite(upper[:, 0])
+        lower, upper = (np.where(np.isfinite(end), end, 0.0) for end in (lower, upper))
+        return Trials(lower, upper, has_lower, has_upper, np.ones(len(names)), None)
+
     @property
     def measures(self) -> int:
         """Number of intensity measures."""
@@ -75,6 +99,18 @@ class Fit:
     coefficients: Array  # intercept and slopes
     information: Array  # the observed one: curvature of the log-likelihood at its maximum
     covariance: Array  # of the coefficients
+    # coefficients without each cluster in turn, and how many clusters are alike; NaN without a fit
+    without: tuple[Array, Array] | None = None
+
+    @property
+    def complete(self) -> bool:
+        """Whether there is a fit without each cluster too, where those were asked for."""
+        return self.without is None or bool(np.isfinite(self.without[0]).all())
+
+    @property
+    def clusters(self) -> float:
+        """Number of clusters of a jackknife; infinite of other fits."""
+        return math.inf if self.without is None else float(self.without[1].sum())
 
     @classmethod
     def none(cls, status: FragilityStatus, measures: int) -> "Fit":
@@ -91,8 +127,60 @@ class Fit:
 def fit(trials: Trials, bands: Bands) -> Fit:
     """Find the most likely coefficients.
 
-    By :eq:`eq-fragility-sandwich`.
+    By :eq:`eq-fragility-sandwich` and :eq:`eq-fragility-jackknife`.
     """
+    found = _fit(trials)
+    if found.status is not FragilityStatus.FITTED:
+        return found
+    if bands is Bands.SANDWICH:
+        filling = _filling(trials, found.coefficients)
+        return replace(found, covariance=found.covariance @ filling @ found.covariance)
+    if bands is Bands.JACKKNIFE:
+        each = list(_without_each(trials))
+        rows = np.array([_near(rest, found.coefficients) for rest, _ in each])
+        without = rows, np.array([alike for _, alike in each])
+        return replace(found, covariance=jackknife(found.coefficients, *without), without=without)
+    return found
+
+
+def jackknife(best: Array, rows: Array, alike: Array) -> Array:
+    """Give the covariance of estimates, of which `rows` lack a cluster each.
+
+    By :eq:`eq-fragility-jackknife`.
+    """
+    count = float(alike.sum())
+    differences = rows - best
+    return (count - 1.0) / count * (differences.T @ (alike[:, None] * differences))
+
+
+def _without_each(trials: Trials) -> Iterator[tuple[Trials, float]]:
+    """Give the trials without each cluster, or each trial, in turn, and how many are alike."""
+    if trials.cluster is None:
+        for row, weight in enumerate(trials.weight):
+            rest = trials.weight.copy()
+            rest[row] -= 1.0
+            yield trials.of_weights(rest), float(weight)
+        return
+    for name in np.unique(trials.cluster):
+        yield trials.of_weights(np.where(trials.cluster == name, 0.0, trials.weight)), 1.0
+
+
+def _near(trials: Trials, start: Array) -> Array:
+    """Give the most likely coefficients, by Newton's method where they lie near others."""
+    at = start
+    for _ in range(20):
+        step = np.linalg.lstsq(information(trials, at), scores(trials, at).sum(axis=0))[0]
+        at = at + step
+        far = np.abs(at - start).max() > 2.0 * np.abs(start).max()
+        if far or not np.isfinite(step).all():
+            break
+        if np.abs(step).max() <= 1e-10 * np.abs(at).max():
+            return at
+    return _fit(trials).coefficients
+
+
+def _fit(trials: Trials) -> Fit:
+    """Find the greatest likelihood, with the covariance of independent trials."""
     from scipy import linalg, optimize
 
     without = _without_maximum(trials)
@@ -130,10 +218,7 @@ def fit(trials: Trials, bands: Bands) -> Fit:
     if trials.measures == 1 and best[1] <= 0.0:
         return Fit.none(FragilityStatus.NOT_RISING, trials.measures)
     inside = information(trials, best)
-    covariance: Array = linalg.inv(inside)
-    if bands is Bands.SANDWICH:
-        covariance = covariance @ _filling(trials, best) @ covariance
-    return Fit(FragilityStatus.FITTED, best, inside, covariance)
+    return Fit(FragilityStatus.FITTED, best, inside, linalg.inv(inside))
 
 
 def log_likelihood(trials: Trials, coefficients: Array) -> Array:
@@ -169,32 +254,72 @@ def boundary(trials: Trials, found: Fit, level: float) -> Array:
     """Give the boundary of the region :eq:`eq-fragility-region`, for a fit of one measure.
 
     The range of any function of the coefficients in this region is its interval by profile
-    likelihood.
+    likelihood. Of separated trials the likelihood has a bound and no maximum, and the region no end
+    towards small dispersions: there its boundary stands where the dispersion is all but zero.
     """
     from scipy import linalg
     from scipy.special import chdtri
 
     drop = float(chdtri(1.0, 1.0 - level))
+    best, inside = found.coefficients, found.information
+    if found.status is FragilityStatus.SEPARATED:
+        best, inside, greatest = _within(trials, 0.25 * drop)
+    else:
+        greatest = float(log_likelihood(trials, best[:, None])[0])
     angle = np.linspace(0.0, 2.0 * np.pi, DIRECTIONS, endpoint=False)
-    root = linalg.cholesky(found.information, lower=True)
+    root = linalg.cholesky(inside, lower=True)
     rays = linalg.solve_triangular(root.T, np.array([np.cos(angle), np.sin(angle)]))
-    best = found.coefficients[:, None]
-    greatest = float(log_likelihood(trials, best)[0])
     length = np.full(DIRECTIONS, math.sqrt(drop))
     block = max(1, _BLOCK // len(trials.weight))
     for first in range(0, DIRECTIONS, block):
         here = slice(first, first + block)
         ray, reach = rays[:, here], length[here]
+
+        def excess(reach: Array, ray: Array = ray) -> Array:
+            at = best[:, None] + reach * ray
+            return 2.0 * (greatest - log_likelihood(trials, at)) - drop
+
+        for _ in range(_DOUBLINGS):  # the end of each ray comes to lie outside, if there is one
+            within = excess(reach) < 0.0
+            if not within.any():
+                break
+            reach = np.where(within, 2.0 * reach, reach)
         for _ in range(60):  # Newton's steps for a convex function end from above
-            at = best + reach * ray
-            excess = 2.0 * (greatest - log_likelihood(trials, at)) - drop
-            slope = -2.0 * _slopes_along(trials, at, ray)
-            step = excess / slope
+            over = excess(reach)
+            slope = -2.0 * _slopes_along(trials, best[:, None] + reach * ray, ray)
+            step = np.divide(over, slope, out=np.zeros_like(over), where=over > 0.0)
             reach = np.maximum(reach - step, 1e-3 * reach)
             if np.all(np.abs(step) <= 1e-10 * reach):
                 break
         length[here] = reach
-    return best + length * rays
+    edge = best[:, None] + length * rays
+    if found.status is not FragilityStatus.SEPARATED:
+        return edge
+    far = np.stack([np.array([-end, 1.0]) for end in gap(trials) or (0.0, 0.0)], axis=1)
+    return np.concatenate([edge, best[:, None] + 2.0**_DOUBLINGS * far], axis=1)
+
+
+def _within(trials: Trials, drop: float) -> tuple[Array, Array, float]:
+    """Give coefficients of separated trials near their likelihood's bound, with that bound.
+
+    With the information at these coefficients. Where the gap is one intensity, at
+    which some trials exceed, their share is the most likely probability there.
+    """
+    from scipy.special import ndtri
+
+    low, high = gap(trials) or (0.0, 0.0)
+    at_gap, bound = 0.0, 0.0
+    if low == high:
+        over = float(trials.weight[trials.has_upper & (trials.upper[:, 0] == low)].sum())
+        under = float(trials.weight[trials.has_lower & (trials.lower[:, 0] == low)].sum())
+        share = over / (over + under)
+        at_gap, bound = float(ndtri(share)), over * math.log(share) + under * math.log1p(-share)
+    median, slope = 0.5 * (low + high), 1.0
+    at = np.array([at_gap - slope * median, slope])
+    while 2.0 * (bound - float(log_likelihood(trials, at[:, None])[0])) > drop:
+        slope *= 1.1
+        at = np.array([at_gap - slope * median, slope])
+    return at, information(trials, at), bound
 
 
 def gap(trials: Trials) -> tuple[float, float] | None:
@@ -270,7 +395,7 @@ def _log_shares(upper: Array, lower: Array) -> Array:
     turned = lower + upper > 0.0
     high = log_ndtr(np.where(turned, -lower, upper))
     low = log_ndtr(np.where(turned, -upper, lower))
-    with np.errstate(invalid="ignore", divide="ignore"):
+    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
         return high + np.log(-np.expm1(np.where(np.isneginf(low), -np.inf, low - high)))
 
 

@@ -1,8 +1,10 @@
 """A fragility in words: what was fitted, what was left out, and how often its bounds hold."""
 
+import math
 from collections.abc import Iterator
 from typing import Final, NamedTuple
 
+import numpy as np
 import xarray as xr
 
 from rockframe.results.outcome import Generic
@@ -26,6 +28,7 @@ class Held(NamedTuple):
 
 COVERAGE: Final = {
     Bands.PROFILE: {5: Held(0.90, 0.89), 10: Held(0.93, 0.93)},
+    Bands.JACKKNIFE: {5: Held(0.97, 0.99)},
     Bands.SANDWICH: {
         10: Held(0.89, 0.80),
         20: Held(0.92, 0.87),
@@ -49,6 +52,7 @@ def sentences(fragility: xr.Dataset) -> str:
     fitted = status == FragilityStatus.FITTED
     said = [_fit(last, status, fitted)]
     if fitted.any():
+        said += _near_separation(last, fitted)
         independent, trials = (
             last[f"{name}_count"].to_numpy().ravel()[fitted] for name in ("independent", "trial")
         )
@@ -111,10 +115,35 @@ def _separation(last: xr.Dataset) -> str:
     if list(status) != [FragilityStatus.SEPARATED] or "separation_lower_intensity" not in last:
         return ""
     low, high = (last[f"separation_{end}_intensity"].item() for end in ("lower", "upper"))
+    words = f" None exceeded up to {low:.4g}{_unit(last)}, all did from {high:.4g} on: so the "
+    words += "dispersion is not known, only that it may be small"
+    ends = [
+        float(last[f"{name}_bound"].item())
+        for name in ("median_intensity_lower", "median_intensity_upper", "dispersion_upper")
+    ]
+    if any(map(math.isnan, ends)):
+        return f"{words}, and there are no bounds."
+    least, most, spread = ends
+    level = f"{100.0 * last.attrs['confidence']:g} %"
     return (
-        f" None exceeded up to {low:.4g}{_unit(last)}, all did from {high:.4g} on: so the "
-        "dispersion is not known, only that it may be small, and there are no bounds."
+        f"{words}. By the likelihood of nominal {level} the median lies from {least:.4g} to "
+        f"{most:.4g}{_unit(last)}, the dispersion is at most {spread:.3g}."
     )
+
+
+def _near_separation(last: xr.Dataset, fitted: Generic) -> Iterator[str]:
+    """Tell of how many fits a single motion keeps the trials from being separated."""
+    if last.attrs["bands"] != Bands.JACKKNIFE.name.lower() or "dispersion" not in last:
+        return
+    lacking = np.isnan(last["dispersion_upper_bound"].to_numpy().ravel()[fitted])
+    enough = last["independent_count"].to_numpy().ravel()[fitted] >= min(COVERAGE[Bands.JACKKNIFE])
+    count = int((lacking & enough).sum())
+    if count:
+        of = "" if len(fitted) == 1 else f" of {count} structures"
+        yield (
+            f"There are no bounds{of}: without one of the motions there is no fit, for hardly any "
+            "run exceeds below one that does not."
+        )
 
 
 def _below_scan(last: xr.Dataset) -> Iterator[str]:

@@ -157,7 +157,7 @@ def test_bands_hold_as_often_as_they_say():
         cluster = np.repeat(np.arange(groups), len(levels))
         logs = np.tile(levels, groups)[:, None]
         trials = Trials.of_verdicts(logs, verdict, np.ones(verdict.size), cluster)
-        for bands in Bands:
+        for bands in held:
             found = fit(trials, bands)
             row = np.array([1.0, 0.3])
             reach = 1.96 * np.sqrt(row @ found.covariance @ row)
@@ -196,7 +196,11 @@ def test_what_has_no_fit_says_so():
     gap = found.separation_lower_intensity.item(), found.separation_upper_intensity.item()
     assert gap == pytest.approx((2.0, 4.0))
     assert set(found.exceedance_probability.values.tolist()) == {0.0, 1.0}
-    bounds = [found[name] for name in found if str(name).endswith("_bound")]
+    # five at each end: with more than 0.68 none of them exceeds at 2, or all do at 4
+    assert found.median_intensity_lower_bound.item() == pytest.approx(2.0)
+    assert found.median_intensity_upper_bound.item() == pytest.approx(4.0)
+    few = rf.fragility_of_counts(([1.0, 2.0, 4.0], "m/s^2"), [0, 0, 1], 1)
+    bounds = [few[name] for name in few if str(name).endswith("_bound")]
     assert all(np.isnan(one).all() for one in bounds if not one.name.startswith("stripe"))
     one = rf.fragility_of_counts(([2.0, 2.0], "m/s^2"), [1, 2], 5)
     assert one.fragility_status.item() == FragilityStatus.ONE_INTENSITY
@@ -256,7 +260,7 @@ def test_runs_are_counted_by_what_they_exceed(runs):
     assert (np.log(last.median_intensity.item()), last.dispersion.item()) == pytest.approx(
         parameters(expected), rel=1e-6
     )
-    assert found.attrs["bands"] == "sandwich"
+    assert found.attrs["bands"] == "jackknife"
 
 
 def test_intensities_are_those_of_the_scaled_motions(runs):

@@ -72,13 +72,61 @@ def test_the_sandwich_of_counts_takes_each_trial_for_a_cluster():
     assert found.covariance == pytest.approx(covariance, rel=1e-4, abs=1e-6)
 
 
-def held(samples, dispersion, bands):
+def test_the_jackknife_leaves_out_each_motion_in_turn():
+    logs, over, cluster = runs_of(np.random.default_rng(4), 6, 0.5)
+    trials = Trials.of_verdicts(logs[:, None], over, np.ones(len(over)), cluster)
+    found = fit(trials, Bands.JACKKNIFE)
+    rows = np.array(
+        [by_hand(*(each[cluster != one] for each in (logs, over, cluster)))[0] for one in range(6)]
+    )
+    assert found.without[0] == pytest.approx(rows, rel=1e-4, abs=1e-5)
+    spread = rows - found.coefficients
+    assert found.covariance == pytest.approx(5.0 / 6.0 * spread.T @ spread, rel=1e-3, abs=1e-5)
+
+
+def test_bounds_by_jackknife_hold_with_few_motions():
+    """Of five motions, and of the samples of them that an intensity separates."""
+    rng, samples = np.random.default_rng(9), []
+    for _ in range(200):
+        logs, over, cluster = runs_of(rng, 5, 0.4)
+        trials = Trials.of_verdicts(logs[:, None], over, np.ones(len(over)), cluster)
+        samples.append((trials, 5))
+    for status in (FragilityStatus.FITTED, FragilityStatus.SEPARATED):
+        shares, count = held(samples, 0.4, Bands.JACKKNIFE, status)
+        assert count >= 5
+        for share in shares:
+            assert share >= 0.95 - 3.0 * np.sqrt(0.95 * 0.05 / count)
+
+
+def test_separated_counts_have_the_bounds_of_their_likelihood():
+    """Where 3 of 5 exceed at one intensity, none below and all above, that is the median."""
+    found = rf.fragility_of_counts(([1.0, 2.0, 3.0, 4.0], "m/s^2"), [0, 0, 3, 5], 5)
+    assert found.fragility_status == FragilityStatus.SEPARATED
+    drop = stats.chi2.ppf(0.95, 1)
+    dispersions = np.geomspace(0.01, 1.0, 400)[:, None, None]
+    medians = np.linspace(2.0, 4.0, 401)[None, :, None]
+    eta = np.log(np.array([1.0, 2.0, 3.0, 4.0]) / medians) / dispersions
+    counts = np.array([0.0, 0.0, 3.0, 5.0])
+    of_each = counts * stats.norm.logcdf(eta) + (5.0 - counts) * stats.norm.logcdf(-eta)
+    greatest = 3.0 * np.log(0.6) + 2.0 * np.log(0.4)
+    inside = 2.0 * (greatest - of_each.sum(axis=2)) <= drop
+    rows, columns = np.nonzero(inside)
+    least, most = medians[0, [columns.min(), columns.max()], 0]
+    assert found.median_intensity_lower_bound == pytest.approx(least, abs=0.02)
+    assert found.median_intensity_upper_bound == pytest.approx(most, abs=0.02)
+    assert found.dispersion_upper_bound == pytest.approx(dispersions[rows.max(), 0, 0], rel=0.02)
+    assert found.dispersion_lower_bound == 0.0
+    assert "the median lies from" in found.verdict
+
+
+def held(samples, dispersion, bands, status=FragilityStatus.FITTED):
     """Shares of samples in which the bounds hold the median, 1, and the dispersion."""
     found = fragility_dataset(
         [StructureTrials(trials, None, 0, independent) for trials, independent in samples],
         {"limit_state": len(samples)}, [MEASURE], Means(bands, 0.95), {"trials": "runs"},
     )  # fmt: skip
-    fitted = found.fragility_status == FragilityStatus.FITTED
+    fitted = found.fragility_status == status
+    fitted &= found.median_intensity_lower_bound.notnull()
     shares = []
     for name, truth in (("median_intensity", 1.0), ("dispersion", dispersion)):
         inside = (found[f"{name}_lower_bound"] <= truth) & (found[f"{name}_upper_bound"] >= truth)

@@ -64,7 +64,7 @@ def test_structures_are_pooled_where_that_is_asked_for(runs):
     # a motion is run once for each structure, and once more for each that is pooled
     once = runs.isel(scale=[3])
     assert rf.fragility(once, "PGV").attrs["bands"] == "profile"
-    assert rf.fragility(once, "PGV", pooled="width").attrs["bands"] == "sandwich"
+    assert rf.fragility(once, "PGV", pooled="width").attrs["bands"] == "jackknife"
     with pytest.raises(ComponentError, match=r"pooled names 'depth'; .*: width"):
         rf.fragility(runs, pooled=["depth"])
     with pytest.raises(ComponentError, match="pooled names 'scale'"):
