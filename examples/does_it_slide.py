@@ -24,7 +24,7 @@ def main() -> None:
     case = rf.Block(width="0.6 m", height="1.8 m", mass="180 kg")
     floor = rf.RigidGround(friction=0.4)
     motion = rf.GroundMotion.stochastic(magnitude=6.8, distance="8 km", seed=3)
-    system = rf.System(case, floor)
+    system = rf.System(case, floor, sliding="checked")
     with warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("always")
         response = system.simulate(

@@ -30,6 +30,7 @@ from rockframe.results.variables.requests import (
     POINT_PEAKS,
     POINTS,
     REACTIONS,
+    SLIPS,
 )
 from rockframe.results.variables.runs import (
     CERTIFICATE,
@@ -119,6 +120,7 @@ TABLES: dict[str, Callable[[], Rows]] = {
     "impulses": lambda: _variables(IMPULSES),
     "points": lambda: _variables((*POINTS, *POINT_PEAKS)),
     "force-scalars": lambda: _variables(FORCE_SCALARS),
+    "slips": lambda: _variables(SLIPS),
     "events": lambda: _variables(EVENTS_AND_SCALARS, EVENT),
     "scalars": lambda: _variables(EVENTS_AND_SCALARS, ()),
     "certificate": lambda: _variables(CERTIFICATE),

@@ -5,9 +5,10 @@ from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
 from rockframe.components import Component
+from rockframe.components.block_numbers import squat
 from rockframe.errors import ComponentError, ModelWarning
 from rockframe.simulation.system import System
-from rockframe.system.options import Coupling, Rotation
+from rockframe.system.options import Coupling, Rotation, Sliding
 from rockframe.system.own_base import OwnBase
 
 _STACK = (
@@ -42,7 +43,8 @@ def model_ladder(system: System) -> dict[str, System]:
 
     From rigid ground over pads to pads, cap and soil, first by cascade, then coupled; or
     from rigid ground to soil, without the cap and with it. A base of a user's own comes after
-    those that it calls simpler. Each with small rotations first, then with finite ones.
+    those that it calls simpler. Each with small rotations first, then with finite ones; a block
+    that slides on rigid ground first held, then sliding.
 
     Parameters
     ----------
@@ -79,8 +81,13 @@ def model_ladder(system: System) -> dict[str, System]:
     rows = _FRAME if "frame" in present else rows
     if system.parts.own():
         rows = _STACK[:1]
+    slides = system.setting.slides and not system.parts.own()
+    if slides and squat(system.parts.the_block, ""):
+        rows = ()  # held it would not rock
     options: dict[str, Any] = {
-        "restraint": system.restraint, "gravity": system.gravity, "inclination": system.inclination
+        "restraint": system.restraint, "gravity": system.gravity,
+        "inclination": system.inclination,
+        "sliding": Sliding.CHECKED if slides else system.sliding,
     }  # fmt: skip
     models: dict[str, System] = {}
     with warnings.catch_warnings():
@@ -101,6 +108,9 @@ def model_ladder(system: System) -> dict[str, System]:
                     models[rung] = System(
                         *parts.values(), rotation=rotation, coupling=coupling, **options
                     )
+    if slides:
+        computed: dict[str, Any] = {**options, "sliding": Sliding.COMPUTED}
+        models["rigid ground, sliding"] = System(*given.values(), **computed)
     if system.parts.own():
         models[system.setting.model] = System(*given.values(), rotation=system.rotation, **options)
     return models

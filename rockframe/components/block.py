@@ -10,7 +10,6 @@ from rockframe.components.block_numbers import (
     BlockSI,
     check_centre,
     check_representable,
-    check_rocks,
     unphysical_inertia,
 )
 from rockframe.components.parameters import DERIVED, Parameter, Ratio
@@ -50,8 +49,8 @@ class Block(Component):
     UnitsError
         A dimensional argument has no unit or a unit of the wrong kind.
     ComponentError
-        A value is not finite or not positive, both `shape_factor` and
-        `inertia` are given, or the block is so squat that it cannot rock.
+        A value is not finite or not positive, or both `shape_factor` and
+        `inertia` are given.
 
     Warns
     -----
@@ -229,7 +228,6 @@ class Block(Component):
             mu *= (diagonal / whole) ** 2
         si = BlockSI(given.width, given.height, given.mass, mu, height, beside)
         check_representable(si, type(self).__name__)
-        check_rocks(si, type(self).__name__)
         return si
 
     def _cautions(self) -> list[str]:

@@ -148,16 +148,16 @@ def check_representable(si: BlockSI, owner: str) -> None:
     raise ComponentError(msg)
 
 
-def check_rocks(si: BlockSI, owner: str) -> None:
-    """Refuse a body so squat that it does not rock on after an impact, Eq. (5)."""
+def squat(si: BlockSI, owner: str) -> list[str]:
+    """Tell of a body so squat that it does not rock on after an impact, Eq. (5)."""
     if si.maximum_restitution > 0.0:
-        return
-    msg = (
+        return []
+    return [
         f"{owner}: a block of H/B = {si.height / si.width:.4g} with shape factor "
         f"{si.shape_factor:.4g} cannot rock: its greatest restitution, Eq. (4), is "
-        f"{si.maximum_restitution:.4g}; a solid rectangle needs H/B above sqrt(2)/2 = 0.7071"
-    )
-    raise ComponentError(msg)
+        f"{si.maximum_restitution:.4g}; a solid rectangle needs H/B above sqrt(2)/2 = 0.7071. On "
+        "RigidGround(friction=...) it slides"
+    ]
 
 
 def least_shape_factor(si: BlockSI) -> float:

@@ -33,8 +33,8 @@ class FrameEquivalent(Block):
     UnitsError
         A value has the wrong unit, or none.
     ComponentError
-        A value is out of range, not exactly one of `shape_factor` and
-        `inertia` is given, or the frame is so squat that it cannot rock.
+        A value is out of range, or not exactly one of `shape_factor`
+        and `inertia` is given.
 
     Warns
     -----

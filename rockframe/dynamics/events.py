@@ -35,6 +35,9 @@ class EventKind(IntEnum):
     RESTRAINER_YIELD = 14
     RESTRAINER_UNLOADING = 15
     RESTRAINER_FRACTURE = 16
+    SLIP = 17
+    STICK = 18
+    SLIP_REVERSAL = 19
 
 
 class LinkState(IntEnum):
@@ -69,3 +72,6 @@ LINK_TAUT: Final = int(EventKind.RESTRAINER_TAUT)
 LINK_YIELDS: Final = int(EventKind.RESTRAINER_YIELD)
 LINK_UNLOADS: Final = int(EventKind.RESTRAINER_UNLOADING)
 LINK_BREAKS: Final = int(EventKind.RESTRAINER_FRACTURE)
+SLIP: Final = int(EventKind.SLIP)
+STICK: Final = int(EventKind.STICK)
+REVERSAL: Final = int(EventKind.SLIP_REVERSAL)

@@ -77,6 +77,7 @@ class TrialSystems:
             "restraint": options.restraint,
             "rotation": options.rotation,
             "coupling": options.coupling,
+            "sliding": options.sliding,
             "gravity": system.gravity,
         }
         self.radius = system.parts.the_block.radius

@@ -107,6 +107,9 @@ MARKS: Final = {
     "rest": ("s", GREY),
     "overturning": ("X", VERMILLION),
     "toppled": ("X", GREY),
+    "slip": (">", BLUE),
+    "stick": ("|", GREY),
+    "slip_reversal": ("d", BLUE),
     "soil_separation": ("2", PURPLE),
     "soil_contact": ("1", PURPLE),
 }

@@ -22,9 +22,11 @@ def _on_rigid_ground(parts: Parts) -> bool:
     return parts.pads is None and parts.soil is None and not parts.own()
 
 
+SLIDING: Final = "Sliding"
+FLIGHT: Final = "Flight on rigid ground"
 LIMITS: Final = (
     Limit(
-        "Sliding",
+        SLIDING,
         "The base does not slide while it presses. The verdict holds only where the friction is "
         "at least what it says is needed.",
         lambda parts: not parts.own(),
@@ -43,7 +45,7 @@ LIMITS: Final = (
         "earlier goes through the ground.",
     ),
     Limit(
-        "Flight on rigid ground",
+        FLIGHT,
         "A block on rigid ground is not followed into the air; where it would leave the ground "
         "the run warns.",
         _on_rigid_ground,
@@ -100,6 +102,10 @@ GENERAL: Final = (
 """What holds of every verdict."""
 
 
-def limits_of(parts: Parts | None) -> list[Limit]:
-    """Give the limits that concern a scene; all of them where its parts are not known."""
-    return [one for one in LIMITS if parts is None or one.concerns(parts)]
+def limits_of(parts: Parts | None, *, slides: bool = False) -> list[Limit]:
+    """Give the limits that concern a scene; all of them where its parts are not known.
+
+    Equations in which the block slides have it fly, too.
+    """
+    found = [one for one in LIMITS if parts is None or one.concerns(parts)]
+    return [one for one in found if not (slides and one.title in (SLIDING, FLIGHT))]

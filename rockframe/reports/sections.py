@@ -130,7 +130,8 @@ def limits_section(system: System | None) -> Iterator[str]:
     """Say what the model leaves out."""
     yield page.items(GENERAL)
     parts = None if system is None else system.parts
-    yield page.definitions((one.title, one.words) for one in limits_of(parts))
+    slides = system is not None and system.setting.slides
+    yield page.definitions((one.title, one.words) for one in limits_of(parts, slides=slides))
 
 
 def provenance_section(dataset: xr.Dataset, file: str) -> Iterator[str]:

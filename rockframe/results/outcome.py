@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -25,8 +25,12 @@ from rockframe.solve.layout import Status
 from rockframe.solve.observe import energies_of, memory_at_outputs
 from rockframe.solve.trajectory import Summary, Trajectory
 from rockframe.system.bodies import OverturningAngles
-from rockframe.system.setting import Setting
+from rockframe.system.setting import Setting, SlipRange
 
+MOST_OF_IT: Final = 0.95
+"""Share of the largest slip below which that is told beside what is left at the end."""
+NOTHING_OF_IT: Final = 1e-9
+"""Share of the largest slip below which what is left is rounding."""
 Generic = NDArray[Any]
 Values = Mapping[str, "Generic | float | int | bool"]
 
@@ -194,6 +198,9 @@ def scalars(
             "right_peak_rotation": _unsigned(run.peak_right),
             "rest_rotation": setting.rest_rotation,
         }
+    slips = setting.slips_of(run.ending)
+    if slips is not None:
+        sides |= {"peak_slip": slips.peak + 0.0, "residual_slip": slips.residual}
     return sides | {
         "overturned": run.passed,
         "overturning_time": run.overturning_time,
@@ -266,7 +273,24 @@ def verdict(run: Summary, setting: Setting, *, end: float) -> str:
         text += f", {run.flight_time:.3g} s in flight"
     if run.passed and not run.status.finished:
         text += f". Not finished: {_cut_off(run)}"
+    slips = setting.slips_of(run.ending)
+    if slips is not None:
+        text = f"{_slid(slips)}, {text[0].lower()}{text[1:]}"
     return text + "."
+
+
+def _slid(slips: SlipRange) -> str:
+    """Tell how far a body slid; also how far at most, where that is worth telling."""
+    if slips.peak == 0.0:
+        return "Did not slide"
+    most = Direction.RIGHT if slips.right > slips.left else Direction.LEFT
+    side = Direction.RIGHT if slips.residual > 0.0 else Direction.LEFT
+    if abs(slips.residual) < NOTHING_OF_IT * slips.peak:
+        return f"Slid {slips.peak:.3g} m to the {most.name.lower()} and back"
+    text = f"Slid {abs(slips.residual):.3g} m to the {side.name.lower()}"
+    if abs(slips.residual) < MOST_OF_IT * slips.peak:
+        text += f" ({slips.peak:.3g} m to the {most.name.lower()} at most)"
+    return text
 
 
 def _overturned(run: Summary, setting: Setting, end: float) -> str:

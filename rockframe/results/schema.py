@@ -22,6 +22,7 @@ from rockframe.results.variables.requests import (
     POINT_PEAKS,
     POINTS,
     REACTIONS,
+    SLIPS,
 )
 from rockframe.results.variables.runs import (
     CERTIFICATE,
@@ -58,6 +59,7 @@ _TABLES: Final = (
     IMPULSES,
     POINTS,
     POINT_PEAKS,
+    SLIPS,
     EVENTS_AND_SCALARS,
     FORCE_SCALARS,
     CERTIFICATE,

@@ -36,7 +36,7 @@ from rockframe.results.slope import energies_on_slope, ground_on_slope, without_
 from rockframe.results.variables.variable import EVENT, TIME
 from rockframe.signals.arrays import Array
 from rockframe.signals.slope import Slope
-from rockframe.simulation.friction import Sliding, sliding_scalars, slidings
+from rockframe.simulation.friction import SlidingCheck, sliding_scalars, slidings
 from rockframe.simulation.plan import Plan
 from rockframe.solve.observe import memory_at_outputs, observe_states, observe_steps
 from rockframe.solve.trajectory import Trajectory
@@ -55,7 +55,7 @@ class Answers:
     # names and places of points
     points: dict[str, Generic] = field(default_factory=dict[str, Generic])
     # whether bases have friction enough, of those to which it was given
-    slidings: list[Sliding] = field(default_factory=list[Sliding])
+    slidings: list[SlidingCheck] = field(default_factory=list[SlidingCheck])
 
 
 def ground_at(motion: GroundMotion | None, time: Array) -> Array:
@@ -90,6 +90,8 @@ def answers_of(system: Assembly, plan: Plan, run: Trajectory, missing: list[str]
         **sliding_scalars(found),
         **residuals(values, load),
     }
+    if "slip" in values:
+        told["residual_displacement"] = float(values["horizontal_displacement"][-1])
     if system.model.shows_bodies:
         told["peak_body_rotation"] = _peak_rotations(system, along)
     places: dict[str, Generic] = {}
@@ -102,6 +104,8 @@ def answers_of(system: Assembly, plan: Plan, run: Trajectory, missing: list[str]
         values |= point_histories(plan.points, values, load)
     shown = run.events.kind != SILENT
     impulses = {name: each[shown] for name, each in events.impulses(load.body.mass).items()}
+    if "slip" in values:
+        impulses["event_slip"] = events.after["slip"][shown]
     everything = values | impulses | _energies(system, plan, run, values)
     if plan.histories:
         own = _own_answers(system, everything, events.those(shown), missing)

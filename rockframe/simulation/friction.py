@@ -18,7 +18,7 @@ MOST_DIGITS: Final = 15
 
 
 @dataclass(frozen=True)
-class Sliding:
+class SlidingCheck:
     """Whether a body would slide on a base to which friction was given."""
 
     body: str  # what stands on it
@@ -57,7 +57,7 @@ def has_limit(system: Assembly) -> bool:
     return any(True for _ in _frictions(system))
 
 
-def slidings(system: Assembly, along: AlongSteps) -> list[Sliding]:
+def slidings(system: Assembly, along: AlongSteps) -> list[SlidingCheck]:
     """Tell of each base with a coefficient of friction whether it holds what stands on it."""
     return [
         _sliding(along, name, friction, body)
@@ -66,7 +66,7 @@ def slidings(system: Assembly, along: AlongSteps) -> list[Sliding]:
     ]
 
 
-def _sliding(along: AlongSteps, name: str, friction: float, body: str) -> Sliding:
+def _sliding(along: AlongSteps, name: str, friction: float, body: str) -> SlidingCheck:
     def demand(values: Values) -> Array:
         return values[name][None]
 
@@ -74,10 +74,10 @@ def _sliding(along: AlongSteps, name: str, friction: float, body: str) -> Slidin
     first, lasted = along.above(lambda values: values[name], friction)
     if needed > friction and math.isnan(first):  # within a step
         first = when
-    return Sliding(body, friction, float(needed), float(first), lasted)
+    return SlidingCheck(body, friction, float(needed), float(first), lasted)
 
 
-def sliding_scalars(found: Sequence[Sliding]) -> dict[str, float | bool]:
+def sliding_scalars(found: Sequence[SlidingCheck]) -> dict[str, float | bool]:
     """Give the same as numbers, by their names in the schema; of no base nothing."""
     if not found:
         return {}
@@ -89,7 +89,7 @@ def sliding_scalars(found: Sequence[Sliding]) -> dict[str, float | bool]:
     }
 
 
-def friction_words(scalars: Mapping[str, Generic | float], found: Sequence[Sliding]) -> str:
+def friction_words(scalars: Mapping[str, Generic | float], found: Sequence[SlidingCheck]) -> str:
     """Say in a sentence whether a run would slide, or what friction it needed; nothing without."""
     if len(found) == 1:
         words = found[0].words
@@ -111,7 +111,7 @@ def friction_words(scalars: Mapping[str, Generic | float], found: Sequence[Slidi
     return f" Friction needed: {most:.3g}, {level} for {lasted:.3g} s in all."
 
 
-def slips(found: Sequence[Sliding]) -> Iterator[str]:
+def slips(found: Sequence[SlidingCheck]) -> Iterator[str]:
     """Tell where a run needs more friction than a base has."""
     for each in found:
         if each.slides:
@@ -122,6 +122,12 @@ def count_words(would_slide: Generic) -> str:
     """Say how many cases would slide and how many would not; nothing where none is known."""
     slide, hold = _counts(would_slide)
     return f"{slide} would slide and {hold} would not" if slide + hold else ""
+
+
+def slid_words(peaks: Generic) -> str:
+    """Say how many cases slid and how far; nothing where none did."""
+    slid = peaks > 0.0
+    return f"{int(slid.sum())} slid, by {peaks[slid].max():.3g} m at most" if slid.any() else ""
 
 
 def share_words(would_slide: Generic, *, runs: str = "runs") -> str:

@@ -26,6 +26,8 @@ from rockframe.system.options import (
     RestraintLike,
     Rotation,
     RotationLike,
+    Sliding,
+    SlidingLike,
 )
 from rockframe.system.parts import Parts
 from rockframe.system.scenes import Scene
@@ -60,6 +62,10 @@ class System:
         Angle by which the base line, of ground, pads, cap and soil alike, rises to the right;
         level unless given. Rotations are then relative to the base line, and displacements,
         velocities, accelerations and forces along and normal to it [rad].
+    sliding : {"computed", "checked"}
+        What the friction of :class:`~rockframe.RigidGround` does: its forces let the block slide,
+        or the block is held and the friction that it needs is compared with it. On all other bases
+        it is checked.
 
     Raises
     ------
@@ -89,10 +95,11 @@ class System:
         coupling: CouplingLike = Coupling.COUPLED,
         gravity: QuantityLike | None = None,
         inclination: QuantityLike | None = None,
+        sliding: SlidingLike = Sliding.COMPUTED,
     ) -> None:
         self._assembly = assemble(
             parts, restraint=restraint, rotation=rotation, coupling=coupling, gravity=gravity,
-            inclination=inclination,
+            inclination=inclination, sliding=sliding,
         )  # fmt: skip
         for caution in self._assembly.doubts:
             warn(caution, ModelWarning)
@@ -148,6 +155,11 @@ class System:
         return quantity(self.options.inclination, ANGLE)
 
     @property
+    def sliding(self) -> Sliding:
+        """What friction does: its forces are computed, or it is compared with what is needed."""
+        return self.options.sliding
+
+    @property
     def scene(self) -> Scene:
         """The row of the table of scenes that the parts make."""
         return self._assembly.scene
@@ -166,11 +178,13 @@ class System:
     def __repr__(self) -> str:
         parts = ", ".join(repr(part) for part in self.parts.given())
         coupling = f", coupling={str(self.coupling)!r}" if self.scene.coupling else ""
-        inclined = self.options.to_dict().get("inclination")
-        slope = "" if inclined is None else f", inclination={inclined!r}"
+        given = self.options.to_dict()
+        others = "".join(
+            f", {name}={given[name]!r}" for name in ("inclination", "sliding") if name in given
+        )
         return (
             f"{type(self).__name__}({parts}, restraint={str(self.restraint)!r}, "
-            f"rotation={str(self.rotation)!r}{coupling}{slope})"
+            f"rotation={str(self.rotation)!r}{coupling}{others})"
         )
 
     def __dir__(self) -> list[str]:

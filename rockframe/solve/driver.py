@@ -150,11 +150,13 @@ def step_to_event(
     now = time_of(progress)
     h, rates = place * whole, equations.guard_count + 1
     noise, low, high = tolerance[crossed], 0.0, negative * whole
-    begins_positive = w.before[crossed] > noise or w.before[rates + crossed] > 0.0
+    above, below, last = w.before[crossed], w.after[crossed], 0.0  # values at both
+    begins_positive = above > noise or w.before[rates + crossed] > 0.0
     has_root = h > 0.0 and begins_positive
     if has_root and negative < 1.0:
         make_steps(equations, known, high, pieces, progress, steps, w)
-        has_root = w.after[crossed] < 0.0
+        below = w.after[crossed]
+        has_root = below < 0.0
     for correction in range(1 + MOST_POLISHING):
         if h > 0.0:
             make_steps(equations, known, h, pieces, progress, steps, w)
@@ -165,15 +167,19 @@ def step_to_event(
         if ends or abs(guard) <= noise or correction == MOST_POLISHING:
             break
         if guard > 0.0:
-            low = h
+            low, above, below = h, guard, 0.5 * below if last > 0.0 else below
         else:
-            high = h
+            high, above, below = h, 0.5 * above if last < 0.0 else above, guard
+        last = guard
         moved = h - guard / fall if fall < 0.0 else low
+        if fall == 0.0 and above > 0.0 > below:  # of forces no rate is known
+            moved = low + (high - low) * (above / (above - below))
         if has_root and not low < moved < high:
             moved = 0.5 * (low + high)
         moved = min(max(moved, 0.0), whole)
         change = abs(moved - h)
-        if change <= ROUNDING * (now + h) or (correction >= POLISHING and change <= SMALL * whole):
+        close = fall < 0.0 and correction >= POLISHING and change <= SMALL * whole
+        if change <= ROUNDING * (now + h) or close:
             break
         h = moved
     return h, crossed

@@ -110,6 +110,7 @@ def _by_shape_factor(system: System, block: Block) -> System:
             rotation=system.rotation,
             gravity=system.gravity,
             inclination=system.inclination,
+            sliding=system.sliding,
         )
 
 

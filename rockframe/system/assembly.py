@@ -14,6 +14,7 @@ from rockframe.system.options import (
     Options,
     Restraint,
     Rotation,
+    Sliding,
     read_measured,
     read_option,
 )
@@ -86,6 +87,7 @@ def assemble(
     coupling: object = Coupling.COUPLED,
     gravity: object = None,
     inclination: object = None,
+    sliding: object = Sliding.COMPUTED,
 ) -> Assembly:
     """Check parts and options together, and find the scene they make."""
     faults: list[str] = []
@@ -96,6 +98,7 @@ def assemble(
         read_option(Coupling, coupling, "coupling", wrong),
         read_measured(gravity, "gravity", wrong),
         read_measured(inclination, "inclination", wrong),
+        read_option(Sliding, sliding, "sliding", wrong),
     )
     return assembly_of(given, options, faults, wrong)
 
@@ -111,7 +114,7 @@ def assembly_of(
         faults.append(f"no scene is made of {names} together")
     # the scenes are of use to one whose parts make none, not to one with a wrong option
     supported = [scene.title for scene in scenes()] if faults else []
-    faults += [*missizes(given), *wrong]
+    faults += [*missizes(given, options), *wrong]
     if faults or scene is None:
         raise AssemblyError(faults, supported)
     made = Assembly(given, options, scene)

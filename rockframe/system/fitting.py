@@ -3,6 +3,8 @@
 import math
 
 from rockframe.components import RigidGround, Stack
+from rockframe.components.block_numbers import squat
+from rockframe.system.options import Options, Sliding
 from rockframe.system.own_base import OwnBase
 from rockframe.system.parts import Parts
 from rockframe.system.slots import slot_of
@@ -144,10 +146,21 @@ def contradictions(parts: Parts) -> list[str]:
     ]
 
 
-def missizes(parts: Parts) -> list[str]:
+def is_sliding(parts: Parts, options: Options) -> bool:
+    """Whether a block stands on rigid ground on which it slides."""
+    friction = None if parts.ground is None else parts.ground.si.friction
+    given = parts.block is not None and friction is not None
+    return given and options.sliding is Sliding.COMPUTED
+
+
+def missizes(parts: Parts, options: Options) -> list[str]:
     """Give the faults of the sizes of parts that are together."""
     block, cap = parts.block, parts.cap
+    bodies = [block] if parts.stack is None else parts.stack.bodies
     faults: list[str] = []
+    if not parts.own() and not is_sliding(parts, options):
+        known = [one for one in bodies if one is not None]
+        faults += [text for one in known for text in squat(one.si, type(one).__name__)]
     if block is not None and cap is not None:
         body = parts.the_cap
         width = 2.0 * body.half_width

@@ -35,6 +35,13 @@ class Coupling(StrEnum):
     CASCADE = "cascade"
 
 
+class Sliding(StrEnum):
+    """What friction does: its forces are computed, or the base is held and the friction checked."""
+
+    COMPUTED = "computed"
+    CHECKED = "checked"
+
+
 class Overturning(StrEnum):
     """What a run does when the rotation reaches the overturning angle."""
 
@@ -45,6 +52,7 @@ class Overturning(StrEnum):
 RestraintLike: TypeAlias = Restraint | Literal["contact-state", "leading-corner", "centre"]
 RotationLike: TypeAlias = Rotation | Literal["finite", "small"]
 CouplingLike: TypeAlias = Coupling | Literal["coupled", "cascade"]
+SlidingLike: TypeAlias = Sliding | Literal["computed", "checked"]
 OverturningLike: TypeAlias = Overturning | Literal["stop", "continue"]
 AccuracyLike: TypeAlias = (
     Accuracy | AccuracyLevel | Literal["fast", "standard", "reference"] | float
@@ -85,6 +93,7 @@ class Options:
     coupling: Coupling
     gravity: float
     inclination: float = 0.0
+    sliding: Sliding = Sliding.COMPUTED
 
     @property
     def slope(self) -> Slope:
@@ -97,14 +106,19 @@ class Options:
         return self.rotation is Rotation.SMALL
 
     def to_dict(self) -> dict[str, str]:
-        """Give the options as texts from which a system reads the same; a level base is none."""
+        """Give the options as texts from which a system reads the same.
+
+        A level base, and sliding that is computed, go without saying.
+        """
         inclined = {"inclination": f"{self.inclination!r} {ANGLE.unit}"}
+        checked = {"sliding": str(self.sliding)}
         return {
             "restraint": str(self.restraint),
             "rotation": str(self.rotation),
             "coupling": str(self.coupling),
             "gravity": f"{self.gravity!r} {ACCELERATION.unit}",
             **(inclined if self.inclination != 0.0 else {}),
+            **(checked if self.sliding is Sliding.CHECKED else {}),
         }
 
 

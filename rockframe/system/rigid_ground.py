@@ -6,10 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
 from rockframe.errors import AssemblyError
-from rockframe.system.impact import Restitutions, resolve_restitution, restitution_cautions
-from rockframe.system.load import load_of
-from rockframe.system.options import Options
-from rockframe.system.parts import Parts
+from rockframe.system.impact import Restitutions, restitution_cautions
 from rockframe.system.rigid_base import NO_VERTICAL_START
 from rockframe.system.setting import Setting
 from rockframe.system.statics import Statics
@@ -214,15 +211,6 @@ class RigidGroundSetting(Setting):
         if left == right:
             return f"{left:.6g} rad/s"
         return f"about the left corner {left:.6g} rad/s, about the right one {right:.6g} rad/s"
-
-
-def rigid_ground_setting(parts: Parts, options: Options) -> RigidGroundSetting:
-    """Resolve the parts of a scene on rigid ground."""
-    load = load_of(parts.the_block, options)
-    given = parts.ground.si.restitution if parts.ground is not None else None
-    setting = RigidGroundSetting(load, resolve_restitution(given, load.body.maximum_restitution))
-    refuse_fall(setting)
-    return setting
 
 
 def refuse_fall(setting: RigidGroundSetting) -> None:

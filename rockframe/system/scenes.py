@@ -13,9 +13,9 @@ from rockframe.system.load import Load, load_of
 from rockframe.system.options import Coupling, Options
 from rockframe.system.own_scene import OwnScene
 from rockframe.system.parts import Parts
-from rockframe.system.rigid_ground import rigid_ground_setting
 from rockframe.system.rocking_frame import rocking_frame_setting
 from rockframe.system.setting import Setting
+from rockframe.system.sliding_ground import rigid_ground_setting
 from rockframe.system.slots import RESTRAINER, support_of
 from rockframe.system.stack import StackSetting, block_setting, stack_setting
 from rockframe.system.stacked import CascadeSetting, CoupledSetting, StackedSetting
@@ -90,7 +90,7 @@ _STACK = frozenset({"block", "pads", "cap", "soil"})
 
 _SHIPPED: Final = (
     Scene(
-        "Block (on rigid ground; RigidGround(restitution=...) to choose its restitution)",
+        "Block (on rigid ground; RigidGround(...) to choose its restitution, or friction)",
         frozenset({"block"}),
         rigid_ground_setting,
     ),

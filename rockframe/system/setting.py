@@ -4,7 +4,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 from rockframe.signals.slope import Slope
 from rockframe.system.bodies import OverturningAngles, SupportedBody
@@ -17,10 +17,23 @@ from rockframe.system.support import Support
 from rockframe.system.words import Words
 
 if TYPE_CHECKING:
-    from rockframe.dynamics.protocol import ContactModel
+    from rockframe.dynamics.protocol import ContactModel, Ending
 
 LARGE_LEAN = 0.1
 """Share of the overturning angle above which a lean at rest is worth a warning."""
+
+
+class SlipRange(NamedTuple):
+    """How far a body has slipped on its base, to the right [m]."""
+
+    residual: float  # at the end of a run
+    left: float  # at most to either side, both positive
+    right: float
+
+    @property
+    def peak(self) -> float:
+        """The greatest to either side."""
+        return max(self.left, self.right)
 
 
 @dataclass(frozen=True)
@@ -176,6 +189,10 @@ class Setting(ABC):
             f"at rest the body leans by {lean:.4g} rad, {100.0 * share:.3g} % of its "
             f"overturning angle to that side, since {' and '.join(reasons)}"
         ]
+
+    def slips_of(self, ending: "Ending") -> SlipRange | None:
+        """Tell how far the body slipped, by the end of a run; None of one that is held."""
+        return None
 
     @abstractmethod
     def contact_model(self) -> "ContactModel":

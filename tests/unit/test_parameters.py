@@ -136,8 +136,6 @@ def test_what_replaces_is_checked_as_what_is_new():
         PADS.replace(stiffness=None)
     with pytest.raises(rf.ComponentError, match="density and depth go together; only density was"):
         CAP.replace(density="2500 kg/m^3")
-    with pytest.raises(rf.ComponentError, match="cannot rock"):
-        BLOCK.replace(height="1 m")
     with pytest.raises(TypeError, match="unexpected keyword argument 'frequency'"):
         PADS.replace(frequency=3)
     with pytest.warns(rf.ModelWarning, match="'5 %' meant") as caught:

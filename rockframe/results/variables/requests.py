@@ -149,6 +149,21 @@ POINT_PEAKS: Final = tuple(
 )
 """Of points, in runs with samples."""
 
+SLIPS: Final = (
+    Variable("slip", TIME, Unit.METRE, "slip of the base, to the right"),
+    Variable("slip_velocity", TIME, Unit.METRE_PER_SECOND, "rate of the slip"),
+    Variable("event_slip", EVENT, Unit.METRE, "slip of the base at the event"),
+    Variable("residual_slip", (), Unit.METRE, "slip of the base at the end of the run"),
+    Variable("peak_slip", (), Unit.METRE, "largest absolute slip of the base while it bears"),
+    Variable(
+        "residual_displacement",
+        (),
+        Unit.METRE,
+        "horizontal displacement of the centre of mass at the end of the run, to the right",
+    ),
+)
+"""Of scenes in which a body slides; the slip is that of the corner that bears."""
+
 FORCE_SCALARS: Final = (
     Variable("peak_friction_demand", (), Unit.ONE, "largest friction demand up to overturning"),
     Variable("peak_friction_demand_time", (), Unit.SECOND, "time of the largest friction demand"),

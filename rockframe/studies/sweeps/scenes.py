@@ -28,7 +28,7 @@ from rockframe.studies.sweeps.axes import (
 from rockframe.studies.sweeps.identity import name_of
 from rockframe.studies.sweeps.motions import TARGETS, target_words
 from rockframe.system.assembly import Assembly, assembly_of
-from rockframe.system.options import MEASURED, Coupling, Restraint, Rotation
+from rockframe.system.options import MEASURED, Coupling, Restraint, Rotation, Sliding
 from rockframe.units import Measure, Unit, quantity
 
 STARTS: Final = {
@@ -59,6 +59,7 @@ _CHOICES: Final[dict[str, tuple[type[StrEnum], str]]] = {
     "restraint": (Restraint, "point of the base that the ground holds horizontally"),
     "rotation": (Rotation, "kinematics"),
     "coupling": (Coupling, "how block, pads, cap and soil are joined"),
+    "sliding": (Sliding, "what friction does"),
 }
 _OPTIONS: Final = (*_CHOICES, *MEASURED)
 _SYSTEM: Final = System.__name__

@@ -12,7 +12,7 @@ from rockframe.results.joining import CASE_COUNT
 from rockframe.results.outcome import Generic, overturned_by
 from rockframe.results.variables.runs import RunStatus
 from rockframe.results.variables.studies import MESSAGE, REPEATED, VERDICT_CHANGED
-from rockframe.simulation.friction import count_words
+from rockframe.simulation.friction import count_words, slid_words
 from rockframe.simulation.run import NONE
 from rockframe.studies.sweeps.axes import OWNER
 
@@ -49,6 +49,8 @@ def cases_sentence(runs: xr.Dataset, these: str) -> str:
     text = f"{these} {falls} overturned and {stands} did not"
     if "would_slide" in runs and (sliding := count_words(runs["would_slide"].to_numpy())):
         text += f"; {sliding}"
+    if "peak_slip" in runs and (slid := slid_words(runs["peak_slip"].to_numpy())):
+        text += f"; {slid}"
     lacking = status.size - not_run - falls - stands
     if lacking:
         text += f"; {lacking} have no result"

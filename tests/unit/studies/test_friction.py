@@ -9,8 +9,8 @@ from rockframe.compiled import COMPILED
 from rockframe.studies.sweeps import study
 
 BLOCK = rf.Block(width="0.6 m", height="1.8 m", mass="180 kg")
-SLIPPERY = rf.System(BLOCK, rf.RigidGround(friction=0.2))
-ROUGH = rf.System(BLOCK, rf.RigidGround(friction=10))
+SLIPPERY = rf.System(BLOCK, rf.RigidGround(friction=0.2), sliding="checked")
+ROUGH = rf.System(BLOCK, rf.RigidGround(friction=10), sliding="checked")
 PULSE = rf.GroundMotion.sine_pulse("4 m/s^2", "1.2 Hz")
 SLIDES = "the block would slide from"
 
@@ -44,7 +44,7 @@ def test_a_run_without_histories_tells_of_friction_in_the_same_words():
     ],
 )
 def test_cases_of_a_sweep_say_what_single_runs_say(base):
-    system = rf.System(BLOCK, base)
+    system = rf.System(BLOCK, base, sliding="checked")
     frictions = [0.1, 0.5, 10.0]
     with pytest.warns(rf.ModelWarning, match=f"cases have a result to be careful with.*{SLIDES}"):
         runs = rf.sweep(system, PULSE, friction=frictions, scale=[0.5, 1.0], accuracy="standard")
@@ -114,8 +114,9 @@ def test_analyses_count_the_runs_that_would_slide():
     slide = int((needed > friction).sum())
     assert 0 < slide < held.scale.size
     base = rf.RigidGround(friction=friction)
+    checked = rf.System(BLOCK, base, sliding="checked")
     with ignored:
-        found = rf.critical_scale(rf.System(BLOCK, base), PULSE, largest=1.6, scales=20, runs=40)
+        found = rf.critical_scale(checked, PULSE, largest=1.6, scales=20, runs=40)
     words = f"; in {slide} of {held.scale.size} runs the block would slide first."
     assert words in found.attrs["verdict"]
     free = rf.critical_scale(rf.System(BLOCK), PULSE, largest=1.6, scales=20, runs=40)

@@ -98,7 +98,7 @@ def test_cases_without_a_result_are_gaps_with_a_reason(plain):
     assert rest.overturned.notnull().all()
     assert plain.attrs["verdict"].endswith("; 12 have no result.")
     assert "12 have" in plain.attrs["verdict"]
-    with pytest.raises(rf.ComponentError, match="cannot rock"):
+    with pytest.raises(rf.AssemblyError, match="cannot rock"):
         rf.case(plain, scale=1.0, frequency_ratio=10, height=0.3, motion="pulse")
 
 

@@ -56,7 +56,7 @@ def test_figures_of_a_part_are_entitled_by_its_own_verdict():
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.ModelWarning")
 def test_texts_of_many_cases_are_summed_up(tmp_path):
-    system = rf.System(BLOCK, rf.RigidGround(friction=0.1))
+    system = rf.System(BLOCK, rf.RigidGround(friction=0.1), sliding="checked")
     scales = np.linspace(0.5, 1.3, 6 * MOST_ALIKE)
 
     def swept(**how):

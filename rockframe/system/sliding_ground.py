@@ -1,0 +1,184 @@
+"""The scene of a block that slides on rigid ground: its numbers, its words and its model."""
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from rockframe.components.ground import Impact
+from rockframe.components.values import SIValues
+from rockframe.errors import AssemblyError
+from rockframe.system.fitting import is_sliding
+from rockframe.system.impact import Restitutions, resolve_restitution
+from rockframe.system.load import Load, load_of
+from rockframe.system.options import Options
+from rockframe.system.parts import Parts
+from rockframe.system.rigid_ground import RigidGroundSetting, refuse_fall
+from rockframe.system.setting import SlipRange
+from rockframe.system.words import Words
+
+if TYPE_CHECKING:
+    from rockframe.dynamics.protocol import ContactModel, Ending
+    from rockframe.dynamics.slide_rock import SlideRock
+
+
+@dataclass(frozen=True)
+class SlidingSetting(RigidGroundSetting):
+    """A block on rigid ground with friction."""
+
+    static: float  # coefficients of friction [1]
+    kinetic: float
+    impact: Impact  # law of its impacts
+    slides = True
+    flies = True
+
+    @property
+    def model(self) -> str:
+        """Name of the model."""
+        return "sliding on rigid ground"
+
+    @property
+    def lands_flat(self) -> bool:
+        """Whether the block is so squat that it does not roll over."""
+        return min(self.restitution) <= 0.0
+
+    def system(self) -> "SlideRock":
+        """Give the equations."""
+        from rockframe.dynamics.slide_rock import SlideRock, impulse_lever
+
+        body = self.body
+        left, right = (
+            impulse_lever(
+                restitution=restitution,
+                own=own,
+                width=2.0 * body.half_width,
+                about_foot=body.base_inertia / body.mass,
+            )
+            for own, restitution in zip((body.left, body.right), self.restitution, strict=True)
+        )
+        return SlideRock(
+            left=body.left,
+            right=body.right,
+            height=body.centre_height,
+            inertia=body.inertia / body.mass,
+            static=self.static,
+            kinetic=self.kinetic,
+            impulsive=math.inf if self.impact is Impact.STICK else self.kinetic,
+            left_lever=left,
+            right_lever=right,
+            gravity=self.slope.normal_gravity,
+        )
+
+    def contact_model(self) -> "ContactModel":
+        """Give the equations of slip, rotation and rise."""
+        from rockframe.dynamics.slide_rock import slide_rock
+
+        return slide_rock(self.system(), mass=self.body.mass)
+
+    def slips_of(self, ending: "Ending") -> SlipRange:
+        """Tell how far the block slipped."""
+        from rockframe.dynamics.slide_rock import FLIES_RIGHT, PEAK_LEFT, PEAK_RIGHT, SLIP, SLIPS
+
+        residual = float(ending.state[SLIP])
+        left, right = float(ending.memory[PEAK_LEFT]), float(ending.memory[PEAK_RIGHT])
+        if ending.mode // SLIPS < FLIES_RIGHT:
+            left, right = max(left, -residual), max(right, residual)
+        return SlipRange(residual, left, right)
+
+    def cautions(self) -> list[str]:
+        """Give warnings about the restitution, and of a block that its weight moves."""
+        along = abs(self.slope.along_gravity)
+        if along <= self.static * self.slope.normal_gravity:
+            return super().cautions()
+        slides = (
+            f"the block slides by its own weight: it needs a friction of tan(i) = "
+            f"{along / self.slope.normal_gravity:.4g}, and has {self.static:.4g}"
+        )
+        return [*super().cautions(), slides]
+
+    @property
+    def friction_to_roll_over(self) -> float:
+        """Coefficient from which no corner slips as it strikes, :eq:`eq-slide-housner`."""
+        body = self.body
+        square = body.base_inertia / body.mass
+        return max(body.centre_height * own / square for own in (body.left, body.right))
+
+    def words(self) -> Words:
+        """Tell the block that slides."""
+        base = super().words()
+        slips = "s = sgn(slip')"
+        law = "the corner that strikes slips as far as the kinetic friction lets it"
+        if self.impact is Impact.STICK:
+            law = "the corner that strikes is held"
+        onto = (
+            "the block lands flat"
+            if self.lands_flat
+            else (f"a' after = {self.restitution.words()} a' before where it does not slip")
+        )
+        static, kinetic = self.static, self.kinetic
+        return Words(
+            equations=[
+                ("full", "at rest while |xg''| <= mu_s (g + yg''), and until it tips"),
+                ("full", f"it slides: slip'' = -xg'' - s mu_k (g + yg''), {slips}"),
+                *((state, words) for state, words in base.equations if state == "left, right"),
+                ("left, right", "the corner slips: I a'' = N (l + s mu_k l'), where friction at "
+                 "the held corner would have to be above mu_s N"),
+                ("flight", "nothing bears: N = 0"),
+                ("impact", f"{self.impact}: {law}; {onto}"),
+            ],
+            restraint="friction at the corner that bears, or on the whole base (the restraint "
+            "options make no difference)",
+            numbers=[
+                *base.numbers[:-1],
+                ("friction at rest, and of slip", f"{static:.6g}, {kinetic:.6g}"),
+                ("friction to land without slip", f"{self.friction_to_roll_over:.6g}"),
+                ("restitution eps", "lands flat" if self.lands_flat else self.restitution.words()),
+            ],
+            left_out=["elasticity of block and ground"],
+        )  # fmt: skip
+
+
+def rigid_ground_setting(parts: Parts, options: Options) -> RigidGroundSetting:
+    """Resolve the parts of a scene on rigid ground."""
+    load = load_of(parts.the_block, options)
+    given = None if parts.ground is None else parts.ground.si
+    restitution = resolve_restitution(
+        None if given is None else given.restitution, load.body.maximum_restitution
+    )
+    setting = RigidGroundSetting(load, restitution)
+    if given is not None and is_sliding(parts, options):
+        setting = _sliding(load, restitution, given)
+    refuse_fall(setting)
+    return setting
+
+
+def _sliding(load: Load, restitution: Restitutions, ground: SIValues) -> SlidingSetting:
+    """Put a block on rigid ground with friction; refuse what has no answer."""
+    static = ground.friction
+    kinetic = static if ground.kinetic_friction is None else ground.kinetic_friction
+    setting = SlidingSetting(load, restitution, static, kinetic, ground.impact)
+    faults = _ill_posed(setting)
+    if load.options.small:
+        faults.append(
+            "a block slides with rotation='finite' only; give sliding='checked' to hold it and "
+            "compare its friction"
+        )
+    if faults:
+        raise AssemblyError(faults)
+    return setting
+
+
+def _ill_posed(setting: SlidingSetting) -> list[str]:
+    """Refuse friction with which a corner that slips may jam, :eq:`eq-slide-painleve`."""
+    from rockframe.dynamics.slide_rock import ill_posed_friction
+
+    body, kinetic = setting.body, setting.kinetic
+    limit = ill_posed_friction(
+        body.inertia / body.mass, max(body.left, body.right) ** 2 + body.centre_height**2
+    )
+    if kinetic < limit:
+        return []
+    return [
+        f"with a kinetic friction of {kinetic:.6g} a corner that slips may jam, and rigid friction "
+        f"has no answer or several: for this block it must be below {limit:.6g}; give "
+        "kinetic_friction beside a greater friction at rest"
+    ]
