@@ -23,18 +23,20 @@ from rockframe.records.components import (
     orientation_of,
 )
 from rockframe.records.files import PathLike, RecordLike, Unread, files_of, read_source
-from rockframe.records.known_formats import Format, Reader, formats, register, unregister
+from rockframe.records.known_formats import formats, register, unregister
 from rockframe.records.netcdf import LONG_NAMES, is_netcdf, stored_motion
 from rockframe.records.numbers import epoch_seconds, same_start, uniform_step
 from rockframe.records.peer import Known, peer_table
-from rockframe.records.read import (
-    Reading,
-    read_components,
-    read_record,
-    read_traces,
-    request_of,
+from rockframe.records.read import Reading, read_components, read_record, read_traces, request_of
+from rockframe.records.reader import (
+    MAXIMUM_SAMPLES,
+    Format,
+    Metadata,
+    Reader,
+    Record,
+    Request,
+    Source,
 )
-from rockframe.records.record_file import MAXIMUM_SAMPLES, Metadata, Record, Request, Source
 from rockframe.records.unit_names import acceleration_unit, argument_unit, choose_unit
 
 __all__ = [

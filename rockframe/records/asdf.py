@@ -31,11 +31,21 @@ from rockframe.records.checks import settle_time_step
 from rockframe.records.components import FileComponent, choose_component, orientation_of
 from rockframe.records.instruments import (
     InstrumentResponses,
-    codes_of,
+    about_codes,
+    check_finite,
+    check_unit_or_response,
     record_of_counts,
     response_in,
 )
-from rockframe.records.record_file import MAXIMUM_SAMPLES, Format, Metadata, Record, Request, Source
+from rockframe.records.reader import (
+    MAXIMUM_SAMPLES,
+    Format,
+    Metadata,
+    Record,
+    Request,
+    Source,
+    begins_otherwise,
+)
 from rockframe.records.unit_names import choose_unit
 
 if TYPE_CHECKING:
@@ -43,7 +53,6 @@ if TYPE_CHECKING:
 
     from rockframe.records.instruments import InstrumentResponse
     from rockframe.signals.arrays import Array
-
 
 _MAGIC: Final = b"\x89HDF\r\n\x1a\n"
 _MARKS: Final = (b"Waveforms", b"file_format")
@@ -80,11 +89,8 @@ def _recognises(source: Source) -> bool:
 
 def _read(source: Source, request: Request) -> Record:
     if not _recognises(source):
-        found = f"a file that begins with {source.data[:8]!r}"
-        raise source.refuse(found=found, expected=_EXPECTED)
-    if request.unit is not None and request.response is not None:
-        found = "the arguments unit and response"
-        raise source.refuse(found=found, expected="one of them: accelerations, or counts")
+        raise begins_otherwise(source, _EXPECTED)
+    check_unit_or_response(source, request)
     objects = sum(source.data.count(mark) * held for mark, held in _NODES.items())
     if objects > _MOST_OBJECTS:
         found = f"about {objects} groups and arrays"
@@ -154,11 +160,8 @@ def _samples(source: Source, request: Request, file: Any, one: _Waveform) -> Rec
     time_step = float(f"{1.0 / rate:.12g}")
     settle_time_step(source, request, time_step, None)
     start = _EPOCH + timedelta(microseconds=int(variable.getncattr("starttime")) // 1000)
-    network, station, location, _ = codes_of(one.codes)
     metadata: Metadata = {
-        "network": network,
-        "station": station,
-        **({"sensor_location": location} if location else {}),
+        **about_codes(one.codes),
         "processing": one.tag,
         "record_time": f"{start.isoformat()}Z",
     }
@@ -187,8 +190,7 @@ def _values(source: Source, one: _Waveform, variable: Any) -> Array:
     if not isinstance(kind, np.dtype) or cast("np.dtype[Any]", kind).kind not in "fiu":
         raise source.refuse(found=f"{one.name} of no numbers", expected="whole or real numbers")
     values = np.asarray(variable[:], dtype=np.float64)
-    if not np.isfinite(values).all():
-        raise source.refuse(found="samples that are not finite", expected="finite samples")
+    check_finite(source, values)
     return values
 
 

@@ -15,7 +15,7 @@ from rockframe.records.numbers import same_start
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from rockframe.records.record_file import Metadata, Record, Request, Source
+    from rockframe.records.reader import Metadata, Record, Request, Source
 
 UPWARDS: Final = "up"
 DOWNWARDS: Final = "down"

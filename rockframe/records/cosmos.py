@@ -32,14 +32,7 @@ from rockframe.records.components import (
     orientation_of,
 )
 from rockframe.records.numbers import FixedWidth, one_number, whole
-from rockframe.records.record_file import (
-    Format,
-    Metadata,
-    Record,
-    Request,
-    Source,
-    quoted_first_line,
-)
+from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
 from rockframe.records.unit_names import acceleration_unit, choose_unit
 
 MILLISECOND: Final = 1e-3
@@ -83,7 +76,6 @@ ORIENTATIONS: Final = {
     402: Orientation(vertical=VERTICAL),
 }
 """Integer header 54, where it is no azimuth from 1 to 360 degrees."""
-
 
 _INTEGERS: Final = re.compile(
     r"(\d{1,4})\s+Integer-header values follow on\s+(\d{1,4})\s+lines?,?"

@@ -42,14 +42,14 @@ from rockframe.records.components import (
 )
 from rockframe.records.headers import first_match
 from rockframe.records.numbers import FixedWidth, uniform_step, whole
-from rockframe.records.record_file import Format, Record, Request, Source, quoted_first_line
+from rockframe.records.reader import Format, Record, Request, Source, quoted_first_line
 from rockframe.records.unit_names import choose_unit
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from rockframe.errors import RecordError
-    from rockframe.records.record_file import Format, Metadata
+    from rockframe.records.reader import Format, Metadata
     from rockframe.signals.arrays import Array
 
 FIRST_LINE: Final = re.compile(

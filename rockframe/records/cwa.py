@@ -31,19 +31,11 @@ from rockframe.records.components import (
 )
 from rockframe.records.headers import NOTHING, Keys, kept, needed, needed_rate
 from rockframe.records.numbers import FixedWidth, one_number
-from rockframe.records.record_file import (
-    Format,
-    Metadata,
-    Record,
-    Request,
-    Source,
-    quoted_first_line,
-)
+from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
 from rockframe.records.unit_names import choose_unit
 
 if TYPE_CHECKING:
     from rockframe.signals.arrays import Array
-
 
 _KEY: Final = re.compile(r"^#\s*([A-Za-z][A-Za-z ]{2,40}?)\s*(\([^()]{0,20}\))?\s*:\s*(.*?)\s*$")
 _MARKS: Final = frozenset(("stationcode", "samplerate", "datasequence", "amplitudeunit"))

@@ -19,7 +19,7 @@ from rockframe.records.archives import (
     members,
     packs_tar,
 )
-from rockframe.records.record_file import Source, source_of
+from rockframe.records.reader import Source, source_of
 
 PathLike: TypeAlias = "str | os.PathLike[str]"
 RecordLike: TypeAlias = "PathLike | bytes | IO[bytes] | IO[str]"

@@ -18,15 +18,17 @@ from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
+import numpy as np
+
 from rockframe.records.components import DOWNWARDS, UNKNOWN, UPWARDS, Orientation, azimuth_of
 from rockframe.records.files import read_source
-from rockframe.records.record_file import Metadata, Record, Source, base_name
+from rockframe.records.reader import Metadata, Record, Source, base_name
 from rockframe.records.unit_names import RecordUnit, acceleration_unit
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from rockframe.records.record_file import Request, Source
+    from rockframe.records.reader import Request, Source
     from rockframe.signals.arrays import Array
 
 _LARGEST: Final = 8 * 2**20
@@ -131,6 +133,25 @@ def codes_of(name: str) -> tuple[str, str, str, str]:
 def location_code(given: str) -> str:
     """Give the code of a sensor's location; two hyphens or blanks stand for none."""
     return given.strip(" -")
+
+
+def about_codes(name: str) -> Metadata:
+    """Give what the codes of a channel say, for the metadata."""
+    keys = ("network", "station", "sensor_location")
+    return {key: code for key, code in zip(keys, codes_of(name), strict=False) if code}
+
+
+def check_unit_or_response(source: Source, request: Request) -> None:
+    """Refuse a unit that is asked for beside the response of the instrument."""
+    if request.unit is not None and request.response is not None:
+        found = "the arguments unit and response"
+        raise source.refuse(found=found, expected="one of them: accelerations, or counts")
+
+
+def check_finite(source: Source, samples: Array) -> None:
+    """Refuse samples of a binary file that are no numbers."""
+    if not np.isfinite(samples).all():
+        raise source.refuse(found="samples that are not finite", expected="finite samples")
 
 
 def response_in(file: Source, name: str, time: datetime) -> InstrumentResponse | None:

@@ -30,14 +30,7 @@ from rockframe.records.numbers import (
     last_fields,
     one_number,
 )
-from rockframe.records.record_file import (
-    Format,
-    Metadata,
-    Record,
-    Request,
-    Source,
-    quoted_first_line,
-)
+from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
 from rockframe.records.unit_names import choose_unit
 
 if TYPE_CHECKING:

@@ -23,19 +23,11 @@ from rockframe.records.checks import settle_count
 from rockframe.records.components import FileComponent, choose_component, orientation_of
 from rockframe.records.headers import NOTHING, Keys, needed, needed_rate
 from rockframe.records.numbers import NUMBER, cut_short, free_format, last_fields, one_number
-from rockframe.records.record_file import (
-    Format,
-    Metadata,
-    Record,
-    Request,
-    Source,
-    quoted_first_line,
-)
+from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
 from rockframe.records.unit_names import choose_unit
 
 if TYPE_CHECKING:
     from rockframe.signals.arrays import Array
-
 
 UNIT: Final = "gal"
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 import re
 from dataclasses import replace
-from typing import TYPE_CHECKING, Final, Protocol, cast
+from typing import Final, cast
 
 from rockframe.errors import ComponentError, RecordError
 from rockframe.records.asdf import ASDF
@@ -17,52 +17,16 @@ from rockframe.records.knet import KNET
 from rockframe.records.miniseed import MINISEED
 from rockframe.records.netcdf import NETCDF
 from rockframe.records.peer import PEER_AT2
-from rockframe.records.record_file import (
-    Format,
-    Record,
-    Request,
-    Source,
-    quoted_first_line,
-)
+from rockframe.records.reader import Format, Reader, Source, quoted_first_line
 from rockframe.records.sac import SAC
 from rockframe.records.smc import SMC
 from rockframe.records.text import TEXT
 from rockframe.records.unam import UNAM
 from rockframe.records.volumes import BHRC, GEONET
 
-if TYPE_CHECKING:
-    pass
-
 _NAME: Final = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
 _SUFFIX: Final = re.compile(r"\.[a-z0-9]+")
 _OWNER: Final = "rockframe.motion.register"
-
-
-class Reader(Protocol):
-    """What a reader must have: a module or any other object with these names.
-
-    Attributes
-    ----------
-    NAME : str
-        What the argument ``format`` takes: small letters, digits and hyphens.
-    TITLE : str
-        In words.
-    SUFFIXES : tuple of str
-        Usual extensions, in small letters, with their dot.
-    """
-
-    NAME: str
-    TITLE: str
-    SUFFIXES: tuple[str, ...]
-
-    def recognises(self, source: Source, /) -> bool:
-        """Tell whether a file looks like this format."""
-        ...
-
-    def read(self, source: Source, request: Request, /) -> Record:
-        """Read the record, or raise what ``source.refuse`` builds."""
-        ...
-
 
 # asked in this order; text takes every column of numbers, so it comes last
 _OWN: Final = tuple(

@@ -34,12 +34,22 @@ from rockframe.records.components import (
     orientation_of,
 )
 from rockframe.records.instruments import (
-    InstrumentResponse,
     InstrumentResponses,
+    about_codes,
+    check_finite,
+    check_unit_or_response,
     codes_of,
     record_of_counts,
 )
-from rockframe.records.record_file import MAXIMUM_SAMPLES, Format, Metadata, Record, Request, Source
+from rockframe.records.reader import (
+    MAXIMUM_SAMPLES,
+    Format,
+    Metadata,
+    Record,
+    Request,
+    Source,
+    begins_otherwise,
+)
 from rockframe.records.unit_names import choose_unit
 
 if TYPE_CHECKING:
@@ -69,11 +79,8 @@ def _recognises(source: Source) -> bool:
 
 def _read(source: Source, request: Request) -> Record:
     if not _recognises(source):
-        found = f"a file that begins with {source.data[:8]!r}"
-        raise source.refuse(found=found, expected=_EXPECTED)
-    if request.unit is not None and request.response is not None:
-        found = "the arguments unit and response"
-        raise source.refuse(found=found, expected="one of them: accelerations, or counts")
+        raise begins_otherwise(source, _EXPECTED)
+    check_unit_or_response(source, request)
     channels = _channels(source)
     responses = None if request.unit is not None else InstrumentResponses(source, request)
     stations = {name.rsplit(".", 2)[0] for name in channels}
@@ -187,7 +194,7 @@ def _component(
     *,
     several: bool,
 ) -> FileComponent:
-    network, station, location, channel = codes_of(name)
+    channel = codes_of(name)[3]
     first = min(traces, key=lambda trace: trace.stats.starttime)
     response = problem = None
     if responses is not None:
@@ -198,28 +205,16 @@ def _component(
     direction = UNKNOWN if response is None else response.orientation
     if direction == UNKNOWN:
         direction = orientation_of(channel) if len(channel) == 3 else Orientation()
-    metadata: Metadata = {"network": network, "station": station, "sensor_location": location}
 
     def samples() -> Record:
         if problem is not None:
             raise problem
-        return _samples(source, request, traces, response, metadata)
+        counts, time_step, start = joined_traces(source, traces)
+        settle_time_step(source, request, time_step, None)
+        about: Metadata = {**about_codes(name), "record_time": start}
+        return record_of_counts(source, request, counts, time_step, about, response)
 
     return FileComponent(name if several else channel, samples, direction, aliases=(name, channel))
-
-
-def _samples(
-    source: Source,
-    request: Request,
-    traces: list[Any],
-    response: InstrumentResponse | None,
-    metadata: Metadata,
-) -> Record:
-    counts, time_step, start = joined_traces(source, traces)
-    settle_time_step(source, request, time_step, None)
-    about: Metadata = {key: value for key, value in metadata.items() if value}
-    about["record_time"] = start
-    return record_of_counts(source, request, counts, time_step, about, response)
 
 
 def by_channel(traces: Iterable[Any]) -> dict[str, list[Any]]:
@@ -259,8 +254,7 @@ def joined_traces(source: Source, traces: list[Any]) -> tuple[Array, float, str]
         expected = f"2 to {MAXIMUM_SAMPLES} samples in a channel"
         raise source.refuse(found=f"{count} samples", expected=expected)
     counts = np.concatenate(parts)
-    if not np.isfinite(counts).all():
-        raise source.refuse(found="samples that are not finite", expected="finite samples")
+    check_finite(source, counts)
     return counts, time_step, str(first.starttime)
 
 
@@ -279,15 +273,17 @@ def components_of_traces(
 def _component_of_traces(
     source: Source, request: Request, code: str, traces: list[Any], *, several: bool
 ) -> FileComponent:
-    network, station, location, channel = codes_of(code)
-    about = {"network": network, "station": station, "sensor_location": location}
+    channel = codes_of(code)[3]
 
     def samples() -> Record:
         values, time_step, start = joined_traces(source, traces)
         check_time_step(source, time_step, None)
         unit, as_read, said = choose_unit(source, request, _stated_unit(traces[0].stats), None)
-        metadata: Metadata = {key: value for key, value in about.items() if value}
-        metadata |= {"record_time": start, "unit_as_read": as_read}
+        metadata: Metadata = {
+            **about_codes(code),
+            "record_time": start,
+            "unit_as_read": as_read,
+        }
         return Record(time_step, values, unit, metadata, warnings=tuple(said))
 
     aliases = (code, channel)

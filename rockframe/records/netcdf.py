@@ -19,7 +19,7 @@ import xarray as xr
 from rockframe.errors import ComponentError, RecordError, SchemaError
 from rockframe.records.checks import check_asked_time_step
 from rockframe.records.components import UNKNOWN, FileComponent, choose_component, orientation_of
-from rockframe.records.record_file import Format, Record, Request, Source, StoredMotion
+from rockframe.records.reader import Format, Record, Request, Source, StoredMotion, begins_otherwise
 from rockframe.records.unit_names import RecordUnit
 from rockframe.signals import Motion, Signal
 from rockframe.signals.arrays import OWNER, Array
@@ -75,8 +75,7 @@ def is_netcdf(source: Source) -> bool:
 
 def _read(source: Source, request: Request) -> StoredMotion:
     if not is_netcdf(source):
-        found = f"a file that begins with {source.data[:8]!r}"
-        raise source.refuse(found=found, expected=_EXPECTED)
+        raise begins_otherwise(source, _EXPECTED)
     stored = _stored(source)
     _compare(source, request, stored)
     return stored

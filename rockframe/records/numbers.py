@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from rockframe.records.record_file import MAXIMUM_SAMPLES, Source, quoted_first_line
+from rockframe.records.reader import MAXIMUM_SAMPLES, Source, quoted_first_line
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

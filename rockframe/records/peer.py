@@ -30,18 +30,11 @@ from rockframe.records.components import (
     orientation_of,
 )
 from rockframe.records.numbers import NUMBER, all_numbers
-from rockframe.records.record_file import (
-    Format,
-    Metadata,
-    Record,
-    Request,
-    Source,
-    quoted_first_line,
-)
+from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
 from rockframe.records.unit_names import choose_unit
 
 if TYPE_CHECKING:
-    from rockframe.records.record_file import Format, Source
+    from rockframe.records.reader import Format, Source
 
 _SUFFIX: Final = ".at2"
 
@@ -174,7 +167,6 @@ def _description(source: Source, index: int) -> Metadata:
 
 
 PEER_AT2: Final = Format("peer-at2", "PEER acceleration file (AT2)", (_SUFFIX,), _recognises, _read)
-
 
 Known: TypeAlias = "dict[str, str | float | int]"
 

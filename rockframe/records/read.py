@@ -19,7 +19,7 @@ from rockframe.records.components import (
 from rockframe.records.files import RecordLike, read_source
 from rockframe.records.known_formats import WITH_RESPONSE, added_failed, by_name, recognised
 from rockframe.records.miniseed import components_of_traces
-from rockframe.records.record_file import (
+from rockframe.records.reader import (
     MAXIMUM_SAMPLES,
     Metadata,
     Record,
@@ -40,7 +40,6 @@ if TYPE_CHECKING:
     from rockframe.records.known_formats import Format
     from rockframe.signals.arrays import Array
     from rockframe.units import QuantityLike
-
 
 _ANYTHING: Final = Request()
 

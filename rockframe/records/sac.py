@@ -30,12 +30,25 @@ from rockframe.records.components import (
     choose_component,
     orientation_of,
 )
-from rockframe.records.instruments import InstrumentResponses, location_code, record_of_counts
-from rockframe.records.record_file import MAXIMUM_SAMPLES, Format, Metadata, Record, Request, Source
+from rockframe.records.instruments import (
+    InstrumentResponses,
+    check_finite,
+    check_unit_or_response,
+    location_code,
+    record_of_counts,
+)
+from rockframe.records.reader import (
+    MAXIMUM_SAMPLES,
+    Format,
+    Metadata,
+    Record,
+    Request,
+    Source,
+    begins_otherwise,
+)
 
 if TYPE_CHECKING:
     from rockframe.signals.arrays import Array
-
 
 _FLOATS: Final = 70
 _INTEGERS: Final = 40
@@ -87,11 +100,8 @@ def _recognises(source: Source) -> bool:
 def _read(source: Source, request: Request) -> Record:
     header = _header(source)
     if header is None:
-        found = f"a file that begins with {source.data[:8]!r}"
-        raise source.refuse(found=found, expected=_EXPECTED)
-    if request.unit is not None and request.response is not None:
-        found = "the arguments unit and response"
-        raise source.refuse(found=found, expected="one of them: accelerations, or counts")
+        raise begins_otherwise(source, _EXPECTED)
+    check_unit_or_response(source, request)
     kind, series = int(header.integers[_KIND]), int(header.integers[_TYPE])
     if series not in (_TIME_SERIES, _UNKNOWN) or header.integers[_EVEN] == 0:
         found = "a spectrum, or samples that are not evenly spaced"
@@ -136,8 +146,7 @@ def _samples(source: Source, request: Request, header: _Header, name: str) -> Re
     settle_time_step(source, request, time_step, None)
     with np.errstate(invalid="ignore"):
         values = np.frombuffer(source.data, f"{header.order}f4", count, _HEADER).astype(np.float64)
-    if not np.isfinite(values).all():
-        raise source.refuse(found="samples that are not finite", expected="finite samples")
+    check_finite(source, values)
     metadata, start = _description(header)
     response = None
     if request.unit is None and start is not None:

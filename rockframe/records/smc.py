@@ -27,19 +27,11 @@ from rockframe.records.components import (
     orientation_of,
 )
 from rockframe.records.numbers import NUMBER, FixedWidth, whole, with_e
-from rockframe.records.record_file import (
-    Format,
-    Metadata,
-    Record,
-    Request,
-    Source,
-    quoted_first_line,
-)
+from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
 from rockframe.records.unit_names import choose_unit
 
 if TYPE_CHECKING:
     pass
-
 
 UNIT: Final = "cm/sec/sec"
 """Of the data, by the specification."""

@@ -25,7 +25,7 @@ from rockframe.records.numbers import (
     too_many,
     uniform_step,
 )
-from rockframe.records.record_file import MAXIMUM_SAMPLES, Format, Metadata, Record, Request, Source
+from rockframe.records.reader import MAXIMUM_SAMPLES, Format, Metadata, Record, Request, Source
 from rockframe.records.text_columns import (
     BY_ROWS,
     COLUMNS,
@@ -55,7 +55,6 @@ from rockframe.records.unit_names import choose_unit
 
 if TYPE_CHECKING:
     from rockframe.signals.arrays import Array
-
 
 MOST_COLUMNS: Final = 12
 

@@ -22,13 +22,13 @@ from rockframe.records.numbers import (
     too_many,
     with_e,
 )
-from rockframe.records.record_file import HEADER_WIDTH, MAXIMUM_SAMPLES, Source, quoted_first_line
+from rockframe.records.reader import HEADER_WIDTH, MAXIMUM_SAMPLES, Source, quoted_first_line
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from rockframe.errors import RecordError
-    from rockframe.records.record_file import Source
+    from rockframe.records.reader import Source
     from rockframe.signals.arrays import Array
 
 HEADER_LINES: Final = 20

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final
 from rockframe.records.checks import Stated
 from rockframe.records.components import UNKNOWN, Orientation, orientation_of
 from rockframe.records.numbers import NUMBER, with_e
-from rockframe.records.record_file import Source, quoted_first_line
+from rockframe.records.reader import Source, quoted_first_line
 from rockframe.records.text_columns import Table, split_header
 from rockframe.records.unit_names import acceleration_unit, other_quantity
 

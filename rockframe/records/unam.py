@@ -31,19 +31,11 @@ from rockframe.records.components import (
 )
 from rockframe.records.headers import NOTHING, Keys, kept, needed, read_keys
 from rockframe.records.numbers import FixedWidth, one_number, whole
-from rockframe.records.record_file import (
-    Format,
-    Metadata,
-    Record,
-    Request,
-    Source,
-    quoted_first_line,
-)
+from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
 from rockframe.records.unit_names import choose_unit
 
 if TYPE_CHECKING:
     from rockframe.signals.arrays import Array
-
 
 _TITLE: Final = re.compile(r"ARCHIVO ESTANDAR DE ACELERACION", re.IGNORECASE)
 _DATA: Final = re.compile(r"^\s*DATOS DE ACELERACION", re.IGNORECASE)

@@ -18,7 +18,7 @@ from rockframe.errors import ComponentError, UnitsError, shown
 from rockframe.units import ACCELERATION, Measure, to_si
 
 if TYPE_CHECKING:
-    from rockframe.records.record_file import Request, Source
+    from rockframe.records.reader import Request, Source
 
 
 @dataclass(frozen=True)

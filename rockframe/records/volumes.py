@@ -32,14 +32,7 @@ from rockframe.records.components import (
 )
 from rockframe.records.headers import first_match
 from rockframe.records.numbers import FixedWidth, one_number, whole
-from rockframe.records.record_file import (
-    Format,
-    Metadata,
-    Record,
-    Request,
-    Source,
-    quoted_first_line,
-)
+from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
 from rockframe.records.unit_names import choose_unit
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from rockframe.errors import RecordError
 from rockframe.motion import GroundMotion
 from rockframe.records import numbers
 from rockframe.records.numbers import FixedWidth, free_format
-from rockframe.records.record_file import source_of
+from rockframe.records.reader import source_of
 
 # all negative: no blank is left between numbers that fill their width
 FULL = -np.round(np.linspace(0.11, 0.99, 83) * 10.0 ** np.tile([-1, -4, -9], 28)[:83], 11)

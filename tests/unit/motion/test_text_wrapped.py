@@ -12,7 +12,7 @@ from rockframe.errors import RecordError
 from rockframe.motion import GroundMotion
 from rockframe.records.files import read_source
 from rockframe.records.read import read_components
-from rockframe.records.record_file import Request
+from rockframe.records.reader import Request
 from rockframe.records.text_columns import COLUMNS, ROWS, reading_order
 
 ASKED = {"unit": "g", "time_step": "0.02 s"}

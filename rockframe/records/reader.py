@@ -1,4 +1,4 @@
-"""A record file as bytes and lines; what is asked of its reader, and what comes back."""
+"""What readers get and give: a file as bytes and lines, what is asked of it, the record."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import hashlib
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, TypeAlias
+from typing import TYPE_CHECKING, Any, Final, Protocol, TypeAlias
 
 from rockframe.errors import RecordError
 
@@ -200,6 +200,32 @@ class StoredMotion:
     recipe: Mapping[str, Any] | None  # constructor and arguments of an analytic motion
 
 
+class Reader(Protocol):
+    """What a reader must have: a module or any other object with these names.
+
+    Attributes
+    ----------
+    NAME : str
+        What the argument ``format`` takes: small letters, digits and hyphens.
+    TITLE : str
+        In words.
+    SUFFIXES : tuple of str
+        Usual extensions, in small letters, with their dot.
+    """
+
+    NAME: str
+    TITLE: str
+    SUFFIXES: tuple[str, ...]
+
+    def recognises(self, source: Source, /) -> bool:
+        """Tell whether a file looks like this format."""
+        ...
+
+    def read(self, source: Source, request: Request, /) -> Record:
+        """Read the record, or raise what ``source.refuse`` builds."""
+        ...
+
+
 @dataclass(frozen=True)
 class Format:
     """A file format that records can be read from.
@@ -234,6 +260,11 @@ class Format:
 def source_of(name: str, data: bytes) -> Source:
     """Give bytes their name and their digest."""
     return Source(path=name, data=data, sha256=hashlib.sha256(data).hexdigest())
+
+
+def begins_otherwise(source: Source, expected: str) -> RecordError:
+    """Build the error for a binary file that begins in another way."""
+    return source.refuse(found=f"a file that begins with {source.data[:8]!r}", expected=expected)
 
 
 def base_name(path: str) -> str:
