@@ -39,7 +39,7 @@ def documented_by(kind: type) -> Callable[[Function], Function]:
 
     def decorate(function: Function) -> Function:
         names = inspect.signature(function).parameters
-        function.__doc__ = _completed(function.__doc__ or "", names, declared_in(kind))
+        function.__doc__ = completed(function.__doc__ or "", names, declared_in(kind))
         return function
 
     return decorate
@@ -68,7 +68,7 @@ def takes(kind: type, **otherwise: object) -> Callable[[Function], Function]:
             return function(*given, **{**otherwise, **named})
 
         cast("Any", call).__signature__ = whole
-        call.__doc__ = _completed(function.__doc__ or "", whole.parameters, declared)
+        call.__doc__ = completed(function.__doc__ or "", whole.parameters, declared)
         return cast("Function", call)
 
     return decorate
@@ -85,7 +85,7 @@ def meant(name: str, known: Iterable[str]) -> str:
     return f"; was {' or '.join(map(repr, near))} meant?" if near else "."
 
 
-def _completed(text: str, names: Iterable[str], declared: Mapping[str, Argument]) -> str:
+def completed(text: str, names: Iterable[str], declared: Mapping[str, Argument]) -> str:
     """Insert rows for declared arguments into the section on parameters."""
     clean = inspect.cleandoc(text)
     section = _PARAMETERS.search(clean)
@@ -112,3 +112,13 @@ def _row(name: str, one: Argument) -> str:
         break_long_words=False, break_on_hyphens=False,
     )  # fmt: skip
     return f"{name} : {one.kind}\n{words}"
+
+
+def with_raises(text: str, raises: str) -> str:
+    """Insert a section on what is raised, unless there is one, behind what is returned."""
+    clean = inspect.cleandoc(text)
+    if not clean or "\nRaises\n---" in clean:
+        return clean
+    places = (clean.find(f"\n\n{head}\n---") for head in ("See Also", "Notes", "Examples"))
+    end = min((place for place in places if place >= 0), default=len(clean))
+    return f"{clean[:end]}\n\nRaises\n------\n{raises}{clean[end:]}"

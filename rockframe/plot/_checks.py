@@ -2,95 +2,118 @@
 
 import json
 import warnings
+from collections.abc import Callable
+from dataclasses import dataclass
+from inspect import signature
 from os import PathLike
-from typing import TYPE_CHECKING, Final, cast
+from typing import TYPE_CHECKING, Any, Final, TypeVar, cast
 
 import xarray as xr
 
 from rockframe.errors import ComponentError, RockframeWarning, SchemaError
+from rockframe.shared_arguments import Argument, completed, with_raises
 
 if TYPE_CHECKING:
     from rockframe.simulation.system import System
 
-_NEEDED: Final = {
-    "response": "the result of one run with histories, as system.simulate(motion) gives it",
-    "scene": "a System",
-    "tradeoff": "a comparison of models, as rf.tradeoff(system, motion) gives it",
-    "selection": (
-        "a set of motions beside its target, as rf.select_for_target(suite, target, 11) gives it"
+Drawing = TypeVar("Drawing", bound=Callable[..., Any])
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A kind of dataset that a function draws."""
+
+    what: str
+    call: str  # that gives it
+    known: tuple[str, ...]  # variables by which it is known
+    needed: tuple[str, ...] = ()  # variables that are drawn beside these
+
+
+KINDS: Final = {
+    "fragility": Kind(
+        "a fragility", "rf.fragility(runs)", ("exceedance_probability", "fragility_status")
     ),
+    "dynamic_analysis": Kind(
+        "a dynamic analysis",
+        "rf.incremental_dynamic_analysis(system, motions)",
+        ("capacity_scale", "flip_count", "peak_relative_rotation", "scale"),
+    ),
+    "overturning_map": Kind(
+        "a map",
+        "rf.overturning_map(system, pulse, ...)",
+        ("impacts_before_overturning", "amplitude_above", "amplitude"),
+    ),
+    "rocking_spectrum": Kind(
+        "a spectrum",
+        "rf.rocking_spectrum(system, motions, ...)",
+        ("peak_relative_rotation", "rocking_period"),
+    ),
+    "overturning_spectrum": Kind(
+        "a spectrum",
+        "rf.overturning_spectrum(system, ...)",
+        ("capacity_intensity", "rocking_period"),
+    ),
+    "probability": Kind(
+        "a sample",
+        "rf.probability_of_overturning(system, motions, ...)",
+        ("overturning_probability", "first_order_index"),
+    ),
+    "ensemble": Kind(
+        "an ensemble", "rf.ensemble_statistics(runs)", ("ordered_value", "cumulative_probability")
+    ),
+    "critical_scale": Kind(
+        "a critical scale",
+        "rf.critical_scale(system, motion)",
+        ("critical_scale", "scale_above", "outcome", "peak_rotation"),
+    ),
+    "free_decay": Kind(
+        "a fit",
+        "rf.fit_free_decay(system, measured)",
+        ("fitted_value", "parameter", "initial_rotation"),
+    ),
+    "tradeoff": Kind(
+        "a comparison of models",
+        "rf.tradeoff(system, motion)",
+        ("run_time", "verdict_agrees"),
+        ("numerical_history_error", "history_error", "model", "accuracy"),
+    ),
+    "selection": Kind(
+        "a set of motions beside its target",
+        "rf.select_for_target(suite, target, 11)",
+        ("scaled_spectral_acceleration", "target_spectral_acceleration"),
+        (
+            "target_standard_deviation",
+            "set_median_acceleration",
+            "set_standard_deviation",
+            "scale_factor",
+            "spectral_misfit",
+        ),
+    ),
+}
+"""What is known by its variables, by the function that draws it."""
+_RUN: Final = Kind(
+    "the result of one run with histories",
+    "system.simulate(motion)",
+    ("rotation", "time", "overturned"),
+    (
+        "ground_acceleration",
+        "relative_rotation",
+        "contact_state",
+        "overturning_angle",
+        "uplift_angle",
+    ),
+)
+_OTHERS: Final = {
+    "scene": "a System",
     "motion": "a GroundMotion",
     "spectra": "a GroundMotion",
-    "fragility": "a fragility, as rf.fragility(runs) gives it",
-    "dynamic_analysis": (
-        "a dynamic analysis, as rf.incremental_dynamic_analysis(system, motions) gives it"
-    ),
-    "overturning_map": "a map, as rf.overturning_map(system, pulse, ...) gives it",
-    "rocking_spectrum": "a spectrum, as rf.rocking_spectrum(system, motions, ...) gives it",
-    "overturning_spectrum": "a spectrum, as rf.overturning_spectrum(system, ...) gives it",
-    "probability": "a sample, as rf.probability_of_overturning(system, motions, ...) gives it",
-    "ensemble": "an ensemble, as rf.ensemble_statistics(runs) gives it",
-    "critical_scale": "a critical scale, as rf.critical_scale(system, motion) gives it",
-    "free_decay": "a fit, as rf.fit_free_decay(system, measured) gives it",
     "suite": "a set of GroundMotions",
 }
-_STUDIES: Final = {
-    "fragility": ("exceedance_probability", "fragility_status"),
-    "dynamic_analysis": ("capacity_scale", "flip_count", "peak_relative_rotation", "scale"),
-    "overturning_map": ("impacts_before_overturning", "amplitude_above", "amplitude"),
-    "rocking_spectrum": ("peak_relative_rotation", "rocking_period"),
-    "overturning_spectrum": ("capacity_intensity", "rocking_period"),
-    "probability": ("overturning_probability", "first_order_index"),
-    "ensemble": ("ordered_value", "cumulative_probability"),
-    "critical_scale": ("critical_scale", "scale_above", "outcome", "peak_rotation"),
-    "free_decay": ("fitted_value", "parameter", "initial_rotation"),
-}
-"""Variables by which the results of studies are known, by what draws them."""
-_RUN: Final = (
-    "ground_acceleration",
-    "relative_rotation",
-    "contact_state",
-    "overturning_angle",
-    "uplift_angle",
-    "overturned",
-)
-_RUNGS: Final = (
-    "run_time",
-    "numerical_history_error",
-    "history_error",
-    "verdict_agrees",
-    "model",
-    "accuracy",
-)
-_SELECTION: Final = (
-    "scaled_spectral_acceleration",
-    "target_spectral_acceleration",
-    "target_standard_deviation",
-    "set_median_acceleration",
-    "set_standard_deviation",
-    "scale_factor",
-    "spectral_misfit",
-)
-_KNOWN: Final = {
-    **_STUDIES,
-    "tradeoff": ("run_time", "verdict_agrees"),
-    "selection": ("scaled_spectral_acceleration", "target_spectral_acceleration"),
-    "response": ("relative_rotation", "time", "contact_state"),
-}
-"""Variables by which a dataset is known, by what draws it."""
+"""What is drawn that is no dataset."""
 _DRAWN_BY: Final = (
     # (variables, what they are, what draws them), the first that fits
-    *(
-        (names, _NEEDED[function].partition(",")[0], f"rf.plot.{function} draws it")
-        for function, names in _STUDIES.items()
-    ),
-    (("run_time", "verdict_agrees"), "a comparison of models", "rf.plot.tradeoff draws it"),
-    (
-        ("scaled_spectral_acceleration", "target_spectral_acceleration"),
-        "a set of motions beside its target",
-        "rf.plot.selection draws it",
-    ),
-    (("rotation", "time", "overturned"), "the result of a run", "rf.plot.response draws it"),
+    *((one.known, one.what, f"rf.plot.{name} draws it") for name, one in KINDS.items()),
+    (_RUN.known, "the result of a run", "rf.plot.response draws it"),
     (
         ("overturned", "peak_rotation"),
         "the result of a run without histories",
@@ -114,11 +137,37 @@ _DRAWN_BY: Final = (
 )
 
 
+def draws(function: str = "", *, ax: str = "Axes", title: str = "") -> Callable[[Drawing], Drawing]:
+    """Say in a docstring what the figures share: `ax`, `title`, and what is refused.
+
+    Parameters by the words of the manual: what `ax` may be, and the title unless one is given.
+    """
+    usual = f"; {title} unless given" if title else ""
+    shared = {
+        "ax": Argument(None, f"{ax}, optional", "What is drawn in; a new figure unless given."),
+        "title": Argument(None, "str, optional", f"Title of the figure{usual}."),
+    }
+    what = KINDS[function].what if function else ""
+    refused = (
+        f"SchemaError\n    The dataset is not {what}; the message names the function that draws\n"
+        "    what was given."
+    )
+
+    def decorate(drawing: Drawing) -> Drawing:
+        text = completed(drawing.__doc__ or "", signature(drawing).parameters, shared)
+        drawing.__doc__ = with_raises(text, refused) if function else text
+        return drawing
+
+    return decorate
+
+
 def drawn_by(given: xr.Dataset) -> str:
     """Give the function that draws a dataset."""
-    for function, names in _KNOWN.items():
-        if _holds(given, names):
+    for function, kind in KINDS.items():
+        if _holds(given, kind.known):
             return function
+    if _holds(given, ("relative_rotation", "time", "contact_state")):
+        return "response"
     if "peak_relative_rotation" in given and given["peak_relative_rotation"].ndim > 0:
         return "sweep"
     for names, what, way in _DRAWN_BY:
@@ -134,9 +183,7 @@ def drawn_by(given: xr.Dataset) -> str:
 
 def check_run(given: object, function: str) -> None:
     """Refuse what is not the result of one run with histories."""
-    if not isinstance(given, xr.Dataset) or not _holds(given, ("rotation", "time", "overturned")):
-        raise SchemaError(refuse(function, given))
-    _check_complete(function, given, _RUN)
+    given = _checked(given, function, _RUN)
     more = [str(name) for name in given["relative_rotation"].dims if name != "time"]
     if more:
         msg = (
@@ -152,26 +199,22 @@ def check_run(given: object, function: str) -> None:
         raise SchemaError(msg)
 
 
-def check_rungs(given: object) -> None:
-    """Refuse what is not a comparison of models and accuracies."""
-    if not isinstance(given, xr.Dataset) or not _holds(given, ("run_time", "verdict_agrees")):
-        raise SchemaError(refuse("tradeoff", given))
-    _check_complete("tradeoff", given, _RUNGS)
+def checked(given: object, function: str) -> xr.Dataset:
+    """Give the dataset that a function draws, and refuse any other thing."""
+    return _checked(given, function, KINDS[function])
 
 
-def check_study(given: object, function: str) -> xr.Dataset:
-    """Refuse what is not the result of a study."""
-    if not isinstance(given, xr.Dataset) or not _holds(given, _STUDIES[function]):
+def _checked(given: object, function: str, kind: Kind) -> xr.Dataset:
+    if not isinstance(given, xr.Dataset) or not _holds(given, kind.known):
         raise SchemaError(refuse(function, given))
+    missing = [repr(name) for name in (*kind.known, *kind.needed) if name not in given.variables]
+    if missing:
+        msg = (
+            f"rf.plot.{function} needs {_needed(function)}, got one that lacks "
+            f"{', '.join(missing)}; give it the whole dataset"
+        )
+        raise SchemaError(msg)
     return given
-
-
-def check_selection(given: object) -> None:
-    """Refuse what is not a set of motions beside a target."""
-    wanted = ("scaled_spectral_acceleration", "target_spectral_acceleration")
-    if not isinstance(given, xr.Dataset) or not _holds(given, wanted):
-        raise SchemaError(refuse("selection", given))
-    _check_complete("selection", given, _SELECTION)
 
 
 def check_motion(given: object, function: str) -> None:
@@ -204,16 +247,6 @@ def system_of_run(run: xr.Dataset, function: str) -> "System":
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RockframeWarning)  # they were said when it ran
         return System.from_dict(json.loads(text))
-
-
-def _check_complete(function: str, given: xr.Dataset, names: tuple[str, ...]) -> None:
-    missing = [repr(name) for name in names if name not in given.variables]
-    if missing:
-        msg = (
-            f"rf.plot.{function} needs {_needed(function)}, got one that lacks "
-            f"{', '.join(missing)}; give it the whole dataset"
-        )
-        raise SchemaError(msg)
 
 
 def refuse(function: str, given: object) -> str:
@@ -250,7 +283,8 @@ def _words(function: str, given: object) -> tuple[str, str]:
 
 def _needed(function: str) -> str:
     """Say what a function draws; what is not listed draws runs."""
-    return _NEEDED.get(function, _NEEDED["response"])
+    kind = KINDS.get(function, _RUN)
+    return _OTHERS.get(function) or f"{kind.what}, as {kind.call} gives it"
 
 
 def _holds(given: xr.Dataset, names: tuple[str, ...]) -> bool:

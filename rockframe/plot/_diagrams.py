@@ -19,7 +19,7 @@ from rockframe.plot._axes import (
     unit_of,
     zero_line,
 )
-from rockframe.plot._checks import overturning_angles, refuse, system_of_run
+from rockframe.plot._checks import draws, overturning_angles, refuse, system_of_run
 from rockframe.plot._panels import single
 from rockframe.plot._response import of_rotation, relative
 from rockframe.plot._runs import Run, runs_of, runs_title
@@ -40,6 +40,7 @@ _ANGLES: Final = 401
 """At which a body is held for a curve of moments."""
 
 
+@draws(title="the verdict")
 def phase(
     runs: "RunsLike",
     *,
@@ -59,10 +60,6 @@ def phase(
     rotation : str, optional
         Unit of rotations, such as ``"deg"``; rates have it per second. Or ``"relative"``, over
         the overturning angle.
-    ax : Axes, optional
-        What is drawn in; a new figure unless given.
-    title : str, optional
-        Title of the figure; the verdict unless given.
 
     Returns
     -------
@@ -103,6 +100,7 @@ def phase(
     return on.axes
 
 
+@draws(title="the verdict of a run")
 def moment_rotation(
     given: "System | RunsLike",
     *,
@@ -128,10 +126,6 @@ def moment_rotation(
         Start and end of what is drawn of runs; all of it unless given [s].
     rotation, moment : str, optional
         Units.
-    ax : Axes, optional
-        What is drawn in; a new figure unless given.
-    title : str, optional
-        Title of the figure; the verdict of a run unless given.
 
     Returns
     -------
@@ -187,6 +181,7 @@ def moment_rotation(
     return on.axes
 
 
+@draws(title="the verdict")
 def energies(
     run: xr.Dataset,
     *,
@@ -205,10 +200,6 @@ def energies(
         Start and end of what is drawn; all of it unless given [s].
     energy : str, optional
         Unit.
-    ax : Axes, optional
-        What is drawn in; a new figure unless given.
-    title : str, optional
-        Title of the figure; the verdict unless given.
 
     Returns
     -------

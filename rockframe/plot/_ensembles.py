@@ -7,7 +7,7 @@ import xarray as xr
 
 from rockframe.errors import SchemaError
 from rockframe.plot._axes import COLOURS, colour_of, grid, label_of, label_of_intensity, style_of
-from rockframe.plot._checks import check_study
+from rockframe.plot._checks import checked, draws
 from rockframe.plot._panels import Panels, Sheet, sheet, single
 from rockframe.results.outcome import overturns
 from rockframe.results.variables.analyses import FragilityStatus
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from rockframe.plot._panels import AxesLike
 
 
+@draws("ensemble")
 def ensemble(dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None = None) -> "Axes":
     """Draw an empirical distribution with its bands.
 
@@ -29,21 +30,12 @@ def ensemble(dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None = 
     ----------
     dataset : xarray.Dataset
         Of :func:`rockframe.ensemble_statistics`.
-    ax : Axes, optional
-        What is drawn in; a new figure unless given.
-    title : str, optional
-        Title of the figure.
 
     Returns
     -------
     matplotlib.axes.Axes
-
-    Raises
-    ------
-    SchemaError
-        The dataset is no ensemble.
     """
-    given = check_study(dataset, "ensemble")
+    given = checked(dataset, "ensemble")
     on = single(ax, "ensemble", (5.6, 3.9))
     axes = on.axes
     values = given["ordered_value"].rename(str(given.attrs["variable"]))
@@ -62,6 +54,7 @@ def ensemble(dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None = 
     return axes
 
 
+@draws("probability", ax="two Axes", title="the verdict")
 def probability(
     dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None = None
 ) -> "Panels":
@@ -74,21 +67,12 @@ def probability(
     ----------
     dataset : xarray.Dataset
         Of :func:`rockframe.probability_of_overturning`.
-    ax : two Axes, optional
-        What is drawn in; a new figure unless given.
-    title : str, optional
-        Title of the figure; the verdict unless given.
 
     Returns
     -------
     Panels
-
-    Raises
-    ------
-    SchemaError
-        The dataset is no such sample.
     """
-    given = check_study(dataset, "probability")
+    given = checked(dataset, "probability")
     names = ("indices", "shares")
     on = sheet(ax, "probability", names, (7.6, 3.6), lambda figure: figure.subplots(1, 2))
     left, right = on.panels
@@ -127,6 +111,7 @@ _MOST_STRUCTURES: Final = 12
 _KNOWN: Final = (FragilityStatus.FITTED, FragilityStatus.SEPARATED)
 
 
+@draws("fragility", ax="Axes, or one for each limit state", title="the verdict")
 def fragility(
     dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None = None
 ) -> "Axes | Panels":
@@ -141,10 +126,6 @@ def fragility(
     ----------
     dataset : xarray.Dataset
         Of :func:`rockframe.fragility`.
-    ax : Axes, or one for each limit state, optional
-        What is drawn in; a new figure unless given.
-    title : str, optional
-        Title of the figure; the verdict unless given.
 
     Returns
     -------
@@ -157,7 +138,7 @@ def fragility(
         The dataset is no fragility; the message names the function that draws what was given. Or
         it has more structures than a figure shows: twelve, over two measures one.
     """
-    given = check_study(dataset, "fragility")
+    given = checked(dataset, "fragility")
     if "limit_state" not in given.dims:
         given = given.expand_dims("limit_state")
     alone = [dim for dim, size in given["fragility_status"].sizes.items() if size == 1]

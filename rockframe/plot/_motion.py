@@ -22,7 +22,7 @@ from rockframe.plot._axes import (
     unit_of,
     zero_line,
 )
-from rockframe.plot._checks import check_motion
+from rockframe.plot._checks import check_motion, draws
 from rockframe.plot._panels import Panels, sheet
 from rockframe.plot._runs import window_of
 from rockframe.units import ACCELERATION, LENGTH, VELOCITY
@@ -96,6 +96,7 @@ def drawn_motions(given: object, function: str) -> list[Drawn]:
 _ROWS: Final = ("acceleration", "velocity", "displacement")
 
 
+@draws(ax="three Axes", title="the motion's name")
 def motion(
     motion: "MotionsLike",
     *,
@@ -118,10 +119,6 @@ def motion(
         Start and end of what is drawn; all of it unless given [s].
     acceleration, velocity, displacement : str, optional
         Units, such as ``"g_0"``, ``"cm/s"`` and ``"cm"``.
-    ax : three Axes, optional
-        What is drawn in; a new figure unless given.
-    title : str, optional
-        Title of the figure; the motion's name unless given.
 
     Returns
     -------

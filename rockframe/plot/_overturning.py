@@ -18,7 +18,7 @@ from rockframe.plot._axes import (
     label_of_intensity,
     plain_ticks,
 )
-from rockframe.plot._checks import check_study
+from rockframe.plot._checks import checked, draws
 from rockframe.plot._panels import Panels, Sheet, sheet, single
 from rockframe.results.outcome import overturns
 from rockframe.studies.sweeps.words import cases_verdict
@@ -35,6 +35,7 @@ _CAPPED: Final = 1.0
 """Peaks over the overturning angle that are drawn alike."""
 
 
+@draws("dynamic_analysis", ax="two Axes", title="the verdict")
 def dynamic_analysis(
     dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None = None
 ) -> "Panels":
@@ -48,21 +49,12 @@ def dynamic_analysis(
     ----------
     dataset : xarray.Dataset
         Of :func:`rockframe.incremental_dynamic_analysis`.
-    ax : two Axes, optional
-        What is drawn in; a new figure unless given.
-    title : str, optional
-        Title of the figure; the verdict unless given.
 
     Returns
     -------
     Panels
-
-    Raises
-    ------
-    SchemaError
-        The dataset is no dynamic analysis.
     """
-    given = check_study(dataset, "dynamic_analysis")
+    given = checked(dataset, "dynamic_analysis")
     name = str(given.attrs.get("intensity", "scale"))
     intensity = given[name].broadcast_like(given["peak_relative_rotation"])
     on = sheet(
@@ -117,6 +109,7 @@ def dynamic_analysis(
     return on.panels
 
 
+@draws("overturning_map")
 def overturning_map(
     dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None = None
 ) -> "Axes":
@@ -126,26 +119,17 @@ def overturning_map(
     ----------
     dataset : xarray.Dataset
         Of :func:`rockframe.overturning_map`.
-    ax : Axes, optional
-        What is drawn in; a new figure unless given.
-    title : str, optional
-        Title of the figure.
 
     Returns
     -------
     matplotlib.axes.Axes
         On rigid ground the axes are amplitude over that of uplift and
         frequency over the block's.
-
-    Raises
-    ------
-    SchemaError
-        The dataset is no such map.
     """
     from matplotlib.colors import ListedColormap
     from matplotlib.patches import Patch
 
-    given = check_study(dataset, "overturning_map")
+    given = checked(dataset, "overturning_map")
     relative = "relative_pulse_frequency" in given.coords
     across = given["relative_pulse_frequency" if relative else "frequency"]
     up = given["relative_peak_ground_acceleration" if relative else "amplitude"]
@@ -182,6 +166,7 @@ def overturning_map(
     return axes
 
 
+@draws("rocking_spectrum", ax="Axes, one for each slenderness")
 def rocking_spectrum(
     dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None = None
 ) -> "Panels":
@@ -191,21 +176,12 @@ def rocking_spectrum(
     ----------
     dataset : xarray.Dataset
         Of :func:`rockframe.rocking_spectrum`.
-    ax : Axes, one for each slenderness, optional
-        What is drawn in; a new figure unless given.
-    title : str, optional
-        Title of the figure.
 
     Returns
     -------
     Panels
-
-    Raises
-    ------
-    SchemaError
-        The dataset is no rocking spectrum.
     """
-    given = check_study(dataset, "rocking_spectrum")
+    given = checked(dataset, "rocking_spectrum")
     on = _sheet(ax, "rocking_spectrum", given)
     for place, axes in enumerate(on.panels):
         one = given.isel(slenderness=place)
@@ -219,6 +195,7 @@ def rocking_spectrum(
     return on.panels
 
 
+@draws("overturning_spectrum", ax="Axes, one for each slenderness")
 def overturning_spectrum(
     dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None = None
 ) -> "Panels":
@@ -228,21 +205,12 @@ def overturning_spectrum(
     ----------
     dataset : xarray.Dataset
         Of :func:`rockframe.overturning_spectrum`.
-    ax : Axes, one for each slenderness, optional
-        What is drawn in; a new figure unless given.
-    title : str, optional
-        Title of the figure.
 
     Returns
     -------
     Panels
-
-    Raises
-    ------
-    SchemaError
-        The dataset is no overturning spectrum.
     """
-    given = check_study(dataset, "overturning_spectrum")
+    given = checked(dataset, "overturning_spectrum")
     on = _sheet(ax, "overturning_spectrum", given)
     measure = given["capacity_intensity"].rename(str(given.attrs["intensity"]))
     for place, axes in enumerate(on.panels):

@@ -7,7 +7,7 @@ import xarray as xr
 
 from rockframe.errors import ComponentError, SchemaError, shown
 from rockframe.plot._artists import Drawer, SceneArtist, part_labels
-from rockframe.plot._checks import check_run, require_system, system_of_run
+from rockframe.plot._checks import check_run, draws, require_system, system_of_run
 from rockframe.plot._panels import single
 from rockframe.results.points import UPRIGHT, Placement
 from rockframe.signals.arrays import Array
@@ -39,6 +39,7 @@ _OF_BODIES: Final = (
 """The same of all bodies of a stack."""
 
 
+@draws()
 def scene(
     system: "System",
     *,
@@ -57,10 +58,6 @@ def scene(
         Points to be marked, as for :meth:`rockframe.System.simulate` [m].
     legend : bool, optional
         Whether the parts are named beside the drawing, with their numbers.
-    ax : Axes, optional
-        What is drawn in; a new figure unless given.
-    title : str, optional
-        Title of the figure.
 
     Returns
     -------
@@ -104,6 +101,7 @@ def scene(
     return on.axes
 
 
+@draws(title="time and rotation")
 def state(
     run: xr.Dataset,
     time: "QuantityLike | None" = None,
@@ -123,10 +121,6 @@ def state(
         angle unless given [s].
     magnify : float, optional
         By which displacements are multiplied [1].
-    ax : Axes, optional
-        What is drawn in; a new figure unless given.
-    title : str, optional
-        Title of the figure; time and rotation unless given.
 
     Returns
     -------

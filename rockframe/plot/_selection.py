@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe.plot._axes import BLUE, GREY, VERMILLION, grid, plain_ticks
-from rockframe.plot._checks import check_selection
+from rockframe.plot._checks import checked, draws
 from rockframe.plot._panels import Panels, sheet
 
 if TYPE_CHECKING:
@@ -18,6 +18,7 @@ _MOST_NAMED: Final = 50
 _LETTERS: Final = 34
 
 
+@draws("selection", ax="two Axes", title="the target and the number of motions")
 def selection(dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None = None) -> "Panels":
     """Draw the scaled spectra of a set, their median and spread, and the target.
 
@@ -27,23 +28,14 @@ def selection(dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None =
     ----------
     dataset : xarray.Dataset
         Of :func:`rockframe.scale_to_target` or :func:`rockframe.select_for_target`.
-    ax : two Axes, optional
-        What is drawn in; a new figure unless given.
-    title : str, optional
-        Title of the figure; the target and the number of motions unless given.
 
     Returns
     -------
     Panels
         Bands reach one standard deviation of the logarithm to both
         sides.
-
-    Raises
-    ------
-    SchemaError
-        The dataset is no such set.
     """
-    check_selection(dataset)
+    checked(dataset, "selection")
     count = dataset.sizes["motion"]
     on = sheet(
         ax, "selection", ("spectra", "misfits"), (8.6, max(4.0, min(9.0, 1.0 + 0.16 * count))),

@@ -20,6 +20,7 @@ from rockframe.plot._axes import (
     unit_of,
     zero_line,
 )
+from rockframe.plot._checks import draws
 from rockframe.plot._motion import Drawn, columns_of, drawn_motions, motions_title
 from rockframe.plot._panels import Panels, sheet, single
 from rockframe.plot._runs import window_of
@@ -180,6 +181,7 @@ _MOST_NAMED: Final = 6
 _PERIODS: Final = (np.geomspace(0.05, 5.0, 80), "s")
 
 
+@draws()
 def suite(
     motions: "MotionsLike",
     periods: "ArrayLike | Iterable[QuantityLike]" = _PERIODS,
@@ -207,10 +209,6 @@ def suite(
         Drawn beside them.
     acceleration : str, optional
         Unit.
-    ax : Axes, optional
-        What is drawn in; a new figure unless given.
-    title : str, optional
-        Title of the figure.
 
     Returns
     -------

@@ -21,7 +21,7 @@ from rockframe.plot._axes import (
     unit_of,
     zero_line,
 )
-from rockframe.plot._checks import check_study
+from rockframe.plot._checks import checked, draws
 from rockframe.plot._panels import Panels, sheet, single
 from rockframe.results.outcome import overturns
 from rockframe.results.variables.studies import Outcome
@@ -39,6 +39,7 @@ _MOST_LINES: Final = 12
 _PANELS: Final = ("histories", "residual")
 
 
+@draws("critical_scale", title="the verdict")
 def critical_scale(
     dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None = None
 ) -> "Axes":
@@ -48,22 +49,13 @@ def critical_scale(
     ----------
     dataset : xarray.Dataset
         Of :func:`rockframe.critical_scale`.
-    ax : Axes, optional
-        What is drawn in; a new figure unless given.
-    title : str, optional
-        Title of the figure; the verdict unless given.
 
     Returns
     -------
     matplotlib.axes.Axes
         Shaded, the scales that overturn; a line at the least of them.
-
-    Raises
-    ------
-    SchemaError
-        The dataset is no such result.
     """
-    given = check_study(dataset, "critical_scale")
+    given = checked(dataset, "critical_scale")
     scale, outcome = given["scale"].to_numpy(), given["outcome"].to_numpy()
     name = "peak_relative_rotation" if "peak_relative_rotation" in given else "peak_rotation"
     peak = given[name].to_numpy()
@@ -89,6 +81,7 @@ def critical_scale(
     return on.axes
 
 
+@draws()
 def sweep(
     runs: xr.Dataset,
     variable: str = "peak_relative_rotation",
@@ -109,10 +102,6 @@ def sweep(
         example with ``runs.isel(motion=0)``.
     variable : str, optional
         What is drawn, such as ``"peak_rotation"`` or ``"overturned"``.
-    ax : Axes, optional
-        What is drawn in; a new figure unless given.
-    title : str, optional
-        Title of the figure.
 
     Returns
     -------
@@ -141,6 +130,7 @@ def sweep(
     return on.axes
 
 
+@draws("free_decay", ax="two Axes", title="the fitted values")
 def free_decay(
     dataset: xr.Dataset,
     *,
@@ -156,10 +146,6 @@ def free_decay(
         Of :func:`rockframe.fit_free_decay`.
     rotation : str, optional
         Unit of rotations.
-    ax : two Axes, optional
-        What is drawn in; a new figure unless given.
-    title : str, optional
-        Title of the figure; the fitted values unless given.
 
     Returns
     -------
@@ -173,7 +159,7 @@ def free_decay(
     UnitsError
         A unit of another kind.
     """
-    given = check_study(dataset, "free_decay")
+    given = checked(dataset, "free_decay")
     unit = unit_of(rotation, ANGLE, function="free_decay", name="rotation")
     histories = "measured_rotation" in given
     if histories:

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe.plot._axes import GREY, grid, ink
-from rockframe.plot._checks import check_rungs
+from rockframe.plot._checks import checked, draws
 from rockframe.plot._panels import Panels, sheet
 
 if TYPE_CHECKING:
@@ -29,6 +29,7 @@ _LETTERS: Final = 120
 """That a row of the legend has room for."""
 
 
+@draws("tradeoff", ax="two Axes", title="scene and motion")
 def tradeoff(dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None = None) -> "Panels":
     """Draw a comparison of models and accuracies.
 
@@ -41,25 +42,15 @@ def tradeoff(dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None = 
     ----------
     dataset : xarray.Dataset
         Of :func:`rockframe.tradeoff`.
-    ax : two Axes, optional
-        What is drawn in; a new figure unless given.
-    title : str, optional
-        Title of the figure; scene and motion unless given.
 
     Returns
     -------
     Panels
-
-    Raises
-    ------
-    SchemaError
-        The dataset is no comparison of rungs; the message names the function that draws
-        what was given.
     """
     from matplotlib import colormaps
     from matplotlib.ticker import LogLocator, NullLocator, StrMethodFormatter
 
-    check_rungs(dataset)
+    checked(dataset, "tradeoff")
     models = [str(name) for name in dataset["model"].to_numpy()]
     on = sheet(
         ax, "tradeoff", ("integration", "model and integration"),

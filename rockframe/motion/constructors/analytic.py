@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import partial, wraps
-from inspect import cleandoc, signature
+from inspect import signature
 from typing import TYPE_CHECKING, Any, Final, TypeVar, cast
 
 from rockframe.arguments import whole_number
@@ -22,6 +22,7 @@ from rockframe.motion.pulses import (
     sine,
     type_c,
 )
+from rockframe.shared_arguments import with_raises
 from rockframe.units import (
     ACCELERATION,
     ANGLE,
@@ -63,10 +64,7 @@ _SPELLED: Final = {
 }
 _AT_LEAST_ONE: Final = Condition("at least 1", lambda value: value >= 1.0)
 _HIGHEST_ORDER: Final = 1000
-_RAISES: Final = """
-
-Raises
-------
+_RAISES: Final = """\
 UnitsError
     A wrong unit, or none.
 ComponentError
@@ -97,20 +95,10 @@ def _pulse(
                 recipe={"constructor": declared.__name__, **reader.recipe},
             )
 
-        construct.__doc__ = _with_raises(declared.__doc__ or "")
+        construct.__doc__ = with_raises(declared.__doc__ or "", _RAISES)
         return cast("Constructor", construct)
 
     return decorate
-
-
-def _with_raises(text: str) -> str:
-    """Say, behind what is returned, what is raised by most of them."""
-    clean = cleandoc(text)
-    if not clean or "\nRaises\n" in clean:
-        return clean
-    places = (clean.find(f"\n\n{head}\n") for head in ("See Also", "Notes"))
-    end = min((place for place in places if place >= 0), default=len(clean))
-    return clean[:end] + _RAISES + clean[end:]
 
 
 class _Reader:
