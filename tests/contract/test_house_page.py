@@ -1,0 +1,56 @@
+"""The page "The house in ten minutes" tells which rooms there are, and which uses which."""
+
+import ast
+import importlib
+from pathlib import Path
+
+import pytest
+from pages import read, table
+
+PACKAGE = Path(__file__).resolve().parents[2] / "rockframe"
+PAGE = "development/house.md"
+HEAD = "| room | what it is for | what others take from it | rooms that it uses |"
+ROOMS = {one.parent.name for one in PACKAGE.glob("*/__init__.py")}
+
+
+def used_by(room):
+    """Rooms from which the files of a room import."""
+    found = set()
+    for file in (PACKAGE / room).rglob("*.py"):
+        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.ImportFrom) and node.module == "rockframe":
+                found |= {one.name for one in node.names}
+            elif isinstance(node, ast.ImportFrom) and (node.module or "").startswith("rockframe."):
+                found.add(node.module.split(".")[1])
+            elif isinstance(node, ast.Import):
+                found |= {n.name.split(".")[1] for n in node.names if "rockframe." in n.name}
+    return found & ROOMS - {room}
+
+
+def rows():
+    return {row[0].strip("`"): row[1:] for row in table(PAGE, HEAD)}
+
+
+def test_every_room_is_there_and_drawn():
+    assert set(rows()) == ROOMS
+    figure = read(PAGE).split("```text\n", 1)[1].split("```", 1)[0]
+    assert set(figure.split()) >= ROOMS
+
+
+@pytest.mark.parametrize("room", sorted(ROOMS))
+def test_rooms_that_it_uses_are_those_that_it_imports(room):
+    written = {one.strip() for one in rows()[room][2].split(",") if one.strip()}
+    assert written == used_by(room)
+
+
+@pytest.mark.parametrize("room", sorted(ROOMS))
+def test_what_others_take_is_there(room):
+    modules = [importlib.import_module(f"rockframe.{room}"), *_files(room)]
+    for name in rows()[room][1].replace("`", "").split(","):
+        assert any(hasattr(module, name.strip()) for module in modules), name
+
+
+def _files(room):
+    for file in sorted((PACKAGE / room).glob("*.py")):
+        if file.stem != "__init__":
+            yield importlib.import_module(f"rockframe.{room}.{file.stem}")
