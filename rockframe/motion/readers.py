@@ -7,7 +7,9 @@ from rockframe import records
 
 
 def __getattr__(name: str) -> Any:
-    found = getattr(records, name)
-    text = f"rockframe.motion.readers has become rockframe.records: import {name} from there"
+    if name not in records.__all__:
+        msg = f"module {__name__!r} has no attribute {name!r}"
+        raise AttributeError(msg)
+    text = f"{__name__} has become rockframe.records: import {name} from there"
     warnings.warn(text, FutureWarning, stacklevel=2)
-    return found
+    return getattr(records, name)

@@ -60,7 +60,7 @@ class Reading:
 
 def request_of(
     *,
-    owner: str,
+    owner: str = "request_of",
     unit: str | None = None,
     time_step: QuantityLike | None = None,
     component: str | tuple[str, str] | None = None,

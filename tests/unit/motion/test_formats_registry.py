@@ -101,6 +101,14 @@ def test_the_list_and_the_readers_are_found_by_both_names():
     assert rockframe.motion.unregister is rockframe.records.unregister
 
 
+def test_the_place_where_readers_stood_before_tells_the_new_one():
+    with pytest.warns(FutureWarning, match=r"rockframe\.records: import Record from there"):
+        from rockframe.motion.readers import Record as Before
+    assert Before is Record
+    with pytest.raises(AttributeError):
+        rockframe.motion.readers.nothing  # noqa: B018
+
+
 def test_a_format_can_be_named_in_capitals(write):
     with pytest.raises(RecordError):
         GroundMotion.read(write("x", "r"), format="K_NET")
