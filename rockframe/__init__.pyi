@@ -12,6 +12,7 @@ from rockframe.components import CushionCap as CushionCap
 from rockframe.components import FrameEquivalent as FrameEquivalent
 from rockframe.components import InitialState as InitialState
 from rockframe.components import Member as Member
+from rockframe.components import RearWall as RearWall
 from rockframe.components import RegularFrame as RegularFrame
 from rockframe.components import Restrainer as Restrainer
 from rockframe.components import RigidGround as RigidGround

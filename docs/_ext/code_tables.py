@@ -65,6 +65,7 @@ _PARTS = {
     "cap": rf.CushionCap(height="0.5 m", mass="5 t"),
     "soil": rf.WinklerSoil(stiffness="20 MPa", damping_ratio=0.2),
 }
+_PARTS["wall"] = rf.RearWall(side="left")
 _PARTS["frame"] = rf.RockingFrame(_PARTS["block"], columns=2, beam_mass="20 t")
 _PARTS["restrainer"] = rf.Restrainer(on=("-0.5 m", "3 m"), to=("-1.5 m", "3 m"), stiffness="2 MN/m")
 _PARTS["stack"] = rf.Stack(_PARTS["block"], _PARTS["block"], interfaces=[_PARTS["pads"]])

@@ -27,6 +27,10 @@ _UPON: Final = (
     ("stack on {soil}", ("stack", "soil"), Coupling.COUPLED),
 )
 _FRAME: Final = (("rigid ground", ("frame",), Coupling.COUPLED),)
+_WALL: Final = (
+    *_STACK[:1],
+    ("rigid ground and wall", ("block", "wall"), Coupling.COUPLED),
+)
 _WORDS: Final = {"two pads": "pads", "pads": "pads", "soil": "soil"}
 """Words of rungs, and the slots of the bases that they name."""
 
@@ -79,6 +83,7 @@ def model_ladder(system: System) -> dict[str, System]:
     rows = _STACK if {"pads", "cap"} <= present or "soil" not in present else _BED
     rows = _UPON if "stack" in present else rows
     rows = _FRAME if "frame" in present else rows
+    rows = _WALL if "wall" in present else rows
     if system.parts.own():
         rows = _STACK[:1]
     slides = system.setting.slides and not system.parts.own()
@@ -98,7 +103,7 @@ def model_ladder(system: System) -> dict[str, System]:
                 continue
             for bases in _bases(given, slots):
                 parts = {**{slot: given[slot] for slot in slots}, **bases}
-                if slots in (("block",), ("frame",)) and "ground" in given:
+                if "ground" in given:
                     parts["ground"] = given["ground"]
                 words = name.format(**_named(bases))
                 for rotation in Rotation.SMALL, Rotation.FINITE:

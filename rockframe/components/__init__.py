@@ -16,6 +16,7 @@ from rockframe.components.registry import component_from_dict
 from rockframe.components.rocking_frame import RockingFrame
 from rockframe.components.soil import Separation, WinklerSoil
 from rockframe.components.stack import Stack
+from rockframe.components.wall import RearWall
 
 __all__ = [
     "DERIVED",
@@ -30,6 +31,7 @@ __all__ = [
     "OneOf",
     "Parameter",
     "Ratio",
+    "RearWall",
     "RegularFrame",
     "Restrainer",
     "RigidGround",

@@ -67,6 +67,9 @@ class BlockOnRigidGround(NamedTuple):
     right: RockingCorner
     gravity: float  # g
     small: bool  # whether sines and cosines are expanded
+    wall: float = 0.0  # side of a wall behind the block, -1 left, 1 right; 0 for none
+    rebound: float = 0.0  # ratio of the angular velocities at an impact on base and wall
+    wall_share: float = 0.0  # h over the height at which the block at rest leans on the wall
 
     @inlined
     def bodies(self) -> int:
@@ -164,6 +167,7 @@ class BlockOnRigidGround(NamedTuple):
             weight = self.gravity + ground.y
             right = (weight * self.right.tangent + ground.x) / self.gravity
             left = (weight * self.left.tangent - ground.x) / self.gravity
+            right, left = right if self.wall <= 0.0 else 1.0, left if self.wall >= 0.0 else 1.0
             return Guards((1.0, right, left), (0.0, 0.0, 0.0))
         scale = self.side(mode) / self.corner(mode).angle
         return Guards((scale * state[0], 1.0, 1.0), (scale * state[1], 0.0, 0.0))
@@ -173,12 +177,16 @@ class BlockOnRigidGround(NamedTuple):
         """Lift off from rest, or rock on the other corner after an impact, or come to rest."""
         if mode == RESTING:
             memory[LAST_EVENT] = UPLIFT
+            if self.wall != 0.0:
+                return ON_RIGHT if self.wall < 0.0 else ON_LEFT
             if self.gravity + ground.y <= 0.0:  # no weight left: the ground decides the side
                 return ON_LEFT if ground.x > 0.0 else ON_RIGHT
             return ON_RIGHT if guard == UPLIFT_ON_RIGHT else ON_LEFT
         before = state[1]
         new = ON_LEFT if mode == ON_RIGHT else ON_RIGHT
         after = self.corner(new).restitution * before
+        if self.wall != 0.0:  # it rocks on about the same corner, away from the wall
+            new, after = mode, self.rebound * before
         state[0] = 0.0
         restoring = -self.side(new) * self.angular_acceleration(new, 0.0, ground)
         rebound = after * after / (2.0 * restoring) if restoring > 0.0 else math.inf
@@ -192,6 +200,21 @@ class BlockOnRigidGround(NamedTuple):
         memory[IMPACT_LOSS] += 0.5 * (old * before * before - now * after * after)
         state[1] = after
         return new
+
+    @inlined
+    def leaning(self, tilt: float, weight: float, ground: Ground) -> tuple[float, float]:
+        """Give the base's difference of reactions and its shear, of a block that may lean.
+
+        A ground that would tip it into the wall presses it on, at the top.
+        """
+        shear = ground.x
+        if self.wall < 0.0 and tilt > weight:
+            tilt = weight
+            shear -= self.wall_share * (ground.x - weight * self.left.tangent)
+        if self.wall > 0.0 and tilt < -weight:
+            tilt = -weight
+            shear -= self.wall_share * (ground.x + weight * self.right.tangent)
+        return tilt, shear
 
     @kernel
     def centre_rise(self, mode: int, rotation: float) -> float:
@@ -221,9 +244,10 @@ class BlockOnRigidGround(NamedTuple):
             # moments about the foot of the centre of mass: N_R s_R - N_L s_L = -m h x_g''
             both = self.left.tangent + self.right.tangent
             tilt = (2.0 * ground.x + weight * (self.right.tangent - self.left.tangent)) / both
+            tilt, shear = self.leaning(tilt, weight, ground)
             left, right = 0.5 * (weight + tilt), 0.5 * (weight - tilt)
-            rest = (rotation, rate, height, 0.0, 0.0, ground.x)
-            return rest + (0.0, 0.0, 0.0, 0.0, ground.x, weight, left, right)
+            rest = (rotation, rate, height, 0.0, 0.0, shear)
+            return rest + (0.0, 0.0, 0.0, 0.0, shear, weight, left, right)
         corner = self.corner(mode)
         sine, cosine = self.lean(mode, rotation)
         start, _ = sine_cosine(corner.angle)

@@ -267,6 +267,9 @@ class SceneArtist:
         """Draw, or move, all artists."""
         found = self.drawer.lay_out(at)
         self._ground(found)
+        if self.drawer.geometry.wall is not None:
+            wall = self._polygon("wall", self.drawer.geometry.wall, GREY, 2)
+            wall.set(hatch="///")
         if found.cap is not None:
             self._polygon("cap", found.cap, ORANGE, 3)
         for number, body in enumerate(found.lower):
@@ -364,7 +367,9 @@ def part_labels(parts: Parts, geometry: Geometry) -> dict[str, str]:
     """Give what the parts of a scene are called, with their numbers, by their slots."""
     found: dict[str, str] = {}
     lower = () if parts.stack is None else parts.stack.bodies
-    named = {slot: parts.components().get(slot) for slot in ("block", "pads", "cap", "soil")}
+    named = {
+        slot: parts.components().get(slot) for slot in ("block", "wall", "pads", "cap", "soil")
+    }
     if parts.frame is not None:
         named["block"] = parts.frame
     named |= {f"stack {k - 1}" if k else "block": body for k, body in enumerate(lower)}

@@ -82,6 +82,12 @@ LIMITS: Final = (
         lambda parts: isinstance(parts.block, FrameEquivalent),
     ),
     Limit(
+        "Walls",
+        "A wall behind the body is stiff: an impact lasts no time, and leaves the share of the "
+        "speed that its law says.",
+        lambda parts: parts.wall is not None,
+    ),
+    Limit(
         "Rocking frames",
         "Columns and beam are rigid, the columns equal; the beam stays level and on the columns, "
         "and neither it nor they slide.",

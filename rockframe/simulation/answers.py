@@ -42,6 +42,7 @@ from rockframe.solve.observe import memory_at_outputs, observe_states, observe_s
 from rockframe.solve.trajectory import Trajectory
 from rockframe.system.assembly import Assembly
 from rockframe.system.own_base import OwnAnswers
+from rockframe.system.setting import Setting
 
 
 @dataclass(frozen=True)
@@ -80,7 +81,7 @@ def answers_of(system: Assembly, plan: Plan, run: Trajectory, missing: list[str]
     vertical = plan.motion is not None and plan.motion.si.vertical is not None
     values |= ground_histories(ground[:count], has_vertical_motion=vertical)
     values["time"] = run.time
-    events = _events_in(shown_at, run)
+    events = _events_in(shown_at, run, setting)
     along, upright = _along(system, plan, run), events
     if run.overturning_time <= run.end_time:  # how a block falls is another matter
         upright = events.until(run.overturning_time)
@@ -285,9 +286,10 @@ def _level(moved: Array, slope: Slope) -> Array:
     return np.column_stack(back.turned(moved[:, 0], moved[:, 1]))
 
 
-def _events_in(shown_at: dict[str, Generic], run: Trajectory) -> EventStates:
+def _events_in(shown_at: dict[str, Generic], run: Trajectory, setting: Setting) -> EventStates:
     """Take what the model shows on both sides of events."""
     first, count = len(run.time), len(run.events.time)
     before = {name: each[first : first + count] for name, each in shown_at.items()}
     after = {name: each[first + count :] for name, each in shown_at.items()}
-    return EventStates(run.events.time, run.events.kind == IMPACT, before, after)
+    is_impact = (run.events.kind == IMPACT) & setting.struck_by_base
+    return EventStates(run.events.time, is_impact, before, after)

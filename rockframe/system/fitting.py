@@ -35,6 +35,14 @@ def misfits(parts: Parts) -> list[str]:
                 f"RigidGround and {' and '.join(others)} are both given; rigid ground carries a "
                 "block directly"
             )
+    if parts.wall is not None:
+        behind = (pads, soil, cap, parts.stack, parts.frame, *parts.links)
+        others = [type(part).__name__ for part in behind if part is not None]
+        if others:
+            faults.append(
+                f"a RearWall and {' and '.join(others)} are both given; a wall stands behind a "
+                "Block on rigid ground"
+            )
     if parts.links:
         faults += _misfits_of_links(parts)
     if cap is not None and soil is None:
@@ -149,7 +157,7 @@ def contradictions(parts: Parts) -> list[str]:
 def is_sliding(parts: Parts, options: Options) -> bool:
     """Whether a block stands on rigid ground on which it slides."""
     friction = None if parts.ground is None else parts.ground.si.friction
-    given = parts.block is not None and friction is not None
+    given = parts.block is not None and parts.wall is None and friction is not None
     return given and options.sliding is Sliding.COMPUTED
 
 

@@ -5,8 +5,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from rockframe.components import FrameEquivalent, RockingFrame, Stack
+from rockframe.components import FrameEquivalent, RearWall, RockingFrame, Stack
+from rockframe.components.block_numbers import BlockSI
 from rockframe.components.rocking_frame import column_places, frame_outlines
+from rockframe.components.wall import WallSide
 from rockframe.signals.arrays import Array
 from rockframe.system.assembly import Assembly
 from rockframe.system.setting import Setting
@@ -56,6 +58,7 @@ class Geometry:
     # of columns under a beam, how far each is to the right of the middle; the block is one of them
     columns: tuple[float, ...] = ()
     beam: Array | None = None  # outline of the beam on them
+    wall: Array | None = None  # outline of a wall behind the block
 
     @property
     def level(self) -> float:
@@ -124,7 +127,16 @@ def geometry_of(scene: Assembly) -> Geometry:
         small_rotation=scene.options.small,
         ties=_ties_of(setting),
         **_of_frame(parts.frame),
+        wall=_of_wall(parts.wall, block),
     )
+
+
+def _of_wall(wall: RearWall | None, block: BlockSI) -> Array | None:
+    """Give what is drawn of a wall: it is as high as the block, and as thick as its base."""
+    if wall is None:
+        return None
+    side = -1.0 if wall.given.side is WallSide.LEFT else 1.0
+    return rectangle(block.half_width, block.height, 2.0 * side * block.half_width)
 
 
 def _of_frame(frame: RockingFrame | None) -> dict[str, Any]:

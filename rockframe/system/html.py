@@ -44,6 +44,8 @@ def shapes_of(geometry: Geometry) -> list[Polygon]:
     reach, depth = 1.7 * half, 0.5 * half
     band = rectangle(reach, depth, y=-depth - below)
     found = [("ground" if geometry.bed_sinks is None else "soil", band)]
+    if geometry.wall is not None:
+        found.append(("ground", geometry.wall))
     if geometry.cap_outline is not None:
         found.append(("cap", geometry.cap_outline))
     found += [("cap", one.outline) for one in geometry.lower]

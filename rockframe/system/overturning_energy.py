@@ -34,9 +34,7 @@ def stored_energy(setting: "Setting", rotation: float) -> float:
 
 def least_overturning_energy(setting: "Setting") -> float:
     """Give the work against the restoring moment up to where that ends, on the weaker side [J]."""
-    left, right = setting.overturning_angles
-    ends = [right, -left] if setting.leans else [right]
-    return min(_work_against(setting, end) for end in ends)
+    return min(_work_against(setting, end) for end in setting.overturning_rotations)
 
 
 def _work_against(setting: "Setting", end: float) -> float:

@@ -9,6 +9,7 @@ from rockframe.components import (
     Component,
     CushionCap,
     Link,
+    RearWall,
     RigidGround,
     RockingFrame,
     Stack,
@@ -92,6 +93,11 @@ class Parts:
         return self._in("ground")
 
     @property
+    def wall(self) -> RearWall | None:
+        """The wall behind a block."""
+        return self._in("wall")
+
+    @property
     def motion(self) -> GroundMotion | None:
         """The motion of the ground."""
         return self._in("motion")
@@ -138,6 +144,13 @@ class Parts:
         if self.frame is None:
             raise TypeError
         return self.frame
+
+    @property
+    def the_wall(self) -> RearWall:
+        """The wall behind the block, in a scene that has one."""
+        if self.wall is None:
+            raise TypeError
+        return self.wall
 
     @property
     def the_cap(self) -> Cap:

@@ -13,6 +13,7 @@ from rockframe.system.load import Load, load_of
 from rockframe.system.options import Coupling, Options
 from rockframe.system.own_scene import OwnScene
 from rockframe.system.parts import Parts
+from rockframe.system.rear_wall import rear_wall_setting
 from rockframe.system.rocking_frame import rocking_frame_setting
 from rockframe.system.setting import Setting
 from rockframe.system.sliding_ground import rigid_ground_setting
@@ -94,6 +95,7 @@ _SHIPPED: Final = (
         frozenset({"block"}),
         rigid_ground_setting,
     ),
+    Scene("Block + RearWall (on rigid ground)", frozenset({"block", "wall"}), rear_wall_setting),
     Scene("Block + TwoSpringSupport", frozenset({"block", "pads"}), partial(_alone, "pads")),
     Scene("Block + WinklerSoil", frozenset({"block", "soil"}), partial(_alone, "soil")),
     Scene(

@@ -57,6 +57,9 @@ class Setting(ABC):
     slides: ClassVar[bool] = False
     """Whether in the equations a body slides on its base, so that its friction is that of these."""
 
+    struck_by_base: ClassVar[bool] = True
+    """Whether the impulses of impacts are those of the base alone, so that friction bears them."""
+
     @property
     def body(self) -> SupportedBody:
         """The body that the response is of."""
@@ -91,6 +94,12 @@ class Setting(ABC):
     def overturning_angle(self) -> float:
         """Theta, the lesser of both [rad]."""
         return self.overturning_angles.least
+
+    @property
+    def overturning_rotations(self) -> tuple[float, ...]:
+        """Rotations of unstable equilibrium that differ [rad]."""
+        left, right = self.overturning_angles
+        return (right, -left) if self.leans else (right,)
 
     @property
     @abstractmethod

@@ -11,6 +11,7 @@ from rockframe.components import (
     CushionCap,
     FrameEquivalent,
     Link,
+    RearWall,
     Restrainer,
     RigidGround,
     RockingFrame,
@@ -46,6 +47,7 @@ _KINDS: Final[dict[type, Kind]] = {
     CushionCap: Kind("cap"),
     WinklerSoil: Kind("soil", bed_under),
     RigidGround: Kind("ground", rigid_under),
+    RearWall: Kind("wall"),
     Restrainer: Kind("restrainer"),
     GroundMotion: Kind("motion"),
 }

@@ -1,0 +1,163 @@
+"""The scene of a block on rigid ground before a wall: one-sided rocking."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from rockframe.components import RearWall
+from rockframe.components.wall import WallImpact, WallSide
+from rockframe.errors import AssemblyError
+from rockframe.system.bodies import OverturningAngles, SupportedBody
+from rockframe.system.impact import Restitutions, resolve_restitution
+from rockframe.system.load import load_of
+from rockframe.system.options import Options
+from rockframe.system.parts import Parts
+from rockframe.system.rigid_ground import RigidGroundSetting
+from rockframe.system.statics import Statics
+from rockframe.system.words import Words
+
+if TYPE_CHECKING:
+    from rockframe.dynamics.protocol import ContactModel
+
+
+@dataclass(frozen=True)
+class RearWallSetting(RigidGroundSetting):
+    """A block on rigid ground before a wall."""
+
+    wall: RearWall
+    rebound: float  # ratio of the angular velocities after and before an impact [1]
+    height: float  # of the block [m]
+    struck_by_base = False
+
+    @property
+    def model(self) -> str:
+        """Name of the model."""
+        return "rigid ground with a wall"
+
+    @property
+    def direction(self) -> float:
+        """Sign of the rotations that the wall allows."""
+        return 1.0 if self.wall.given.side is WallSide.LEFT else -1.0
+
+    @property
+    def overturning_angles(self) -> OverturningAngles:
+        """That of the side that the wall leaves open, for both: the other is never met."""
+        outwards = self.load.overturning_angles.on_side_of(self.direction)
+        return OverturningAngles(outwards, outwards)
+
+    @property
+    def overturning_rotations(self) -> tuple[float, ...]:
+        """The rotation at which it stands on edge, away from the wall [rad]."""
+        return (self.direction * self.overturning_angle,)
+
+    @property
+    def uplift_accelerations(self) -> tuple[float, float]:
+        """Ground accelerations at which it rocks; infinite towards the wall [m s^-2]."""
+        left, right = super().uplift_accelerations
+        return (math.inf, right) if self.direction > 0.0 else (left, math.inf)
+
+    def start_faults(self, rotation: float, has_vertical_start: bool) -> list[str]:
+        """Refuse a start in the wall, too."""
+        found = super().start_faults(rotation, has_vertical_start)
+        if rotation * self.direction < 0.0:
+            side = str(self.wall.given.side)
+            found.append(f"InitialState: a rotation to the {side} is into the RearWall")
+        return found
+
+    def contact_model(self) -> "ContactModel":
+        """Give Housner's equations of the side that is open."""
+        model = super().contact_model()
+        share = self.body.centre_height / self.height
+        system = model.system._replace(  # type: ignore[attr-defined]
+            wall=-self.direction, rebound=self.rebound, wall_share=share
+        )
+        return replace(model, system=system)
+
+    def curve(self, rotations: Sequence[float]) -> list[Statics | None]:
+        """Give the quasi-static states at rotations; none in the wall."""
+        return [
+            None if rotation * self.direction < 0.0 else state
+            for rotation, state in zip(rotations, super().curve(rotations), strict=True)
+        ]
+
+    def held_at(self, rotations: Sequence[float]) -> list[Statics]:
+        """Give the quasi-static states at rotations [rad]; refuse those in the wall."""
+        for rotation in rotations:
+            if rotation * self.direction < 0.0:
+                msg = (
+                    f"a rotation of {rotation:.6g} rad is into the RearWall, on the "
+                    f"{self.wall.given.side}: give rotations to the other side"
+                )
+                raise AssemblyError([msg])
+        return super().held_at(rotations)
+
+    def words(self) -> Words:
+        """Tell the block before its wall."""
+        told, law = super().words(), self.wall.given.restitution
+        named = f'law "{law}"' if isinstance(law, WallImpact) else "as given"
+        away = "right" if self.direction > 0.0 else "left"
+        rest, rocking, _ = told.equations
+        return replace(
+            told,
+            equations=[
+                rest,
+                (away, rocking[1]),
+                ("impact", f"a' after = {self.rebound:.6g} a' before, at a = 0, on base and wall "
+                 f"({named})"),
+            ],
+            numbers=[
+                *told.numbers[:-1],
+                ("wall", f"on the {self.wall.given.side}, rebound {self.rebound:.6g} ({named})"),
+            ],
+            left_out=[*told.left_out, "elasticity of the wall"],
+        )  # fmt: skip
+
+    def _start_words(self) -> str:
+        """Say when rocking starts."""
+        away, needed = ("right", "left") if self.direction > 0.0 else ("left", "right")
+        return (
+            f"at rest until the ground is accelerated to the {needed} by more than (g + yg'') "
+            f"tan(theta), {self.uplift_acceleration:.4g} m s^-2 without vertical motion, which "
+            f"tips the block to the {away}; to the other side the wall holds it"
+        )
+
+
+def rear_wall_setting(parts: Parts, options: Options) -> RearWallSetting:
+    """Resolve the parts of a block before a wall."""
+    load, wall = load_of(parts.the_block, options), parts.the_wall
+    given = None if parts.ground is None else parts.ground.si.restitution
+    restitution = resolve_restitution(given, load.body.maximum_restitution)
+    if not load.slope.level:
+        raise AssemblyError(["RearWall: a wall stands on level ground, without inclination"])
+    height = parts.the_block.height
+    rebound = _rebound(wall, load.body, restitution, height)
+    return RearWallSetting(load, restitution, wall, rebound, height)
+
+
+def _rebound(
+    wall: RearWall, body: SupportedBody, restitution: Restitutions, height: float
+) -> float:
+    """Give the ratio of the angular velocities at an impact, :eq:`eq-wall-impact`."""
+    law = wall.given.restitution
+    if law is WallImpact.NEWTON:
+        return -restitution.left * restitution.right * float(wall.given.wall_restitution)
+    if law is not WallImpact.SORRENTINO:
+        return float(law)
+    found = restitution.left * restitution.right * wall_factor(body, wall.given.side, height)
+    if found < 0.0:
+        return found
+    slenderness = 0.5 * height / body.half_width
+    raise AssemblyError([
+        f'RearWall: by the law "sorrentino" a block of H/B = {slenderness:.4g} does not rebound: '
+        f"the ratio would be {found:.4g}, and is negative for H/B above sqrt(2) of a solid "
+        "rectangle; give a ratio, such as restitution=0"
+    ])  # fmt: skip
+
+
+def wall_factor(body: SupportedBody, side: WallSide, height: float) -> float:
+    """Give the ratio from rocking about the rear base corner to that about the rear top one."""
+    beside = body.left if side is WallSide.LEFT else body.right
+    below, inertia = height - body.centre_height, body.inertia / body.mass
+    kept = inertia + beside * beside - body.centre_height * below
+    return kept / (inertia + beside * beside + below * below)
