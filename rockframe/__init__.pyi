@@ -11,6 +11,7 @@ from rockframe.components import Block as Block
 from rockframe.components import CushionCap as CushionCap
 from rockframe.components import FrameEquivalent as FrameEquivalent
 from rockframe.components import InitialState as InitialState
+from rockframe.components import Load as Load
 from rockframe.components import Member as Member
 from rockframe.components import RearWall as RearWall
 from rockframe.components import RegularFrame as RegularFrame
@@ -18,6 +19,7 @@ from rockframe.components import Restrainer as Restrainer
 from rockframe.components import RigidGround as RigidGround
 from rockframe.components import RockingFrame as RockingFrame
 from rockframe.components import Stack as Stack
+from rockframe.components import Tendon as Tendon
 from rockframe.components import TwoSpringSupport as TwoSpringSupport
 from rockframe.components import WinklerSoil as WinklerSoil
 from rockframe.errors import AssemblyError as AssemblyError

@@ -34,7 +34,7 @@ from rockframe.dynamics.protocol import (
 from rockframe.dynamics.protocol import Equations as System
 from rockframe.results.variables.variable import EVENT, TIME, Variable
 from rockframe.system.links import OwnLink
-from rockframe.system.load import Load
+from rockframe.system.load import BaseLoad
 from rockframe.system.own_base import OwnBase
 from rockframe.system.own_scene import OwnScene
 from rockframe.system.pads import PadSupport, pads_under
@@ -60,6 +60,7 @@ __all__ = [
     "Base",
     "BaseForce",
     "BaseLine",
+    "BaseLoad",
     "BaseNumbers",
     "BaseWords",
     "Bed",
@@ -78,7 +79,6 @@ __all__ = [
     "Guards",
     "LinkEvent",
     "LinkNumbers",
-    "Load",
     "Measure",
     "OneOf",
     "OwnBase",

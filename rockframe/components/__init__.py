@@ -9,7 +9,7 @@ from rockframe.components.frame_members import Member
 from rockframe.components.frame_regular import RegularFrame
 from rockframe.components.ground import RigidGround
 from rockframe.components.initial_state import InitialState
-from rockframe.components.link import Link, Restrainer
+from rockframe.components.link import Link, Load, PointLink, Restrainer, Tendon
 from rockframe.components.pads import TwoSpringSupport
 from rockframe.components.parameters import DERIVED, Choice, Parameter, Ratio, Text
 from rockframe.components.registry import component_from_dict
@@ -27,9 +27,11 @@ __all__ = [
     "FrameEquivalent",
     "InitialState",
     "Link",
+    "Load",
     "Member",
     "OneOf",
     "Parameter",
+    "PointLink",
     "Ratio",
     "RearWall",
     "RegularFrame",
@@ -38,6 +40,7 @@ __all__ = [
     "RockingFrame",
     "Separation",
     "Stack",
+    "Tendon",
     "Text",
     "TwoSpringSupport",
     "WinklerSoil",

@@ -1,4 +1,4 @@
-"""Ties between points of bodies, the ground, or a wall."""
+"""Ties between points of bodies, the ground, or a wall; tendons through bodies; loads on them."""
 
 from typing import Any, ClassVar, Final
 
@@ -9,6 +9,8 @@ from rockframe.errors import ComponentError
 from rockframe.units import (
     DAMPING,
     FORCE,
+    LENGTH,
+    MASS,
     NOT_NEGATIVE,
     POSITIVE,
     STIFFNESS,
@@ -21,24 +23,9 @@ BODY: Final = 1
 
 
 class Link(Component):
-    """A link between two points: where it is; classes derived from it say how it pulls.
-
-    Points are given where the bodies stand upright under their weight: from the middle of the
-    base of their body to the right, and above it; on the ground, or a wall that moves with it,
-    from the middle of the lowest base. Bodies are counted from the top down.
-    """
+    """What acts on a point of a body; bodies are counted from the top down."""
 
     noun: ClassVar[str] = "link"
-
-    on = Place(doc="The point of the body.")
-    to = Place(doc="The other point.")
-    on_body = Count(doc="Number of the body, from the top down.", default=BODY)
-    to_body = Count(
-        doc="Number of the body of the other point; the ground, or a wall that moves with it, "
-        "unless given.",
-        default=None,
-    )
-    name = Text(doc="What results call it; by its number unless given.", default=None)
 
     def parameters(self) -> tuple[str, ...]:
         """Name the arguments that are numbers other than zero, with a unit or without.
@@ -50,7 +37,38 @@ class Link(Component):
         return tuple(one for one in super().parameters() if one not in ("on_body", "to_body"))
 
 
-class Restrainer(Link):
+def _on_body() -> Count[int]:
+    return Count(doc="Number of the body, from the top down.", default=BODY)
+
+
+def _to_body() -> Count[None]:
+    return Count(
+        doc="Number of the body of the other point; the ground, or a wall that moves with it, "
+        "unless given.",
+        default=None,
+    )
+
+
+def _name() -> Text[None]:
+    return Text(doc="What results call it; by its number unless given.", default=None)
+
+
+class PointLink(Link):
+    """A link between two points: where it is; classes derived from it say how it pulls.
+
+    Points are given where the bodies stand upright under their weight: from the middle of the
+    base of their body to the right, and above it; on the ground, or a wall that moves with it,
+    from the middle of the lowest base. Bodies are counted from the top down.
+    """
+
+    on = Place(doc="The point of the body.")
+    to = Place(doc="The other point.")
+    on_body = _on_body()
+    to_body = _to_body()
+    name = _name()
+
+
+class Restrainer(PointLink):
     """A tie, an anchor or a bar between two points: a spring beside a dashpot.
 
     It pulls only, with a force that grows from where it becomes taut, yields or breaks at its
@@ -131,12 +149,143 @@ class Restrainer(Link):
             faults.append("a tie with slack has no preload: give one of them")
         if given.slack and given.compression:
             faults.append("a bar that pushes has no slack: give slack or compression")
-        if given.preload and given.strength and given.preload >= given.strength:
-            faults.append(
-                f"its preload, {given.preload:.6g} N, is not below its strength, "
-                f"{given.strength:.6g} N"
-            )
         if faults:
             msg = f"Restrainer: {'; '.join(faults)}"
             raise ComponentError(msg)
+        _refuse_preload("Restrainer", given)
         return given
+
+
+class Tendon(Link):
+    """A tendon through a body, tensioned between its top and what it stands on.
+
+    It leaves the body at a point of its base and goes on into the ground, or into the body below,
+    where it is bent over the edges of its duct as the base lifts there: it is longer by how far
+    both edges are apart. Anchored at a depth in a wide duct it is straight from there to the edge.
+    It yields or breaks at its strength.
+
+    Raises
+    ------
+    UnitsError
+        A value has the wrong unit, or none.
+    ComponentError
+        A value is out of range, or `preload` is not below `strength`.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> rf.Tendon(stiffness="5 MN/m", preload="200 kN").preload.to("kN")
+    <Quantity(200.0, 'kilonewton')>
+    """
+
+    noun: ClassVar[str] = "tendon"
+
+    stiffness = Parameter(STIFFNESS, POSITIVE, doc="Force over elongation, E A over its length.")
+    preload = Parameter(
+        FORCE,
+        POSITIVE,
+        doc="Force while the bodies stand upright under their weight alone; none unless given.",
+        default=None,
+    )
+    at = Parameter(
+        LENGTH.like("0 m"),
+        doc="Its place in the base, to the right of the middle.", default="0 m",
+    )  # fmt: skip
+    depth = Parameter(
+        LENGTH, NOT_NEGATIVE,
+        doc="How far below the base it is held, in a duct that is wide; on pads and soil it must "
+        "be given.", default="0 m",
+    )  # fmt: skip
+    strength = Parameter(
+        FORCE, POSITIVE, doc="Greatest force; without end unless given.", default=None
+    )
+    brittle = Flag(doc="Whether it breaks at its strength, or yields.", default=False)
+    on_body = _on_body()
+    name = _name()
+
+    def __init__(
+        self,
+        *,
+        stiffness: QuantityLike,
+        preload: QuantityLike | None = None,
+        at: QuantityLike = "0 m",
+        depth: QuantityLike = "0 m",
+        strength: QuantityLike | None = None,
+        brittle: bool = False,
+        on_body: int = BODY,
+        name: str | None = None,
+    ) -> None:
+        super().__init__(
+            stiffness=stiffness, preload=preload, at=at, depth=depth, strength=strength,
+            brittle=brittle, on_body=on_body, name=name,
+        )  # fmt: skip
+
+    def _numbers(self, given: SIValues) -> Any:
+        _refuse_preload("Tendon", given)
+        return given
+
+
+class Load(Link):
+    """Forces that stay as they are, at a point that moves with a body, or a mass there.
+
+    Such as a floor that bears on a façade, or the thrust of a vault. The point is given where the
+    bodies stand upright under their weight: from the middle of the base of its body to the right,
+    and above it.
+
+    Raises
+    ------
+    UnitsError
+        A value has the wrong unit, or none.
+    ComponentError
+        A value is out of range, or none is given.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> rf.Load(at=("-0.1 m", "3 m"), vertical="10 kN").vertical.to("kN")
+    <Quantity(10.0, 'kilonewton')>
+    """
+
+    noun: ClassVar[str] = "load"
+
+    at = Place(doc="Its point.")
+    vertical = Parameter(FORCE, doc="Force downwards; none unless given.", default="0 N")
+    horizontal = Parameter(FORCE, doc="Force to the right; none unless given.", default="0 N")
+    moving_mass = Parameter(
+        MASS, POSITIVE,
+        doc="Mass at the point, a part of the body, with its weight; none unless given.",
+        default=None,
+    )  # fmt: skip
+    on_body = _on_body()
+    name = _name()
+
+    def __init__(
+        self,
+        *,
+        at: tuple[QuantityLike, QuantityLike],
+        vertical: QuantityLike = "0 N",
+        horizontal: QuantityLike = "0 N",
+        moving_mass: QuantityLike | None = None,
+        on_body: int = BODY,
+        name: str | None = None,
+    ) -> None:
+        super().__init__(
+            at=at, vertical=vertical, horizontal=horizontal, moving_mass=moving_mass,
+            on_body=on_body, name=name,
+        )  # fmt: skip
+
+    def _numbers(self, given: SIValues) -> Any:
+        if not (given.vertical or given.horizontal or given.moving_mass):
+            msg = "Load: give vertical, horizontal or moving_mass"
+            raise ComponentError(msg)
+        return given
+
+
+def _refuse_preload(owner: str, given: SIValues) -> None:
+    """Refuse a preload that is not below the strength."""
+    if given.preload and given.strength and given.preload >= given.strength:
+        msg = (
+            f"{owner}: its preload, {given.preload:.6g} N, is not below its strength, "
+            f"{given.strength:.6g} N"
+        )
+        raise ComponentError(msg)

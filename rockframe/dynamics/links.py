@@ -8,10 +8,11 @@ and taut, of whose end its guards tell, and **variables** of its own.
 
 import inspect
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Final, NamedTuple, TypeVar
 
-from rockframe.compiled import Vector, inlined, kernel
+from rockframe.compiled import Vector, filled, inlined, kernel, part_of
 from rockframe.dynamics.events import (
     LINK_BREAKS,
     LINK_SLACK,
@@ -106,6 +107,16 @@ class LinkLaw:
         """Give the state that users see, a :class:`~rockframe.dynamics.events.LinkState`."""
         return TAUT
 
+    @inlined
+    def number_count(self) -> int:
+        """Give how many numbers it has."""
+        return len(self)  # type: ignore[arg-type]
+
+    @inlined
+    def with_numbers(self, numbers: Vector) -> Any:
+        """Give the law with other numbers, from an array."""
+        return filled(self, numbers)
+
 
 def link_law(law: type[Law]) -> type[Law]:
     """Make a named tuple the law of a link: mark its methods, and give it those it lacks.
@@ -141,11 +152,117 @@ def link_law(law: type[Law]) -> type[Law]:
         raise TypeError("; ".join(faults))
     for name, method in own.items():
         if not name.startswith("_"):
-            (inlined if name in ("force", "power") else kernel)(method)
+            (inlined if name in ("force", "power", "with_numbers") else kernel)(method)
     for name, method in vars(LinkLaw).items():
         if not name.startswith("_") and name not in own:
             setattr(law, name, method)
     return law
+
+
+@link_law
+class OneOfTwo(NamedTuple):
+    """One of two laws: what links of several laws follow, each its own."""
+
+    which: float  # 0 for the first
+    first: Any
+    second: Any
+
+    def force(self, state: int, stretch: Stretch, own: Vector) -> float:
+        """Give the force of the law."""
+        if self.which == 0.0:
+            return self.first.force(state, stretch, own)
+        return self.second.force(state, stretch, own)
+
+    def energy(self, state: int, stretch: Stretch, own: Vector) -> float:
+        """Give its energy."""
+        if self.which == 0.0:
+            return self.first.energy(state, stretch, own)
+        return self.second.energy(state, stretch, own)
+
+    def power(self, state: int, stretch: Stretch, own: Vector) -> float:
+        """Give what it dissipates."""
+        if self.which == 0.0:
+            return self.first.power(state, stretch, own)
+        return self.second.power(state, stretch, own)
+
+    def variables(self) -> int:
+        """Give the number of variables, of either law."""
+        return max(self.first.variables(), self.second.variables())
+
+    def rates(self, state: int, stretch: Stretch, own: Vector, out: Vector) -> None:
+        """Write the rates of its variables; what it has not stays."""
+        for i in range(len(out)):
+            out[i] = 0.0
+        if self.which == 0.0:
+            self.first.rates(state, stretch, own, out)
+        else:
+            self.second.rates(state, stretch, own, out)
+
+    def states(self) -> int:
+        """Give the number of states, of either law."""
+        return max(self.first.states(), self.second.states())
+
+    def starting(self, stretch: Stretch, own: Vector) -> int:
+        """Give its state at the start."""
+        if self.which == 0.0:
+            return self.first.starting(stretch, own)
+        return self.second.starting(stretch, own)
+
+    def guard(self, which: int, state: int, stretch: Stretch, own: Vector) -> tuple[float, float]:
+        """Give its guard."""
+        if self.which == 0.0:
+            return self.first.guard(which, state, stretch, own)
+        return self.second.guard(which, state, stretch, own)
+
+    def switch(self, which: int, state: int, stretch: Stretch, own: Vector) -> LinkEvent:
+        """Give what happens to it."""
+        if self.which == 0.0:
+            return self.first.switch(which, state, stretch, own)
+        return self.second.switch(which, state, stretch, own)
+
+    def shown(self, state: int) -> int:
+        """Give the state of it that users see."""
+        if self.which == 0.0:
+            return self.first.shown(state)
+        return self.second.shown(state)
+
+    def number_count(self) -> int:
+        """Give how many numbers both have."""
+        return 1 + self.first.number_count() + self.second.number_count()
+
+    def with_numbers(self, numbers: Vector) -> Any:
+        """Give the law with other numbers, from an array."""
+        behind = 1 + self.first.number_count()
+        return OneOfTwo(
+            numbers[0],
+            self.first.with_numbers(part_of(numbers, 1)),
+            self.second.with_numbers(part_of(numbers, behind)),
+        )
+
+
+def one_of(laws: Sequence[Any], own: Any) -> Any:
+    """Give a law that may be any of several, of different classes, and is one's own."""
+    first, *others = laws
+    if not others:
+        return own
+    if type(own) is type(first):
+        return OneOfTwo(0.0, own, one_of(others, others[0]))
+    return OneOfTwo(1.0, first, one_of(others, own))
+
+
+@link_law
+class SteadyForce(NamedTuple):
+    """A force that stays as it is, along its direction: its energy is the work against it."""
+
+    size: float  # per unit mass
+
+    def force(self, state: int, stretch: Stretch, own: Vector) -> float:
+        """Give the force."""
+        return self.size
+
+    def energy(self, state: int, stretch: Stretch, own: Vector) -> float:
+        """Give the work against it."""
+        return self.size * stretch.elongation
 
 
 @dataclass(frozen=True)
@@ -189,7 +306,7 @@ TAUT_NOISE: Final = 1e3
 
 @link_law
 class Tie(NamedTuple):
-    """A spring that pulls, yields or breaks, beside a dashpot, :eq:`eq-tie`.
+    """A spring that pulls, yields or breaks, beside a dashpot, :eq:`eq-tie`, :eq:`eq-tendon`.
 
     Its variable is the elongation that yielding has left.
     """

@@ -255,6 +255,8 @@ class ContactModel:
         Whether results have the motion of each body.
     links : int
         How many links of bodies results show.
+    selects : bool
+        Whether results show only some of the columns.
     other_limits : ndarray, shape (others * (2 + n),)
         Of other bodies that overturn: of each both limits and the weights of its rotation.
     scales : ndarray, shape (2 n + variables,)
@@ -302,6 +304,7 @@ class ContactModel:
     contacts: tuple[str, ...] = ("contact_state",)
     shows_bodies: bool = False
     links: int = 0
+    selects: bool = False
     other_limits: Vector = field(default_factory=lambda: np.zeros(0))
 
     def __post_init__(self) -> None:

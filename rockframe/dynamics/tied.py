@@ -33,7 +33,8 @@ class Tied(NamedTuple):
     state: int
     damping: float  # change of the force with the rate of the elongation
     way: Matrix  # how its first point moves from its second, by all coordinates
-    direction: Vector  # from the second to the first; zero where they meet
+    direction: Vector  # from the second to the first; zero where they meet without force
+    moved: Vector  # how its first point has moved from its second
 
     @property
     def loads(self) -> Vector:
@@ -82,8 +83,10 @@ def pulled(tie: ChainLink, moved: Vector, way: Matrix, state: int | None = None)
     law: Any = tie.numbers.law
     apart, given = np.array(tie.apart), math.hypot(*tie.apart)
     now = apart + moved
-    length = math.hypot(*now)
+    length, along = math.hypot(*now), np.array(tie.along)
     elongation = 0.0 if length == 0.0 else float((2.0 * apart + moved) @ moved) / (length + given)
+    if along.any():
+        elongation = float(along @ moved)
     reach = given + math.hypot(*tie.on_point) + math.hypot(*tie.to_point)
     stretch = Stretch(elongation, 0.0, 0.0, given, 1e-15 * reach)
     own = np.zeros(law.variables())
@@ -91,11 +94,13 @@ def pulled(tie: ChainLink, moved: Vector, way: Matrix, state: int | None = None)
     if state is not None:
         found = state
     faster, slower = (law.force(found, stretch._replace(rate=rate), own) for rate in (STEP, -STEP))
+    force = law.force(found, stretch, own)
     direction = np.zeros(2) if length == 0.0 else now / length
-    return Tied(
-        law.force(found, stretch, own), elongation, found, 0.5 * (faster - slower) / STEP, way,
-        direction,
-    )  # fmt: skip
+    if along.any():
+        direction = along
+    elif length == 0.0 and force != 0.0:
+        direction = np.array([0.0, 1.0])
+    return Tied(force, elongation, found, 0.5 * (faster - slower) / STEP, way, direction, moved)
 
 
 def at_rest(ties: Sequence[ChainLink]) -> list[Tied]:

@@ -13,6 +13,7 @@ from rockframe.plot._axes import BLUE, GREEN, GREY, ORANGE, VERMILLION, ink
 from rockframe.results.points import Placement
 from rockframe.signals.arrays import Array
 from rockframe.system.geometry import Geometry, LinkedPoints
+from rockframe.system.links import link_labels
 from rockframe.system.parts import Parts
 
 if TYPE_CHECKING:
@@ -379,6 +380,8 @@ def part_labels(parts: Parts, geometry: Geometry) -> dict[str, str]:
                 f"{name} {value}" for name, value in arguments_in_words(part.to_dict()).items()
             ]
             found[slot] = "\n   ".join([type(part).__name__, *numbers])
+    for number, name in enumerate(link_labels(parts.links)[: len(geometry.ties)]):
+        found[f"tie {number}"] = name
     if geometry.bed_sinks is None:
         found["ground"] = "rigid ground"
     return {**found, "centre": "centre of mass", "touching": "contact"}

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from rockframe.results.along_steps import AlongSteps
 from rockframe.results.outcome import Generic, sines_cosines
 from rockframe.signals.arrays import Array
-from rockframe.system.load import Load
+from rockframe.system.load import BaseLoad
 
 Values = Mapping[str, Generic]
 
@@ -37,7 +37,7 @@ NO_FORCE: Final = 1e-9
 """Force per mass, or change of velocity, that is rounding [m s^-2], [m s^-1]."""
 
 
-def force_histories(values: Values, ground: Array, load: Load) -> dict[str, Generic]:
+def force_histories(values: Values, ground: Array, load: BaseLoad) -> dict[str, Generic]:
     """Give absolute accelerations, the moment of the base, and the friction demand.
 
     By :eq:`eq-base-moment` and :eq:`eq-friction-demand`.
@@ -62,7 +62,7 @@ def force_histories(values: Values, ground: Array, load: Load) -> dict[str, Gene
     return found | friction_demands(values, load)
 
 
-def friction_demands(values: Values, load: Load) -> dict[str, Generic]:
+def friction_demands(values: Values, load: BaseLoad) -> dict[str, Generic]:
     """Give the friction demand of the bases, by their names in the schema."""
     mass = load.body.mass
     found: dict[str, Generic] = {
@@ -147,7 +147,7 @@ def _shear_and_demand(values: Values) -> Array:
     return np.stack([np.abs(values["base_shear"]), _demand(values)])
 
 
-def residuals(values: Values, load: Load) -> dict[str, float]:
+def residuals(values: Values, load: BaseLoad) -> dict[str, float]:
     """Give what is left at the end of a run, by its names in the schema."""
     rotation = float(values["rotation"][-1])
     body = load.body

@@ -64,7 +64,7 @@ def body_histories(
     model: ContactModel, run: Trajectory, values: Mapping[str, Generic]
 ) -> dict[str, Generic]:
     """Give histories with the motion of all bodies in one array each, where there are several."""
-    if not (model.shows_bodies or model.links):
+    if not model.selects:
         return dict(values)
     kept = {name: each for name, each in values.items() if name in SCHEMA}
     kept |= link_histories(model, values)

@@ -12,7 +12,7 @@ from rockframe.results.outcome import Generic, sines_cosines
 from rockframe.results.variables.requests import POINT_PEAKS
 from rockframe.signals.arrays import Array
 from rockframe.system.geometry import Geometry
-from rockframe.system.load import Load
+from rockframe.system.load import BaseLoad
 from rockframe.system.options import Restraint
 from rockframe.system.restraints import restraint_code
 
@@ -52,7 +52,7 @@ def point_labels(points: Sequence[BodyPoint]) -> dict[str, Generic]:
 
 
 def point_histories(
-    points: Sequence[BodyPoint], values: Mapping[str, Generic], load: Load
+    points: Sequence[BodyPoint], values: Mapping[str, Generic], load: BaseLoad
 ) -> dict[str, Generic]:
     """Give displacements and absolute accelerations of points."""
     rotation, rate = values["rotation"], values["angular_velocity"]
@@ -80,7 +80,9 @@ def point_histories(
     }
 
 
-def point_peaks(points: Sequence[BodyPoint], along: AlongSteps, load: Load) -> dict[str, Generic]:
+def point_peaks(
+    points: Sequence[BodyPoint], along: AlongSteps, load: BaseLoad
+) -> dict[str, Generic]:
     """Give peaks of displacements and absolute accelerations of points."""
 
     def sizes(values: Mapping[str, Generic]) -> Array:

@@ -14,6 +14,7 @@ from rockframe.solve.accuracy import LEVELS, Accuracy, AccuracyLevel
 from rockframe.solve.integrate import STILL_INTERVAL
 from rockframe.system.assembly import Assembly, assemble
 from rockframe.system.bodies import OverturningAngles
+from rockframe.system.links import link_labels
 
 QUARTERS: Final = (0.25, 0.5)
 """Shares of the nudge at which scales are tried inside it."""
@@ -40,11 +41,14 @@ def parameters(system: Assembly) -> Iterator[tuple[str, SceneAt]]:
 
         return at
 
+    links = system.parts.links
+    labels = dict(zip(map(id, links), link_labels(links), strict=True)) if len(links) > 1 else {}
     for place, part in enumerate(parts):
+        owner = labels.get(id(part), f"the {part.noun}")
         for name in part.parameters():
             if name == "friction" and not system.setting.slides:  # it changes no motion
                 continue
-            yield f"{name.replace('_', ' ')} of the {part.noun}", changed(place, name)
+            yield f"{name.replace('_', ' ')} of {owner}", changed(place, name)
 
 
 def scales(nudge: float, reach: float) -> list[float]:

@@ -169,8 +169,7 @@ def run(
     look_again: bool = False,
 ) -> xr.Dataset:
     """Integrate as planned and label the result."""
-    lists = system.model.shows_bodies or system.model.links
-    for column in () if lists else system.model.columns:
+    for column in () if system.model.selects else system.model.columns:
         schema_row(column.name)  # before the run
     response = respond(system, plan)
     summary, missing = response.trajectory, response.missing

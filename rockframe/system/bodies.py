@@ -102,6 +102,20 @@ def body_of_block(block: BlockSI) -> SupportedBody:
     )  # fmt: skip
 
 
+def with_mass(body: SupportedBody, mass: float, x: float, y: float) -> SupportedBody:
+    """Give a body with one more mass at a point, from the middle of its base."""
+    whole = body.mass + mass
+    height = (body.mass * body.centre_height + mass * y) / whole
+    beside = (body.mass * body.eccentricity + mass * x) / whole
+    inertia = (
+        body.inertia
+        + body.mass * ((body.centre_height - height) ** 2 + (body.eccentricity - beside) ** 2)
+        + mass * ((y - height) ** 2 + (x - beside) ** 2)
+    )
+    shape_factor = whole * (body.half_width**2 + height**2) / inertia
+    return SupportedBody(body.half_width, height, whole, inertia, shape_factor, beside)
+
+
 def cap_under(block: BlockSI, cap: CushionCapSI) -> Cap:
     """Give a cap in the size it has under a block."""
     width = cap.width if cap.width is not None else block.width

@@ -82,11 +82,6 @@ def _misfits_of_links(parts: Parts) -> list[str]:
         faults.append(
             f"{type(base).__name__}: friction is not looked at in a scene with a Restrainer"
         )
-    kinds = sorted({type(one).__name__ for one in parts.links})
-    if len(kinds) > 1:
-        faults.append(
-            f"the links of a scene follow one law, got {' and '.join(kinds)}; give those of one"
-        )
     return faults
 
 

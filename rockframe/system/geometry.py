@@ -149,7 +149,7 @@ def _of_frame(frame: RockingFrame | None) -> dict[str, Any]:
 
 def _ties_of(setting: Setting) -> tuple[LinkedPoints, ...]:
     """Give the points that restrainers link."""
-    ties = setting.ties if isinstance(setting, StackSetting) else ()
+    ties = setting.ties[: len(setting.link_names)] if isinstance(setting, StackSetting) else ()
     return tuple(LinkedPoints(np.array(one.ends), (one.on, one.to)) for one in ties)
 
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rockframe.components import Link, Restrainer
+from rockframe.components import Link, Load, PointLink, Restrainer, Tendon
 from rockframe.errors import AssemblyError
 from rockframe.system.bodies import SupportedBody
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from rockframe.dynamics.links import LinkNumbers
 
 
-class OwnLink(Link):
+class OwnLink(PointLink):
     """A link by a law of your own; :func:`rockframe.register` makes its class known.
 
     A class derived from it declares the parameters of its law, and has the method ``law``.
@@ -35,6 +35,9 @@ class OwnLink(Link):
         LinkNumbers
         """
         raise NotImplementedError
+
+
+Point = tuple[float, float]
 
 
 @dataclass(frozen=True)
@@ -65,53 +68,74 @@ class PlacedLink:
 
     def numbers(self, mass: float) -> "LinkNumbers":
         """Give the law, per unit of a mass [kg]."""
-        if isinstance(self.part, Restrainer):
+        from rockframe.dynamics.links import LinkNumbers, SteadyForce
+
+        if isinstance(self.part, Restrainer | Tendon):
             return tie_of(self.part, mass)
         if isinstance(self.part, OwnLink):
             return self.part.law(mass)
-        raise TypeError
+        return LinkNumbers(SteadyForce(math.hypot(*self.steady) / mass), 0.0)
+
+    @property
+    def steady(self) -> tuple[float, float]:
+        """Force that stays as it is, to the right and up; none of one that pulls its points [N]."""
+        if not isinstance(self.part, Load):
+            return 0.0, 0.0
+        return self.part.si.horizontal, -self.part.si.vertical
 
     def chain_link(self, mass: float) -> "ChainLink":
         """Give the link as the equations take it."""
         from rockframe.dynamics.chain.linked import ChainLink
 
         to_point = self.to_point if self.to >= 0 else (0.0, 0.0)
-        return ChainLink(self.on, self.on_point, self.to, to_point, self.apart, self.numbers(mass))
+        x, y = self.steady
+        size = math.hypot(x, y) or 1.0
+        return ChainLink(
+            self.on, self.on_point, self.to, to_point, self.apart, self.numbers(mass),
+            (-x / size, -y / size),
+        )  # fmt: skip
 
     def words(self) -> str:
         """Tell what it links, and how."""
         (x, y), (to_x, to_y) = self.ends
+        if isinstance(self.part, Load):
+            right, up = self.steady
+            return (
+                f"on body {self.on + 1} at ({x:.6g}, {y:.6g}) m, {right:.6g} N to the right, "
+                f"{-up:.6g} N down"
+            )
         other = "the ground" if self.to < 0 else f"body {self.to + 1}"
         found = [
             f"from body {self.on + 1} at ({x:.6g}, {y:.6g}) m to {other} at ({to_x:.6g}, "
             f"{to_y:.6g}) m"
         ]
-        if isinstance(self.part, Restrainer):
+        if isinstance(self.part, Restrainer | Tendon):
             given = self.part.si
             found.append(f"{given.stiffness:.6g} N/m")
             found += [
                 f"{name} {value:.6g} {unit}"
-                for name, value, unit in (
-                    ("slack", given.slack, "m"), ("preload", given.preload, "N"),
-                    ("damping", given.damping, "N s/m"),
-                ) if value
-            ]  # fmt: skip
+                for name, unit in (("slack", "m"), ("preload", "N"), ("damping", "N s/m"))
+                if (value := getattr(given, name, None))
+            ]
             if given.strength is not None:
                 verb = "breaks" if given.brittle else "yields"
                 found.append(f"{verb} at {given.strength:.6g} N")
-            found.append("pulls and pushes" if given.compression else "pulls only")
+            pushes = getattr(given, "compression", False)
+            found.append("pulls and pushes" if pushes else "pulls only")
         return ", ".join(found)
 
 
-def tie_of(part: Restrainer, mass: float) -> "LinkNumbers":
-    """Give the law of a restrainer, :eq:`eq-tie`, per unit of a mass [kg]."""
+def tie_of(part: Restrainer | Tendon, mass: float) -> "LinkNumbers":
+    """Give the law of a restrainer, :eq:`eq-tie`, or of a tendon, per unit of a mass [kg]."""
     from rockframe.dynamics.links import LinkNumbers, Tie
 
     given = part.si
-    stiffness, damping = given.stiffness / mass, (given.damping or 0.0) / mass
-    free = (given.slack or 0.0) - (given.preload or 0.0) / given.stiffness
+    slack, damping = (getattr(given, name, None) or 0.0 for name in ("slack", "damping"))
+    stiffness, damping = given.stiffness / mass, damping / mass
+    free = slack - (given.preload or 0.0) / given.stiffness
     most = math.inf if given.strength is None else given.strength / given.stiffness
-    law = Tie(stiffness, damping, free, most, float(given.brittle), float(given.compression))
+    pushes = float(getattr(given, "compression", False))
+    law = Tie(stiffness, damping, free, most, float(given.brittle), pushes)
     size = most if math.isfinite(most) else 1.0
     return LinkNumbers(law, stiffness, damping, (size,))
 
@@ -127,7 +151,7 @@ def placed(
     faults = [f"two links are called {name!r}" for name in names if names.count(name) > 1]
     found = list[PlacedLink]()
     for part, name in zip(parts, names, strict=True):
-        on, to = part.si.on_body - 1, -1 if part.si.to_body is None else part.si.to_body - 1
+        on, to = part.si.on_body - 1, _other_body(part, len(bodies))
         missing = [k + 1 for k in (on, to) if k >= len(bodies)]
         if missing:
             faults += [
@@ -139,13 +163,16 @@ def placed(
         if on == to:
             faults.append(f"{name}: both its points are on body {on + 1}")
             continue
-        ends, points = [], []
-        for k, (x, y) in ((on, part.si.on), (to, part.si.to)):
-            middle, base = (0.0, 0.0) if k < 0 else base_of(k, bodies, tops, offsets)
-            ends.append((middle + x, base + y))
-            points.append((x, y) if k < 0 else (x - bodies[k].eccentricity,
-                                                y - bodies[k].centre_height))  # fmt: skip
-        one = PlacedLink(part, name, on, points[0], to, points[1], (ends[0], ends[1]))
+        if isinstance(part, Load) and not (part.si.vertical or part.si.horizontal):
+            continue  # its mass is that of its body
+        bases = [(0.0, 0.0) if k < 0 else base_of(k, bodies, tops, offsets) for k in (on, to)]
+        ends = _ends_of(part, *bases)
+        points = [
+            (x, y) if k < 0 else
+            (x - base[0] - bodies[k].eccentricity, y - base[1] - bodies[k].centre_height)
+            for k, (x, y), base in zip((on, to), ends, bases, strict=True)
+        ]  # fmt: skip
+        one = PlacedLink(part, name, on, points[0], to, points[1], ends)
         if one.length == 0.0 and isinstance(part, Restrainer) and part.si.preload:
             faults.append(f"{name}: its points meet, so that its preload has no direction")
         found.append(one)
@@ -154,9 +181,33 @@ def placed(
     return tuple(found)
 
 
+def _other_body(part: Link, count: int) -> int:
+    """Give the body of a link's other point, counted from 0 at the top; -1 for the ground."""
+    if isinstance(part, PointLink):
+        return -1 if part.si.to_body is None else part.si.to_body - 1
+    # a tendon goes into what its body stands on, and a load has no other point
+    return part.si.on_body if isinstance(part, Tendon) and part.si.on_body < count else -1
+
+
+def _ends_of(part: Link, base: Point, other: Point) -> tuple[Point, Point]:
+    """Give both points of a link, from the middle of the lowest base, by those of its bodies."""
+    x, y = base
+    if isinstance(part, PointLink):
+        (on_x, on_y), (to_x, to_y) = part.si.on, part.si.to
+        return (x + on_x, y + on_y), (other[0] + to_x, other[1] + to_y)
+    if isinstance(part, Tendon):
+        x += part.si.at
+        return (x, y), (x, y - part.si.depth)
+    point = (x + part.si.at[0], y + part.si.at[1])
+    return point, point
+
+
 def link_labels(parts: Sequence[Link]) -> list[str]:
     """Give what results call links: their names, or their numbers."""
-    return [part.si.name or f"restrainer {i}" for i, part in enumerate(parts, 1)]
+    return [
+        part.si.name or f"{'load' if isinstance(part, Load) else 'restrainer'} {i}"
+        for i, part in enumerate(parts, 1)
+    ]
 
 
 def base_of(

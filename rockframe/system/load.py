@@ -19,7 +19,7 @@ _KEPT: Final = 64
 
 
 @dataclass(frozen=True)
-class Load:
+class BaseLoad:
     """A body on a base, with the options of its system.
 
     Parameters
@@ -79,6 +79,6 @@ class Load:
 
 
 @lru_cache(maxsize=_KEPT)
-def load_of(block: BlockSI, options: Options) -> Load:
+def load_of(block: BlockSI, options: Options) -> BaseLoad:
     """Give a block as a load; the same one for all scenes that differ in their bases alone."""
-    return Load(body_of_block(block), options)
+    return BaseLoad(body_of_block(block), options)

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any, ClassVar
 
 from rockframe.components import Component
-from rockframe.system.load import Load
+from rockframe.system.load import BaseLoad
 from rockframe.system.support import Support
 
 
@@ -44,12 +44,12 @@ class OwnBase(OwnAnswers, Component):
     noun: ClassVar[str] = "base"
     slot: ClassVar[str] = ""
 
-    def support(self, load: Load) -> Support:
+    def support(self, load: BaseLoad) -> Support:
         """Give the base as it is under a body.
 
         Parameters
         ----------
-        load : Load
+        load : BaseLoad
             The body, and how it is held.
 
         Returns

@@ -29,7 +29,7 @@ class OwnScene(OwnAnswers, Setting):
 
     Parameters
     ----------
-    load : Load
+    load : BaseLoad
         The block, with the options of its system.
     parts : Parts
         The parts, by their slots: ``self.parts["block"]``.

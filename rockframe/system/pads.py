@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from rockframe.components import TwoSpringSupport
 from rockframe.system.impact import Restitutions, resolve_restitution, restitution_cautions
-from rockframe.system.load import Load
+from rockframe.system.load import BaseLoad
 from rockframe.system.support import BaseWords, Support
 from rockframe.system.words import uplift_words
 
@@ -21,7 +21,7 @@ class PadSupport(Support):
 
     Parameters
     ----------
-    load : Load
+    load : BaseLoad
         The block on them.
     stiffness, damping : float
         Of one pad [N m^-1], [N s m^-1].
@@ -91,14 +91,14 @@ class PadSupport(Support):
         ]
 
 
-def pads_under(pads: TwoSpringSupport, load: Load) -> PadSupport:
+def pads_under(pads: TwoSpringSupport, load: BaseLoad) -> PadSupport:
     """Give pads under a block: stiffness and damping of one pad by Eqs. (7) and (8).
 
     Parameters
     ----------
     pads : TwoSpringSupport
         As given by the user.
-    load : Load
+    load : BaseLoad
         The block on them.
 
     Returns

@@ -9,6 +9,7 @@ from rockframe.components import (
     Component,
     CushionCap,
     Link,
+    Load,
     RearWall,
     RigidGround,
     RockingFrame,
@@ -124,8 +125,9 @@ class Parts:
 
     @property
     def links(self) -> tuple[Link, ...]:
-        """The links between points of bodies, ground and walls."""
-        return tuple(part for part in self.structural() if isinstance(part, Link))
+        """The links between points of bodies, ground and walls; loads stand behind the others."""
+        found = [part for part in self.structural() if isinstance(part, Link)]
+        return tuple(sorted(found, key=lambda part: isinstance(part, Load)))
 
     @property
     def the_block(self) -> BlockSI:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 from rockframe.components import RigidGround
-from rockframe.system.load import Load
+from rockframe.system.load import BaseLoad
 from rockframe.system.statics import Statics
 from rockframe.system.support import BaseWords, Support
 from rockframe.system.words import uplift_words
@@ -76,7 +76,7 @@ class RigidBase(Support):
         )
 
 
-def rigid_under(part: RigidGround, load: Load) -> RigidBase:
+def rigid_under(part: RigidGround, load: BaseLoad) -> RigidBase:
     """Give a rigid base under a body."""
     return RigidBase(load)
 
@@ -151,7 +151,8 @@ def rocked_statics(setting: "StackSetting", rotation: float) -> Statics:
     for one, pull in zip(setting.ties, tied, strict=True):  # those to the ground, which stays
         if one.to < 0:
             x, y = -mass * pull.force * pull.direction
-            base_moment += x * one.ends[1][1] - y * one.ends[1][0]
+            across, up = one.ends[0] + pull.moved
+            base_moment += x * up - y * across
             down -= y
     alone = len(setting.bodies) == 1
     state = "full" if rotation == 0.0 or k > 0 else "right" if right else "left"

@@ -11,7 +11,7 @@ from rockframe.errors import AssemblyError
 from rockframe.signals.arrays import Array
 from rockframe.system.bodies import SupportedBody
 from rockframe.system.impact import Restitutions, resolve_restitution
-from rockframe.system.load import Load
+from rockframe.system.load import BaseLoad
 from rockframe.system.options import Options
 from rockframe.system.parts import Parts
 from rockframe.system.rigid_ground import RigidGroundSetting, refuse_fall
@@ -113,7 +113,7 @@ class RockingFrameSetting(RigidGroundSetting):
 
 def rocking_frame_setting(parts: Parts, options: Options) -> RockingFrameSetting:
     """Resolve the parts of a frame on rigid ground."""
-    load = Load(body_of_frame(parts.the_frame.si), options)
+    load = BaseLoad(body_of_frame(parts.the_frame.si), options)
     greatest = load.body.maximum_restitution
     if greatest.left <= 0.0:
         raise AssemblyError([

@@ -9,7 +9,7 @@ from rockframe.components import Component, RigidGround
 from rockframe.errors import AssemblyError
 from rockframe.system.alone import AloneSetting
 from rockframe.system.bodies import one_body
-from rockframe.system.load import Load, load_of
+from rockframe.system.load import BaseLoad, load_of
 from rockframe.system.options import Coupling, Options
 from rockframe.system.own_scene import OwnScene
 from rockframe.system.parts import Parts
@@ -54,7 +54,7 @@ def _alone(slot: str, parts: Parts, options: Options) -> AloneSetting:
 def _with_cap(parts: Parts, options: Options) -> AloneSetting:
     """Put block and cap as one body on the soil."""
     cap = parts.the_cap
-    load = Load(one_body(parts.the_block, cap), options)
+    load = BaseLoad(one_body(parts.the_block, cap), options)
     offset = cap.half_height - load.body.centre_height
     return AloneSetting(load, support_of(parts["soil"], load), cap_offset=offset)
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 from rockframe.signals.slope import Slope
 from rockframe.system.bodies import OverturningAngles, SupportedBody
-from rockframe.system.load import Load
+from rockframe.system.load import BaseLoad
 from rockframe.system.options import Options
 from rockframe.system.overturning_energy import least_overturning_energy
 from rockframe.system.small_motion import SmallMotion
@@ -42,13 +42,13 @@ class Setting(ABC):
 
     Parameters
     ----------
-    load : Load
+    load : BaseLoad
         The body that the response is of, with the options of its system.
     cap_offset : float, optional
         Height of a cap's centre above that of the body, where a cap is part of the body [m].
     """
 
-    load: Load
+    load: BaseLoad
     cap_offset: float | None = field(default=None, kw_only=True)
     stacked: ClassVar[bool] = False
     """Whether the body stands on pads on a cap on soil."""

@@ -9,7 +9,7 @@ from rockframe.components.values import SIValues
 from rockframe.errors import AssemblyError
 from rockframe.system.fitting import is_sliding
 from rockframe.system.impact import Restitutions, resolve_restitution
-from rockframe.system.load import Load, load_of
+from rockframe.system.load import BaseLoad, load_of
 from rockframe.system.options import Options
 from rockframe.system.parts import Parts
 from rockframe.system.rigid_ground import RigidGroundSetting, refuse_fall
@@ -151,7 +151,7 @@ def rigid_ground_setting(parts: Parts, options: Options) -> RigidGroundSetting:
     return setting
 
 
-def _sliding(load: Load, restitution: Restitutions, ground: SIValues) -> SlidingSetting:
+def _sliding(load: BaseLoad, restitution: Restitutions, ground: SIValues) -> SlidingSetting:
     """Put a block on rigid ground with friction; refuse what has no answer."""
     static = ground.friction
     kinetic = static if ground.kinetic_friction is None else ground.kinetic_friction

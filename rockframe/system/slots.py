@@ -11,17 +11,19 @@ from rockframe.components import (
     CushionCap,
     FrameEquivalent,
     Link,
+    Load,
     RearWall,
     Restrainer,
     RigidGround,
     RockingFrame,
     Stack,
+    Tendon,
     TwoSpringSupport,
     WinklerSoil,
 )
 from rockframe.components.parameters import Declared
 from rockframe.motion import GroundMotion
-from rockframe.system.load import Load
+from rockframe.system.load import BaseLoad
 from rockframe.system.own_base import OwnBase
 from rockframe.system.pads import pads_under
 from rockframe.system.rigid_base import rigid_under
@@ -35,7 +37,7 @@ class Kind:
 
     slot: str  # that it fills
     # from a part and its load to what it is under a body, where it is a base
-    support: Callable[[Any, Load], Support] | None = None
+    support: Callable[[Any, BaseLoad], Support] | None = None
 
 
 _KINDS: Final[dict[type, Kind]] = {
@@ -49,6 +51,8 @@ _KINDS: Final[dict[type, Kind]] = {
     RigidGround: Kind("ground", rigid_under),
     RearWall: Kind("wall"),
     Restrainer: Kind("restrainer"),
+    Tendon: Kind("restrainer"),
+    Load: Kind("restrainer"),
     GroundMotion: Kind("motion"),
 }
 
@@ -111,7 +115,7 @@ def usual_kind(slot: str) -> type:
     return next(kind for kind, known in _KINDS.items() if known.slot == slot)
 
 
-def support_of(part: Component, load: Load) -> Support:
+def support_of(part: Component, load: BaseLoad) -> Support:
     """Give a base as it is under a body."""
     kind = known_kind(type(part))
     make = None if kind is None else _KINDS[kind].support

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 from rockframe.components import WinklerSoil
 from rockframe.components.soil import Separation
-from rockframe.system.load import Load
+from rockframe.system.load import BaseLoad
 from rockframe.system.support import BaseWords, Support
 from rockframe.system.words import uplift_words
 
@@ -26,7 +26,7 @@ class BedSupport(Support):
 
     Parameters
     ----------
-    load : Load
+    load : BaseLoad
         The body on it.
     stiffness, damping : float
         k0 and c0, per length of the base [Pa], [Pa s].
@@ -103,14 +103,14 @@ class BedSupport(Support):
         ]
 
 
-def bed_under(soil: WinklerSoil, load: Load) -> BedSupport:
+def bed_under(soil: WinklerSoil, load: BaseLoad) -> BedSupport:
     """Give a bed under a body; a damping ratio is that of the vertical motion of all its mass.
 
     Parameters
     ----------
     soil : WinklerSoil
         As given by the user.
-    load : Load
+    load : BaseLoad
         All that stands on it, as one body.
 
     Returns

@@ -6,13 +6,13 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Final
 
-from rockframe.components import Component, Link, Stack
+from rockframe.components import Component, Link, Load, Stack, Tendon
 from rockframe.components.block_numbers import BlockSI
 from rockframe.dynamics.statics import Stand, StandingBody, StandingChain, link_of
 from rockframe.errors import AssemblyError
-from rockframe.system.bodies import SupportedBody, body_of_block
+from rockframe.system.bodies import SupportedBody, body_of_block, with_mass
 from rockframe.system.links import PlacedLink, base_of, placed
-from rockframe.system.load import Load, load_of
+from rockframe.system.load import BaseLoad
 from rockframe.system.options import Options
 from rockframe.system.overturning_energy import least_overturning_energy
 from rockframe.system.restraints import restraint_words
@@ -80,7 +80,7 @@ class StackSetting(Setting):
     @property
     def link_names(self) -> tuple[str, ...]:
         """What results call the ties."""
-        return tuple(one.name for one in self.ties)
+        return tuple(one.name for one in self.ties if not isinstance(one.part, Load))
 
     @property
     def leans(self) -> bool:
@@ -144,7 +144,7 @@ class StackSetting(Setting):
         ):
             carried += body.mass
             beside = offset + body.eccentricity - lower
-            law = Load(body, self.options).law(mass)
+            law = BaseLoad(body, self.options).law(mass)
             numbers = base.law(law, mass, carried)
             found.append(ChainBody(law, numbers, body.mass / mass, top, beside))
         return tuple(found)
@@ -169,7 +169,7 @@ class StackSetting(Setting):
                     shift = math.fsum(self.offsets[below[0] : below[-1]])
                     beside += shift - self._together(below).eccentricity
             height = math.fsum(self.bodies[k].centre_height + self.tops[k] for k in some)
-            law = Load(body, self.options).law(mass)
+            law = BaseLoad(body, self.options).law(mass)
             carried = math.fsum(one.mass for one in self.bodies[: lowest + 1])
             numbers.append(self.bases[lowest].law(law, mass, carried))
             part = OnBase(law, numbers[-1].law)
@@ -326,11 +326,11 @@ class StackSetting(Setting):
 
     def tied_at_rest(self) -> dict[str, Any]:
         """Give forces and elongations of ties at rest, by their names in the schema."""
-        if not self.ties:
+        if not self.link_names:
             return {}
-        tied = self._tied_at_rest
+        tied = self._tied_at_rest[: len(self.link_names)]
         return {
-            "restrainer": [one.name for one in self.ties],
+            "restrainer": list(self.link_names),
             "static_restrainer_force": [self.body.mass * one.force for one in tied],
             "static_restrainer_elongation": [one.elongation for one in tied],
         }
@@ -386,10 +386,40 @@ def block_setting(
 ) -> StackSetting:
     """Give the scene of a block with restrainers on a base."""
     _refuse("a block with restrainers", options, small=False)
-    load = load_of(block, options)
+    (body,), (top,) = _loaded((block,), links)
+    load = BaseLoad(body, options)
     support = support_of(base, load)
-    ties = placed(links, (load.body,), (0.0,), (0.0,))
-    return StackSetting(load, (load.body,), (0.0,), (0.0,), (support,), ties)
+    _refuse_bent(links, (support,))
+    ties = placed(links, (body,), (top,), (0.0,))
+    return StackSetting(load, (body,), (top,), (0.0,), (support,), ties)
+
+
+def _refuse_bent(links: Sequence[Link], bases: Sequence[Support]) -> None:
+    """Refuse tendons that are bent at a base that gives way: its edges do not meet."""
+    faults = [
+        f"a Tendon through body {link.si.on_body} is bent at a base that gives way: give the depth "
+        "below the base at which it is held"
+        for link in links
+        if isinstance(link, Tendon)
+        and link.si.depth == 0.0
+        and link.si.on_body <= len(bases)
+        and not isinstance(bases[link.si.on_body - 1], RigidBase)
+    ]
+    if faults:
+        raise AssemblyError(faults)
+
+
+def _loaded(
+    blocks: Sequence[BlockSI], links: Sequence[Link]
+) -> tuple[tuple[SupportedBody, ...], tuple[float, ...]]:
+    """Give bodies with the masses that loads put on them, and their tops above their centres."""
+    found = [body_of_block(one) for one in blocks]
+    for link in links:
+        k = link.si.on_body - 1
+        if isinstance(link, Load) and link.si.moving_mass and k < len(found):
+            found[k] = with_mass(found[k], link.si.moving_mass, *link.si.at)
+    tops = (one.height - body.centre_height for one, body in zip(blocks, found, strict=True))
+    return tuple(found), tuple(tops)
 
 
 def _refuse(what: str, options: Options, *, small: bool) -> None:
@@ -408,12 +438,12 @@ def stack_setting(
 ) -> StackSetting:
     """Give the scene of a stack on a base."""
     _refuse("a Stack", options, small=not links)
-    bodies = tuple(body_of_block(one) for one in stack.si.bodies)
-    tops = tuple(one.height - one.centre_height for one in stack.si.bodies)
+    bodies, tops = _loaded(stack.si.bodies, links)
     offsets = stack.si.offsets
     bases = tuple(
-        support_of(part, Load(combined_body(bodies[: k + 1], tops, offsets), options))
+        support_of(part, BaseLoad(combined_body(bodies[: k + 1], tops, offsets), options))
         for k, part in enumerate((*stack.interfaces, base))
     )
+    _refuse_bent(links, bases)
     ties = placed(links, bodies, tops, offsets)
-    return StackSetting(Load(bodies[0], options), bodies, tops, offsets, bases, ties)
+    return StackSetting(BaseLoad(bodies[0], options), bodies, tops, offsets, bases, ties)

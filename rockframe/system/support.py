@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar
 
-from rockframe.system.load import Load
+from rockframe.system.load import BaseLoad
 from rockframe.system.statics import StandingBodies, Statics, required_states
 from rockframe.system.words import vibration_words
 
@@ -54,11 +54,11 @@ class Support(ABC):
 
     Parameters
     ----------
-    load : Load
+    load : BaseLoad
         What stands on it.
     """
 
-    load: Load
+    load: BaseLoad
     settlement_name: ClassVar[str] = "pad_settlement"
     """Of the settlement, in the schema."""
 

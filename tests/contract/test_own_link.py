@@ -68,7 +68,19 @@ def test_the_page_names_files_that_are_there():
     assert "rockframe.dynamics" not in FILE.read_text()
 
 
-def test_links_of_two_laws_are_refused_in_one_scene(example):
+def test_links_of_several_laws_are_in_one_scene(example):
     rope, tie = example.Rope(**POINTS, reach="1 m", name="rope"), rf.Restrainer(**POINTS)
-    with pytest.raises(rf.AssemblyError, match="follow one law, got Restrainer and Rope"):
-        rf.System(BLOCK, PADS, rope, tie)
+    load = rf.Load(at=("0 m", "3 m"), vertical="2 kN")
+    alone = [
+        rf.System(BLOCK, PADS, one).simulate(PULSE, free_vibration="1 s") for one in (rope, tie)
+    ]
+    found = rf.System(BLOCK, PADS, rope, tie, load).simulate(
+        PULSE, free_vibration="1 s", outputs=("energy",)
+    )
+    assert found.restrainer.values.tolist() == ["rope", "restrainer 2"]
+    assert float(found.energy_residual) < 1e-8
+    assert float(found.peak_restrainer_force.min()) > 0.0
+    # each beside one that is never taut moves as it does alone
+    idle = tie.replace(slack="1 km")
+    beside = rf.System(BLOCK, PADS, rope, idle).simulate(PULSE, free_vibration="1 s")
+    assert abs(beside.rotation - alone[0].rotation).max() < 1e-8

@@ -21,7 +21,7 @@ from rockframe.simulation.run_arguments import Certification, certification_of
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import Accuracy, AccuracyLevel
 from rockframe.system.options import Overturning
-from rockframe.system.slots import slot_of_kind, slots, usual_kind
+from rockframe.system.slots import RESTRAINER, slot_of_kind, slots, usual_kind
 
 _FILE: Final = "file"
 _CONSTRUCTOR: Final = "constructor"
@@ -165,7 +165,10 @@ def read_scene(path: str | Path) -> Described:
 def described_scene(file: TomlFile) -> Described | None:
     """Build what the tables of a file describe."""
     given = file.values
-    parts = [described_part(file, slot, given[slot]) for slot in part_slots() if slot in given]
+    parts = [
+        part for slot in part_slots() if slot in given
+        for part in described_parts(file, slot, given[slot])
+    ]  # fmt: skip
     motion = described_motion(file, (MOTION,), given[MOTION]) if MOTION in given else None
     run = _run_of(file, given[RUN]) if RUN in given else {}
     options = file.table((OPTIONS,), given.get(OPTIONS, {}))
@@ -179,9 +182,19 @@ def described_scene(file: TomlFile) -> Described | None:
     return None if system is None else Described(system, motion, run, tuple(file.files))
 
 
-def described_part(file: TomlFile, slot: str, given: object) -> Component | None:
-    """Build the part that a table describes."""
-    where: Place = (slot,)
+def described_parts(file: TomlFile, slot: str, given: object) -> list[Component | None]:
+    """Build the part that a table describes, or those of an array of tables."""
+    if slot != RESTRAINER or not isinstance(given, list):
+        return [described_part(file, slot, given)]
+    tables: list[object] = given
+    return [described_part(file, slot, one, (i,)) for i, one in enumerate(tables)]
+
+
+def described_part(
+    file: TomlFile, slot: str, given: object, number: tuple[int, ...] = ()
+) -> Component | None:
+    """Build the part that a table describes; `number` is its own in an array of tables."""
+    where: Place = (slot, *number)
     table = file.table(where, given)
     if table is None:
         return None

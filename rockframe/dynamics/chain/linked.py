@@ -10,20 +10,22 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from rockframe.compiled import Vector, filled, inlined, kernel, part_of, stretch
+from rockframe.compiled import Vector, inlined, kernel, numbers_in, part_of, stretch
 from rockframe.dynamics.bodies import DEGREES
+from rockframe.dynamics.body import BodyState
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.motion import place_bodies
 from rockframe.dynamics.chain.rigid import RigidChain
 from rockframe.dynamics.chain.rows import COLUMNS, CONSTRAINT, MODES, MOST_CONSTRAINTS, PLACES, ROW
 from rockframe.dynamics.chain.rows import GUARDS as BODY_GUARDS
 from rockframe.dynamics.chain.system import Chain
-from rockframe.dynamics.links import GUARDS, LinkNumbers, Stretch
+from rockframe.dynamics.links import GUARDS, LinkNumbers, Stretch, one_of
 from rockframe.dynamics.pads import ROUNDING
 from rockframe.dynamics.protocol import (
     HELD_PLACE,
     LAST_EVENT,
     LINK_LOSS,
+    MOST_MODES,
     POWERS,
     Energies,
     Ground,
@@ -31,6 +33,7 @@ from rockframe.dynamics.protocol import (
     Slope,
 )
 from rockframe.dynamics.trigonometry import sine_cosine
+from rockframe.errors import AssemblyError
 
 GROUND: Final = -1
 """In place of a body."""
@@ -50,7 +53,10 @@ NOISE: Final = 9
 STORED: Final = 10  # energy at rest
 PLACE_VALUE: Final = 11  # of its state in the mode of the system
 STATES: Final = 12  # a power of two, so that place values are exact
-NUMBERS: Final = 13  # of its law, from here on
+# direction in which it pulls whichever way its points go; zero for one that pulls along them
+ALONG_X: Final = 13
+ALONG_Y: Final = 14
+NUMBERS: Final = 15  # of its law, from here on
 
 # room to work in: for each body how it has moved from where it is given, and what links load it by
 MOVED_X: Final = 0
@@ -64,8 +70,10 @@ LIES: Final = 7
 
 LINK_COLUMNS: Final = 3
 """What users see of each link: force, elongation and state."""
+MEET: Final = 1e3
+"""Roundings of the elongation within which points of a link meet."""
 TINY: Final = 1e-280
-"""Square of a length that is none."""
+"""Square of a speed that is none."""
 
 
 class Moved(NamedTuple):
@@ -117,7 +125,7 @@ class Linked(Chain):
     @inlined
     def link_width(self) -> int:
         """Give the length of the row of a link."""
-        return NUMBERS + len(self.law)
+        return NUMBERS + self.law.number_count()
 
     @inlined
     def behind_links(self) -> int:
@@ -170,8 +178,8 @@ class Linked(Chain):
     @kernel
     def modes(self) -> int:
         """Give the number of modes, of which some have no meaning."""
-        states = int(self.row_of_link(0)[STATES])
-        return MODES**self.body_count * states**self.link_count
+        last = self.row_of_link(self.link_count - 1)
+        return int(last[PLACE_VALUE] * last[STATES])
 
     @kernel
     def moving_in(self, mode: int) -> int:
@@ -189,6 +197,11 @@ class Linked(Chain):
         each = self.law.variables()
         return stretch(state, 2 * DEGREES * self.body_count + i * each, each)
 
+    @inlined
+    def lowest_place(self, mode: int, body: BodyState, state: Vector) -> float:
+        """Give the horizontal place of the lowest body."""
+        return body.horizontal
+
     @kernel
     def lay(self, mode: int, state: Vector, room: Vector) -> None:
         """Write how all bodies lie, from where they are given, after they are placed."""
@@ -203,7 +216,7 @@ class Linked(Chain):
                 x += room[i + at.ARM] * sine + across - self.number(k, at.BESIDE)
                 x -= across * versine(sine, cosine)
             else:
-                x = body.horizontal
+                x = self.lowest_place(mode, body, state)
             rate += body.angular_velocity
             angle += body.rotation
             if k > 0:  # what the next body stands on
@@ -228,26 +241,44 @@ class Linked(Chain):
         )  # fmt: skip
 
     @inlined
+    def upward(self, k: int) -> tuple[float, float]:
+        """Give the direction that points up on a body, or on the ground."""
+        if k == GROUND:
+            return 0.0, 1.0
+        lies = self.lies()
+        return lies[k * LIES + OWN_SINE], 1.0 - lies[k * LIES + OWN_VERSINE]
+
+    @inlined
     def drawn(self, row: Vector, on: Moved, to: Moved) -> StretchedLink:
         """Give how a link is stretched, :eq:`eq-link`.
 
-        Where its points meet it acts along the way that they go apart.
+        Where its points meet it acts along the way that they go apart, or come together, upwards.
         """
         apart_x, apart_y, given = row[APART_X], row[APART_Y], row[GIVEN]
         moved_x, moved_y = on.x - to.x, on.y - to.y
         x, y = apart_x + moved_x, apart_y + moved_y
         speed_x, speed_y = on.speed_x - to.speed_x, on.speed_y - to.speed_y
+        along_x, along_y = row[ALONG_X], row[ALONG_Y]
+        if along_x != 0.0 or along_y != 0.0:
+            elongation = along_x * moved_x + along_y * moved_y
+            rate = along_x * speed_x + along_y * speed_y
+            return StretchedLink(
+                Stretch(elongation, rate, 0.0, given, row[NOISE]), along_x, along_y
+            )
         square = x * x + y * y
         length, elongation = math.sqrt(square), 0.0
         if length + given > 0.0:
             elongation = (2.0 * apart_x * moved_x + moved_x * moved_x) / (length + given)
             elongation += (2.0 * apart_y * moved_y + moved_y * moved_y) / (length + given)
-        if square < TINY:
-            x, y = speed_x, speed_y
+        if length <= MEET * row[NOISE]:
+            up_x, up_y = self.upward(int(row[TO]))
+            away = 1.0 if speed_x * up_x + speed_y * up_y >= 0.0 else -1.0
+            x, y = away * speed_x, away * speed_y
             square = x * x + y * y
             length = math.sqrt(square)
-        if square < TINY:
-            return StretchedLink(Stretch(elongation, 0.0, 0.0, given, row[NOISE]), 0.0, 0.0)
+            if square < TINY:
+                still = Stretch(elongation, 0.0, 0.0, given, row[NOISE])
+                return StretchedLink(still, up_x, up_y)
         x, y = x / length, y / length
         rate = x * speed_x + y * speed_y
         return StretchedLink(Stretch(elongation, rate, 0.0, given, row[NOISE]), x, y)
@@ -267,7 +298,7 @@ class Linked(Chain):
             lies[k * LIES + PULLED_X] = lies[k * LIES + PULLED_Y] = 0.0
         for i in range(self.link_count):
             row, own = self.row_of_link(i), self.of_link(i, state)
-            law, standing = filled(self.law, part_of(row, NUMBERS)), self.link_state(mode, row)
+            law, standing = self.law.with_numbers(part_of(row, NUMBERS)), self.link_state(mode, row)
             on, to = self.points_of(row, room)
             link = self.drawn(row, on, to)
             force = law.force(standing, link.stretch, own)
@@ -338,7 +369,7 @@ class Linked(Chain):
         room, values, changes = self.places(), self.guard_room(0), self.guard_room(1)
         for i in range(self.link_count):
             row, own = self.row_of_link(i), self.of_link(i, state)
-            law, standing = filled(self.law, part_of(row, NUMBERS)), self.link_state(mode, row)
+            law, standing = self.law.with_numbers(part_of(row, NUMBERS)), self.link_state(mode, row)
             link, first = self.watched(row, room), BODY_GUARDS * self.body_count + GUARDS * i
             for which in range(GUARDS):
                 value, change = law.guard(which, standing, link, own)
@@ -348,6 +379,13 @@ class Linked(Chain):
     @kernel
     def switch(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:
         """Carry out the switch that a guard calls for; give the new mode."""
+        return self.switch_one(mode, guard, state, ground, memory)
+
+    @kernel
+    def switch_one(
+        self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector
+    ) -> int:
+        """Carry out the switch of a body or of a link; give the new mode."""
         shown, place = HELD_PLACE + self.body_count, self.link_place()
         first = BODY_GUARDS * self.body_count
         if guard < first:
@@ -360,7 +398,7 @@ class Linked(Chain):
         self.lay(mode, state, room)
         on, to = self.points_of(row, room)
         standing, value = self.link_state(mode, row), int(row[PLACE_VALUE])
-        found = filled(self.law, part_of(row, NUMBERS)).switch(
+        found = self.law.with_numbers(part_of(row, NUMBERS)).switch(
             guard - first - GUARDS * i, standing, self.drawn(row, on, to).stretch, own
         )
         memory[LAST_EVENT] = found.event
@@ -373,16 +411,19 @@ class Linked(Chain):
         """Give the energies of all bodies, bases and links."""
         found, room = self.energies_of_bodies(mode, state), self.places()
         self.lay(mode, state, room)
-        elastic, change = found.elastic, found.from_rest
+        gravity, elastic, change = found.gravity, found.elastic, found.from_rest
         for i in range(self.link_count):
             row, own = self.row_of_link(i), self.of_link(i, state)
             on, to = self.points_of(row, room)
-            stored = filled(self.law, part_of(row, NUMBERS)).energy(
+            stored = self.law.with_numbers(part_of(row, NUMBERS)).energy(
                 self.link_state(mode, row), self.drawn(row, on, to).stretch, own
             )
-            elastic += stored
-            change += stored - row[STORED]
-        return Energies(found.kinetic, found.gravity, elastic, change)
+            if row[ALONG_X] != 0.0 or row[ALONG_Y] != 0.0:
+                gravity += stored
+            else:
+                elastic += stored
+                change += stored - row[STORED]
+        return Energies(found.kinetic, gravity, elastic, change)
 
     @kernel
     def observe(
@@ -392,7 +433,7 @@ class Linked(Chain):
         out, room = self.observe_bodies(mode, state, slope, ground, memory), self.places()
         for i in range(self.link_count):
             row, own = self.row_of_link(i), self.of_link(i, state)
-            law, standing = filled(self.law, part_of(row, NUMBERS)), self.link_state(mode, row)
+            law, standing = self.law.with_numbers(part_of(row, NUMBERS)), self.link_state(mode, row)
             on, to = self.points_of(row, room)
             link = self.drawn(row, on, to).stretch
             j = COLUMNS * self.body_count + LINK_COLUMNS * i
@@ -408,7 +449,7 @@ class Linked(Chain):
         for i in range(self.link_count):
             row, own = self.row_of_link(i), self.of_link(i, state)
             stretched = self.drawn(row, *self.points_of(row, room)).stretch
-            law = filled(self.law, part_of(row, NUMBERS))
+            law = self.law.with_numbers(part_of(row, NUMBERS))
             row[STORED] = law.energy(self.link_state(mode, row), stretched, own)
 
     @kernel
@@ -420,7 +461,7 @@ class Linked(Chain):
         for i in range(self.link_count):
             row, own = self.row_of_link(i), self.of_link(i, state)
             on, to = self.points_of(row, room)
-            found = filled(self.law, part_of(row, NUMBERS)).starting(
+            found = self.law.with_numbers(part_of(row, NUMBERS)).starting(
                 self.drawn(row, on, to).stretch, own
             )
             mode += int(row[PLACE_VALUE]) * (found - self.link_state(mode, row))
@@ -436,10 +477,46 @@ class LinkedChain(LinkedLists, Linked):  # pyright: ignore[reportGeneralTypeIssu
 class LinkedRigidChain(LinkedLists, Linked, RigidChain):  # pyright: ignore[reportGeneralTypeIssues]
     """The same where some bodies stand on rigid bases.
 
-    Forces of links are finite: impacts are those without them.
+    Forces of links are finite: impacts are those without them. While the lowest body is held on
+    rigid ground, its horizontal coordinate is the place of what holds it, and does not move.
     """
 
     __slots__ = ()
+
+    @inlined
+    def rests_on_ground(self, mode: int) -> bool:
+        """Whether rigid ground holds the lowest body."""
+        k = self.body_count - 1
+        return self.is_rigid(k) and not self.on_base(k).is_free(self.part_mode(mode, k))
+
+    @kernel
+    def moving_in(self, mode: int) -> int:
+        """Give the number of coordinates that move."""
+        return DEGREES * self.body_count - (1 if self.rests_on_ground(mode) else 0)
+
+    @inlined
+    def lowest_place(self, mode: int, body: BodyState, state: Vector) -> float:
+        """Give the horizontal place of the lowest body: that follows from what holds it."""
+        if not self.rests_on_ground(mode):
+            return body.horizontal
+        k = self.body_count - 1
+        part = self.on_base(k)
+        pin = part.body.pin(self.part_mode(mode, k).pivot)
+        return float(body.horizontal + part.body.about_pin(pin, body.rotation))
+
+    @kernel
+    def keep_hold(self, mode: int, state: Vector, memory: Vector) -> None:
+        """Write to the state where the lowest body is held, if rigid ground does."""
+        if self.rests_on_ground(mode):
+            k = self.body_count - 1
+            self.set_sway(k, memory[HELD_PLACE + k], 0.0, state)
+
+    @kernel
+    def switch(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:
+        """Carry out the switch that a guard calls for; give the new mode."""
+        new = self.switch_one(mode, guard, state, ground, memory)
+        self.keep_hold(new, state, memory)
+        return new
 
 
 @inlined
@@ -457,18 +534,22 @@ class ChainLink(NamedTuple):
     to_point: tuple[float, float]  # likewise; of no matter on the ground
     apart: tuple[float, float]  # from the second point to the first, as the link is given
     numbers: LinkNumbers
+    along: tuple[float, float] = (0.0, 0.0)  # direction of a force that keeps it
 
 
 def linked(chain: Chain, links: Sequence[ChainLink]) -> LinkedChain | LinkedRigidChain:
     """Give a chain with links."""
     laws = [one.numbers.law for one in links]
-    if len({type(law) for law in laws}) != 1:
-        names = " and ".join(sorted({type(law).__name__ for law in laws}))
-        msg = f"the links of a chain follow one law, got {names}"
-        raise TypeError(msg)
-    law = laws[0]._make(float(one) for one in laws[0])
-    states = room_of_states(law.states())
-    rows = [_row_of(one, MODES**chain.body_count * states**i) for i, one in enumerate(links)]
+    kinds = list({type(law): law for law in laws}.values())
+    own = [one_of(kinds, law) for law in laws]
+    law = own[0].with_numbers(numbers_in(own[0]).tolist())
+    rows, value = list[Vector](), MODES**chain.body_count
+    for one, each in zip(links, own, strict=True):
+        rows.append(_row_of(one, each, value))
+        value *= room_of_states(each.states())
+    if value > MOST_MODES:
+        msg = f"{len(links)} links are more than {chain.body_count} bodies can have"
+        raise AssemblyError([msg])
     count, variables = len(links), len(links) * law.variables()
     room = (LIES + DEGREES + 2 * BODY_GUARDS + COLUMNS) * chain.body_count
     room += variables + POWERS + (2 * GUARDS + LINK_COLUMNS) * count
@@ -477,14 +558,13 @@ def linked(chain: Chain, links: Sequence[ChainLink]) -> LinkedChain | LinkedRigi
     return kind(chain.body_count, count, law, numbers)
 
 
-def _row_of(link: ChainLink, value: int) -> Vector:
-    law: Any = link.numbers.law
+def _row_of(link: ChainLink, law: Any, value: int) -> Vector:
     apart, reach = math.hypot(*link.apart), math.hypot(*link.on_point) + math.hypot(*link.to_point)
     geometry = (
         link.on, *link.on_point, link.to, *link.to_point, *link.apart, apart,
-        ROUNDING * (apart + reach), 0.0, value, room_of_states(law.states()),
+        ROUNDING * (apart + reach), 0.0, value, room_of_states(law.states()), *link.along,
     )  # fmt: skip
-    return np.array([*geometry, *law], dtype=np.float64)
+    return np.array([*geometry, *numbers_in(law)], dtype=np.float64)
 
 
 def room_of_states(states: int) -> int:

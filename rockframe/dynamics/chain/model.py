@@ -18,7 +18,7 @@ from rockframe.dynamics.bed import Rigid, both_contacts
 from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, DEGREES, ROTATION, VERTICAL
 from rockframe.dynamics.body import Body, BodyState
 from rockframe.dynamics.chain import rows as at
-from rockframe.dynamics.chain.linked import ChainLink, Linked, linked
+from rockframe.dynamics.chain.linked import ChainLink, Linked, LinkedRigidChain, linked
 from rockframe.dynamics.chain.rigid import KEPT, RigidChain
 from rockframe.dynamics.chain.rows import GUARDS, OBSERVED, lists_of, row_of
 from rockframe.dynamics.chain.system import Chain
@@ -114,8 +114,10 @@ def chain(
     if isinstance(system, Linked):
         mode, state, _ = _initial(system, starts, Start())
         system.keep_energies(mode, state)
-    tied = system.link_count if isinstance(system, Linked) else 0
-    scales = [size for one in ties for size in one.numbers.variable_scales]
+    tied = sum(one.along == (0.0, 0.0) for one in ties)  # loads stand behind them
+    # links of several laws have as many variables each as that which has the most
+    each = system.law.variables() if isinstance(system, Linked) else 0
+    scales = [size for one in ties for size in (*one.numbers.variable_scales, *[1.0] * each)[:each]]
     return ContactModel(
         name="stack",
         system=system,
@@ -128,7 +130,7 @@ def chain(
         ]),
         columns=(
             *(column for k in range(count) for column in _columns(links[k].base, k)),
-            *(column for i in range(tied) for column in _tie_columns(i)),
+            *(column for i in range(len(ties)) for column in _tie_columns(i, shown=i < tied)),
         ),
         memory=(
             *MEMORY, *(f"held_place_of_{k}" for k in range(1, count)), "body_of_event",
@@ -136,6 +138,7 @@ def chain(
         ),
         shows_bodies=count > 1,
         links=tied,
+        selects=True,
         mass=mass,
         fastest_frequency=fastest,
         damping_rate=damping_rate,
@@ -191,12 +194,13 @@ def _tie_tolerance(tie: ChainLink) -> Vector:
     return np.full(GUARDS_OF_LINK, ROUNDING * reach)
 
 
-def _tie_columns(i: int) -> tuple[Column, ...]:
-    """Name the columns of a link."""
+def _tie_columns(i: int, *, shown: bool) -> tuple[Column, ...]:
+    """Name the columns of a link; users do not see those of a load."""
+    kind = "restrainer" if shown else "unused_load"
     return (
-        Column(column_of("restrainer_force", i), per_mass=True),
-        Column(column_of("restrainer_elongation", i)),
-        Column(column_of("restrainer_state", i)),
+        Column(column_of(f"{kind}_force", i), per_mass=True),
+        Column(column_of(f"{kind}_elongation", i)),
+        Column(column_of(f"{kind}_state", i)),
     )
 
 
@@ -382,6 +386,8 @@ def _initial(system: Chain, starts: Starts, start: Start) -> tuple[int, Vector, 
     if isinstance(system, RigidChain):
         memory = np.concatenate([memory, [1.0, 0.0, 0.0]])
         system.write_contacts(mode, state, memory)
+    if isinstance(system, LinkedRigidChain):
+        system.keep_hold(mode, state, memory)
     if isinstance(system, Linked):
         memory = np.append(memory, 0.0)
         mode = system.start_links(mode, state)

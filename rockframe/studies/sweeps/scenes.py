@@ -28,6 +28,7 @@ from rockframe.studies.sweeps.axes import (
 from rockframe.studies.sweeps.identity import name_of
 from rockframe.studies.sweeps.motions import TARGETS, target_words
 from rockframe.system.assembly import Assembly, assembly_of
+from rockframe.system.links import link_labels
 from rockframe.system.options import MEASURED, Coupling, Restraint, Rotation, Sliding
 from rockframe.units import Measure, Unit, quantity
 
@@ -99,7 +100,7 @@ class SystemScene:
         found = [
             (slot, part, part.declared()[parameter])
             for slot, part in self.assembly.parts.components().items()
-            if parameter in part.declared() and kind in ("", *_names(part))
+            if parameter in part.declared() and kind in ("", *_names(part), self._label(part))
         ]
         if len(found) != 1:
             raise StudyError(self._not_one(name, parameter, [part for _, part, _ in found]))
@@ -160,9 +161,19 @@ class SystemScene:
             warn(caution, ModelWarning)
         return found
 
+    def _label(self, part: Component) -> str | None:
+        """Give the name that results call a link by; None of other parts."""
+        links = self.assembly.parts.links
+        labels = link_labels(links)
+        return next((name for one, name in zip(links, labels, strict=True) if one is part), None)
+
     def _not_one(self, name: str, parameter: str, having: list[Component]) -> str:
         if having:
             kinds = [type(part).__name__ for part in having]
+            if len(set(kinds)) < len(kinds):  # several links
+                kinds = [
+                    self._label(part) or kind for part, kind in zip(having, kinds, strict=True)
+                ]
             ways = " or ".join(f"'{kind}.{parameter}'" for kind in kinds)
             return (
                 f"axis {name!r} is a parameter of {' and '.join(kinds)}; name one, in "

@@ -115,9 +115,8 @@ def simulate(
             t, resting = _rest(block, ground, t, end, found, times)
             alpha = rate = 0.0
             continue
-        t, alpha, rate, resting = _rock(block, ground, t, end, alpha, rate, found, times)
-        if abs(alpha) > limit:
-            found.overturned = True
+        t, alpha, rate, resting = _rock(block, ground, t, end, alpha, rate, found, times, limit)
+        if found.overturned:
             break
     return found
 
@@ -143,7 +142,7 @@ def _rest(block, ground, t, end, found, times):
     return start, start >= end
 
 
-def _rock(block, ground, t, end, alpha, rate, found, times):
+def _rock(block, ground, t, end, alpha, rate, found, times, limit):
     """Rock until the next event or the end of an interval."""
     a0, a1 = ground(t), ground(end - 1e-13 * max(1.0, end))
     span = max(end - 1e-13 - t, 1e-300)
@@ -160,6 +159,7 @@ def _rock(block, ground, t, end, alpha, rate, found, times):
 
     side = block.side
     add(("impact", None), lambda _, z: z[0], -side)
+    add(("overturned", None), lambda _, z: limit - side * z[0], -1)
     for tie in block.ties:
         for guard in tie.guards(0):
             assert guard.kind in KINDS
@@ -169,8 +169,6 @@ def _rock(block, ground, t, end, alpha, rate, found, times):
                 return tie.value(kind, length, speed, 0.0)[0]
 
             add((guard.kind, tie), value, -1)
-    if alpha == 0.0:  # just started, or just landed: beyond the guard by nothing
-        rate = rate or 0.0
 
     def slope(at, z):
         return [z[1], block.swing(z[0], z[1], ax(at), 0.0)]
@@ -190,6 +188,9 @@ def _rock(block, ground, t, end, alpha, rate, found, times):
     which = next(i for i, one in enumerate(run.t_events) if len(one))
     kind, tie = names[which]
     found.events.append((stop, kind))
+    found.overturned = kind == "overturned"
+    if found.overturned:
+        return stop, alpha, rate, False
     if tie is not None:
         tie.switch(kind, block.place(alpha, rate)[0])
         return stop, alpha, rate, False

@@ -1,0 +1,138 @@
+"""Tendons through bodies, :eq:`eq-tendon`, loads on them, and several links in one scene."""
+
+import numpy as np
+import pytest
+
+import rockframe as rf
+from rockframe.command.files.scenes import read_scene
+
+WEIGHT, GRAVITY = 1e6, 9.80665
+BLOCK = rf.Block(width="2 m", height="8 m", mass=f"{WEIGHT / GRAVITY!r} kg")
+TENDON = rf.Tendon(stiffness="2.5 MN/m", preload="0.2 MN")  # E A = 20 MN over 8 m
+LOAD = rf.Load(at=("-1 m", "4 m"), vertical="50 kN", horizontal="5 kN")
+PADS = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
+PULSE = rf.GroundMotion.sine_pulse(amplitude="5 m/s^2", frequency="1 Hz")
+ANGLES = np.array([0.01, 0.05, 0.1, 0.15])
+
+
+def moments(*parts, angles=ANGLES):
+    return rf.System(*parts).moment_rotation((angles, "rad")).restoring_moment.values
+
+
+def test_a_central_tendon_has_the_moments_of_its_closed_form():
+    known = [1184947.7, 1123719.0, 1045004.1, 964051.7]
+    np.testing.assert_allclose(moments(BLOCK, TENDON), known, rtol=1e-7)
+    b, ea, preload = 1.0, 20e6, 0.2e6
+    added = preload * b * np.cos(0.5 * ANGLES) + ea * b**2 / 8.0 * np.sin(ANGLES)
+    np.testing.assert_allclose(moments(BLOCK, TENDON) - moments(BLOCK), added, rtol=1e-12)
+
+
+def test_an_eccentric_tendon_has_its_lever():
+    at, preload = 0.3, 0.2e6
+    for side in (1.0, -1.0):
+        lever = 1.0 - side * at
+        angles = side * ANGLES
+        added = moments(BLOCK, TENDON.replace(at=f"{at} m"), angles=angles)
+        added -= moments(BLOCK, angles=angles)
+        expected = preload * lever * np.cos(0.5 * ANGLES) + 2.5e6 * lever**2 * np.sin(ANGLES)
+        np.testing.assert_allclose(added, side * expected, rtol=1e-12)
+
+
+def test_a_block_with_a_tendon_uplifts_later_and_balances_its_energies():
+    system = rf.System(BLOCK, TENDON)
+    rest = system.equilibrium()
+    np.testing.assert_allclose(rest.static_left_reaction, 0.5 * (WEIGHT + 0.2e6))
+    for share, starts in ((0.999, False), (1.001, True)):
+        level = 0.25 * GRAVITY * 1.2 * share
+        motion = rf.GroundMotion.from_arrays(([0.0, level, level, 0.0], "m/s^2"), time_step="0.2 s")
+        run = system.simulate(motion)
+        assert (float(run.peak_rotation) > 0.0) is starts
+    run = system.simulate(PULSE, free_vibration="1 s", accuracy="reference", outputs=("energy",))
+    mirrored = system.simulate(PULSE.scaled(-1.0), free_vibration="1 s", accuracy="reference")
+    assert float(run.energy_residual) < 1e-8
+    np.testing.assert_allclose(mirrored.rotation, -run.rotation, rtol=0, atol=1e-9)
+
+
+def test_a_load_has_its_moment_and_its_energy():
+    x, y, down, right = -2.0, 4.0, 50e3, 5e3  # from the right corner
+    sine, cosine = np.sin(ANGLES), np.cos(ANGLES)
+    turning = down * (x * cosine + y * sine) + right * (-x * sine + y * cosine)
+    added = moments(BLOCK, LOAD) - moments(BLOCK)
+    np.testing.assert_allclose(added, -turning, rtol=1e-10)
+    run = rf.System(BLOCK, LOAD).simulate(PULSE, free_vibration="1 s", outputs=("energy",))
+    assert float(run.energy_residual) < 1e-8
+    assert "restrainer" not in run.dims
+
+
+def test_a_mass_at_a_point_is_a_part_of_the_body():
+    # a mass in the block's centre, which has no inertia of its own
+    heavy = BLOCK.replace(
+        mass=f"{BLOCK.mass.m_as('kg') + 5e3!r} kg", shape_factor=None,
+        inertia=f"{float(BLOCK.si.inertia)!r} kg*m^2",
+    )  # fmt: skip
+    mass = rf.Load(at=("0 m", "4 m"), moving_mass="5 t")
+    runs = [
+        rf.System(*parts).simulate(PULSE, free_vibration="1 s", accuracy="reference")
+        for parts in ((heavy,), (BLOCK, mass))
+    ]
+    np.testing.assert_allclose(runs[1].rotation, runs[0].rotation, rtol=0, atol=1e-10)
+
+
+def test_on_pads_a_tendon_is_a_tie_from_its_depth():
+    tie = rf.Restrainer(
+        on=("0.2 m", "0 m"), to=("0.2 m", "-2 m"), stiffness="2.5 MN/m", preload="0.2 MN"
+    )
+    runs = [
+        rf.System(BLOCK, PADS, one, LOAD).simulate(PULSE, free_vibration="1 s", outputs=("energy",))
+        for one in (tie, TENDON.replace(at="0.2 m", depth="2 m"))
+    ]
+    np.testing.assert_array_equal(runs[0].rotation, runs[1].rotation)
+    assert float(runs[0].energy_residual) < 1e-8
+    with pytest.raises(rf.AssemblyError, match="is bent at a base that gives way"):
+        rf.System(BLOCK, PADS, TENDON)
+    with pytest.raises(rf.ComponentError, match="is not below its strength"):
+        TENDON.replace(strength="0.1 MN")
+    with pytest.raises(rf.ComponentError, match="give vertical, horizontal or moving_mass"):
+        rf.Load(at=("0 m", "1 m"))
+
+
+def test_sweeps_and_certificates_name_several_links():
+    tie = rf.Restrainer(
+        on=("-1 m", "6 m"), to=("-3 m", "6 m"), stiffness="1 MN/m", slack="5 mm", name="upper"
+    )
+    scene = rf.System(BLOCK, tie, TENDON, LOAD)
+    assert rf.System.from_dict(scene.to_dict()) == scene
+    runs = rf.sweep(
+        scene, motions={"pulse": PULSE}, free_vibration="1 s",
+        axes={"upper.stiffness": ([0.01, 1.0], "MN/m"), "Tendon.preload": (["0.1 MN", "0.2 MN"])},
+    )  # fmt: skip
+    assert runs.peak_rotation.shape == (2, 2, 1) or runs.peak_rotation.size == 4
+    both = rf.System(BLOCK, tie, tie.replace(name="lower", to=("-4 m", "6 m")))
+    with pytest.raises(rf.StudyError, match=r"'upper\.stiffness' or 'lower\.stiffness'"):
+        rf.sweep(both, motions={"pulse": PULSE}, axes={"stiffness": ([1.0], "MN/m")})
+
+
+def test_files_hold_several_links(tmp_path):
+    path = tmp_path / "scene.toml"
+    path.write_text(
+        """
+[block]
+width = "2 m"
+height = "8 m"
+mass = "100 t"
+
+[[restrainer]]
+on = ["-1 m", "6 m"]
+to = ["-3 m", "6 m"]
+stiffness = "1 MN/m"
+name = "upper"
+
+[[restrainer]]
+type = "Tendon"
+stiffness = "2.5 MN/m"
+preload = "0.2 MN"
+"""
+    )
+    found = read_scene(path).system
+    assert [type(one).__name__ for one in found.parts.links] == ["Restrainer", "Tendon"]
+    assert found.parts.links[0].name == "upper"
