@@ -296,7 +296,7 @@ class SlideRock(NamedTuple):
         Friction that `lets_go` does not hold the base; `tips` is the corner over which it tips.
         """
         weight, slip = self.gravity + ground.y, state[SIZE + SLIP]
-        if weight <= 0.0:
+        if weight <= ROUNDING * self.gravity:
             return SLIPS * (FLIES_LEFT if ground.x > 0.0 else FLIES_RIGHT)
         if slip == 0.0:
             over = tips if tips != FULL else self.tips_over(ground.x, weight)
@@ -354,7 +354,10 @@ class SlideRock(NamedTuple):
         normal_by_along = -beside * above / inertia
         along_by_normal = lever * normal_by_along
         along_by_along = 1.0 + above * above / inertia
+        both = normal_by_normal * along_by_along - normal_by_along * along_by_normal
         along = normal = 0.0
+        if friction == math.inf and slip * normal_by_along < sinking * along_by_along:
+            friction = self.kinetic  # to hold the corner the ground would have to pull
         if slip != 0.0 and friction < math.inf:
             ratio = -math.copysign(friction, slip)
             change = along_by_normal + ratio * along_by_along
@@ -366,7 +369,6 @@ class SlideRock(NamedTuple):
             if stops < math.inf:
                 normal, along = stops, ratio * stops
                 slip, sinking = 0.0, sinking + slowing * stops
-        both = normal_by_normal * along_by_along - normal_by_along * along_by_normal
         pushed = (slip * normal_by_along - sinking * along_by_along) / both
         held = -(slip + along_by_normal * pushed) / along_by_along
         if abs(held) > friction * pushed:
@@ -402,7 +404,8 @@ class SlideRock(NamedTuple):
     def lie_flat(self, state: Vector, across: float, up: float) -> None:
         """Stop a block that lands on its whole base, which slips as far as friction lets it."""
         left = abs(across) - self.impulsive * -up if self.impulsive < math.inf else 0.0
-        state[SIZE + SLIP] = math.copysign(left, across) if left > 0.0 else 0.0
+        lasts = left > 0.0 and not self.creeps(left)
+        state[SIZE + SLIP] = math.copysign(left, across) if lasts else 0.0
         state[SIZE + ROTATION] = state[SIZE + RISE] = state[ROTATION] = state[RISE] = 0.0
 
     @kernel
@@ -416,8 +419,6 @@ class SlideRock(NamedTuple):
         before = self.kinetic_energy(mode, state)
         state[ROTATION] = 0.0
         across, up = self.speeds(mode, state)
-        # a ground that tips the block back over the corner that it has left allows no rest
-        settles = self.side(bore) * self.contact(mode, state, ground).rotation <= 0.0
         lever = self.right_lever if new == ON_RIGHT else self.left_lever
         self.struck(new, state, (across, up), lever)
         memory[LAST_EVENT] = IMPACT
@@ -426,17 +427,26 @@ class SlideRock(NamedTuple):
             after = self.standing(state, ground, False, FULL)
         else:
             after = self.leaning(new, state, ground, False)
-            if settles and self.rebounds_little(after, state, ground):
-                slip, rate = state[SIZE + SLIP], state[SIZE + ROTATION]
+            slip, rate = state[SIZE + SLIP], state[SIZE + ROTATION]
+            leans = after
+            if self.creeps(slip):
+                state[SIZE + SLIP], leans = 0.0, SLIPS * new + HELD
+            if self.rebounds_little(leans, state, ground):
                 state[SIZE + ROTATION] = 0.0
                 base = self.standing(state, ground, False, FULL)
+                # a ground that tips the block over either corner allows no rest
                 if base // SLIPS == FULL:
                     after = base
                     memory[LAST_EVENT] = REST
-                else:
-                    state[SIZE + SLIP], state[SIZE + ROTATION] = slip, rate
+            if memory[LAST_EVENT] != REST:
+                state[SIZE + SLIP], state[SIZE + ROTATION] = slip, rate
         memory[IMPACT_LOSS] += before - self.kinetic_energy(after, state)
         return after
+
+    @inlined
+    def creeps(self, slip: float) -> bool:
+        """Whether the rate of a slip after an impact is too low to be told."""
+        return slip * slip < REST_AMPLITUDE * self.gravity * self.height
 
     @inlined
     def rebounds_little(self, mode: int, state: Vector, ground: Ground) -> bool:

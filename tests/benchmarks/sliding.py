@@ -1,0 +1,146 @@
+"""Random blocks that slide and rock: against a program of their own, and many that only must end.
+
+Run as ``python tests/benchmarks/sliding.py`` with the repository on the path; writes
+docs/data/sliding.json.
+"""
+
+import argparse
+import json
+import sys
+import warnings
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "tests")]
+
+from reference_models.sliding import compare, draw  # noqa: E402
+
+import rockframe as rf  # noqa: E402
+
+SEED = 30
+AGREES = 1e-6  # of the overturning angle, and of the peak slip or a millimetre
+
+
+def against_monolith(count):
+    """Compare scenes with the reference model."""
+    found = [compare(draw(np.random.default_rng([SEED, k]))) for k in range(count)]
+    same = [
+        [kind for _, kind in one["ours"]] == [kind for _, kind in one["theirs"]] for one in found
+    ]
+    apart = [max(one["peak"], one["slip"] / max(one["slips"], 1e-3)) for one in found]
+    return {
+        "scenes": count,
+        "agree": sum(one and far <= AGREES for one, far in zip(same, apart, strict=True)),
+        "events in the same order": sum(same),
+        "median": float(f"{np.median(apart):.2g}"),
+        "worst": float(f"{max(apart):.2g}"),
+        "worst energy balance": float(f"{max(one['balance'] for one in found):.2g}"),
+        "slide": sum(one["slips"] > 0.0 for one in found),
+        "rock": sum(one["rotates"] > 0.0 for one in found),
+        "fly": sum(one["flies"] for one in found),
+        "overturn": sum(one["overturned"] for one in found),
+        "events": sum(len(one["ours"]) for one in found),
+        "beyond": [
+            k
+            for k, (one, far) in enumerate(zip(same, apart, strict=True))
+            if not (one and far <= AGREES)
+        ],
+    }
+
+
+def rough_motion(rng, size):
+    """A motion that jumps, rattles, or throws the block up."""
+    count = int(rng.integers(50, 250))
+    width = int(rng.choice([1, 1, 5, 20]))
+    across, upwards = (
+        np.convolve(rng.normal(size=count), np.ones(width) / width, "same") * width**0.5
+        for _ in "xy"
+    )
+    if rng.random() < 0.2:
+        across = size * np.sign(across) * np.ones(count)  # as a rectangle, to its end
+    up = float(rng.choice([0.0, 0.3, 1.5])) * 9.81 * upwards
+    vertical = {"vertical": (up, "m/s^2")} if up.any() else {}
+    return rf.GroundMotion.from_arrays((size * across, "m/s^2"), "0.02 s", **vertical)
+
+
+def rough(rng):
+    """Draw a scene and a run of it that need only end."""
+    scene = draw(rng)
+    given = scene.system.parts.ground.si
+    ground = {"friction": given.friction, "kinetic_friction": given.kinetic_friction}
+    chance = rng.random()
+    if chance < 0.05:
+        ground = {"friction": 0.0}
+    elif chance < 0.1:
+        ground = {"friction": 1e6, "kinetic_friction": 0.9}
+    if rng.random() < 0.2:
+        ground["restitution"] = float(rng.uniform(0.3, 1.0))
+    if rng.random() < 0.2:
+        ground["impact"] = "stick"
+    block = scene.system.parts.block
+    slope = "0 rad" if not ground["friction"] else scene.system.inclination
+    system = rf.System(block, rf.RigidGround(**ground), inclination=slope)
+    least = min(block.si.left, block.si.right) / block.si.centre_height
+    size = float(rng.uniform(0.3, 4.0)) * min(least, max(given.friction, 0.2)) * 9.81
+    asked = {"accuracy": str(rng.choice(["fast", "standard"])), "free_vibration": "2 s"}
+    if scene.rotation:
+        asked["initial"] = rf.InitialState(rotation=f"{scene.rotation!r} rad")
+    if rng.random() < 0.3:
+        asked["overturning"] = "continue"
+    return system, rough_motion(rng, size), asked
+
+
+def until_the_end(count):
+    """Run scenes at `fast` and `standard`, and count how they end."""
+    ends, kinds, worst, failed = Counter(), Counter(), Counter(), []
+    for k in range(count):
+        system, motion, asked = rough(np.random.default_rng([SEED + 1, k]))
+        try:
+            run = system.simulate(motion, outputs=None, second_look=False, **asked)
+        except Exception as problem:  # noqa: BLE001 - whatever it is, it is told
+            ends[type(problem).__name__] += 1
+            failed.append(k)
+            continue
+        status = int(run.status)
+        name = str(run.status.attrs["flag_meanings"]).split()[status]
+        ends[name] += 1
+        if name not in ("completed", "overturned", "toppled"):
+            failed.append(k)
+        names = str(run.event_kind.attrs["flag_meanings"]).split()
+        values = list(run.event_kind.attrs["flag_values"])
+        for value, times in Counter(run.event_kind.values.tolist()).items():
+            kinds[names[values.index(value)]] += times
+        level = asked["accuracy"]
+        worst[level] = max(worst[level], float(run.energy_residual))
+    return {
+        "runs": count,
+        "ended as": dict(ends),
+        "events": dict(kinds),
+        "worst energy balance": {level: float(f"{one:.2g}") for level, one in worst.items()},
+        "to be looked at": failed,
+    }
+
+
+def main():
+    """Run both, and write what came out."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--scenes", type=int, default=300)
+    parser.add_argument("--runs", type=int, default=20_000)
+    parser.add_argument("--json", type=Path, default=ROOT / "docs" / "data" / "sliding.json")
+    given = parser.parse_args()
+    warnings.simplefilter("ignore")
+    found = {"seed": SEED}
+    if given.runs:
+        found["until the end"] = until_the_end(given.runs)
+    if given.scenes:
+        found["against a monolith"] = against_monolith(given.scenes)
+    text = json.dumps(found, indent=1)
+    given.json.write_text(text + "\n", encoding="utf-8")
+    print(text)
+
+
+if __name__ == "__main__":
+    main()
