@@ -1,5 +1,6 @@
 # Each public name, once: type checkers read this file, and __init__.py imports from where it says.
 
+from rockframe import codes as codes
 from rockframe import errors as errors
 from rockframe import extension as extension
 from rockframe import plot as plot

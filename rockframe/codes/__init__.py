@@ -1,0 +1,13 @@
+"""Checks by codes of practice, each formula with its clause, beside the motion of the body."""
+
+from rockframe.codes.asce import asce_7_22 as asce_7_22
+from rockframe.codes.check import CheckedLine as CheckedLine
+from rockframe.codes.check import CheckedVerdict as CheckedVerdict
+from rockframe.codes.check import CodeCheck as CodeCheck
+from rockframe.codes.circolare import circolare_2019 as circolare_2019
+
+__all__ = ["CheckedLine", "CheckedVerdict", "CodeCheck", "asce_7_22", "circolare_2019"]
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -1,0 +1,138 @@
+"""Checks by codes: worked numbers, the motion beside them, and their pages."""
+
+import math
+
+import numpy as np
+import pytest
+
+import rockframe as rf
+
+WALL = rf.Block(width="0.5 m", height="6 m", mass="5.7 t")
+LOW = rf.System(WALL, rf.RearWall(side="right"), gravity="9.81 m/s^2")
+CABINET = rf.Block(width="0.6 m", height="1.8 m", mass="300 kg")
+PULSES = {f"{v} m/s": rf.GroundMotion.type_a_pulse(f"{v} m/s", "1 s") for v in (0.3, 0.6)}
+
+
+def spectrum(damping_ratio=0.08, acceleration=0.3):
+    return rf.TargetSpectrum.from_table(
+        (["0.1 s", "6 s"]), ([acceleration] * 2, "m/s^2"), damping_ratio=damping_ratio
+    )
+
+
+def test_the_worked_numbers_of_a_wall_of_six_metres():
+    check = rf.codes.circolare_2019(LOW, spectrum(), confidence_factor=1)
+    worked = {
+        "alpha_0": 0.0833333, "e*": 1.0, "d_0": 0.25, "a_0*": 0.8175, "d_SLV": 0.10,
+        "T_SLV": 2.383086, "d_SLC": 0.15, "T_SLC": 3.319298,
+    }  # fmt: skip
+    for symbol, value in worked.items():
+        assert check.value(symbol) == pytest.approx(value, abs=6e-7), symbol
+    demand = 0.3 * check.value("T_SLV") ** 2 / (4.0 * math.pi**2)
+    assert check.value("d_demand") == pytest.approx(demand, rel=1e-12)
+    assert check.passed == {"kinematic, SLV": True}
+    later = rf.codes.circolare_2019(LOW, spectrum(0.1), confidence_factor=1, limit_state="SLC")
+    demand = 0.3 * check.value("T_SLC") ** 2 / (4.0 * math.pi**2)
+    assert later.value("d_demand") == pytest.approx(demand, rel=1e-12)
+    strict = rf.codes.circolare_2019(LOW, spectrum(acceleration=1.2))
+    assert strict.value("a_0*") == pytest.approx(0.8175 / 1.35)
+    assert strict.passed == {"kinematic, SLV": False}
+    sources = {one.symbol: one.source for one in check.lines["Mechanism and capacity"]}
+    assert sources["alpha_0"] == "C8.7.1.1"
+    assert sources["T_SLC"] == "C8.7.1.11"
+
+
+def test_the_side_that_falls():
+    eccentric = WALL.replace(eccentricity="0.05 m")
+    free = rf.codes.circolare_2019(rf.System(eccentric), spectrum())
+    assert free.value("d_0") == pytest.approx(0.2)  # the weaker side, to the right
+    before = rf.System(eccentric, rf.RearWall(side="right"))
+    assert rf.codes.circolare_2019(before, spectrum()).value("d_0") == pytest.approx(0.3)
+
+
+def test_the_motion_beside_the_kinematics():
+    check = rf.codes.circolare_2019(rf.System(WALL), PULSES)
+    moved = []
+    for label, pulse in PULSES.items():
+        run = rf.System(WALL).simulate(
+            pulse, free_vibration="20 s", points={"centre": ("0 m", "3 m")}, outputs=None
+        )
+        found = check.value(f"d, {label}")
+        if bool(run.overturned):
+            assert found == pytest.approx(0.25)
+        else:
+            shown = float(run.peak_point_horizontal_displacement[0])
+            assert found == pytest.approx(shown, rel=1e-6)  # as peaks are sought
+        moved.append(found)
+    assert check.value("mean of d") == pytest.approx(np.mean(moved))
+    assert 0.0 < min(moved) < max(moved) == 0.25
+    assert check.passed["dynamic, no run beyond d_0"] is False
+    assert check.passed["dynamic, SLV"] is False
+    gentle = rf.codes.circolare_2019(rf.System(WALL), PULSES["0.3 m/s"].scaled(0.5))
+    assert gentle.passed["dynamic, SLV"]
+    displacement = rf.response_spectrum(
+        PULSES["0.3 m/s"].scaled(0.5), (np.geomspace(0.2, gentle.value("T_SLV"), 80), "s"), 0.08
+    ).spectral_displacement
+    assert gentle.value("d_demand") == pytest.approx(float(displacement.max()), rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ((rf.System(WALL), spectrum(0.05)), "must be of a damping ratio of 0.08, got 0.05"),
+        ((WALL, spectrum()), "system needs a System"),
+        ((rf.System(WALL), {}), "no motions"),
+        ((rf.System(WALL), "record.AT2"), "expected a GroundMotion"),
+        (
+            (rf.System(WALL, rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)), PULSES),
+            "a block on level rigid ground",
+        ),
+    ],
+)
+def test_what_cannot_be_checked_is_refused(given, words):
+    with pytest.raises(rf.ComponentError, match=words):
+        rf.codes.circolare_2019(*given)
+
+
+def test_faults_of_arguments():
+    with pytest.raises(rf.ComponentError, match="'SLV', 'SLC', got 'SLD'"):
+        rf.codes.circolare_2019(LOW, spectrum(), limit_state="SLD")
+    with pytest.raises(rf.ComponentError, match="1 or more"):
+        rf.codes.circolare_2019(LOW, spectrum(), confidence_factor=0.9)
+    with pytest.raises(rf.ComponentError, match="no number is called 'T_SLD'"):
+        rf.codes.circolare_2019(LOW, spectrum()).value("T_SLD")
+
+
+def test_a_component_on_its_floor():
+    given = {"spectral_acceleration": 1.2, "importance": 1.5, "height_factor": 2.5}
+    factors = {"ductility_factor": 1.3, "resonance_factor": 1.4, "strength_factor": 1.5}
+    check = rf.codes.asce_7_22(CABINET, PULSES, **given, **factors, friction=0.6)
+    weight = 300.0 * 9.80665
+    force = 0.4 * 1.2 * 1.5 * weight * (2.5 / 1.3) * (1.4 / 1.5)
+    assert check.value("F_p, formula") == pytest.approx(force)
+    assert check.value("F_p") == pytest.approx(force)
+    assert check.value("F_v") == pytest.approx(0.2 * 1.2 * weight)
+    assert check.value("M_OT") == pytest.approx(force * 0.9)
+    assert check.value("M_R") == pytest.approx(0.9 * weight * 0.3)
+    assert check.value("M_anchors") == pytest.approx(force * 0.9 - 0.9 * weight * 0.3)
+    assert check.value("mu") == pytest.approx(force / (0.9 * weight))
+    assert check.passed == {"tipping": False, "sliding": False, "motion": True}
+    most = rf.codes.asce_7_22(CABINET, **(given | {"height_factor": 30.0}))
+    assert most.value("F_p") == pytest.approx(1.6 * 1.2 * 1.5 * weight)
+    least = rf.codes.asce_7_22(CABINET, **(given | {"height_factor": 0.1}))
+    assert least.value("F_p") == pytest.approx(0.3 * 1.2 * 1.5 * weight)
+    squat = rf.Block(width="2 m", height="1.6 m", mass="1 t")
+    assert rf.codes.asce_7_22(squat, spectral_acceleration=0.5).passed == {"tipping": True}
+
+
+def test_texts_and_pages(tmp_path):
+    check = rf.codes.circolare_2019(LOW, PULSES)
+    text = str(check)
+    for words in ("T_SLV", "C8.7.1.10", "C8.7.1.2.1.9", "d, 0.3 m/s", "Left out: interlocking"):
+        assert words in text
+    assert "kinematic, SLV" in check._repr_html_()
+    page = check.report(tmp_path / "facade.html")
+    written = page.read_text(encoding="utf-8")
+    for words in ("C8.7.1.11", "1.56 pi", "Left out", "Circolare"):
+        assert words in written
+    with pytest.raises(rf.errors.FileError):
+        check.report(tmp_path / "facade.pdf")
