@@ -1,0 +1,55 @@
+"""A block that slides downhill, against pySLAMMER's rigid block."""
+
+import math
+
+import numpy as np
+import pytest
+from plainly import plainly
+
+import rockframe as rf
+
+pyslammer = pytest.importorskip("pyslammer")
+pytestmark = [
+    pytest.mark.reference_models,
+    pytest.mark.filterwarnings("ignore::ResourceWarning"),
+    pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning"),
+]
+NAMES = ("Northridge_1994_PAC-175", "Coalinga_1983_PVB-045", "Nisqually_2001_UNR-058")
+"""Records that come with it."""
+
+GRAVITY = 9.80665
+SLOPE, FRICTION = 0.2, 0.3
+FINER = 30
+"""Parts of each interval of the record: pySLAMMER's slips begin and end at samples. With far more
+of them its slips below 1e-5 m/s would count."""
+
+
+def downhill(samples, step):
+    """Give a motion along the slope, with no part normal to it."""
+    c, s = math.cos(SLOPE), math.sin(SLOPE)
+    return rf.GroundMotion.from_arrays(
+        (c * samples, "m/s^2"), f"{step!r} s", vertical=(s * samples, "m/s^2")
+    )
+
+
+@pytest.fixture(scope="module")
+def records():
+    return pyslammer.sample_ground_motions()
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_slip_down_a_slope(name, records):
+    one = records[name]
+    samples, step = np.asarray(one.accel), float(one.dt)
+    along = samples * (3.0 / np.abs(samples).max())
+    block = rf.Block(width="2 m", height="1 m", mass="1 t")
+    system = rf.System(block, rf.RigidGround(friction=FRICTION), inclination=f"{SLOPE} rad")
+    with plainly():
+        run = system.simulate(downhill(along, step), accuracy="reference", outputs=None)
+    coarse = step * np.arange(len(along))
+    fine = np.linspace(0.0, coarse[-1], FINER * (len(along) - 1) + 1)
+    yields = FRICTION * math.cos(SLOPE) - math.sin(SLOPE)
+    finer = {"accel": np.interp(fine, coarse, along) / GRAVITY, "dt": step / FINER, "name": name}
+    theirs = pyslammer.RigidAnalysis(yields, finer).max_sliding_disp
+    assert float(run.peak_rotation) == 0.0
+    assert -float(run.residual_slip) == pytest.approx(theirs, rel=1e-4)
