@@ -30,6 +30,7 @@ from rockframe.errors import RecordError
 from rockframe.records.checks import settle_time_step
 from rockframe.records.components import FileComponent, choose_component, orientation_of
 from rockframe.records.instruments import (
+    InstrumentResponse,
     InstrumentResponses,
     about_codes,
     check_finite,
@@ -51,7 +52,6 @@ from rockframe.records.unit_names import choose_unit
 if TYPE_CHECKING:
     from collections.abc import Generator
 
-    from rockframe.records.instruments import InstrumentResponse
     from rockframe.signals.arrays import Array
 
 _MAGIC: Final = b"\x89HDF\r\n\x1a\n"

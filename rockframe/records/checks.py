@@ -14,13 +14,12 @@ import numpy as np
 
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.records.numbers import NUMBER
-from rockframe.records.reader import Record
+from rockframe.records.reader import Metadata, Record, Request, Source
 from rockframe.records.unit_names import RecordUnit, acceleration_unit
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from rockframe.records.reader import Metadata, Request, Source
     from rockframe.signals.arrays import Array
 
 TIME_STEP_LIMITS: Final = (1e-6, 10.0)

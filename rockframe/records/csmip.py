@@ -10,8 +10,16 @@ acceleration is read. Each announces itself in one of these ways::
    13200 Accelerogram points at 200 pts/sec in units of g .      Format: (8f9.6)
 
 The third is that of the University of Southern California, which leaves the unit away
-at times: it is then the unit of the peak that the text states. Older files of volume 1
-hold pairs of time and acceleration; see :mod:`rockframe.records.csmip`.
+at times: it is then the unit of the peak that the text states.
+
+Volume 1 as it was first written, also by that university and by RENADIC, Chile, holds pairs of
+time and acceleration instead, five in a line, below 100 integers and 50 reals; the text says how
+many there are, and in which units::
+
+    NO. OF POINTS =   3500  RECORD LENGTH = 35.000 SEC
+    UNITS OF UNCOR ACCEL ARE SEC AND G/10.     MAX  = -0.051 G, AT   3.910 SEC
+
+Many were digitised by hand, at uneven times. Those are refused.
 
 Reference: A. F. Shakal and M. J. Huang, "Standard Tape Format for CSMIP
 Strong-Motion Data Tapes", Report OSMS 85-03, California Division of Mines and
@@ -42,14 +50,13 @@ from rockframe.records.components import (
 )
 from rockframe.records.headers import first_match
 from rockframe.records.numbers import FixedWidth, uniform_step, whole
-from rockframe.records.reader import Format, Record, Request, Source, quoted_first_line
+from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
 from rockframe.records.unit_names import choose_unit
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from rockframe.errors import RecordError
-    from rockframe.records.reader import Format, Metadata
     from rockframe.signals.arrays import Array
 
 FIRST_LINE: Final = re.compile(

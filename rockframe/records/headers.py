@@ -7,12 +7,11 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 
 from rockframe.records.checks import settle_time_step
 from rockframe.records.numbers import one_number, whole
-from rockframe.records.reader import quoted_first_line
+from rockframe.records.reader import Metadata, Request, Source, quoted_first_line
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from rockframe.records.reader import Metadata, Request, Source
 
 Keys: TypeAlias = "dict[str, tuple[str, int]]"
 """Value and line, from 1, of each key."""

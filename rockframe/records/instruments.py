@@ -22,13 +22,12 @@ import numpy as np
 
 from rockframe.records.components import DOWNWARDS, UNKNOWN, UPWARDS, Orientation, azimuth_of
 from rockframe.records.files import read_source
-from rockframe.records.reader import Metadata, Record, Source, base_name
+from rockframe.records.reader import Metadata, Record, Request, Source, base_name
 from rockframe.records.unit_names import RecordUnit, acceleration_unit
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from rockframe.records.reader import Request, Source
     from rockframe.signals.arrays import Array
 
 _LARGEST: Final = 8 * 2**20

@@ -1,4 +1,4 @@
-"""miniSEED, through ObsPy: counts, made accelerations by the response of the instrument.
+"""miniSEED, through ObsPy, and traces in memory: counts, made accelerations by the response.
 
 The counts are divided by the overall sensitivity of an accelerometer (StationXML,
 ``InstrumentSensitivity``, input unit M/S**2), after their mean is subtracted: the

@@ -18,7 +18,7 @@ import csv
 import math
 import re
 from pathlib import PurePath
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import Final, TypeAlias
 
 from rockframe.errors import RecordError
 from rockframe.records.checks import record_of, settle_time_step
@@ -32,9 +32,6 @@ from rockframe.records.components import (
 from rockframe.records.numbers import NUMBER, all_numbers
 from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
 from rockframe.records.unit_names import choose_unit
-
-if TYPE_CHECKING:
-    from rockframe.records.reader import Format, Source
 
 _SUFFIX: Final = ".at2"
 

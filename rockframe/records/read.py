@@ -12,11 +12,12 @@ from rockframe.errors import RecordError, RockframeError
 from rockframe.records.checks import check_no_marks, check_time_step, plausibility
 from rockframe.records.components import (
     EveryComponentError,
+    FileComponent,
     choose_component,
     component_names,
     named,
 )
-from rockframe.records.files import RecordLike, read_source
+from rockframe.records.files import PathLike, RecordLike, read_source
 from rockframe.records.known_formats import WITH_RESPONSE, added_failed, by_name, recognised
 from rockframe.records.miniseed import components_of_traces
 from rockframe.records.reader import (
@@ -35,8 +36,6 @@ from rockframe.units import POSITIVE, TIME_STEP, to_si
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from rockframe.records.components import FileComponent
-    from rockframe.records.files import PathLike
     from rockframe.records.known_formats import Format
     from rockframe.signals.arrays import Array
     from rockframe.units import QuantityLike

@@ -1,7 +1,17 @@
 """Columns of numbers in text, and what stands above them.
 
-Separators, decimal commas, headers and comments; one record that is wrapped to several values a
-line; a number of samples and a time step above the samples.
+One record wrapped to several values a line and several records in columns look alike where
+columns have no names. They differ in what follows a number: in a wrapped record the number to its
+right, and behind the last of a line the first of the next, all in the same way; in columns the
+number below.
+
+The first numbers may be no samples: how many there are, and the time step. Either both in a line
+of their own, in any order, or one under the other::
+
+    1559  0.02
+    0.00630   0.00364   0.00099   0.00428   0.00758 ...
+
+or the time step alone on top of one column.
 """
 
 from __future__ import annotations
@@ -28,7 +38,6 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from rockframe.errors import RecordError
-    from rockframe.records.reader import Source
     from rockframe.signals.arrays import Array
 
 HEADER_LINES: Final = 20
