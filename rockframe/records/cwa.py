@@ -30,7 +30,7 @@ from rockframe.records.components import (
     orientation_of,
 )
 from rockframe.records.headers import NOTHING, Keys, kept, needed, needed_rate
-from rockframe.records.numbers import FixedWidth, one_number
+from rockframe.records.numbers import FixedWidth, one_number, rows_below
 from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
 from rockframe.records.unit_names import choose_unit
 
@@ -89,10 +89,7 @@ def _read(source: Source, request: Request) -> Record:
 
 def _table(source: Source, header: Keys, first: int, columns: int, rate: float) -> Array:
     """Read the rows of numbers, times in the first column."""
-    rows = source.last_line - first
-    if rows < 2:
-        found = f"{max(rows, 0)} rows of numbers"
-        raise source.refuse(found=found, expected="two or more", line=source.last_line)
+    rows = rows_below(source, first)
     text, line = needed(source, header, "data")
     match = _LAYOUT.match(text)
     if match is None or int(match.group(1)) != columns:

@@ -290,6 +290,15 @@ class FixedWidth:
         return value
 
 
+def rows_below(source: Source, first: int) -> int:
+    """Count the rows from a line to the end of the file, of which there must be two."""
+    rows = source.last_line - first
+    if rows < 2:
+        found = f"{max(rows, 0)} rows of numbers"
+        raise source.refuse(found=found, expected="two or more", line=source.last_line)
+    return rows
+
+
 def whole(text: str) -> int | None:
     """Read a whole number; None if it is none, or too long to be one."""
     text = text.strip()

@@ -30,7 +30,7 @@ from rockframe.records.components import (
     orientation_of,
 )
 from rockframe.records.headers import NOTHING, Keys, kept, needed, read_keys
-from rockframe.records.numbers import FixedWidth, one_number, whole
+from rockframe.records.numbers import FixedWidth, one_number, rows_below, whole
 from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
 from rockframe.records.unit_names import choose_unit
 
@@ -88,10 +88,7 @@ def _read(source: Source, request: Request) -> Record:
 
     @cache
     def table() -> Array:
-        rows = source.last_line - first
-        if rows < 2:
-            found = f"{max(rows, 0)} rows of numbers"
-            raise source.refuse(found=found, expected="two or more", line=source.last_line)
+        rows = rows_below(source, first)
         values = layout.read(source, first, rows * layout.per_line)
         return values.reshape(rows, layout.per_line)
 
