@@ -342,12 +342,7 @@ class Component:
             known = ", ".join(self.parameters())
             msg = f"{type(self).__name__}: no parameter is called {shown(name)} (it has {known})"
             raise ComponentError(msg)
-        arguments = self._arguments()
-        value = arguments[name]
-        number = factor * _number_in(value)
-        unit = value.partition(" ")[2] if isinstance(value, str) else ""
-        changed = f"{number!r} {unit}" if isinstance(value, str) else number
-        return self.from_dict({**arguments, name: changed})
+        return self.with_si({name: factor * vars(self.given)[name]})
 
 
 def replaced(

@@ -22,8 +22,14 @@ from rockframe.motion.processing.samples import say_coarse
 from rockframe.results.dataset import build_dataset
 from rockframe.signals.arrays import Array
 from rockframe.signals.integrals import arias_history
-from rockframe.signals.rotated import rotated_displacements, rotated_peaks, unit_vectors
-from rockframe.signals.spectra import check_cost, pseudo_spectra, spectral_peaks
+from rockframe.signals.spectra import (
+    check_cost,
+    pseudo_spectra,
+    rotated_displacements,
+    rotated_peaks,
+    spectral_peaks,
+    unit_vectors,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -4,13 +4,41 @@ All functions here work in the step's own scale: x = t/h from 0 to 1, displaceme
 u, velocity V = h du/dt, acceleration W = h^2 d2u/dt2. The oscillator is then
 :eq:`eq-oscillator-step`, with the one number kappa = 2 pi h/T. Compiled where numba is
 installed.
+
+Under both horizontal components the displacement in a direction is the sum of those of the
+components, times cosine and sine, :eq:`eq-rotated-displacement`: both are followed once, whatever
+the number of directions.
+
+What functions take, by its name:
+
+``pieces``, ``first``, ``second``
+    Acceleration of the ground in every interval, shape (n, m) [m s^-2]; of one component, of both.
+``still``
+    Zeros, shape (12, m): the ground during a period after the motion.
+``row``, ``part``, ``parts``
+    An interval, and which of how many equal steps in it.
+``force``
+    h^2, by which the acceleration becomes a force [s^2].
+``kappa``, ``damping``
+    2 pi h/T and the damping ratio [1].
+``step``, ``free_step``
+    Matrices of a step, shape (2, 2 + m), as filled by :func:`fill_step`; the latter after the
+    motion.
+``start``, ``end``
+    u, V and W of the first component, then of the second, at both ends of a step, shape (6,) [m].
+``directions``, ``few``
+    Cosines and sines of all directions, shape (d, 2), and of some, shape (f, 2).
+``most``
+    Greatest absolute displacement so far in every direction, shape (d,); raised [m].
+``shifted``
+    Scratch, shape (m,).
 """
 
 from typing import Any, Final
 
 import numpy as np
 
-from rockframe.compiled import Matrix, Vector, entry, kernel
+from rockframe.compiled import Matrix, Vector, entry, inlined, kernel
 
 STEPS_PER_PERIOD: Final = 12
 """Steps are split until a period has that many: kappa is at most 0.52."""
@@ -29,15 +57,8 @@ _TINY: Final = 1e-300
 def fill_step(kappa: float, damping: float, step: Matrix) -> None:
     """Compute the matrices of one step, :eq:`eq-step-matrices`, by :eq:`eq-step-series`.
 
-    Parameters
-    ----------
-    kappa : float
-        2 pi h/T [1].
-    damping : float
-        Damping ratio [1].
-    step : ndarray, shape (2, 2 + m)
-        Filled: displacement and velocity at the step's end for a unit of, by column,
-        displacement and velocity at its start, and force h^2 a = x^0, x^1, ...
+    By column: displacement and velocity at the end for a unit of displacement and velocity at
+    the start, and of force h^2 a = x^0, x^1, ...
     """
     for column in range(step.shape[1]):
         term = 1.0 if column == 0 else 0.0
@@ -103,24 +124,8 @@ def march_oscillator(
 ) -> None:
     """Follow one oscillator from interval to interval.
 
-    Parameters
-    ----------
-    pieces : ndarray, shape (n, m)
-        Acceleration of the ground in every interval [m s^-2].
-    parts : int
-        Steps in an interval.
-    force : float
-        h^2, by which the acceleration becomes a force [s^2].
-    kappa, damping : float
-        2 pi h/T and the damping ratio [1].
-    step : ndarray, shape (2, 2 + m)
-        As filled by :func:`fill_step`.
-    shifted : ndarray, shape (m,)
-        Scratch.
-    state : ndarray, shape (2,)
-        Displacement and velocity V; from the start to the end [m].
-    peaks : ndarray, shape (3,)
-        Greatest absolute u, V and 2 xi kappa V + kappa^2 u; raised [m].
+    `state` is displacement and velocity V, from the start to the end [m]; `peaks` the greatest
+    absolute u, V and 2 xi kappa V + kappa^2 u, raised [m].
     """
     stiffness, drag = kappa * kappa, 2.0 * damping * kappa
     powers = pieces.shape[1]
@@ -204,27 +209,8 @@ def march_all(
 ) -> None:
     """Find the peaks of all oscillators, during the motion and in the period after it.
 
-    Parameters
-    ----------
-    pieces : ndarray, shape (n, m)
-        Acceleration of the ground in every interval [m s^-2].
-    still : ndarray, shape (12, m)
-        Zeros: the ground during a period after the motion.
-    time_step : float
-        Length of an interval [s].
-    damping : float
-        Damping ratio [1].
-    periods : ndarray, shape (k,)
-        Periods, greater than zero [s].
-    step, free_step : ndarray, shape (2, 2 + m)
-        Scratch.
-    shifted : ndarray, shape (m,)
-        Scratch.
-    state, peaks : ndarray, shape (2,) and (3,)
-        Scratch.
-    found : ndarray, shape (k, 3)
-        Filled: greatest relative displacement [m], relative velocity [m s^-1] and absolute
-        acceleration [m s^-2].
+    `found`, shape (k, 3), is filled: greatest relative displacement [m], relative velocity
+    [m s^-1] and absolute acceleration [m s^-2].
     """
     free = 2.0 * np.pi / STEPS_PER_PERIOD
     fill_step(free, damping, free_step)
@@ -246,3 +232,208 @@ def march_all(
         march_oscillator(still, 1, 0.0, free, damping, free_step, shifted, state, peaks)
         for j in range(QUANTITIES):
             found[k, j] = max(found[k, j], peaks[j] / free_length**j)
+
+
+@kernel
+def raise_peaks(
+    directions: Matrix,
+    start: Vector,
+    end: Vector,
+    most: Vector,
+) -> float:
+    """Raise the peaks in all directions by those of one step; give the least of them [m]."""
+    least = np.inf
+    for d in range(directions.shape[0]):
+        c, s = directions[d, 0], directions[d, 1]
+        u, v = c * end[0] + s * end[3], c * end[1] + s * end[4]
+        # a turn inside the step lies no higher than the end and the slope there
+        if abs(u) + abs(v) > most[d]:
+            most[d] = max(most[d], abs(u))
+            before = c * start[1] + s * start[4]
+            if before * v < 0.0:
+                inside = turning_value(
+                    c * start[0] + s * start[3],
+                    before,
+                    c * start[2] + s * start[5],
+                    u,
+                    v,
+                    c * end[2] + s * end[5],
+                )
+                most[d] = max(most[d], abs(inside))
+        least = min(least, most[d])
+    return least
+
+
+@inlined
+def follow_component(
+    pieces: Matrix,
+    row: int,
+    part: int,
+    parts: int,
+    force: float,
+    kappa: float,
+    damping: float,
+    step: Matrix,
+    shifted: Vector,
+    place: int,
+    start: Vector,
+    end: Vector,
+) -> None:
+    """Follow the oscillator under one component over one step.
+
+    `place` is 0 for the first component, 3 for the second; the accelerations of `start` are
+    filled too.
+    """
+    u, v = start[place], start[place + 1]
+    drag, stiffness = 2.0 * damping * kappa, kappa * kappa
+    next_u, next_v = step[0, 0] * u + step[0, 1] * v, step[1, 0] * u + step[1, 1] * v
+    if pieces.shape[1] == 2:
+        slope = pieces[row, 1] / parts
+        before = pieces[row, 0] + part * slope
+        ground = before + slope
+        next_u += force * (step[0, 2] * before + step[0, 3] * slope)
+        next_v += force * (step[1, 2] * before + step[1, 3] * slope)
+    else:
+        shift_piece(pieces, row, part, parts, shifted)
+        before, ground = shifted[0], 0.0
+        for j in range(pieces.shape[1]):
+            ground += shifted[j]
+            next_u += force * step[0, 2 + j] * shifted[j]
+            next_v += force * step[1, 2 + j] * shifted[j]
+    start[place + 2] = -drag * v - stiffness * u - force * before
+    end[place], end[place + 1] = next_u, next_v
+    end[place + 2] = -drag * next_v - stiffness * next_u - force * ground
+
+
+@kernel
+def outermost(
+    first: Matrix,
+    second: Matrix,
+    parts: int,
+    force: float,
+    kappa: float,
+    damping: float,
+    step: Matrix,
+    shifted: Vector,
+    start: Vector,
+    end: Vector,
+    few: Matrix,
+    reached: Matrix,
+) -> None:
+    """Find the points that the oscillator reaches furthest out in a few directions.
+
+    What it reaches there bounds its peaks in all directions from below, so that most steps
+    need not be looked at in every direction. `reached`, shape (f, 3), is raised: how far it
+    comes, and both displacements there [m].
+    """
+    least = 0.0
+    for row in range(first.shape[0]):
+        for part in range(parts):
+            follow_component(
+                first, row, part, parts, force, kappa, damping, step, shifted, 0, start, end
+            )
+            follow_component(
+                second, row, part, parts, force, kappa, damping, step, shifted, 3, start, end
+            )
+            if end[0] * end[0] + end[3] * end[3] > least * least:
+                least = np.inf
+                for d in range(few.shape[0]):
+                    far = abs(few[d, 0] * end[0] + few[d, 1] * end[3])
+                    if far > reached[d, 0]:
+                        reached[d, 0], reached[d, 1], reached[d, 2] = far, end[0], end[3]
+                    least = min(least, reached[d, 0])
+            for j in range(6):
+                start[j] = end[j]
+
+
+@kernel
+def march_pair(
+    first: Matrix,
+    second: Matrix,
+    parts: int,
+    force: float,
+    kappa: float,
+    damping: float,
+    step: Matrix,
+    shifted: Vector,
+    start: Vector,
+    end: Vector,
+    directions: Matrix,
+    most: Vector,
+) -> None:
+    """Follow one oscillator under both components from interval to interval."""
+    least = np.inf
+    for d in range(directions.shape[0]):
+        least = min(least, most[d])
+    for row in range(first.shape[0]):
+        for part in range(parts):
+            follow_component(
+                first, row, part, parts, force, kappa, damping, step, shifted, 0, start, end
+            )
+            follow_component(
+                second, row, part, parts, force, kappa, damping, step, shifted, 3, start, end
+            )
+            # in no direction is there more than this
+            reach = np.sqrt(end[0] * end[0] + end[3] * end[3])
+            reach += np.sqrt(end[1] * end[1] + end[4] * end[4])
+            if reach > least:
+                least = raise_peaks(directions, start, end, most)
+            for j in range(6):
+                start[j] = end[j]
+
+
+@entry
+def march_pairs(
+    first: Matrix,
+    second: Matrix,
+    still: Matrix,
+    time_step: float,
+    damping: float,
+    periods: Vector,
+    directions: Matrix,
+    step: Matrix,
+    free_step: Matrix,
+    shifted: Vector,
+    start: Vector,
+    end: Vector,
+    few: Matrix,
+    reached: Matrix,
+    most: Vector,
+    found: Matrix,
+) -> None:
+    """Find the peaks of all oscillators in all directions, in `found`, shape (k, d) [m]."""
+    free = 2.0 * np.pi / STEPS_PER_PERIOD
+    fill_step(free, damping, free_step)
+    for k in range(periods.shape[0]):
+        period = periods[k]
+        parts = int(np.ceil(STEPS_PER_PERIOD * time_step / period))
+        length = time_step / parts
+        kappa = 2.0 * np.pi * length / period
+        fill_step(kappa, damping, step)
+        for j in range(6):
+            start[j] = 0.0
+        for d in range(few.shape[0]):
+            reached[d, 0] = reached[d, 1] = reached[d, 2] = 0.0
+        outermost(
+            first, second, parts, length * length, kappa, damping, step, shifted, start, end, few,
+            reached,
+        )  # fmt: skip
+        for j in range(6):
+            start[j] = 0.0
+        for d in range(directions.shape[0]):
+            most[d] = 0.0
+            for place in range(few.shape[0]):
+                far = directions[d, 0] * reached[place, 1] + directions[d, 1] * reached[place, 2]
+                most[d] = max(most[d], abs(far))
+        march_pair(
+            first, second, parts, length * length, kappa, damping, step, shifted, start, end,
+            directions, most,
+        )  # fmt: skip
+        change = period / STEPS_PER_PERIOD / length
+        start[1] *= change
+        start[4] *= change
+        march_pair(
+            still, still, 1, 0.0, free, damping, free_step, shifted, start, end, directions, most
+        )
+        for d in range(directions.shape[0]):
+            found[k, d] = most[d]

@@ -18,7 +18,7 @@ from rockframe.results.variables.variable import OSCILLATOR
 from rockframe.studies.limit_states import check_names
 from rockframe.studies.sweeps.case import remembered, unscaled_motion
 from rockframe.studies.sweeps.motions import SPECTRAL, motion_of_case
-from rockframe.units import ACCELERATION, PERIOD, POSITIVE, TIME, to_ratio, to_si
+from rockframe.units import ACCELERATION, PERIOD, POSITIVE, quantity, to_ratio, to_si
 
 if TYPE_CHECKING:
     from rockframe.motion import GroundMotion
@@ -93,7 +93,7 @@ class Intensity:
     def of(self, motion: GroundMotion) -> float:
         """Give the measure of a motion, in SI units."""
         if self.period is not None:
-            found = response_spectrum(motion, [f"{self.period!r} {TIME.unit}"])[self.name]
+            found = response_spectrum(motion, [quantity(self.period, PERIOD)])[self.name]
             return float(found.squeeze())
         if self.name == "peak_ground_acceleration":  # without the spectra that others need
             return float(motion.peak_acceleration.m_as(SCHEMA[self.name].attributes()["units"]))
@@ -196,7 +196,7 @@ class ScaledIntensity:
     ) -> None:
         self._motion = motion
         self._block = system.parts.block
-        self._gravity = f"{system.gravity_si!r} {ACCELERATION.unit}"
+        self._gravity = quantity(system.gravity_si, ACCELERATION)
         self._damping = to_ratio(damping_ratio, owner=owner, name="damping_ratio")
         spectral = name in OF_OSCILLATORS
         if spectral != (period is not None):
@@ -219,7 +219,7 @@ class ScaledIntensity:
 
     def _all(self, motion: "GroundMotion") -> xr.Dataset:
         if self.period is not None:
-            return response_spectrum(motion, [f"{self.period!r} {TIME.unit}"], self._damping)
+            return response_spectrum(motion, [quantity(self.period, PERIOD)], self._damping)
         return intensity_measures(
             motion, block=self._block, damping_ratio=self._damping, gravity=self._gravity
         )
