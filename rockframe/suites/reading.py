@@ -101,7 +101,7 @@ def read_suite(
         if isinstance(file, Unread):
             found.left.append(file)
         elif is_stored_suite(file):
-            return stored_suite(file)
+            return stored_suite(file, MotionSuite)
         else:
             found.take(file, format, request)
     found.complete()

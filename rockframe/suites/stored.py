@@ -8,7 +8,7 @@ import json
 import math
 import warnings
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import numpy as np
 import xarray as xr
@@ -27,6 +27,8 @@ from rockframe.units import Unit
 if TYPE_CHECKING:
     from rockframe.records import Source
     from rockframe.suites.suite import MotionSuite
+
+    Suite = TypeVar("Suite", bound=MotionSuite)
 
 _KIND: Final = "suite of ground motions"
 _TITLE: Final = "Suite of ground motions"
@@ -138,12 +140,10 @@ def is_stored_suite(source: "Source") -> bool:
         return False
 
 
-def stored_suite(source: "Source") -> "MotionSuite":
+def stored_suite(source: "Source", kind: "type[Suite]") -> "Suite":
     """Read the netCDF file of a suite."""
     import netCDF4
     from xarray.backends import NetCDF4DataStore
-
-    from rockframe.suites.suite import MotionSuite
 
     try:
         with (
@@ -157,7 +157,7 @@ def stored_suite(source: "Source") -> "MotionSuite":
                 expected = f"a suite of at most {_MOST_NUMBERS} numbers"
                 raise source.refuse(found=f"{total} numbers declared", expected=expected)
             dataset = xr.open_dataset(NetCDF4DataStore(file), decode_times=False)
-            return MotionSuite.from_dataset(dataset.load())
+            return kind.from_dataset(dataset.load())
     except RecordError:
         raise
     except SchemaError as problem:

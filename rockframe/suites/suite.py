@@ -19,7 +19,14 @@ from rockframe.motion.pair import HorizontalPair
 from rockframe.results.dataset import build_dataset
 from rockframe.results.joining import MOTION
 from rockframe.results.table import table as table_of
-from rockframe.suites.columns import check_column, chosen, known_columns, order, other_columns
+from rockframe.suites.columns import (
+    check_column,
+    chosen,
+    known_columns,
+    order,
+    other_columns,
+    suite_html,
+)
 from rockframe.suites.matching import matched
 from rockframe.suites.records import pairs_of
 from rockframe.suites.stored import stored_motions, suite_dataset
@@ -120,8 +127,6 @@ class MotionSuite(Mapping[str, GroundMotion]):
         return [name for name in super().__dir__() if not name.startswith("_")]
 
     def _repr_html_(self) -> str:
-        from rockframe.suites.columns import suite_html
-
         return suite_html(self)
 
     @property
