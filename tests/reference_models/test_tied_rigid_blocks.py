@@ -137,3 +137,37 @@ def test_so_are_the_verdicts_and_the_energies(compared):
         assert one["overturned"][0] == one["overturned"][1], one["number"]
         kinds += one["events"]
     assert min(kinds[name] for name in ("RESTRAINER_TAUT", "RESTRAINER_SLACK", "IMPACT")) > 3
+
+
+@pytest.mark.filterwarnings("ignore:.*held though it does not press")
+@pytest.mark.parametrize(
+    ("anchored", "stands", "falls"),
+    [
+        (False, (1.0, 3.62), (3.67,)),  # falls from 3.644 g on, scanned in steps of 0.02
+        (True, (1.085,), (1.0,)),  # from 0.984 to 1.064 g
+    ],
+)
+def test_an_anchored_block_falls_where_a_free_one_stands(anchored, stands, falls):
+    """Makris and Zhang's effect, against a Runge-Kutta scan: a sine of six times p."""
+    theta, p, gravity, mass = 0.349, 2.14, 9.81, 1000.0
+    radius = 0.75 * gravity / p**2
+    b, h = radius * math.sin(theta), radius * math.cos(theta)
+    block = rf.Block(width=f"{2.0 * b!r} m", height=f"{2.0 * h!r} m", mass=f"{mass} kg")
+    strength = mass * gravity
+    anchors = [
+        rf.Restrainer(
+            on=(f"{x!r} m", "0 m"), to=(f"{x!r} m", "0 m"), strength=f"{strength!r} N",
+            stiffness=f"{strength / (4.0 * b * math.sin(0.05 * theta))!r} N/m",
+        )
+        for x in (-b, b)
+    ]  # fmt: skip
+    system = rf.System(block, *(anchors if anchored else ()), gravity=f"{gravity} m/s^2")
+    for amplitude in (*stands, *falls):
+        phase = math.asin(math.tan(theta) / amplitude)
+        time = np.linspace(0.0, (2.0 * math.pi - phase) / (6.0 * p), 201)
+        acceleration = amplitude * gravity * np.sin(6.0 * p * time + phase)
+        motion = rf.GroundMotion.from_arrays(
+            (acceleration, "m/s^2"), time_step=f"{float(time[1])!r} s"
+        )
+        run = system.simulate(motion, free_vibration="4 s", overturning="continue")
+        assert (float(run.peak_rotation) > 1.5) is (amplitude in falls), amplitude
