@@ -116,6 +116,12 @@ class Restrainer(PointLink):
         FORCE, POSITIVE, doc="Greatest force of its spring; without end unless given.", default=None
     )
     brittle = Flag(doc="Whether it breaks at its strength, or yields.", default=True)
+    breaking_elongation = Parameter(
+        THICKNESS.like("50 mm"),
+        POSITIVE,
+        doc="Elongation at which it breaks, in the place of a strength; none unless given.",
+        default=None,
+    )
     damping = Parameter(
         DAMPING, NOT_NEGATIVE, doc="Of the dashpot; none unless given.", default=None
     )
@@ -131,6 +137,7 @@ class Restrainer(PointLink):
         preload: QuantityLike | None = None,
         strength: QuantityLike | None = None,
         brittle: bool = True,
+        breaking_elongation: QuantityLike | None = None,
         damping: QuantityLike | None = None,
         compression: bool = False,
         on_body: int = BODY,
@@ -139,7 +146,8 @@ class Restrainer(PointLink):
     ) -> None:
         super().__init__(
             on=on, to=to, stiffness=stiffness, slack=slack, preload=preload, strength=strength,
-            brittle=brittle, damping=damping, compression=compression, on_body=on_body,
+            brittle=brittle, breaking_elongation=breaking_elongation, damping=damping,
+            compression=compression, on_body=on_body,
             to_body=to_body, name=name,
         )  # fmt: skip
 
@@ -147,6 +155,10 @@ class Restrainer(PointLink):
         faults = list[str]()
         if given.slack and given.preload:
             faults.append("a tie with slack has no preload: give one of them")
+        if given.breaking_elongation and (given.strength or not given.brittle):
+            faults.append("one that breaks at an elongation has no strength: give one of them")
+        if given.breaking_elongation and given.breaking_elongation <= (given.slack or 0.0):
+            faults.append("it would break, by breaking_elongation, before its slack is taken up")
         if given.slack and given.compression:
             faults.append("a bar that pushes has no slack: give slack or compression")
         if faults:

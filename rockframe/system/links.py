@@ -120,6 +120,8 @@ class PlacedLink:
             if given.strength is not None:
                 verb = "breaks" if given.brittle else "yields"
                 found.append(f"{verb} at {given.strength:.6g} N")
+            if getattr(given, "breaking_elongation", None):
+                found.append(f"breaks as it is {given.breaking_elongation:.6g} m longer")
             pushes = getattr(given, "compression", False)
             found.append("pulls and pushes" if pushes else "pulls only")
         return ", ".join(found)
@@ -134,6 +136,9 @@ def tie_of(part: Restrainer | Tendon, mass: float) -> "LinkNumbers":
     stiffness, damping = given.stiffness / mass, damping / mass
     free = slack - (given.preload or 0.0) / given.stiffness
     most = math.inf if given.strength is None else given.strength / given.stiffness
+    breaking = getattr(given, "breaking_elongation", None)
+    if breaking is not None:
+        most = breaking - free
     pushes = float(getattr(given, "compression", False))
     law = Tie(stiffness, damping, free, most, float(given.brittle), pushes)
     size = most if math.isfinite(most) else 1.0

@@ -49,6 +49,8 @@ def test_what_is_given_comes_back():
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
+        ({"breaking_elongation": "5 cm"}, "has no strength"),
+        ({"breaking_elongation": "4 mm", "strength": None}, "before its slack is taken up"),
         ({"preload": "1 kN"}, "a tie with slack has no preload"),
         ({"compression": True}, "a bar that pushes has no slack"),
         ({"slack": None, "preload": "6 kN"}, "is not below its strength"),
@@ -179,6 +181,13 @@ def test_a_preload_raises_the_acceleration_at_which_a_block_uplifts():
         found = run(BLOCK, *down, motion=motion)
         assert (float(found.peak_rotation) > 0.0) is starts
     assert system.setting.overturning_energy > rf.System(BLOCK).setting.overturning_energy
+
+
+def test_a_tie_breaks_at_an_elongation_as_at_the_force_there():
+    far = TIE.replace(strength=None, breaking_elongation="30 mm")  # 5 kN at 200 kN/m
+    found, other = run(BLOCK, far), run(BLOCK, TIE)
+    np.testing.assert_allclose(found.rotation, other.rotation, rtol=0, atol=1e-12)
+    assert int(found.broken_restrainer_count) == 1
 
 
 def test_a_stack_on_rigid_bases_is_tied():
