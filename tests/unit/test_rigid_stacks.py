@@ -172,3 +172,26 @@ def test_columns_of_drums(count):
     run = system.simulate(shaken(4.0, 1.5), duration="0.45 s")
     assert run.sizes["event"] > 0
     assert float(run.energy_residual) < 1e-7
+
+
+@pytest.mark.parametrize(("count", "duration"), [(6, "0.5 s"), (8, "0.4 s")])
+def test_columns_of_many_drums_run_and_balance_their_energies(count, duration):
+    drum = rf.Block(width="1 m", height="0.8 m", mass="1 t")
+    column = rf.Stack(*[drum] * count, interfaces=[rf.RigidGround()] * (count - 1))
+    pulse = rf.GroundMotion.sine_pulse("2.5 m/s^2", "1.5 Hz")
+    system, options = rf.System(column), {"duration": duration, "outputs": ("energy",)}
+    run = system.simulate(pulse, **options)
+    assert float(run.energy_residual) < 1e-8
+    assert run.sizes["body"] == count
+    assert float(run.peak_rotation) > 1e-3
+    if count == 6:
+        other = system.simulate(pulse.scaled(-1.0), **options)
+        np.testing.assert_allclose(other.rotation, -run.rotation, rtol=0, atol=1e-10)
+
+
+def test_more_links_than_can_be_numbered_are_refused():
+    drum = rf.Block(width="1 m", height="0.8 m", mass="1 t")
+    column = rf.Stack(*[drum] * 8, interfaces=[rf.RigidGround()] * 7)
+    tie = rf.Restrainer(on=("-0.5 m", "0 m"), to=("-2 m", "0 m"), stiffness="1 MN/m")
+    with pytest.raises(rf.AssemblyError, match="3 links are more than 8 bodies can have"):
+        _ = rf.System(column, tie, tie, tie).simulate(duration="0.1 s")
