@@ -1,14 +1,27 @@
 """A wall behind a body, which then rocks to one side."""
 
 from enum import StrEnum
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar, Final, Literal
 
 from rockframe.arguments import one_of_words
-from rockframe.components.base import Component
-from rockframe.components.parameters import Choice, Declared, Ratio
+from rockframe.components.link import BODY, Link
+from rockframe.components.parameters import Choice, Count, Declared, Parameter, Ratio
 from rockframe.components.values import SIValues
 from rockframe.errors import ComponentError
-from rockframe.units import Condition, Measure, RatioLike, Unit, to_ratio
+from rockframe.units import (
+    DAMPING,
+    LENGTH,
+    NOT_NEGATIVE,
+    POSITIVE,
+    STIFFNESS,
+    THICKNESS,
+    Condition,
+    Measure,
+    QuantityLike,
+    RatioLike,
+    Unit,
+    to_ratio,
+)
 
 
 class WallSide(StrEnum):
@@ -29,6 +42,9 @@ SideLike = WallSide | Literal["left", "right"]
 WallImpactLike = WallImpact | Literal["sorrentino", "newton"] | RatioLike
 REBOUND = Condition("from -1 to 0", lambda value: -1.0 <= value <= 0.0)
 SHARE = Condition("from 0 to 1", lambda value: 0.0 <= value <= 1.0)
+
+
+_OF_SPRING: Final = ("damping", "gap", "height")
 
 
 class _Impact(Declared[Any, Any]):
@@ -56,20 +72,22 @@ class _Impact(Declared[Any, Any]):
         return str(value) if isinstance(value, WallImpact) else value
 
 
-class RearWall(Component):
-    """A stiff wall behind a body on rigid ground, against which it rocks to one side only.
+class RearWall(Link):
+    """A wall behind a body, against which it rocks to one side: stiff, or elastic.
 
-    Body and wall touch all along the body's height while it stands. It rocks away from the wall
-    about its front corner; when it comes back, base and wall are struck, and it rocks away again
-    with a share of its speed, :eq:`eq-wall-impact`.
+    A stiff one, on rigid ground, touches the body all along its height while that stands. The body
+    rocks away about its front corner; when it comes back, base and wall are struck, and it rocks
+    away again with a share of its speed, :eq:`eq-wall-impact`. Given a `stiffness` the wall is
+    elastic, on any base: a spring and a dashpot that press on the rear face at a height while they
+    are touched, behind a gap.
 
     Raises
     ------
     UnitsError
         Not a pure ratio.
     ComponentError
-        A value is out of range, or `wall_restitution` is given without ``restitution="newton"``,
-        or not with it.
+        A value is out of range, `wall_restitution` is given without ``restitution="newton"``, or
+        not with it, or an elastic wall with a restitution.
 
     Examples
     --------
@@ -96,14 +114,50 @@ class RearWall(Component):
         example="0.3",
     )
 
+    stiffness = Parameter(
+        STIFFNESS, POSITIVE, doc="Of an elastic wall; it is stiff unless given.", default=None
+    )
+    damping = Parameter(
+        DAMPING, NOT_NEGATIVE, doc="Of an elastic wall, while touched; none unless given.",
+        default=None,
+    )  # fmt: skip
+    gap = Parameter(
+        THICKNESS.like("5 mm"), NOT_NEGATIVE,
+        doc="Between the body that stands and an elastic wall; none unless given.", default=None,
+    )  # fmt: skip
+    height = Parameter(
+        LENGTH, POSITIVE,
+        doc="Above its base at which a body touches an elastic wall; its top unless given.",
+        default=None,
+    )  # fmt: skip
+    on_body = Count(doc="Number of the body, from the top down.", default=BODY)
+
     def __init__(
         self,
         *,
         side: SideLike = WallSide.LEFT,
         restitution: WallImpactLike = WallImpact.SORRENTINO,
         wall_restitution: RatioLike | None = None,
+        stiffness: QuantityLike | None = None,
+        damping: QuantityLike | None = None,
+        gap: QuantityLike | None = None,
+        height: QuantityLike | None = None,
+        on_body: int = BODY,
     ) -> None:
-        super().__init__(side=side, restitution=restitution, wall_restitution=wall_restitution)
+        super().__init__(
+            side=side, restitution=restitution, wall_restitution=wall_restitution,
+            stiffness=stiffness, damping=damping, gap=gap, height=height, on_body=on_body,
+        )  # fmt: skip
+
+    @property
+    def elastic(self) -> bool:
+        """Whether it gives way."""
+        return self.given.stiffness is not None
+
+    @property
+    def direction(self) -> float:
+        """Sign of the side on which it stands, 1 for the right."""
+        return -1.0 if self.given.side is WallSide.LEFT else 1.0
 
     def _numbers(self, given: SIValues) -> SIValues:
         newton = given.restitution is WallImpact.NEWTON
@@ -115,4 +169,11 @@ class RearWall(Component):
             )
             msg = f"RearWall: {words}"
             raise ComponentError(msg)
-        return given
+        of_spring = [name for name in _OF_SPRING if getattr(given, name) is not None]
+        if of_spring and given.stiffness is None:
+            msg = f"RearWall: {' and '.join(of_spring)} goes with a stiffness"
+            raise ComponentError(msg)
+        if given.stiffness is not None and given.restitution is not WallImpact.SORRENTINO:
+            msg = "RearWall: give restitution or stiffness, not both; an elastic wall throws back"
+            raise ComponentError(msg)
+        return SIValues(**vars(given), name="wall")

@@ -265,6 +265,76 @@ class SteadyForce(NamedTuple):
         return self.size * stretch.elongation
 
 
+# states of a tie; what a tie that pushes has in place of slack is yielding as it is pressed
+SLACK: Final = 0
+TAUT: Final = 1
+YIELDS: Final = 2
+BROKEN: Final = 3
+YIELDS_PRESSED: Final = SLACK
+# what users see of the latter, beside the others
+SHOWN_PRESSED: Final = 4
+
+LOWER: Final = 0
+"""The guard of the end of a state by shortening, or by its reversal."""
+UPPER: Final = 1
+"""That of its end by lengthening."""
+CLEAR: Final = 16.0
+"""Roundings of the elongation by which a tie that unloads stands below its strength."""
+TAUT_NOISE: Final = 1e3
+"""Roundings of the elongation within which a tie is taut where a run starts."""
+
+
+@link_law
+class Bumper(NamedTuple):
+    """A spring beside a dashpot behind a gap, which press while they are touched."""
+
+    stiffness: float  # k/m
+    damping: float  # c/m
+    gap: float  # elongation at which it is touched
+
+    def force(self, state: int, stretch: Stretch, own: Vector) -> float:
+        """Give k x + c x'."""
+        if state == SLACK:
+            return 0.0
+        return self.stiffness * (stretch.elongation - self.gap) + self.damping * stretch.rate
+
+    def energy(self, state: int, stretch: Stretch, own: Vector) -> float:
+        """Give k x^2/2."""
+        x = stretch.elongation - self.gap
+        return 0.5 * self.stiffness * x * x if state != SLACK else 0.0
+
+    def power(self, state: int, stretch: Stretch, own: Vector) -> float:
+        """Give what the dashpot dissipates."""
+        return self.damping * stretch.rate * stretch.rate if state != SLACK else 0.0
+
+    def states(self) -> int:
+        """Give 2: free and touched."""
+        return 2
+
+    def starting(self, stretch: Stretch, own: Vector) -> int:
+        """Give the state by where the point is."""
+        return TAUT if stretch.elongation - self.gap > TAUT_NOISE * stretch.noise else SLACK
+
+    def guard(self, which: int, state: int, stretch: Stretch, own: Vector) -> tuple[float, float]:
+        """Give how far the point is from the end of the state."""
+        x = stretch.elongation - self.gap
+        if state == SLACK and which == UPPER:
+            return -x, -stretch.rate
+        if state == TAUT and which == LOWER:
+            return x, stretch.rate
+        return 1.0, 0.0
+
+    def switch(self, which: int, state: int, stretch: Stretch, own: Vector) -> LinkEvent:
+        """Give the other state."""
+        if state == SLACK:
+            return LinkEvent(TAUT, LINK_TAUT, 0.0)
+        return LinkEvent(SLACK, LINK_SLACK, 0.0)
+
+    def shown(self, state: int) -> int:
+        """Give the state that users see."""
+        return state
+
+
 @dataclass(frozen=True)
 class LinkNumbers:
     """A law as the equations take it, and what a model must know of it beforehand.
@@ -283,25 +353,6 @@ class LinkNumbers:
     stiffness: float
     damping: float = 0.0
     variable_scales: tuple[float, ...] = ()
-
-
-# states of a tie; what a tie that pushes has in place of slack is yielding as it is pressed
-SLACK: Final = 0
-TAUT: Final = 1
-YIELDS: Final = 2
-BROKEN: Final = 3
-YIELDS_PRESSED: Final = SLACK
-# what users see of the latter, beside the others
-SHOWN_PRESSED: Final = 4
-
-LOWER: Final = 0
-"""The guard of the end of a state by shortening, or by its reversal."""
-UPPER: Final = 1
-"""That of its end by lengthening."""
-CLEAR: Final = 16.0
-"""Roundings of the elongation by which a tie that unloads stands below its strength."""
-TAUT_NOISE: Final = 1e3
-"""Roundings of the elongation within which a tie is taut where a run starts."""
 
 
 @link_law

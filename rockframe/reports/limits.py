@@ -83,7 +83,7 @@ LIMITS: Final = (
     ),
     Limit(
         "Walls",
-        "A wall behind the body is stiff: an impact lasts no time, and leaves the share of the "
+        "An impact on a stiff wall lasts no time, and leaves the share of the "
         "speed that its law says.",
         lambda parts: parts.wall is not None,
     ),

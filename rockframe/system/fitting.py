@@ -35,7 +35,7 @@ def misfits(parts: Parts) -> list[str]:
                 f"RigidGround and {' and '.join(others)} are both given; rigid ground carries a "
                 "block directly"
             )
-    if parts.wall is not None:
+    if parts.wall is not None and not parts.wall.elastic:
         behind = (pads, soil, cap, parts.stack, parts.frame, *parts.links)
         others = [type(part).__name__ for part in behind if part is not None]
         if others:

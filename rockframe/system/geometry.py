@@ -8,7 +8,6 @@ import numpy as np
 from rockframe.components import FrameEquivalent, RearWall, RockingFrame, Stack
 from rockframe.components.block_numbers import BlockSI
 from rockframe.components.rocking_frame import column_places, frame_outlines
-from rockframe.components.wall import WallSide
 from rockframe.signals.arrays import Array
 from rockframe.system.assembly import Assembly
 from rockframe.system.setting import Setting
@@ -135,8 +134,8 @@ def _of_wall(wall: RearWall | None, block: BlockSI) -> Array | None:
     """Give what is drawn of a wall: it is as high as the block, and as thick as its base."""
     if wall is None:
         return None
-    side = -1.0 if wall.given.side is WallSide.LEFT else 1.0
-    return rectangle(block.half_width, block.height, 2.0 * side * block.half_width)
+    beside = wall.direction * (2.0 * block.half_width + (wall.given.gap or 0.0))
+    return rectangle(block.half_width, block.height, beside)
 
 
 def _of_frame(frame: RockingFrame | None) -> dict[str, Any]:

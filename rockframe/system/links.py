@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rockframe.components import Link, Load, PointLink, Restrainer, Tendon
+from rockframe.components import Link, Load, PointLink, RearWall, Restrainer, Tendon
 from rockframe.errors import AssemblyError
 from rockframe.system.bodies import SupportedBody
 
@@ -74,6 +74,8 @@ class PlacedLink:
             return tie_of(self.part, mass)
         if isinstance(self.part, OwnLink):
             return self.part.law(mass)
+        if isinstance(self.part, RearWall):
+            return bumper_of(self.part, mass)
         return LinkNumbers(SteadyForce(math.hypot(*self.steady) / mass), 0.0)
 
     @property
@@ -88,12 +90,18 @@ class PlacedLink:
         from rockframe.dynamics.chain.linked import ChainLink
 
         to_point = self.to_point if self.to >= 0 else (0.0, 0.0)
+        return ChainLink(
+            self.on, self.on_point, self.to, to_point, self.apart, self.numbers(mass), self.along
+        )
+
+    @property
+    def along(self) -> tuple[float, float]:
+        """Direction in which it acts whichever way its points go; zero along its points."""
+        if isinstance(self.part, RearWall):
+            return self.part.direction, 0.0
         x, y = self.steady
         size = math.hypot(x, y) or 1.0
-        return ChainLink(
-            self.on, self.on_point, self.to, to_point, self.apart, self.numbers(mass),
-            (-x / size, -y / size),
-        )  # fmt: skip
+        return -x / size, -y / size
 
     def words(self) -> str:
         """Tell what it links, and how."""
@@ -103,6 +111,13 @@ class PlacedLink:
             return (
                 f"on body {self.on + 1} at ({x:.6g}, {y:.6g}) m, {right:.6g} N to the right, "
                 f"{-up:.6g} N down"
+            )
+        if isinstance(self.part, RearWall):
+            given = self.part.si
+            return (
+                f"behind body {self.on + 1} at ({x:.6g}, {y:.6g}) m, {given.stiffness:.6g} N/m, "
+                f"damping {given.damping or 0.0:.6g} N s/m, gap {given.gap or 0.0:.6g} m; presses "
+                "only"
             )
         other = "the ground" if self.to < 0 else f"body {self.to + 1}"
         found = [
@@ -145,6 +160,15 @@ def tie_of(part: Restrainer | Tendon, mass: float) -> "LinkNumbers":
     return LinkNumbers(law, stiffness, damping, (size,))
 
 
+def bumper_of(part: RearWall, mass: float) -> "LinkNumbers":
+    """Give the law of an elastic wall, per unit of a mass [kg]."""
+    from rockframe.dynamics.links import Bumper, LinkNumbers
+
+    given = part.si
+    stiffness, damping = given.stiffness / mass, (given.damping or 0.0) / mass
+    return LinkNumbers(Bumper(stiffness, damping, given.gap or 0.0), stiffness, damping)
+
+
 def placed(
     parts: Sequence[Link],
     bodies: Sequence[SupportedBody],
@@ -171,7 +195,10 @@ def placed(
         if isinstance(part, Load) and not (part.si.vertical or part.si.horizontal):
             continue  # its mass is that of its body
         bases = [(0.0, 0.0) if k < 0 else base_of(k, bodies, tops, offsets) for k in (on, to)]
-        ends = _ends_of(part, *bases)
+        if isinstance(part, RearWall):
+            ends = _ends_of_wall(part, bases[0], bodies[on], tops[on])
+        else:
+            ends = _ends_of(part, *bases)
         points = [
             (x, y) if k < 0 else
             (x - base[0] - bodies[k].eccentricity, y - base[1] - bodies[k].centre_height)
@@ -205,6 +232,15 @@ def _ends_of(part: Link, base: Point, other: Point) -> tuple[Point, Point]:
         return (x, y), (x, y - part.si.depth)
     point = (x + part.si.at[0], y + part.si.at[1])
     return point, point
+
+
+def _ends_of_wall(
+    part: RearWall, base: Point, body: SupportedBody, top: float
+) -> tuple[Point, Point]:
+    """Give the point of the rear face that touches a wall, and where it is touched."""
+    height = body.centre_height + top if part.si.height is None else part.si.height
+    x, y = base[0] + part.direction * body.half_width, base[1] + height
+    return (x, y), (x + part.direction * (part.si.gap or 0.0), y)
 
 
 def link_labels(parts: Sequence[Link]) -> list[str]:

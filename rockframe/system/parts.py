@@ -126,7 +126,11 @@ class Parts:
     @property
     def links(self) -> tuple[Link, ...]:
         """The links between points of bodies, ground and walls; loads stand behind the others."""
-        found = [part for part in self.structural() if isinstance(part, Link)]
+        found = [
+            part
+            for part in self.structural()
+            if isinstance(part, Link) and (not isinstance(part, RearWall) or part.elastic)
+        ]
         return tuple(sorted(found, key=lambda part: isinstance(part, Load)))
 
     @property
@@ -163,8 +167,14 @@ class Parts:
 
     @property
     def signature(self) -> frozenset[str]:
-        """Names of the structural parts that are there; rigid ground goes without saying."""
-        return frozenset(kind_of_slot(slot) for slot in self.components()) - {"ground"}
+        """Names of the structural parts that are there; rigid ground goes without saying.
+
+        An elastic wall is a link.
+        """
+        found = frozenset(kind_of_slot(slot) for slot in self.components()) - {"ground"}
+        if self.wall is not None and self.wall.elastic:
+            found = found - {"wall"} | {RESTRAINER}
+        return found
 
 
 def sort_parts(given: Sequence[object], faults: list[str]) -> Parts:

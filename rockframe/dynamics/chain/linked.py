@@ -418,7 +418,8 @@ class Linked(Chain):
             stored = self.law.with_numbers(part_of(row, NUMBERS)).energy(
                 self.link_state(mode, row), self.drawn(row, on, to).stretch, own
             )
-            if row[ALONG_X] != 0.0 or row[ALONG_Y] != 0.0:
+            # of what acts along a direction a load has but one state, a wall two
+            if (row[ALONG_X] != 0.0 or row[ALONG_Y] != 0.0) and row[STATES] <= 1.0:
                 gravity += stored
             else:
                 elastic += stored
@@ -534,7 +535,10 @@ class ChainLink(NamedTuple):
     to_point: tuple[float, float]  # likewise; of no matter on the ground
     apart: tuple[float, float]  # from the second point to the first, as the link is given
     numbers: LinkNumbers
-    along: tuple[float, float] = (0.0, 0.0)  # direction of a force that keeps it
+    along: tuple[float, float] = (
+        0.0,
+        0.0,
+    )  # in which a load or a wall acts
 
 
 def linked(chain: Chain, links: Sequence[ChainLink]) -> LinkedChain | LinkedRigidChain:

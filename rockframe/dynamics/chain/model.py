@@ -23,6 +23,7 @@ from rockframe.dynamics.chain.rigid import KEPT, RigidChain
 from rockframe.dynamics.chain.rows import GUARDS, OBSERVED, lists_of, row_of
 from rockframe.dynamics.chain.system import Chain
 from rockframe.dynamics.links import GUARDS as GUARDS_OF_LINK
+from rockframe.dynamics.links import SteadyForce
 from rockframe.dynamics.pads import CORNER_GUARDS, ROUNDING
 from rockframe.dynamics.protocol import (
     BODY_COLUMNS,
@@ -114,7 +115,7 @@ def chain(
     if isinstance(system, Linked):
         mode, state, _ = _initial(system, starts, Start())
         system.keep_energies(mode, state)
-    tied = sum(one.along == (0.0, 0.0) for one in ties)  # loads stand behind them
+    tied = sum(not isinstance(one.numbers.law, SteadyForce) for one in ties)  # loads are the last
     # links of several laws have as many variables each as that which has the most
     each = system.law.variables() if isinstance(system, Linked) else 0
     scales = [size for one in ties for size in (*one.numbers.variable_scales, *[1.0] * each)[:each]]

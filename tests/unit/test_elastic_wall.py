@@ -1,0 +1,100 @@
+"""Elastic walls on all bases: against an equation written by hand, limits, energy, mirror."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import rockframe as rf
+
+BLOCK = rf.Block(width="1 m", height="4 m", mass="4 t")
+PADS = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
+SOIL = rf.WinklerSoil(stiffness="60 MPa", damping_ratio=0.2)
+PULSE = rf.GroundMotion.sine_pulse("4 m/s^2", "1.2 Hz")
+BASES = {"rigid": (), "pads": (PADS,), "soil": (SOIL,)}
+
+
+@pytest.mark.parametrize("base", list(BASES))
+def test_a_wall_far_away_makes_no_difference(base):
+    plan = {"free_vibration": "0.5 s"}
+    far = rf.RearWall(stiffness="2 MN/m", damping="20 kN*s/m", gap="100 m")
+    with_wall = rf.System(BLOCK, *BASES[base], far).simulate(PULSE, **plan)
+    without = rf.System(BLOCK, *BASES[base]).simulate(PULSE, **plan)
+    scale = float(without.peak_rotation)
+    assert scale > 1e-3
+    np.testing.assert_allclose(with_wall.rotation, without.rotation, rtol=0.0, atol=1e-6 * scale)
+
+
+@pytest.mark.parametrize(
+    ("base", "accuracy", "most"), [("pads", "reference", 1e-8), ("soil", "standard", 1e-5)]
+)
+def test_a_wall_holds_back_and_keeps_the_balance(base, accuracy, most):
+    wall = rf.RearWall(side="left", stiffness="2 MN/m", damping="10 kN*s/m", gap="5 mm")
+    plan = {"free_vibration": "0.2 s", "outputs": ("energy",), "accuracy": accuracy}
+    run = rf.System(BLOCK, *BASES[base], wall).simulate(PULSE, **plan)
+    free = rf.System(BLOCK, *BASES[base]).simulate(PULSE, free_vibration="0.2 s")
+    assert float(free.rotation.min()) < 1.5 * float(run.rotation.min()) < 0.0
+    assert float(run.energy_residual) < most
+    assert str(run.restrainer[0].item()) == "wall"
+    assert float(run.restrainer_force.min()) > -1e5
+    assert float(run.peak_restrainer_force[0]) > 1e3
+    mirrored = rf.System(BLOCK, *BASES[base], wall.replace(side="right"))
+    other = mirrored.simulate(PULSE.scaled(-1.0), **(plan | {"outputs": None}))
+    assert float(other.peak_rotation) == pytest.approx(float(run.peak_rotation), rel=1e-9)
+
+
+def test_rocking_against_a_wall_is_that_of_the_equation():
+    """Housner's block whose upper left corner meets a spring at a gap."""
+    b, h, mass, stiffness, gap, gravity = 0.5, 2.0, 4000.0, 4e5, 0.01, 9.80665
+    radius, theta = math.hypot(b, h), math.atan2(b, h)
+    inertia, kept = 4.0 / 3.0 * mass * radius**2, 1.0 - 1.5 * math.sin(theta) ** 2
+
+    def slope(_, z, side):
+        pressed = max(-2.0 * h * math.sin(z[0]) - gap, 0.0) if side < 0.0 else 0.0
+        moment = -mass * gravity * radius * math.sin(side * theta - z[0])
+        return z[1], (moment + stiffness * pressed * 2.0 * h * math.cos(z[0])) / inertia
+
+    def lands(_, z, side):
+        return side * z[0]
+
+    lands.terminal, lands.direction = True, -1
+    times, found = np.arange(0.0, 1.6001, 0.01), np.zeros(161)
+    now, state, side = 0.0, np.array([0.1, 0.0]), 1.0
+    while now < 1.6:
+        run = solve_ivp(
+            slope, (now, 1.6), state, method="DOP853", rtol=1e-11, atol=1e-13, events=lands,
+            args=(side,), dense_output=True, max_step=0.002,
+        )  # fmt: skip
+        inside = (times >= now) & (times <= run.t[-1])
+        found[inside] = run.sol(times[inside])[0]
+        now, side = run.t[-1], -side
+        state = np.array([side * 1e-16, kept * run.y[1, -1]])
+    wall = rf.RearWall(side="left", stiffness=f"{stiffness} N/m", gap=f"{gap} m")
+    ours = rf.System(BLOCK, wall).simulate(
+        initial=rf.InitialState(rotation="0.1 rad"), duration="1.6 s", output_step="0.01 s",
+        accuracy="reference",
+    )  # fmt: skip
+    assert found.min() < -0.003
+    assert float(ours.peak_restrainer_force[0]) > 1e3
+    np.testing.assert_allclose(ours.rotation, found, rtol=0.0, atol=1e-7 * theta)
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"gap": "1 mm"}, "goes with a stiffness"),
+        ({"stiffness": "1 MN/m", "restitution": -0.3}, "not both"),
+    ],
+)
+def test_what_is_no_elastic_wall_is_refused(given, words):
+    with pytest.raises(rf.ComponentError, match=words):
+        rf.RearWall(**given)
+
+
+def test_an_elastic_wall_tells_itself_and_goes_to_plain_values_and_back():
+    wall = rf.RearWall(stiffness="1 MN/m", gap="1 cm", height="3 m")
+    system = rf.System(BLOCK, PADS, wall)
+    assert "presses only" in system.describe()
+    assert rf.System.from_dict(system.to_dict()) == system
+    rf.plot.scene(system)
