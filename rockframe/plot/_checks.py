@@ -20,7 +20,7 @@ Drawing = TypeVar("Drawing", bound=Callable[..., Any])
 
 
 @dataclass(frozen=True)
-class Kind:
+class DatasetKind:
     """A kind of dataset that a function draws."""
 
     what: str
@@ -30,54 +30,54 @@ class Kind:
 
 
 KINDS: Final = {
-    "fragility": Kind(
+    "fragility": DatasetKind(
         "a fragility", "rf.fragility(runs)", ("exceedance_probability", "fragility_status")
     ),
-    "dynamic_analysis": Kind(
+    "dynamic_analysis": DatasetKind(
         "a dynamic analysis",
         "rf.incremental_dynamic_analysis(system, motions)",
         ("capacity_scale", "flip_count", "peak_relative_rotation", "scale"),
     ),
-    "overturning_map": Kind(
+    "overturning_map": DatasetKind(
         "a map",
         "rf.overturning_map(system, pulse, ...)",
         ("impacts_before_overturning", "amplitude_above", "amplitude"),
     ),
-    "rocking_spectrum": Kind(
+    "rocking_spectrum": DatasetKind(
         "a spectrum",
         "rf.rocking_spectrum(system, motions, ...)",
         ("peak_relative_rotation", "rocking_period"),
     ),
-    "overturning_spectrum": Kind(
+    "overturning_spectrum": DatasetKind(
         "a spectrum",
         "rf.overturning_spectrum(system, ...)",
         ("capacity_intensity", "rocking_period"),
     ),
-    "probability": Kind(
+    "probability": DatasetKind(
         "a sample",
         "rf.probability_of_overturning(system, motions, ...)",
         ("overturning_probability", "first_order_index"),
     ),
-    "ensemble": Kind(
+    "ensemble": DatasetKind(
         "an ensemble", "rf.ensemble_statistics(runs)", ("ordered_value", "cumulative_probability")
     ),
-    "critical_scale": Kind(
+    "critical_scale": DatasetKind(
         "a critical scale",
         "rf.critical_scale(system, motion)",
         ("critical_scale", "scale_above", "outcome", "peak_rotation"),
     ),
-    "free_decay": Kind(
+    "free_decay": DatasetKind(
         "a fit",
         "rf.fit_free_decay(system, measured)",
         ("fitted_value", "parameter", "initial_rotation"),
     ),
-    "tradeoff": Kind(
+    "tradeoff": DatasetKind(
         "a comparison of models",
         "rf.tradeoff(system, motion)",
         ("run_time", "verdict_agrees"),
         ("numerical_history_error", "history_error", "model", "accuracy"),
     ),
-    "selection": Kind(
+    "selection": DatasetKind(
         "a set of motions beside its target",
         "rf.select_for_target(suite, target, 11)",
         ("scaled_spectral_acceleration", "target_spectral_acceleration"),
@@ -91,7 +91,7 @@ KINDS: Final = {
     ),
 }
 """What is known by its variables, by the function that draws it."""
-_RUN: Final = Kind(
+_RUN: Final = DatasetKind(
     "the result of one run with histories",
     "system.simulate(motion)",
     ("rotation", "time", "overturned"),
@@ -199,12 +199,12 @@ def check_run(given: object, function: str) -> None:
         raise SchemaError(msg)
 
 
-def checked(given: object, function: str) -> xr.Dataset:
+def drawable(given: object, function: str) -> xr.Dataset:
     """Give the dataset that a function draws, and refuse any other thing."""
     return _checked(given, function, KINDS[function])
 
 
-def _checked(given: object, function: str, kind: Kind) -> xr.Dataset:
+def _checked(given: object, function: str, kind: DatasetKind) -> xr.Dataset:
     if not isinstance(given, xr.Dataset) or not _holds(given, kind.known):
         raise SchemaError(refuse(function, given))
     missing = [repr(name) for name in (*kind.known, *kind.needed) if name not in given.variables]

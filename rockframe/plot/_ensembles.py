@@ -7,7 +7,7 @@ import xarray as xr
 
 from rockframe.errors import SchemaError
 from rockframe.plot._axes import COLOURS, colour_of, grid, label_of, label_of_intensity, style_of
-from rockframe.plot._checks import checked, draws
+from rockframe.plot._checks import drawable, draws
 from rockframe.plot._panels import Panels, Sheet, sheet, single
 from rockframe.results.outcome import overturns
 from rockframe.results.variables.analyses import FragilityStatus
@@ -35,7 +35,7 @@ def ensemble(dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None = 
     -------
     matplotlib.axes.Axes
     """
-    given = checked(dataset, "ensemble")
+    given = drawable(dataset, "ensemble")
     on = single(ax, "ensemble", (5.6, 3.9))
     axes = on.axes
     values = given["ordered_value"].rename(str(given.attrs["variable"]))
@@ -72,7 +72,7 @@ def probability(
     -------
     Panels
     """
-    given = checked(dataset, "probability")
+    given = drawable(dataset, "probability")
     names = ("indices", "shares")
     on = sheet(ax, "probability", names, (7.6, 3.6), lambda figure: figure.subplots(1, 2))
     left, right = on.panels
@@ -138,7 +138,7 @@ def fragility(
         The dataset is no fragility; the message names the function that draws what was given. Or
         it has more structures than a figure shows: twelve, over two measures one.
     """
-    given = checked(dataset, "fragility")
+    given = drawable(dataset, "fragility")
     if "limit_state" not in given.dims:
         given = given.expand_dims("limit_state")
     alone = [dim for dim, size in given["fragility_status"].sizes.items() if size == 1]

@@ -18,7 +18,7 @@ from rockframe.plot._axes import (
     label_of_intensity,
     plain_ticks,
 )
-from rockframe.plot._checks import checked, draws
+from rockframe.plot._checks import drawable, draws
 from rockframe.plot._panels import Panels, Sheet, sheet, single
 from rockframe.results.outcome import overturns
 from rockframe.studies.sweeps.words import cases_verdict
@@ -54,7 +54,7 @@ def dynamic_analysis(
     -------
     Panels
     """
-    given = checked(dataset, "dynamic_analysis")
+    given = drawable(dataset, "dynamic_analysis")
     name = str(given.attrs.get("intensity", "scale"))
     intensity = given[name].broadcast_like(given["peak_relative_rotation"])
     on = sheet(
@@ -129,7 +129,7 @@ def overturning_map(
     from matplotlib.colors import ListedColormap
     from matplotlib.patches import Patch
 
-    given = checked(dataset, "overturning_map")
+    given = drawable(dataset, "overturning_map")
     relative = "relative_pulse_frequency" in given.coords
     across = given["relative_pulse_frequency" if relative else "frequency"]
     up = given["relative_peak_ground_acceleration" if relative else "amplitude"]
@@ -181,7 +181,7 @@ def rocking_spectrum(
     -------
     Panels
     """
-    given = checked(dataset, "rocking_spectrum")
+    given = drawable(dataset, "rocking_spectrum")
     on = _sheet(ax, "rocking_spectrum", given)
     for place, axes in enumerate(on.panels):
         one = given.isel(slenderness=place)
@@ -210,7 +210,7 @@ def overturning_spectrum(
     -------
     Panels
     """
-    given = checked(dataset, "overturning_spectrum")
+    given = drawable(dataset, "overturning_spectrum")
     on = _sheet(ax, "overturning_spectrum", given)
     measure = given["capacity_intensity"].rename(str(given.attrs["intensity"]))
     for place, axes in enumerate(on.panels):

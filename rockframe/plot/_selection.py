@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe.plot._axes import BLUE, GREY, VERMILLION, grid, plain_ticks
-from rockframe.plot._checks import checked, draws
+from rockframe.plot._checks import drawable, draws
 from rockframe.plot._panels import Panels, sheet
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ def selection(dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None =
         Bands reach one standard deviation of the logarithm to both
         sides.
     """
-    checked(dataset, "selection")
+    drawable(dataset, "selection")
     count = dataset.sizes["motion"]
     on = sheet(
         ax, "selection", ("spectra", "misfits"), (8.6, max(4.0, min(9.0, 1.0 + 0.16 * count))),

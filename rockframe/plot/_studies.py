@@ -21,7 +21,7 @@ from rockframe.plot._axes import (
     unit_of,
     zero_line,
 )
-from rockframe.plot._checks import checked, draws
+from rockframe.plot._checks import drawable, draws
 from rockframe.plot._panels import Panels, sheet, single
 from rockframe.results.outcome import overturns
 from rockframe.results.variables.studies import Outcome
@@ -55,7 +55,7 @@ def critical_scale(
     matplotlib.axes.Axes
         Shaded, the scales that overturn; a line at the least of them.
     """
-    given = checked(dataset, "critical_scale")
+    given = drawable(dataset, "critical_scale")
     scale, outcome = given["scale"].to_numpy(), given["outcome"].to_numpy()
     name = "peak_relative_rotation" if "peak_relative_rotation" in given else "peak_rotation"
     peak = given[name].to_numpy()
@@ -159,7 +159,7 @@ def free_decay(
     UnitsError
         A unit of another kind.
     """
-    given = checked(dataset, "free_decay")
+    given = drawable(dataset, "free_decay")
     unit = unit_of(rotation, ANGLE, function="free_decay", name="rotation")
     histories = "measured_rotation" in given
     if histories:

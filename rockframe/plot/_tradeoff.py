@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe.plot._axes import GREY, grid, ink
-from rockframe.plot._checks import checked, draws
+from rockframe.plot._checks import drawable, draws
 from rockframe.plot._panels import Panels, sheet
 
 if TYPE_CHECKING:
@@ -50,7 +50,7 @@ def tradeoff(dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None = 
     from matplotlib import colormaps
     from matplotlib.ticker import LogLocator, NullLocator, StrMethodFormatter
 
-    checked(dataset, "tradeoff")
+    drawable(dataset, "tradeoff")
     models = [str(name) for name in dataset["model"].to_numpy()]
     on = sheet(
         ax, "tradeoff", ("integration", "model and integration"),
