@@ -21,6 +21,7 @@ from reference_models.sliding import compare, draw  # noqa: E402
 import rockframe as rf  # noqa: E402
 
 SEED = 30
+CASES, SCALES = 200, 20  # of each scene, and scales among them
 AGREES = 1e-6  # of the overturning angle, and of the peak slip or a millimetre
 
 
@@ -94,31 +95,29 @@ def rough(rng):
 
 
 def until_the_end(count):
-    """Run scenes at `fast` and `standard`, and count how they end."""
-    ends, kinds, worst, failed = Counter(), Counter(), Counter(), []
-    for k in range(count):
+    """Sweep scenes at `fast` and `standard`, and count how their runs end."""
+    ends, levels, worst, failed = Counter(), Counter(), {}, []
+    for k in range(count // CASES):
         system, motion, asked = rough(np.random.default_rng([SEED + 1, k]))
-        try:
-            run = system.simulate(motion, outputs=None, second_look=False, **asked)
-        except Exception as problem:
-            ends[type(problem).__name__] += 1
-            failed.append(k)
-            continue
-        status = int(run.status)
-        name = str(run.status.attrs["flag_meanings"]).split()[status]
-        ends[name] += 1
-        if name not in ("completed", "overturned", "toppled"):
-            failed.append(k)
-        names = str(run.event_kind.attrs["flag_meanings"]).split()
-        values = list(run.event_kind.attrs["flag_values"])
-        for value, times in Counter(run.event_kind.values.tolist()).items():
-            kinds[names[values.index(value)]] += times
         level = asked["accuracy"]
-        worst[level] = max(worst[level], float(run.energy_residual))
+        given = system.parts.ground.si
+        most = given.friction if given.kinetic_friction is None else given.kinetic_friction
+        runs = rf.sweep(
+            system, motion, scale=np.geomspace(0.2, 3.0, SCALES),
+            kinetic_friction=np.unique(np.linspace(0.0, most, CASES // SCALES)), **asked,
+        )  # fmt: skip
+        names = str(runs.status.attrs["flag_meanings"]).split()
+        values = list(runs.status.attrs["flag_values"])
+        found = Counter(names[values.index(one)] for one in runs.status.to_numpy().ravel())
+        ends.update(found)
+        levels[level] += int(runs.status.size)
+        worst[level] = max(worst.get(level, 0.0), float(runs.energy_residual.max()))
+        if set(found) - {"completed", "overturned", "toppled"}:
+            failed.append(k)
     return {
-        "runs": count,
+        "runs": sum(levels.values()),
+        "of them at": dict(levels),
         "ended as": dict(ends),
-        "events": dict(kinds),
         "worst energy balance": {level: float(f"{one:.2g}") for level, one in worst.items()},
         "to be looked at": failed,
     }
