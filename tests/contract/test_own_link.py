@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from plainly import plainly
 
 import rockframe as rf
 
@@ -37,10 +38,11 @@ def test_a_rope_runs_and_balances_its_energies(example):
 
 def test_one_that_hardly_hardens_is_a_tie(example):
     rope = example.Rope(**POINTS, reach="1e6 m")
-    runs = [
-        rf.System(BLOCK, PADS, one).simulate(PULSE, free_vibration="1 s", accuracy="reference")
-        for one in (rope, rf.Restrainer(**POINTS))
-    ]
+    with plainly():
+        runs = [
+            rf.System(BLOCK, PADS, one).simulate(PULSE, free_vibration="1 s", accuracy="reference")
+            for one in (rope, rf.Restrainer(**POINTS))
+        ]
     np.testing.assert_allclose(runs[0].rotation, runs[1].rotation, rtol=0, atol=1e-9)
     held = [
         rf.System(BLOCK, PADS, one).moment_rotation(([0.05], "rad")).restoring_moment
@@ -71,9 +73,8 @@ def test_the_page_names_files_that_are_there():
 def test_links_of_several_laws_are_in_one_scene(example):
     rope, tie = example.Rope(**POINTS, reach="1 m", name="rope"), rf.Restrainer(**POINTS)
     load = rf.Load(at=("0 m", "3 m"), vertical="2 kN")
-    alone = [
-        rf.System(BLOCK, PADS, one).simulate(PULSE, free_vibration="1 s") for one in (rope, tie)
-    ]
+    with plainly():
+        alone = rf.System(BLOCK, PADS, rope).simulate(PULSE, free_vibration="1 s")
     found = rf.System(BLOCK, PADS, rope, tie, load).simulate(
         PULSE, free_vibration="1 s", outputs=("energy",)
     )
@@ -82,5 +83,6 @@ def test_links_of_several_laws_are_in_one_scene(example):
     assert float(found.peak_restrainer_force.min()) > 0.0
     # each beside one that is never taut moves as it does alone
     idle = tie.replace(slack="1 km")
-    beside = rf.System(BLOCK, PADS, rope, idle).simulate(PULSE, free_vibration="1 s")
-    assert abs(beside.rotation - alone[0].rotation).max() < 1e-8
+    with plainly():
+        beside = rf.System(BLOCK, PADS, rope, idle).simulate(PULSE, free_vibration="1 s")
+    assert abs(beside.rotation - alone.rotation).max() < 1e-8
