@@ -19,7 +19,7 @@ if __package__ in (None, ""):
 
 from reference_models.maximal.motions import have_records  # noqa: E402
 from reference_models.stacks.comparing import compared  # noqa: E402
-from reference_models.stacks.drawing import draw  # noqa: E402
+from reference_models.stacks.drawing import draw, tied  # noqa: E402
 from reference_models.stacks.standing import OVERTURNED  # noqa: E402
 
 AGREES = 1e-6
@@ -31,6 +31,7 @@ def main() -> None:
     parser.add_argument("--scenes", type=int, nargs="+", default=[300], help="for each number")
     parser.add_argument("--seed", type=int, default=77)
     parser.add_argument("--bodies", type=int, nargs="+", default=[2, 3, 5, 8])
+    parser.add_argument("--ties", action="store_true", help="with ties between random points")
     parser.add_argument("--replay", type=int, nargs="+", help="numbers of scenes to repeat")
     parser.add_argument("--json", type=Path, default=ROOT / "docs" / "data" / "chain_oracle.json")
     given = parser.parse_args()
@@ -39,14 +40,20 @@ def main() -> None:
     tables = []
     counts = given.scenes * (len(given.bodies) if len(given.scenes) == 1 else 1)
     for bodies, count in zip(given.bodies, counts, strict=True):
-        tables.append(_table(bodies, given.seed, given.replay or range(count)))
+        tables.append(_table(bodies, given.seed, given.replay or range(count), given.ties))
         print(tables[-1], flush=True)
     if not given.replay:
         given.json.write_text(json.dumps(tables, indent=1) + "\n")
 
 
-def _table(bodies: int, seed: int, numbers) -> dict:
-    found = [compared(draw(np.random.default_rng([seed, bodies, one]), bodies)) for one in numbers]
+def _drawn(bodies: int, seed: int, number: int, ties: bool):
+    rng = np.random.default_rng([seed, bodies, number])
+    scene = draw(rng, bodies)
+    return tied(scene, rng) if ties else scene
+
+
+def _table(bodies: int, seed: int, numbers, ties: bool) -> dict:
+    found = [compared(_drawn(bodies, seed, one, ties)) for one in numbers]
     differences = np.array([one.difference for one in found])
     return {
         "bodies": bodies,

@@ -1,5 +1,6 @@
 """Run a scene by the reference model and by the package's chain of bodies."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -7,7 +8,10 @@ from reference_models.maximal.motions import both
 
 from rockframe.dynamics.alone_model import rigid_body
 from rockframe.dynamics.base_numbers import bed_numbers, pads_numbers
+from rockframe.dynamics.chain.linked import GROUND, ChainLink
 from rockframe.dynamics.chain.model import ChainBody, chain
+from rockframe.dynamics.links import LinkNumbers
+from rockframe.dynamics.links import Tie as LawOfTie
 from rockframe.dynamics.protocol import ContactModel, Start, column_of
 from rockframe.dynamics.restraint import BY_CONTACT, CENTRE, LEADING_CORNER
 from rockframe.signals import Motion
@@ -16,7 +20,7 @@ from rockframe.solve.integrate import integrate
 from rockframe.solve.observe import memory_at_outputs, observe_states
 from rockframe.solve.trajectory import Trajectory
 
-from .scene import GRAVITY, Bed, Scene
+from .scene import GRAVITY, Bed, Scene, apart
 from .simulate import History, simulate
 
 RULES = {"contact-state": BY_CONTACT, "leading-corner": LEADING_CORNER, "centre": CENTRE}
@@ -66,7 +70,17 @@ def model_of(scene: Scene) -> ContactModel:
             eps = both_sides if isinstance(both_sides, tuple) else (both_sides, both_sides)
             under = pads_numbers(body, restitution=eps, **numbers)
         links.append(ChainBody(body, under, given.mass / measure, given.top, beside))
-    return chain(links, measure)
+    ties = []
+    for tie in scene.ties:
+        firm, viscous = tie.stiffness / measure, tie.damping / measure
+        law = LawOfTie(
+            firm, viscous, tie.slack or 0.0, math.inf, 1.0, 1.0 if tie.slack is None else 0.0
+        )
+        to = GROUND if tie.to is None else tie.to
+        to_point = (0.0, 0.0) if tie.to is None else tie.to_point
+        numbers = LinkNumbers(law, firm, viscous, (1e-3,))
+        ties.append(ChainLink(tie.on, tie.on_point, to, to_point, apart(scene, tie), numbers))
+    return chain(links, measure, ties=ties)
 
 
 def run_chain(scene: Scene, motion: Motion | None, accuracy: str, step: float) -> Trajectory:

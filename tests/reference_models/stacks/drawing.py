@@ -1,11 +1,12 @@
 """Random scenes of blocks on pads."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 from reference_models.maximal.drawing import draw_log, draw_motion
 
-from .scene import GRAVITY, RULES, Body, Pads, Scene
+from .scene import GRAVITY, RULES, Body, Pads, Scene, Tie, centre_of
 
 SOFTEST = 0.6
 """Greatest share of the weight that would tip the stack over on its pads."""
@@ -57,6 +58,29 @@ def draw(
         tuple(bodies), tuple(bases), rule, rotation, free=float(round(rng.uniform(1.0, 3.0), 3)),
         motion=motion,
     )  # fmt: skip
+
+
+def tied(scene: Scene, rng: np.random.Generator) -> Scene:
+    """Give the scene with one to three ties or bars, between bodies or to the ground."""
+    count, found = len(scene.bodies), []
+    for _ in range(int(rng.integers(1, 4))):
+        on = int(rng.integers(count))
+        others = [None, *(k for k in range(count) if k != on)]
+        to = others[int(rng.integers(len(others)))]
+        body, side = scene.bodies[on], 1.0 if rng.random() < 0.5 else -1.0
+        point = (side * body.half_width, float(rng.uniform(-1.0, 1.0)) * body.height)
+        if to is None:
+            x, y = centre_of(scene, on)
+            away = (x + point[0] * float(rng.uniform(1.5, 3.0)), y * float(rng.uniform(0.0, 1.0)))
+        else:
+            lower = scene.bodies[to]
+            away = (-side * lower.half_width, float(rng.uniform(-1.0, 1.0)) * lower.height)
+        weight = GRAVITY * sum(one.mass for one in scene.bodies)
+        firm = weight / body.height * 10.0 ** float(rng.uniform(-0.5, 1.5))
+        slack = None if rng.random() < 0.3 else 1e-3 * body.half_width * float(rng.uniform(1, 20))
+        damping = 0.02 * math.sqrt(firm * body.mass) if rng.random() < 0.5 else 0.0
+        found.append(Tie(on, point, to, away, firm, damping, slack))
+    return replace(scene, ties=tuple(found))
 
 
 def _blocks(

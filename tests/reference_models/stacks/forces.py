@@ -1,5 +1,8 @@
 """Forces on the bodies and, with the multipliers of what holds them, their accelerations."""
 
+import math
+
+import numpy as np
 from reference_models.maximal.compiling import compiled
 from reference_models.maximal.impulses import solve_dense
 
@@ -103,6 +106,44 @@ def product(one, i, other, j, inverse):
 
 
 @compiled
+def pull_ties(z, stack, load):
+    """Add what ties do to the bodies, and give the power of their dashpots."""
+    count, lost = stack.inverse.size, 0.0
+    for which in range(stack.ties.shape[0]):
+        row = stack.ties[which]
+        dx, dy, vx, vy = row[6], row[7], 0.0, 0.0
+        given = math.sqrt(dx * dx + dy * dy)
+        arms = np.zeros((2, 2))
+        for side in range(2):
+            k, sign = int(row[3 * side]), 1.0 - 2.0 * side
+            if k < 0:
+                continue
+            sine, cosine, r = math.sin(z[3 * k + 2]), math.cos(z[3 * k + 2]), count + 3 * k
+            x, y = row[3 * side + 1], row[3 * side + 2]
+            arms[side, 0], arms[side, 1] = x * cosine + y * sine, y * cosine - x * sine
+            dx += sign * (z[3 * k] + arms[side, 0] - x)
+            dy += sign * (z[3 * k + 1] + arms[side, 1] - y)
+            vx += sign * (z[r] + z[r + 2] * arms[side, 1])
+            vy += sign * (z[r + 1] - z[r + 2] * arms[side, 0])
+        length = math.sqrt(dx * dx + dy * dy)
+        rate, slack = (dx * vx + dy * vy) / length, row[10]
+        force = row[9] * rate
+        if slack < 0.0:
+            force += row[8] * (length - given)
+        elif length - given > slack:
+            force += row[8] * (length - given - slack)
+        lost += row[9] * rate * rate
+        for side in range(2):
+            k, sign = int(row[3 * side]), 2.0 * side - 1.0
+            if k >= 0:
+                fx, fy = sign * force * dx / length, sign * force * dy / length
+                load[3 * k] += fx
+                load[3 * k + 1] += fy
+                load[3 * k + 2] += fx * arms[side, 1] - fy * arms[side, 0]
+    return lost
+
+
+@compiled
 def accelerate(z, gx, gy, stack, standing, room):
     """Fill `room.out` with the accelerations, `room.force` and `room.gain` with what holds do.
 
@@ -120,6 +161,7 @@ def accelerate(z, gx, gy, stack, standing, room):
         force, moment, _, _ = base_force(k, stack, standing.ends, room)
         for j in range(6):
             load[3 * k + j] += force * room.rows[k, 1, j] + moment * room.rows[k, 2, j]
+    pull_ties(z, stack, load)
     slides = False
     matrix, right = room.matrix, room.right
     for k in range(n):
@@ -183,7 +225,7 @@ def _find_gains(stack, standing, room):
 def powers(z, gx, gy, stack, standing, room):
     """Give what is dissipated and what the ground puts in, after `accelerate` for the state."""
     count = stack.inverse.size
-    lost = given = 0.0
+    given, lost = 0.0, pull_ties(z, stack, room.load * 0.0)
     for k in range(stack.mass.size):
         lost += base_force(k, stack, standing.ends, room)[2]
         if standing.hold[k] == SLIDING:

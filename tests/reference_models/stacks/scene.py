@@ -56,6 +56,23 @@ class Bed:
 
 
 @dataclass(frozen=True)
+class Tie:
+    """A spring beside a dashpot between points of two bodies, or of one and the ground (None).
+
+    Points are from the centres of mass, on the ground from the middle of the lowest base. It pulls
+    from `slack` on; without slack (None) it is a bar, which also pushes.
+    """
+
+    on: int
+    on_point: tuple[float, float]
+    to: int | None
+    to_point: tuple[float, float]
+    stiffness: float
+    damping: float
+    slack: float | None
+
+
+@dataclass(frozen=True)
 class Scene:
     """Bodies from the top down, what each stands on, and how the lowest base is shaken.
 
@@ -70,6 +87,7 @@ class Scene:
     rate: float = 0.0
     free: float = 2.0
     motion: dict[str, Any] = field(default_factory=dict)
+    ties: tuple[Tie, ...] = ()
 
 
 class Stack(NamedTuple):
@@ -96,6 +114,7 @@ class Stack(NamedTuple):
     gravity: float
     tolerance: float
     pace: float  # upper bound for the angular frequencies
+    ties: np.ndarray  # of each: bodies, points, distance at rest, stiffness, damping, slack
 
 
 def stack_of(scene: Scene, tolerance: float) -> Stack:
@@ -134,8 +153,45 @@ def stack_of(scene: Scene, tolerance: float) -> Stack:
         rule=RULES.index(scene.rule),
         gravity=GRAVITY,
         tolerance=tolerance,
-        pace=_pace(inverse, size * stiffness, size * damping, wide),
+        pace=_pace(inverse, size * stiffness, size * damping, wide) + _pace_of_ties(scene, inverse),
+        ties=np.array([_tie_row(scene, tie) for tie in scene.ties]).reshape(-1, 11),
     )
+
+
+def centre_of(scene: Scene, k: int) -> tuple[float, float]:
+    """Give the centre of mass of an upright body from the middle of the lowest base."""
+    bodies = scene.bodies
+    level = sum(one.height + one.top for one in bodies[k + 1 :]) + bodies[k].height
+    return sum(one.offset for one in bodies[k:-1]) + bodies[k].eccentricity, level
+
+
+def apart(scene: Scene, tie: Tie) -> tuple[float, float]:
+    """Give the way from the second point of a tie to the first, upright."""
+    x, y = centre_of(scene, tie.on)
+    other = (0.0, 0.0) if tie.to is None else centre_of(scene, tie.to)
+    return (
+        x + tie.on_point[0] - other[0] - tie.to_point[0],
+        y + tie.on_point[1] - other[1] - tie.to_point[1],
+    )
+
+
+def _tie_row(scene: Scene, tie: Tie) -> tuple[float, ...]:
+    to = -1 if tie.to is None else tie.to
+    slack = -math.inf if tie.slack is None else tie.slack
+    return (
+        tie.on, *tie.on_point, to, *tie.to_point, *apart(scene, tie), tie.stiffness, tie.damping,
+        slack,
+    )  # fmt: skip
+
+
+def _pace_of_ties(scene: Scene, inverse: np.ndarray) -> float:
+    total = 0.0
+    for tie in scene.ties:
+        for k, (x, y) in ((tie.on, tie.on_point), (tie.to, tie.to_point)):
+            if k is not None:
+                light = inverse[3 * k] + (x * x + y * y) * inverse[3 * k + 2]
+                total += math.sqrt(tie.stiffness * light) + tie.damping * light
+    return total
 
 
 def _rebounds(base: Pads | Bed) -> tuple[float, float]:
