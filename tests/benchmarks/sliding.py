@@ -136,7 +136,7 @@ def main():
         found["until the end"] = until_the_end(given.runs)
     if given.scenes:
         found["against a monolith"] = against_monolith(given.scenes)
-    text = json.dumps(found, indent=1)
+    text = json.dumps(found, indent=1, default=int)  # counts of NumPy among them
     given.json.write_text(text + "\n", encoding="utf-8")
     print(text)
 
