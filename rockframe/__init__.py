@@ -6,11 +6,9 @@ can hold.
 """
 
 import os
-import re
 import sys
 from importlib import import_module
 from itertools import pairwise
-from pkgutil import get_data
 from typing import Any
 
 
@@ -29,13 +27,10 @@ if not _is_command_line():
         import_module(_library)
     import_module(f"{__name__}.accessor")  # so that every dataset has it
 
+_STUB = __loader__.get_data(os.path.join(os.path.dirname(__file__), "__init__.pyi")).decode()
 _HOMES = {
     name: home
-    for home, name in re.findall(
-        r"^from (\S+) import \(?\s*(\w+) as",
-        (get_data(__name__, "__init__.pyi") or b"").decode(),
-        re.M,
-    )
+    for home, _, name in (one.replace("(", " ").split()[:3] for one in _STUB.split("\nfrom ")[1:])
 }
 """From which module each public name is imported, as the stub beside this file says."""
 
