@@ -52,6 +52,7 @@ from rockframe.reports import report as report
 from rockframe.results.diagnostics import Diagnostic as Diagnostic
 from rockframe.results.joining import concat as concat
 from rockframe.results.table import table as table
+from rockframe.simulation.proving import prove as prove
 from rockframe.simulation.registration import register as register
 from rockframe.simulation.run_arguments import Certification as Certification
 from rockframe.simulation.system import System as System

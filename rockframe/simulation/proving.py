@@ -1,0 +1,142 @@
+"""Proofs of verdicts, as users ask for them."""
+
+from importlib.util import find_spec
+from typing import TYPE_CHECKING, Final
+
+from rockframe.dynamics.protocol import Ending
+from rockframe.dynamics.rigid_ground import BlockOnRigidGround
+from rockframe.errors import ComponentError, shown
+from rockframe.simulation.plan import Plan, plan_run, start_of
+from rockframe.system.assembly import Assembly
+from rockframe.units import POSITIVE, Condition, to_ratio
+
+if TYPE_CHECKING:
+    from rockframe.components import InitialState
+    from rockframe.motion import GroundMotion
+    from rockframe.proof.verdict import Proof
+    from rockframe.simulation.system import System
+    from rockframe.units import RatioLike
+
+_OWNER: Final = "prove"
+_TOLERANCE: Final = Condition("from 0 to 0.1", lambda value: 0.0 <= value <= 0.1)
+
+
+def prove(
+    system: "System",
+    motion: "GroundMotion | None" = None,
+    *,
+    scale: "RatioLike" = 1.0,
+    restitution_tolerance: "RatioLike" = 0.0,
+    initial: "InitialState | None" = None,
+) -> "Proof":
+    """Prove whether a block on rigid ground overturns under a record.
+
+    Parameters
+    ----------
+    system : System
+        A block on rigid ground, with ``rotation="finite"``; any body, inclined ground too.
+    motion : GroundMotion, optional
+        A record, with or without vertical component; the one among the parts unless given.
+    scale : float, optional
+        Factor of both components, taken as exact [1].
+    restitution_tolerance : float, optional
+        What is proved is proved of all restitutions that differ by no more than this [1].
+    initial : InitialState, optional
+        Where the motion starts; at rest unless given.
+
+    Returns
+    -------
+    Proof
+        Its ``verdict`` is ``"safe for ever"``, on ground that stays still after the record,
+        ``"overturns"``, between ``earliest`` and ``latest`` [s], or ``"undecided"``, with the
+        ``reason``. Its text says what has been proved.
+
+    Raises
+    ------
+    UnitsError
+        An argument is no ratio.
+    ComponentError
+        Not a System, another scene than a block on rigid ground, small rotation, an analytic
+        pulse, or python-flint is not installed (``pip install rockframe[proof]``).
+    AssemblyError
+        As for :meth:`rockframe.System.simulate`.
+
+    Notes
+    -----
+    Every real number that occurs is enclosed in a ball, from the first sample to the end
+    (section "Proved verdicts" of the theory manual). The theorem is about the model with these
+    doubles; it does not say how well the model describes the block.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import rockframe as rf
+    >>> system = rf.System(rf.Block(width="1 m", height="5 m", mass="10 t"))
+    >>> sine = 3.0 * np.sin(np.pi * np.linspace(0.0, 1.0, 101))
+    >>> pulse = rf.GroundMotion.from_arrays((sine, "m/s^2"), "0.01 s")
+    >>> rf.prove(system, pulse).verdict, rf.prove(system, pulse, scale=1.2).verdict
+    ('safe for ever', 'overturns')
+    """
+    assembly = getattr(system, "assembly", None)
+    if not isinstance(assembly, Assembly):
+        msg = f"{_OWNER}: system must be a System, got {shown(system)}"
+        raise ComponentError(msg)
+    factor = to_ratio(scale, owner=_OWNER, name="scale", condition=POSITIVE, example="1.5")
+    tolerance = to_ratio(
+        restitution_tolerance, owner=_OWNER, name="restitution_tolerance", condition=_TOLERANCE
+    )
+    still = motion is None and assembly.parts.motion is None
+    plan = plan_run(
+        assembly, motion, initial=initial, outputs=None, duration="1 s" if still else None
+    )
+    return proof_of(assembly, plan, scale=factor, tolerance=tolerance)
+
+
+def proof_of(
+    system: Assembly, plan: Plan, *, scale: float = 1.0, tolerance: float = 0.0
+) -> "Proof":
+    """Prove the verdict of a run as it was planned.
+
+    Parameters
+    ----------
+    system : Assembly
+        The scene.
+    plan : Plan
+        The arguments of the run, of which motion and start count.
+    scale, tolerance : float
+        As for :func:`prove`.
+
+    Returns
+    -------
+    Proof
+
+    Raises
+    ------
+    ComponentError
+        No proof is to be had of this.
+    """
+    model, motion = system.model, plan.motion
+    faults: list[str] = []
+    law = model.system
+    if not isinstance(law, BlockOnRigidGround) or system.options.small:
+        faults.append("proofs are of a Block on rigid ground, with rotation='finite'")
+    if motion is None:
+        faults.append("there is no motion")
+    elif motion.si.analytic:
+        faults.append(
+            "proofs are of records, whose samples are joined by straight lines; sample this motion "
+            "with resampled(...)"
+        )
+    if find_spec("flint") is None:
+        faults.append("python-flint is not installed: pip install rockframe[proof]")
+    if faults or motion is None or not isinstance(law, BlockOnRigidGround):
+        msg = f"{_OWNER}: {'; '.join(faults)}"
+        raise ComponentError(msg)
+    from rockframe.proof.verdict import prove_block
+
+    start = start_of(plan.initial)
+    state = start.state if isinstance(start, Ending) else model.initial(start)[1]
+    return prove_block(
+        law, motion.si, system.options.slope, system.setting.overturning_angles,
+        (float(state[0]), float(state[1])), scale=scale, tolerance=tolerance,
+    )  # fmt: skip

@@ -1,0 +1,94 @@
+"""Verdicts that are proved, and what runs say at scales beside theirs."""
+
+import numpy as np
+import pytest
+
+pytest.importorskip("flint")
+
+import rockframe as rf
+
+CASES = ((4, 0.5232918709453089, 0.5232918709453430), (6, 0.3486605904600310, 0.3486605904600537))
+
+
+def system(slenderness):
+    block = rf.Block.from_size(radius="5 m", slenderness=slenderness, mass="1 t")
+    return rf.System(block, gravity="9.81 m/s^2")
+
+
+def half_sine(seconds=1.0, step=0.005):
+    k = np.arange(round(seconds / step) + 1)
+    shares = np.round(np.sin(np.pi * k * step / seconds), 12)
+    return rf.GroundMotion.from_arrays((shares * 9.81, "m/s^2"), f"{step} s")
+
+
+@pytest.mark.parametrize(("slenderness", "low", "high"), CASES)
+def test_both_sides_of_a_critical_scale_are_proved_and_runs_agree(slenderness, low, high):
+    scene, motion = system(slenderness), half_sine()
+    assert rf.prove(scene, motion, scale=low).verdict == "safe for ever"
+    assert rf.prove(scene, motion, scale=high + 1e-10).verdict == "overturns"
+    for accuracy, away in (("reference", 1e-13), ("standard", 1e-12)):
+        for scale, falls in ((low - away, False), (high + away, True)):
+            response = scene.simulate(
+                motion.scaled(scale), free_vibration="20 s", accuracy=accuracy, outputs=None
+            )
+            assert bool(response.overturned) is falls
+
+
+def test_a_block_that_bounces_to_rest_is_proved_safe():
+    scene = rf.System(rf.Block(width="1 m", height="4 m", mass="1 t"))
+    motion = rf.GroundMotion.from_arrays((np.zeros(400), "m/s^2"), "0.02 s")
+    start = rf.InitialState(rotation="0.01 rad")
+    proof = rf.prove(scene, motion, initial=start)
+    assert proof.overturns is False
+
+
+def test_the_instant_of_overturning_is_enclosed():
+    scene, motion = system(4), half_sine()
+    proof = rf.prove(scene, motion, scale=0.6)
+    run = scene.simulate(motion.scaled(0.6), free_vibration="5 s", accuracy="reference")
+    assert proof.latest - proof.earliest < 1e-13
+    assert run.overturning_time.item() == pytest.approx(proof.earliest, abs=1e-9)
+
+
+def test_mirrored_eccentric_blocks_on_mirrored_slopes_have_the_same_proof():
+    proofs = []
+    for sign in (1.0, -1.0):
+        block = rf.Block(
+            width="1 m", height="4 m", mass="1 t", centre_of_mass=("2 m", f"{0.05 * sign} m")
+        )
+        scene = rf.System(block, inclination=f"{0.01 * sign} rad")
+        up = (0.3 * half_sine().si.horizontal.samples, "m/s^2")
+        motion = rf.GroundMotion.from_arrays(
+            (sign * half_sine().si.horizontal.samples, "m/s^2"), "0.005 s", vertical=up
+        )
+        proofs.append(rf.prove(scene, motion, scale=0.45))
+    first, second = proofs
+    assert first.verdict == second.verdict != "undecided"
+
+
+def test_a_tolerance_is_proved_or_said_to_be_too_wide():
+    scene, motion = system(4), half_sine()
+    assert rf.prove(scene, motion, scale=0.5, restitution_tolerance=1e-6).overturns is False
+    assert "within 1e-06" in str(rf.prove(scene, motion, scale=0.5, restitution_tolerance=1e-6))
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda b, m: (rf.System(b, rotation="small"), m), "finite"),
+        (lambda b, m: (rf.System(b), rf.GroundMotion.sine_pulse("3 m/s^2", "1 Hz")), "records"),
+        (
+            lambda b, m: (
+                rf.System(b, rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)),
+                m,
+            ),
+            "rigid ground",
+        ),
+        (lambda b, m: (b, m), "System"),
+    ],
+)
+def test_what_cannot_be_proved_is_refused(change, words):
+    block = rf.Block(width="1 m", height="4 m", mass="1 t")
+    scene, motion = change(block, half_sine())
+    with pytest.raises(rf.ComponentError, match=words):
+        rf.prove(scene, motion)
