@@ -107,7 +107,9 @@ class Problem:
         return GroundBalls(along, weight)
 
 
-def knots_of(motion: Motion, slope: Slope, scale: float) -> tuple[list[GroundBalls], GroundBalls]:
+def ground_at_samples(
+    motion: Motion, slope: Slope, scale: float
+) -> tuple[list[GroundBalls], GroundBalls]:
     """Give the ground at the samples of a record, and after them, :eq:`eq-incline-ground`."""
     inclination, gravity, factor = arb(slope.inclination), arb(slope.gravity), arb(scale)
     sine, cosine = inclination.sin(), inclination.cos()

@@ -8,7 +8,7 @@ from flint import arb, ctx
 from rockframe.dynamics.rigid_ground import BlockOnRigidGround, RockingCorner
 from rockframe.proof.flow import point
 from rockframe.proof.march import March, Watch
-from rockframe.proof.problem import BearingCorner, Problem, Undecided, knots_of
+from rockframe.proof.problem import BearingCorner, Problem, Undecided, ground_at_samples
 from rockframe.signals import Motion
 from rockframe.signals.slope import Slope
 from rockframe.system.bodies import OverturningAngles
@@ -146,7 +146,7 @@ def _tried(
         restitution = arb(corner.restitution) + arb(0, tolerance)
         return BearingCorner(sign, arb(corner.angle), rate, restitution, arb(limit))
 
-    knots, still = knots_of(motion, slope, scale)
+    knots, still = ground_at_samples(motion, slope, scale)
     problem = Problem(
         side(1, system.right, limits.right),
         side(-1, system.left, limits.left),
