@@ -53,6 +53,7 @@ from rockframe.results.diagnostics import Diagnostic as Diagnostic
 from rockframe.results.joining import concat as concat
 from rockframe.results.table import table as table
 from rockframe.simulation.proving import prove as prove
+from rockframe.simulation.proving import prove_critical_scale as prove_critical_scale
 from rockframe.simulation.registration import register as register
 from rockframe.simulation.run_arguments import Certification as Certification
 from rockframe.simulation.system import System as System

@@ -1,5 +1,6 @@
 """Proofs of verdicts, as users ask for them."""
 
+from dataclasses import dataclass
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Final
 
@@ -18,6 +19,12 @@ if TYPE_CHECKING:
     from rockframe.units import RatioLike
 
 _OWNER: Final = "prove"
+_CRITICAL: Final = "prove_critical_scale"
+_WIDTH: Final = Condition("from 1e-14 to 0.1", lambda value: 1e-14 <= value <= 0.1)
+_PLACES: Final = (0.5, 0.25, 0.75, 0.4, 0.6, 0.1, 0.9)
+"""Shares of a bracket at which it is divided, one after the other where nothing is decided."""
+_GROWTH: Final = 1.1
+_FARTHEST: Final = 100
 _TOLERANCE: Final = Condition("from 0 to 0.1", lambda value: 0.0 <= value <= 0.1)
 
 
@@ -90,6 +97,112 @@ def prove(
         assembly, motion, initial=initial, outputs=None, duration="1 s" if still else None
     )
     return proof_of(assembly, plan, scale=factor, tolerance=tolerance)
+
+
+@dataclass(frozen=True)
+class ProvedBracket:
+    """Two scales, one of which is proved safe for ever, the other to overturn the block.
+
+    Parameters
+    ----------
+    safe, overturns : float
+        The scales [1].
+    undecided : int
+        Number of scales tried at which nothing could be proved.
+    """
+
+    safe: float
+    overturns: float
+    undecided: int
+
+    @property
+    def width(self) -> float:
+        """Their distance, over the greater [1]."""
+        return abs(self.overturns - self.safe) / max(self.overturns, self.safe)
+
+
+def prove_critical_scale(
+    system: "System",
+    motion: "GroundMotion | None" = None,
+    *,
+    width: "RatioLike" = 1e-9,
+    start: "RatioLike" = 1.0,
+    initial: "InitialState | None" = None,
+) -> ProvedBracket:
+    """Enclose a scale of a record at which a block begins to overturn, proved on both sides.
+
+    Parameters
+    ----------
+    system : System
+        As for :func:`prove`.
+    motion : GroundMotion, optional
+        A record; the one among the parts unless given.
+    width : float, optional
+        Distance of the scales at which the search ends, over the greater [1].
+    start : float, optional
+        Scale from which an overturning one is looked for, upwards in steps of a tenth, or a
+        safe one, downwards [1].
+    initial : InitialState, optional
+        Where the motion starts; at rest unless given.
+
+    Returns
+    -------
+    ProvedBracket
+        ``safe``, ``overturns`` and ``width`` [1], and how many scales remained ``undecided``;
+        wider than asked where none between can be decided.
+
+    Raises
+    ------
+    UnitsError, ComponentError, AssemblyError
+        As for :func:`prove`; or no scale of the other verdict was found.
+
+    Notes
+    -----
+    Verdicts are not monotone in the scale: it is a bracket of a change of the verdict, and there
+    may be others below.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import rockframe as rf
+    >>> system = rf.System(rf.Block(width="1 m", height="5 m", mass="10 t"))
+    >>> sine = 3.0 * np.sin(np.pi * np.linspace(0.0, 1.0, 101))
+    >>> pulse = rf.GroundMotion.from_arrays((sine, "m/s^2"), "0.01 s")
+    >>> found = rf.prove_critical_scale(system, pulse, width=1e-3)
+    >>> found.width < 1e-3, found.undecided
+    (True, 0)
+    """
+    share = to_ratio(width, owner=_CRITICAL, name="width", condition=_WIDTH)
+    scale = to_ratio(start, owner=_CRITICAL, name="start", condition=POSITIVE)
+    undecided = 0
+
+    def overturns(at: float) -> bool | None:
+        nonlocal undecided
+        found = prove(system, motion, scale=at, initial=initial).overturns
+        undecided += found is None
+        return found
+
+    ends: dict[bool, float] = {}
+    for _ in range(_FARTHEST):
+        found = overturns(scale)
+        if found is not None:
+            ends[found] = scale
+        if len(ends) == 2:
+            break
+        scale *= 1.0 / _GROWTH if True in ends else _GROWTH
+    else:
+        msg = f"{_CRITICAL}: no scale of another verdict was found up to {scale:.4g}; give a start"
+        raise ComponentError(msg)
+    while abs(ends[True] - ends[False]) > share * max(ends.values()):
+        for place in _PLACES:
+            scale = ends[False] + place * (ends[True] - ends[False])
+            found = None if scale in ends.values() else overturns(scale)
+            if found is not None:
+                ends[found] = scale
+                break
+        else:
+            break
+    return ProvedBracket(ends[False], ends[True], undecided)
 
 
 def proof_of(

@@ -92,3 +92,19 @@ def test_what_cannot_be_proved_is_refused(change, words):
     scene, motion = change(block, half_sine())
     with pytest.raises(rf.ComponentError, match=words):
         rf.prove(scene, motion)
+
+
+def test_a_critical_scale_is_bracketed_from_above_and_from_below():
+    scene, motion = system(4), half_sine()
+    for start in (0.45, 0.6):
+        found = rf.prove_critical_scale(scene, motion, width=1e-5, start=start)
+        assert found.width <= 1e-5
+        assert found.safe < CASES[0][2]
+        assert found.overturns > CASES[0][1]
+        assert found.undecided == 0
+
+
+def test_a_motion_that_never_tips_the_block_has_no_critical_scale():
+    still = rf.GroundMotion.from_arrays((np.zeros(3), "m/s^2"), "0.01 s")
+    with pytest.raises(rf.ComponentError, match="another verdict"):
+        rf.prove_critical_scale(system(4), still)
