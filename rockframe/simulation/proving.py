@@ -233,6 +233,8 @@ def proof_of(
     law = model.system
     if not isinstance(law, BlockOnRigidGround) or system.options.small:
         faults.append("proofs are of a Block on rigid ground, with rotation='finite'")
+    elif law.wall != 0.0:
+        faults.append("proofs are of a Block that rocks to both sides, without a RearWall")
     if motion is None:
         faults.append("there is no motion")
     elif motion.si.analytic:

@@ -84,6 +84,10 @@ def test_a_tolerance_is_proved_or_said_to_be_too_wide():
             ),
             "rigid ground",
         ),
+        (
+            lambda b, m: (rf.System(b, rf.RearWall(side="left", restitution=-0.3)), m),
+            "without a RearWall",
+        ),
         (lambda b, m: (b, m), "System"),
     ],
 )
