@@ -44,7 +44,7 @@ class March:
     problem: Problem
     watch: Watch | None = None
     k: int = 0
-    offset: Ball = ZERO
+    offset: Ball = field(default_factory=lambda: ZERO)
     sign: int = 0
     states: StateSet = field(default_factory=lambda: point(ZERO, ZERO))
     impacts: int = 0
