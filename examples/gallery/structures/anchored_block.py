@@ -49,8 +49,8 @@ def sine(amplitude):
 
 def run_of(system, amplitude):
     """Run a system under the sine."""
-    with warnings.catch_warnings():  # far beyond theta a corner may be held that pulls
-        warnings.simplefilter("ignore", rf.ModelWarning)
+    with warnings.catch_warnings():  # of a corner that pulls far beyond theta, of swings at the end
+        warnings.simplefilter("ignore")
         return system.simulate(sine(amplitude), free_vibration="2 s", overturning="continue")
 
 
