@@ -41,7 +41,7 @@ class RigidGround(Component):
     >>> pulse = rf.GroundMotion.sine_pulse(amplitude="-4 m/s^2", frequency="1 Hz")
     >>> run = rf.System(low, rf.RigidGround(friction=0.3)).simulate(pulse, accuracy="fast")
     >>> run.attrs["verdict"].split(":")[0]
-    'Slid 0.112 m to the left, did not overturn'
+    'Slid 0.0338 m to the right and back, did not overturn'
     """
 
     noun: ClassVar[str] = "base"

@@ -584,7 +584,9 @@ def test_a_verdict_in_words(found, pads_on_cap, words):
         ending=Ending(0, np.zeros(6), np.zeros(5)),
     )
     angles = OverturningAngles(0.2, 0.2)
-    setting = SimpleNamespace(overturning_angles=angles, leans=False, stacked=pads_on_cap)
+    setting = SimpleNamespace(
+        overturning_angles=angles, leans=False, stacked=pads_on_cap, slips_of=lambda _: None
+    )
     assert verdict(replace(summary, **found), setting, end=0.1) == words
     if not summary.overturned and summary.status.finished and not found:
         setting.overturning_angles, setting.leans = OverturningAngles(0.2, 0.025), True

@@ -67,7 +67,7 @@ def test_a_load_has_its_moment_and_its_energy():
 def test_a_mass_at_a_point_is_a_part_of_the_body():
     # a mass in the block's centre, which has no inertia of its own
     heavy = BLOCK.replace(
-        mass=f"{BLOCK.mass.m_as('kg') + 5e3!r} kg", shape_factor=None,
+        mass=f"{float(BLOCK.mass.m_as('kg')) + 5e3!r} kg", shape_factor=None,
         inertia=f"{float(BLOCK.si.inertia)!r} kg*m^2",
     )  # fmt: skip
     mass = rf.Load(at=("0 m", "4 m"), moving_mass="5 t")
