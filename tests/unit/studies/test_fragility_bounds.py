@@ -84,6 +84,34 @@ def test_the_jackknife_leaves_out_each_motion_in_turn():
     assert found.covariance == pytest.approx(5.0 / 6.0 * spread.T @ spread, rel=1e-3, abs=1e-5)
 
 
+def test_bounds_by_jackknife_are_those_of_its_definition():
+    """Student's t of the motions but one, about a dispersion that is not too small on average."""
+    motions = 6
+    logs, over, cluster = runs_of(np.random.default_rng(4), motions, 0.5)
+    trials = Trials.of_verdicts(logs[:, None], over, np.ones(len(over)), cluster)
+    found = fragility_dataset(
+        [StructureTrials(trials, None, 0, motions)], {"limit_state": 1}, [MEASURE],
+        Means(Bands.JACKKNIFE, 0.9), {"trials": "runs"},
+    ).isel(limit_state=0)  # fmt: skip
+
+    def estimates(kept):
+        (intercept, slope), _ = by_hand(logs[kept], over[kept], cluster[kept])
+        return np.array([-intercept / slope, -np.log(slope)])
+
+    every = estimates(cluster >= 0)
+    rest = np.array([estimates(cluster != one) for one in range(motions)])
+    errors = np.sqrt((motions - 1.0) / motions * ((rest - every) ** 2).sum(axis=0))
+    # what the logarithm of the deviation of as many known capacities lacks
+    lacking = -0.5 * stats.chi2(motions - 1).expect(lambda q: np.log(q / motions))
+    reach = stats.t.ppf(0.95, motions - 1) * errors
+    for name, middle, error in zip(
+        ("median_intensity", "dispersion"), every + [0.0, lacking], reach, strict=True
+    ):
+        for end, sign in (("lower", -1.0), ("upper", 1.0)):
+            bound = found[f"{name}_{end}_bound"].item()
+            assert np.log(bound) == pytest.approx(middle + sign * error, abs=2e-4), (name, end)
+
+
 def test_bounds_by_jackknife_hold_with_few_motions():
     """Of five motions, and of the samples of them that an intensity separates."""
     rng, samples = np.random.default_rng(9), []
