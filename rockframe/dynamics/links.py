@@ -6,7 +6,6 @@ pulls. It is a named tuple of numbers per unit mass with some of the methods of
 and taut, of whose end its guards tell, and **variables** of its own.
 """
 
-import inspect
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -21,6 +20,7 @@ from rockframe.dynamics.events import (
     LINK_YIELDS,
     SILENT,
 )
+from rockframe.dynamics.point_law import methods_of_law
 
 Law = TypeVar("Law")
 NEEDED: Final = ("force", "energy")
@@ -136,18 +136,10 @@ def link_law(law: type[Law]) -> type[Law]:
     TypeError
         It is no named tuple, lacks a method, or a field has the name of a method.
     """
-    own = {name: each for name, each in vars(law).items() if inspect.isfunction(each)}
-    fields = getattr(law, "_fields", None)
-    faults = [] if fields is not None else [f"{law.__name__} is no NamedTuple"]
-    faults += [f"{law.__name__} has no method {name}" for name in NEEDED if name not in own]
+    own, faults = methods_of_law(law, LinkLaw, NEEDED)
     together = {"guard", "switch", "states"}
     if together & own.keys() and not together <= own.keys():
         faults.append(f"{law.__name__} has only some of states, guard and switch")
-    known = {name for name in vars(LinkLaw) if not name.startswith("_")}
-    faults += [
-        f"{law.__name__} has a field {name!r}, which is a method of laws; give it another name"
-        for name in sorted(known.intersection(fields or ()))
-    ]
     if faults:
         raise TypeError("; ".join(faults))
     for name, method in own.items():

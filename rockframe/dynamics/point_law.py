@@ -11,6 +11,7 @@ guard tells the end, and **variables** of its own, all zero at the start.
 """
 
 import inspect
+from collections.abc import Collection
 from typing import Any, Final, NamedTuple, TypeVar
 
 from rockframe.compiled import Vector, inlined, kernel, stretch
@@ -175,6 +176,22 @@ class _WithGuard:
         return Guards((value,), (change,))
 
 
+def methods_of_law(
+    law: type[Law], known: type, needed: Collection[str]
+) -> tuple[dict[str, Any], list[str]]:
+    """Give a law's own methods, and what is wrong with its class and the names of its fields."""
+    own = {name: each for name, each in vars(law).items() if inspect.isfunction(each)}
+    fields = getattr(law, "_fields", None)
+    faults = [] if fields is not None else [f"{law.__name__} is no NamedTuple"]
+    faults += [f"{law.__name__} has no method {name}" for name in needed if name not in own]
+    faults += [
+        f"{law.__name__} has a field {name!r}, which is a method of laws; give it another name"
+        for name in sorted(set(fields or ()).intersection(vars(known)))
+        if not name.startswith("_")
+    ]
+    return own, faults
+
+
 def point_law(law: type[Law]) -> type[Law]:
     """Make a named tuple a law: mark its methods for compiling, and give it those it lacks.
 
@@ -193,17 +210,9 @@ def point_law(law: type[Law]) -> type[Law]:
     TypeError
         It is no named tuple, lacks a method, or a field has the name of a method.
     """
-    own = {name: each for name, each in vars(law).items() if inspect.isfunction(each)}
-    fields = getattr(law, "_fields", None)
-    faults = [] if fields is not None else [f"{law.__name__} is no NamedTuple"]
-    faults += [f"{law.__name__} has no method {name}" for name in NEEDED if name not in own]
+    own, faults = methods_of_law(law, PointLaw, NEEDED)
     if ("states" in own) != ("guard" in own) or ("variables" in own) != ("rates" in own):
         faults.append(f"{law.__name__} has only one of states and guard, or variables and rates")
-    known = {name for name in vars(PointLaw) if not name.startswith("_")}
-    faults += [
-        f"{law.__name__} has a field {name!r}, which is a method of laws; give it another name"
-        for name in known.intersection(fields or ())
-    ]
     if faults:
         raise TypeError("; ".join(faults))
     for name, method in own.items():

@@ -3,12 +3,14 @@
 import importlib.util
 import sys
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import pytest
 from plainly import plainly
 
 import rockframe as rf
+from rockframe import extension as ext
 
 FILE = Path(__file__).parents[2] / "examples" / "own_link.py"
 PAGE = Path(__file__).parents[2] / "docs" / "guide" / "own_link.md"
@@ -86,3 +88,25 @@ def test_links_of_several_laws_are_in_one_scene(example):
     with plainly():
         beside = rf.System(BLOCK, PADS, rope, idle).simulate(PULSE, free_vibration="1 s")
     assert abs(beside.rotation - alone.rotation).max() < 1e-8
+
+
+def test_what_is_wrong_with_a_law_is_told_when_it_is_made():
+    class Nameless(NamedTuple):
+        guard: float
+
+        def force(self, state, stretch, own):
+            return self.guard
+
+        def states(self):
+            return 2
+
+    with pytest.raises(TypeError) as told:
+        ext.link_law(Nameless)
+    assert str(told.value).split("; ") == [
+        "Nameless has no method energy",
+        "Nameless has a field 'guard', which is a method of laws",
+        "give it another name",
+        "Nameless has only some of states, guard and switch",
+    ]
+    with pytest.raises(TypeError, match="int is no NamedTuple"):
+        ext.link_law(int)

@@ -105,7 +105,7 @@ def test_bounds_by_jackknife_are_those_of_its_definition():
     lacking = -0.5 * stats.chi2(motions - 1).expect(lambda q: np.log(q / motions))
     reach = stats.t.ppf(0.95, motions - 1) * errors
     for name, middle, error in zip(
-        ("median_intensity", "dispersion"), every + [0.0, lacking], reach, strict=True
+        ("median_intensity", "dispersion"), every + np.array([0.0, lacking]), reach, strict=True
     ):
         for end, sign in (("lower", -1.0), ("upper", 1.0)):
             bound = found[f"{name}_{end}_bound"].item()
