@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from hypothesis import settings
 
 os.environ.setdefault("MPLBACKEND", "agg")
 # so that machine code is what is tested, from the first run on
@@ -15,6 +16,12 @@ os.environ.setdefault("ROCKFRAME_COMPILE", "wait")
 # each worker has a core: threads of linear algebra would only wait for one another
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 _ROOT = Path(__file__).parent
+# the same random scenes in every run, so that what fails has to do with what was changed;
+# with ROCKFRAME_RANDOM in the environment, new ones
+settings.register_profile(
+    "rockframe", derandomize="ROCKFRAME_RANDOM" not in os.environ, database=None
+)
+settings.load_profile("rockframe")
 
 
 class _Fallbacks(logging.Handler):

@@ -4,7 +4,6 @@ Ranges: see `property.scenarios`.
 """
 
 import math
-import os
 from dataclasses import replace
 
 import numpy as np
@@ -36,8 +35,6 @@ import rockframe as rf
 
 pytestmark = pytest.mark.property
 
-FIXED = "ROCKFRAME_RANDOM" not in os.environ
-"""Always the same random scenes, unless the environment asks for new ones."""
 CASE = SoilScenario(**vars(PADS_CASE), firmness=30.0, cap_width=1.3)
 ONE_MODEL = ("soil", "cap and soil", "coupled")
 """Scenes of one set of equations; the cascade has two."""
@@ -71,7 +68,7 @@ def widths(scenario):
 )  # fmt: skip
 @example(replace(CASE, scene="coupled", xi=0.0, soil_xi=0.0, peak=1.2, vertical=0.5))
 @example(replace(CASE, scene="cascade", separation="pressure", soil_xi=0.5, peak=0.9))
-@settings(max_examples=40, deadline=None, derandomize=FIXED)
+@settings(max_examples=40, deadline=None)
 def test_energy_balances(scenario):
     standard = scenario.run(outputs=None)
     assert standard.status.item() in (0, 1)
@@ -115,7 +112,7 @@ def balance_of(response):
 
 
 @given(soil_scenarios())
-@settings(max_examples=15, deadline=None, derandomize=FIXED)
+@settings(max_examples=15, deadline=None)
 def test_energy_balances_in_the_histories(scenario):
     response = scenario.run(outputs="energy", output_step="5 ms", accuracy="reference")
     balance = balance_of(response)
@@ -132,7 +129,7 @@ def test_energy_balances_in_the_histories(scenario):
         cap_mass=0.01,
     )
 )  # fmt: skip
-@settings(max_examples=15, deadline=None, derandomize=FIXED)
+@settings(max_examples=15, deadline=None)
 def test_losses_only_grow(scenario):
     response = scenario.run(outputs="energy", output_step="5 ms", overturning="continue")
     slack = 1e-8 * energy_scale(response)
@@ -150,7 +147,7 @@ def test_losses_only_grow(scenario):
 @given(soil_scenarios(scenes=ONE_MODEL))
 @example(replace(CASE, scene="coupled", base="leading-corner", peak=1.0, vertical=0.6))
 @example(replace(CASE, scene="cap and soil", separation="pressure", peak=1.0, vertical=0.6))
-@settings(max_examples=25, deadline=None, derandomize=FIXED)
+@settings(max_examples=25, deadline=None)
 def test_energy_never_rises_at_an_event(scenario):
     check_energy_at_events(scenario, "standard", stop_at_overturning=True)
 
@@ -204,7 +201,7 @@ def test_a_scene_left_alone_comes_to_rest(scene, rule, separation):
 
 
 @given(soil_scenarios())
-@settings(max_examples=25, deadline=None, derandomize=FIXED)
+@settings(max_examples=25, deadline=None)
 def test_the_soil_bears_along_the_base_alone_and_does_not_pull(scenario):
     response = scenario.run(output_step="2 ms", overturning="continue")
     width, weight = widths(scenario)
@@ -223,7 +220,7 @@ def test_the_soil_bears_along_the_base_alone_and_does_not_pull(scenario):
 
 
 @given(soil_scenarios(scenes=("coupled", "cascade")))
-@settings(max_examples=25, deadline=None, derandomize=FIXED)
+@settings(max_examples=25, deadline=None)
 def test_pads_on_a_cap_never_pull(scenario):
     response = scenario.run(output_step="2 ms")
     slack = 1e-9 * scenario.mass * GRAVITY
@@ -252,7 +249,7 @@ def test_pads_on_a_cap_never_pull(scenario):
         cap_height=0.177, cap_mass=0.261,
     )
 )  # fmt: skip
-@settings(max_examples=25, deadline=None, derandomize=FIXED)
+@settings(max_examples=25, deadline=None)
 def test_runs_end_as_they_should(scenario):
     response = scenario.run(free_vibration="4 s")
     assert response.status.item() in (0, 1), response.attrs["verdict"]
@@ -276,7 +273,7 @@ def test_runs_end_as_they_should(scenario):
         scene="cascade", firmness=1.3, soil_xi=0.0, cap_width=1.0, cap_height=0.0, cap_mass=0.01,
     )
 )  # fmt: skip
-@settings(max_examples=25, deadline=None, derandomize=FIXED)
+@settings(max_examples=25, deadline=None)
 def test_the_time_in_flight_is_that_between_the_events(scenario):
     check_flight(scenario.run(outputs=None), within=1e-9)
 
@@ -291,7 +288,7 @@ def test_the_time_in_flight_is_that_between_the_events(scenario):
         cap_mass=0.4,
     )
 )  # fmt: skip
-@settings(max_examples=25, deadline=None, derandomize=FIXED)
+@settings(max_examples=25, deadline=None)
 def test_events_join_up(scenario):
     response = scenario.run(output_step="5 ms")
     stacked = scenario.scene in ("coupled", "cascade")
@@ -310,7 +307,7 @@ def test_events_join_up(scenario):
 
 
 @given(soil_scenarios())
-@settings(max_examples=15, deadline=None, derandomize=FIXED)
+@settings(max_examples=15, deadline=None)
 def test_finer_tolerances_do_not_change_a_short_run(scenario):
     """Up to the second event after the motion's start; later, rocking may be chaotic."""
     one, other = (
@@ -367,7 +364,7 @@ def assert_mirrored(one, other, count=None):
 @example(replace(CASE, scene="coupled", base="leading-corner", peak=1.0))
 @example(replace(CASE, scene="coupled", separation="pressure", peak=1.0, rate=-0.4))
 @example(replace(CASE, scene="cascade", peak=0.6))
-@settings(max_examples=40, deadline=None, derandomize=FIXED)
+@settings(max_examples=40, deadline=None)
 def test_mirrored_motion_and_start_give_the_mirrored_response(scenario):
     """Up to the third event; later, rocking may be chaotic, and rounding grows."""
     options = {"output_step": "5 ms", "outputs": "energy"}
@@ -428,13 +425,13 @@ def test_what_is_symmetric_stays_symmetric(scene, rule, separation, xi):
 
 
 @given(soil_scenarios(), st.sampled_from(["0.3 ms", "3 ms", "10 ms", "0.7 s", "100 s"]))
-@settings(max_examples=15, deadline=None, derandomize=FIXED)
+@settings(max_examples=15, deadline=None)
 def test_the_output_step_changes_nothing_but_the_samples(scenario, step):
     check_output_step(scenario, step)
 
 
 @given(soil_scenarios())
-@settings(max_examples=10, deadline=None, derandomize=FIXED)
+@settings(max_examples=10, deadline=None)
 def test_samples_at_the_same_time_agree_whatever_the_output_step(scenario):
     coarse = scenario.run(output_step="20 ms")
     fine = scenario.run(output_step="5 ms")
@@ -447,14 +444,14 @@ def test_samples_at_the_same_time_agree_whatever_the_output_step(scenario):
 
 
 @given(soil_scenarios())
-@settings(max_examples=10, deadline=None, derandomize=FIXED)
+@settings(max_examples=10, deadline=None)
 def test_running_again_gives_the_same_bits(scenario):
     one, other = scenario.run(), scenario.run()
     assert one.drop_attrs().identical(other.drop_attrs())
 
 
 @given(soil_scenarios())
-@settings(max_examples=10, deadline=None, derandomize=FIXED)
+@settings(max_examples=10, deadline=None)
 def test_the_peak_is_not_below_any_sample(scenario):
     response = scenario.run(output_step="1 ms")
     largest = np.abs(response.rotation.values).max()
@@ -467,7 +464,7 @@ def test_the_peak_is_not_below_any_sample(scenario):
 
 
 @given(soil_scenarios(), st.integers(-6, 6))
-@settings(max_examples=15, deadline=None, derandomize=FIXED)
+@settings(max_examples=15, deadline=None)
 def test_motions_do_not_depend_on_the_mass(scenario, power):
     heavier = replace(scenario, mass=scenario.mass * 2.0**power)
     one, other = scenario.run(outputs="energy"), heavier.run(outputs="energy")
