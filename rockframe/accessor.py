@@ -5,8 +5,11 @@ from typing import TYPE_CHECKING, Any
 import xarray as xr
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     import pandas as pd
 
+    from rockframe.plot import Player
     from rockframe.simulation.system import System
 
 _SHOWN = (
@@ -44,7 +47,7 @@ class RockframeAccessor:
         self._dataset = dataset
 
     def __dir__(self) -> list[str]:
-        return ["plot", "summary", "system", "table", "verdict"]
+        return ["player", "plot", "summary", "system", "table", "verdict"]
 
     def plot(self, **options: Any) -> Any:
         """Draw the dataset with the function of :mod:`rockframe.plot` that draws its kind.
@@ -67,6 +70,37 @@ class RockframeAccessor:
         from rockframe.plot._checks import drawn_by
 
         return getattr(plot, drawn_by(self._dataset))(self._dataset, **options)
+
+    def player(
+        self, path: "str | Path | None" = None, *, overwrite: bool = False, **options: Any
+    ) -> "Player":
+        """Make a page that plays a run, as :func:`rockframe.plot.player` does.
+
+        Parameters
+        ----------
+        path : str or Path, optional
+            Where it is written, ending in ``.html``; it is not written unless given.
+        overwrite : bool, optional
+            As for :meth:`rockframe.plot.Player.save`.
+        **options
+            Of :func:`rockframe.plot.player`.
+
+        Returns
+        -------
+        rockframe.plot.Player
+            Which notebooks show.
+
+        Raises
+        ------
+        SchemaError, UnitsError, ComponentError, FileError
+            As :func:`rockframe.plot.player` and :meth:`rockframe.plot.Player.save`.
+        """
+        from rockframe import plot
+
+        player = plot.player(self._dataset, **options)
+        if path is not None:
+            player.save(path, overwrite=overwrite)
+        return player
 
     def table(self, contents: str = "scalars") -> "pd.DataFrame":
         """Give the dataset as :func:`rockframe.table` does.

@@ -11,6 +11,7 @@ from rockframe.plot._overturning import (
     rocking_spectrum,
 )
 from rockframe.plot._panels import Panels
+from rockframe.plot._player import Player, player
 from rockframe.plot._response import response
 from rockframe.plot._scene import scene, state
 from rockframe.plot._selection import selection
@@ -21,6 +22,7 @@ from rockframe.plot._tradeoff import tradeoff
 __all__ = [
     "Animation",
     "Panels",
+    "Player",
     "animation",
     "critical_scale",
     "dynamic_analysis",
@@ -33,6 +35,7 @@ __all__ = [
     "overturning_map",
     "overturning_spectrum",
     "phase",
+    "player",
     "probability",
     "response",
     "rocking_spectrum",

@@ -1,22 +1,23 @@
 """Scenes that move, with the trace of the rotation below."""
 
-import re
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, cast
 
 import numpy as np
 import xarray as xr
 
-from rockframe.errors import ComponentError, shown
+from rockframe.errors import ComponentError, FileError, shown
 from rockframe.plot._artists import CONTACT, SceneArtist
 from rockframe.plot._axes import BLUE, GREY
 from rockframe.plot._checks import check_run
 from rockframe.plot._panels import Panels, sheet
+from rockframe.plot._player import KIND, Player, player
 from rockframe.plot._response import response, strips_of
-from rockframe.plot._runs import Run, runs_of
+from rockframe.plot._runs import runs_of
 from rockframe.plot._scene import Moving, figure_size
 from rockframe.version import __version__
-from rockframe.writing import FileKind, checked_path, generator, write_file
+from rockframe.writing import FileKind, checked_path, write_file
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -31,32 +32,18 @@ _USUAL_FRAMES: Final = 200
 """That an animation has at most unless its speed is given."""
 _FRAMED: Final = 60
 """Instants that the limits of the drawing are taken from."""
-_BUTTONS: Final = {
-    "minus": "slower",
-    "fast-backward": "|◀◀",
-    "step-backward": "|◀",
-    "play fa-flip-horizontal": "◀",
-    "play": "▶",
-    "pause": "❚❚",
-    "step-forward": "▶|",
-    "fast-forward": "▶▶|",
-    "plus": "faster",
-}
-"""Letters on the buttons of a player, by matplotlib's names for them."""
 _MARK: Final = "animation by rockframe "
 _SIGNED: Final = f"{_MARK}{__version__}".encode()
 _COMMENT: Final = b"\x21\xfe%c%b\x00" % (len(_SIGNED), _SIGNED)  # a block of GIF89a
 _TRAILER: Final = b"\x3b"
 """The last byte of a GIF."""
-_KIND: Final = FileKind.marked(
-    "an animation", (".gif", ".html", ".htm"), generator("animation"), _MARK
-)
+_PICTURES: Final = FileKind.marked("an animation", (".gif", ".mp4", *KIND.endings), _MARK)
 
 
 class Animation:
     """A run as an animation.
 
-    Notebooks show it as a player with buttons; :meth:`save` writes a GIF or an HTML file;
+    Notebooks show it as a :class:`Player`; :meth:`save` writes a film, or the page of the player;
     :meth:`play` moves it in a window.
 
     Parameters
@@ -69,12 +56,19 @@ class Animation:
         Frames per second.
     times : ndarray, shape (frames,)
         Of the run [s].
+    player : callable
+        Makes the same as a player.
     """
 
     def __init__(
-        self, panels: Panels, draw: "Callable[[int], object]", rate: float, times: np.ndarray
+        self,
+        panels: Panels,
+        draw: "Callable[[int], object]",
+        rate: float,
+        times: np.ndarray,
+        player: "Callable[[], Player]",
     ) -> None:
-        self._draw, self._rate = draw, rate
+        self._draw, self._rate, self._player = draw, rate, player
         self._playing: FuncAnimation | None = None
         self.panels = panels
         self.times = times
@@ -90,9 +84,10 @@ class Animation:
         Parameters
         ----------
         path : str or Path
-            Its name ends in ``.gif``; or in ``.html``, for a player in a page of its own.
+            Its name ends in ``.gif``; in ``.mp4``, which ffmpeg makes where it is installed; or in
+            ``.html``, for the page that :func:`player` gives.
         dpi : float, optional
-            Pixels per inch of the frames.
+            Pixels per inch of the frames of a film.
         overwrite : bool, optional
             Whether a file that is there is replaced though it is no animation that this method
             wrote.
@@ -104,48 +99,44 @@ class Animation:
         Raises
         ------
         FileError
-            Another ending, or a file that cannot be written or is not replaced.
+            Another ending, a file that cannot be written or is not replaced, or no ffmpeg.
         UnitsError, ComponentError
             A number of pixels that is none.
         """
-        from matplotlib.animation import PillowWriter
+        from matplotlib.animation import FFMpegWriter, PillowWriter
 
+        ending = Path(str(path)).suffix.lower()
+        if ending in KIND.endings:
+            return self._player().save(path, overwrite=overwrite)
         dots = _positive(dpi, "dpi")
         # before the frames are drawn, which takes a while
-        checked_path(path, _KIND, overwrite=overwrite)
-        if Path(path).suffix.lower() != ".gif":
-            signed = generator("animation", __version__)
-            page = f'<!doctype html><meta charset="utf-8">{signed}{self.to_html(dpi=dots)}'
-            return write_file(path, _KIND, page.encode(), overwrite=overwrite)
+        checked_path(path, _PICTURES, overwrite=overwrite)
+        if ending == ".mp4" and not FFMpegWriter.isAvailable():
+            words = "needs the program ffmpeg, which was not found; '.gif' and '.html' do without"
+            raise FileError(str(path), [(None, words)])
 
         def write(part: Path) -> None:
-            writer = PillowWriter(fps=cast("Any", self._rate))
-            self._animated().save(part, writer=writer, dpi=dots)
+            if ending == ".mp4":
+                note = {"comment": _SIGNED.decode()}
+                writer: Any = FFMpegWriter(fps=cast("Any", self._rate), metadata=note)
+                # the height and the width of a film are even
+                writer.extra_args = ["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-f", "mp4"]
+                self._animated().save(part, writer=writer, dpi=dots)
+                return
+            self._animated().save(part, writer=PillowWriter(cast("Any", self._rate)), dpi=dots)
             drawn = part.read_bytes()
             part.write_bytes(drawn.removesuffix(_TRAILER) + _COMMENT + _TRAILER)
 
-        return write_file(path, _KIND, write, overwrite=overwrite)
+        return write_file(path, _PICTURES, write, overwrite=overwrite)
 
-    def to_html(self, *, dpi: float = 100.0) -> str:
-        """Give the animation as a player that stands in a page, with all of its pictures.
-
-        Parameters
-        ----------
-        dpi : float, optional
-            Pixels per inch of the frames.
+    def to_html(self) -> str:
+        """Give the page that :func:`player` gives.
 
         Returns
         -------
         str
         """
-        from matplotlib import rc_context
-
-        whole: Any = {"animation.embed_limit": 1e6, "savefig.dpi": dpi}
-        with rc_context(whole):
-            player = self._animated().to_jshtml(fps=cast("Any", self._rate), default_mode="loop")
-        # matplotlib's buttons are drawn by a font that it has a browser fetch; these are letters
-        player = re.sub(r"<link\b[^>]*>", "", player)
-        return re.sub(r'<i class="fa fa-([\w -]+)">', _button, player)
+        return self._player().to_html()
 
     def play(self) -> None:
         """Move the figure in the window that ``figure.show()`` opens, for as long as it is kept."""
@@ -169,9 +160,8 @@ class Animation:
         )
 
     def _repr_html_(self) -> str:
-        html = self.to_html()
         self.close()  # or the notebook would show its last picture too
-        return html
+        return self._player()._repr_html_()  # pyright: ignore[reportPrivateUsage]
 
     def __repr__(self) -> str:
         length = self.times.size / self._rate
@@ -243,7 +233,7 @@ def animation(
     count = max(2, 1 + round(length * rate / faster))
     times = np.linspace(drawn.time[0], drawn.time[-1], count)
     moving = Moving(drawn.dataset, "animation", magnify)
-    shown_at = _nearest(drawn, times)
+    shown_at = drawn.nearest(times)
     width, height = figure_size(moving.drawer, wide=False)
     names = ["scene", "rotation", *strips_of([drawn])]
     heights = [height, 1.3, *[0.42] * (len(names) - 2)]
@@ -281,17 +271,10 @@ def animation(
     if on.own is not None:  # places are found once, not for every frame
         on.own.canvas.draw()
         on.own.set_layout_engine("none")
-    return Animation(on.panels, draw, rate, drawn.time[shown_at])
-
-
-def _button(found: "re.Match[str]") -> str:
-    return f"<i style='font-style:normal'>{_BUTTONS.get(found[1], found[1])}"
-
-
-def _nearest(run: Run, times: np.ndarray) -> np.ndarray:
-    after = np.clip(np.searchsorted(run.time, times), 1, run.time.size - 1)
-    before = after - 1
-    return np.where(times - run.time[before] <= run.time[after] - times, before, after)
+    page = partial(
+        player, run, window=window, magnify=magnify, rotation=rotation, title=title
+    )  # fmt: skip
+    return Animation(on.panels, draw, rate, drawn.time[shown_at], page)
 
 
 def _positive(given: object, name: str) -> float:

@@ -215,7 +215,7 @@ def _on(base: Array, x: float, half: float) -> Array:
 
 
 CONTACT: Final = VERMILLION
-_SOIL: Final = "#a6794f"
+SOIL: Final = "#a6794f"
 _DEPTH: Final = 0.3
 """Of the ground that is drawn, over half its width."""
 
@@ -308,7 +308,7 @@ class SceneArtist:
         surface = found.ground if found.soil is None else found.soil
         band = np.vstack([surface, [(surface[-1, 0], floor), (surface[0, 0], floor)]])
         if found.soil is not None:
-            self._polygon("soil", band, _SOIL, 2, alpha=0.3)
+            self._polygon("soil", band, SOIL, 2, alpha=0.3)
             return
         artist = self._polygon("ground", band, GREY, 2, alpha=0.35)
         artist.set(hatch="///", linewidth=0.0)

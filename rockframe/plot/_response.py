@@ -39,12 +39,12 @@ if TYPE_CHECKING:
 
 
 CONTACT_COLOURS: Final = {
-    "full": "0.85",
-    "left": "#4477aa",
+    "full": "#ececec",
+    "left": "#2a5783",
     "right": "#cc6677",
     "flight": "#ddcc77",
 }
-"""Of each state, by its name in the schema."""
+"""Of each state, by its name in the schema; as shades of grey they differ as well."""
 
 _COLUMNS: Final = 1 << 14
 """More than a figure has pixels, so that what is narrower than a pixel is averaged twice only."""
@@ -72,7 +72,7 @@ def draw_contact_legend(axes: "Axes", state: xr.DataArray) -> None:
     """Name the colours below the strip."""
     from matplotlib.patches import Patch
 
-    names = [name for _, name in _states(state)]
+    names = [name for _, name in states_of(state)]
     axes.legend(
         handles=[Patch(facecolor=CONTACT_COLOURS[name], label=name) for name in names],
         loc="upper center", bbox_to_anchor=(0.5, -1.6), ncols=len(names),
@@ -87,14 +87,15 @@ def mixed_colours(state: xr.DataArray, columns: int) -> Any:
     time, values = state["time"].to_numpy(), state.to_numpy()
     edges = np.linspace(time[0], time[-1], columns + 1)
     colours = np.zeros((columns, 3))
-    for value, name in _states(state):
+    for value, name in states_of(state):
         held = np.concatenate([[0.0], np.cumsum(np.diff(time) * (values[:-1] == value))])
         share = np.diff(np.interp(edges, time, held)) / np.diff(edges)
         colours += share[:, np.newaxis] * np.array(to_rgb(CONTACT_COLOURS[name]))
     return np.clip(colours, 0.0, 1.0)
 
 
-def _states(state: xr.DataArray) -> list[tuple[int, str]]:
+def states_of(state: xr.DataArray) -> list[tuple[int, str]]:
+    """Give the numbers of contact states with their names."""
     meanings = str(state.attrs["flag_meanings"]).split()
     return list(zip(state.attrs["flag_values"], meanings, strict=True))
 

@@ -31,6 +31,12 @@ class Run:
         """Times of the samples [s]."""
         return self.dataset["time"].to_numpy()
 
+    def nearest(self, times: np.ndarray) -> np.ndarray:
+        """Give the samples that are nearest to times [s]."""
+        after = np.clip(np.searchsorted(self.time, times), 1, self.time.size - 1)
+        before = after - 1
+        return np.where(times - self.time[before] <= self.time[after] - times, before, after)
+
 
 def runs_of(given: object, function: str, window: "Window") -> list[Run]:
     """Read one or several runs, and take the part of them that is drawn."""

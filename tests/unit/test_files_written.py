@@ -44,7 +44,7 @@ def written(tmp_path_factory):
             assert main(words.split()) == 0
         moving = rf.plot.animation(xr.load_dataset("run.nc"), frames_per_second=2)
         moving.save("run.gif", dpi=20)
-        moving.save("moving.html", dpi=20)
+        moving.save("moving.html")
         rf.GroundMotion.read("record.AT2").to_dataset().to_netcdf("motion.nc")
     finally:
         os.chdir(here)
@@ -196,7 +196,8 @@ def test_functions_replace_nothing_that_they_did_not_write(folder):
         (record.to_at2, ("record.txt",), "ends in .at2"),
         (record.scaled(2.0).to_at2, ("record.AT2",), "this file is read"),
         (moving.save, ("mine.gif",), "not an animation"),
-        (moving.save, ("run.html",), "not an animation"),
+        (moving.save, ("run.html",), "not a player"),
+        (run.rockframe.player, ("run.html",), "not a player"),
     ):
         with pytest.raises(FileError, match=words):
             write(*given)
@@ -210,7 +211,7 @@ def test_functions_replace_nothing_that_they_did_not_write(folder):
     run.close()
     odd.close()
     moving.save("run.gif", dpi=20)
-    moving.save("moving.html", dpi=20)
+    moving.save("moving.html")
     moving.save("mine.gif", dpi=20, overwrite=True)
     assert Path("mine.gif").read_bytes().startswith(b"GIF89a")
     record.to_at2("record.AT2")  # the same bytes
@@ -270,6 +271,7 @@ THEMSELVES = {
     "command/shared.py": "to the place that the mechanism gives",
     "command/plot.py": "to memory",
     "reports/page.py": "to memory",
+    "accessor.py": "by the method of a player",
     "plot/_animation.py": "to the place that the mechanism gives",
 }
 """Modules that write, and why they may."""

@@ -2,8 +2,8 @@
 A rocking cabinet, moving
 =========================
 
-``rf.plot.animation`` moves the block to scale above the trace of its rotation. In a notebook it is
-a player; here a GIF and one instant.
+``rf.plot.player`` makes a page that plays a run: the cabinet to scale above the traces of its
+rotation and of the ground. The page is drawn by the browser; it is some 15 kB large.
 """
 
 import rockframe as rf
@@ -14,7 +14,14 @@ run = rf.System(cabinet).simulate(pulse, free_vibration="2 s")
 print(run.attrs["verdict"])
 
 # %%
-# ``rf.plot.animation(run).save("cabinet.gif")`` writes the file; at its largest rotation it shows
+# Press "Play", or draw the pointer over the traces; in a notebook the same appears.
+# ``run.rockframe.player("cabinet.html")`` writes it into a file, and
+# ``rf.plot.animation(run).save("cabinet.gif")`` makes a film of pictures.
+
+rf.plot.player(run)
+
+# %%
+# At its largest rotation the cabinet stands as far over as
 
 largest = float(abs(run.rotation).idxmax("time"))
 rf.plot.state(run, time=f"{largest} s")

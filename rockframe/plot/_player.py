@@ -1,0 +1,323 @@
+"""A run as a page that plays it: drawn by the browser, from numbers alone."""
+
+import base64
+import json
+import re
+import zlib
+from collections.abc import Iterator, Sequence
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, cast
+
+import numpy as np
+import xarray as xr
+
+from rockframe.plot._artists import CONTACT, SOIL, Layout
+from rockframe.plot._axes import BLUE, GREEN, ORANGE, RELATIVE, VERMILLION, unit_of
+from rockframe.plot._checks import check_run
+from rockframe.plot._response import CONTACT_COLOURS, of_rotation, states_of, strips_of
+from rockframe.plot._runs import Run, runs_of
+from rockframe.plot._scene import Moving
+from rockframe.signals.arrays import Array
+from rockframe.units import ANGLE
+from rockframe.version import __version__
+from rockframe.writing import FileKind, generator, write_file
+
+if TYPE_CHECKING:
+    from rockframe.plot._runs import Window
+
+_FRAMES_PER_SECOND: Final = 25.0
+_MOST_FRAMES: Final = 900
+"""Between which the browser interpolates."""
+_TRACE: Final = 700
+"""Parts of the time of which a trace keeps the least and the largest value."""
+_LEVELS: Final = 30000
+"""Of the numbers that a page holds, from the least to the largest of their kind."""
+_NOWHERE: Final = -32768
+_TEMPLATE: Final = Path(__file__).with_name("player.html")
+_TITLE: Final = "player"
+KIND: Final = FileKind.marked(
+    "a player", (".html", ".htm"), generator(_TITLE), generator("animation")
+)
+_HEIGHT: Final = 640
+"""Of the player in a notebook [pixels]."""
+
+
+class _Layer(NamedTuple):
+    """One thing that is drawn."""
+
+    name: str
+    shape: str  # how the page draws it
+    colour: str  # "ink" is that of the page's text, "soft" of what stands behind
+    fill: float  # opacity [1]
+    points: Array  # at all instants, shape (instants, points, 2) [m]
+
+
+class Player:
+    """A run as a page that plays it, a few tens of kilobytes in size.
+
+    Notebooks show it; :meth:`save` writes it into a file that needs no other and makes no request.
+
+    Parameters
+    ----------
+    html : str
+        The page.
+    length : float
+        Time of the run that it plays [s].
+    """
+
+    def __init__(self, html: str, length: float) -> None:
+        self._html, self._length = html, length
+
+    def save(self, path: "str | Path", *, overwrite: bool = False) -> Path:
+        """Write the page into a file.
+
+        Parameters
+        ----------
+        path : str or Path
+            Its name ends in ``.html``.
+        overwrite : bool, optional
+            Whether a file that is there is replaced though it is no player that this method wrote.
+
+        Returns
+        -------
+        Path
+
+        Raises
+        ------
+        FileError
+            Another ending, or a file that cannot be written or is not replaced.
+        """
+        return write_file(path, KIND, self._html.encode(), overwrite=overwrite)
+
+    def to_html(self) -> str:
+        """Give the page.
+
+        Returns
+        -------
+        str
+        """
+        return self._html
+
+    def _repr_html_(self) -> str:
+        style = f"width:100%;height:{_HEIGHT}px;border:0"
+        return f'<iframe title="player" style="{style}" srcdoc="{escape(self._html)}"></iframe>'
+
+    def __repr__(self) -> str:
+        return f"<player of {self._length:.1f} s, {len(self._html) / 1e3:.0f} kB; save('run.html')>"
+
+
+def player(
+    run: xr.Dataset,
+    *,
+    window: "Window" = None,
+    magnify: float = 1.0,
+    rotation: str = "deg",
+    title: str | None = None,
+) -> Player:
+    """Make a page that plays a run: the scene to scale above the traces of rotation and ground.
+
+    The page has a button that plays, a slider, a choice of speeds, a cursor in the traces that
+    follows the pointer, and a strip of what bears. It is drawn by the browser from the numbers,
+    and is made in a fraction of a second, where an :func:`animation` draws picture by picture.
+
+    Parameters
+    ----------
+    run : xarray.Dataset
+        A result with histories.
+    window : (str or Quantity or None, str or Quantity or None), optional
+        Start and end of what is shown; all of it unless given [s].
+    magnify : float, optional
+        By which displacements are multiplied in the drawing of the scene [1].
+    rotation : str, optional
+        Unit of the trace, as for :func:`rockframe.plot.response`.
+    title : str, optional
+        Title of the page; the verdict unless given.
+
+    Returns
+    -------
+    Player
+
+    Raises
+    ------
+    SchemaError
+        Not the result of a single run with histories, or one that does not tell its system.
+    UnitsError, ComponentError
+        A window, unit or factor that is none.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
+    >>> run = system.simulate(rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz"))
+    >>> rf.plot.player(run).save("run.html")  # doctest: +SKIP
+    """
+    check_run(run, "player")
+    (drawn,) = runs_of(run, "player", window)
+    unit = None if rotation == RELATIVE else unit_of(
+        rotation, ANGLE, function="player", name="rotation"
+    )  # fmt: skip
+    moving = Moving(drawn.dataset, "player", magnify)
+    start, end = float(drawn.time[0]), float(drawn.time[-1])
+    count = int(np.clip(1 + round((end - start) * _FRAMES_PER_SECOND), 2, _MOST_FRAMES))
+    shown_at = drawn.nearest(np.linspace(start, end, count))
+    store = _Numbers()
+    layers = _layers(moving, shown_at, store)
+    label = _label("rotation", "-" if unit is None else unit.words)
+    traces = [
+        _trace(drawn, of_rotation(drawn, unit), label, BLUE, store),
+        _trace(drawn, drawn.dataset["ground_acceleration"].to_numpy(),
+               _label("ground acceleration", "m/s²"), "ink", store),
+    ]  # fmt: skip
+    sentence = str(run.attrs.get("verdict", "")) if title is None else title
+    data = {
+        "times": [round(float(one), 6) for one in drawn.time[shown_at]],
+        "layers": layers,
+        "traces": traces,
+        "strips": [_strip(state, words) for state, words in strips_of([drawn]).values()],
+        "colours": CONTACT_COLOURS,
+        "pressed": CONTACT,
+        "magnify": float(magnify),
+        "levels": _LEVELS,
+        "nowhere": _NOWHERE,
+        "numbers": store.packed(),
+    }
+    html = _page(sentence, str(run.attrs.get("motion", "")), data)
+    return Player(html, end - start)
+
+
+class _Numbers:
+    """Columns of numbers, as whole multiples of steps, one behind another."""
+
+    def __init__(self) -> None:
+        self._columns: list[np.ndarray] = []
+
+    def add(self, values: np.ndarray, low: float, high: float) -> int:
+        """Take columns, NaN where there is nothing, and give the place of the first."""
+        step = (high - low) / _LEVELS or 1.0
+        whole = np.where(np.isnan(values), _NOWHERE, np.rint((values - low) / step))
+        before = sum(column.size for column in self._columns)
+        self._columns.append(whole.astype(np.int64).T.ravel())
+        return before
+
+    def packed(self) -> str:
+        """Give the differences of neighbours, as text; few bytes where little changes."""
+        whole = np.concatenate(self._columns)
+        steps = np.diff(whole, prepend=0).astype("<i2")  # modulo 2**16, as the page adds them up
+        # low bytes behind one another, then high bytes, which are mostly alike
+        halves = steps.view(np.uint8).reshape(-1, 2).T.tobytes()
+        return base64.b64encode(zlib.compress(halves, 9)).decode()
+
+
+def _layers(moving: Moving, shown_at: np.ndarray, store: _Numbers) -> dict[str, Any]:
+    """Give what is drawn and where, at all instants."""
+    placements = [moving.at(int(place)) for place in shown_at]
+    found = [moving.drawer.lay_out(at) for at in placements]
+    layers = [*_of_parts(moving, found), *_of_contacts(found)]
+    layers += [
+        _Layer(name, "point", GREEN, 1.0,
+               np.array([moving.drawer.points(at, np.array([place])) for at in placements]))
+        for name, place in moving.points.items()
+    ]  # fmt: skip
+    corners = np.concatenate([one.points for one in layers if one.shape != "ground"], axis=1)
+    low, high = np.nanmin(corners, axis=(0, 1)), np.nanmax(corners, axis=(0, 1))
+    reach = max(moving.drawer.reach, 1.08 * float(max(-low[0], high[0])))
+    depth, air = 0.3 * moving.drawer.reach, 0.06 * float(high[1] - low[1])
+    left, bottom = -reach, min(float(low[1]), 0.0) - depth
+    width, height = 2.0 * reach, float(high[1]) + air - bottom
+    listed = list[dict[str, Any]]()
+    for name, shape, colour, fill, points in layers:
+        if shape == "ground":  # from one edge of the drawing to the other
+            points[:, 0, 0], points[:, -1, 0] = left, left + width
+        columns = (points - (left, bottom)).reshape(len(found), -1)
+        listed.append({
+            "name": name, "shape": shape, "colour": colour, "fill": fill,
+            "points": points.shape[1], "first": store.add(columns, 0.0, max(width, height)),
+        })  # fmt: skip
+    pads = np.array([one.pads_bear for one in found], np.float64)
+    pressed = store.add(pads, 0.0, 1.0) if found[0].pads else None
+    return {"left": left, "bottom": bottom, "width": width, "height": height, "pressed": pressed,
+            "list": listed}  # fmt: skip
+
+
+def _of_parts(moving: Moving, found: Sequence[Layout]) -> Iterator[_Layer]:
+    """Give the parts of a scene, from behind to the front."""
+    upright, first = moving.drawer.lay_out(moving.upright), found[0]
+
+    def still(points: Array) -> Array:
+        return np.repeat(points[None], len(found), axis=0)
+
+    def each(name: str, shape: str, colour: str, fill: float) -> Iterator[_Layer]:
+        for k in range(len(getattr(first, name))):
+            points = np.array([getattr(one, name)[k] for one in found])
+            yield _Layer(name, shape, colour, fill, points)
+
+    if first.soil is None:
+        yield _Layer("ground", "ground", "soft", 0.35, np.array([one.ground for one in found]))
+    else:
+        yield _Layer("soil", "ground", SOIL, 0.35, np.array([_surface(one) for one in found]))
+    yield _Layer("at rest", "dashes", "soft", 0.0, still(upright.block))
+    if moving.geometry.wall is not None:
+        yield _Layer("wall", "outline", "soft", 0.35, still(moving.geometry.wall))
+    if first.cap is not None:
+        yield _Layer("cap", "outline", ORANGE, 0.3, np.array([one.cap for one in found]))
+    yield from each("lower", "outline", ORANGE, 0.25)
+    yield from each("pads", "outline", "soft", 0.7)
+    yield from each("others", "outline", BLUE, 0.25)
+    block = np.array([one.block for one in found])
+    yield _Layer("block", "outline", BLUE, 0.08 if first.members else 0.25, block)
+    yield from each("members", "outline", BLUE, 0.3)
+    yield from each("ties", "line", VERMILLION, 0.0)
+    yield _Layer("centre of mass", "cross", "ink", 1.0, np.array([[one.centre] for one in found]))
+
+
+def _of_contacts(found: Sequence[Layout]) -> Iterator[_Layer]:
+    """Give where bases bear: both ends of each line; a point is a line of no length."""
+    for k in range(max(len(one.touching) for one in found)):
+        points = np.full((len(found), 2, 2), np.nan)
+        for row, one in zip(points, found, strict=True):
+            if k < len(one.touching):
+                row[:] = one.touching[k][[0, -1]]
+        yield _Layer("contact", "contact", CONTACT, 0.0, points)
+
+
+def _surface(found: Layout) -> Array:
+    """Give the corners of the surface of soil, which is straight between them."""
+    surface = cast("Array", found.soil)
+    bend = int(np.argmax(np.abs(np.diff(surface[:, 1], 2)[2:-2]))) + 3
+    return surface[[0, 1, 2, bend, -3, -2, -1]]
+
+
+def _label(words: str, unit: str) -> str:
+    return f"{words} [{unit}]"
+
+
+def _trace(
+    drawn: Run, values: np.ndarray, label: str, colour: str, store: _Numbers
+) -> dict[str, Any]:
+    """Give the least and the largest value of equal parts of the time."""
+    edges = np.linspace(0, values.size, min(_TRACE, values.size) + 1).astype(int)
+    least = np.minimum.reduceat(values, edges[:-1])
+    most = np.maximum.reduceat(values, edges[:-1])
+    low, high = min(0.0, float(least.min())), max(0.0, float(most.max()))
+    first = store.add(np.column_stack([least, most]), low, high)
+    return {"label": label, "colour": colour, "first": first, "parts": least.size, "low": low,
+            "high": high}  # fmt: skip
+
+
+def _strip(state: xr.DataArray, words: str) -> dict[str, Any]:
+    """Give the instants at which contact changes, and the state after each."""
+    values, time = state.to_numpy(), state["time"].to_numpy()
+    changes = np.flatnonzero(np.diff(values, prepend=values[0] - 1))
+    names = dict(states_of(state))
+    return {"words": words, "times": [round(float(time[k]), 6) for k in changes],
+            "states": [names[int(values[k])] for k in changes]}  # fmt: skip
+
+
+def _page(sentence: str, motion: str, data: dict[str, Any]) -> str:
+    # "</script>" in a text would end the script
+    written = json.dumps(data, separators=(",", ":")).replace("</", "<\\/")
+    page = _TEMPLATE.read_text(encoding="utf-8")
+    filled = {"GENERATOR": generator(_TITLE, __version__), "TITLE": escape(sentence or "A run"),
+              "MOTION": escape(motion), "DATA": written}  # fmt: skip
+    return re.sub(r"@(\w+)@", lambda found: filled[found[1]], page)
