@@ -1,138 +1,161 @@
-"""What a proof is about: a block, its ground and its start, as balls about doubles."""
+"""What a proof is about: a block and its ground, in balls about the floats that a run takes."""
 
-from dataclasses import dataclass
-from typing import Any, Final, NamedTuple, TypeAlias
+from dataclasses import dataclass, field
+from itertools import zip_longest
+from typing import NamedTuple
 
-from flint import arb
-
-from rockframe.signals import Motion
+from rockframe.dynamics.rigid_ground import BlockOnRigidGround, RockingCorner
+from rockframe.proof.balls import ZERO, Ball, Row, ball, hull, moved, upper
+from rockframe.signals.motion import Motion
 from rockframe.signals.slope import Slope
-
-Ball: TypeAlias = Any
-"""A number known within a radius, ``flint.arb``."""
-
-ZERO: Final[Ball] = arb(0)
+from rockframe.system.bodies import OverturningAngles
 
 
 class Undecided(Exception):  # noqa: N818  (an answer, no error)
     """Nothing is proved, for the reason that it gives."""
 
 
-class BearingCorner(NamedTuple):
-    """The corner that a block rocks on, by numbers of the law :eq:`eq-rigid-rocking`."""
+class Corner(NamedTuple):
+    """A corner that a block rocks on, by numbers of the law :eq:`eq-rigid-rocking`."""
 
     sign: int  # of the rotation
     angle: Ball  # theta
-    rate: Ball  # R0/(I_O/m + R0^2) [1/m]
+    ratio: Ball  # R0/(I_O/m + R0^2) [1/m]
     restitution: Ball  # of an impact on this corner
     limit: Ball  # rotation that is called overturning
 
+    @classmethod
+    def of(cls, sign: int, corner: RockingCorner, limit: float, tolerance: float) -> "Corner":
+        """Take the floats of a run, and a tolerance of the restitution."""
+        ratio = ball(corner.radius) / ball(corner.inertia)
+        restitution = ball(corner.restitution) + ball(0, tolerance)
+        return cls(sign, ball(corner.angle), ratio, restitution, ball(limit))
 
-class GroundBalls(NamedTuple):
-    """Acceleration along the base and apparent gravity normal to it [m s^-2]."""
 
-    along: Ball
-    weight: Ball
+class Ground(NamedTuple):
+    """Acceleration along the base, and gravity with that normal to it: polynomials of time."""
 
+    along: Row
+    weight: Row
 
-class Line(NamedTuple):
-    """The ground from a knot to the next: values at the knot, and slopes in time."""
-
-    at: GroundBalls
-    slope: GroundBalls
-
-    def over(self, time: Ball) -> GroundBalls:
-        """Give the ground at a time from the knot, or over an interval of them."""
-        return GroundBalls(
-            *(one + rise * time for one, rise in zip(self.at, self.slope, strict=True))
-        )
+    def at(self, time: Ball) -> "Ground":
+        """Give the polynomials about another time; about all times of a ball."""
+        return Ground(moved(self.along, time), moved(self.weight, time))
 
 
 @dataclass(frozen=True)
 class Problem:
-    """A block under a ground whose acceleration is joined by straight lines between knots.
+    """A block under a motion, which is exactly a polynomial between two samples."""
 
-    Parameters
-    ----------
-    right, left : BearingCorner
-        Of the block.
-    step : Ball
-        Between knots [s].
-    knots : sequence of GroundBalls
-        At the samples.
-    still : GroundBalls
-        After the last sample.
-    """
+    right: Corner
+    left: Corner
+    motion: Motion
+    scale: Ball
+    slope: Slope
+    frequency: float  # p of the faster corner [1/s]
+    still_step: float  # length of the intervals after the motion, when the ground is still [s]
+    _known: dict[int, Ground] = field(default_factory=dict[int, Ground])
 
-    right: BearingCorner
-    left: BearingCorner
-    step: Ball
-    knots: list[GroundBalls]
-    still: GroundBalls
+    @classmethod
+    def of(
+        cls,
+        block: BlockOnRigidGround,
+        motion: Motion,
+        slope: Slope,
+        limits: OverturningAngles,
+        scale: float,
+        tolerance: float,
+        still_step: float,
+    ) -> "Problem":
+        """Take the floats of a run; the intervals of rest are given times p."""
+        fastest = max(one.radius / one.inertia for one in (block.left, block.right))
+        frequency = (slope.gravity * fastest) ** 0.5
+        return cls(
+            Corner.of(1, block.right, limits.right, tolerance),
+            Corner.of(-1, block.left, limits.left, tolerance),
+            motion, ball(scale), slope, frequency, still_step / frequency,
+        )  # fmt: skip
 
     @property
-    def last(self) -> int:
-        """Number of the last knot, after which the ground is still."""
-        return len(self.knots) - 1
+    def count(self) -> int:
+        """Number of intervals of the motion."""
+        return self.motion.horizontal.samples.size - 1
 
-    def side(self, sign: int) -> BearingCorner:
-        """Give the side of a sign of the rotation."""
+    def corner(self, sign: int) -> Corner:
+        """Give the corner that bears while the rotation has a sign."""
         return self.right if sign > 0 else self.left
 
-    def line(self, k: int) -> Line:
-        """Give the ground after a knot."""
-        if not 0 <= k < self.last:
-            return Line(self.still, GroundBalls(ZERO, ZERO))
-        start, end = self.knots[k], self.knots[k + 1]
-        return Line(
-            start, GroundBalls(*((b - a) / self.step for a, b in zip(start, end, strict=True)))
-        )
+    def length(self, number: int) -> Ball:
+        """Give the length of an interval [s]."""
+        return ball(self.motion.time_step if number < self.count else self.still_step)
 
-    def over(self, k: int, begin: Ball, end: Ball) -> GroundBalls:
-        """Enclose the ground from one time after a knot to another, over further knots too."""
-        line = self.line(k)
-        found = [line.over(begin), *([self.line(k - 1).over(self.step)] if not begin >= 0 else [])]
-        rest, j = end, k
-        while not rest <= self.step:
-            found.append(self.line(j).over(self.step))
-            j += 1
-            rest = rest - self.step
-            found.append(self.line(j).at)
-        found.append(self.line(j).over(rest))
-        if not begin >= 0:  # an impact beside a knot
-            found.append(self.line(k - 1).over(self.step + begin))
-        along, weight = found[0]
-        for one in found[1:]:
-            along, weight = along.union(one.along), weight.union(one.weight)
-        return GroundBalls(along, weight)
+    def time(self, number: int, after: Ball) -> Ball:
+        """Give the time since the first sample [s]."""
+        moving, still = min(number, self.count), max(0, number - self.count)
+        return moving * ball(self.motion.time_step) + still * ball(self.still_step) + after
+
+    def ground(self, number: int) -> Ground:
+        """Give the ground in an interval, by the time since its start, :eq:`eq-incline-ground`."""
+        number = min(number, self.count)
+        if number not in self._known:
+            self._known[number] = _ground(self, number)
+        return self._known[number]
+
+    def ground_over(self, number: int, after: Ball, span: Ball) -> Ground:
+        """Enclose all values of the ground over a span of time from an instant of an interval."""
+        along, weight = list[Ball](), list[Ball]()
+        while True:
+            left = self.length(number) - after
+            inside = ZERO.union(span) if span < left else ZERO.union(left)
+            values = self.ground(number).at(after + inside)
+            along.append(values.along[0])
+            weight.append(values.weight[0])
+            if span < left:
+                return Ground([hull(along)], [hull(weight)])
+            span, number, after = span - left, number + 1, ZERO
 
 
-def ground_at_samples(
-    motion: Motion, slope: Slope, scale: float
-) -> tuple[list[GroundBalls], GroundBalls]:
-    """Give the ground at the samples of a record, and after them, :eq:`eq-incline-ground`."""
-    inclination, gravity, factor = arb(slope.inclination), arb(slope.gravity), arb(scale)
-    sine, cosine = inclination.sin(), inclination.cos()
-    still = GroundBalls(gravity * sine, gravity * cosine)
-    across = [factor * arb(value) for value in motion.horizontal.samples.tolist()]
-    if motion.vertical is None:
-        up = [ZERO] * len(across)
+def _ground(problem: Problem, number: int) -> Ground:
+    inclination, gravity = ball(problem.slope.inclination), ball(problem.slope.gravity)
+    across, up = (_component(problem, number, vertical=one) for one in (False, True))
+    if problem.slope.level:
+        return Ground(across, [gravity + up[0], *up[1:]])
+    sine, cosine = inclination.sin_cos()
+    pairs = list(zip_longest(across, up, fillvalue=ZERO))
+    along = [x * cosine + y * sine for x, y in pairs]
+    weight = [y * cosine - x * sine for x, y in pairs]
+    return Ground(
+        [along[0] + gravity * sine, *along[1:]], [weight[0] + gravity * cosine, *weight[1:]]
+    )
+
+
+def _component(problem: Problem, number: int, *, vertical: bool) -> Row:
+    """Give a component of the motion as a polynomial of time."""
+    motion = problem.motion
+    signal = motion.vertical if vertical else motion.horizontal
+    if signal is None or number >= problem.count:
+        return [ZERO]
+    if signal.polynomials is None:
+        first, last = (ball(float(signal.samples[number + each])) for each in (0, 1))
+        row = [first, last - first]
     else:
-        up = [factor * arb(value) for value in motion.vertical.samples.tolist()]
-    if slope.level:
-        return [GroundBalls(a, gravity + b) for a, b in zip(across, up, strict=True)], still
-    return [
-        GroundBalls(still.along + a * cosine + b * sine, still.weight + b * cosine - a * sine)
-        for a, b in zip(across, up, strict=True)
-    ], still
+        row = [ball(float(each)) for each in signal.polynomials[number]]
+    step = problem.length(number)
+    return [problem.scale * each / step**power for power, each in enumerate(row)]
 
 
-def acceleration(side: BearingCorner, ground: GroundBalls, rotation: Ball) -> Ball:
-    """Enclose the angular acceleration, :eq:`eq-rigid-rocking`."""
-    lean = side.sign * side.angle - rotation
-    return -side.rate * (ground.weight * lean.sin() + ground.along * lean.cos())
+def acceleration(rotation: Ball, corner: Corner, ground: Ground) -> Ball:
+    """Give the angular acceleration, of the ground at the start of its polynomials."""
+    sine, cosine = (corner.angle * corner.sign - rotation).sin_cos()
+    return -corner.ratio * (ground.weight[0] * sine + ground.along[0] * cosine)
 
 
-def fastest(side: BearingCorner, ground: GroundBalls) -> Ball:
+def stiffness(rotation: Ball, corner: Corner, ground: Ground) -> Ball:
+    """Give the derivative of the angular acceleration with respect to the rotation."""
+    sine, cosine = (corner.angle * corner.sign - rotation).sin_cos()
+    return corner.ratio * (ground.weight[0] * cosine - ground.along[0] * sine)
+
+
+def strongest(corner: Corner, ground: Ground) -> Ball:
     """Bound the angular acceleration at any rotation and its derivative, :eq:`eq-proof-field`."""
-    return arb((side.rate * (abs(ground.weight) + abs(ground.along))).upper())
+    return upper(corner.ratio * (abs(ground.weight[0]) + abs(ground.along[0])))

@@ -3,12 +3,10 @@
 import math
 from dataclasses import dataclass
 
-from flint import arb, ctx
-
-from rockframe.dynamics.rigid_ground import BlockOnRigidGround, RockingCorner
-from rockframe.proof.flow import point
-from rockframe.proof.march import March, Watch
-from rockframe.proof.problem import BearingCorner, Problem, Undecided, ground_at_samples
+from rockframe.dynamics.rigid_ground import BlockOnRigidGround
+from rockframe.proof.balls import ball, working_precision
+from rockframe.proof.course import Course, Watch
+from rockframe.proof.problem import Problem, Undecided
 from rockframe.signals import Motion
 from rockframe.signals.slope import Slope
 from rockframe.system.bodies import OverturningAngles
@@ -18,6 +16,8 @@ OVERTURNS = "overturns"
 UNDECIDED = "undecided"
 PRECISIONS = (106, 212, 424)
 """Bits of the balls, one after the other while nothing is decided."""
+STILL_STEP = 0.1
+"""Length of the intervals after a motion, times p."""
 
 
 @dataclass(frozen=True)
@@ -85,7 +85,7 @@ class Proof:
 
 
 def prove_block(
-    system: BlockOnRigidGround,
+    block: BlockOnRigidGround,
     motion: Motion,
     slope: Slope,
     limits: OverturningAngles,
@@ -95,81 +95,36 @@ def prove_block(
     tolerance: float = 0.0,
     watch: Watch | None = None,
 ) -> Proof:
-    """Prove the verdict of a block on rigid ground.
+    """Prove the verdict of a block on rigid ground, from its rotation and angular velocity.
 
-    Parameters
-    ----------
-    system : BlockOnRigidGround
-        With finite rotation.
-    motion : Motion
-        A record.
-    slope : Slope
-        Of the ground.
-    limits : OverturningAngles
-        Rotations that are called overturning.
-    start : tuple of float
-        Rotation [rad] and angular velocity [rad s^-1].
-    scale, tolerance : float
-        Factor of the motion; what the restitutions may differ by.
-    watch : callable, optional
-        Is told every enclosure at a knot.
-
-    Returns
-    -------
-    Proof
+    All restitutions within a tolerance are meant; `watch` is told every enclosure.
     """
     found = None
     for bits in PRECISIONS[:1] if tolerance else PRECISIONS:
-        with ctx.workprec(bits):
-            found = _tried(system, motion, slope, limits, start, scale, tolerance, watch, bits)
+        with working_precision(bits):
+            problem = Problem.of(block, motion, slope, limits, scale, tolerance, STILL_STEP)
+            course = Course(problem, watch, [ball(0, tolerance)] * 2 if tolerance else [])
+            course.start(*start)
+            found = _concluded(course, scale, tolerance, bits)
         if found.decided:
             break
     assert found is not None  # noqa: S101
     return found
 
 
-def _tried(
-    system: BlockOnRigidGround,
-    motion: Motion,
-    slope: Slope,
-    limits: OverturningAngles,
-    start: tuple[float, float],
-    scale: float,
-    tolerance: float,
-    watch: Watch | None,
-    bits: int,
-) -> Proof:
-    """Try it with balls of one precision."""
-
-    def side(sign: int, corner: RockingCorner, limit: float) -> BearingCorner:
-        rate = arb(corner.radius) / arb(corner.inertia)
-        restitution = arb(corner.restitution) + arb(0, tolerance)
-        return BearingCorner(sign, arb(corner.angle), rate, restitution, arb(limit))
-
-    knots, still = ground_at_samples(motion, slope, scale)
-    problem = Problem(
-        side(1, system.right, limits.right),
-        side(-1, system.left, limits.left),
-        arb(motion.time_step),
-        knots,
-        still,
-    )
-    march = March(problem, watch)
-    rotation, rate = start
-    march.sign = int(math.copysign(1.0, rotation or rate)) if rotation or rate else 0
-    march.states = point(arb(rotation), arb(rate))
-    verdict, reason = UNDECIDED, ""
-    earliest = latest = math.nan
+def _concluded(course: Course, scale: float, tolerance: float, bits: int) -> Proof:
+    """Follow a course to its end, and tell what it proves."""
+    verdict, reason, earliest, latest = UNDECIDED, "", math.nan, math.nan
     try:
-        verdict = OVERTURNS if march.decide() else SAFE
+        verdict = OVERTURNS if course.overturns() else SAFE
     except Undecided as why:
-        reason, latest = str(why), float(march.time)
-        earliest = latest
-    if march.overturning is not None:
-        low, high = march.overturning
-        earliest, latest = _outwards(low, -math.inf), _outwards(high, math.inf)
+        reason, earliest = str(why), float(course.time)
+        latest = earliest
+    if verdict == OVERTURNS and course.beyond is not None:
+        low, high = course.beyond
+        earliest, latest = _outwards(low.lower(), -math.inf), _outwards(high.upper(), math.inf)
     return Proof(
-        verdict, reason, earliest, latest, march.widest, march.impacts, bits, scale, tolerance
+        verdict, reason, earliest, latest, course.widest, course.impacts, bits, scale, tolerance
     )
 
 

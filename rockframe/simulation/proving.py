@@ -43,7 +43,8 @@ def prove(
     system : System
         A block on rigid ground, with ``rotation="finite"``; any body, inclined ground too.
     motion : GroundMotion, optional
-        A record, with or without vertical component; the one among the parts unless given.
+        With or without vertical component; of a pulse in closed form the polynomials that runs
+        take too. The one among the parts unless given.
     scale : float, optional
         Factor of both components, taken as exact [1].
     restitution_tolerance : float, optional
@@ -63,8 +64,8 @@ def prove(
     UnitsError
         An argument is no ratio.
     ComponentError
-        Not a System, another scene than a block on rigid ground, small rotation, an analytic
-        pulse, or python-flint is not installed (``pip install rockframe[proof]``).
+        Not a System, another scene than a block on rigid ground, small rotation, or
+        python-flint is not installed (``pip install rockframe[proof]``).
     AssemblyError
         As for :meth:`rockframe.System.simulate`.
 
@@ -237,11 +238,6 @@ def proof_of(
         faults.append("proofs are of a Block that rocks to both sides, without a RearWall")
     if motion is None:
         faults.append("there is no motion")
-    elif motion.si.analytic:
-        faults.append(
-            "proofs are of records, whose samples are joined by straight lines; sample this motion "
-            "with resampled(...)"
-        )
     if find_spec("flint") is None:
         faults.append("python-flint is not installed: pip install rockframe[proof]")
     if faults or motion is None or not isinstance(law, BlockOnRigidGround):
