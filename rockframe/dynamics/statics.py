@@ -17,10 +17,10 @@ from rockframe.dynamics.base import BaseForce
 from rockframe.dynamics.body import Attitude, BaseLine, BodyState, Reach
 from rockframe.dynamics.following import Path, Sizes, followed
 from rockframe.dynamics.on_base import Mode, OnBase
-from rockframe.dynamics.trigonometry import sine_cosine
+from rockframe.dynamics.trigonometry import sine_cosine, versine
 
 if TYPE_CHECKING:
-    from rockframe.dynamics.chain.linked import ChainLink
+    from rockframe.dynamics.chain.link_rows import ChainLink
     from rockframe.dynamics.tied import Tied
 
 ROUNDING: Final = 4.0 * sys.float_info.epsilon
@@ -222,9 +222,8 @@ class StandingChain(NamedTuple):
         found = turned = top = 0.0
         for link, stand in zip(self.links[::-1], stands[::-1], strict=True):
             sine, cosine = sine_cosine(turned)
-            versine = sine * sine / (1.0 + cosine) if cosine > 0.0 else 1.0 - cosine
             if turned != 0.0:
-                found -= stand.across * sine + (top + link.part.body.height) * versine
+                found -= stand.across * sine + (top + link.part.body.height) * versine(sine, cosine)
             found += stand.state.vertical * cosine
             turned, top = turned + stand.state.rotation, link.top
         return found

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from rockframe.compiled import Matrix, Vector
-from rockframe.dynamics.chain.linked import GROUND, ChainLink
+from rockframe.dynamics.chain.link_rows import GROUND, ChainLink
 from rockframe.dynamics.links import Stretch
-from rockframe.dynamics.trigonometry import sine_cosine
+from rockframe.dynamics.trigonometry import sine_cosine, versine
 
 if TYPE_CHECKING:
     from rockframe.dynamics.statics import Stand, StandingBody
@@ -116,14 +116,14 @@ def rocked(
 
     Those from the top down to `upper`. `ends` are both points of each link, upright.
     """
-    sine, versine = math.sin(rotation), 2.0 * math.sin(0.5 * rotation) ** 2
+    sine, lacks = math.sin(rotation), 2.0 * math.sin(0.5 * rotation) ** 2
     found = list[Tied]()
     for tie, both in zip(ties, ends, strict=True):
         moved, way = np.zeros(2), np.zeros((2, 1))
         for k, end, sign in ((tie.on, both[0], 1.0), (tie.to, both[1], -1.0)):
             if GROUND < k <= upper:
                 x, y = end[0] - pivot[0], end[1] - pivot[1]
-                turned = np.array([y * sine - x * versine, -x * sine - y * versine])
+                turned = np.array([y * sine - x * lacks, -x * sine - y * lacks])
                 moved += sign * turned
                 way[:, 0] += sign * np.array([y + turned[1], -x - turned[0]])
         found.append(pulled(tie, moved, way))
@@ -138,10 +138,10 @@ def _frames(links: "Sequence[StandingBody]", stands: "Sequence[Stand]") -> list[
         stand, body = stands[k], links[k].part.body
         fixed = links[k + 1].top + body.height if k + 1 < len(stands) else body.height
         along, normal = np.array([cosine, -sine]), np.array([sine, cosine])
-        versine = sine * sine / (1.0 + cosine) if cosine > 0.0 else 1.0 - cosine
-        lift = np.array([fixed * sine, -fixed * versine])  # of what is fixed normal to the base
+        lacks = versine(sine, cosine)
+        lift = np.array([fixed * sine, -fixed * lacks])  # of what is fixed normal to the base
         beside = links[k].beside
-        slid = (stand.across - beside) * along + beside * np.array([-versine, -sine])
+        slid = (stand.across - beside) * along + beside * np.array([-lacks, -sine])
         place = place + slid + lift + stand.state.vertical * normal
         turned += stand.state.rotation
         sine, cosine = sine_cosine(turned)
@@ -157,9 +157,9 @@ def _point(
     if k == GROUND:
         return np.zeros(2), way
     one = frames[k]
-    versine = one.sine * one.sine / (1.0 + one.cosine) if one.cosine > 0.0 else 1.0 - one.cosine
+    lacks = versine(one.sine, one.cosine)
     x, y = point
-    turned = np.array([y * one.sine - x * versine, -x * one.sine - y * versine])
+    turned = np.array([y * one.sine - x * lacks, -x * one.sine - y * lacks])
     # from the centre of mass of each body below, as that rotates
     arm = np.array([x, y]) + turned
     for j in range(k, len(stands)):

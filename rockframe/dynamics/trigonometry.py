@@ -51,3 +51,9 @@ def sine_cosine(angle: float) -> tuple[float, float]:
         rest = (angle - turns * HALF_TURN) - turns * REST_OF_HALF_TURN
     sine, cosine = quarter_sine_cosine(rest)
     return sign * sine, sign * cosine
+
+
+@inlined
+def versine(sine: float, cosine: float) -> float:
+    """Give 1 - cos to all digits, from sine and cosine."""
+    return sine * sine / (1.0 + cosine) if cosine > 0.0 else 1.0 - cosine

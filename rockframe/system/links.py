@@ -11,7 +11,7 @@ from rockframe.errors import AssemblyError
 from rockframe.system.bodies import SupportedBody
 
 if TYPE_CHECKING:
-    from rockframe.dynamics.chain.linked import ChainLink
+    from rockframe.dynamics.chain.link_rows import ChainLink
     from rockframe.dynamics.links import LinkNumbers
 
 
@@ -87,7 +87,7 @@ class PlacedLink:
 
     def chain_link(self, mass: float) -> "ChainLink":
         """Give the link as the equations take it."""
-        from rockframe.dynamics.chain.linked import ChainLink
+        from rockframe.dynamics.chain.link_rows import ChainLink
 
         to_point = self.to_point if self.to >= 0 else (0.0, 0.0)
         return ChainLink(

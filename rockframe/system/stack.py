@@ -26,10 +26,11 @@ from rockframe.system.words import Words
 
 if TYPE_CHECKING:
     from rockframe.dynamics.base_numbers import BaseNumbers
-    from rockframe.dynamics.chain.linked import ChainLink
-    from rockframe.dynamics.chain.model import AtRest, ChainBody
+    from rockframe.dynamics.chain.link_rows import ChainLink
+    from rockframe.dynamics.chain.model import AtRest
     from rockframe.dynamics.protocol import ContactModel
     from rockframe.dynamics.tied import Tied
+    from rockframe.dynamics.vibrations import ChainBody
 
 NO_REST: Final = "the bodies find no rest under their weight: their bases are too soft for them"
 
@@ -135,7 +136,7 @@ class StackSetting(Setting):
     @cached_property
     def links(self) -> "tuple[ChainBody, ...]":
         """The bodies as the equations take them, per unit mass of the highest one."""
-        from rockframe.dynamics.chain.model import ChainBody
+        from rockframe.dynamics.vibrations import ChainBody
 
         found, carried, mass = list["ChainBody"](), 0.0, self.body.mass
         below = (*(body.eccentricity for body in self.bodies[1:]), 0.0)

@@ -22,8 +22,8 @@ from rockframe.system.words import Words
 
 if TYPE_CHECKING:
     from rockframe.dynamics.coupled.model import StackRest
-    from rockframe.dynamics.coupled.stack import BlockOnCap
     from rockframe.dynamics.protocol import ContactModel
+    from rockframe.dynamics.vibrations import ChainBody
 
 LEAST_CAP_SHARE = 1e-3
 """Least mass of a cap, as a share of the block's, with which the coupled equations are
@@ -118,17 +118,14 @@ class StackedSetting(Setting):
         return self._standing(*self._moving_cap)
 
     def _standing(self, cap_mass: float, cap_inertia: float) -> StandingBodies:
-        from rockframe.dynamics.alone_model import eccentricity_of
         from rockframe.dynamics.on_base import OnBase
 
-        block, pads, plate, soil, share = self._stack(cap_mass, cap_inertia)
-        links = (
-            link_of(OnBase(block, pads.law), beside=eccentricity_of(block)),
-            link_of(OnBase(plate, soil.law), share, plate.height),
+        both = self._stack(cap_mass, cap_inertia)
+        links = tuple(
+            link_of(OnBase(one.body, one.base.law), one.mass, one.top, one.beside) for one in both
         )
-        return StandingBodies(
-            StandingChain(links, self.slope.along_gravity), self.body.mass, (pads, soil)
-        )
+        chain = StandingChain(links, self.slope.along_gravity)
+        return StandingBodies(chain, self.body.mass, tuple(one.base for one in both))
 
     @property
     def _moving_cap(self) -> tuple[float, float]:
@@ -138,12 +135,13 @@ class StackedSetting(Setting):
             return cap.mass, cap.inertia
         return least, least * cap.half_width**2 / 3.0
 
-    def bodies(self) -> "BlockOnCap":
-        """Give block, pads, cap and soil as the coupled equations take them."""
+    def bodies(self) -> "tuple[ChainBody, ChainBody]":
+        """Give block and cap on their bases, as the coupled equations take them."""
         return self._stack(*self._moving_cap)
 
-    def _stack(self, cap_mass: float, cap_inertia: float) -> "BlockOnCap":
-        from rockframe.dynamics.coupled.stack import BlockOnCap
+    def _stack(self, cap_mass: float, cap_inertia: float) -> "tuple[ChainBody, ChainBody]":
+        from rockframe.dynamics.alone_model import eccentricity_of
+        from rockframe.dynamics.vibrations import ChainBody
 
         (upper, lower), cap, mass = self.supports, self.cap, self.body.mass
         block = self.load.law(mass)
@@ -154,12 +152,10 @@ class StackedSetting(Setting):
             inertia=cap_inertia / mass,
             angle=math.atan2(cap.half_width, cap.half_height),
         )
-        return BlockOnCap(
-            block,
-            upper.law(block, mass, mass),
-            plate,
-            lower.law(plate, mass, mass + cap_mass),
-            cap_mass / mass,
+        pads, soil = upper.law(block, mass, mass), lower.law(plate, mass, mass + cap_mass)
+        return (
+            ChainBody(block, pads, 1.0, 0.0, eccentricity_of(block)),
+            ChainBody(plate, soil, cap_mass / mass, plate.height, 0.0),
         )
 
 
@@ -197,7 +193,7 @@ class CoupledSetting(StackedSetting):
         """Give the coupled equations."""
         from rockframe.dynamics.coupled.model import coupled
 
-        return coupled(self.bodies(), self.body.mass, self.rest)
+        return coupled(*self.bodies(), self.body.mass, self.rest)
 
     def equilibrium(self) -> dict[str, float]:
         """Give settlements and reactions at rest, by their names in the schema."""

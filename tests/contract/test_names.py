@@ -14,7 +14,7 @@ SHARED_CLASSES = {
 SHARED_FUNCTIONS = {
     # the same for each of several
     "execute",  # commands
-    "fastest_vibration", "small_motion_matrices", "solve_motion",  # equations of several bodies
+    "solve_motion",  # equations of several bodies
     "matched",  # a motion, and a suite
     # public names that users have known from the beginning
     "register", "table",

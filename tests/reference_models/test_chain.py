@@ -10,7 +10,7 @@ from reference_models.stacks.scene import mirrored
 
 import rockframe as rf
 from rockframe.compiled import COMPILED
-from rockframe.dynamics.chain.model import ChainBody, chain_of
+from rockframe.dynamics.chain.model import chain_of
 from rockframe.dynamics.chain.rows import COLUMNS, GUARDS, OBSERVED, lists_of, row_of
 from rockframe.dynamics.coupled.model import system_of
 from rockframe.dynamics.on_base import Mode
@@ -34,12 +34,8 @@ def pair():
         rf.CushionCap(height="0.9 m", mass="3 t"),
         rf.WinklerSoil(stiffness="9 MPa", damping_ratio=0.2),
     )
-    stack = assemble(parts).setting.bodies()
-    links = [
-        ChainBody(stack.block, stack.pads, 1.0, 0.0, 0.0),
-        ChainBody(stack.cap, stack.soil, stack.cap_mass, stack.cap.height, 0.0),
-    ]
-    return system_of(stack), chain_of(links)
+    both = assemble(parts).setting.bodies()
+    return system_of(*both), chain_of(both)
 
 
 def standing(rng, base, corners: int, size: int) -> Mode:

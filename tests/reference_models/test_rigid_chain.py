@@ -12,10 +12,11 @@ import rockframe as rf
 from rockframe.dynamics.alone_model import rigid_body
 from rockframe.dynamics.base_numbers import rigid_numbers
 from rockframe.dynamics.chain import rows as at
-from rockframe.dynamics.chain.model import ChainBody, chain
+from rockframe.dynamics.chain.model import chain
 from rockframe.dynamics.chain.rigid import ADMISSIBLE, TAKEN
 from rockframe.dynamics.chain.rows import PLACES
 from rockframe.dynamics.protocol import HELD_PLACE, IMPACT_LOSS, Ground, Start
+from rockframe.dynamics.vibrations import ChainBody
 from rockframe.solve.accuracy import accuracy_of
 from rockframe.solve.integrate import integrate
 from rockframe.system.assembly import assemble

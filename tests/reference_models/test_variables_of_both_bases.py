@@ -14,10 +14,10 @@ from plainly import plainly
 from rockframe.dynamics.alone_model import rigid_body
 from rockframe.dynamics.base_numbers import BaseNumbers, pads_numbers, pads_over
 from rockframe.dynamics.coupled.model import StackRest, coupled
-from rockframe.dynamics.coupled.stack import BlockOnCap
 from rockframe.dynamics.point_law import Viscoelastic, point_law
 from rockframe.dynamics.protocol import Column, Start
 from rockframe.dynamics.restraint import LEADING_CORNER
+from rockframe.dynamics.vibrations import ChainBody
 from rockframe.signals import Motion
 from rockframe.solve.accuracy import accuracy_of
 from rockframe.solve.integrate import integrate
@@ -100,7 +100,8 @@ def stack(above, below):
     pads = pads_numbers(block, stiffness=4e3, damping=20.0, restitution=(0.9, 0.9))
     soil = pads_numbers(cap, stiffness=2e3, damping=30.0, restitution=(1.0, 1.0))
     return coupled(
-        BlockOnCap(block, above(pads), cap, below(soil), CAP_MASS),
+        ChainBody(block, above(pads), 1.0, 0.0, 0.0),
+        ChainBody(cap, below(soil), CAP_MASS, cap.height, 0.0),
         1e4,
         StackRest(0.0, 0.0, 0.0, 0.0),
     )

@@ -6,7 +6,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from rockframe.compiled import Matrix, Vector
+from rockframe.compiled import Vector
 from rockframe.dynamics.alone_model import (
     part_tolerance,
     radius_of,
@@ -14,11 +14,12 @@ from rockframe.dynamics.alone_model import (
     rounding_at,
 )
 from rockframe.dynamics.base_numbers import BaseNumbers
-from rockframe.dynamics.bed import Rigid, both_contacts
+from rockframe.dynamics.bed import both_contacts
 from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, DEGREES, ROTATION, VERTICAL
-from rockframe.dynamics.body import Body, BodyState
+from rockframe.dynamics.body import BodyState
 from rockframe.dynamics.chain import rows as at
-from rockframe.dynamics.chain.linked import ChainLink, Linked, LinkedRigidChain, linked
+from rockframe.dynamics.chain.link_rows import ChainLink
+from rockframe.dynamics.chain.linked import Linked, LinkedRigidChain, linked
 from rockframe.dynamics.chain.rigid import KEPT, RigidChain
 from rockframe.dynamics.chain.rows import GUARDS, OBSERVED, lists_of, row_of
 from rockframe.dynamics.chain.system import Chain
@@ -34,19 +35,10 @@ from rockframe.dynamics.protocol import (
     Start,
     column_of,
 )
+from rockframe.dynamics.vibrations import ChainBody, fastest_vibration, is_rigid, per_own_mass
 
 ROUNDING_OF_FORCES: Final = 1e-14
 """Of what holds a body on a rigid base, over the weight on it."""
-
-
-class ChainBody(NamedTuple):
-    """A body of a chain and the base under it, per unit of the mass that all is measured by."""
-
-    body: Body
-    base: BaseNumbers
-    mass: float
-    top: float  # of the body above its centre of mass
-    beside: float  # of its centre of mass to the right of that of the body below, upright
 
 
 class AtRest(NamedTuple):
@@ -67,11 +59,6 @@ def chain_of(links: Sequence[ChainBody]) -> Chain:
 def some_rigid(links: Sequence[ChainBody]) -> bool:
     """Whether some of the bases are rigid."""
     return any(is_rigid(one.base) for one in links)
-
-
-def is_rigid(base: BaseNumbers) -> bool:
-    """Whether a base is rigid."""
-    return isinstance(base.law, Rigid)
 
 
 def chain(
@@ -209,7 +196,7 @@ def _scales(links: Sequence[ChainBody]) -> Vector:
     places, sways, place_rates, sway_rates, carried = [], [], [], [], 0.0
     for one in links:
         carried += one.mass
-        sway, rate = radius_of(one.body) * one.body.angle, rocking_rate(_per_own_mass(one))
+        sway, rate = radius_of(one.body) * one.body.angle, rocking_rate(per_own_mass(one))
         rise, vertical = one.base.settlement, math.sqrt(one.base.vertical_stiffness / carried)
         if is_rigid(one.base):
             rise, vertical = sway * one.body.angle, rate
@@ -221,105 +208,12 @@ def _scales(links: Sequence[ChainBody]) -> Vector:
     return np.concatenate([sizes, sizes * rates])
 
 
-def _per_own_mass(link: ChainBody) -> Body:
-    return link.body._replace(inertia=link.body.inertia / link.mass)
-
-
 def _answers(links: Sequence[ChainBody]) -> Vector:
     places = []
     for one in links:
-        body = _per_own_mass(one)
+        body = per_own_mass(one)
         places += [0.5 * (body.left + body.right) / (body.inertia + body.height**2), 1.0]
     return np.array([*places, *np.ones(len(links))])
-
-
-def fastest_vibration(
-    links: Sequence[ChainBody], ties: Sequence[ChainLink] = ()
-) -> tuple[float, float]:
-    """Give bounds of angular frequency and damping rate, whichever of the bodies fly."""
-    fastest = damping = 0.0
-    for first in range(len(links)):
-        some = links[first:]
-        pulled, slowed = _of_ties(some, ties, first)
-        for stands in (True, False):
-            mass, stiffness, damped = small_motion_matrices(some, stands=stands)
-            fastest = max(fastest, _largest(mass, stiffness + pulled))
-            damping = max(damping, _largest(mass, damped + slowed))
-    # a body that stands still on a rigid base makes no vibration faster; one that rocks is a
-    # pendulum of its own
-    rocking = sum(rocking_rate(_per_own_mass(one)) ** 2 for one in links if is_rigid(one.base))
-    return math.sqrt(max(fastest, rocking)), damping
-
-
-def _of_ties(
-    links: Sequence[ChainBody], ties: Sequence[ChainLink], first: int
-) -> tuple[Matrix, Matrix]:
-    """Give what links add to stiffness and damping, whichever way they are directed.
-
-    Bodies above the first of some do not move.
-    """
-    size = 2 * len(links)
-    stiffness, damping = np.zeros((size, size)), np.zeros((size, size))
-    x, y, turn = small_ways(links)
-    for tie in ties:
-        way = np.zeros((2, size))
-        for k, point, sign in ((tie.on, tie.on_point, 1.0), (tie.to, tie.to_point, -1.0)):
-            if k >= first:
-                way[0] += sign * (x[k - first] + point[1] * turn[k - first])
-                way[1] += sign * (y[k - first] - point[0] * turn[k - first])
-        stiffness += tie.numbers.stiffness * way.T @ way
-        damping += tie.numbers.damping * way.T @ way
-    return stiffness, damping
-
-
-def _largest(mass: Matrix, matrix: Matrix) -> float:
-    return float(np.linalg.eigvals(np.linalg.solve(mass, matrix)).real.max())
-
-
-def small_motion_matrices(
-    links: Sequence[ChainBody], *, stands: bool = True
-) -> tuple[Matrix, Matrix, Matrix]:
-    """Give mass, stiffness of the bases and damping of small motion of upright bodies.
-
-    In the order of rotation and height of each body relative to what it stands on, from the top
-    down; the lowest one stands on the ground, or on nothing.
-    """
-    x, y, turn = small_ways(links)
-    mass = sum(
-        one.mass * (np.outer(x[k], x[k]) + np.outer(y[k], y[k]))
-        + one.body.inertia * np.outer(turn[k], turn[k])
-        for k, one in enumerate(links)
-    )
-    springs = np.array(
-        [
-            each
-            for one in links
-            for each in (one.base.rotational_stiffness, one.base.vertical_stiffness)
-        ]
-    )
-    times = np.repeat([one.base.damping_time for one in links], 2)
-    if not stands:
-        springs[-2:] = 0.0
-    return np.asarray(mass), np.diag(springs), np.diag(springs * times)
-
-
-def small_ways(links: Sequence[ChainBody]) -> tuple[Matrix, Matrix, Matrix]:
-    """Give how the centres of mass move, and the bodies turn, with these coordinates."""
-    count = len(links)
-    x, y, turn = (np.zeros((count, 2 * count)) for _ in range(3))
-    below_x, below_y, below_turn = (np.zeros(2 * count) for _ in range(3))
-    deck = 0.0
-    for k in range(count - 1, -1, -1):
-        one = links[k]
-        arm = 0.0 if k == count - 1 else deck + one.body.height
-        beside = 0.0 if k == count - 1 else one.beside
-        own, up = np.zeros(2 * count), np.zeros(2 * count)
-        own[2 * k], up[2 * k + 1] = 1.0, 1.0
-        x[k] = below_x + arm * below_turn + one.body.height * own
-        y[k] = below_y - beside * below_turn + up
-        turn[k] = below_turn + own
-        below_x, below_y, below_turn, deck = x[k], y[k], turn[k], one.top
-    return x, y, turn
 
 
 class Starts(NamedTuple):

@@ -32,6 +32,7 @@ from rockframe.dynamics.chain.rows import (
 from rockframe.dynamics.on_base import IDLE, Mode, VelocityChange
 from rockframe.dynamics.protocol import HELD_PLACE, Energies, Ground, Slope
 from rockframe.dynamics.switching import checked_sliding, disturbed, lift_by_slip, switch_part
+from rockframe.dynamics.trigonometry import versine
 
 
 class Chain(Rows):
@@ -335,9 +336,10 @@ class Chain(Rows):
         """Give the rise of a body's centre of mass from rest, to all digits, from that below."""
         i = k * PLACES
         sine, cosine = room[i + at.SINE], room[i + at.COSINE]
-        versine = sine * sine / (1.0 + cosine) if cosine > 0.0 else 1.0 - cosine
         fixed = room[i + at.ARM] - vertical if k + 1 < self.body_count else 0.0
-        return below + vertical * cosine - room[i + at.ACROSS] * sine - fixed * versine
+        return (
+            below + vertical * cosine - room[i + at.ACROSS] * sine - fixed * versine(sine, cosine)
+        )
 
     @kernel
     def observe(

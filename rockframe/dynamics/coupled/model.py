@@ -9,7 +9,6 @@ import numpy as np
 
 from rockframe.compiled import Vector
 from rockframe.dynamics.alone_model import (
-    eccentricity_of,
     part_tolerance,
     radius_of,
     rocking_rate,
@@ -18,7 +17,6 @@ from rockframe.dynamics.alone_model import (
 )
 from rockframe.dynamics.bodies import ROTATION, VERTICAL
 from rockframe.dynamics.body import BodyState
-from rockframe.dynamics.coupled.stack import BlockOnCap, fastest_vibration
 from rockframe.dynamics.coupled.system import Coupled
 from rockframe.dynamics.on_base import OnBase
 from rockframe.dynamics.protocol import HELD_PLACE, MEMORY, ContactModel, Start
@@ -33,6 +31,7 @@ from rockframe.dynamics.stacked import (
     LOWER_VERTICAL,
     UPPER,
 )
+from rockframe.dynamics.vibrations import ChainBody, fastest_vibration
 
 
 class StackRest(NamedTuple):
@@ -48,24 +47,21 @@ UPRIGHT: Final = StackRest(0.0, 0.0, 0.0, 0.0)
 """Where symmetric bodies rest on a level base."""
 
 
-def system_of(stack: BlockOnCap) -> Coupled:
-    """Give the equations of a stack."""
+def system_of(block: ChainBody, cap: ChainBody) -> Coupled:
+    """Give the equations of a block on a cap."""
     return Coupled(
-        OnBase(stack.block, stack.pads.law),
-        OnBase(stack.cap, stack.soil.law),
-        stack.cap_mass,
-        stack.cap.height,
-        eccentricity_of(stack.block),
-    )
+        OnBase(block.body, block.base.law), OnBase(cap.body, cap.base.law), cap.mass, cap.top,
+        block.beside,
+    )  # fmt: skip
 
 
-def coupled(stack: BlockOnCap, mass: float, rest: StackRest) -> ContactModel:
+def coupled(block: ChainBody, cap: ChainBody, mass: float, rest: StackRest) -> ContactModel:
     """Assemble the model of a block on a base on a cap on a base.
 
     Parameters
     ----------
-    stack : BlockOnCap
-        Its parts.
+    block, cap : ChainBody
+        On their bases, per unit mass of the block.
     mass : float
         Of the block [kg].
     rest : StackRest
@@ -75,46 +71,45 @@ def coupled(stack: BlockOnCap, mass: float, rest: StackRest) -> ContactModel:
     -------
     ContactModel
     """
-    block, pads, soil = stack.block, stack.pads, stack.soil
-    system = system_of(stack)
-    fastest, damping_rate = fastest_vibration(stack)
+    body, system = block.body, system_of(block, cap)
+    fastest, damping_rate = fastest_vibration((block, cap))
     return ContactModel(
         name="coupled",
         system=system,
         rotation_limits=(
-            math.atan2(block.left, block.height),
-            math.atan2(block.right, block.height),
+            math.atan2(body.left, body.height),
+            math.atan2(body.right, body.height),
         ),
         rotation_weights=np.array([1.0, 0.0, 1.0, 0.0, 0.0, 0.0]),
-        scales=_scales(stack),
-        guard_tolerance=np.concatenate([part_tolerance(pads), part_tolerance(soil)]),
-        columns=(*COLUMNS, *pads.columns, *soil.columns),
+        scales=_scales(block, cap),
+        guard_tolerance=np.concatenate([part_tolerance(block.base), part_tolerance(cap.base)]),
+        columns=(*COLUMNS, *block.base.columns, *cap.base.columns),
         contacts=CONTACTS,
         memory=(*MEMORY, "held_place_of_cap"),
         mass=mass,
         fastest_frequency=fastest,
         damping_rate=damping_rate,
-        energy_scale=block.gravity * radius_of(block) * block.angle,
+        energy_scale=body.gravity * radius_of(body) * body.angle,
         initial=_starting(system, rest),
-        rounding=_rounding(stack, fastest),
+        rounding=_rounding(block, cap, fastest),
     )
 
 
-def _scales(stack: BlockOnCap) -> Vector:
-    block, pads, _, soil, cap_mass = stack
-    sway, rocking = radius_of(block) * block.angle, rocking_rate(block)
+def _scales(block: ChainBody, cap: ChainBody) -> Vector:
+    body, pads, soil = block.body, block.base, cap.base
+    sway, rocking = radius_of(body) * body.angle, rocking_rate(body)
     on_pads = math.sqrt(pads.vertical_stiffness)
-    on_soil = math.sqrt(soil.vertical_stiffness / (1.0 + cap_mass))
-    sizes = np.array([block.angle, pads.settlement, block.angle, soil.settlement, sway, sway])
+    on_soil = math.sqrt(soil.vertical_stiffness / (1.0 + cap.mass))
+    sizes = np.array([body.angle, pads.settlement, body.angle, soil.settlement, sway, sway])
     rates = np.array([rocking, on_pads, rocking, on_soil, rocking, rocking])
     return np.concatenate([sizes, sizes * rates, pads.variable_scales, soil.variable_scales])
 
 
-def _rounding(stack: BlockOnCap, fastest: float) -> Callable[[float], Vector]:
+def _rounding(block: ChainBody, cap: ChainBody, fastest: float) -> Callable[[float], Vector]:
     """Estimate the rounding noise of everything in the state, as of a body on its base."""
-    block, pads, cap, soil, _ = stack
-    rotating = 0.5 * (block.left + block.right) / (block.inertia + block.height**2)
-    sizes = radius_of(block), radius_of(cap)
+    body, pads, soil = block.body, block.base, cap.base
+    rotating = 0.5 * (body.left + body.right) / (body.inertia + body.height**2)
+    sizes = radius_of(body), radius_of(cap.body)
     answers = np.array([rotating, 1.0, 1.0 / sizes[1], 1.0, 1.0, 1.0])
     variables = len(pads.variable_scales) + len(soil.variable_scales)
     return rounding_at(sum(sizes), pads.settlement + soil.settlement, answers, fastest, variables)

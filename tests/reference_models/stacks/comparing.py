@@ -8,12 +8,13 @@ from reference_models.maximal.motions import both
 
 from rockframe.dynamics.alone_model import rigid_body
 from rockframe.dynamics.base_numbers import bed_numbers, pads_numbers
-from rockframe.dynamics.chain.linked import GROUND, ChainLink
-from rockframe.dynamics.chain.model import ChainBody, chain
+from rockframe.dynamics.chain.link_rows import GROUND, ChainLink
+from rockframe.dynamics.chain.model import chain
 from rockframe.dynamics.links import LinkNumbers
 from rockframe.dynamics.links import Tie as LawOfTie
 from rockframe.dynamics.protocol import ContactModel, Start, column_of
 from rockframe.dynamics.restraint import BY_CONTACT, CENTRE, LEADING_CORNER
+from rockframe.dynamics.vibrations import ChainBody
 from rockframe.signals import Motion
 from rockframe.solve.accuracy import accuracy_of
 from rockframe.solve.integrate import integrate

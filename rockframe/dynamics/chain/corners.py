@@ -1,0 +1,284 @@
+"""Corners that bear on rigid bases, and what follows from them for the bodies of a chain.
+
+A corner that bears is held, normal to the base and along it, by forces that are solved for,
+:eq:`eq-chain-solution`. What a contact does not let move follows from what it does, so that
+nothing drifts.
+"""
+
+import math
+from typing import Final
+
+from rockframe.compiled import Vector, inlined, kernel, put
+from rockframe.dynamics.base import SIMULTANEOUS, Guards, Variables
+from rockframe.dynamics.bed import DOWN, RAISED, both_contacts
+from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, ROTATION, VERTICAL
+from rockframe.dynamics.body import BodyState
+from rockframe.dynamics.chain import rows as at
+from rockframe.dynamics.chain.impact import (
+    BOTH,
+    LEFT_ONLY,
+    RIGHT_ONLY,
+)
+from rockframe.dynamics.chain.motion import (
+    add_constraint,
+    coriolis_normal,
+)
+from rockframe.dynamics.chain.rows import CONSTRAINT, GUARDS, PLACES
+from rockframe.dynamics.chain.system import Chain
+from rockframe.dynamics.on_base import Mode
+from rockframe.dynamics.pads import CORNER, CORNER_GUARDS
+from rockframe.dynamics.protocol import HELD_PLACE, Ground, Slope
+from rockframe.dynamics.restraint import PIVOT_CENTRE, PIVOT_LEFT, PIVOT_RIGHT
+
+NONE: Final = -1.0
+"""In place of the number of a constraint."""
+PULLED: Final = CORNER
+"""In the contact of a body whose corner is held though it does not press: free, it would come
+back at once."""
+OPENING: Final = 1
+"""Guard of such a corner, behind that of its force: that it would come back."""
+EVERY_LEFT: Final = 0x5555
+"""The left corners of eight bodies."""
+LEVEL: Final = 1e-13
+"""Share of a body's size, or of its speed of fall, below which a corner is at its base."""
+
+
+class RigidCorners(Chain):
+    """Bodies upon one another of which some stand on rigid bases. A mixin of systems."""
+
+    __slots__ = ()
+
+    @inlined
+    def is_rigid(self, k: int) -> bool:
+        """Whether a body stands on a rigid base."""
+        return self.number(k, at.LAW) == at.ON_RIGID
+
+    @inlined
+    def band(self) -> int:
+        """Give how far apart constraints that have a body in common may stand."""
+        return 5
+
+    @kernel
+    def bearing(self, mode: int) -> int:
+        """Give the corners on rigid bases that bear in a mode."""
+        found = 0
+        for k in range(self.body_count):
+            if self.is_rigid(k):
+                part, contact = self.on_base(k), self.part_mode(mode, k).contact
+                found |= (1 if part.base.is_held(contact, True) else 0) << 2 * k
+                found |= (2 if part.base.is_held(contact, False) else 0) << 2 * k
+        return found
+
+    @kernel
+    def pulled(self, mode: int) -> int:
+        """Give the corners that are held in a mode though they do not press."""
+        found, bearing = 0, self.bearing(mode)
+        for k in range(self.body_count):
+            if self.is_rigid(k) and self.part_mode(mode, k).contact & PULLED != 0:
+                found |= bearing & BOTH << 2 * k
+        return found
+
+    @inlined
+    def bears_alone(self, corners: int, one: int) -> bool:
+        """Whether a corner bears without the other one of its body."""
+        even = one & EVERY_LEFT != 0
+        return corners & (one << 1 if even else one >> 1) == 0
+
+    @kernel
+    def with_bearing(self, mode: int, corners: int, pulled: int) -> int:
+        """Give the mode in which some corners on rigid bases bear, some of them only held."""
+        new = mode
+        for k in range(self.body_count):
+            if self.is_rigid(k):
+                bears = corners >> 2 * k & BOTH
+                contact = both_contacts(
+                    DOWN if bears & LEFT_ONLY else RAISED, DOWN if bears & RIGHT_ONLY else RAISED
+                )
+                contact += PULLED if pulled >> 2 * k & BOTH != 0 else 0
+                pivot = PIVOT_CENTRE
+                if bears == LEFT_ONLY:
+                    pivot = PIVOT_LEFT
+                elif bears == RIGHT_ONLY:
+                    pivot = PIVOT_RIGHT
+                new = self.with_part(new, k, Mode(contact, pivot, False))
+        return new
+
+    @kernel
+    def standing_state(self, k: int, standing: Mode, state: Vector) -> BodyState:
+        """Give placement and rates of a body as its contacts allow them."""
+        body, part = self.state_of(k, state), self.on_base(k)
+        if not self.is_rigid(k) or part.flies(standing.contact):
+            return body
+        left = part.base.is_held(standing.contact, True)
+        if left and part.base.is_held(standing.contact, False):
+            return BodyState(0.0, 0.0, body.horizontal, 0.0, 0.0, 0.0)
+        lowered = BodyState(
+            body.rotation, 0.0, body.horizontal, body.angular_velocity, 0.0,
+            body.horizontal_velocity,
+        )  # fmt: skip
+        line = part.body.base_line_at(lowered)
+        level, speed = (line.left, line.left_speed) if left else (line.right, line.right_speed)
+        return BodyState(
+            body.rotation, -level, body.horizontal, body.angular_velocity, -speed,
+            body.horizontal_velocity,
+        )  # fmt: skip
+
+    @kernel
+    def add_corners(
+        self, k: int, count: int, standing: Mode, state: Vector, moves: bool, room: Vector,
+        rows: Vector,
+    ) -> int:  # fmt: skip
+        """Add the constraints of corners that bear on a rigid base, :eq:`eq-rigid-corner`."""
+        i, part = k * PLACES, self.on_base(k)
+        room[i + at.LEFT_CORNER] = room[i + at.RIGHT_CORNER] = NONE
+        if not self.is_rigid(k) or part.flies(standing.contact):
+            return count
+        body = self.standing_state(k, standing, state)
+        attitude = part.body.attitude(body.rotation)
+        line = part.body.base_line(body, attitude)
+        rate = body.angular_velocity if moves else 0.0
+        bends = part.body.end_accelerations(attitude, rate, 0.0, 0.0)
+        for side in range(2):
+            if part.base.is_held(standing.contact, side == 0):
+                lever = line.left_lever if side == 0 else line.right_lever
+                wanted = -coriolis_normal(i, room) - bends[side]
+                add_constraint(self, count, k, 0.0, 1.0, lever, wanted, room, rows)
+                room[i + at.LEFT_CORNER + side] = count
+                count += 1
+        return count
+
+    @inlined
+    def stand_still(self, room: Vector, out: Vector) -> None:
+        """Take rounding from the accelerations of bodies in full contact with a rigid base."""
+        for k in range(self.body_count):
+            i = k * PLACES
+            full = room[i + at.LEFT_CORNER] != NONE and room[i + at.RIGHT_CORNER] != NONE
+            if self.is_rigid(k) and full:
+                first = BEFORE_HORIZONTAL * k
+                out[first + ROTATION] = out[first + VERTICAL] = 0.0
+                out[self.horizontal_of(k)] = 0.0
+
+    @kernel
+    def corner_force(self, k: int, left: bool) -> float:
+        """Give the force at a corner on a rigid base, or its impulse, as solved for last."""
+        i = k * PLACES + (at.LEFT_CORNER if left else at.RIGHT_CORNER)
+        which = self.places()[i]
+        if which == NONE:
+            return 0.0
+        return float(self.constraints()[int(which) * CONSTRAINT + at.FORCE])
+
+    @inlined
+    def find_corner_forces(self, mode: int, state: Vector, ground: Ground) -> None:
+        """Find the forces of corners on rigid bases."""
+        self.accelerate(mode, state, ground)
+
+    @inlined
+    def observed_base(self, k: int, standing: Mode, body: BodyState) -> Variables:
+        """Give what users see of a base: of a rigid one, the forces of its corners."""
+        if self.is_rigid(k):
+            return self.corner_force(k, True), self.corner_force(k, False), 0.0
+        return self.on_base(k).observed_base(standing, body, ())
+
+    @kernel
+    def guards_of_bodies(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
+        """Write the guards of each body in turn, and their rates."""
+        values, changes = self.guard_room(0), self.guard_room(1)
+        self.accelerate(mode, state, ground)
+        for k in range(self.body_count):
+            if self.is_rigid(k):
+                self.write_corner_guards(k, self.part_mode(mode, k), state, values, changes)
+        for k in range(self.body_count):
+            standing = self.part_mode(mode, k)
+            if self.is_rigid(k) and standing.contact & PULLED != 0:
+                left = self.on_base(k).base.is_held(standing.contact, True)
+                i = GUARDS * k + (0 if left else CORNER_GUARDS)
+                values[i] = -values[i]
+                free = self.with_part(mode, k, Mode(both_contacts(RAISED, RAISED), 0, False))
+                rises = self.end_accelerations(k, free, state, ground)
+                values[i + OPENING] = -rises[0 if left else 1] / self.number(k, at.GRAVITY)
+        slides = self.some_end_slides(mode)
+        for k in range(self.body_count):
+            if not self.is_rigid(k):
+                found = self.guards_on_base(k, slides, mode, state, slope, ground)
+                put(found.values, GUARDS * k, values)
+                put(found.changes, GUARDS * k, changes)
+        return Guards(values, changes)
+
+    @kernel
+    def write_corner_guards(
+        self, k: int, standing: Mode, state: Vector, values: Vector, changes: Vector
+    ) -> None:
+        """Write the guards of both corners: the force of one that bears, the gap of another."""
+        part, body = self.on_base(k), self.standing_state(k, standing, state)
+        line, weight = part.body.base_line_at(body), self.number(k, at.MASS) * part.body.gravity
+        flies = part.flies(standing.contact)
+        for i in range(GUARDS):
+            values[GUARDS * k + i], changes[GUARDS * k + i] = 1.0, 0.0
+        for side in range(2):
+            i = GUARDS * k + CORNER_GUARDS * side
+            if part.base.is_held(standing.contact, side == 0):
+                values[i] = self.corner_force(k, side == 0) / weight
+            elif flies:
+                size = part.body.size()
+                values[i] = (line.left if side == 0 else line.right) / size
+                changes[i] = (line.left_speed if side == 0 else line.right_speed) / size
+            else:
+                scale = (1.0 if side == 0 else -1.0) / part.body.angle
+                values[i], changes[i] = scale * body.rotation, scale * body.angular_velocity
+
+    @kernel
+    def resting_corners(self, mode: int, state: Vector) -> int:
+        """Give the corners that have been left, and are still where they were."""
+        found = 0
+        for k in range(self.body_count):
+            if self.is_rigid(k):
+                part, standing = self.on_base(k), self.part_mode(mode, k)
+                body = self.standing_state(k, standing, state)
+                line, size = part.body.base_line_at(body), part.body.size()
+                level = LEVEL * size
+                speed = LEVEL * math.sqrt(part.body.gravity * size)
+                if abs(line.left) <= level and abs(line.left_speed) <= speed:
+                    found |= LEFT_ONLY << 2 * k
+                if abs(line.right) <= level and abs(line.right_speed) <= speed:
+                    found |= RIGHT_ONLY << 2 * k
+        return found
+
+    @kernel
+    def land(self, k: int, left: bool, standing: Mode, state: Vector) -> int:
+        """Put a corner that lands on its base; give the corners that are there then."""
+        part, first = self.on_base(k), BEFORE_HORIZONTAL * k
+        line = part.body.base_line_at(self.state_of(k, state))
+        both = not part.flies(standing.contact)
+        both |= abs(line.left - line.right) <= SIMULTANEOUS * part.body.angle * part.body.size()
+        if both:
+            state[first + ROTATION] = state[first + VERTICAL] = 0.0
+            return BOTH << 2 * k
+        state[first + VERTICAL] -= line.left if left else line.right
+        return (LEFT_ONLY if left else RIGHT_ONLY) << 2 * k
+
+    @kernel
+    def write_contacts(self, mode: int, state: Vector, memory: Vector) -> None:
+        """Write to the state what follows from the contacts with rigid bases."""
+        n = self.coordinates()
+        for k in range(self.body_count):
+            part, standing = self.on_base(k), self.part_mode(mode, k)
+            if self.is_rigid(k) and not part.flies(standing.contact):
+                body = self.standing_state(k, standing, state)
+                pin, first = part.body.pin(standing.pivot), BEFORE_HORIZONTAL * k
+                reach = part.body.reach(pin, part.body.attitude(body.rotation))
+                state[first + ROTATION], state[first + VERTICAL] = body.rotation, body.vertical
+                state[n + first + ROTATION] = body.angular_velocity
+                state[n + first + VERTICAL] = body.vertical_velocity
+                place = memory[HELD_PLACE + k] + part.body.about_pin(pin, body.rotation)
+                self.set_sway(k, place, reach.rate * body.angular_velocity, state)
+
+    @kernel
+    def hold_contacts(self, mode: int, state: Vector, memory: Vector) -> None:
+        """Hold bodies where they are by the contacts of a mode, whose velocities they have."""
+        for k in range(self.body_count):
+            part, standing = self.on_base(k), self.part_mode(mode, k)
+            if self.is_rigid(k) and not part.flies(standing.contact):
+                pin, place = part.body.pin(standing.pivot), state[self.horizontal_of(k)]
+                rotation = self.standing_state(k, standing, state).rotation
+                memory[HELD_PLACE + k] = place - part.body.about_pin(pin, rotation)
+        self.write_contacts(mode, state, memory)

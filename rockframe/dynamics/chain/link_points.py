@@ -1,0 +1,185 @@
+"""Where the points of links are, and how links are stretched between them, :eq:`eq-link`."""
+
+import math
+from typing import Final, NamedTuple
+
+from rockframe.compiled import Vector, inlined, kernel
+from rockframe.dynamics.body import BodyState
+from rockframe.dynamics.chain import rows as at
+from rockframe.dynamics.chain.link_rows import (
+    ALONG_X,
+    ALONG_Y,
+    APART_X,
+    APART_Y,
+    GIVEN,
+    GROUND,
+    LIES,
+    MOVED_X,
+    MOVED_Y,
+    NOISE,
+    ON,
+    ON_X,
+    ON_Y,
+    OWN_RATE,
+    OWN_SINE,
+    OWN_VERSINE,
+    TO,
+    TO_X,
+    TO_Y,
+    LinkRows,
+)
+from rockframe.dynamics.chain.rows import PLACES
+from rockframe.dynamics.links import Stretch
+from rockframe.dynamics.trigonometry import sine_cosine, versine
+
+MEET: Final = 1e3
+"""Roundings of the elongation within which points of a link meet."""
+TINY: Final = 1e-280
+"""Square of a speed that is none."""
+
+
+class Moved(NamedTuple):
+    """Where a point of a body has come to from where it was given, and how it moves."""
+
+    x: float
+    y: float
+    arm_x: float  # from the centre of mass of its body
+    arm_y: float
+    speed_x: float
+    speed_y: float
+
+
+class StretchedLink(NamedTuple):
+    """A link that is stretched: how, and the direction from its second point to its first."""
+
+    stretch: Stretch
+    x: float
+    y: float
+
+
+class LinkPoints(LinkRows):
+    """Where bodies and points of links are. A mixin of systems.
+
+    The horizontal coordinate of the lowest body moves wherever that is held, as those of all
+    others do, for links ask where it is.
+    """
+
+    __slots__ = ()
+
+    @inlined
+    def lowest_place(self, mode: int, body: BodyState, state: Vector) -> float:
+        """Give the horizontal place of the lowest body."""
+        return body.horizontal
+
+    @kernel
+    def lay(self, mode: int, state: Vector, room: Vector) -> None:
+        """Write how all bodies lie, from where they are given, after they are placed."""
+        lies, x, y, rate, angle = self.lies(), 0.0, 0.0, 0.0, 0.0
+        for k in range(self.body_count - 1, -1, -1):
+            i, j = k * PLACES, k * LIES
+            body = self.standing_state(k, self.part_mode(mode, k), state)
+            sine, cosine = room[i + at.SINE], room[i + at.COSINE]
+            y = self.rise_of(k, y, body.vertical, room)
+            if k + 1 < self.body_count:
+                across = room[i + at.ACROSS]
+                x += room[i + at.ARM] * sine + across - self.number(k, at.BESIDE)
+                x -= across * versine(sine, cosine)
+            else:
+                x = self.lowest_place(mode, body, state)
+            rate += body.angular_velocity
+            angle += body.rotation
+            if k > 0:  # what the next body stands on
+                sine, cosine = room[i - PLACES + at.SINE], room[i - PLACES + at.COSINE]
+            else:
+                sine, cosine = sine_cosine(angle)
+            lies[j + MOVED_X], lies[j + MOVED_Y], lies[j + OWN_RATE] = x, y, rate
+            lies[j + OWN_SINE], lies[j + OWN_VERSINE] = sine, versine(sine, cosine)
+
+    @inlined
+    def moved(self, k: int, x: float, y: float, room: Vector) -> Moved:
+        """Give where a point of a body, or of the ground, has come to."""
+        if k == GROUND:
+            return Moved(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        lies, i, j = self.lies(), k * PLACES, k * LIES
+        sine, lacks, rate = lies[j + OWN_SINE], lies[j + OWN_VERSINE], lies[j + OWN_RATE]
+        turned_x, turned_y = y * sine - x * lacks, -x * sine - y * lacks
+        arm_x, arm_y = x + turned_x, y + turned_y
+        return Moved(
+            lies[j + MOVED_X] + turned_x, lies[j + MOVED_Y] + turned_y, arm_x, arm_y,
+            room[i + at.SPEED_X] + rate * arm_y, room[i + at.SPEED_Y] - rate * arm_x,
+        )  # fmt: skip
+
+    @inlined
+    def upward(self, k: int) -> tuple[float, float]:
+        """Give the direction that points up on a body, or on the ground."""
+        if k == GROUND:
+            return 0.0, 1.0
+        lies = self.lies()
+        return lies[k * LIES + OWN_SINE], 1.0 - lies[k * LIES + OWN_VERSINE]
+
+    @inlined
+    def points_of(self, row: Vector, room: Vector) -> tuple[Moved, Moved]:
+        """Give both points of a link."""
+        on = self.moved(int(row[ON]), row[ON_X], row[ON_Y], room)
+        return on, self.moved(int(row[TO]), row[TO_X], row[TO_Y], room)
+
+    @inlined
+    def drawn(self, row: Vector, on: Moved, to: Moved) -> StretchedLink:
+        """Give how a link is stretched, :eq:`eq-link`.
+
+        Where its points meet it acts along the way that they go apart, or come together, upwards.
+        """
+        apart_x, apart_y, given = row[APART_X], row[APART_Y], row[GIVEN]
+        moved_x, moved_y = on.x - to.x, on.y - to.y
+        x, y = apart_x + moved_x, apart_y + moved_y
+        speed_x, speed_y = on.speed_x - to.speed_x, on.speed_y - to.speed_y
+        along_x, along_y = row[ALONG_X], row[ALONG_Y]
+        if along_x != 0.0 or along_y != 0.0:
+            elongation = along_x * moved_x + along_y * moved_y
+            rate = along_x * speed_x + along_y * speed_y
+            return StretchedLink(
+                Stretch(elongation, rate, 0.0, given, row[NOISE]), along_x, along_y
+            )
+        square = x * x + y * y
+        length, elongation = math.sqrt(square), 0.0
+        if length + given > 0.0:
+            elongation = (2.0 * apart_x * moved_x + moved_x * moved_x) / (length + given)
+            elongation += (2.0 * apart_y * moved_y + moved_y * moved_y) / (length + given)
+        if length <= MEET * row[NOISE]:
+            up_x, up_y = self.upward(int(row[TO]))
+            away = 1.0 if speed_x * up_x + speed_y * up_y >= 0.0 else -1.0
+            x, y = away * speed_x, away * speed_y
+            square = x * x + y * y
+            length = math.sqrt(square)
+            if square < TINY:
+                still = Stretch(elongation, 0.0, 0.0, given, row[NOISE])
+                return StretchedLink(still, up_x, up_y)
+        x, y = x / length, y / length
+        rate = x * speed_x + y * speed_y
+        return StretchedLink(Stretch(elongation, rate, 0.0, given, row[NOISE]), x, y)
+
+    @inlined
+    def accelerated_point(self, k: int, point: Moved, room: Vector) -> tuple[float, float]:
+        """Give the acceleration of a point of a body, or of the ground."""
+        if k == GROUND:
+            return 0.0, 0.0
+        i, rate = k * PLACES, self.lies()[k * LIES + OWN_RATE]
+        turning, square = room[i + at.ROTATION], rate * rate
+        return (
+            room[i + at.X] + turning * point.arm_y - square * point.arm_x,
+            room[i + at.Y] - turning * point.arm_x - square * point.arm_y,
+        )
+
+    @inlined
+    def watched(self, row: Vector, room: Vector) -> Stretch:
+        """Give how a link is stretched, with its acceleration, as forces are known."""
+        on, to = self.points_of(row, room)
+        found, x, y = self.drawn(row, on, to)
+        on_x, on_y = self.accelerated_point(int(row[ON]), on, room)
+        to_x, to_y = self.accelerated_point(int(row[TO]), to, room)
+        speed_x, speed_y = on.speed_x - to.speed_x, on.speed_y - to.speed_y
+        across = speed_x * y - speed_y * x
+        length = found.given + found.elongation
+        bend = across * across / length if length > 0.0 else 0.0
+        acceleration = x * (on_x - to_x) + y * (on_y - to_y) + bend
+        return Stretch(found.elongation, found.rate, acceleration, found.given, found.noise)
