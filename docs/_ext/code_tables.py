@@ -88,7 +88,10 @@ def _scenes() -> Rows:
     yield "parts", "model"
     for scene in scenes():
         coupling = {} if scene.coupling is None else {"coupling": scene.coupling}
-        system = rf.System(*(_PARTS[slot] for slot in scene.signature), **coupling)
+        given = _PARTS
+        if "frame" in scene.signature:
+            given = given | {"restrainer": rf.Tendon(stiffness="2 MN/m")}
+        system = rf.System(*(given[slot] for slot in scene.signature), **coupling)
         yield scene.title, system.setting.model
 
 

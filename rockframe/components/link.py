@@ -174,7 +174,8 @@ class Tendon(Link):
     It leaves the body at a point of its base and goes on into the ground, or into the body below,
     where it is bent over the edges of its duct as the base lifts there: it is longer by how far
     both edges are apart. Anchored at a depth in a wide duct it is straight from there to the edge.
-    It yields or breaks at its strength.
+    It yields or breaks at its strength. With a :class:`~rockframe.RockingFrame` it is one of each
+    column, along the axis of that and into the beam.
 
     Raises
     ------

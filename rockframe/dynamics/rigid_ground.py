@@ -50,6 +50,15 @@ COLUMNS: Final = (
 )
 
 
+# columns beside which others may stand
+_NAMES: Final = [one.name for one in COLUMNS]
+BASE_SHEAR: Final = _NAMES.index("base_shear")
+THRUST: Final = _NAMES.index("horizontal_reaction")
+PRESS: Final = _NAMES.index("vertical_reaction")
+LEFT_REACTION: Final = _NAMES.index("left_reaction")
+RIGHT_REACTION: Final = _NAMES.index("right_reaction")
+
+
 class RockingCorner(NamedTuple):
     """A corner that a block rotates about, seen from its centre of mass."""
 
@@ -175,6 +184,13 @@ class BlockOnRigidGround(NamedTuple):
     @kernel
     def switch(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:
         """Lift off from rest, or rock on the other corner after an impact, or come to rest."""
+        return self.switch_held(mode, guard, state, ground, memory, 0.0)
+
+    @kernel
+    def switch_held(
+        self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector, held: float
+    ) -> int:
+        """Do so under an angular acceleration towards rest, beside that of the weight."""
         if mode == RESTING:
             memory[LAST_EVENT] = UPLIFT
             if self.wall != 0.0:
@@ -188,12 +204,12 @@ class BlockOnRigidGround(NamedTuple):
         if self.wall != 0.0:  # it rocks on about the same corner, away from the wall
             new, after = mode, self.rebound * before
         state[0] = 0.0
-        restoring = -self.side(new) * self.angular_acceleration(new, 0.0, ground)
+        restoring = held - self.side(new) * self.angular_acceleration(new, 0.0, ground)
         rebound = after * after / (2.0 * restoring) if restoring > 0.0 else math.inf
         # a ground that tips the block back over the corner that it has left allows no rest
-        held = self.side(mode) * self.angular_acceleration(mode, 0.0, ground) <= 0.0
+        rests = self.side(mode) * self.angular_acceleration(mode, 0.0, ground) <= held
         memory[LAST_EVENT] = IMPACT
-        if held and rebound < REST_AMPLITUDE * self.corner(new).angle:
+        if rests and rebound < REST_AMPLITUDE * self.corner(new).angle:
             memory[LAST_EVENT] = REST
             after, new = 0.0, RESTING
         old, now = self.corner(mode).inertia, self.corner(new).inertia

@@ -111,6 +111,8 @@ class Drawer:
         ends = list[Array]()
         for point, k in zip(tie.points, tie.bodies, strict=True):
             place = at.block if k == 0 else partial(at.lower, k - 1)
+            if self.geometry.columns:  # tendons end in the beam
+                place = at.beam
             ends.append(point if k < 0 else self._moved(place, point[None])[0])
         return np.array(ends)
 

@@ -2,7 +2,7 @@
 
 import math
 
-from rockframe.components import RigidGround, Stack
+from rockframe.components import RigidGround, Stack, Tendon
 from rockframe.components.block_numbers import squat
 from rockframe.system.options import Options, Sliding
 from rockframe.system.own_base import OwnBase
@@ -43,7 +43,7 @@ def misfits(parts: Parts) -> list[str]:
                 f"a RearWall and {' and '.join(others)} are both given; a wall stands behind a "
                 "Block on rigid ground"
             )
-    if parts.links:
+    if parts.links and parts.frame is None:
         faults += _misfits_of_links(parts)
     if cap is not None and soil is None:
         faults.append("a CushionCap is given without a WinklerSoil for it to stand on")
@@ -87,17 +87,24 @@ def _misfits_of_links(parts: Parts) -> list[str]:
 
 def _misfits_of_frame(parts: Parts) -> list[str]:
     """Give the faults of columns under a beam with other parts."""
+    faults = [
+        "a Tendon of a RockingFrame goes along the axis of each column, bent below and above it: "
+        f"{name} must not be given"
+        for part in parts.links
+        for name, usual in (("at", 0.0), ("depth", 0.0), ("on_body", 1))
+        if isinstance(part, Tendon) and getattr(part.si, name) != usual
+    ]
     others = [
         type(part).__name__
         for slot, part in parts.components().items()
-        if slot not in ("frame", "ground")
+        if slot not in ("frame", "ground") and not isinstance(part, Tendon)
     ]
-    if not others:
-        return []
-    return [
-        f"a RockingFrame and {' and '.join(others)} are both given; a RockingFrame stands on rigid "
-        "ground, with nothing else"
-    ]
+    if others:
+        faults.append(
+            f"a RockingFrame and {' and '.join(others)} are both given; a RockingFrame stands on "
+            "rigid ground, with nothing else but tendons"
+        )
+    return faults
 
 
 def _misfits_of_stack(stack: Stack, parts: Parts) -> list[str]:

@@ -10,6 +10,7 @@ from rockframe.components.block_numbers import BlockSI
 from rockframe.components.rocking_frame import column_places, frame_outlines
 from rockframe.signals.arrays import Array
 from rockframe.system.assembly import Assembly
+from rockframe.system.rocking_frame import TiedFrameSetting
 from rockframe.system.setting import Setting
 from rockframe.system.stack import StackSetting
 
@@ -148,6 +149,10 @@ def _of_frame(frame: RockingFrame | None) -> dict[str, Any]:
 
 def _ties_of(setting: Setting) -> tuple[LinkedPoints, ...]:
     """Give the points that restrainers link."""
+    if isinstance(setting, TiedFrameSetting):  # along the axis of each column
+        top = setting.frame.column.height + setting.frame.beam_height
+        axes = column_places(setting.frame)
+        return tuple(LinkedPoints(np.array([(x, top), (x, 0.0)]), (0, -1)) for x in axes)
     ties = setting.ties[: len(setting.link_names)] if isinstance(setting, StackSetting) else ()
     return tuple(LinkedPoints(np.array(one.ends), (one.on, one.to)) for one in ties)
 

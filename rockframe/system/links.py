@@ -125,21 +125,26 @@ class PlacedLink:
             f"{to_y:.6g}) m"
         ]
         if isinstance(self.part, Restrainer | Tendon):
-            given = self.part.si
-            found.append(f"{given.stiffness:.6g} N/m")
-            found += [
-                f"{name} {value:.6g} {unit}"
-                for name, unit in (("slack", "m"), ("preload", "N"), ("damping", "N s/m"))
-                if (value := getattr(given, name, None))
-            ]
-            if given.strength is not None:
-                verb = "breaks" if given.brittle else "yields"
-                found.append(f"{verb} at {given.strength:.6g} N")
-            if getattr(given, "breaking_elongation", None):
-                found.append(f"breaks as it is {given.breaking_elongation:.6g} m longer")
-            pushes = getattr(given, "compression", False)
-            found.append("pulls and pushes" if pushes else "pulls only")
+            found += tie_words(self.part)
         return ", ".join(found)
+
+
+def tie_words(part: Restrainer | Tendon) -> list[str]:
+    """Tell the law of a restrainer or of a tendon."""
+    given = part.si
+    found = [f"{given.stiffness:.6g} N/m"]
+    found += [
+        f"{name} {value:.6g} {unit}"
+        for name, unit in (("slack", "m"), ("preload", "N"), ("damping", "N s/m"))
+        if (value := getattr(given, name, None))
+    ]
+    if given.strength is not None:
+        verb = "breaks" if given.brittle else "yields"
+        found.append(f"{verb} at {given.strength:.6g} N")
+    if getattr(given, "breaking_elongation", None):
+        found.append(f"breaks as it is {given.breaking_elongation:.6g} m longer")
+    pushes = getattr(given, "compression", False)
+    return [*found, "pulls and pushes" if pushes else "pulls only"]
 
 
 def tie_of(part: Restrainer | Tendon, mass: float) -> "LinkNumbers":

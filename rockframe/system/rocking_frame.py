@@ -1,21 +1,30 @@
-"""The scene of columns under a beam: the body that moves as they do, and its words."""
+"""The scene of columns under a beam: the body that moves as they do, tendons, and words."""
 
+import math
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 import numpy as np
 
+from rockframe.components import Tendon
 from rockframe.components.rocking_frame import RockingFrameSI
 from rockframe.errors import AssemblyError
 from rockframe.signals.arrays import Array
 from rockframe.system.bodies import SupportedBody
 from rockframe.system.impact import Restitutions, resolve_restitution
+from rockframe.system.links import link_labels, tie_of, tie_words
 from rockframe.system.load import BaseLoad
 from rockframe.system.options import Options
 from rockframe.system.parts import Parts
 from rockframe.system.rigid_ground import RigidGroundSetting, refuse_fall
+from rockframe.system.stack import refuse_options
+from rockframe.system.statics import Statics
 from rockframe.system.words import Words
+
+if TYPE_CHECKING:
+    from rockframe.dynamics.links import LinkNumbers
+    from rockframe.dynamics.protocol import ContactModel
 
 
 @dataclass(frozen=True)
@@ -111,6 +120,120 @@ class RockingFrameSetting(RigidGroundSetting):
         )  # fmt: skip
 
 
+class Pulled(NamedTuple):
+    """A tendon at a rotation that slow loading has led to."""
+
+    force: float  # [N]
+    elongation: float  # [m]
+
+
+@dataclass(frozen=True)
+class TiedFrameSetting(RockingFrameSetting):
+    """Columns under a beam on rigid ground, with tendons along the axes of the columns."""
+
+    tendons: tuple[Tendon, ...]
+
+    @property
+    def model(self) -> str:
+        """Name of the model."""
+        return "rocking frame with tendons"
+
+    @property
+    def link_names(self) -> tuple[str, ...]:
+        """What results call the tendons."""
+        return tuple(link_labels(self.tendons))
+
+    @cached_property
+    def laws(self) -> "tuple[LinkNumbers, ...]":
+        """The tendons as the equations take them."""
+        return tuple(tie_of(one, self.body.mass) for one in self.tendons)
+
+    def contact_model(self) -> "ContactModel":
+        """Give the equations of the columns and their tendons."""
+        from rockframe.dynamics.tendons import tied_frame
+
+        half, columns = self.frame.column.half_width, self.frame.columns
+        return tied_frame(super().contact_model(), self.laws, half_width=half, columns=columns)
+
+    def pulled(self, rotation: float) -> list[Pulled]:
+        """Give force and elongation of each tendon, :eq:`eq-rocking-frame-tendon`."""
+        from rockframe.dynamics.links import Stretch
+
+        longer = 4.0 * self.frame.column.half_width * math.sin(0.5 * abs(rotation))
+        stretch, found = Stretch(longer, 0.0, 0.0, 0.0, 0.0), list[Pulled]()
+        for one in self.laws:
+            law, own = one.law, np.zeros(one.law.variables())
+            force = law.force(law.starting(stretch, own), stretch, own)
+            found.append(Pulled(self.body.mass * force, longer))
+        return found
+
+    def pull(self, rotation: float) -> float:
+        """Give the force of all tendons of all columns [N]."""
+        return self.frame.columns * math.fsum(one.force for one in self.pulled(rotation))
+
+    @property
+    def uplift_accelerations(self) -> tuple[float, float]:
+        """Ground accelerations at which it rocks, against the preload too [m s^-2]."""
+        held = 2.0 * self.frame.column.half_width * self.pull(0.0)
+        more = held / (self.body.mass * self.body.centre_height)
+        left, right = super().uplift_accelerations
+        return left + more, right + more
+
+    def _held(self, rotation: float) -> Statics:
+        """Give the equilibrium at a rotation, with the tendons."""
+        found, half = super()._held(rotation), self.frame.column.half_width
+        pull, cosine = self.pull(rotation), math.cos(0.5 * rotation)
+        side = math.copysign(1.0, rotation) if rotation else 0.0
+        shares = (0.5 * (1.0 - side), 0.5 * (1.0 + side))
+        return replace(
+            found,
+            # forces at the feet, about their middles
+            base_moment=found.base_moment + side * pull * half * cosine,
+            restoring_moment=found.restoring_moment + side * 2.0 * half * pull * cosine,
+            reactions={
+                name: force + share * pull * cosine
+                for (name, force), share in zip(found.reactions.items(), shares, strict=True)
+            },
+        )
+
+    def equilibrium(self) -> dict[str, Any]:
+        """Give reactions, moment at uplift, and the tendons at rest."""
+        pull, found = self.pull(0.0), super().equilibrium()
+        found["uplift_moment"] += pull * self.frame.column.half_width
+        for name in ("static_left_reaction", "static_right_reaction"):
+            found[name] += 0.5 * pull
+        tied = self.pulled(0.0)
+        return found | {
+            "restrainer": list(self.link_names),
+            "static_restrainer_force": [one.force for one in tied],
+            "static_restrainer_elongation": [one.elongation for one in tied],
+        }
+
+    def _start_words(self) -> str:
+        """Say when rocking starts."""
+        return (
+            "at rest until |xg''| exceeds (g + yg'') tan(theta) by what the preload holds, "
+            f"{self.uplift_acceleration:.4g} m s^-2 in all without vertical motion"
+        )
+
+    def words(self) -> Words:
+        """Tell the frame and its tendons."""
+        told = super().words()
+        return replace(
+            told,
+            equations=[
+                *told.equations,
+                ("tendons", "a'' less s 2 b cos(a/2) N T/I, of the forces T of all tendons of a "
+                 "column, each longer by 4 b sin(|a|/2)"),
+            ],
+            numbers=[
+                *told.numbers,
+                *((name, f"along the axis of each column, {', '.join(tie_words(one))}")
+                  for name, one in zip(self.link_names, self.tendons, strict=True)),
+            ],
+        )  # fmt: skip
+
+
 def rocking_frame_setting(parts: Parts, options: Options) -> RockingFrameSetting:
     """Resolve the parts of a frame on rigid ground."""
     load = BaseLoad(body_of_frame(parts.the_frame.si), options)
@@ -121,6 +244,11 @@ def rocking_frame_setting(parts: Parts, options: Options) -> RockingFrameSetting
             f"restitution is {greatest.left:.4g}"
         ])  # fmt: skip
     given = parts.ground.si.restitution if parts.ground is not None else None
-    setting = RockingFrameSetting(load, resolve_restitution(given, greatest), parts.the_frame.si)
+    restitution = resolve_restitution(given, greatest)
+    setting = RockingFrameSetting(load, restitution, parts.the_frame.si)
     refuse_fall(setting)
-    return setting
+    if not parts.links:
+        return setting
+    refuse_options("a RockingFrame with tendons", options, small=False)
+    tendons = tuple(one for one in parts.links if isinstance(one, Tendon))
+    return TiedFrameSetting(load, restitution, parts.the_frame.si, tendons)

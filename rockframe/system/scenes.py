@@ -116,6 +116,11 @@ _SHIPPED: Final = (
         Coupling.CASCADE,
     ),
     Scene("RockingFrame (on rigid ground)", frozenset({"frame"}), rocking_frame_setting),
+    Scene(
+        "RockingFrame + Tendon (one or several)",
+        frozenset({"frame", RESTRAINER}),
+        rocking_frame_setting,
+    ),
     Scene("Stack (on rigid ground)", frozenset({"stack"}), partial(_upon_one_another, "ground")),
     Scene(
         "Stack + TwoSpringSupport",

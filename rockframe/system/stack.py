@@ -386,7 +386,7 @@ def block_setting(
     block: BlockSI, base: Component, options: Options, links: Sequence[Link]
 ) -> StackSetting:
     """Give the scene of a block with restrainers on a base."""
-    _refuse("a block with restrainers", options, small=False)
+    refuse_options("a block with restrainers", options, small=False)
     (body,), (top,) = _loaded((block,), links)
     load = BaseLoad(body, options)
     support = support_of(base, load)
@@ -423,7 +423,7 @@ def _loaded(
     return tuple(found), tuple(tops)
 
 
-def _refuse(what: str, options: Options, *, small: bool) -> None:
+def refuse_options(what: str, options: Options, *, small: bool) -> None:
     """Refuse options that the equations have not."""
     faults = list[str]()
     if options.inclination != 0.0:
@@ -438,7 +438,7 @@ def stack_setting(
     stack: Stack, base: Component, options: Options, links: Sequence[Link] = ()
 ) -> StackSetting:
     """Give the scene of a stack on a base."""
-    _refuse("a Stack", options, small=not links)
+    refuse_options("a Stack", options, small=not links)
     bodies, tops = _loaded(stack.si.bodies, links)
     offsets = stack.si.offsets
     bases = tuple(

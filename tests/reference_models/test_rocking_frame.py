@@ -5,7 +5,7 @@ import pytest
 from reference_models.monoliths.column_frame import Bodies
 
 import rockframe as rf
-from rockframe.dynamics.protocol import Ground
+from rockframe.dynamics.protocol import Ground, Start
 
 GRAVITY = 9.80665
 
@@ -56,6 +56,43 @@ def test_accelerations_reactions_and_impacts_are_those_of_the_bodies():
         landed = bodies.after_impact(-side * abs(rate), side)
         restitution = rf.System(frame).setting.restitution.left
         assert landed == pytest.approx(-side * abs(rate) * restitution, rel=1e-12)
+
+
+def test_tendons_pull_as_between_the_bodies():
+    for rng, column, number, beam in scenes(40):
+        si = column.si
+        bodies = Bodies(
+            number, si.half_width, si.height, si.centre_height, si.mass, si.inertia, 1e3 * beam
+        )
+        total = number * si.mass + 1e3 * beam
+        stiffness, preload = rng.uniform(0.1, 5.0, 2) * total * GRAVITY / number
+        tendon = rf.Tendon(stiffness=f"{stiffness} N/m", preload=f"{preload} N")
+        frame = rf.RockingFrame(column, columns=number, beam_mass=f"{beam} t")
+        system = rf.System(frame, tendon)
+        model = system.assembly.model
+        theta = min(model.rotation_limits)
+        angle, rate = rng.uniform(-0.9, 0.9) * theta, rng.normal() * theta
+        side = np.sign(angle)
+        ground = Ground(*rng.normal(size=2))
+        mode, state, memory = model.initial(Start(rotation=angle, angular_velocity=rate))
+        slope = model.system.accelerate(mode, state, ground).copy()
+        seen = dict(zip(
+            [one.name for one in model.columns],
+            model.system.observe(mode, state, slope, ground, memory), strict=True,
+        ))  # fmt: skip
+        force = total * seen["restrainer_force"]
+        loads, longer = bodies.tied(angle, side, force)
+        assert seen["restrainer_elongation"] == pytest.approx(longer, rel=1e-11)
+        assert force == pytest.approx(preload + stiffness * longer, rel=1e-11)
+        found, feet = bodies.acceleration(angle, rate, side, ground, GRAVITY, loads)
+        assert slope[0] == pytest.approx(found, rel=1e-11, abs=1e-11)
+        forces = [total * seen["horizontal_reaction"], total * seen["vertical_reaction"]]
+        np.testing.assert_allclose(forces, feet, rtol=1e-10, atol=1e-11 * total * GRAVITY)
+        # with no acceleration of the ground and no rate: the moment that holds it there
+        still, _ = bodies.acceleration(angle, 0.0, side, Ground(0.0, 0.0), GRAVITY, loads)
+        held = system.moment_rotation([f"{angle} rad"]).restoring_moment.item()
+        corner = model.system.rocking.right.inertia * total
+        assert held == pytest.approx(-still * corner, rel=1e-10)
 
 
 def test_points_of_columns_and_beam_are_where_the_bodies_are():

@@ -53,6 +53,14 @@ def test_what_a_frame_does_not_go_with():
     pads = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
     with pytest.raises(rf.AssemblyError, match="a RockingFrame stands on rigid ground"):
         rf.System(BENT, pads)
+    for given in ({"at": "0.1 m"}, {"depth": "1 m"}):
+        with pytest.raises(rf.AssemblyError, match="goes along the axis of each column"):
+            rf.System(BENT, rf.Tendon(stiffness="1 MN/m", **given))
+    load = rf.Load(at=("0 m", "1 m"), vertical="1 kN")
+    with pytest.raises(rf.AssemblyError, match="nothing else but tendons"):
+        rf.System(BENT, load)
+    with pytest.raises(rf.AssemblyError, match="rotation='finite'"):
+        rf.System(BENT, rf.Tendon(stiffness="1 MN/m"), rotation="small")
     with pytest.raises(rf.AssemblyError, match="RockingFrame and Block are both given"):
         rf.System(BENT, PIER)
     squat = rf.Block(width="1 m", height="0.9 m", mass="1 t")

@@ -54,7 +54,31 @@ class Bodies:
         free = np.linalg.svd(self.jacobian(angle, side))[2][-1]
         return free * (rate / free[2])
 
-    def acceleration(self, angle, rate, side, ground, gravity):
+    def tied(self, angle, side, force):
+        """Loads of a tendon along the axis of each column, and its elongation.
+
+        It goes from the ground, at the middle of the foot, to a hole there, and from a hole in the
+        middle of the head to one in the beam above it.
+        """
+        places, size = self.places_of(angle, side), len(self.mass)
+        loads, longer = np.zeros(size), 0.0
+        for k, x in enumerate(self.places):
+            centre, beam = places[3 * k : 3 * k + 2], places[size - 3 : size - 1]
+            foot, head = (
+                turned([0.0, -self.centre], angle),
+                turned([0.0, self.height - self.centre], angle),
+            )
+            first = centre + foot - np.array([x, 0.0])
+            second = beam + np.array([x + side * self.b, 0.0]) - (centre + head)
+            lengths = np.hypot(*first), np.hypot(*second)
+            longer += sum(lengths) / self.count
+            below, above = force * first / lengths[0], force * second / lengths[1]
+            loads[3 * k : 3 * k + 2] += above - below
+            loads[3 * k + 2] += across(head) @ above - across(foot) @ below
+            loads[size - 3 : size - 1] -= above
+        return loads, longer
+
+    def acceleration(self, angle, rate, side, ground, gravity, loads=0.0):
         """Angular acceleration of the columns, and all forces at their feet."""
         jacobian = self.jacobian(angle, side)
         bend = np.zeros(len(jacobian))
@@ -69,11 +93,12 @@ class Bodies:
         applied = np.zeros(len(self.mass))
         applied[0::3] = -self.mass[0::3] * ground[0]
         applied[1::3] = -self.mass[1::3] * (gravity + ground[1])
+        applied += loads
         free = self.velocities(angle, 1.0, side)
         bent = np.linalg.pinv(jacobian, rcond=1e-10) @ -bend  # what the constraints ask at least
         swing = free @ (applied - self.mass * bent) / (free @ (self.mass * free))
         found = bent + swing * free
-        feet = (self.mass * found - applied).reshape(-1, 3).sum(axis=0)[:2]
+        feet = (self.mass * found - applied).reshape(-1, 3)[:, :2].sum(axis=0)
         return found[2], feet
 
     def after_impact(self, rate, side):

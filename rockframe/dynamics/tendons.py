@@ -1,0 +1,331 @@
+"""Columns under a beam with tendons along their axes, :eq:`eq-rocking-frame-tendon`.
+
+The columns rock as without tendons; these are stretched by the gaps below and above each column
+together, and pull it upright. All per unit mass of columns and beam.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+
+from rockframe.compiled import Vector, inlined, kernel, numbers_in, part_of, put, stretch
+from rockframe.dynamics import rigid_ground as bare
+from rockframe.dynamics.links import GUARDS, LinkNumbers, Stretch
+from rockframe.dynamics.pads import ROUNDING
+from rockframe.dynamics.protocol import (
+    LAST_EVENT,
+    LINK_LOSS,
+    MEMORY,
+    POWERS,
+    Column,
+    ContactModel,
+    Energies,
+    Ground,
+    Guards,
+    Slope,
+    Start,
+    column_of,
+)
+from rockframe.dynamics.trigonometry import sine_cosine
+
+STORED: Final = 0  # energy at rest
+PLACE_VALUE: Final = 1  # of its state in the mode
+NUMBERS: Final = 2  # of its law, from here on
+LINK_COLUMNS: Final = ("restrainer_force", "restrainer_elongation", "restrainer_state")
+OWN_COLUMNS: Final = len(bare.COLUMNS)
+EACH_COLUMNS: Final = len(LINK_COLUMNS)
+LINK_PLACE: Final = len(MEMORY)
+"""Index into the memory: the tendon of the last event, counted from 1; 0 for none."""
+
+
+class TiedFrame(NamedTuple):
+    """Columns under a beam with tendons: a system."""
+
+    rocking: bare.BlockOnRigidGround
+    half_width: float  # of a column
+    columns: float  # each has all tendons
+    law: Any  # of the class of all tendons
+    link_count: int
+    rows: Vector  # of the tendons, then room to work in
+
+    @inlined
+    def bodies(self) -> int:
+        """Give 1: all columns move alike."""
+        return 1
+
+    @kernel
+    def coordinates(self) -> int:
+        """Give 1, the rotation."""
+        return 1
+
+    @kernel
+    def variables(self) -> int:
+        """Give the number of variables of all tendons."""
+        return self.link_count * self.law.variables()
+
+    @kernel
+    def guards(self) -> int:
+        """Give the number of guards, of the columns and then of each tendon in turn."""
+        return bare.GUARDS + GUARDS * self.link_count
+
+    @kernel
+    def modes(self) -> int:
+        """Give the number of modes."""
+        return bare.MODES * int(self.law.states() ** self.link_count)
+
+    @inlined
+    def moving_in(self, mode: int) -> int:
+        """Give 1 while the columns rock, 0 at rest."""
+        return self.rocking.moving_in(mode % bare.MODES)
+
+    @inlined
+    def contact_state_of(self, mode: int, k: int) -> int:
+        """Give which corner bears, or that both do."""
+        return self.rocking.contact_state_of(mode % bare.MODES, k)
+
+    @inlined
+    def relaxation_in(self, mode: int) -> float:
+        """Give 0: nothing slides."""
+        return 0.0
+
+    @kernel
+    def some_end_slides(self, mode: int) -> bool:
+        """Give False: the ground holds the corners that bear."""
+        return False
+
+    @inlined
+    def without_sliding(self, mode: int) -> int:
+        """Give the mode itself."""
+        return mode
+
+    @inlined
+    def row_of_link(self, i: int) -> Vector:
+        """Give the row of a tendon."""
+        width = NUMBERS + self.law.number_count()
+        return stretch(self.rows, i * width, width)
+
+    @inlined
+    def room(self, first: int, count: int) -> Vector:
+        """Give room behind the rows."""
+        return stretch(
+            self.rows, self.link_count * (NUMBERS + self.law.number_count()) + first, count
+        )
+
+    @inlined
+    def slopes(self) -> Vector:
+        """Give the room for accelerations, rates of variables, and powers."""
+        return self.room(0, 1 + self.variables() + POWERS)
+
+    @inlined
+    def guard_room(self, which: int) -> Vector:
+        """Give the room for guards (0) or their rates (1)."""
+        first = 1 + self.variables() + POWERS + which * self.guards()
+        return self.room(first, self.guards())
+
+    @inlined
+    def column_room(self) -> Vector:
+        """Give the room for columns."""
+        first = 1 + self.variables() + POWERS + 2 * self.guards()
+        return self.room(first, OWN_COLUMNS + EACH_COLUMNS * self.link_count)
+
+    @inlined
+    def link_state(self, mode: int, row: Vector) -> int:
+        """Give the state of a tendon, by its row."""
+        return mode // int(row[PLACE_VALUE]) % self.law.states()
+
+    @inlined
+    def of_link(self, i: int, state: Vector) -> Vector:
+        """Give the variables of a tendon."""
+        each = self.law.variables()
+        return stretch(state, 2 + i * each, each)
+
+    @inlined
+    def lever(self, rotation: float) -> float:
+        """Give the elongation per rotation, 2 b cos(a/2), without its sign."""
+        return 2.0 * self.half_width * sine_cosine(0.5 * rotation)[1]
+
+    @inlined
+    def stretched(self, mode: int, state: Vector, turning: float) -> Stretch:
+        """Give how the tendons are stretched: by 4 b sin(|a|/2)."""
+        side, rate = self.rocking.side(mode % bare.MODES), state[1]
+        half = sine_cosine(0.5 * state[0])[0]
+        length, lever = 4.0 * self.half_width, self.lever(state[0])
+        bend = 0.25 * length * half * rate * rate
+        return Stretch(
+            side * length * half, side * lever * rate, side * (lever * turning - bend), 0.0,
+            ROUNDING * length,
+        )  # fmt: skip
+
+    @kernel
+    def pull(self, mode: int, state: Vector) -> float:
+        """Give what all tendons of all columns pull with."""
+        link, force = self.stretched(mode, state, 0.0), 0.0
+        for i in range(self.link_count):
+            row = self.row_of_link(i)
+            law = self.law.with_numbers(part_of(row, NUMBERS))
+            force += law.force(self.link_state(mode, row), link, self.of_link(i, state))
+        return self.columns * force
+
+    @kernel
+    def accelerate(self, mode: int, state: Vector, ground: Ground) -> Vector:
+        """Give the acceleration, rates of variables, dashpot power and input power."""
+        out, rocks = self.slopes(), mode % bare.MODES
+        found = self.rocking.accelerate(rocks, state, ground)
+        for i in range(len(out)):
+            out[i] = 0.0
+        if rocks == bare.RESTING:
+            return out
+        resisting = self.pull(mode, state) * self.lever(state[0])
+        inertia = self.rocking.corner(rocks).inertia
+        link, lost = self.stretched(mode, state, 0.0), 0.0
+        for i in range(self.link_count):
+            row, own = self.row_of_link(i), self.of_link(i, state)
+            law, each = self.law.with_numbers(part_of(row, NUMBERS)), self.law.variables()
+            standing = self.link_state(mode, row)
+            lost += law.power(standing, link, own)
+            law.rates(standing, link, own, stretch(out, 1 + i * each, each))
+        out[0] = found[0] - self.rocking.side(rocks) * resisting / inertia
+        out[1 + self.variables()] = self.columns * lost
+        out[2 + self.variables()] = found[2]
+        return out
+
+    @kernel
+    def guards_in(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
+        """Give the guards of impact and uplift, then those of each tendon."""
+        values, changes, rocks = self.guard_room(0), self.guard_room(1), mode % bare.MODES
+        found = self.rocking.guards_in(rocks, state, slope, ground)
+        put(found.values, 0, values)
+        put(found.changes, 0, changes)
+        if rocks == bare.RESTING:
+            right = self.rocking.right
+            height = right.radius * sine_cosine(right.angle)[1]
+            held = self.pull(mode, state) * self.lever(0.0) / (height * self.rocking.gravity)
+            values[bare.UPLIFT_ON_RIGHT] += held
+            values[bare.UPLIFT_ON_LEFT] += held
+        link = self.stretched(mode, state, slope[0])
+        for i in range(self.link_count):
+            row = self.row_of_link(i)
+            law, standing = self.law.with_numbers(part_of(row, NUMBERS)), self.link_state(mode, row)
+            for which in range(GUARDS):
+                j = bare.GUARDS + GUARDS * i + which
+                values[j], changes[j] = 1.0, 0.0
+                if rocks != bare.RESTING:
+                    values[j], changes[j] = law.guard(which, standing, link, self.of_link(i, state))
+        return Guards(values, changes)
+
+    @kernel
+    def switch(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:
+        """Lift off, land, or change the state of a tendon."""
+        rocks = mode % bare.MODES
+        memory[LINK_PLACE] = 0.0
+        if guard < bare.GUARDS:
+            resisting = self.pull(mode, state) * self.lever(0.0) / self.rocking.right.inertia
+            new = self.rocking.switch_held(rocks, guard, state, ground, memory, resisting)
+            return mode - rocks + new
+        i = (guard - bare.GUARDS) // GUARDS
+        row, link = self.row_of_link(i), self.stretched(mode, state, 0.0)
+        standing, law = self.link_state(mode, row), self.law.with_numbers(part_of(row, NUMBERS))
+        which = guard - bare.GUARDS - GUARDS * i
+        found = law.switch(which, standing, link, self.of_link(i, state))
+        memory[LAST_EVENT] = found.event
+        memory[LINK_LOSS] += self.columns * found.lost
+        memory[LINK_PLACE] = i + 1.0
+        return mode + int(row[PLACE_VALUE]) * (found.state - standing)
+
+    @kernel
+    def energies(self, mode: int, state: Vector) -> Energies:
+        """Give the energies of columns and beam, and what the tendons store."""
+        found = self.rocking.energies(mode % bare.MODES, state)
+        link, stored, at_rest = self.stretched(mode, state, 0.0), 0.0, 0.0
+        for i in range(self.link_count):
+            row = self.row_of_link(i)
+            law = self.law.with_numbers(part_of(row, NUMBERS))
+            stored += law.energy(self.link_state(mode, row), link, self.of_link(i, state))
+            at_rest += row[STORED]
+        elastic = self.columns * stored
+        return Energies(found.kinetic, found.gravity, elastic, elastic - self.columns * at_rest)
+
+    @kernel
+    def observe(
+        self, mode: int, state: Vector, slope: Slope, ground: Ground, memory: Vector
+    ) -> Vector:
+        """Give what columns and beam show, then force and elongation of each tendon."""
+        out, rocks = self.column_room(), mode % bare.MODES
+        put(self.rocking.observe(rocks, state, slope, ground, memory), 0, out)
+        # the columns press the ground with what the tendons pull it up with
+        sine, cosine = sine_cosine(0.5 * state[0])
+        pull = self.pull(mode, state)
+        out[bare.BASE_SHEAR] += pull * sine
+        out[bare.THRUST] += pull * sine
+        out[bare.PRESS] += pull * cosine
+        if rocks != bare.ON_RIGHT:
+            out[bare.LEFT_REACTION] += pull * cosine * (1.0 if rocks == bare.ON_LEFT else 0.5)
+        if rocks != bare.ON_LEFT:
+            out[bare.RIGHT_REACTION] += pull * cosine * (1.0 if rocks == bare.ON_RIGHT else 0.5)
+        link = self.stretched(mode, state, 0.0)
+        for i in range(self.link_count):
+            row, own = self.row_of_link(i), self.of_link(i, state)
+            law, standing = self.law.with_numbers(part_of(row, NUMBERS)), self.link_state(mode, row)
+            j = OWN_COLUMNS + EACH_COLUMNS * i
+            out[j], out[j + 1] = law.force(standing, link, own), link.elongation
+            out[j + 2] = law.shown(standing)
+        return out
+
+
+def tied_frame(
+    model: ContactModel, links: Sequence[LinkNumbers], *, half_width: float, columns: int
+) -> ContactModel:
+    """Give the model of a frame with tendons, by that without them."""
+    rows, value = list[Vector](), bare.MODES
+    for one in links:
+        rows.append(np.array([0.0, value, *numbers_in(one.law)]))
+        value *= one.law.states()
+    law, count = links[0].law, len(links)
+    variables = count * law.variables()
+    room = 1 + variables + POWERS + 2 * (bare.GUARDS + GUARDS * count)
+    room += OWN_COLUMNS + EACH_COLUMNS * count
+    rocking: Any = model.system
+    numbers = np.concatenate([*rows, np.zeros(room)])
+    system = TiedFrame(rocking, half_width, float(columns), law, count, numbers)
+    stiffness = columns * sum(one.stiffness for one in links) * (2.0 * half_width) ** 2
+    fastest = math.sqrt(model.fastest_frequency**2 + stiffness / rocking.right.inertia)
+
+    def initial(start: Start) -> tuple[int, Vector, Vector]:
+        mode, state, memory = model.initial(start)
+        state = np.concatenate([state, np.zeros(variables)])
+        link = system.stretched(mode, state, 0.0)
+        for i in range(count):
+            row = system.row_of_link(i)
+            found = law.with_numbers(row[NUMBERS:]).starting(link, system.of_link(i, state))
+            mode += int(row[PLACE_VALUE]) * found
+        return mode, state, np.append(memory, 0.0)
+
+    mode, state, _ = initial(Start())
+    link = system.stretched(mode, state, 0.0)
+    for i in range(count):
+        row = system.row_of_link(i)
+        standing = system.link_state(mode, row)
+        stored = law.with_numbers(row[NUMBERS:]).energy(standing, link, system.of_link(i, state))
+        row[STORED] = stored
+    return replace(
+        model,
+        name="rocking frame with tendons",
+        system=system,
+        scales=np.concatenate([model.scales, *(one.variable_scales for one in links)]),
+        guard_tolerance=np.concatenate([
+            model.guard_tolerance, np.full(GUARDS * count, ROUNDING * 4.0 * half_width),
+        ]),
+        columns=(
+            *model.columns,
+            *(Column(column_of(name, i), per_mass=name == LINK_COLUMNS[0])
+              for i in range(count) for name in LINK_COLUMNS),
+        ),
+        memory=(*model.memory, "link_of_event"),
+        links=count,
+        selects=True,
+        fastest_frequency=fastest,
+        initial=initial,
+    )  # fmt: skip
