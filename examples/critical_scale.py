@@ -26,7 +26,7 @@ def main() -> int:
         folder = Path(arguments.folder)
         folder.mkdir(parents=True, exist_ok=True)
         search(arguments.record, arguments.largest, folder)
-    except (rf.RockframeError, OSError) as problem:
+    except (rf.errors.RockframeError, OSError) as problem:
         print(f"critical_scale: {' '.join(str(problem).split())}", file=sys.stderr)
         return 1
     return 0

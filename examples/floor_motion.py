@@ -44,7 +44,7 @@ def main() -> int:
         folder = Path(arguments.folder)
         folder.mkdir(parents=True, exist_ok=True)
         shake_floors(arguments.record, arguments.period, folder)
-    except (rf.RockframeError, OSError) as problem:
+    except (rf.errors.RockframeError, OSError) as problem:
         print(f"floor_motion: {' '.join(str(problem).split())}", file=sys.stderr)
         return 1
     return 0

@@ -42,7 +42,7 @@ def main() -> int:
         if arguments.record:
             motion = rf.GroundMotion.read(arguments.record, component=arguments.component)
         shake_by_parts(motion, folder)
-    except (rf.RockframeError, OSError) as problem:
+    except (rf.errors.RockframeError, OSError) as problem:
         print(f"near_fault: {' '.join(str(problem).split())}", file=sys.stderr)
         return 1
     return 0

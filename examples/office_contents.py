@@ -53,11 +53,12 @@ def main() -> int:
         table.to_csv(folder / "office_contents.csv")
         draw(table).savefig(folder / "office_contents.png", dpi=150)
         rows = [
-            rf.to_pelicun(one, name, demand="Peak Floor Velocity") for name, one in found.items()
+            rf.export.to_pelicun(one, name, demand="Peak Floor Velocity")
+            for name, one in found.items()
         ]
         pd.concat(rows).to_csv(folder / "damage_library.csv")
         print(f"Table: {folder / 'office_contents.csv'}, rows: {folder / 'damage_library.csv'}")
-    except (rf.RockframeError, OSError) as problem:
+    except (rf.errors.RockframeError, OSError) as problem:
         print(f"office_contents: {' '.join(str(problem).split())}", file=sys.stderr)
         return 1
     return 0

@@ -29,7 +29,7 @@ def main() -> int:
         folder = Path(arguments.folder)
         folder.mkdir(parents=True, exist_ok=True)  # before the work, not after it
         simulate(arguments.record, arguments.component, folder)
-    except (rf.RockframeError, OSError) as problem:
+    except (rf.errors.RockframeError, OSError) as problem:
         print(f"quickstart: {' '.join(str(problem).split())}", file=sys.stderr)
         return 1
     return 0

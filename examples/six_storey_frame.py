@@ -47,7 +47,7 @@ def main() -> int:
         folder = Path(arguments.folder)
         folder.mkdir(parents=True, exist_ok=True)
         simulate(arguments.record, arguments.shape_factor, folder)
-    except (rf.RockframeError, OSError) as problem:
+    except (rf.errors.RockframeError, OSError) as problem:
         print(f"six_storey_frame: {' '.join(str(problem).split())}", file=sys.stderr)
         return 1
     return 0

@@ -44,7 +44,7 @@ def main() -> int:
         runs.to_netcdf(folder / "size_and_pulse.nc")
         draw(runs).savefig(folder / "size_and_pulse.png", dpi=150)
         print(f"Result: {folder / 'size_and_pulse.nc'}, map: {folder / 'size_and_pulse.png'}")
-    except (rf.RockframeError, OSError) as problem:
+    except (rf.errors.RockframeError, OSError) as problem:
         print(f"size_and_pulse: {' '.join(str(problem).split())}", file=sys.stderr)
         return 1
     return 0

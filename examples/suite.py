@@ -48,7 +48,7 @@ def main() -> int:
         folder = Path(arguments.folder)
         folder.mkdir(parents=True, exist_ok=True)
         choose(arguments.records, arguments.count, folder)
-    except (rf.RockframeError, OSError) as problem:
+    except (rf.errors.RockframeError, OSError) as problem:
         print(f"suite: {' '.join(str(problem).split())}", file=sys.stderr)
         return 1
     return 0
@@ -62,7 +62,7 @@ def choose(records: str | None, count: int, folder: Path) -> None:
     )
 
     target = rf.TargetSpectrum.eurocode_8("0.3 g_0", "B")
-    found = rf.select_for_target(suite, target, count, combination="RotD50")
+    found = suite.selection_for(target, count, combination="RotD50")
     print(f"Closest to {target.name}: misfit of the set {float(found.set_misfit):.3f}")
     for record in found["motion"].to_numpy():
         row = found.sel(motion=record)

@@ -43,8 +43,9 @@ def __getattr__(name: str) -> Any:
     # gets here too, and its datasets are to have the accessor like all others.
     home = _HOMES.get(name)
     if home is None:
-        msg = f"module {__name__!r} has no attribute {name!r}"
-        raise AttributeError(msg)
+        if name.startswith("__"):
+            raise AttributeError(name)
+        return import_module(f"{__name__}.old_names").old_name(name)
     if home == __name__:
         value = import_module(f"{__name__}.{name}")
     else:

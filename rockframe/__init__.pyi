@@ -2,9 +2,10 @@
 
 from rockframe import codes as codes
 from rockframe import errors as errors
+from rockframe import export as export
 from rockframe import extension as extension
+from rockframe import measures as measures
 from rockframe import plot as plot
-from rockframe.comparison import Recommendation as Recommendation
 from rockframe.comparison import model_ladder as model_ladder
 from rockframe.comparison import recommend as recommend
 from rockframe.comparison import tradeoff as tradeoff
@@ -23,33 +24,17 @@ from rockframe.components import Stack as Stack
 from rockframe.components import Tendon as Tendon
 from rockframe.components import TwoSpringSupport as TwoSpringSupport
 from rockframe.components import WinklerSoil as WinklerSoil
-from rockframe.errors import AssemblyError as AssemblyError
-from rockframe.errors import ComponentError as ComponentError
-from rockframe.errors import FileError as FileError
-from rockframe.errors import ModelWarning as ModelWarning
-from rockframe.errors import RecordError as RecordError
-from rockframe.errors import RecordWarning as RecordWarning
-from rockframe.errors import RockframeError as RockframeError
-from rockframe.errors import RockframeWarning as RockframeWarning
-from rockframe.errors import SchemaError as SchemaError
-from rockframe.errors import SolverError as SolverError
-from rockframe.errors import SolverWarning as SolverWarning
-from rockframe.errors import StudyError as StudyError
-from rockframe.errors import UnitsError as UnitsError
 from rockframe.identification import fit_free_decay as fit_free_decay
 from rockframe.measures import (
     average_spectral_acceleration as average_spectral_acceleration,
 )
 from rockframe.measures import fourier_spectrum as fourier_spectrum
 from rockframe.measures import intensity_measures as intensity_measures
-from rockframe.measures import principal_axes as principal_axes
 from rockframe.measures import response_spectrum as response_spectrum
 from rockframe.measures import rotated_spectrum as rotated_spectrum
-from rockframe.measures import velocity_and_displacement as velocity_and_displacement
 from rockframe.motion import GroundMotion as GroundMotion
 from rockframe.motion import HorizontalPair as HorizontalPair
 from rockframe.reports import report as report
-from rockframe.results.diagnostics import Diagnostic as Diagnostic
 from rockframe.results.joining import concat as concat
 from rockframe.results.table import table as table
 from rockframe.simulation.proving import prove as prove
@@ -58,13 +43,11 @@ from rockframe.simulation.registration import register as register
 from rockframe.simulation.run_arguments import Certification as Certification
 from rockframe.simulation.system import System as System
 from rockframe.solve.accuracy import Accuracy as Accuracy
-from rockframe.studies import Case as Case
 from rockframe.studies import case as case
 from rockframe.studies import critical_scale as critical_scale
 from rockframe.studies import earthquake_sequences as earthquake_sequences
 from rockframe.studies import ensemble_statistics as ensemble_statistics
 from rockframe.studies import fragility as fragility
-from rockframe.studies import fragility_of_counts as fragility_of_counts
 from rockframe.studies import incremental_dynamic_analysis as incremental_dynamic_analysis
 from rockframe.studies import open_study as open_study
 from rockframe.studies import overturning_map as overturning_map
@@ -72,11 +55,7 @@ from rockframe.studies import overturning_spectrum as overturning_spectrum
 from rockframe.studies import probability_of_overturning as probability_of_overturning
 from rockframe.studies import rocking_spectrum as rocking_spectrum
 from rockframe.studies import sweep as sweep
-from rockframe.studies import to_openquake as to_openquake
-from rockframe.studies import to_pelicun as to_pelicun
 from rockframe.suites import MotionSuite as MotionSuite
 from rockframe.suites import TargetSpectrum as TargetSpectrum
 from rockframe.suites import read_suite as read_suite
-from rockframe.suites import scale_to_target as scale_to_target
-from rockframe.suites import select_for_target as select_for_target
 from rockframe.version import __version__ as __version__

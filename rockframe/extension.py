@@ -32,6 +32,7 @@ from rockframe.dynamics.protocol import (
     Start,
 )
 from rockframe.dynamics.protocol import Equations as System
+from rockframe.results.diagnostics import Diagnostic
 from rockframe.results.variables.variable import EVENT, TIME, Variable
 from rockframe.system.links import OwnLink
 from rockframe.system.load import BaseLoad
@@ -72,6 +73,7 @@ __all__ = [
     "ContactModel",
     "ContactState",
     "DampingRatio",
+    "Diagnostic",
     "EndEvent",
     "Energies",
     "EventKind",

@@ -18,7 +18,7 @@ def _side_by_side(motions: Mapping[str, rf.GroundMotion]) -> Figure:
     figure = Figure(figsize=(9.0, 4.8), layout="constrained")
     axes = figure.subplots(len(ROWS), len(motions), sharex="col", sharey="row")
     for column, (title, motion) in enumerate(motions.items()):
-        path = rf.velocity_and_displacement(motion)
+        path = rf.measures.velocity_and_displacement(motion)
         last = float(path.time[-1])
         margin = 0.12 * last
         for row, (name, _, colour) in enumerate(ROWS):

@@ -1,6 +1,5 @@
 """Measures of two horizontal components: spectra in all directions, ratios, principal axes."""
 
-import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Final, cast
 
@@ -8,7 +7,6 @@ import numpy as np
 import xarray as xr
 
 from rockframe.arguments import whole_number
-from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError, shown
 from rockframe.measures.common import Inputs, build_over, check_some
 from rockframe.measures.response import (
@@ -17,11 +15,10 @@ from rockframe.measures.response import (
     oscillator_axes,
     shortest_of,
 )
-from rockframe.motion.pair import HorizontalPair
+from rockframe.motion.pair import HorizontalPair, axis_and_intensities
 from rockframe.motion.processing.samples import say_coarse
 from rockframe.results.dataset import build_dataset
 from rockframe.signals.arrays import Array
-from rockframe.signals.integrals import arias_history
 from rockframe.signals.spectra import (
     check_cost,
     pseudo_spectra,
@@ -220,22 +217,10 @@ def _vertical(signal: "Signal", seconds: Array, ratios: Array) -> Array:
 
 
 def _axes(pair: HorizontalPair) -> dict[str, float]:
-    """Compute :eq:`eq-principal-axes`."""
-    first, second = pair.signals
-    own = [_intensity(one) for one in (first, second)]
-    both = _intensity(pair.rotated("45 deg").si.horizontal)
-    common = both - 0.5 * (own[0] + own[1])
-    angle = 0.5 * math.atan2(2.0 * common, own[0] - own[1])
-    middle, spread = 0.5 * (own[0] + own[1]), math.hypot(common, 0.5 * (own[0] - own[1]))
+    angle, major, minor = axis_and_intensities(pair)
     return {
-        "major_axis_angle": angle,
-        "major_arias_intensity": middle + spread,
-        "minor_arias_intensity": max(middle - spread, 0.0),
-    }
-
-
-def _intensity(signal: "Signal") -> float:
-    return float(arias_history(signal, STANDARD_GRAVITY)[-1])
+        "major_axis_angle": angle, "major_arias_intensity": major, "minor_arias_intensity": minor
+    }  # fmt: skip
 
 
 def _pairs(given: object, *, owner: str) -> Inputs[HorizontalPair]:

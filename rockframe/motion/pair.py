@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError, RecordError, RecordWarning, shown
 from rockframe.motion.ground_motion import GroundMotion
 from rockframe.motion.operations.following import SAME_STEP
@@ -17,13 +18,14 @@ from rockframe.motion.processing.samples import padded
 from rockframe.motion.processing.velocity_pulses import strongest
 from rockframe.motion.quantities import with_quantity
 from rockframe.records import Reading, read_components, read_source, same_start
+from rockframe.signals.integrals import arias_history
 from rockframe.units import ANGLE
 
 if TYPE_CHECKING:
     from rockframe.motion.velocity_pulse import VelocityPulse
     from rockframe.records import RecordLike
     from rockframe.signals import Signal
-    from rockframe.units import QuantityLike
+    from rockframe.units import Quantity, QuantityLike
 
 _RIGHT_ANGLE: Final = 90.0
 _TOLERANCE: Final = 1.0  # degree; agencies round azimuths to whole ones
@@ -144,6 +146,11 @@ class HorizontalPair:
         one, other = (padded(motion.si.horizontal, count) for motion in (self.first, self.second))
         return one, other
 
+    @property
+    def principal_axis(self) -> Quantity:
+        """Direction of the major principal axis, from the first component to the second [rad]."""
+        return with_quantity(axis_and_intensities(self)[0], ANGLE)
+
     def rotated(
         self, angle: QuantityLike | None = None, *, azimuth: QuantityLike | None = None
     ) -> GroundMotion:
@@ -222,6 +229,20 @@ class HorizontalPair:
         mirrored = self.first.scaled(-1.0)
         across = self.second.rotated(mirrored, angle)
         return HorizontalPair(_without_azimuth(along), _without_azimuth(across), self.vertical)
+
+
+def axis_and_intensities(pair: HorizontalPair) -> tuple[float, float, float]:
+    """Compute :eq:`eq-principal-axes`: angle [rad], Arias intensities [m s^-1]."""
+    own = [_intensity(one) for one in pair.signals]
+    both = _intensity(pair.rotated("45 deg").si.horizontal)
+    common = both - 0.5 * (own[0] + own[1])
+    angle = 0.5 * math.atan2(2.0 * common, own[0] - own[1])
+    middle, spread = 0.5 * (own[0] + own[1]), math.hypot(common, 0.5 * (own[0] - own[1]))
+    return angle, middle + spread, max(middle - spread, 0.0)
+
+
+def _intensity(signal: Signal) -> float:
+    return float(arias_history(signal, STANDARD_GRAVITY)[-1])
 
 
 def _without_azimuth(motion: GroundMotion) -> GroundMotion:

@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 from rockframe.errors import ComponentError, shown
 from rockframe.motion.quantities import with_quantity
-from rockframe.units import ACCELERATION, TIME
+from rockframe.signals.integrals import ground_path
+from rockframe.signals.polynomials import knots_of
+from rockframe.units import ACCELERATION, LENGTH, TIME, VELOCITY
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -109,6 +111,16 @@ class MotionValue:
         """Vertical acceleration of the ground, upwards, or None [m s^-2]."""
         vertical = self.si.vertical
         return None if vertical is None else with_quantity(vertical.samples, ACCELERATION)
+
+    @property
+    def velocity(self) -> Quantity:
+        """Horizontal velocity of the ground at the samples, from rest [m s^-1]."""
+        return with_quantity(knots_of(ground_path(self.si.horizontal)[0]), VELOCITY)
+
+    @property
+    def displacement(self) -> Quantity:
+        """Horizontal displacement of the ground at the samples, from rest [m]."""
+        return with_quantity(knots_of(ground_path(self.si.horizontal)[1]), LENGTH)
 
     @property
     def peak_acceleration(self) -> Quantity:

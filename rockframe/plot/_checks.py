@@ -79,7 +79,7 @@ KINDS: Final = {
     ),
     "selection": DatasetKind(
         "a set of motions beside its target",
-        "rf.select_for_target(suite, target, 11)",
+        "suite.selection_for(target, 11)",
         ("scaled_spectral_acceleration", "target_spectral_acceleration"),
         (
             "target_standard_deviation",

@@ -27,7 +27,7 @@ def selection(dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None =
     Parameters
     ----------
     dataset : xarray.Dataset
-        Of :func:`rockframe.scale_to_target` or :func:`rockframe.select_for_target`.
+        Of :meth:`rockframe.MotionSuite.scaling_to` or :meth:`rockframe.MotionSuite.selection_for`.
 
     Returns
     -------

@@ -42,7 +42,7 @@ class Diagnostic:
     --------
     >>> import numpy as np
     >>> import rockframe as rf
-    >>> roof = rf.Diagnostic(
+    >>> roof = rf.extension.Diagnostic(
     ...     lambda state: state["horizontal_displacement"] + 2.0 * np.sin(state["rotation"]),
     ...     "lean_of_roof",
     ...     "m",

@@ -3,23 +3,21 @@
 from rockframe.studies.critical_scale import critical_scale
 from rockframe.studies.dynamic_analysis import incremental_dynamic_analysis
 from rockframe.studies.ensemble import ensemble_statistics
-from rockframe.studies.fragility.exports import to_openquake, to_pelicun
-from rockframe.studies.fragility.fragility import fragility, fragility_of_counts
+from rockframe.studies.fragility.fragility import fragility
 from rockframe.studies.overturning_map import overturning_map
 from rockframe.studies.probability import probability_of_overturning
 from rockframe.studies.sequences import earthquake_sequences
 from rockframe.studies.spectra import overturning_spectrum, rocking_spectrum
-from rockframe.studies.sweeps.case import Case, case
+from rockframe.studies.sweeps.case import SweepCase, case
 from rockframe.studies.sweeps.sweep import open_study, sweep
 
 __all__ = [
-    "Case",
+    "SweepCase",
     "case",
     "critical_scale",
     "earthquake_sequences",
     "ensemble_statistics",
     "fragility",
-    "fragility_of_counts",
     "incremental_dynamic_analysis",
     "open_study",
     "overturning_map",
@@ -27,8 +25,6 @@ __all__ = [
     "probability_of_overturning",
     "rocking_spectrum",
     "sweep",
-    "to_openquake",
-    "to_pelicun",
 ]
 
 

@@ -1,9 +1,9 @@
 """What a selection chooses from: motions or pairs, their spectra, and their factors."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import TYPE_CHECKING, Any, Final, cast
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -14,7 +14,6 @@ from rockframe.measures.common import read_inputs
 from rockframe.measures.response import checked_periods, shortest_of, spectra_of
 from rockframe.motion.processing.samples import say_coarse
 from rockframe.signals.arrays import Array
-from rockframe.suites.suite import MotionSuite
 from rockframe.suites.target import TargetSpectrum
 from rockframe.units import PERIOD, POSITIVE, to_ratio
 
@@ -22,6 +21,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rockframe.motion.quantities import ArrayLike
+    from rockframe.suites.suite import MotionSuite
     from rockframe.units import QuantityLike, RatioLike
 
 _USUAL_BAND: Final = (0.1, 4.0)
@@ -71,7 +71,7 @@ class Candidates:
 
 
 def candidates_of(
-    suite: object,
+    suite: "MotionSuite",
     target: object,
     *,
     periods: "ArrayLike | Iterable[QuantityLike] | None",
@@ -86,11 +86,6 @@ def candidates_of(
             f"{owner}: target needs a TargetSpectrum, got {shown(target)}; write for example "
             "rf.TargetSpectrum.eurocode_8('0.2 g_0', 'B')"
         )
-        raise ComponentError(msg)
-    if isinstance(suite, Mapping) and not isinstance(suite, MotionSuite):
-        suite = MotionSuite(cast("Any", suite))
-    if not isinstance(suite, MotionSuite):
-        msg = f"{owner}: suite needs a MotionSuite, got {shown(suite)}"
         raise ComponentError(msg)
     kind = one_of_words(Combination, combination, owner=owner, name="combination")
     seconds = _usual(target) if periods is None else checked_periods(periods, owner=owner)
@@ -148,7 +143,7 @@ def _bounds(given: "tuple[RatioLike, RatioLike] | None", owner: str) -> tuple[fl
 
 
 def _spectra(
-    suite: MotionSuite, kind: Combination, seconds: Array, damping_ratio: float, owner: str
+    suite: "MotionSuite", kind: Combination, seconds: Array, damping_ratio: float, owner: str
 ) -> tuple[list[str], Array, list[str]]:
     with_unit = (seconds, str(PERIOD.unit))
     if kind is Combination.EACH:

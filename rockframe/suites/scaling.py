@@ -1,6 +1,6 @@
 """Scaling motions so that their spectra fit a target."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -23,14 +23,13 @@ if TYPE_CHECKING:
     from rockframe.suites.target import TargetSpectrum
     from rockframe.units import QuantityLike, RatioLike
 
-_OWNER: Final = "scale_to_target"
 USUAL_BOUNDS: Final = (0.25, 4.0)
 """Factors within which scaling is taken for harmless."""
 _ROUNDING: Final = 1e-9
 
 
-def scale_to_target(
-    suite: "MotionSuite | Mapping[str, GroundMotion]",
+def scaling_to(
+    suite: "MotionSuite",
     target: "TargetSpectrum",
     *,
     periods: "ArrayLike | Iterable[QuantityLike] | None" = None,
@@ -42,8 +41,6 @@ def scale_to_target(
 
     Parameters
     ----------
-    suite : MotionSuite, or mapping of str to GroundMotion
-        The motions.
     target : TargetSpectrum
         What is aimed at; its damping ratio is that of the spectra.
     periods : (sequence, unit), Quantity or sequence of str, optional
@@ -72,7 +69,7 @@ def scale_to_target(
     UnitsError
         Periods without a unit, or with one of another kind.
     ComponentError
-        Not a suite or not a target; periods at which the target is not known; a motion without
+        Not a target; periods at which the target is not known; a motion without
         acceleration; no pairs to combine; an argument out of range.
 
     Warns
@@ -83,10 +80,10 @@ def scale_to_target(
     Examples
     --------
     >>> import rockframe as rf
-    >>> suite = [rf.GroundMotion.stochastic(6, "20 km", seed=k) for k in (1, 2)]
+    >>> suite = rf.MotionSuite([rf.GroundMotion.stochastic(6, "20 km", seed=k) for k in (1, 2)])
     >>> target = rf.TargetSpectrum.eurocode_8("0.1 g_0")
-    >>> found = scale_to_target(rf.MotionSuite(suite), target, conditioned_on=["1 s"], bounds=None)
-    >>> scaled = rf.MotionSuite(suite).scaled_to(found)
+    >>> found = suite.scaling_to(target, conditioned_on=["1 s"], bounds=None)
+    >>> scaled = suite.scaled_to(found)
     >>> spectrum = scaled.response_spectrum(["1 s"]).pseudo_spectral_acceleration
     >>> bool(abs(spectrum - target.at(["1 s"])[0]).max() < 1e-12)
     True
@@ -98,7 +95,7 @@ def scale_to_target(
         conditioned_on=conditioned_on,
         bounds=bounds,
         combination=combination,
-        owner=_OWNER,
+        owner=f"{type(suite).__name__}.scaling_to",
     )
     factors = np.clip(candidates.factors, *candidates.bounds)
     return scaled_set(
@@ -173,7 +170,10 @@ def scaled_motions(
     """Scale the motions of a suite by the factors that were found."""
     needed = ("scale_factor", "spectral_misfit", MOTION)
     if any(name not in found.variables for name in needed) or "combination" not in found.attrs:
-        msg = "MotionSuite.scaled_to: expected a TargetSpectrum, or a dataset of scale_to_target"
+        msg = (
+            "MotionSuite.scaled_to: expected a TargetSpectrum, or a dataset of scaling_to or "
+            "selection_for"
+        )
         raise SchemaError(msg)
     each = found.attrs["combination"] == Combination.EACH
     motions: dict[str, GroundMotion] = {}

@@ -1,6 +1,6 @@
 """Choosing the set of motions whose spectra fit a target best."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
@@ -17,14 +17,12 @@ from rockframe.units import NOT_NEGATIVE, to_ratio
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from rockframe.motion import GroundMotion
     from rockframe.motion.quantities import ArrayLike
     from rockframe.signals.arrays import Array
     from rockframe.suites.suite import MotionSuite
     from rockframe.suites.target import TargetSpectrum
     from rockframe.units import QuantityLike, RatioLike
 
-_OWNER: Final = "select_for_target"
 _MOST_STARTS: Final = 20
 _MOST_PASSES: Final = 50
 _GAIN: Final = 1e-12
@@ -34,8 +32,8 @@ _REFERENCES: Final = (
 )
 
 
-def select_for_target(
-    suite: "MotionSuite | Mapping[str, GroundMotion]",
+def selection_for(
+    suite: "MotionSuite",
     target: "TargetSpectrum",
     count: int,
     *,
@@ -50,14 +48,12 @@ def select_for_target(
 
     Parameters
     ----------
-    suite : MotionSuite, or mapping of str to GroundMotion
-        What is chosen from.
     target : TargetSpectrum
         Median that is aimed at, and the spread if it tells one.
     count : int
         How many motions; of records, where components are combined.
     periods, conditioned_on, combination : optional
-        As for :func:`rockframe.scale_to_target` [s].
+        As for :meth:`scaling_to` [s].
     bounds : tuple of two float, or None
         Least and greatest factor; motions whose factor lies beyond are not chosen [1].
     spread_weight : float, optional
@@ -69,7 +65,7 @@ def select_for_target(
     Returns
     -------
     xarray.Dataset
-        As of :func:`rockframe.scale_to_target` for the motions that were chosen, in the order
+        As of :meth:`scaling_to` for the motions that were chosen, in the order
         of their misfits; and ``set_misfit`` [1], :eq:`eq-set-misfit`.
 
     Raises
@@ -77,7 +73,7 @@ def select_for_target(
     UnitsError
         Periods without a unit, or with one of another kind.
     ComponentError
-        As for :func:`rockframe.scale_to_target`; or fewer motions within the bounds than are to
+        As for :meth:`scaling_to`; or fewer motions within the bounds than are to
         be chosen.
 
     Notes
@@ -92,10 +88,11 @@ def select_for_target(
     >>> import rockframe as rf
     >>> suite = rf.MotionSuite([rf.GroundMotion.stochastic(6, "20 km", seed=k) for k in range(9)])
     >>> target = rf.TargetSpectrum.eurocode_8("0.1 g_0")
-    >>> found = select_for_target(suite, target, 3)
+    >>> found = suite.selection_for(target, 3)
     >>> found.sizes["motion"]
     3
     """
+    owner = f"{type(suite).__name__}.selection_for"
     candidates = candidates_of(
         suite,
         target,
@@ -103,23 +100,23 @@ def select_for_target(
         conditioned_on=conditioned_on,
         bounds=bounds,
         combination=combination,
-        owner=_OWNER,
+        owner=owner,
     )
-    wanted = whole_number(count, owner=_OWNER, name="count", lowest=1)
+    wanted = whole_number(count, owner=owner, name="count", lowest=1)
     most = wanted
     if per_event is not None:
-        most = whole_number(per_event, owner=_OWNER, name="per_event", lowest=1)
+        most = whole_number(per_event, owner=owner, name="per_event", lowest=1)
     told = bool(candidates.deviations.any())
     weight = float(told)
     if spread_weight is not None:
         weight = to_ratio(
-            spread_weight, owner=_OWNER, name="spread_weight", condition=NOT_NEGATIVE, example="1"
+            spread_weight, owner=owner, name="spread_weight", condition=NOT_NEGATIVE, example="1"
         )
     allowed = np.flatnonzero(candidates.within)
     if allowed.size < wanted:
         low, high = candidates.bounds
         msg = (
-            f"{_OWNER}: {allowed.size} of {len(candidates.labels)} motions have factors from "
+            f"{owner}: {allowed.size} of {len(candidates.labels)} motions have factors from "
             f"{low:g} to {high:g}, too few for a set of {wanted}; widen bounds, or lower count"
         )
         raise ComponentError(msg)
@@ -133,7 +130,7 @@ def select_for_target(
     chosen = search.best(wanted)
     if chosen is None:
         msg = (
-            f"{_OWNER}: at most {most} motions of an earthquake make no set of {wanted}; raise "
+            f"{owner}: at most {most} motions of an earthquake make no set of {wanted}; raise "
             "per_event, or lower count"
         )
         raise ComponentError(msg)

@@ -29,6 +29,8 @@ from rockframe.suites.columns import (
 )
 from rockframe.suites.matching import matched
 from rockframe.suites.records import pairs_of
+from rockframe.suites.scaling import scaled_motions, scaling_to
+from rockframe.suites.selection import selection_for
 from rockframe.suites.stored import stored_motions, suite_dataset
 
 if TYPE_CHECKING:
@@ -376,10 +378,9 @@ class MotionSuite(Mapping[str, GroundMotion]):
         Parameters
         ----------
         target : TargetSpectrum or xarray.Dataset
-            The target, or what :func:`rockframe.scale_to_target` or
-            :func:`rockframe.select_for_target` found for it.
+            The target, or what :meth:`scaling_to` or :meth:`selection_for` found for it.
         **arguments
-            As for :func:`rockframe.scale_to_target`.
+            As for :meth:`scaling_to`.
 
         Returns
         -------
@@ -390,13 +391,11 @@ class MotionSuite(Mapping[str, GroundMotion]):
         Raises
         ------
         UnitsError, ComponentError, SchemaError
-            As for :func:`rockframe.scale_to_target`.
+            As for :meth:`scaling_to`.
         """
-        from rockframe.suites.scaling import scale_to_target, scaled_motions
-
         found = target
         if not isinstance(found, xr.Dataset):
-            found = scale_to_target(self, found, **arguments)
+            found = self.scaling_to(found, **arguments)
         motions, upwards = scaled_motions(self, found)
         return type(self)(motions, verticals=upwards, unread=self._unread, remarks=self._remarks)
 
@@ -410,7 +409,7 @@ class MotionSuite(Mapping[str, GroundMotion]):
         count : int
             How many motions, or records of both components.
         **arguments
-            As for :func:`rockframe.select_for_target`.
+            As for :meth:`selection_for`.
 
         Returns
         -------
@@ -419,11 +418,12 @@ class MotionSuite(Mapping[str, GroundMotion]):
         Raises
         ------
         UnitsError, ComponentError
-            As for :func:`rockframe.select_for_target`.
+            As for :meth:`selection_for`.
         """
-        from rockframe.suites.selection import select_for_target
+        return self.scaled_to(self.selection_for(target, count, **arguments))
 
-        return self.scaled_to(select_for_target(self, target, count, **arguments))
+    scaling_to = scaling_to
+    selection_for = selection_for
 
     matched = matched
 

@@ -8,6 +8,7 @@ import pytest
 from scipy.optimize import brentq
 
 import rockframe as rf
+from rockframe.errors import ModelWarning
 
 RADIUS = 5.0
 GRAVITY = 9.80665
@@ -25,7 +26,7 @@ def rigid_block(theta, restitution=None, rotation="finite", radius=RADIUS):
     ground = rf.RigidGround(restitution=restitution)
     if restitution <= block.maximum_restitution:
         return rf.System(block, ground, rotation=rotation)
-    with pytest.warns(rf.ModelWarning, match="eps_max"):
+    with pytest.warns(ModelWarning, match="eps_max"):
         return rf.System(block, ground, rotation=rotation)
 
 

@@ -7,6 +7,7 @@ import pytest
 from scipy.optimize import brentq
 
 import rockframe as rf
+from rockframe.errors import AssemblyError, ModelWarning
 
 pytestmark = pytest.mark.analytical
 
@@ -341,12 +342,12 @@ def test_a_base_that_is_too_soft_is_refused():
     for factor, holds in ((1.02, True), (0.98, False)):
         pads = rf.TwoSpringSupport(stiffness=f"{limit * factor!r} N/m", damping_ratio=0.1)
         if holds:
-            with pytest.warns(rf.ModelWarning, match="at rest the body leans by"):
+            with pytest.warns(ModelWarning, match="at rest the body leans by"):
                 system = rf.System(BLOCK, pads, rotation="small")
             lean = system.equilibrium().rest_rotation.item()
             assert lean == pytest.approx(E / (B * B * 2.0 * limit * factor / WEIGHT - H))
         else:
-            with pytest.raises(rf.AssemblyError, match="falls to the right by its own weight"):
+            with pytest.raises(AssemblyError, match="falls to the right by its own weight"):
                 rf.System(BLOCK, pads, rotation="small")
 
 

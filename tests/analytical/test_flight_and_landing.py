@@ -9,6 +9,7 @@ from overdamping import overdamped
 from scipy.optimize import brentq
 
 import rockframe as rf
+from rockframe.errors import ModelWarning
 
 pytestmark = pytest.mark.analytical
 
@@ -124,7 +125,7 @@ def test_landing_on_one_corner(start, rule, restitution):
     alpha, spin, _, speed = start
     time, side = landing(PADS, start)
     if restitution > PADS.eps_max:
-        with pytest.warns(rf.ModelWarning, match="eps_max"):
+        with pytest.warns(ModelWarning, match="eps_max"):
             response = thrown(PADS, start, time + 1e-4, restitution=1.0, restraint=rule)
     else:
         response = thrown(PADS, start, time + 1e-4, restitution=restitution, restraint=rule)
@@ -203,7 +204,7 @@ def test_bouncing_flat_on_undamped_pads(restitution, rule):
 def test_without_losses_a_flat_bounce_comes_back_to_its_height():
     pads = Pads(damping_ratio=0.0)
     height = 0.05
-    with pytest.warns(rf.ModelWarning, match="eps_max"):
+    with pytest.warns(ModelWarning, match="eps_max"):
         response = thrown(pads, (0.0, 0.0, pads.delta + height, 0.0), 3.0, restitution=1.0)
     flying = response.isel(time=np.flatnonzero(response.contact_state.values == FLIGHT))
     assert flying.time.values[-1] > 2.0

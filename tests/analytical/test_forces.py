@@ -7,6 +7,7 @@ import pytest
 import xarray as xr
 
 import rockframe as rf
+from rockframe.errors import AssemblyError, ModelWarning, RockframeError
 from rockframe.results.schema import GROUPS, ON_REQUEST
 
 pytestmark = pytest.mark.analytical
@@ -242,7 +243,7 @@ def test_points_go_through_a_file(tmp_path):
 def test_what_is_not_known_is_refused():
     system = rf.System(BLOCK, PADS)
     for outputs in ("shear", ["rotation", "acelleration"], [3]):
-        with pytest.raises(rf.AssemblyError, match=r"outputs has no .*'friction_demand'"):
+        with pytest.raises(AssemblyError, match=r"outputs has no .*'friction_demand'"):
             system.simulate(PULSE, outputs=outputs)
     for points, words in (
         ({"roof": "18 m"}, "two lengths"),
@@ -253,10 +254,10 @@ def test_what_is_not_known_is_refused():
         ({"": ("0 m", "18 m")}, "needs names"),
         ([("0 m", "18 m")], "must name places"),
     ):
-        with pytest.raises(rf.RockframeError, match=words):
+        with pytest.raises(RockframeError, match=words):
             system.simulate(PULSE, points=points)
     with pytest.raises(
-        rf.AssemblyError, match="no 'toe_pressure' in this scene; it needs a WinklerSoil"
+        AssemblyError, match="no 'toe_pressure' in this scene; it needs a WinklerSoil"
     ):
         system.simulate(PULSE, outputs="toe_pressure")
 
@@ -275,7 +276,7 @@ def test_too_little_friction_warns_with_time_and_duration():
     reference = SCENES["rigid ground"].simulate(PULSE, outputs="friction_demand")
     demand, time = reference.friction_demand.values, reference.time.values
     ground = rf.RigidGround(friction=0.25)
-    with pytest.warns(rf.ModelWarning, match="the block would slide") as caught:
+    with pytest.warns(ModelWarning, match="the block would slide") as caught:
         response = rf.System(BLOCK, ground, sliding="checked").simulate(PULSE)
     text = str(caught[0].message)
     first = time[demand > 0.25][0]
@@ -302,18 +303,18 @@ def test_too_little_friction_warns_with_time_and_duration():
     )
     # two numbers that look alike are told in as many digits as tell them apart
     almost = rf.RigidGround(friction=(1.0 - 1e-6) * most)
-    with pytest.warns(rf.ModelWarning, match="needs 0.33[0-9]{4,} of 0.33[0-9]{4,},"):
+    with pytest.warns(ModelWarning, match="needs 0.33[0-9]{4,} of 0.33[0-9]{4,},"):
         rf.System(BLOCK, almost, sliding="checked").simulate(PULSE)
 
 
 def test_the_friction_of_a_stack_is_that_of_both_its_bases():
     pads, soil = PADS.replace(friction=0.05), SOIL.replace(friction=0.05)
-    with pytest.warns(rf.ModelWarning) as caught:
+    with pytest.warns(ModelWarning) as caught:
         response = rf.System(BLOCK, pads, CAP, soil).simulate(PULSE)
     words = [str(each.message) for each in caught]
     assert any(word.startswith("the block would slide") for word in words)
     assert any(word.startswith("the cap would slide") for word in words)
     assert "The block would slide from " in response.attrs["verdict"]
     assert "; the cap would slide from " in response.attrs["verdict"]
-    with pytest.warns(rf.ModelWarning, match="the block would slide"):
+    with pytest.warns(ModelWarning, match="the block would slide"):
         rf.System(BLOCK, soil).simulate(PULSE)

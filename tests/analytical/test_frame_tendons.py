@@ -6,6 +6,7 @@ import xarray as xr
 
 import rockframe as rf
 from rockframe.command.files.scenes import read_scene
+from rockframe.errors import ComponentError
 
 PIER = rf.Block(width="1.6 m", height="9.6 m", mass="60 t")
 BENT = rf.RockingFrame(PIER, columns=3, beam_mass="200 t", spacing="7 m", beam_height="1.5 m")
@@ -103,5 +104,5 @@ def test_files_sweeps_certificates_and_figures(tmp_path):
     assert "longer by 4 b sin" in system.describe()
     rf.plot.scene(system)
     rf.plot.state(run)
-    with pytest.raises(rf.ComponentError, match="proofs are of a Block on rigid ground"):
+    with pytest.raises(ComponentError, match="proofs are of a Block on rigid ground"):
         rf.prove(system, rf.GroundMotion.example("loma-prieta"))

@@ -16,6 +16,7 @@ from analytical.rigid import (
 from scipy.integrate import quad
 
 import rockframe as rf
+from rockframe.errors import ModelWarning
 
 pytestmark = pytest.mark.analytical
 
@@ -264,6 +265,6 @@ def test_a_block_that_would_leave_the_ground_is_warned_about():
     """A squat block, thrown fast: at impact m (g - R0 cos(theta) a'^2 ...) is negative."""
     system = rf.System(rf.Block(width="2 m", height="2 m", mass="1 t"))
     fast = rf.InitialState(rotation="0.1 rad", angular_velocity="-4 rad/s")
-    with pytest.warns(rf.ModelWarning, match=r"the ground would have to pull .* TwoSpringSupport"):
+    with pytest.warns(ModelWarning, match=r"the ground would have to pull .* TwoSpringSupport"):
         response = system.simulate(duration="0.2 s", initial=fast)
     assert "the ground would have to pull" in response.attrs["cautions"]

@@ -7,6 +7,7 @@ import pytest
 from analytical.inclined import G, OnPads, Stone, rocking
 
 import rockframe as rf
+from rockframe.errors import AssemblyError, ModelWarning
 
 pytestmark = pytest.mark.analytical
 
@@ -73,7 +74,7 @@ def test_pads_against_true_axes(name):
     pads = rf.TwoSpringSupport(
         stiffness=f"{stiffness} N/m", damping=f"{damping} N s/m", restitution=1.0
     )
-    with pytest.warns(rf.ModelWarning, match="exceeds eps_max"):
+    with pytest.warns(ModelWarning, match="exceeds eps_max"):
         system = rf.System(block, pads, restraint="centre", inclination=f"{degrees} deg")
     found = system.simulate(motion, duration="2 s", accuracy=1e-12)
     one = OnPads(stone_of(block), math.radians(degrees), stiffness, damping)
@@ -94,7 +95,7 @@ def test_a_block_stands_up_to_the_angle_of_its_downhill_corner():
         system = rf.System(block, inclination=f"{angle * (1.0 - 1e-9)!r} rad")
         assert system.equilibrium().overturning_angle.item() < 1e-8
         falls = "left" if side > 0.0 else "right"
-        with pytest.raises(rf.AssemblyError, match=f"falls to the {falls} by its own weight"):
+        with pytest.raises(AssemblyError, match=f"falls to the {falls} by its own weight"):
             rf.System(block, inclination=f"{angle * (1.0 + 1e-9)!r} rad")
 
 
@@ -124,7 +125,7 @@ def test_it_overturns_beyond_the_unstable_equilibrium(parts):
         for share in (0.999, 1.001):
             start = f"{share * limit!r} rad"
             if share > 1.0:
-                with pytest.raises(rf.AssemblyError, match="not below the overturning angle"):
+                with pytest.raises(AssemblyError, match="not below the overturning angle"):
                     system.simulate(duration="1 s", initial=rf.InitialState(rotation=start))
                 continue
             run = system.simulate(duration="3 s", initial=rf.InitialState(rotation=start))

@@ -86,7 +86,7 @@ def test_no_wavelet_moves_the_ground_for_good(peak_time, period):
     # the displacement of a hat at time t is its area times what is left of the motion
     assert abs(((LENGTH - np.arange(COUNT) * STEP) * samples).sum() * STEP) < 1e-10
     path = rf.GroundMotion.from_arrays((samples, "m/s^2"), f"{STEP} s")
-    moved = rf.velocity_and_displacement(path)
+    moved = rf.measures.velocity_and_displacement(path)
     assert abs(moved.ground_velocity[-1]) < 1e-12
     assert abs(moved.ground_displacement[-1]) < 1e-10
 

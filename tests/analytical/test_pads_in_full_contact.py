@@ -9,6 +9,7 @@ from analytical.pads import Pads, oscillator, rough_record, zero_crossings
 from overdamping import overdamped
 
 import rockframe as rf
+from rockframe.errors import ModelWarning
 
 pytestmark = pytest.mark.analytical
 
@@ -254,7 +255,7 @@ def test_pads_too_soft_to_lift_have_no_uplift_angle():
     response = pads.system().simulate(duration="1 ms")
     assert response.uplift_angle.item() == pytest.approx(math.asin(ratio), rel=1e-13)
     softer = Pads(beta=1.2, slenderness=1.0)
-    with pytest.warns(rf.ModelWarning, match="too soft"):
+    with pytest.warns(ModelWarning, match="too soft"):
         system = softer.system()
     assert (1.0 + pads.mu) / (pads.mu * softer.beta**2 * math.sin(pads.theta)) > 1.0
     response = system.simulate(duration="1 ms")
@@ -265,7 +266,7 @@ def test_pads_too_soft_to_lift_have_no_uplift_angle():
 def test_the_pads_hold_the_block_upright_exactly_above_a_stiffness():
     limit = math.sqrt(Pads().gravity * Pads().h) / Pads().b / Pads().omega
     Pads(beta=limit * (1.0 + 1e-9)).system()
-    with pytest.warns(rf.ModelWarning, match="too soft"):
+    with pytest.warns(ModelWarning, match="too soft"):
         system = Pads(beta=limit * 0.9).system()
     response = system.simulate(
         duration="200 s",

@@ -10,6 +10,7 @@ import rockframe as rf
 from rockframe.dynamics.events import EventKind
 from rockframe.dynamics.protocol import IMPACT_LOSS, Ground
 from rockframe.dynamics.slide_rock import REMEMBERED, SIZE, SLIP, SLIPS
+from rockframe.errors import AssemblyError, ComponentError, ModelWarning
 
 pytestmark = pytest.mark.analytical
 
@@ -232,14 +233,14 @@ def test_rest(acceleration, friction):
 def test_friction_that_may_jam_is_refused_with_its_bound():
     for block in (SLENDER, LOW, SQUAT):
         standing(block, 1e6, 1.333)
-        with pytest.raises(rf.AssemblyError, match=r"below 1\.33333"):
+        with pytest.raises(AssemblyError, match=r"below 1\.33333"):
             standing(block, 1.334)
 
 
 def test_a_squat_block_needs_friction():
-    with pytest.raises(rf.AssemblyError, match="On RigidGround"):
+    with pytest.raises(AssemblyError, match="On RigidGround"):
         rf.System(SQUAT)
-    with pytest.raises(rf.AssemblyError, match="cannot rock"):
+    with pytest.raises(AssemblyError, match="cannot rock"):
         standing(SQUAT, 0.3, sliding="checked")
     run = standing(SQUAT, 1.2).simulate(
         initial=rf.InitialState(rotation="0.1 rad"), duration="2 s", accuracy="reference",
@@ -262,7 +263,7 @@ def test_a_block_thrown_up_flies_and_lands():
 
 
 def test_a_block_slides_down_by_its_weight_and_says_so():
-    with pytest.warns(rf.ModelWarning, match="slides by its own weight"):
+    with pytest.warns(ModelWarning, match="slides by its own weight"):
         system = standing(LOW, 0.3, inclination="0.4 rad")
     run = system.simulate(duration="1 s", accuracy="reference")
     down = GRAVITY * (math.sin(0.4) - 0.3 * math.cos(0.4))
@@ -271,9 +272,9 @@ def test_a_block_slides_down_by_its_weight_and_says_so():
 
 def test_coefficients_and_kinematics_that_do_not_go_together():
     for given in ({"kinetic_friction": 0.3}, {"friction": 0.2, "kinetic_friction": 0.3}):
-        with pytest.raises(rf.ComponentError, match="kinetic_friction"):
+        with pytest.raises(ComponentError, match="kinetic_friction"):
             rf.RigidGround(**given)
-    with pytest.raises(rf.AssemblyError, match="sliding='checked'"):
+    with pytest.raises(AssemblyError, match="sliding='checked'"):
         standing(SLENDER, 0.3, rotation="small")
 
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import rockframe as rf
+from rockframe.errors import ModelWarning
 
 pytestmark = pytest.mark.analytical
 
@@ -51,14 +52,14 @@ def apart(one, other, name="rotation"):
 def test_on_firm_soil_the_stack_moves_as_a_block_on_pads(rule, rotation):
     """Error 1/k0 where landings take no impulse: that of the cap's own inertia would remain."""
     options = {"restraint": rule, "rotation": rotation}
-    with pytest.warns(rf.ModelWarning, match="eps_max"):
+    with pytest.warns(ModelWarning, match="eps_max"):
         exact = run(block(), pads(restitution=1), **options)
     assert exact.impact_count.item() > 0
     assert exact.peak_relative_rotation.item() > 0.2
     stiffness = np.array([1e9, 1e10, 1e11, 1e12])
     errors = []
     for k0 in stiffness:
-        with pytest.warns(rf.ModelWarning, match="eps_max"):
+        with pytest.warns(ModelWarning, match="eps_max"):
             response = run(block(), pads(restitution=1), cap(), soil(f"{k0} Pa"), **options)
         errors.append([apart(response, exact, name) for name in SMOOTH])
         assert response.impact_count.item() == exact.impact_count.item()
@@ -179,7 +180,7 @@ def test_the_response_is_smooth_down_to_no_mass_at_all(scene, width):
 @pytest.mark.parametrize("mass", ["0 kg", "1 kg"])
 def test_the_coupled_equations_take_a_least_share_of_mass_and_say_so(mass):
     plate = cap(width="3.2 m", height="0 m", mass=mass)
-    with pytest.warns(rf.ModelWarning, match="coupled equations are solved with") as caught:
+    with pytest.warns(ModelWarning, match="coupled equations are solved with") as caught:
         light = run(block(), pads(), plate, soil())
     assert len(caught) == 1
     assert caught[0].filename == __file__

@@ -10,6 +10,7 @@ from records import record_path
 from scipy.linalg import expm
 
 import rockframe as rf
+from rockframe.errors import ComponentError, RockframeWarning
 from rockframe.measures import (
     fourier_spectrum,
     intensity_measures,
@@ -281,7 +282,7 @@ def test_a_coarse_record_keeps_its_short_periods_when_it_is_refined(step, lost):
         response_spectrum(swell(step), (["2"], "s")).spectral_displacement,
         rtol=1e-12,
     )
-    with pytest.raises(rf.ComponentError, match="interpolation must be 'band-limited'"):
+    with pytest.raises(ComponentError, match="interpolation must be 'band-limited'"):
         response_spectrum(swell(step), periods, interpolation="cubic")
 
 
@@ -332,7 +333,7 @@ def test_mean_and_predominant_period_of_a_long_harmonic():
 @pytest.fixture(scope="module", params=RECORDS)
 def record(request):
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", rf.RockframeWarning)
+        warnings.simplefilter("ignore", RockframeWarning)
         motion = rf.GroundMotion.read(record_path(request.param))
     return motion.window("20 s", "60 s") if motion.si.duration > 60.0 else motion
 

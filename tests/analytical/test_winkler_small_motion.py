@@ -12,6 +12,7 @@ from overdamping import overdamped
 from scipy.linalg import expm
 
 import rockframe as rf
+from rockframe.errors import ModelWarning
 from rockframe.system.small_motion import SmallMotion, modes_of
 
 pytestmark = pytest.mark.analytical
@@ -58,7 +59,7 @@ def test_an_overdamped_mode_has_the_frequency_of_the_undamped_one():
 def test_soil_too_soft_to_hold_the_block_has_no_rocking_frequency():
     limit = 1.5 * 9.80665 * 4.8 / 1.2**3
     Bed(stiffness=limit * (1.0 + 1e-9)).system()
-    with pytest.warns(rf.ModelWarning, match="too soft"):
+    with pytest.warns(ModelWarning, match="too soft"):
         system = Bed(stiffness=limit * 0.9).system()
     modes = system.frequencies()
     assert math.isnan(modes.angular_frequency.values[0])

@@ -18,6 +18,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 from benchmarks.certified_scenes import Case, cases
 
 import rockframe as rf
+from rockframe.errors import RockframeWarning
 from rockframe.simulation.perturbations import cut, parameters
 from rockframe.simulation.run import outcome
 
@@ -48,7 +49,7 @@ def contradictions(case: Case, scale: float, fell: bool, count: int = NUDGES) ->
     plan = case.plan(scale)
     found = int(case.summary(scale, TRUTH.__class__(rtol=1e-13)).overturned != fell)
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", rf.RockframeWarning)
+        warnings.simplefilter("ignore", RockframeWarning)
         for _ in range(count):
             _, scene_at = every[int(rng.integers(len(every)))]
             scene = scene_at(float(rng.uniform(-1e-3, 1e-3)))

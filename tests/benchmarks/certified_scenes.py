@@ -13,6 +13,7 @@ import numpy as np
 from extremes.scenes import GRAVITY, shake, usual
 
 import rockframe as rf
+from rockframe.errors import ModelWarning, RockframeError, RockframeWarning
 from rockframe.simulation.plan import Plan, plan_run
 from rockframe.simulation.run import outcome
 
@@ -57,7 +58,7 @@ class Case:
     def certified(self, scale: float = 1.0, accuracy="standard", certify=True):
         """Run with a certificate."""
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", rf.RockframeWarning)
+            warnings.simplefilter("ignore", RockframeWarning)
             return self.system.simulate(
                 self.motion.scaled(scale),
                 duration=f"{self.duration!r} s",
@@ -99,9 +100,9 @@ def draw(rng: np.random.Generator) -> tuple[str, rf.System, rf.GroundMotion, flo
     scene = replace(usual(rng), start=0.0, continues=False)
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", rf.ModelWarning)
+            warnings.simplefilter("ignore", ModelWarning)
             system = scene.system
-    except rf.RockframeError:
+    except RockframeError:
         return None
     step = float(rng.choice(TIME_STEPS))
     kind = str(rng.choice(["noise", "noise", "sine record", "pulse"]))
@@ -132,7 +133,7 @@ def cases(count: int, seed: int = 0) -> Iterator[Case]:
             continue
         case = Case(number - 1, *drawn)
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", rf.RockframeWarning)
+            warnings.simplefilter("ignore", RockframeWarning)
             scale = edge(case)
         if scale is None:
             continue

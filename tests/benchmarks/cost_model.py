@@ -20,6 +20,7 @@ from benchmarks.stability import longest_step, rates_on_pads
 from benchmarks.timing import cost, machine
 
 import rockframe as rf
+from rockframe.errors import ModelWarning
 
 DATA = Path(__file__).parents[2] / "docs" / "data" / "cost_model.json"
 LENGTHS = (10.0, 30.0, 100.0, 300.0, 1000.0, 3600.0)
@@ -52,7 +53,7 @@ def measured(system: rf.System, motion: rf.GroundMotion, accuracy, repeats: int)
         return system.simulate(motion, accuracy=accuracy, outputs=None, overturning="continue")
 
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", rf.ModelWarning)
+        warnings.simplefilter("ignore", ModelWarning)
         found = run()
         return {
             "time": cost(run, repeats),
@@ -103,7 +104,7 @@ def on_pads(
     size = BLOCKS[block]
     width, height = 2.0 * size["half_width"], 2.0 * size["half_height"]
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", rf.ModelWarning)
+        warnings.simplefilter("ignore", ModelWarning)
         system = rf.System(
             rf.Block(width=f"{width} m", height=f"{height} m", mass="99 t"),
             rf.TwoSpringSupport(frequency_ratio=frequency_ratio, damping_ratio=damping_ratio),

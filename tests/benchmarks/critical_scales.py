@@ -21,6 +21,7 @@ from benchmarks.certified_scenes import cases
 from records import records_folder
 
 import rockframe as rf
+from rockframe.errors import RockframeWarning
 from rockframe.signals.polynomials import greatest
 from rockframe.simulation.plan import plan_run
 from rockframe.simulation.run import summary_of
@@ -122,7 +123,7 @@ def scan(truth: Dense, scales: int, most: int) -> tuple[int, float, int, bool]:
 
 def main() -> None:
     """Print the table."""
-    warnings.simplefilter("ignore", rf.RockframeWarning)
+    warnings.simplefilter("ignore", RockframeWarning)
     known = [dense(*scene) for scene in scenes()]
     known = [one for one in known if any(run.overturned for run in one.runs)]
     print(

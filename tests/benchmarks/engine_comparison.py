@@ -29,6 +29,7 @@ from benchmarks.timing import cost, machine
 from records import record_path
 
 import rockframe as rf
+from rockframe.errors import ModelWarning
 
 DATA = Path(__file__).parents[2] / "docs" / "data" / "engines.json"
 B, H, MASS, GRAVITY = 2.0, 9.0, 99e3, 9.80665
@@ -113,7 +114,7 @@ def excitation(case: Case) -> tuple[rf.GroundMotion, Callable[[float], float]]:
 def by_rockframe(case: Case, accuracy: rf.Accuracy | str = EXACT):
     """Run a case in rockframe; a landing corner keeps its speed."""
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", rf.ModelWarning)  # restitution 1 is meant
+        warnings.simplefilter("ignore", ModelWarning)  # restitution 1 is meant
         pads = rf.TwoSpringSupport(
             frequency_ratio=FREQUENCY_RATIO, damping_ratio=case.damping_ratio, restitution=1.0
         )

@@ -21,6 +21,7 @@ from extremes.scenes import GRAVITY, shake, usual
 from records import records_folder
 
 import rockframe as rf
+from rockframe.errors import RockframeWarning
 from rockframe.simulation.plan import plan_run
 from rockframe.simulation.run import respond
 from rockframe.simulation.second_look import OFF, doubts, second_look
@@ -110,7 +111,7 @@ def judged(system, motion, asked):
 
 def main():
     """Print the table."""
-    warnings.simplefilter("ignore", rf.RockframeWarning)
+    warnings.simplefilter("ignore", RockframeWarning)
     print("scenes | number | what is wrong | how many | of which told | median cost of the look")
     for name, drawn, count in (("short", short, 1600), ("long", long, 3000)):
         rows = [judged(*drawn(number)) for number in range(count)]

@@ -22,7 +22,7 @@ from benchmarks.granite_bench import Bench, Study
 from benchmarks.granite_blocks import pairs, verdicts
 from benchmarks.granite_programme import SPECIMENS, programme_path, read_programme
 
-import rockframe as rf
+from rockframe.errors import RockframeWarning
 
 
 def what_blocks_did(bench: Bench, kept: Path | None) -> np.ndarray:
@@ -42,7 +42,7 @@ def main() -> None:
     parser.add_argument("--tests", type=Path, default=programme_path())
     parser.add_argument("--verdicts", type=Path, help="file (.npy) of what the blocks did")
     options = parser.parse_args()
-    warnings.simplefilter("ignore", rf.RockframeWarning)
+    warnings.simplefilter("ignore", RockframeWarning)
     bench = Bench.of(read_programme(options.tests))
     overturned = what_blocks_did(bench, options.verdicts)
     studies = {}

@@ -12,6 +12,7 @@ import numpy as np
 from scipy.stats import qmc
 
 import rockframe as rf
+from rockframe.errors import ModelWarning
 from rockframe.signals.polynomials import greatest
 from rockframe.simulation.plan import Plan, plan_run
 from rockframe.simulation.run import outcome
@@ -43,7 +44,7 @@ def block_of(shape: Shape) -> rf.System:
     block = rf.Block.from_size(radius=f"{shape.radius!r} m", slenderness=slenderness, mass="1 t")
     with warnings.catch_warnings():
         # the angle and the restitution of a real block need not be those of one rectangle
-        warnings.filterwarnings("ignore", "restitution", rf.ModelWarning)
+        warnings.filterwarnings("ignore", "restitution", ModelWarning)
         return rf.System(block, rf.RigidGround(restitution=shape.restitution))
 
 

@@ -75,7 +75,7 @@ def test_measures_and_selection(suite):
     taken = best(suite.intensity_measures, 1)
     print(f"\n  intensity measures of {MOTIONS} motions: {taken:.2f} s")
     target = rf.TargetSpectrum.eurocode_8("0.25 g_0", "B").with_deviation(0.5)
-    chosen = best(lambda: rf.select_for_target(suite, target, 30, bounds=None), 1)
+    chosen = best(lambda: suite.selection_for(target, 30, bounds=None), 1)
     print(f"  30 of {MOTIONS} motions chosen for a target: {chosen:.2f} s")
     kept = best(suite.to_dataset, 1)
     print(f"  as a dataset: {kept:.2f} s")

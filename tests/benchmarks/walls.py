@@ -7,7 +7,7 @@ import sys
 import warnings
 from pathlib import Path
 
-import rockframe as rf
+from rockframe.errors import RockframeWarning
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
@@ -16,7 +16,7 @@ from reference_models.walls import compare
 
 def main(count: int) -> None:
     """Compare scenes 0 to `count`."""
-    warnings.simplefilter("ignore", rf.RockframeWarning)
+    warnings.simplefilter("ignore", RockframeWarning)
     worst, other, apart, impacts = 0.0, [], [], 0
     for seed in range(count):
         difference, ours, theirs = compare(seed)

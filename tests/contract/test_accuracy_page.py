@@ -6,6 +6,7 @@ from pages import DIGITS, said, table
 from records import record_path
 
 import rockframe as rf
+from rockframe.errors import SolverError
 
 PAGE = "guide/accuracy.md"
 LEVELS = ("fast", "standard", "reference")
@@ -36,7 +37,7 @@ def _check_bound(name, bound, side, **others):
         others = {"rtol": 1e-6}
     rf.Accuracy(**{name: bound}, **others)
     beyond = bound + side if isinstance(bound, int) else bound * (1.0 + side * 1e-6) + side * 1e-300
-    with pytest.raises(rf.SolverError, match=f"{name} must lie"):
+    with pytest.raises(SolverError, match=f"{name} must lie"):
         rf.Accuracy(**{name: beyond}, **others)
 
 

@@ -25,6 +25,7 @@ from contract.scenes import (
 
 import rockframe as rf
 from rockframe.dynamics.protocol import Ending
+from rockframe.errors import SolverWarning
 from rockframe.results.outcome import verdict
 from rockframe.results.schema import ENERGIES, SCHEMA
 from rockframe.solve.accuracy import accuracy_of
@@ -596,7 +597,7 @@ def test_a_verdict_in_words(found, pads_on_cap, words):
 
 def test_an_unfinished_run_says_so():
     system = SCENES["two-spring, contact-state, finite"]()
-    with pytest.warns(rf.SolverWarning, match="Not finished: stopped at") as caught:
+    with pytest.warns(SolverWarning, match="Not finished: stopped at") as caught:
         response = system.simulate(pulse(), accuracy=rf.Accuracy(rtol=1e-7, max_steps=50))
     assert caught[0].filename == __file__
     assert bool((response.status.cf == "step_limit").item())

@@ -1,11 +1,14 @@
 """What is loaded when: no more than a script asks for, beside what all of them need."""
 
+import inspect
 import subprocess
 import sys
 
 import pytest
 
 import rockframe as rf
+from rockframe import old_names
+from rockframe.errors import AssemblyError, RockframeError, RockframeWarning
 
 pytestmark = pytest.mark.contract
 
@@ -127,19 +130,13 @@ response.to_netcdf
 def test_all_names_are_there():
     expected = {
         "Accuracy",
-        "AssemblyError",
         "Block",
-        "ComponentError",
         "GroundMotion",
         "InitialState",
-        "ModelWarning",
-        "RecordError",
-        "RockframeError",
-        "SchemaError",
-        "SolverError",
         "System",
         "TwoSpringSupport",
-        "UnitsError",
+        "errors",
+        "export",
         "plot",
     }
     assert expected <= set(rf.__all__)
@@ -155,19 +152,38 @@ def test_only_what_is_meant_for_users_is_shown():
     assert drawn <= set(dir(rf.plot))
     assert not [name for name in dir(rf.plot) if name.startswith("_")]
     assert all(callable(getattr(rf.plot, name)) for name in dir(rf.plot))
-    assert {name for name in rf.__all__ if name.endswith(("Error", "Warning"))} == set(
-        dir(rf.errors)
-    )
-    assert all(getattr(rf, name) is getattr(rf.errors, name) for name in dir(rf.errors))
+    assert all(name.endswith(("Error", "Warning")) for name in dir(rf.errors))
+    assert not set(rf.__all__) & set(dir(rf.errors))
     assert "Block" in dir(rf.components)
 
 
+def test_names_that_have_moved_are_given_with_a_warning():
+    with pytest.warns(DeprecationWarning, match=r"AssemblyError is now rockframe\.errors"):
+        assert AssemblyError is AssemblyError
+    with pytest.warns(DeprecationWarning, match=r"Case is now rockframe\.studies\.Sweep"):
+        from rockframe import Case
+    assert inspect.isclass(Case)
+    suite = {"one": rf.GroundMotion.stochastic(6, "20 km", seed=1)}
+    target = rf.TargetSpectrum.eurocode_8("0.1 g_0")
+    for name, given, new in (
+        ("scale_to_target", (suite, target), rf.MotionSuite(suite).scaling_to(target)),
+        ("select_for_target", (suite, target, 1), rf.MotionSuite(suite).selection_for(target, 1)),
+        ("fragility_of_counts", (COUNTS["intensity"], [0, 2, 5], 5), rf.fragility(COUNTS)),
+    ):
+        with pytest.warns(DeprecationWarning, match=rf"rockframe\.{name} is now rockframe\."):
+            old = getattr(rf, name)
+        assert old(*given).drop_attrs().identical(new.drop_attrs())
+    for name in old_names.MOVED:
+        with pytest.warns(DeprecationWarning, match=rf"rockframe\.{name} is now rockframe\."):
+            assert callable(getattr(rf, name))
+
+
+COUNTS = {"intensity": ([1.0, 2.0, 3.0], "m/s^2"), "exceeded": [0, 2, 5], "trials": 5}
+
+
 def test_errors_form_one_family():
-    for name in ("Units", "Component", "Assembly", "Record", "Solver", "Schema"):
-        error = getattr(rf, f"{name}Error")
-        assert issubclass(error, rf.RockframeError)
-        assert error is not rf.RockframeError
-    for name in ("Model", "Record", "Solver"):
-        warning = getattr(rf, f"{name}Warning")
-        assert issubclass(warning, rf.RockframeWarning)
-        assert issubclass(warning, UserWarning)
+    family = {name: getattr(rf.errors, name) for name in dir(rf.errors)}
+    for name, one in family.items():
+        base = RockframeWarning if name.endswith("Warning") else RockframeError
+        assert issubclass(one, base)
+    assert issubclass(RockframeWarning, UserWarning)

@@ -11,6 +11,7 @@ from plainly import plainly
 
 import rockframe as rf
 from rockframe import extension as ext
+from rockframe.errors import ComponentError
 
 FILE = Path(__file__).parents[2] / "examples" / "own_link.py"
 PAGE = Path(__file__).parents[2] / "docs" / "guide" / "own_link.md"
@@ -54,7 +55,7 @@ def test_one_that_hardly_hardens_is_a_tie(example):
 
 
 def test_what_is_no_link_is_refused():
-    with pytest.raises(rf.ComponentError, match="OwnBase or OwnScene"):
+    with pytest.raises(ComponentError, match="OwnBase or OwnScene"):
         rf.register(int)
 
 

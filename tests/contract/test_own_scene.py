@@ -18,6 +18,7 @@ import rockframe as rf
 from rockframe import extension as ext
 from rockframe.command.files.scenes import read_scene
 from rockframe.compiled import COMPILED
+from rockframe.errors import AssemblyError, ComponentError, SolverWarning
 from rockframe.results.schema import SCHEMA
 from rockframe.studies.sweeps import study
 
@@ -93,26 +94,26 @@ class TestSystem:
         ],
     )
     def test_other_combinations_are_refused_with_all_scenes(self, ground, parts, words):
-        with pytest.raises(rf.AssemblyError, match=words) as caught:
+        with pytest.raises(AssemblyError, match=words) as caught:
             rf.System(*parts, ground)
         assert str(caught.value).endswith("\n  Block + SlidingGround (SlidingScene)")
         assert "\n  Block + WinklerSoil" in str(caught.value)
 
     def test_what_it_does_not_fit_is_its_own_to_say(self, own, ground):
-        with pytest.raises(rf.AssemblyError, match="needs a symmetric block on level ground"):
+        with pytest.raises(AssemblyError, match="needs a symmetric block on level ground"):
             rf.System(BLOCK, ground, inclination="1 deg")
-        with pytest.raises(rf.AssemblyError, match="the kinetic friction is above that at rest"):
+        with pytest.raises(AssemblyError, match="the kinetic friction is above that at rest"):
             rf.System(BLOCK, own.SlidingGround(friction=0.2, kinetic_friction=0.3))
 
     def test_what_it_does_not_tell_is_refused(self, system):
-        with pytest.raises(rf.AssemblyError, match="slide-rock tells no small motion"):
+        with pytest.raises(AssemblyError, match="slide-rock tells no small motion"):
             system.frequencies()
-        with pytest.raises(rf.AssemblyError, match="slide-rock tells no quasi-static states"):
+        with pytest.raises(AssemblyError, match="slide-rock tells no quasi-static states"):
             system.moment_rotation("0.1 rad")
-        with pytest.raises(rf.AssemblyError, match="slide-rock tells nothing of rest"):
+        with pytest.raises(AssemblyError, match="slide-rock tells nothing of rest"):
             system.equilibrium()
         start = rf.InitialState(vertical_velocity="1 m/s")
-        with pytest.raises(rf.AssemblyError, match="are no start of slide-rock"):
+        with pytest.raises(AssemblyError, match="are no start of slide-rock"):
             system.simulate(initial=start, duration="1 s")
 
 
@@ -279,7 +280,7 @@ class TestRegistration:
         return Wedged
 
     def test_a_part_of_no_registered_scene_is_refused(self):
-        with pytest.raises(rf.AssemblyError, match="no scene that is registered is made of it"):
+        with pytest.raises(AssemblyError, match="no scene that is registered is made of it"):
             rf.System(BLOCK, Wedge())
 
     def test_a_registered_scene_is_simulated(self, wedged, system):
@@ -287,7 +288,7 @@ class TestRegistration:
         rf.register(wedged)  # once more, as when a notebook's cell is run again
         response = rf.System(BLOCK, Wedge(friction=0.26)).simulate(PULSE)
         np.testing.assert_array_equal(response.slip, system.simulate(PULSE).slip)
-        with pytest.raises(rf.AssemblyError) as caught:
+        with pytest.raises(AssemblyError) as caught:
             rf.System(Wedge())
         assert str(caught.value).count("(Wedged)") == 1
 
@@ -333,7 +334,7 @@ class TestRegistration:
                 return answer if answer is None else dict(answer)
 
         rf.register(Wrong)
-        with pytest.warns(rf.SolverWarning, match="what Wrong tells of the run could not be"):
+        with pytest.warns(SolverWarning, match="what Wrong tells of the run could not be"):
             response = rf.System(BLOCK, Wedge(friction=0.26)).simulate(PULSE)
         assert words in response.attrs["cautions"]
         assert "slip" in response
@@ -341,7 +342,7 @@ class TestRegistration:
 
     def test_all_faults_are_told_and_nothing_is_registered(self):
         before = [dict(table) for table in TABLES]
-        with pytest.raises(rf.ComponentError) as caught:
+        with pytest.raises(ComponentError) as caught:
             rf.register(Bare, columns=[column(dims=("layer",)), column(name="2nd", dims=()), 3])
         told = str(caught.value)
         for fault in (
@@ -370,7 +371,7 @@ class TestRegistration:
         if isinstance(made_of, dict) and made_of.get("sliding_ground", 0) is None:
             made_of = {**made_of, "sliding_ground": own.SlidingGround}
         wedged.made_of = made_of
-        with pytest.raises(rf.ComponentError, match=words):
+        with pytest.raises(ComponentError, match=words):
             rf.register(wedged)
 
     def test_tables_that_do_not_fit_the_system_are_told_at_once(self, wedged):
@@ -385,7 +386,7 @@ class TestRegistration:
                 )
 
         rf.register(Odd)
-        with pytest.raises(rf.AssemblyError) as caught:
+        with pytest.raises(AssemblyError) as caught:
             rf.System(BLOCK, Wedge())
         for fault in (
             "scales has 3 numbers, but there must be 4", "guard_tolerance has 2 numbers, but",
@@ -440,11 +441,13 @@ class TestDiagnostics:
     )
     def test_they_are_had_of_any_scene(self, parts):
         rf.register(
-            rf.Diagnostic(
+            rf.extension.Diagnostic(
                 lambda state: 2.0 * state["rotation"], "twice", "rad", "twice the rotation"
             )
         )
-        rf.register(rf.Diagnostic(pushed, "pushed", "m/s^2", "absolute acceleration, otherwise"))
+        rf.register(
+            rf.extension.Diagnostic(pushed, "pushed", "m/s^2", "absolute acceleration, otherwise")
+        )
         response = rf.System(BLOCK, *parts).simulate(
             PULSE, **RUN, outputs=["twice", "pushed", "absolute_horizontal_acceleration"]
         )
@@ -466,7 +469,9 @@ class TestDiagnostics:
         assert float(response.peak_pushed_by) == pytest.approx(3.5, rel=1e-4)
 
     def test_peaks_are_found_between_samples(self):
-        rf.register(rf.Diagnostic(pushed, "pushed", "m/s^2", "absolute acceleration, otherwise"))
+        rf.register(
+            rf.extension.Diagnostic(pushed, "pushed", "m/s^2", "absolute acceleration, otherwise")
+        )
         fine, coarse = (
             rf.System(BLOCK).simulate(PULSE, outputs=["pushed"], output_step=step)
             for step in ("1 ms", "0.2 s")
@@ -475,7 +480,7 @@ class TestDiagnostics:
         assert float(fine.peak_pushed) >= float(np.abs(fine.pushed).max())
 
     def test_one_of_another_name_is_asked_for_in_vain(self, system):
-        with pytest.raises(rf.AssemblyError, match=r"no 'edge_hight'; .*'edge_height'"):
+        with pytest.raises(AssemblyError, match=r"no 'edge_hight'; .*'edge_height'"):
             system.simulate(PULSE, outputs="edge_hight")
         assert "edge_height" not in system.simulate(PULSE)
 
@@ -488,7 +493,7 @@ class TestDiagnostics:
     )
     def test_one_that_fails_loses_no_run(self, system, function, words):
         rf.register(function, name="odd", unit="1", long_name="what is not there")
-        with pytest.warns(rf.SolverWarning, match="the diagnostic 'odd' could not be computed"):
+        with pytest.warns(SolverWarning, match="the diagnostic 'odd' could not be computed"):
             response = system.simulate(PULSE, outputs=["odd", "edge_height"])
         assert words in response.attrs["cautions"]
         assert "odd" not in response
@@ -510,15 +515,15 @@ class TestDiagnostics:
     )
     def test_wrong_declarations_are_refused(self, given, words):
         right = {"name": "edge", "unit": "m", "long_name": "height of the edge"}
-        with pytest.raises(rf.ComponentError, match=words):
+        with pytest.raises(ComponentError, match=words):
             rf.register(pushed, **{**right, **given})
         assert "edge" not in SCHEMA
 
     def test_names_are_for_functions(self, own):
-        with pytest.raises(rf.ComponentError, match="unit is for functions of the state"):
+        with pytest.raises(ComponentError, match="unit is for functions of the state"):
             rf.register(own.SlidingScene, unit="m")
-        with pytest.raises(rf.ComponentError, match="a Diagnostic has its name"):
-            rf.register(rf.Diagnostic(pushed, "pushed", "m/s^2", "of it"), name="other")
+        with pytest.raises(ComponentError, match="a Diagnostic has its name"):
+            rf.register(rf.extension.Diagnostic(pushed, "pushed", "m/s^2", "of it"), name="other")
 
 
 def pushed(state):

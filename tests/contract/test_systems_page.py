@@ -8,6 +8,7 @@ import pytest
 from pages import read, said, table
 
 import rockframe as rf
+from rockframe.errors import ModelWarning
 
 PAGE = "guide/systems.md"
 BLOCK = rf.Block(width="4.85 m", height="19.4 m", mass="600 t")
@@ -91,7 +92,7 @@ def test_the_energies_of_a_block_released_or_shaken():
     )
     dissipated, most = said("theory/energy.md", "re-pinnings cost # J of # MJ in the same run")
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", rf.ModelWarning)  # a restitution of one
+        warnings.simplefilter("ignore", ModelWarning)  # a restitution of one
         elastic = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0, restitution=1)
         runs = {
             restraint: rf.System(BLOCK, elastic, restraint=restraint).simulate(

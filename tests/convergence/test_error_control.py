@@ -14,6 +14,7 @@ import pytest
 
 import rockframe as rf
 from rockframe.dynamics.protocol import Start
+from rockframe.errors import ModelWarning
 from rockframe.solve.integrate import integrate
 
 SCENES = int(os.environ.get("ROCKFRAME_SCENES", "60"))
@@ -52,7 +53,7 @@ def system(kind, rng):
         "coupled": (block, pads, cap, soil),
     }[kind]
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", rf.ModelWarning)
+        warnings.simplefilter("ignore", ModelWarning)
         return rf.System(*parts)
 
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 import rockframe as rf
+from rockframe.errors import ModelWarning
 
 GRAVITY = 9.80665
 RULES = ("contact-state", "leading-corner", "centre")
@@ -106,7 +107,7 @@ class Scene:
         """Simulate; warnings tell where a model is stretched and are no failure."""
         theta = float(np.arctan(1.0 / self.slenderness))
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", rf.ModelWarning)
+            warnings.simplefilter("ignore", ModelWarning)
             return self.system.simulate(
                 self.motion,
                 duration=f"{self.duration!r} s",

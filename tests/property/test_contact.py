@@ -12,6 +12,7 @@ from property.checks import FLIGHT, LEFT, RIGHT, check_flight
 from property.scenarios import CASE, GRAVITY, RULES, Scenario, scenarios
 
 import rockframe as rf
+from rockframe.errors import SolverWarning
 
 pytestmark = pytest.mark.property
 
@@ -87,7 +88,7 @@ def test_a_landing_whose_hold_would_lift_the_corner_again_has_a_motion():
 
 def test_a_run_that_cannot_be_finished_returns_what_it_has_and_says_so():
     scenario = replace(CASE, peak=0.4, vertical=0.0)
-    with pytest.warns(rf.SolverWarning, match="Not finished"):
+    with pytest.warns(SolverWarning, match="Not finished"):
         response = scenario.run(accuracy=rf.Accuracy(rtol=1e-8, max_steps=500))
     meanings = response.status.attrs["flag_meanings"].split()
     assert meanings[response.status.item()] == "step_limit"

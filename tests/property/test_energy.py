@@ -12,6 +12,7 @@ from property.checks import check_energy_at_events
 from property.scenarios import GRAVITY, RULES, Scenario, scenarios
 
 import rockframe as rf
+from rockframe.errors import ModelWarning
 from rockframe.solve.accuracy import accuracy_of
 
 pytestmark = pytest.mark.property
@@ -169,7 +170,7 @@ def test_without_losses_the_leading_corner_keeps_all_energy(start, rotation):
 
     block = rf.Block.from_size(radius="5 m", slenderness=4, mass="50 t")
     pads = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0, restitution=1)
-    with pytest.warns(rf.ModelWarning, match="eps_max"):
+    with pytest.warns(ModelWarning, match="eps_max"):
         system = rf.System(block, pads, restraint="leading-corner", rotation=rotation)
     scenario = Scenario(
         base="leading-corner", beta=20.0, xi=0.0, rotation=rotation, vertical=0.0, **HARD

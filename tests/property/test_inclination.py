@@ -8,6 +8,7 @@ import pytest
 import xarray as xr
 
 import rockframe as rf
+from rockframe.errors import AssemblyError
 
 pytestmark = pytest.mark.property
 
@@ -159,5 +160,5 @@ def test_a_run_goes_on_from_another(system):
     theta = whole.overturning_angle.item()
     assert abs(rest.rotation.values[-1] - whole.rotation.values[-1]) < 1e-6 * theta
     other = scene("pads", "1 deg")
-    with pytest.raises(rf.AssemblyError, match="another system"):
+    with pytest.raises(AssemblyError, match="another system"):
         other.simulate(duration="1 s", initial=first)

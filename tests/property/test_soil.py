@@ -32,6 +32,7 @@ from property.test_energy import energy_scale
 from property.test_symmetry import SWAPPED, SWAPS_CORNERS, TRADES_PLACES, TURNS_ROUND
 
 import rockframe as rf
+from rockframe.errors import ModelWarning
 
 pytestmark = pytest.mark.property
 
@@ -160,7 +161,7 @@ def test_without_losses_all_energy_is_kept(scene, rule):
     parts = [part for part in scenario.system.parts.given() if part.noun != "base"]
     if scene == "coupled":
         parts.append(rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0, restitution=1))
-        with pytest.warns(rf.ModelWarning, match="eps_max"):
+        with pytest.warns(ModelWarning, match="eps_max"):
             system = rf.System(*parts, restraint=rule)
     else:
         system = rf.System(*parts, restraint=rule)

@@ -19,6 +19,7 @@ from functools import cached_property
 import numpy as np
 
 import rockframe as rf
+from rockframe.errors import ModelWarning
 
 FLOORS = (3, 6)
 BETAS = (20, 40, 60)
@@ -44,7 +45,7 @@ CONCRETE = 2500.0
 
 def frame(floors, shape="printed", *, size=1.0):
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", rf.ModelWarning)  # expected in the tests
+        warnings.simplefilter("ignore", ModelWarning)  # expected in the tests
         return rf.FrameEquivalent(
             width=f"{4 * size} m",
             height=f"{3 * floors * size} m",
@@ -414,7 +415,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("record", help="the file of TCU128, component N")
     motion = tcu128(parser.parse_args().record)
-    warnings.simplefilter("ignore", rf.ModelWarning)
+    warnings.simplefilter("ignore", ModelWarning)
     for shape in SHAPE_FACTORS:
         print_free(shape)
     print_from_the_soil()

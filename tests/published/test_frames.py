@@ -12,6 +12,7 @@ import pytest
 
 import rockframe as rf
 from rockframe.components import FrameEquivalent
+from rockframe.errors import ModelWarning
 
 SLAB, INFILL = 0.12, 0.15
 
@@ -126,7 +127,7 @@ def test_a_printed_shape_factor_below_one_is_impossible(row):
     """It would put the mass, on the average, beyond R0 from the middle."""
     needed = row.frame().si.radius / math.sqrt(row.printed_mu)
     assert needed > math.hypot(0.5 * row.width, 0.5 * row.height)
-    with pytest.warns(rf.ModelWarning, match="not physical"):
+    with pytest.warns(ModelWarning, match="not physical"):
         FrameEquivalent(
             width=f"{row.width} m",
             height=f"{row.height} m",

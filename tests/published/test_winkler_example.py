@@ -28,6 +28,7 @@ from published.frames import (
 from records import record_path
 
 import rockframe as rf
+from rockframe.errors import ModelWarning
 
 PRINTED, HONEST = SHAPE_FACTORS
 THETAS = {3: 0.418, 6: 0.219}
@@ -87,7 +88,7 @@ def test_overturning_angles(floors, shape):
 
 
 def test_the_printed_shape_factor_of_six_storeys_brings_a_warning():
-    with pytest.warns(rf.ModelWarning, match="not physical"):
+    with pytest.warns(ModelWarning, match="not physical"):
         rf.FrameEquivalent(width="4 m", height="18 m", mass="99 t", shape_factor=0.380)
 
 

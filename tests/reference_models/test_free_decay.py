@@ -8,6 +8,7 @@ import pytest
 from reference_models.monoliths import rigid_block, two_spring
 
 import rockframe as rf
+from rockframe.errors import ModelWarning
 
 GRAVITY = 9.80665
 HALF_WIDTH, HALF_HEIGHT = 0.15, 0.6
@@ -85,7 +86,7 @@ def test_restitution_of_pads_is_found_with_their_other_parameters():
     start = rf.System(
         BLOCK, rf.TwoSpringSupport(frequency_ratio=21, damping_ratio=0.11, restitution=0.85)
     )
-    with pytest.warns(rf.ModelWarning, match="damping_ratio and restitution can hardly be told"):
+    with pytest.warns(ModelWarning, match="damping_ratio and restitution can hardly be told"):
         found = read_back(start, on_pads(), (*PADS, "restitution"))
     np.testing.assert_allclose(found.fitted_value, [20.0, 0.1, BLOCK.maximum_restitution], 1e-6)
 
@@ -108,7 +109,7 @@ def test_intervals_of_pads():
 
 def test_noise_that_is_not_independent_is_told():
     smooth = np.convolve(np.random.default_rng(3).normal(size=TIME.size + 9), np.ones(10), "valid")
-    with pytest.warns(rf.ModelWarning, match="each residual follows the one before"):
+    with pytest.warns(ModelWarning, match="each residual follows the one before"):
         found = read_back(rf.System(BLOCK), on_rigid_ground() + 3e-4 * smooth, "restitution")
     assert float(found.residual_autocorrelation) > 0.7
     assert "each residual" in found.attrs["cautions"]

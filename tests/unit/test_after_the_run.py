@@ -6,6 +6,7 @@ from functools import cached_property
 import pytest
 
 import rockframe as rf
+from rockframe.errors import ModelWarning, SolverWarning
 from rockframe.simulation import run as running
 from rockframe.simulation.plan import Plan
 from rockframe.system.assembly import Assembly
@@ -65,7 +66,7 @@ def test_a_run_tells_what_could_not_be_computed(failing):
     asked |= {"certify": failing == "certify", **ASKED}
     found = rf.System(BLOCK).simulate(PULSE, **asked)
     told = f"{STEPS[failing]}.* could not be computed: ZeroDivisionError: left out on purpose"
-    with pytest.warns(rf.SolverWarning, match=told):
+    with pytest.warns(SolverWarning, match=told):
         again = rf.System(BLOCK).simulate(PULSE, **asked)
     assert "ZeroDivisionError: left out on purpose" in found.attrs["cautions"]
     assert again.attrs["verdict"].startswith("Did not overturn")
@@ -83,7 +84,7 @@ def test_columns_that_the_schema_does_not_have_cost_the_histories_alone(monkeypa
         return found
 
     monkeypatch.setattr(running, "answers_of", with_another)
-    with pytest.warns(rf.SolverWarning, match="'unheard_of' is not in the schema"):
+    with pytest.warns(SolverWarning, match="'unheard_of' is not in the schema"):
         found = rf.System(BLOCK).simulate(PULSE, **ASKED)
     assert float(found.peak_rotation) > 0.0
 
@@ -91,7 +92,7 @@ def test_columns_that_the_schema_does_not_have_cost_the_histories_alone(monkeypa
 @pytest.mark.parametrize("accuracy", ["standard", "fast"])
 def test_a_case_of_a_sweep_keeps_its_result(monkeypatch, accuracy):
     monkeypatch.setattr(running, "may_overturn_later", broken)
-    with pytest.warns(rf.ModelWarning, match="left out on purpose"):
+    with pytest.warns(ModelWarning, match="left out on purpose"):
         found = rf.sweep(
             rf.System(BLOCK), PULSE, scale=[0.9, 1.0], accuracy=accuracy, progress=False, **ASKED
         )

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 import rockframe as rf
+from rockframe.errors import AssemblyError, ModelWarning, RockframeError, SchemaError, SolverError
 
 pytestmark = pytest.mark.unit
 
@@ -39,7 +40,7 @@ def pulse():
 
 
 def faults(*parts, **options):
-    with pytest.raises(rf.AssemblyError) as caught:
+    with pytest.raises(AssemblyError) as caught:
         rf.System(*parts, **options)
     return caught.value
 
@@ -146,7 +147,7 @@ def test_parts_that_make_no_scene_are_refused(parts, words):
         "Block + TwoSpringSupport + CushionCap + WinklerSoil, coupling='cascade'",
     ):
         assert scene in str(error)
-    assert isinstance(error, rf.RockframeError)
+    assert isinstance(error, RockframeError)
 
 
 @pytest.mark.parametrize(
@@ -210,7 +211,7 @@ def test_a_system_survives_the_way_through_text(name, motion):
     [{}, {"parts": 3}, {"parts": []}, {"parts": [{"type": "Brick"}]}, 3, None, "Block"],
 )
 def test_what_describes_no_system_is_refused(description):
-    with pytest.raises(rf.SchemaError, match="does not describe a system"):
+    with pytest.raises(SchemaError, match="does not describe a system"):
         rf.System.from_dict(description)
 
 
@@ -228,13 +229,13 @@ def test_what_describes_no_system_is_refused(description):
 def test_what_is_wrong_in_a_description_is_named(change, words):
     told = json.loads(json.dumps(assembled("coupled").to_dict()))
     change(told)
-    with pytest.raises(rf.SchemaError, match=f"does not describe a system: {words}"):
+    with pytest.raises(SchemaError, match=f"does not describe a system: {words}"):
         rf.System.from_dict(told)
 
 
 def test_a_path_is_no_dataset():
     words = r"System\.from_dataset: found 'run\.nc'; .*xr\.open_dataset first"
-    with pytest.raises(rf.SchemaError, match=words):
+    with pytest.raises(SchemaError, match=words):
         rf.System.from_dataset("run.nc")
 
 
@@ -534,11 +535,11 @@ class TestDescription:
         assert "dashpots would pull" in texts["pressure"]
 
     def test_of_soil_too_soft_says_never(self):
-        with pytest.warns(rf.ModelWarning, match="too soft") as caught:
+        with pytest.warns(ModelWarning, match="too soft") as caught:
             system = rf.System(block(), soil(stiffness="0.2 MPa"))
         assert caught[0].filename == __file__
         assert "never" in system.describe()
-        with pytest.warns(rf.ModelWarning, match="too soft"):
+        with pytest.warns(ModelWarning, match="too soft"):
             rf.System(block(), pads(), cap(), soil(stiffness="0.2 MPa"))
 
     @pytest.mark.parametrize("rule", ["contact-state", "leading-corner", "centre"])
@@ -577,7 +578,7 @@ class TestDescription:
         ):
             assert words in text, words
         assert text.count("uplift angle") == 2
-        with pytest.warns(rf.ModelWarning, match="too soft"):
+        with pytest.warns(ModelWarning, match="too soft"):
             soft = rf.System(block(), pads(), cap(), soil(stiffness="0.1 MPa"), coupling=coupling)
         assert "arcsin(delta/b) never" in re.sub(r" +", " ", soft.describe())
 
@@ -607,7 +608,7 @@ class TestDescription:
 # simulate ----------------------------------------------------------------------------------------
 
 
-def refusal(error=rf.AssemblyError, system=None, **arguments):
+def refusal(error=AssemblyError, system=None, **arguments):
     chosen = rf.System(block(), pads()) if system is None else system
     with pytest.raises(error) as caught:
         chosen.simulate(arguments.pop("motion", pulse()), **arguments)
@@ -616,9 +617,9 @@ def refusal(error=rf.AssemblyError, system=None, **arguments):
 
 class TestSimulateRefuses:
     def test_nothing_to_do(self):
-        with pytest.raises(rf.AssemblyError, match="nothing to simulate"):
+        with pytest.raises(AssemblyError, match="nothing to simulate"):
             rf.System(block()).simulate()
-        with pytest.raises(rf.AssemblyError, match="nothing to simulate"):
+        with pytest.raises(AssemblyError, match="nothing to simulate"):
             rf.System(block()).simulate(initial=rf.InitialState(rotation="0.1 rad"))
 
     @pytest.mark.parametrize("bad", ["pulse", 3, [0.0, 1.0], rf.GroundMotion, np.zeros(3)])
@@ -636,7 +637,7 @@ class TestSimulateRefuses:
     @pytest.mark.parametrize("name", ["duration", "free_vibration", "output_step"])
     @pytest.mark.parametrize("bad", ["0 s", "-1 s", "nan s", "inf s", "1 m", "1", 1.0])
     def test_lengths_that_are_none(self, name, bad):
-        assert name in refusal(rf.RockframeError, **{name: bad})
+        assert name in refusal(RockframeError, **{name: bad})
 
     @pytest.mark.parametrize("sign", ["", "-"])
     def test_an_initial_rotation_beyond_overturning(self, sign):
@@ -664,7 +665,7 @@ class TestSimulateRefuses:
         "bad", ["x", ["rotations"], ["peak_rotation"], ["energy", "x"], [3], 3, [[]], [None], True]
     )
     def test_outputs_that_do_not_exist(self, bad):
-        message = refusal(rf.RockframeError, outputs=bad)
+        message = refusal(RockframeError, outputs=bad)
         assert "outputs" in message
         assert "kinetic_energy" in message
 
@@ -676,13 +677,13 @@ class TestSimulateRefuses:
 
     @pytest.mark.parametrize("bad", ["best", "", None, 1, True, []])
     def test_other_accuracies(self, bad):
-        message = refusal(rf.RockframeError, accuracy=bad)
+        message = refusal(RockframeError, accuracy=bad)
         for word in ("fast", "standard", "reference", "Accuracy", repr(bad)):
             assert word in message
 
     @pytest.mark.parametrize("bad", [0.1, 1e-15, math.nan, -1e-6])
     def test_tolerances_out_of_range(self, bad):
-        assert "rtol must lie from 1e-13 to 0.01" in refusal(rf.SolverError, accuracy=bad)
+        assert "rtol must lie from 1e-13 to 0.01" in refusal(SolverError, accuracy=bad)
 
     def test_several_faults_at_once(self):
         message = refusal(
@@ -696,13 +697,13 @@ class TestSimulateRefuses:
             assert word in message
 
     def test_an_output_step_of_no_use_even_without_histories(self):
-        assert "output_step" in refusal(rf.RockframeError, outputs=None, output_step="5")
+        assert "output_step" in refusal(RockframeError, outputs=None, output_step="5")
 
 
 def _simulate(options):
     try:
         rf.System(block(), pads()).simulate(pulse(), **options)
-    except rf.RockframeError:
+    except RockframeError:
         sys.exit(7)
     sys.exit(0)
 
@@ -754,7 +755,7 @@ class TestAccuracy:
         ],
     )
     def test_settings_out_of_range_are_refused(self, name, bad):
-        with pytest.raises(rf.SolverError, match=name):
+        with pytest.raises(SolverError, match=name):
             rf.Accuracy(**{"rtol": 1e-7, name: bad})
 
     @pytest.mark.parametrize(
@@ -787,17 +788,17 @@ class TestAccuracy:
 
     @pytest.mark.parametrize("given", [{}, {"rtol": 1e-6, "substeps": 4}, {"floor": 0.1}])
     def test_a_tolerance_or_substeps_but_not_both(self, given):
-        with pytest.raises(rf.SolverError, match=r"rtol .* or substeps"):
+        with pytest.raises(SolverError, match=r"rtol .* or substeps"):
             rf.Accuracy(**given)
 
     @pytest.mark.parametrize("bad", [0, -1, 1.5, 2.0, True, "4", "most", math.nan, 10**7])
     def test_substeps_out_of_range_are_refused(self, bad):
-        with pytest.raises(rf.SolverError, match="substeps"):
+        with pytest.raises(SolverError, match="substeps"):
             rf.Accuracy(substeps=bad)
 
     def test_fixed_steps_ask_for_more_steps_per_period(self):
         assert rf.Accuracy(rtol=1e-6, steps_per_period=6.0).steps_per_period == 6.0
-        with pytest.raises(rf.SolverError, match="steps_per_period"):
+        with pytest.raises(SolverError, match="steps_per_period"):
             rf.Accuracy(substeps="fewest", steps_per_period=6.0)
 
     def test_the_fewest_substeps_that_resolve_the_fastest_vibration(self):
@@ -863,7 +864,7 @@ def test_a_weightless_block_on_rigid_ground_is_warned_about():
         if not warned:
             rf.System(block()).simulate(motion)
             continue
-        with pytest.warns(rf.ModelWarning, match="leave the rigid ground") as caught:
+        with pytest.warns(ModelWarning, match="leave the rigid ground") as caught:
             rf.System(block()).simulate(motion)
         assert caught[0].filename == __file__
         rf.System(block(), pads()).simulate(motion)

@@ -13,7 +13,7 @@ import xarray as xr
 from pages import read, said
 
 import rockframe as rf
-from rockframe.errors import ComponentError, UnitsError
+from rockframe.errors import ComponentError, ModelWarning, SolverError, SolverWarning, UnitsError
 from rockframe.results.outcome import verdict_of
 from rockframe.simulation.certificate import NEAR, RESOLUTION, SAFETY, Certificate, certify, settles
 from rockframe.simulation.perturbations import CUTS, SHORTER, cut, parameters, shortened
@@ -210,7 +210,7 @@ def test_a_nudge_that_makes_parts_misfit_is_left_out():
 
 
 def test_what_a_scene_has_warned_of_its_certificate_does_not_repeat():
-    with pytest.warns(rf.ModelWarning, match="restitution"):
+    with pytest.warns(ModelWarning, match="restitution"):
         system = rf.System(BLOCK, rf.RigidGround(restitution=1.0))
     assert "certificate" in certified(system=system).attrs
 
@@ -424,7 +424,7 @@ def test_no_scale_within_reach():
 
 def test_a_run_that_was_cut_off_has_no_certificate():
     limit = rf.Accuracy(rtol=1e-8, max_steps=60)
-    with pytest.warns(rf.SolverWarning, match="Not finished: stopped at"):
+    with pytest.warns(SolverWarning, match="Not finished: stopped at"):
         run = certified(PULSE.scaled(3.0 * edge()), accuracy=limit)
     assert run.attrs["certificate"] == "No certificate: the run was not finished."
     assert run.attrs["certificate_runs"] == 0
@@ -542,7 +542,7 @@ def test_sub_steps_that_just_do_for_the_run_are_certified():
     pads = rf.TwoSpringSupport(frequency_ratio=324.57, damping_ratio=0.1)
     system = rf.System(BLOCK, pads)
     given = rf.Accuracy(substeps=4)
-    with pytest.raises(rf.SolverError, match="too few"):
+    with pytest.raises(SolverError, match="too few"):
         rf.System(BLOCK, pads.with_scaled("frequency_ratio", 1.001)).simulate(PULSE, accuracy=given)
     run = certified(system=system, accuracy=given)
     assert "larger or smaller" in run.attrs["certificate"]
@@ -564,7 +564,7 @@ def test_sub_steps_that_just_do_for_the_run_are_certified():
 @pytest.mark.parametrize("coupling", ["coupled", "cascade"])
 def test_every_scene_can_be_certified(parts, coupling, tmp_path):
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", rf.ModelWarning)
+        warnings.simplefilter("ignore", ModelWarning)
         run = certified(system=rf.System(*parts, coupling=coupling))
     assert all(math.isfinite(float(run[name])) for name in NAMES if name != "verdict_flip_scale")
     run.to_netcdf(tmp_path / "run.nc")

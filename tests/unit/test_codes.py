@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import rockframe as rf
+from rockframe.errors import ComponentError, FileError
 
 WALL = rf.Block(width="0.5 m", height="6 m", mass="5.7 t")
 LOW = rf.System(WALL, rf.RearWall(side="right"), gravity="9.81 m/s^2")
@@ -89,16 +90,16 @@ def test_the_motion_beside_the_kinematics():
     ],
 )
 def test_what_cannot_be_checked_is_refused(given, words):
-    with pytest.raises(rf.ComponentError, match=words):
+    with pytest.raises(ComponentError, match=words):
         rf.codes.circolare_2019(*given)
 
 
 def test_faults_of_arguments():
-    with pytest.raises(rf.ComponentError, match="'SLV', 'SLC', got 'SLD'"):
+    with pytest.raises(ComponentError, match="'SLV', 'SLC', got 'SLD'"):
         rf.codes.circolare_2019(LOW, spectrum(), limit_state="SLD")
-    with pytest.raises(rf.ComponentError, match="1 or more"):
+    with pytest.raises(ComponentError, match="1 or more"):
         rf.codes.circolare_2019(LOW, spectrum(), confidence_factor=0.9)
-    with pytest.raises(rf.ComponentError, match="no number is called 'T_SLD'"):
+    with pytest.raises(ComponentError, match="no number is called 'T_SLD'"):
         rf.codes.circolare_2019(LOW, spectrum()).value("T_SLD")
 
 
@@ -134,5 +135,5 @@ def test_texts_and_pages(tmp_path):
     written = page.read_text(encoding="utf-8")
     for words in ("C8.7.1.11", "1.56 pi", "Left out", "Circolare"):
         assert words in written
-    with pytest.raises(rf.errors.FileError):
+    with pytest.raises(FileError):
         check.report(tmp_path / "facade.pdf")

@@ -6,6 +6,7 @@ import warnings
 import pytest
 
 import rockframe as rf
+from rockframe.errors import ModelWarning
 
 pytestmark = pytest.mark.unit
 
@@ -20,10 +21,10 @@ def test_a_warning_points_at_the_line_of_the_user():
 
 def test_a_damping_ratio_of_ten_may_mean_ten_per_cent():
     words = r"TwoSpringSupport: damping_ratio = 10 is 1000 % of critical; was '10 %' meant\?"
-    with pytest.warns(rf.ModelWarning, match=words):
+    with pytest.warns(ModelWarning, match=words):
         pads = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=10)
     assert pads.si.damping_ratio == 10.0
-    with pytest.warns(rf.ModelWarning, match=r"WinklerSoil: damping_ratio = 1\.5 is 150 % of"):
+    with pytest.warns(ModelWarning, match=r"WinklerSoil: damping_ratio = 1\.5 is 150 % of"):
         rf.WinklerSoil(stiffness="9 MPa", damping_ratio="150 %")
     # what pytest would turn into errors: neither at 1 nor a second time
     rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=1)

@@ -7,6 +7,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import rockframe as rf
+from rockframe.errors import ComponentError
 
 BLOCK = rf.Block(width="1 m", height="4 m", mass="4 t")
 PADS = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
@@ -88,7 +89,7 @@ def test_rocking_against_a_wall_is_that_of_the_equation():
     ],
 )
 def test_what_is_no_elastic_wall_is_refused(given, words):
-    with pytest.raises(rf.ComponentError, match=words):
+    with pytest.raises(ComponentError, match=words):
         rf.RearWall(**given)
 
 

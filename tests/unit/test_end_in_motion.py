@@ -6,6 +6,7 @@ from contextlib import nullcontext
 import pytest
 
 import rockframe as rf
+from rockframe.errors import ModelWarning, SolverWarning
 from rockframe.system.overturning_energy import stored_energy
 
 BLOCK = rf.Block(width="0.5 m", height="2 m", mass="400 kg")
@@ -43,7 +44,7 @@ def test_of_two_sides_the_weaker_one_counts():
 
 def test_a_run_that_ends_in_mid_swing_warns():
     system = rf.System(BLOCK)
-    with pytest.warns(rf.SolverWarning, match=STILL_MOVING):
+    with pytest.warns(SolverWarning, match=STILL_MOVING):
         short = system.simulate(PULSE)
     assert not short.overturned
     assert STILL_MOVING in short.attrs["cautions"]
@@ -64,12 +65,12 @@ def test_the_bound_is_that_of_the_energy(parts, share):
         about, rotation = body.inertia + body.mass * body.radius**2, 1e-9  # about a corner
     rate = math.sqrt(2.0 * share * setting.overturning_energy / about)
     start = rf.InitialState(rotation=f"{rotation!r} rad", angular_velocity=f"{rate!r} rad/s")
-    with pytest.warns(rf.SolverWarning, match=STILL_MOVING) if share > 1.0 else nullcontext():
+    with pytest.warns(SolverWarning, match=STILL_MOVING) if share > 1.0 else nullcontext():
         system.simulate(duration="1 ms", initial=start, outputs=None)
 
 
 def test_sweeps_say_so_of_their_cases():
-    with pytest.warns(rf.ModelWarning, match=STILL_MOVING):
+    with pytest.warns(ModelWarning, match=STILL_MOVING):
         runs = rf.sweep(rf.System(BLOCK), PULSE, scale=[0.2, 1.0], progress=False)
     said = runs.message.to_numpy()[runs.message_number.to_numpy().ravel()]
     assert said[0] == "none"
@@ -78,13 +79,13 @@ def test_sweeps_say_so_of_their_cases():
 
 def test_critical_scales_say_so():
     system = rf.System(BLOCK)
-    with pytest.warns(rf.SolverWarning, match=STILL_MOVING):
+    with pytest.warns(SolverWarning, match=STILL_MOVING):
         found = rf.critical_scale(system, PULSE, scales=10, runs=20, progress=False)
     assert STILL_MOVING in found.attrs["cautions"]
 
 
 def test_a_certificate_speaks_of_the_time_to_the_end():
-    with pytest.warns(rf.SolverWarning, match=STILL_MOVING):
+    with pytest.warns(SolverWarning, match=STILL_MOVING):
         found = rf.System(BLOCK).simulate(PULSE, certify=True)
     assert found.attrs["certificate"].startswith("To the end of the run, where it can still")
 

@@ -9,7 +9,15 @@ import xarray as xr
 
 import rockframe as rf
 from rockframe import errors
-from rockframe.errors import LONGEST_SHOWN, shown
+from rockframe.errors import (
+    LONGEST_SHOWN,
+    AssemblyError,
+    FileError,
+    RecordError,
+    RockframeError,
+    StudyError,
+    shown,
+)
 
 pytestmark = pytest.mark.unit
 
@@ -47,16 +55,16 @@ def test_arrays_and_datasets_are_shown_by_their_type():
     ],
 )
 def test_messages_do_not_print_all_of_a_long_value(call):
-    with pytest.raises(rf.RockframeError) as caught:
+    with pytest.raises(RockframeError) as caught:
         call([0.05] * 5000)
     assert max(len(line) for line in str(caught.value).splitlines()) < 4 * LONGEST_SHOWN
 
 
 OF_MANY_FAULTS = {
-    rf.AssemblyError: lambda: rf.AssemblyError(["no block", "two pads"], ["block", "block, pads"]),
-    rf.RecordError: lambda: rf.RecordError("a.AT2", found="a word", expected="a number", line=3),
-    rf.FileError: lambda: rf.FileError("a.toml", [(None, "empty"), (3, "no unit")]),
-    rf.StudyError: lambda: rf.StudyError("no axis", "no motion"),
+    AssemblyError: lambda: AssemblyError(["no block", "two pads"], ["block", "block, pads"]),
+    RecordError: lambda: RecordError("a.AT2", found="a word", expected="a number", line=3),
+    FileError: lambda: FileError("a.toml", [(None, "empty"), (3, "no unit")]),
+    StudyError: lambda: StudyError("no axis", "no motion"),
 }
 
 

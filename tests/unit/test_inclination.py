@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import rockframe as rf
+from rockframe.errors import AssemblyError, ComponentError, ModelWarning
 from rockframe.signals import Motion
 from rockframe.signals.slope import Slope
 
@@ -17,7 +18,7 @@ SOFT = rf.TwoSpringSupport(stiffness="60 kN/m", damping_ratio=0.1)
 def test_it_needs_a_unit_and_stays_below_a_right_angle():
     for given, words in ((3.0, "bare number"), ("3", "no unit"), ("3 m", "angle"),
                          ("90 deg", "between -90 deg and 90 deg")):  # fmt: skip
-        with pytest.raises(rf.AssemblyError, match=words):
+        with pytest.raises(AssemblyError, match=words):
             rf.System(BLOCK, inclination=given)
     assert rf.System(BLOCK, inclination="-0 deg") == rf.System(BLOCK)
     assert rf.System(BLOCK, inclination="3 deg") != rf.System(BLOCK)
@@ -28,14 +29,14 @@ def test_it_needs_a_unit_and_stays_below_a_right_angle():
 def test_what_falls_by_its_own_weight_is_refused():
     for angle, side in (("17 deg", "left"), ("-17 deg", "right")):
         for parts in ((BLOCK,), (BLOCK, rf.TwoSpringSupport(stiffness="1 GN/m", damping_ratio=1))):
-            with pytest.raises(rf.AssemblyError, match=f"falls to the {side} by its own weight"):
+            with pytest.raises(AssemblyError, match=f"falls to the {side} by its own weight"):
                 rf.System(*parts, inclination=angle)
-    with pytest.warns(rf.ModelWarning, match="since its base is inclined"):
+    with pytest.warns(ModelWarning, match="since its base is inclined"):
         rf.System(BLOCK, SOFT.replace(stiffness="120 kN/m"), inclination="3 deg")
 
 
 def test_free_decay_is_fitted_on_a_level_base_only():
-    with pytest.raises(rf.ComponentError, match="the base is inclined by"):
+    with pytest.raises(ComponentError, match="the base is inclined by"):
         rf.fit_free_decay(rf.System(BLOCK, inclination="1 deg"), peaks=([5.0, 4.0], "deg"))
 
 

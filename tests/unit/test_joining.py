@@ -7,6 +7,7 @@ import pytest
 import xarray as xr
 
 import rockframe as rf
+from rockframe.errors import SchemaError, SolverWarning
 from rockframe.results.joining import OF_ONE_RUN
 
 pytestmark = pytest.mark.unit
@@ -37,7 +38,7 @@ def of_one_run(dataset):
 
 def test_the_names_are_those_of_what_differs_between_a_run_that_stands_and_one_that_falls():
     asked = {"history", "run_json", "motion_sha256", "motion_json", "motion_history"}
-    with pytest.warns(rf.SolverWarning):
+    with pytest.warns(SolverWarning):
         cut = run(STANDS, accuracy=rf.Accuracy(rtol=1e-7, max_steps=40), certify=True)
     others = [
         run(STANDS, accuracy=1e-7, certify=rf.Certification(runs=60)),
@@ -114,7 +115,7 @@ def test_cautions_are_those_of_the_run(runs):
     warned = runs[STANDS].assign_attrs(cautions=CAUTION)
     for chosen in ([warned, runs[2.0]], [runs[2.0], warned], [warned, warned]):
         assert "cautions" not in rf.concat(chosen).attrs
-    with pytest.warns(rf.SolverWarning):
+    with pytest.warns(SolverWarning):
         cut = run(STANDS, accuracy=rf.Accuracy(rtol=1e-7, max_steps=40))
     assert cut.attrs["cautions"].startswith("Not finished")
 
@@ -134,7 +135,7 @@ def test_what_is_shared_stays(runs):
     elsewhere = rf.System(BLOCK, rf.RigidGround(), gravity="3.7 m/s^2").simulate(PULSE)
     mixed = rf.concat([runs[STANDS], elsewhere])
     assert "system_json" not in mixed.attrs
-    with pytest.raises(rf.SchemaError, match="system_json"):
+    with pytest.raises(SchemaError, match="system_json"):
         rf.System.from_dataset(mixed)
 
 
@@ -168,7 +169,7 @@ def test_histories_are_joined_where_their_times_are_the_same(runs):
     both = rf.concat(row(runs, 2.0, STANDS), "scale", histories=True)
     assert both.rotation.dims == ("scale", "time")
     assert both.contact_state.dtype == np.int8
-    with pytest.raises(rf.SchemaError, match="do not fit one another"):
+    with pytest.raises(SchemaError, match="do not fit one another"):
         rf.concat(row(runs, STANDS, FALLS), "scale", histories=True)
 
 
@@ -193,7 +194,7 @@ def test_what_cannot_be_joined(runs):
         ([one, one], {"labels": [1, 2, 3]}, "found 3 labels for 2 runs along 'run'"),
         ([one, joined], {"dim": "scale"}, "1 of 2 datasets have the dimension 'scale'"),
         ([joined, joined.assign_coords(scale=[1, 3])], {}, "do not fit one another"),
-        ([one, rf.velocity_and_displacement(PULSE)], {}, "share no variables"),
+        ([one, rf.measures.velocity_and_displacement(PULSE)], {}, "share no variables"),
     ):
-        with pytest.raises(rf.SchemaError, match=words):
+        with pytest.raises(SchemaError, match=words):
             rf.concat(given, **options)

@@ -13,6 +13,7 @@ from plainly import plainly
 import rockframe as rf
 from rockframe import extension as ext
 from rockframe.dynamics.pads import CONTACTS
+from rockframe.errors import AssemblyError
 from rockframe.results.schema import SCHEMA
 from rockframe.system import slots
 
@@ -167,7 +168,7 @@ def test_a_scene_is_built_whatever_the_number_of_modes(count, coupling):
 
 @pytest.mark.parametrize(("count", "parts"), [(62, ()), (54, (PADS, CAP))])
 def test_more_modes_than_can_be_numbered_are_refused(count, parts):
-    with springs(count) as soil, pytest.raises(rf.AssemblyError, match="contacts of its bases"):
+    with springs(count) as soil, pytest.raises(AssemblyError, match="contacts of its bases"):
         rf.System(BLOCK, *parts, soil)
     with springs(count - 10) as soil:
         rf.System(BLOCK, *parts, soil)

@@ -13,6 +13,7 @@ import pytest
 
 import rockframe as rf
 from rockframe.compiled import COMPILED
+from rockframe.errors import AssemblyError, ModelWarning, RecordError, SchemaError, UnitsError
 
 pytestmark = pytest.mark.unit
 
@@ -44,52 +45,52 @@ def system():
 ASKED = {
     "a system where a comparison is needed": (
         lambda: rf.recommend(system(), 0.1),
-        rf.SchemaError,
+        SchemaError,
         ["rockframe.tradeoff(system, motion)"],
     ),
     "a quantity of another library": (
         lambda: block(width=Quantity(1.0, "m")),
-        rf.UnitsError,
+        UnitsError,
         ["width", "a Quantity of astropy", "(q.value, str(q.unit))"],
     ),
     "an array of another library": (
         lambda: rf.GroundMotion.from_arrays(Quantity(np.zeros(5), "m/s2"), "0.01 s"),
-        rf.UnitsError,
+        UnitsError,
         ["acceleration", "a Quantity of astropy"],
     ),
     "a file for a motion": (
         lambda: system().simulate("x.AT2"),
-        rf.AssemblyError,
+        AssemblyError,
         ["GroundMotion.read('x.AT2')"],
     ),
     "a path for a motion": (
         lambda: system().simulate(Path("x.AT2")),
-        rf.AssemblyError,
+        AssemblyError,
         ["GroundMotion.read('x.AT2')"],
     ),
     "samples for a motion": (
         lambda: system().simulate(np.zeros(5)),
-        rf.AssemblyError,
+        AssemblyError,
         ["GroundMotion.from_arrays("],
     ),
     "an angle for a start": (
         lambda: system().simulate(PULSE, initial="0.1 rad"),
-        rf.AssemblyError,
+        AssemblyError,
         ["InitialState(rotation='0.1 rad')"],
     ),
     "a period for a frequency": (
         lambda: rf.GroundMotion.sine_pulse(frequency="0.5 s"),
-        rf.UnitsError,
+        UnitsError,
         ["a period; its frequency is '2 Hz'"],
     ),
     "samples without a time step": (
         lambda: rf.GroundMotion.from_arrays((np.zeros(5), "m/s^2")),
-        rf.UnitsError,
+        UnitsError,
         ["time_step needs a time with a unit", "time_step='0.01 s'"],
     ),
     "samples without anything": (
         lambda: rf.GroundMotion.from_arrays(np.zeros(5)),
-        rf.UnitsError,
+        UnitsError,
         ["acceleration=(values, 'm/s^2')"],
     ),
     "damping of a run": (
@@ -104,7 +105,7 @@ ASKED = {
     ),
     "a subgrade modulus for a stiffness": (
         lambda: rf.WinklerSoil(stiffness="20 MN/m^3", damping_ratio=0.2),
-        rf.UnitsError,
+        UnitsError,
         ["WinklerSoil.from_subgrade_modulus("],
     ),
     "a subgrade modulus by its name": (
@@ -133,13 +134,13 @@ def test_archives_are_told_from_records(tmp_path):
     with zipfile.ZipFile(tmp_path / "two.zip", "w") as archive:
         for name in ("a.csv", "b.csv"):
             archive.writestr(name, "time (s),acceleration (g)\n0,0\n0.01,0.1\n0.02,-0.1\n")
-    with pytest.raises(rf.RecordError, match=r"several files, a\.csv, b\.csv.*read_suite"):
+    with pytest.raises(RecordError, match=r"several files, a\.csv, b\.csv.*read_suite"):
         rf.GroundMotion.read(tmp_path / "two.zip")
     with zipfile.ZipFile(tmp_path / "one.zip", "w") as archive:
         archive.writestr("a.csv", "time (s),acceleration (g)\n0,0\n0.01,0.1\n0.02,-0.1\n")
     assert len(rf.GroundMotion.read(tmp_path / "one.zip")) == 3
     (tmp_path / "some.gz").write_bytes(gzip.compress(b"\x00\x01binary"))
-    with pytest.raises(rf.RecordError) as caught:
+    with pytest.raises(RecordError) as caught:
         rf.GroundMotion.read(tmp_path / "some.gz")
     assert "some.gz/some" in str(caught.value)
 
@@ -158,7 +159,7 @@ def test_a_number_beside_its_unit_is_a_quantity():
                    ((PULSE, (0.3, "g_0")), (PULSE, "0.3 g_0")))  # fmt: skip
     assert given == same
     for bad in ((1, "kg"), (True, "m"), ("1", "m"), (1, 2), (1, "m", "m"), ([1, 2], "m")):
-        with pytest.raises(rf.UnitsError, match="width"):
+        with pytest.raises(UnitsError, match="width"):
             block(width=bad)
 
 
@@ -174,10 +175,10 @@ def test_depths_that_contradict_one_another_are_told():
             beam_height="0.30 m", beam_width="0.25 m", density="2500 kg/m^3",
         )  # fmt: skip
 
-    with pytest.warns(rf.ModelWarning, match="depth of 4 m, but the FrameEquivalent on it is 6 m"):
+    with pytest.warns(ModelWarning, match="depth of 4 m, but the FrameEquivalent on it is 6 m"):
         rf.System(frame("6 m"), soil("4 m"))
     cap = rf.CushionCap(height="0.9 m", density="2500 kg/m^3", depth="5 m")
-    with pytest.warns(rf.ModelWarning, match="the CushionCap on it is 5 m deep"):
+    with pytest.warns(ModelWarning, match="the CushionCap on it is 5 m deep"):
         rf.System(frame("6 m"), cap, soil("4 m"))
     rf.System(frame("4 m"), soil("4 m"))  # warnings are errors here
     rf.System(frame("6 m"), cap, soil("5 m"))

@@ -12,6 +12,7 @@ from unit import own_parts as own
 import rockframe as rf
 from rockframe.components import Component, Member, Ratio, RegularFrame, component_from_dict
 from rockframe.components.parameters import REQUIRED
+from rockframe.errors import AssemblyError, ComponentError, ModelWarning, SchemaError, UnitsError
 
 pytestmark = pytest.mark.unit
 
@@ -126,19 +127,19 @@ def test_a_part_is_changed_by_copying(part, changes, gone):
 
 
 def test_what_replaces_is_checked_as_what_is_new():
-    with pytest.raises(rf.UnitsError, match="TwoSpringSupport: stiffness needs a stiffness"):
+    with pytest.raises(UnitsError, match="TwoSpringSupport: stiffness needs a stiffness"):
         PADS.replace(stiffness=12e6)
-    with pytest.raises(rf.ComponentError, match="damping_ratio must be zero or more"):
+    with pytest.raises(ComponentError, match="damping_ratio must be zero or more"):
         PADS.replace(damping_ratio=-0.1)
-    with pytest.raises(rf.ComponentError, match="give damping_ratio or damping; both were given"):
+    with pytest.raises(ComponentError, match="give damping_ratio or damping; both were given"):
         PADS.replace(damping_ratio=0.1, damping="80 kN*s/m")
-    with pytest.raises(rf.ComponentError, match="neither was given"):
+    with pytest.raises(ComponentError, match="neither was given"):
         PADS.replace(stiffness=None)
-    with pytest.raises(rf.ComponentError, match="density and depth go together; only density was"):
+    with pytest.raises(ComponentError, match="density and depth go together; only density was"):
         CAP.replace(density="2500 kg/m^3")
     with pytest.raises(TypeError, match="unexpected keyword argument 'frequency'"):
         PADS.replace(frequency=3)
-    with pytest.warns(rf.ModelWarning, match="'5 %' meant") as caught:
+    with pytest.warns(ModelWarning, match="'5 %' meant") as caught:
         assert PADS.replace(damping_ratio=5).damping_ratio == 5.0
     assert caught[0].filename == __file__
 
@@ -234,13 +235,13 @@ class TestOwnParts:
         assert pads.frequency_ratio == 20.0
         assert list(inspect.signature(own.BreakingPads).parameters)[-1] == "strength"
         assert pads.replace(stiffness="12 MN/m").frequency_ratio is None
-        with pytest.raises(rf.ComponentError, match="BreakingPads: give frequency_ratio or stif"):
+        with pytest.raises(ComponentError, match="BreakingPads: give frequency_ratio or stif"):
             own.BreakingPads(damping_ratio=0.1, strength="80 kN")
-        with pytest.raises(rf.UnitsError, match="BreakingPads: strength needs a force with a uni"):
+        with pytest.raises(UnitsError, match="BreakingPads: strength needs a force with a uni"):
             own.BreakingPads(frequency_ratio=20, damping_ratio=0.1, strength=80)
         with pytest.raises(TypeError, match=r"BreakingPads\.__init__\(\) missing 1 required keyw"):
             own.BreakingPads(frequency_ratio=20, damping_ratio=0.1)
-        with pytest.warns(rf.ModelWarning, match="BreakingPads: damping_ratio = 5 is 500 %"):
+        with pytest.warns(ModelWarning, match="BreakingPads: damping_ratio = 5 is 500 %"):
             own.BreakingPads(frequency_ratio=20, damping_ratio=5, strength="80 kN")
 
     @pytest.mark.parametrize("twin", [copy.copy, copy.deepcopy, pickled])
@@ -262,14 +263,12 @@ class TestOwnParts:
 
     def test_what_no_model_knows_is_not_simulated_as_something_else(self):
         pads = own.BreakingPads(frequency_ratio=20, damping_ratio=0.1, strength="80 kN")
-        with pytest.raises(
-            rf.AssemblyError, match="BreakingPads adds strength to TwoSpringSupport"
-        ):
+        with pytest.raises(AssemblyError, match="BreakingPads adds strength to TwoSpringSupport"):
             rf.System(BLOCK, pads)
 
     def test_a_parameter_is_not_taken_for_a_property_of_its_name(self):
         rounded = own.RoundedBlock(width="2 m", height="8 m", mass="50 t", radius="5 mm")
-        with pytest.raises(rf.AssemblyError, match="RoundedBlock adds radius to Block"):
+        with pytest.raises(AssemblyError, match="RoundedBlock adds radius to Block"):
             rf.System(rounded)
 
     def test_a_part_that_adds_nothing_is_simulated_as_its_parent(self):
@@ -283,7 +282,7 @@ class TestOwnParts:
         assert type(again.parts.block) is own.HeavyBlock
 
     def test_two_classes_of_one_name_are_told_apart(self):
-        with pytest.raises(rf.ComponentError, match=r"unit\.own_parts\.Stop; .* give this one an"):
+        with pytest.raises(ComponentError, match=r"unit\.own_parts\.Stop; .* give this one an"):
             type("Stop", (Component,), {"__module__": "elsewhere", "__qualname__": "Stop"})
         found = component_from_dict({"type": "Stop", "gap": "1 mm", "strength": "1 kN"})
         assert type(found) is own.Stop
@@ -297,11 +296,11 @@ class TestOwnParts:
         assert made[0]() != made[1]()
 
     def test_names_that_all_parts_have_are_refused(self):
-        with pytest.raises(rf.ComponentError, match="'si' means something else"):
+        with pytest.raises(ComponentError, match="'si' means something else"):
             type("Strange", (Component,), {"si": Ratio(doc="Nothing.")})
 
     def test_an_unknown_class_is_said(self):
-        with pytest.raises(rf.SchemaError, match="in a module that has been imported"):
+        with pytest.raises(SchemaError, match="in a module that has been imported"):
             component_from_dict({"type": "Unheard"})
 
 

@@ -9,6 +9,7 @@ import xarray as xr
 from pages import read
 
 import rockframe as rf
+from rockframe.errors import RecordWarning, SchemaError
 from rockframe.reports import sections
 from rockframe.reports.limits import LIMITS
 
@@ -108,7 +109,7 @@ def test_a_run_by_a_record_has_its_certificate_though_it_overturned(tmp_path):
     assert "ground_acceleration_after_end [m s^-2]" not in rf.table(run)
     # other samples are no other motion: the digest tells
     changed = run.assign(ground_acceleration_after_end=0.0 * run.ground_acceleration_after_end)
-    with pytest.warns(rf.RecordWarning, match="not what the run had"):
+    with pytest.warns(RecordWarning, match="not what the run had"):
         assert rf.System.from_dataset(changed).motion is None
 
 
@@ -129,7 +130,7 @@ def test_only_results_of_one_run_are_reported(response, tmp_path):
         (runs, "several runs over run"),
         (response.drop_vars("overturned"), "no result of a run"),
     ):
-        with pytest.raises(rf.SchemaError, match=words):
+        with pytest.raises(SchemaError, match=words):
             rf.report(given, tmp_path / "x.html")
     assert not (tmp_path / "x.html").exists()
 

@@ -8,6 +8,7 @@ import xarray as xr
 
 import rockframe as rf
 from rockframe.dynamics.events import EventKind, LinkState
+from rockframe.errors import AssemblyError, ComponentError
 
 BLOCK = rf.Block(width="1 m", height="4 m", mass="4 t")
 PADS = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
@@ -60,7 +61,7 @@ def test_what_is_given_comes_back():
     ],
 )
 def test_what_makes_no_tie_is_refused(changes, words):
-    with pytest.raises(rf.ComponentError, match=words):
+    with pytest.raises(ComponentError, match=words):
         TIE.replace(**changes)
 
 
@@ -79,7 +80,7 @@ def test_what_makes_no_tie_is_refused(changes, words):
     ],
 )
 def test_what_makes_no_scene_is_refused(parts, words):
-    with pytest.raises(rf.AssemblyError, match=words):
+    with pytest.raises(AssemblyError, match=words):
         rf.System(*parts)
 
 

@@ -8,6 +8,7 @@ import xarray as xr
 
 import rockframe as rf
 from rockframe.dynamics.events import ContactState, EventKind
+from rockframe.errors import AssemblyError, ModelWarning
 
 STATUE = rf.Block(width="0.5 m", height="1.8 m", mass="900 kg")
 PLINTH = rf.Block(width="0.9 m", height="1 m", mass="2200 kg")
@@ -106,7 +107,7 @@ def test_runs_of_mirrored_motions_are_mirrored(run):
 
 def test_rocking_dies_out():
     system = on_rigid(HEAD, PLINTH)
-    with pytest.warns(rf.ModelWarning, match="2 modes: taken is that which loses the least"):
+    with pytest.warns(ModelWarning, match="2 modes: taken is that which loses the least"):
         run = system.simulate(
             None, duration="6 s", initial=rf.InitialState(rotation="0.3 rad"), accuracy="standard"
         )
@@ -149,7 +150,7 @@ def test_statics_on_rigid_bases():
     assert np.allclose(held.restoring_moment, expected, rtol=1e-8)
     assert held.held_contact_state.to_numpy().tolist() == [0, 2, 2, 1]
     assert system.equilibrium().uplift_angle == 0.0
-    with pytest.raises(rf.AssemblyError, match="rigid bases have no small motion"):
+    with pytest.raises(AssemblyError, match="rigid bases have no small motion"):
         system.frequencies()
 
 
@@ -193,5 +194,5 @@ def test_more_links_than_can_be_numbered_are_refused():
     drum = rf.Block(width="1 m", height="0.8 m", mass="1 t")
     column = rf.Stack(*[drum] * 8, interfaces=[rf.RigidGround()] * 7)
     tie = rf.Restrainer(on=("-0.5 m", "0 m"), to=("-2 m", "0 m"), stiffness="1 MN/m")
-    with pytest.raises(rf.AssemblyError, match="3 links are more than 8 bodies can have"):
+    with pytest.raises(AssemblyError, match="3 links are more than 8 bodies can have"):
         _ = rf.System(column, tie, tie, tie).simulate(duration="0.1 s")

@@ -7,6 +7,7 @@ from typing import Annotated, TypedDict, Unpack, get_type_hints
 import pytest
 
 import rockframe as rf
+from rockframe.errors import StudyError
 from rockframe.shared_arguments import Argument, declared_in, documented_by, takes
 from rockframe.simulation.run_arguments import ComparedArguments, RunArguments, ScaleArguments
 from rockframe.studies.sweeps.arguments import OF_A_SWEEP, SequenceArguments, SweepArguments
@@ -133,9 +134,9 @@ def test_sweep_and_simulate_have_what_is_declared():
 
 
 def test_a_misspelt_argument_of_a_sweep_is_no_axis():
-    with pytest.raises(rf.StudyError, match="'acuracy' names no parameter; was 'accuracy' meant"):
+    with pytest.raises(StudyError, match="'acuracy' names no parameter; was 'accuracy' meant"):
         rf.sweep(SYSTEM, PULSE, acuracy=["fast"])
-    with pytest.raises(rf.StudyError, match="argument 'duraton'; was 'duration' meant"):
+    with pytest.raises(StudyError, match="argument 'duraton'; was 'duration' meant"):
         rf.sweep(lambda width: SYSTEM, PULSE, width=[1.0], duraton="3 s")
 
 
@@ -150,9 +151,9 @@ def test_values_are_checked_in_one_place():
             (rf.overturning_spectrum, {"periods": ([2.0], "s"), "scale": [1.0, 2.0]}),
             (rf.sweep, {"scale": [1.0]}),
         ):
-            with pytest.raises(rf.StudyError, match=words):
+            with pytest.raises(StudyError, match=words):
                 function(SYSTEM, PULSE, **given, **wrong)
-    with pytest.raises(rf.StudyError, match="duration or free_vibration, not both"):
+    with pytest.raises(StudyError, match="duration or free_vibration, not both"):
         rf.rocking_spectrum(
             SYSTEM, PULSE, periods=([2.0], "s"), duration="3 s", free_vibration="1 s"
         )

@@ -6,6 +6,7 @@ import pytest
 from extremes.scenes import Scene, scenes
 
 import rockframe as rf
+from rockframe.errors import SolverWarning
 from rockframe.simulation import soundness
 from rockframe.simulation.plan import plan_run
 from rockframe.simulation.run import outcome
@@ -87,7 +88,7 @@ def test_a_run_that_was_cut_off_is_not_judged():
 
 def test_a_run_that_is_no_solution_warns_and_says_so_in_its_cautions(monkeypatch):
     monkeypatch.setattr(soundness, "BY_TOLERANCE", 1e-30)
-    with pytest.warns(rf.SolverWarning, match="out of balance"):
+    with pytest.warns(SolverWarning, match="out of balance"):
         run = SYSTEM.simulate(MOTION)
     assert "this is no solution" in run.attrs["cautions"]
 
@@ -95,7 +96,7 @@ def test_a_run_that_is_no_solution_warns_and_says_so_in_its_cautions(monkeypatch
 def test_fast_says_where_its_course_is_wrong():
     """Sub-steps of a tenth of the period, in a scene in which every impact multiplies errors."""
     *_, scene = scenes("restraint and separation rules, finite and small", 4)
-    with pytest.warns(rf.SolverWarning, match="another course, which"):
+    with pytest.warns(SolverWarning, match="another course, which"):
         fast = scene.run("fast")
     exact = scene.run("reference")
     peak, right = float(fast.peak_rotation), float(exact.peak_rotation)

@@ -10,6 +10,7 @@ import rockframe as rf
 from rockframe.components import stack
 from rockframe.dynamics.chain import rows
 from rockframe.dynamics.events import ContactState
+from rockframe.errors import AssemblyError, ComponentError
 from rockframe.simulation.perturbations import parameters
 
 STATUE = rf.Block(width="0.5 m", height="1.8 m", mass="900 kg")
@@ -55,7 +56,7 @@ def test_a_stack_gives_back_what_it_was_made_of():
     ],
 )
 def test_what_makes_no_stack_is_refused(bodies, given, words):
-    with pytest.raises(rf.ComponentError, match=words):
+    with pytest.raises(ComponentError, match=words):
         rf.Stack(*bodies, **given)
 
 
@@ -72,7 +73,7 @@ def test_what_makes_no_stack_is_refused(bodies, given, words):
     ],
 )
 def test_parts_that_do_not_fit_a_stack_are_refused(parts, words):
-    with pytest.raises(rf.AssemblyError, match=words):
+    with pytest.raises(AssemblyError, match=words):
         rf.System(*parts)
 
 
@@ -81,7 +82,7 @@ def test_a_stack_has_as_many_bodies_as_its_modes_can_tell_apart():
 
 
 def test_no_slope_under_a_stack():
-    with pytest.raises(rf.AssemblyError, match="level ground"):
+    with pytest.raises(AssemblyError, match="level ground"):
         rf.System(STACK, GROUND, inclination="2 deg").describe()
 
 
@@ -185,7 +186,7 @@ def test_every_number_of_its_parts_can_be_changed():
         assert changed.offsets == STACK.offsets
     higher = STACK.with_scaled("height of body 2", 1.1)
     assert higher.bodies == (STATUE, PLINTH.with_scaled("height", 1.1))
-    with pytest.raises(rf.ComponentError, match="no parameter is called 'offsets'"):
+    with pytest.raises(ComponentError, match="no parameter is called 'offsets'"):
         STACK.with_scaled("offsets", 2.0)
 
 

@@ -10,6 +10,7 @@ import pytest
 import xarray as xr
 
 import rockframe as rf
+from rockframe.errors import ComponentError, SchemaError
 from rockframe.results.schema import SCHEMA
 
 pytestmark = pytest.mark.unit
@@ -187,12 +188,12 @@ def test_what_makes_no_table(runs, study):
         ([runs[0], runs[0].rotation], (), "expected a dataset"),
         (study, ("histories",), "holds no histories; a run with outputs=None"),
         (study, ("events",), "holds no events; rf.concat keeps none"),
-        (rf.velocity_and_displacement(PULSE), (), "holds no scalars"),
+        (rf.measures.velocity_and_displacement(PULSE), (), "holds no scalars"),
         ([runs[0], study], (), "different dimensions"),
     ):
-        with pytest.raises(rf.SchemaError, match=words):
+        with pytest.raises(SchemaError, match=words):
             rf.table(given, *options)
-    with pytest.raises(rf.ComponentError, match="'scalars' or 'histories' or 'events'"):
+    with pytest.raises(ComponentError, match="'scalars' or 'histories' or 'events'"):
         rf.table(runs[0], "everything")
 
 

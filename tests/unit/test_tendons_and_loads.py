@@ -5,6 +5,7 @@ import pytest
 
 import rockframe as rf
 from rockframe.command.files.scenes import read_scene
+from rockframe.errors import AssemblyError, ComponentError, StudyError
 
 WEIGHT, GRAVITY = 1e6, 9.80665
 BLOCK = rf.Block(width="2 m", height="8 m", mass=f"{WEIGHT / GRAVITY!r} kg")
@@ -88,11 +89,11 @@ def test_on_pads_a_tendon_is_a_tie_from_its_depth():
     ]
     np.testing.assert_array_equal(runs[0].rotation, runs[1].rotation)
     assert float(runs[0].energy_residual) < 1e-8
-    with pytest.raises(rf.AssemblyError, match="is bent at a base that gives way"):
+    with pytest.raises(AssemblyError, match="is bent at a base that gives way"):
         rf.System(BLOCK, PADS, TENDON)
-    with pytest.raises(rf.ComponentError, match="is not below its strength"):
+    with pytest.raises(ComponentError, match="is not below its strength"):
         TENDON.replace(strength="0.1 MN")
-    with pytest.raises(rf.ComponentError, match="give vertical, horizontal or moving_mass"):
+    with pytest.raises(ComponentError, match="give vertical, horizontal or moving_mass"):
         rf.Load(at=("0 m", "1 m"))
 
 
@@ -108,7 +109,7 @@ def test_sweeps_and_certificates_name_several_links():
     )  # fmt: skip
     assert runs.peak_rotation.shape == (2, 2, 1) or runs.peak_rotation.size == 4
     both = rf.System(BLOCK, tie, tie.replace(name="lower", to=("-4 m", "6 m")))
-    with pytest.raises(rf.StudyError, match=r"'upper\.stiffness' or 'lower\.stiffness'"):
+    with pytest.raises(StudyError, match=r"'upper\.stiffness' or 'lower\.stiffness'"):
         rf.sweep(both, motions={"pulse": PULSE}, axes={"stiffness": ([1.0], "MN/m")})
 
 

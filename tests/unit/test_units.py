@@ -11,6 +11,7 @@ import pint
 import pytest
 
 import rockframe as rf
+from rockframe.errors import ComponentError, RockframeError
 
 pytestmark = pytest.mark.unit
 
@@ -76,7 +77,7 @@ MUST_BE_POSITIVE = [
 
 
 def refusal(maker, **arguments):
-    with pytest.raises(rf.RockframeError) as caught:
+    with pytest.raises(RockframeError) as caught:
         maker(**arguments)
     return str(caught.value)
 
@@ -383,7 +384,7 @@ def test_a_multiple_of_the_short_ton_is_as_ambiguous_as_the_ton(bad):
 def _build(text):
     try:
         make_block(mass=text)
-    except rf.RockframeError:
+    except RockframeError:
         sys.exit(7)
     sys.exit(0)
 
@@ -448,7 +449,7 @@ def test_a_number_of_few_digits_stays_one(unit):
     ("text", "words"), [("1e306 km", "must be finite"), ("nan cm", "finite"), ("-inf cm", "finite")]
 )
 def test_numbers_beyond_all_bounds_are_refused_in_any_unit(text, words):
-    with pytest.raises(rf.ComponentError, match=words):
+    with pytest.raises(ComponentError, match=words):
         make_block(width=text)
 
 
@@ -580,14 +581,14 @@ assert after.width.check("[length]") and after.width.units == registry.metre
 pulse = rf.GroundMotion.sine_pulse(amplitude="0.3 g_0", frequency="1 Hz")
 try:
     rf.GroundMotion.sine_pulse(amplitude="0.3 g")
-except rf.UnitsError as problem:
+except rf.errors.UnitsError as problem:
     assert "g_0" in str(problem)
 else:
     raise AssertionError("0.3 g was read")
 for wrong in ("5", "5 %"):
     try:
         rf.InitialState(rotation=wrong)
-    except rf.UnitsError:
+    except rf.errors.UnitsError:
         pass
     else:
         raise AssertionError(wrong)

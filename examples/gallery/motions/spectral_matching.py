@@ -39,7 +39,7 @@ for label, motion, colour in (("scaled", scaled, "0.55"), ("matched", matched, "
         color=colour,
         label=label,
     )
-    path = rf.velocity_and_displacement(motion)
+    path = rf.measures.velocity_and_displacement(motion)
     for name, history, unit in (
         ("acceleration", motion.to_dataset().acceleration / 9.80665, "g"),
         ("velocity", 100.0 * path.ground_velocity, "cm/s"),

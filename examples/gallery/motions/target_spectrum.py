@@ -14,6 +14,6 @@ suite = rf.MotionSuite(
     }
 )
 target = rf.TargetSpectrum.eurocode_8("0.3 g_0", "B")
-found = rf.select_for_target(suite, target, 10)
+found = suite.selection_for(target, 10)
 print(f"{target.name}: misfit of the set {float(found.set_misfit):.3f}")
 rf.plot.selection(found)

@@ -23,7 +23,7 @@ RECORD = "PEERSMD_CHICHI_TCU128-N.AT2"
 def frame(storeys: int, shape_factors: dict[int, float] = PRINTED) -> rf.FrameEquivalent:
     """Give a frame of Table 2; the printed shape factor of six storeys brings a warning."""
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", rf.ModelWarning)
+        warnings.simplefilter("ignore", rf.errors.ModelWarning)
         return rf.FrameEquivalent(
             width="4 m",
             height=f"{3 * storeys} m",

@@ -19,7 +19,7 @@ suite = {
 }
 with warnings.catch_warnings():
     # a few of 2000 runs are less exact than the others, by less than a line is wide
-    warnings.simplefilter("ignore", rf.ModelWarning)
+    warnings.simplefilter("ignore", rf.errors.ModelWarning)
     found = rf.overturning_spectrum(
         cabinet,
         suite,

@@ -161,14 +161,14 @@ def _alike(columns: Sequence[Generic], size: int, apart: bool) -> tuple[Generic,
 
 
 _OWNER: Final = "fragility"
-_COUNTS: Final = "fragility_of_counts"
+_COLUMNS: Final = ("intensity", "exceeded", "trials")
 _MOST_MEASURES: Final = 2
 _MOST_LEFT_OUT: Final = 80
 """Motions up to which each is left out in turn; of more the sandwich holds as often."""
 
 
 def fragility(
-    runs: xr.Dataset,
+    runs: "xr.Dataset | dict[str, Any]",
     intensity: "str | xr.DataArray | Sequence[str | xr.DataArray]" = "PGA",
     *,
     limits: Iterable[object] | None = None,
@@ -182,9 +182,11 @@ def fragility(
 
     Parameters
     ----------
-    runs : xarray.Dataset
+    runs : xarray.Dataset or dict
         Of :func:`rockframe.sweep`, or of :func:`rockframe.incremental_dynamic_analysis`,
-        whose least scales that exceed are the capacities then.
+        whose least scales that exceed are the capacities then. Or counts, such as those of tests:
+        ``"intensity"``, values with a unit such as ``([0.2, 0.3], "g_0")``, ``"exceeded"``, how
+        many trials exceeded the limit state at each, and ``"trials"``, of how many.
     intensity : str, DataArray, or two of them
         Intensity measure: ``"PGA"``, ``"PGV"``, ``"PGD"``, ``"CAV"``, ``"SA"``, ``"PGV/PGA"``, or
         a name of :func:`rockframe.intensity_measures` or :func:`rockframe.response_spectrum`;
@@ -218,8 +220,8 @@ def fragility(
         bounds and standard
         errors, ``fragility_status``; over the intensity too ``exceedance_probability`` and
         its bounds; and over ``stripe`` what was counted, with bounds of Clopper and Pearson. Of
-        two measures the coefficients of the fit instead of median and dispersion. The
-        attribute ``verdict`` says it in words.
+        two measures the coefficients of the fit instead of median and dispersion; of counts all
+        this without ``limit_state``. The attribute ``verdict`` says it in words.
 
     Raises
     ------
@@ -260,7 +262,18 @@ def fragility(
     >>> found = rf.fragility(runs, "PGA")
     >>> found.limit_state.values.tolist()
     ['uplift', 'overturning']
+
+    Counts of Baker (2015):
+
+    >>> levels = ([0.2, 0.3, 0.4, 0.6, 0.7, 0.8, 0.9, 1.0], "g_0")
+    >>> counts = {"intensity": levels, "exceeded": [0, 0, 0, 4, 6, 13, 12, 16], "trials": 40}
+    >>> round(float(rf.fragility(counts, "PGA").dispersion), 3)
+    0.429
     """
+    if isinstance(runs, dict):
+        given = {"limits": limits, "motions": motions, "pooled": pooled or None}
+        others = [name for name, one in given.items() if one is not None]
+        return _of_counts(runs, intensity, period, bands, confidence, others)
     runs = check_runs(runs, owner=_OWNER)
     given = _several(intensity)
     structures = structures_of(runs, pooled, given, owner=_OWNER)
@@ -308,60 +321,27 @@ def fragility(
     return dataset.assign_attrs({name: runs.attrs[name] for name in told if name in runs.attrs})
 
 
-def fragility_of_counts(
-    intensity: Any,
-    exceeded: "Sequence[int] | np.ndarray",
-    trials: "int | Sequence[int] | np.ndarray",
-    *,
-    measure: str = "PGA",
-    period: "QuantityLike | None" = None,
-    bands: str = "profile",
-    confidence: "RatioLike" = 0.95,
+def _of_counts(
+    counts: Mapping[Any, Any],
+    measure: object,
+    period: "QuantityLike | None",
+    bands: str | None,
+    confidence: "RatioLike",
+    others: Sequence[str],
 ) -> xr.Dataset:
-    """Fit a lognormal capacity to counts, such as those of tests or of other programs.
-
-    Parameters
-    ----------
-    intensity : values with a unit
-        Intensities: ``([0.2, 0.3], "g_0")``, a Quantity, or ``["2 m/s^2", ...]``.
-    exceeded : sequence of int
-        How many trials exceeded the limit state at each of them.
-    trials : int or sequence of int
-        Of how many.
-    measure : str, optional
-        Which intensity measure it is, see :func:`rockframe.fragility`.
-    period : str or Quantity, optional
-        Of the oscillator of a spectral intensity [s].
-    bands, confidence : optional
-        As for :func:`rockframe.fragility`.
-
-    Returns
-    -------
-    xarray.Dataset
-        As of :func:`rockframe.fragility`, of one limit state, whose dimension it lacks.
-
-    Raises
-    ------
-    UnitsError
-        The intensities have no unit, or another than the measure.
-    ComponentError
-        Counts that do not fit one another, or an argument out of range.
-
-    Examples
-    --------
-    >>> import rockframe as rf
-    >>> found = rf.fragility_of_counts(
-    ...     ([0.2, 0.3, 0.4, 0.6, 0.7, 0.8, 0.9, 1.0], "g_0"),
-    ...     exceeded=[0, 0, 0, 4, 6, 13, 12, 16],
-    ...     trials=40,
-    ... )
-    >>> round(float(found.dispersion), 3)
-    0.429
-    """
-    which = Intensity.read(measure, period, owner=_COUNTS)
+    """Fit a capacity to counts: intensities, and how many of how many trials exceeded there."""
+    if set(counts) != set(_COLUMNS) or others or not isinstance(measure, str):
+        found = ", ".join(map(shown, [*counts, *others]))
+        msg = (
+            f"{_OWNER}: counts have {', '.join(map(repr, _COLUMNS))} and go with one name of a "
+            f"measure, without limits, motions and pooled; found {found} and {shown(measure)}"
+        )
+        raise ComponentError(msg)
+    intensity, exceeded, trials = (counts[name] for name in _COLUMNS)
+    which = Intensity.read(measure, period, owner=_OWNER)
     values, unit = free_values(intensity, "intensity")
     if unit != which.attributes()["units"]:
-        msg = f"{_COUNTS}: {which.name} is in {which.attributes()['units']}, got {shown(intensity)}"
+        msg = f"{_OWNER}: {which.name} is in {which.attributes()['units']}, got {shown(intensity)}"
         raise UnitsError(msg)
     over = np.asarray(exceeded, dtype=np.float64)
     count = np.broadcast_to(np.asarray(trials, dtype=np.float64), values.shape)
@@ -371,11 +351,11 @@ def fragility_of_counts(
     )
     if wrong or not whole or not np.array_equal(count, np.round(count)):
         msg = (
-            f"{_COUNTS}: expected intensities above zero and for each of them a number of "
+            f"{_OWNER}: expected intensities above zero and for each of them a number of "
             f"exceedances from 0 to that of the trials, got {shown(exceeded)} of {shown(trials)}"
         )
         raise ComponentError(msg)
-    means = Means(_bands(bands, Bands.PROFILE, 1), read_level(confidence, owner=_COUNTS))
+    means = Means(_bands(bands, Bands.PROFILE, 1), read_level(confidence, owner=_OWNER))
     made = Trials.of_verdicts(np.log(values)[:, None], over, count)
     each = (
         np.repeat(values, count.astype(int)),

@@ -41,7 +41,7 @@ _studies: Final[OrderedDict[str, Study]] = OrderedDict()
 
 
 @dataclass(frozen=True)
-class Case:
+class SweepCase:
     """A case: its system, its motion, and what its run was asked for.
 
     Parameters
@@ -80,7 +80,7 @@ def case(
     scene: object = None,
     motions: object = None,
     **labels: Any,
-) -> Case:
+) -> SweepCase:
     """Give a case of a sweep back, to be run alone.
 
     Parameters
@@ -99,7 +99,7 @@ def case(
 
     Returns
     -------
-    Case
+    SweepCase
 
     Raises
     ------
@@ -149,7 +149,7 @@ def case(
     options["initial"] = started(options["initial"], start)
     if REPEATED in dataset and _value_of(dataset[REPEATED], place) == 1.0:
         options["accuracy"] = LEVELS[AGAIN]
-    return Case(system, motion, options)
+    return SweepCase(system, motion, options)
 
 
 def remembered(attributes: Mapping[str, Any]) -> Study | None:

@@ -8,6 +8,7 @@ from rockframe.command.files.scenes import classes_in, part_slots, read_scene
 from rockframe.command.files.studies import read_study
 from rockframe.command.files.tables import lines_of
 from rockframe.command.files.templates import TEMPLATES, every_key
+from rockframe.errors import FileError
 
 pytestmark = pytest.mark.unit
 
@@ -32,7 +33,7 @@ def file(tmp_path):
 
 def faults(read, path):
     """Give what is wrong with a file, as pairs of a line and words."""
-    with pytest.raises(rf.FileError) as caught:
+    with pytest.raises(FileError) as caught:
         read(path)
     for line, words in caught.value.faults:
         at = "" if line is None else f", line {line}"

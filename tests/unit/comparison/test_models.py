@@ -3,6 +3,7 @@
 import pytest
 
 import rockframe as rf
+from rockframe.errors import ModelWarning
 
 BLOCK = rf.Block(width="4 m", height="18 m", mass="99 t")
 PADS = rf.TwoSpringSupport(frequency_ratio=40, damping_ratio=0.10)
@@ -50,6 +51,6 @@ def test_options_and_ground_are_kept():
 
 
 def test_a_ladder_does_not_repeat_what_the_scene_has_warned_of():
-    with pytest.warns(rf.ModelWarning, match="restitution"):
+    with pytest.warns(ModelWarning, match="restitution"):
         system = rf.System(BLOCK, rf.RigidGround(restitution=1.0))
     assert len(rf.model_ladder(system)) == 2

@@ -10,7 +10,7 @@ import xarray as xr
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 import rockframe as rf
-from rockframe.errors import ComponentError, SchemaError, SolverError, UnitsError
+from rockframe.errors import ComponentError, ModelWarning, SchemaError, SolverError, UnitsError
 
 BLOCK = rf.Block.from_size(radius="5 m", slenderness=4, mass="50 t")
 PADS = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.10)
@@ -153,7 +153,7 @@ def test_models_stand_in_the_order_asked_for():
 def test_a_rung_does_not_warn_of_what_it_cannot_show():
     """Of the ground that would have to pull at a block without pads."""
     motion = PULSE.with_vertical(PULSE.scaled(peak="1.2 g_0"))
-    with pytest.warns(rf.ModelWarning):
+    with pytest.warns(ModelWarning):
         rf.System(BLOCK).simulate(motion)
     rf.tradeoff(SYSTEM, motion, models=["rigid ground"], accuracies=["fast"], repeats=1)
 

@@ -9,6 +9,7 @@ import pytest
 import rockframe as rf
 from rockframe.compiled import COMPILED, parallel
 from rockframe.compiled.parallel import WORTHWHILE, Meanwhile
+from rockframe.errors import SolverWarning
 from rockframe.solve import integrate
 
 pytestmark = [
@@ -195,10 +196,10 @@ def test_the_limit_of_steps_ends_a_run_that_comes_back_too(monkeypatch):
     motion = rf.GroundMotion.harmonic("1 m/s^2", "2 Hz", duration="5 s")
     system = rf.System(BLOCK, PADS)
     accuracy = rf.Accuracy(rtol=1e-9, max_steps=100)
-    with pytest.warns(rf.SolverWarning, match="limit of steps"):
+    with pytest.warns(SolverWarning, match="limit of steps"):
         whole = system.simulate(motion, accuracy=accuracy)
     monkeypatch.setattr(integrate, "has_machine_code", lambda equations: False)
     monkeypatch.setattr(integrate, "STEPS_AT_ONCE", 7)
-    with pytest.warns(rf.SolverWarning, match="limit of steps"):
+    with pytest.warns(SolverWarning, match="limit of steps"):
         run = system.simulate(motion, accuracy=accuracy)
     assert run.drop_attrs().identical(whole.drop_attrs())

@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 import rockframe as rf
-from rockframe.errors import ComponentError, UnitsError
+from rockframe.errors import ComponentError, ModelWarning, UnitsError
 from rockframe.identification.measured import History
 from rockframe.identification.prediction import let_go
 from rockframe.identification.swings import swings_of
@@ -102,7 +102,7 @@ def test_what_leaves_no_trace_is_told():
     system = rf.System(BLOCK, PADS)
     held = rf.InitialState(rotation=f"{0.5 * system.setting.uplift_angle!r} rad")
     run = system.simulate(duration="3 s", initial=held, output_step="0.02 s")
-    with pytest.warns(rf.ModelWarning, match="does not tell restitution"):
+    with pytest.warns(ModelWarning, match="does not tell restitution"):
         found = rf.fit_free_decay(system, run.rotation, ("damping_ratio", "restitution"))
     assert float(found.fitted_value[0]) == pytest.approx(0.1, rel=1e-5)
     assert math.isnan(float(found.standard_error[1]))

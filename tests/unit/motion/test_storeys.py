@@ -8,6 +8,7 @@ import pint
 import pytest
 
 import rockframe as rf
+from rockframe.errors import ComponentError, RecordWarning, UnitsError
 
 NOISE = np.convolve(np.random.default_rng(3).normal(size=300), np.hanning(20), "same")
 STEP = 0.01
@@ -66,7 +67,7 @@ def test_a_motion_from_rest_goes_on_after_the_ground_has_stopped():
         ["0.5 s", "2 s", "9 s"], [0.05, 0.5, 0.05], floor_participations=[1, 0.3, 0]
     )
     assert len(softest) == 300 + 783
-    with pytest.raises(rf.ComponentError, match="without damping never comes to rest; give free"):
+    with pytest.raises(ComponentError, match="without damping never comes to rest; give free"):
         motion().through_storeys(["0.5 s"], 0)
     cut = motion().through_storeys(["0.5 s"], 0, free_vibration="0 s")
     assert len(cut) == 300
@@ -92,7 +93,7 @@ def test_short_periods_bring_a_warning_with_a_time_step_that_suffices():
     tone = np.sin(2.0 * np.pi * np.arange(300) * STEP / 0.06)
     shaken = rf.GroundMotion.from_arrays((tone, "m/s^2"), f"{STEP} s")
     words = r"0.01 s apart.*by up to 1[0-9] % of its peak; .* time_step='0.00333[0-9]* s'"
-    with pytest.warns(rf.RecordWarning, match=words) as caught:
+    with pytest.warns(RecordWarning, match=words) as caught:
         coarse = shaken.through_storeys(stiff)
     assert caught[0].filename == __file__
     assert "departs from that by up to 1" in coarse.history[3]
@@ -158,7 +159,7 @@ def test_what_is_no_building_is_refused():
         ({"periods": ["1e-9 s"]}, "too short beside the time step, 0.01 s; a rigid mode has"),
     )
     for given, words in cases:
-        with pytest.raises(rf.ComponentError, match=f"GroundMotion.through_storeys: .*{words}"):
+        with pytest.raises(ComponentError, match=f"GroundMotion.through_storeys: .*{words}"):
             motion().through_storeys(**given)
     for given, words in (
         ({"periods": [0.5]}, "periods needs a time"),
@@ -167,7 +168,7 @@ def test_what_is_no_building_is_refused():
         ({**uniform, "damping_ratio": "0.05 s"}, "damping_ratio needs a pure ratio"),
         ({**uniform, "free_vibration": 20}, "free_vibration needs a time"),
     ):
-        with pytest.raises(rf.UnitsError, match=words):
+        with pytest.raises(UnitsError, match=words):
             motion().through_storeys(**given)
 
 

@@ -87,7 +87,7 @@ def test_the_greatest_coefficient_of_all_is_taken():
     time = np.arange(count) * step
     velocity = noise(count, 0.5, seed=8) + 0.3 * np.sin(time) * np.exp(-0.5 * (time - 5.0) ** 2)
     motion = with_velocity(velocity, step)
-    velocity = rf.velocity_and_displacement(motion).ground_velocity.values
+    velocity = rf.measures.velocity_and_displacement(motion).ground_velocity.values
     periods = np.geomspace(0.4, 4.0, 60)
     best = max(
         (abs(np.trapezoid(velocity * mother_wavelet((time - b) / a + 3.5), time)) / math.sqrt(a), T)
@@ -114,12 +114,12 @@ def test_extracted_pulse_and_residual_are_the_motion_and_do_not_drift():
     up = found.residual.si.vertical.samples
     np.testing.assert_array_equal(up[lead : lead + own.size], 0.5 * own)
     assert found.extracted.si.vertical is None
-    path = rf.velocity_and_displacement(found.extracted)
+    path = rf.measures.velocity_and_displacement(found.extracted)
     highest = float(np.abs(path.ground_displacement).max())
     assert abs(float(path.ground_velocity[-1])) < 1e-12
     assert abs(float(path.ground_displacement[-1])) < 1e-5 * highest
-    whole = rf.velocity_and_displacement(motion)
-    left = rf.velocity_and_displacement(found.residual)
+    whole = rf.measures.velocity_and_displacement(motion)
+    left = rf.measures.velocity_and_displacement(found.residual)
     assert float(left.ground_velocity[-1]) == pytest.approx(float(whole.ground_velocity[-1]))
     assert any("pulse taken out" in step for step in found.residual.history)
 
@@ -203,7 +203,7 @@ def test_the_figure_shows_the_three_velocities():
     found = motion.velocity_pulse()
     above, below = rf.plot.velocity_pulse(found)
     whole, pulse = above.get_lines()[:2]
-    own = rf.velocity_and_displacement(motion).ground_velocity.values
+    own = rf.measures.velocity_and_displacement(motion).ground_velocity.values
     drawn = np.interp(time, whole.get_xdata(), whole.get_ydata())
     np.testing.assert_allclose(drawn, own, atol=1e-12)
     left = below.get_lines()[0].get_ydata()

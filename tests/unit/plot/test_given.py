@@ -21,9 +21,9 @@ MADE = {
     ),
     "response spectra": lambda: rf.response_spectrum(PULSE, (["0.1", "1"], "s")),
     "Fourier spectrum": lambda: rf.fourier_spectrum(PULSE),
-    "ground": lambda: rf.velocity_and_displacement(PULSE),
+    "ground": lambda: rf.measures.velocity_and_displacement(PULSE),
     "measures": lambda: rf.intensity_measures(PULSE),
-    "set": lambda: rf.scale_to_target({"pulse": PULSE}, TARGET, bounds=None),
+    "set": lambda: rf.MotionSuite({"pulse": PULSE}).scaling_to(TARGET, bounds=None),
     "rest": SYSTEM.equilibrium,
     "rotation": lambda: SYSTEM.simulate(PULSE)["rotation"],
     "nothing": xr.Dataset,
@@ -92,7 +92,7 @@ def test_two_axes_are_drawn_beside_the_one_motion():
     axes = rf.plot.sweep(runs, "peak_rotation")
     assert len(axes.get_lines()) >= 2
     several = xr.concat([runs, runs.assign_coords(motion=["other"])], "motion", data_vars="all")
-    with pytest.raises(rf.SchemaError, match=r"has 3 .*isel"):
+    with pytest.raises(SchemaError, match=r"has 3 .*isel"):
         rf.plot.sweep(several, "peak_rotation")
 
 

@@ -204,7 +204,9 @@ def test_moments_and_phases_are_those_of_system_and_run(runs):
 
 
 def test_counted_shares_reach_to_their_own_bounds():
-    found = rf.fragility_of_counts(([0.2, 0.4, 0.8], "m/s"), [1, 6, 19], 20, measure="PGV")
+    found = rf.fragility(
+        {"intensity": ([0.2, 0.4, 0.8], "m/s"), "exceeded": [1, 6, 19], "trials": 20}, "PGV"
+    )
     axes = rf.plot.fragility(found)
     (bars,) = axes.containers
     reach = np.array([segment[:, 1] for segment in bars.lines[2][0].get_segments()])

@@ -8,6 +8,7 @@ from matplotlib.colors import to_rgb
 from records import record_path
 
 import rockframe as rf
+from rockframe.errors import SolverWarning
 from rockframe.plot._response import CONTACT_COLOURS, mixed_colours
 from rockframe.solve.layout import Status
 
@@ -97,7 +98,7 @@ def test_a_title_is_broken_and_keeps_a_margin(words, lines):
 
 def test_the_verdict_of_a_run_that_was_not_finished_fits():
     few = rf.Accuracy(rtol=1e-6, max_steps=60)
-    with pytest.warns(rf.SolverWarning, match="Not finished"):
+    with pytest.warns(SolverWarning, match="Not finished"):
         run = rf.System(BLOCK).simulate(PULSE, free_vibration="5 s", accuracy=few)
     assert int(run["status"]) == Status.STEP_LIMIT
     figure = rf.plot.response(run).figure

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import rockframe as rf
+from rockframe.errors import ComponentError, UnitsError
 
 pytestmark = pytest.mark.unit
 
@@ -58,11 +59,11 @@ def test_a_tube_is_what_is_left_of_a_solid_one():
     ],
 )
 def test_a_faulty_cylinder_is_refused(changes, words):
-    with pytest.raises(rf.ComponentError, match=words):
+    with pytest.raises(ComponentError, match=words):
         rf.Block.cylinder(**{**SIZE, **changes})
 
 
 @pytest.mark.parametrize("name", ["diameter", "height", "mass", "wall_thickness"])
 def test_a_cylinder_needs_units(name):
-    with pytest.raises(rf.UnitsError, match=f"Block.cylinder: {name} needs"):
+    with pytest.raises(UnitsError, match=f"Block.cylinder: {name} needs"):
         rf.Block.cylinder(**{**SIZE, "mass": "1 t", name: 0.1})

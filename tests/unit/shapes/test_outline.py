@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 import rockframe as rf
 from rockframe.components import component_from_dict
+from rockframe.errors import ComponentError, ModelWarning, UnitsError
 
 pytestmark = pytest.mark.unit
 
@@ -133,10 +134,10 @@ def by_brute_force(points, cells=400):
 def made_of(points, **given):
     """Make a body, or give None for one that is refused because it would fall."""
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", rf.ModelWarning)
+        warnings.simplefilter("ignore", ModelWarning)
         try:
             return rf.Block.from_outline((points, "m"), **given)
-        except rf.ComponentError as error:
+        except ComponentError as error:
             if "fall on its own" in str(error):
                 return None
             raise
@@ -249,21 +250,21 @@ def overhanging(height, reach=0.5):
 
 
 def test_a_corner_that_touches_before_the_body_overturns_is_warned_about():
-    with pytest.warns(rf.ModelWarning, match=r"leaning to the right, points\[3\], at \(1.5 m, 0.1"):
+    with pytest.warns(ModelWarning, match=r"leaning to the right, points\[3\], at \(1.5 m, 0.1"):
         block = outline(overhanging(0.1))
-    with pytest.warns(rf.ModelWarning, match=r"at 0\.1974 rad, .* 0\.24\d* rad") as caught:
+    with pytest.warns(ModelWarning, match=r"at 0\.1974 rad, .* 0\.24\d* rad") as caught:
         outline(overhanging(0.1))
     assert len(caught) == 1
     assert caught[0].filename == __file__
     assert math.atan2(0.1, 0.5) == pytest.approx(0.1974, abs=5e-5)
     assert component_from_dict(block.to_dict()) == block  # silent
     mirrored = np.array(overhanging(0.1)) * [-1.0, 1.0]
-    with pytest.warns(rf.ModelWarning, match=r"leaning to the left, points\[3\], at \(-1.5 m"):
+    with pytest.warns(ModelWarning, match=r"leaning to the left, points\[3\], at \(-1.5 m"):
         outline(mirrored)
     # the limit: the shelf's angle is that of overturning
     limit = math.tan(math.atan2(block.si.right, block.si.centre_height)) * 0.5
     outline(overhanging(1.02 * limit))
-    with pytest.warns(rf.ModelWarning, match="touches"):
+    with pytest.warns(ModelWarning, match="touches"):
         outline(overhanging(0.98 * limit))
 
 
@@ -312,13 +313,13 @@ def test_a_corner_that_touches_before_the_body_overturns_is_warned_about():
     ],
 )
 def test_what_is_no_outline_is_refused(points, words):
-    with pytest.raises(rf.ComponentError, match=words) as caught:
+    with pytest.raises(ComponentError, match=words) as caught:
         outline(points)
     assert str(caught.value).startswith("Block")
 
 
 def test_a_single_lowest_point_between_two_others_has_no_inclined_edge():
-    with pytest.raises(rf.ComponentError, match=r"one height$"):
+    with pytest.raises(ComponentError, match=r"one height$"):
         outline([(0, 0), (1, 2), (0.6, 1), (0.9, 0.1), (2, 3), (-1, 3)])
 
 
@@ -326,7 +327,7 @@ def test_heights_that_differ_by_rounding_are_one():
     for rise, refused in ((1e-10, False), (1e-7, True)):
         points = [(0.0, rise), (2.0, 0.0), (2.0, 8.0), (0.0, 8.0)]
         if refused:
-            with pytest.raises(rf.ComponentError, match="stands on one point"):
+            with pytest.raises(ComponentError, match="stands on one point"):
                 outline(points)
             continue
         assert outline(points).si.width == 2.0
@@ -343,13 +344,13 @@ def test_heights_that_differ_by_rounding_are_one():
     ],
 )
 def test_points_need_units_of_length(points, words):
-    with pytest.raises(rf.UnitsError, match=words):
+    with pytest.raises(UnitsError, match=words):
         rf.Block.from_outline(points, mass="1 t")
 
 
 @pytest.mark.parametrize("points", ["0 m", 3, None, {"x": "1 m"}, ["0 m", "1 m"], [("0 m",)]])
 def test_what_is_no_list_of_pairs_is_refused(points):
-    with pytest.raises(rf.ComponentError, match=r"points(\[0\])? needs"):
+    with pytest.raises(ComponentError, match=r"points(\[0\])? needs"):
         rf.Block.from_outline(points, mass="1 t")
 
 
@@ -367,6 +368,6 @@ def test_what_is_no_list_of_pairs_is_refused(points):
     ],
 )
 def test_an_outline_needs_its_mass_once(given, words):
-    with pytest.raises(rf.ComponentError, match=words) as caught:
+    with pytest.raises(ComponentError, match=words) as caught:
         rf.Block.from_outline((RECTANGLE, "m"), **given)
     assert str(caught.value).startswith("Block.from_outline")

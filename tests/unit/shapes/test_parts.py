@@ -7,6 +7,7 @@ import pytest
 
 import rockframe as rf
 from rockframe.components import component_from_dict
+from rockframe.errors import ComponentError, ModelWarning, UnitsError
 
 pytestmark = pytest.mark.unit
 
@@ -143,7 +144,7 @@ def test_a_part_that_reaches_out_low_is_warned_about():
         return {"width": "1.2 m", "height": "0.1 m", "mass": "1 kg", "at": ("0.3 m", height)}
 
     rf.Block.from_parts({"case": CASE, "drawer": drawer("0.6 m")})
-    with pytest.warns(rf.ModelWarning, match="to the right, a corner of part 'drawer'") as caught:
+    with pytest.warns(ModelWarning, match="to the right, a corner of part 'drawer'") as caught:
         rf.Block.from_parts({"case": CASE, "drawer": drawer("0.02 m")})
     assert len(caught) == 1
     assert caught[0].filename == __file__
@@ -185,7 +186,7 @@ def test_a_part_that_reaches_out_low_is_warned_about():
     ],
 )
 def test_parts_that_make_no_body_are_refused(parts, words):
-    with pytest.raises(rf.ComponentError, match=words):
+    with pytest.raises(ComponentError, match=words):
         rf.Block.from_parts(parts)
 
 
@@ -198,12 +199,12 @@ def test_parts_that_make_no_body_are_refused(parts, words):
     ],
 )
 def test_a_faulty_base_is_refused(base, words):
-    with pytest.raises(rf.ComponentError, match=words):
+    with pytest.raises(ComponentError, match=words):
         rf.Block.from_parts({"case": CASE}, base=base)
 
 
 def test_all_mass_in_one_point_is_refused():
-    with pytest.raises(rf.ComponentError, match="all mass is in one point"):
+    with pytest.raises(ComponentError, match="all mass is in one point"):
         rf.Block.from_parts({"ball": CLOCK}, base=("-1 m", "1 m"))
 
 
@@ -213,7 +214,7 @@ def test_parts_need_units():
         ({**CASE, "mass": "40 N"}, "part 'case': mass needs a mass"),
         ({**CASE, "at": (0, 0)}, r"part 'case': at\[0\] needs a length"),
     ):
-        with pytest.raises(rf.UnitsError, match=words):
+        with pytest.raises(UnitsError, match=words):
             rf.Block.from_parts({"case": part})
 
 
@@ -222,5 +223,5 @@ def test_a_body_that_reaches_out_beside_its_base_may_have_more_inertia_than_its_
         {"cap": {"width": "3 m", "height": "0.1 m", "mass": "50 kg", "at": ("0 m", "1 m")}},
         base=("-0.3 m", "0.3 m"),
     )
-    with pytest.warns(rf.ModelWarning, match="not physical"):
+    with pytest.warns(ModelWarning, match="not physical"):
         assert rf.Block(**{k: v for k, v in mushroom.to_dict().items() if k != "type"}) == mushroom

@@ -8,7 +8,7 @@ import xarray as xr
 from scipy import stats
 
 import rockframe as rf
-from rockframe.errors import ComponentError, SchemaError, StudyError
+from rockframe.errors import ComponentError, ModelWarning, SchemaError, SolverWarning, StudyError
 from rockframe.results.schema import SCHEMA
 from rockframe.studies import lines
 from rockframe.studies.lines import Bracket, bracket_arrays, brackets_of, narrowed
@@ -133,7 +133,7 @@ def test_a_scan_that_starts_too_high_says_that_capacities_lie_below(analysis):
     assert 0 < below < 4
     scan = {"scale": [least, least + 1.0, least + 2.0], **FAST}
     told = rf"{below} of 4 motions overturn at its least scale, {least:.4g}, already"
-    with pytest.warns(rf.ModelWarning, match=f"starts too high.*{told}"):
+    with pytest.warns(ModelWarning, match=f"starts too high.*{told}"):
         found = rf.incremental_dynamic_analysis(SYSTEM, suite, **scan)
     most = found.capacity_scale.max().item()
     start = f"Of 4 motions 4 overturned, from at or below {least:.4g} to {most:.4g} times the"
@@ -141,7 +141,7 @@ def test_a_scan_that_starts_too_high_says_that_capacities_lie_below(analysis):
     fitted = rf.fragility(found)
     text = f"{below} of 4 capacities are only known to lie at or below the least scale."
     assert fitted.verdict.endswith(text)
-    with pytest.warns(rf.ModelWarning, match="4 of 4 motions"):
+    with pytest.warns(ModelWarning, match="4 of 4 motions"):
         found = rf.incremental_dynamic_analysis(SYSTEM, suite, scale=[7.0, 8.0], **FAST)
     assert "4 overturned, at or below 7 times the motion" in found.verdict
     fitted = rf.fragility(found)
@@ -189,10 +189,10 @@ def test_an_interrupted_analysis_says_so_and_goes_on(tmp_path, monkeypatch, afte
 
     with monkeypatch.context() as patch:
         patch.setattr(lines, "run_study", cut)
-        with pytest.warns(rf.SolverWarning, match="interrupted; brackets are wider.*goes on"):
+        with pytest.warns(SolverWarning, match="interrupted; brackets are wider.*goes on"):
             found = rf.incremental_dynamic_analysis(SYSTEM, motions(), **options)
         rounds = itertools.count()
-        with pytest.warns(rf.SolverWarning, match="interrupted; brackets"):
+        with pytest.warns(SolverWarning, match="interrupted; brackets"):
             spectrum = rf.overturning_spectrum(
                 SYSTEM, motions(), periods=["1.7 s"], scale=[1.0, 2.0, 4.0], **FAST
             )

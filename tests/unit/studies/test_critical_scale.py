@@ -9,7 +9,14 @@ import pytest
 import xarray as xr
 
 import rockframe as rf
-from rockframe.errors import AssemblyError, ComponentError, SolverError, UnitsError
+from rockframe.errors import (
+    AssemblyError,
+    ComponentError,
+    RecordWarning,
+    SolverError,
+    SolverWarning,
+    UnitsError,
+)
 from rockframe.simulation.run import summary_of
 
 BLOCK = rf.Block(width="0.8 m", height="3.6 m", mass="4 t")
@@ -137,7 +144,7 @@ def test_a_block_that_falls_without_the_motion():
 def test_runs_that_were_cut_off_are_neither():
     limit = rf.Accuracy(rtol=1e-6, max_steps=400)
     options = {**SPARING, "accuracy": limit, "scales": 20, "runs": 20}
-    with pytest.warns(rf.SolverWarning, match="could not be finished") as caught:
+    with pytest.warns(SolverWarning, match="could not be finished") as caught:
         told = rf.critical_scale(RIGID, SHAKING, **options)
     assert caught[0].filename == __file__
     meanings = told.outcome.flag_meanings.split()
@@ -179,7 +186,7 @@ def test_the_dataset_goes_through_a_file_and_back_to_its_system(found, tmp_path)
         with xr.open_dataset(tmp_path / "critical.nc") as again:
             xr.testing.assert_identical(again.load(), told)
             with warnings.catch_warnings():
-                warnings.simplefilter("ignore", rf.RecordWarning)
+                warnings.simplefilter("ignore", RecordWarning)
                 system = rf.System.from_dataset(again)
             assert system.assembly.to_dict() in [case[0].to_dict() for case in CASES.values()]
         assert told.Conventions == "CF-1.11"
@@ -225,7 +232,7 @@ def test_an_interrupt_gives_back_the_runs_until_then(monkeypatch):
 
     options = {"scales": 20, "runs": 30, "free_vibration": "5 s", "accuracy": "fast"}
     monkeypatch.setattr(MODULE, "summary_of", interrupted)
-    with pytest.warns(rf.SolverWarning, match="critical_scale: interrupted; .*17 scales"):
+    with pytest.warns(SolverWarning, match="critical_scale: interrupted; .*17 scales"):
         found = rf.critical_scale(ON_PADS, PULSE, **options)
     assert found.sizes["scale"] == 17
     assert found.followed_scale <= found.scale.max()

@@ -6,7 +6,7 @@ import xarray as xr
 from scipy import optimize, stats
 
 import rockframe as rf
-from rockframe.errors import ComponentError, FileError, SchemaError, UnitsError
+from rockframe.errors import ComponentError, FileError, SchemaError, StudyError, UnitsError
 from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.studies.confidence import clopper_pearson
 from rockframe.studies.fragility.likelihood import Bands, Trials, boundary, fit, log_likelihood
@@ -16,8 +16,13 @@ EXCEEDED = [0, 0, 0, 4, 6, 13, 12, 16]
 GRAVITY = 9.80665
 
 
+def of_counts(intensity, exceeded, trials, measure="PGA", **options):
+    counts = {"intensity": intensity, "exceeded": exceeded, "trials": trials}
+    return rf.fragility(counts, measure, **options)
+
+
 def of_baker(**options):
-    return rf.fragility_of_counts((LEVELS, "g_0"), EXCEEDED, 40, **options)
+    return of_counts((LEVELS, "g_0"), EXCEEDED, 40, **options)
 
 
 def parameters(found):
@@ -186,11 +191,11 @@ def test_what_has_no_fit_says_so():
         FragilityStatus.NOT_RISING: [4, 3, 1],
     }
     for status, over in cases.items():
-        found = rf.fragility_of_counts(([1.0, 2.0, 4.0], "m/s^2"), over, 5)
+        found = of_counts(([1.0, 2.0, 4.0], "m/s^2"), over, 5)
         assert found.fragility_status.item() == status, status
         if status != FragilityStatus.SEPARATED:
             assert np.isnan(found.median_intensity.item())
-    found = rf.fragility_of_counts(([1.0, 2.0, 4.0], "m/s^2"), [0, 0, 5], 5)
+    found = of_counts(([1.0, 2.0, 4.0], "m/s^2"), [0, 0, 5], 5)
     assert found.dispersion.item() == 0.0
     assert found.median_intensity.item() == pytest.approx(np.sqrt(8.0))
     gap = found.separation_lower_intensity.item(), found.separation_upper_intensity.item()
@@ -199,22 +204,22 @@ def test_what_has_no_fit_says_so():
     # five at each end: with more than 0.68 none of them exceeds at 2, or all do at 4
     assert found.median_intensity_lower_bound.item() == pytest.approx(2.0)
     assert found.median_intensity_upper_bound.item() == pytest.approx(4.0)
-    few = rf.fragility_of_counts(([1.0, 2.0, 4.0], "m/s^2"), [0, 0, 1], 1)
+    few = of_counts(([1.0, 2.0, 4.0], "m/s^2"), [0, 0, 1], 1)
     bounds = [few[name] for name in few if str(name).endswith("_bound")]
     assert all(np.isnan(one).all() for one in bounds if not one.name.startswith("stripe"))
-    one = rf.fragility_of_counts(([2.0, 2.0], "m/s^2"), [1, 2], 5)
+    one = of_counts(([2.0, 2.0], "m/s^2"), [1, 2], 5)
     assert one.fragility_status.item() == FragilityStatus.ONE_INTENSITY
-    reversed_ = rf.fragility_of_counts(([1.0, 2.0], "m/s^2"), [5, 0], 5)
+    reversed_ = of_counts(([1.0, 2.0], "m/s^2"), [5, 0], 5)
     assert reversed_.fragility_status.item() == FragilityStatus.NOT_RISING
 
 
 def test_bad_counts_are_refused():
     for unit in ("furlong", "m/s"):
         with pytest.raises(UnitsError, match="is in m s"):
-            rf.fragility_of_counts(([1.0], unit), [1], 2)
+            of_counts(([1.0], unit), [1], 2)
     for over, count in (([3], 2), ([-1], 2), ([0.5], 2), ([1, 1], 2)):
         with pytest.raises(ComponentError, match="number of exceedances"):
-            rf.fragility_of_counts((["1 m/s^2"]), over, count)
+            of_counts((["1 m/s^2"]), over, count)
     with pytest.raises(ComponentError, match="bands"):
         of_baker(bands="wide")
     with pytest.raises(SchemaError, match="no sweep"):
@@ -327,14 +332,14 @@ def test_a_sweep_from_a_file_asks_for_its_records(tmp_path):
 
     case._studies.clear()
     again = xr.open_dataset(tmp_path / "runs.nc").load()
-    with pytest.raises(rf.StudyError, match="must be given, as motions="):
+    with pytest.raises(StudyError, match="must be given, as motions="):
         rf.fragility(again)
     xr.testing.assert_equal(rf.fragility(again, limits=(), motions=records), found)
 
 
 def test_a_row_for_pelicun(runs):
     found = rf.fragility(runs, "PGA", limits=[0.3])
-    row = rf.to_pelicun(found, "E.1", demand="Peak Floor Acceleration", directional=True)
+    row = rf.export.to_pelicun(found, "E.1", demand="Peak Floor Acceleration", directional=True)
     assert row.index.tolist() == ["E.1"]
     head = "Incomplete,Demand-Type,Demand-Unit,Demand-Offset,Demand-Directional"
     limit = "LS{0}-Family,LS{0}-Theta_0,LS{0}-Theta_1,LS{0}-DamageStateWeights"
@@ -344,11 +349,14 @@ def test_a_row_for_pelicun(runs):
         assert row[f"LS{place + 1}-Theta_0"].item() == pytest.approx(median, rel=1e-12)
         assert row[f"LS{place + 1}-Theta_1"].item() == found.dispersion[place].item()
     spectral = rf.fragility(runs, "SA", period="0.5 s", limits=())
-    assert rf.to_pelicun(spectral, "x")["Demand-Type"].item() == "Peak Spectral Acceleration|0.5"
+    assert (
+        rf.export.to_pelicun(spectral, "x")["Demand-Type"].item()
+        == "Peak Spectral Acceleration|0.5"
+    )
     with pytest.raises(ComponentError, match="'uplift' has no lognormal fit"):
-        rf.to_pelicun(rf.fragility(runs), "x")
+        rf.export.to_pelicun(rf.fragility(runs), "x")
     with pytest.raises(SchemaError, match="found no fragility over one of"):
-        rf.to_pelicun(rf.fragility(runs, "CAV", limits=()), "x")
+        rf.export.to_pelicun(rf.fragility(runs, "CAV", limits=()), "x")
 
 
 def test_a_file_for_openquake(runs, tmp_path):
@@ -357,8 +365,8 @@ def test_a_file_for_openquake(runs, tmp_path):
     found = rf.fragility(runs, "PGA", limits=[0.3])
     baker = of_baker()
     with pytest.raises(ComponentError, match="same limit states"):
-        rf.to_openquake({"block": found, "baker": baker}, tmp_path / "f.xml")
-    file = rf.to_openquake({"block": found, "other": found}, tmp_path / "f.xml")
+        rf.export.to_openquake({"block": found, "baker": baker}, tmp_path / "f.xml")
+    file = rf.export.to_openquake({"block": found, "other": found}, tmp_path / "f.xml")
     root = etree.parse(file).getroot()
     space = "{http://openquake.org/xmlns/nrml/0.5}"
     assert root.tag == f"{space}nrml"
@@ -376,18 +384,18 @@ def test_a_file_for_openquake(runs, tmp_path):
         assert float(one.get("mean")) == pytest.approx(mean, rel=1e-9)
         assert float(one.get("stddev")) == pytest.approx(np.sqrt(deviation), rel=1e-9)
     velocity = rf.fragility(runs, "PGV", limits=())
-    text = rf.to_openquake({"b": velocity}, tmp_path / "v.xml").read_text()
+    text = rf.export.to_openquake({"b": velocity}, tmp_path / "v.xml").read_text()
     theta, beta = velocity.median_intensity.item(), velocity.dispersion.item()
     assert f'mean="{100.0 * theta * np.exp(0.5 * beta**2):.10g}"' in text
     for wrong in ({"a b": found}, {}):
         with pytest.raises(ComponentError):
-            rf.to_openquake(wrong, tmp_path / "w.xml")
+            rf.export.to_openquake(wrong, tmp_path / "w.xml")
     mine = tmp_path / "mine.xml"
     mine.write_text("<nrml/>")
     with pytest.raises(FileError, match="not a fragility model that rockframe wrote"):
-        rf.to_openquake({"b": velocity}, mine)
+        rf.export.to_openquake({"b": velocity}, mine)
     with pytest.raises(FileError, match=r"ends in \.xml"):
-        rf.to_openquake({"b": velocity}, tmp_path / "f.csv")
+        rf.export.to_openquake({"b": velocity}, tmp_path / "f.csv")
     assert mine.read_text() == "<nrml/>"
-    assert rf.to_openquake({"b": velocity}, mine, overwrite=True).read_text() == text
-    assert rf.to_openquake({"b": velocity}, file).read_text() == text  # its own
+    assert rf.export.to_openquake({"b": velocity}, mine, overwrite=True).read_text() == text
+    assert rf.export.to_openquake({"b": velocity}, file).read_text() == text  # its own

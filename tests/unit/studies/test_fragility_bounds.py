@@ -128,7 +128,9 @@ def test_bounds_by_jackknife_hold_with_few_motions():
 
 def test_separated_counts_have_the_bounds_of_their_likelihood():
     """Where 3 of 5 exceed at one intensity, none below and all above, that is the median."""
-    found = rf.fragility_of_counts(([1.0, 2.0, 3.0, 4.0], "m/s^2"), [0, 0, 3, 5], 5)
+    found = rf.fragility(
+        {"intensity": ([1.0, 2.0, 3.0, 4.0], "m/s^2"), "exceeded": [0, 0, 3, 5], "trials": 5}
+    )
     assert found.fragility_status == FragilityStatus.SEPARATED
     drop = stats.chi2.ppf(0.95, 1)
     dispersions = np.geomspace(0.01, 1.0, 400)[:, None, None]
@@ -226,7 +228,9 @@ def test_what_bounds_are_is_said():
     assert said(Bands.SANDWICH, 80) == ""
     assert "for independent" in said(Bands.PROFILE, 20)
     assert said(Bands.PROFILE, 20, trials=20) == ""
-    counted = rf.fragility_of_counts(([1.0, 2.0, 4.0], "m/s^2"), [0, 1, 1], 1)
+    counted = rf.fragility(
+        {"intensity": ([1.0, 2.0, 4.0], "m/s^2"), "exceeded": [0, 1, 1], "trials": 1}
+    )
     assert counted.verdict.endswith("all did from 2 on: so the dispersion is not known, only that "
                                     "it may be small, and there are no bounds.")  # fmt: skip
 

@@ -193,11 +193,11 @@ def test_capacities_that_nobody_knows_are_left_out():
 def test_programs_take_one_structure(runs, tmp_path):
     found = rf.fragility(runs, limits=())
     with pytest.raises(ComponentError, match=r"several structures, by width; .*isel\(width=0\)"):
-        rf.to_pelicun(found, "x")
+        rf.export.to_pelicun(found, "x")
     with pytest.raises(ComponentError, match="several structures"):
-        rf.to_openquake({"x": found}, tmp_path / "x.xml")
+        rf.export.to_openquake({"x": found}, tmp_path / "x.xml")
     for one in (found.isel(width=0), found.isel(width=[0])):
-        theta = rf.to_pelicun(one, "x")["LS1-Theta_0"].item()
+        theta = rf.export.to_pelicun(one, "x")["LS1-Theta_0"].item()
         assert theta == pytest.approx(found.median_intensity[0].item() / 9.80665, rel=1e-12)
 
 

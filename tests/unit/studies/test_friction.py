@@ -6,6 +6,7 @@ import xarray as xr
 
 import rockframe as rf
 from rockframe.compiled import COMPILED
+from rockframe.errors import ModelWarning
 from rockframe.studies.sweeps import study
 
 BLOCK = rf.Block(width="0.6 m", height="1.8 m", mass="180 kg")
@@ -21,9 +22,9 @@ def texts_of(runs):
 
 
 def test_a_run_without_histories_tells_of_friction_in_the_same_words():
-    with pytest.warns(rf.ModelWarning, match=f"{SLIDES} .* of 0.2, ") as told:
+    with pytest.warns(ModelWarning, match=f"{SLIDES} .* of 0.2, ") as told:
         whole = SLIPPERY.simulate(PULSE, free_vibration="3 s")
-    with pytest.warns(rf.ModelWarning, match=f"{SLIDES} .* of 0.2, ") as again:
+    with pytest.warns(ModelWarning, match=f"{SLIDES} .* of 0.2, ") as again:
         bare = SLIPPERY.simulate(PULSE, free_vibration="3 s", outputs=None)
     assert [str(one.message) for one in again] == [str(one.message) for one in told]
     assert bare.attrs["cautions"] == whole.attrs["cautions"]
@@ -46,7 +47,7 @@ def test_a_run_without_histories_tells_of_friction_in_the_same_words():
 def test_cases_of_a_sweep_say_what_single_runs_say(base):
     system = rf.System(BLOCK, base, sliding="checked")
     frictions = [0.1, 0.5, 10.0]
-    with pytest.warns(rf.ModelWarning, match=f"cases have a result to be careful with.*{SLIDES}"):
+    with pytest.warns(ModelWarning, match=f"cases have a result to be careful with.*{SLIDES}"):
         runs = rf.sweep(system, PULSE, friction=frictions, scale=[0.5, 1.0], accuracy="standard")
     for (scale, friction), text in zip(
         [(scale, friction) for friction in frictions for scale in (0.5, 1.0)],
@@ -81,7 +82,7 @@ def test_cases_with_a_limit_leave_the_lanes_and_the_others_stay(monkeypatch, acc
     monkeypatch.setattr(study, "COMPILING_SHARE", np.inf)
     for fewest in (1, 10**9):
         monkeypatch.setattr(study, "FEWEST_IN_LANES", fewest)
-        with pytest.warns(rf.ModelWarning, match=SLIDES):
+        with pytest.warns(ModelWarning, match=SLIDES):
             runs = rf.sweep(
                 scene, PULSE, slippery=[False, True], scale=[0.1, 0.5, 1.0, 3.0], accuracy=accuracy
             )
@@ -96,7 +97,7 @@ def test_cases_with_a_limit_leave_the_lanes_and_the_others_stay(monkeypatch, acc
 
 def test_analyses_count_the_runs_that_would_slide():
     scales = [0.3, 0.5, 1.0, 1.6]
-    ignored = pytest.warns(rf.ModelWarning, match=SLIDES)
+    ignored = pytest.warns(ModelWarning, match=SLIDES)
     with ignored:
         runs = rf.sweep(SLIPPERY, PULSE, scale=scales, accuracy="standard")
         analysis = rf.incremental_dynamic_analysis(SLIPPERY, PULSE, scale=scales)
@@ -126,12 +127,12 @@ def test_analyses_count_the_runs_that_would_slide():
 
 
 def test_analyses_tell_of_friction():
-    with pytest.warns(rf.ModelWarning, match=SLIDES):
+    with pytest.warns(ModelWarning, match=SLIDES):
         rf.incremental_dynamic_analysis(SLIPPERY, PULSE, scale=[0.5, 1.0])
-    with pytest.warns(rf.ModelWarning, match=SLIDES):
+    with pytest.warns(ModelWarning, match=SLIDES):
         found = rf.critical_scale(SLIPPERY, PULSE, scales=20, runs=40)
     assert SLIDES in found.attrs["cautions"]
-    with pytest.warns(rf.ModelWarning, match=SLIDES):
+    with pytest.warns(ModelWarning, match=SLIDES):
         found = rf.critical_scale(SLIPPERY, PULSE, largest=0.9, scales=20, runs=40)
     assert np.isnan(found.critical_scale)
     assert SLIDES in found.attrs["cautions"]

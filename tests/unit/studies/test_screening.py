@@ -7,6 +7,7 @@ import pytest
 import xarray as xr
 
 import rockframe as rf
+from rockframe.errors import RockframeError
 from rockframe.simulation.second_look import Look, is_sure
 from rockframe.studies.sweeps import study
 from rockframe.studies.sweeps.study import FEWEST_IN_LANES
@@ -137,5 +138,5 @@ def test_cases_that_fail_are_not_screened():
     assert runs.repeated.squeeze().to_numpy().tolist()[0] == 0.0
     assert runs.repeated.isnull().squeeze().to_numpy().tolist() == [False, True]
     assert "too heavy" in str(runs.message.to_numpy())
-    with pytest.raises(rf.RockframeError, match="screen"):
+    with pytest.raises(RockframeError, match="screen"):
         SYSTEM.simulate(shaking(60), accuracy="screen")

@@ -10,6 +10,7 @@ from unit.own_parts import TabulatedPads
 
 import rockframe as rf
 from rockframe.compiled import COMPILED
+from rockframe.errors import ModelWarning
 from rockframe.studies.sweeps import side_by_side, study
 from rockframe.studies.sweeps.planning import plan_study
 
@@ -261,7 +262,7 @@ def test_what_fails_in_preparing_lanes_is_told_as_an_error(monkeypatch):
     monkeypatch.setattr(study, "COMPILING_SHARE", math.inf)
     monkeypatch.setattr(side_by_side, "begun", fails)
     told = r"beside others failed \(ZeroDivisionError: no such lane\).*error in rockframe"
-    with pytest.warns(rf.ModelWarning, match=told):
+    with pytest.warns(ModelWarning, match=told):
         runs = swept()
     assert runs.attrs["driver"] == "each case alone"
     for name in ("peak_rotation", "status", "impact_count"):

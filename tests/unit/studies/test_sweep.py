@@ -18,7 +18,15 @@ from records import record_path
 
 import rockframe as rf
 from rockframe.compiled import COMPILED
-from rockframe.errors import ModelWarning, SchemaError, SolverWarning, StudyError
+from rockframe.errors import (
+    AssemblyError,
+    ComponentError,
+    ModelWarning,
+    SchemaError,
+    SolverWarning,
+    StudyError,
+    UnitsError,
+)
 from rockframe.results.variables.runs import RunStatus
 from rockframe.simulation import run as of_a_run
 from rockframe.simulation.soundness import STILL_MOVING
@@ -98,7 +106,7 @@ def test_cases_without_a_result_are_gaps_with_a_reason(plain):
     assert rest.overturned.notnull().all()
     assert plain.attrs["verdict"].endswith("; 12 have no result.")
     assert "12 have" in plain.attrs["verdict"]
-    with pytest.raises(rf.AssemblyError, match="cannot rock"):
+    with pytest.raises(AssemblyError, match="cannot rock"):
         rf.case(plain, scale=1.0, frequency_ratio=10, height=0.3, motion="pulse")
 
 
@@ -321,7 +329,7 @@ def test_a_bar_counts_the_cases(capsys):
 def test_without_tqdm_a_bar_is_refused_only_where_it_was_asked_for(monkeypatch):
     monkeypatch.setitem(sys.modules, "tqdm", None)
     assert rf.sweep(SYSTEM, PULSE, scale=[0.5], **FAST).status.item() == 0
-    with pytest.raises(rf.ComponentError, match=r"rockframe\[progress\]"):
+    with pytest.raises(ComponentError, match=r"rockframe\[progress\]"):
         rf.sweep(SYSTEM, PULSE, scale=[0.5], progress=True, **FAST)
 
 
@@ -378,7 +386,7 @@ def test_cases_that_are_not_there_are_refused():
     ):
         with pytest.raises(StudyError, match=words):
             rf.case(runs, **labels)
-    with pytest.raises(rf.UnitsError, match="width"):
+    with pytest.raises(UnitsError, match="width"):
         rf.case(runs, scale=1.0, width="0.7 kg")
     with pytest.raises(SchemaError, match="no sweep"):
         rf.case(SYSTEM.simulate(PULSE, **FAST), scale=1.0)

@@ -6,6 +6,7 @@ import xarray as xr
 from kept_sweep import alike
 
 import rockframe as rf
+from rockframe.errors import ModelWarning
 from rockframe.studies.sweeps.words import MOST_ALIKE, summed_up
 
 BLOCK = rf.Block(width="0.5 m", height="2 m", mass="400 kg")
@@ -62,7 +63,7 @@ def test_texts_of_many_cases_are_summed_up(tmp_path):
     def swept(**how):
         return rf.sweep(system, PULSE, scale=scales, free_vibration="5 s", **how)
 
-    with pytest.warns(rf.ModelWarning, match=r"of \d\d of them it is said: .* 0\.1"):
+    with pytest.warns(ModelWarning, match=r"of \d\d of them it is said: .* 0\.1"):
         many = swept()
     assert 1 < many.message.size <= 2 + MOST_ALIKE
     assert many.message.values[0] == "none"

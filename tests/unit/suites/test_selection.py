@@ -26,7 +26,7 @@ def spectra(suite, periods=PERIODS):
 
 
 def test_factors_are_those_of_least_squares():
-    found = rf.scale_to_target(FIRSTS, TARGET, periods=PERIODS, bounds=None)
+    found = FIRSTS.scaling_to(TARGET, periods=PERIODS, bounds=None)
     values, goal = spectra(FIRSTS), TARGET.at(PERIODS)
     for k in range(len(FIRSTS)):
         least = minimize_scalar(lambda x, row=values[k]: np.mean((x + np.log(row / goal)) ** 2))
@@ -42,7 +42,7 @@ def test_factors_are_those_of_least_squares():
 
 
 def test_the_scaled_suite_has_the_spectra_that_were_told():
-    found = rf.scale_to_target(FIRSTS, TARGET, periods=PERIODS)
+    found = FIRSTS.scaling_to(TARGET, periods=PERIODS)
     suite = FIRSTS.scaled_to(TARGET, periods=PERIODS)
     np.testing.assert_allclose(spectra(suite), found.scaled_spectral_acceleration, rtol=1e-12)
     for label, motion in suite.items():
@@ -67,19 +67,19 @@ def test_conditioned_on_a_period_or_an_average():
 
 
 def test_bounds():
-    free = rf.scale_to_target(FIRSTS, TARGET, periods=PERIODS, bounds=None)
+    free = FIRSTS.scaling_to(TARGET, periods=PERIODS, bounds=None)
     low, high = np.quantile(free.scale_factor, [0.2, 0.7])
-    bound = rf.scale_to_target(FIRSTS, TARGET, periods=PERIODS, bounds=(low, high))
+    bound = FIRSTS.scaling_to(TARGET, periods=PERIODS, bounds=(low, high))
     np.testing.assert_allclose(bound.scale_factor, np.clip(free.scale_factor, low, high))
     assert bound.attrs["factors_at_a_bound"] == int(
         ((free.scale_factor < low) | (free.scale_factor > high)).sum()
     )
-    chosen = rf.select_for_target(FIRSTS, TARGET, 5, periods=PERIODS, bounds=(low, high))
+    chosen = FIRSTS.selection_for(TARGET, 5, periods=PERIODS, bounds=(low, high))
     assert ((chosen.scale_factor >= low) & (chosen.scale_factor <= high)).all()
     with pytest.raises(
         ComponentError, match=r"of 12 motions have factors from .*too few for a set of 12"
     ):
-        rf.select_for_target(FIRSTS, TARGET, 12, periods=PERIODS, bounds=(low, high))
+        FIRSTS.selection_for(TARGET, 12, periods=PERIODS, bounds=(low, high))
 
 
 def test_both_components_have_one_factor():
@@ -90,7 +90,7 @@ def test_both_components_have_one_factor():
     }
     for combination, name in names.items():
         arguments = {"periods": PERIODS, "combination": combination}
-        found = rf.scale_to_target(SUITE, TARGET, **arguments)
+        found = SUITE.scaling_to(TARGET, **arguments)
         assert found["motion"].to_numpy().tolist() == list(SUITE.pairs)
         values = SUITE.rotated_spectrum(PERIODS)[name].values[:, 0]
         factors = np.exp(np.log(TARGET.at(PERIODS) / values).mean(axis=1)).clip(0.25, 4.0)
@@ -105,7 +105,7 @@ def test_both_components_have_one_factor():
                 motion.si.horizontal.samples, factor * before.si.horizontal.samples, rtol=1e-12
             )
     with pytest.raises(ComponentError, match="the suite has no pair"):
-        rf.scale_to_target(FIRSTS, TARGET, combination="RotD50")
+        FIRSTS.scaling_to(TARGET, combination="RotD50")
 
 
 def misfit(residuals, chosen, deviations, weight) -> float:
@@ -122,8 +122,8 @@ def misfit(residuals, chosen, deviations, weight) -> float:
 @pytest.mark.parametrize("conditioned", [None, ["0.5 s"]])
 def test_the_set_is_the_best_of_all(count, deviation, weight, conditioned):
     target = TARGET if deviation is None else TARGET.with_deviation(deviation)
-    found = rf.select_for_target(
-        FIRSTS, target, count, periods=PERIODS, conditioned_on=conditioned, bounds=None,
+    found = FIRSTS.selection_for(
+        target, count, periods=PERIODS, conditioned_on=conditioned, bounds=None,
         spread_weight=weight,
     )  # fmt: skip
     fixed = PERIODS if conditioned is None else conditioned
@@ -143,7 +143,7 @@ def test_the_set_is_the_best_of_all(count, deviation, weight, conditioned):
 def test_a_large_set_is_better_than_chance():
     rng = np.random.default_rng(5)
     target = TARGET.with_deviation(0.4)
-    found = rf.select_for_target(SUITE, target, 11, periods=PERIODS, bounds=None)
+    found = SUITE.selection_for(target, 11, periods=PERIODS, bounds=None)
     factors = np.exp(np.log(target.at(PERIODS) / spectra(SUITE)).mean(axis=1))
     residuals = np.log(factors[:, None] * spectra(SUITE) / target.at(PERIODS))
     spread = np.full(12, 0.4)
@@ -171,7 +171,6 @@ def test_a_set_of_records():
     ("given", "words"),
     [
         ({"target": "EC8"}, "target needs a TargetSpectrum, got 'EC8'"),
-        ({"suite": [1, 2]}, "suite needs a MotionSuite"),
         ({"bounds": (4.0, 0.25)}, "bounds must be the least and the greatest"),
         ({"bounds": (0.5,)}, "bounds must be the least and the greatest"),
         ({"combination": "SRSS"}, "combination must be 'each' or"),
@@ -181,29 +180,29 @@ def test_a_set_of_records():
     ],
 )
 def test_arguments_are_checked(given, words):
-    arguments = {"suite": FIRSTS, "target": TARGET, "count": 2, **given}
+    arguments = {"target": TARGET, "count": 2, **given}
     with pytest.raises(ComponentError, match=words):
-        rf.select_for_target(**arguments)
+        FIRSTS.selection_for(**arguments)
 
 
 def test_other_faults():
     still = rf.GroundMotion.from_arrays(([0.0, 0.0, 0.0], "m/s^2"), "0.01 s")
     with pytest.raises(ComponentError, match="'still' has no acceleration"):
-        rf.scale_to_target({"still": still}, TARGET)
+        rf.MotionSuite({"still": still}).scaling_to(TARGET)
     with pytest.raises(SchemaError, match="expected a TargetSpectrum, or"):
         FIRSTS.scaled_to(FIRSTS.intensity_measures())
-    found = rf.scale_to_target(SUITE, TARGET, periods=PERIODS)
+    found = SUITE.scaling_to(TARGET, periods=PERIODS)
     with pytest.raises(ComponentError, match="the suite has no 'RSN1_MADE_S1090'"):
         FIRSTS.scaled_to(found)
     short = rf.TargetSpectrum.from_table(([0.2, 1.0], "s"), ([1.0, 1.0], "m/s^2"))
-    assert rf.scale_to_target(FIRSTS, short).period.values[[0, -1]].tolist() == [0.2, 1.0]
+    assert FIRSTS.scaling_to(short).period.values[[0, -1]].tolist() == [0.2, 1.0]
     with pytest.raises(ComponentError, match=r"is known from 0\.2 s to 1 s"):
-        rf.scale_to_target(FIRSTS, short, periods=PERIODS)
+        FIRSTS.scaling_to(short, periods=PERIODS)
 
 
 def test_the_figure_shows_what_was_found():
     target = TARGET.with_deviation(0.4)
-    found = rf.select_for_target(SUITE, target, 5, periods=PERIODS)
+    found = SUITE.selection_for(target, 5, periods=PERIODS)
     figure = rf.plot.selection(found).figure
     spectra_axes, misfits = figure.axes
     lines = {line.get_label(): line for line in spectra_axes.get_lines()}

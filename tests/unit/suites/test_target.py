@@ -137,11 +137,11 @@ def test_periods_too_short_for_a_record_are_warned_of_where_they_are_asked_for()
     coarse = rf.GroundMotion.stochastic(6, "20 km", seed=1).resampled("0.02 s")
     suite = rf.MotionSuite([rf.GroundMotion.from_arrays(coarse.acceleration, "0.02 s")])
     target = rf.TargetSpectrum.eurocode_8("0.1 g_0")
-    with pytest.warns(RecordWarning, match="scale_to_target: the record is .* from 0.1 s"):
-        rf.scale_to_target(suite, target, periods=["0.1 s", "1 s"])
-    with pytest.warns(RecordWarning, match="scale_to_target: the record is .* from 0.15 s"):
-        rf.scale_to_target(suite, target, conditioned_on=["0.15 s"])
-    rf.scale_to_target(suite, target)
+    with pytest.warns(RecordWarning, match="MotionSuite.scaling_to: the record is .* from 0.1 s"):
+        suite.scaling_to(target, periods=["0.1 s", "1 s"])
+    with pytest.warns(RecordWarning, match="MotionSuite.scaling_to: the record is .* from 0.15 s"):
+        suite.scaling_to(target, conditioned_on=["0.15 s"])
+    suite.scaling_to(target)
     motion = suite["unnamed motion"]
     pair = rf.HorizontalPair(motion, motion)
     with pytest.warns(RecordWarning, match="rotated_spectrum: the record is .* from 0.1 s"):

@@ -1,4 +1,4 @@
-"""Fragilities for programs that assess damage: pelicun's library and OpenQuake's files."""
+"""Results for other programs: fragilities for pelicun's library and OpenQuake's files."""
 
 import math
 import re
@@ -90,8 +90,9 @@ def to_pelicun(
     Examples
     --------
     >>> import rockframe as rf
-    >>> found = rf.fragility_of_counts(([0.2, 0.4, 0.8], "m/s"), [1, 6, 19], 20, measure="PGV")
-    >>> row = rf.to_pelicun(found, "bookcase", demand="Peak Floor Velocity")
+    >>> counts = {"intensity": ([0.2, 0.4, 0.8], "m/s"), "exceeded": [1, 6, 19], "trials": 20}
+    >>> found = rf.fragility(counts, "PGV")
+    >>> row = rf.export.to_pelicun(found, "bookcase", demand="Peak Floor Velocity")
     >>> row["Demand-Unit"].item(), round(row["LS1-Theta_0"].item(), 2)
     ('mps', 0.45)
     """

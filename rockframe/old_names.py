@@ -1,0 +1,70 @@
+"""Names of version 0.1 that have moved; they are given for one version, with a warning."""
+
+import warnings
+from collections.abc import Callable, Mapping
+from importlib import import_module
+from typing import Any, Final
+
+from rockframe import errors
+
+MOVED: Final = {
+    **{name: f"rockframe.errors.{name}" for name in dir(errors)},
+    "Case": "rockframe.studies.SweepCase",
+    "Diagnostic": "rockframe.extension.Diagnostic",
+    "Recommendation": "rockframe.comparison.Recommendation",
+    "principal_axes": "rockframe.measures.principal_axes",
+    "to_openquake": "rockframe.export.to_openquake",
+    "to_pelicun": "rockframe.export.to_pelicun",
+    "velocity_and_displacement": "rockframe.measures.velocity_and_displacement",
+}
+_SHORTER: Final = {
+    "principal_axes": "; the direction alone is HorizontalPair.principal_axis",
+    "velocity_and_displacement": "; the numbers alone are velocity and displacement of the motion",
+}
+
+
+def _fragility_of_counts(
+    intensity: Any, exceeded: Any, trials: Any, *, measure: str = "PGA", **arguments: Any
+) -> Any:
+    from rockframe.studies import fragility
+
+    counts = {"intensity": intensity, "exceeded": exceeded, "trials": trials}
+    return fragility(counts, measure, **arguments)
+
+
+def _scale_to_target(suite: Any, target: Any, **arguments: Any) -> Any:
+    return _suite(suite).scaling_to(target, **arguments)
+
+
+def _select_for_target(suite: Any, target: Any, count: int, **arguments: Any) -> Any:
+    return _suite(suite).selection_for(target, count, **arguments)
+
+
+def _suite(given: Any) -> Any:
+    from rockframe.suites import MotionSuite
+
+    plain = isinstance(given, Mapping) and not isinstance(given, MotionSuite)
+    return MotionSuite(given) if plain else given  # pyright: ignore[reportUnknownArgumentType]
+
+
+_BECAME: Final[dict[str, tuple[Callable[..., Any], str]]] = {
+    "fragility_of_counts": (_fragility_of_counts, "rockframe.fragility(counts)"),
+    "scale_to_target": (_scale_to_target, "rockframe.MotionSuite.scaling_to"),
+    "select_for_target": (_select_for_target, "rockframe.MotionSuite.selection_for"),
+}
+
+
+def old_name(name: str) -> Any:
+    """Give what a name stands for, and warn with the new name."""
+    if name in _BECAME:
+        found, now = _BECAME[name]
+    elif name in MOVED:
+        now = MOVED[name]
+        home, _, attribute = now.rpartition(".")
+        found = getattr(import_module(home), attribute)
+    else:
+        msg = f"module 'rockframe' has no attribute {name!r}"
+        raise AttributeError(msg)
+    text = f"rockframe.{name} is now {now}{_SHORTER.get(name, '')}"
+    warnings.warn(text, DeprecationWarning, stacklevel=3)
+    return found
