@@ -142,12 +142,7 @@ class System:
     @property
     def gravity(self) -> Quantity:
         """Acceleration of gravity [m s^-2]."""
-        return quantity(self.gravity_si, ACCELERATION)
-
-    @property
-    def gravity_si(self) -> float:
-        """Acceleration of gravity, as a number [m s^-2]."""
-        return self.options.gravity
+        return quantity(self.options.gravity, ACCELERATION)
 
     @property
     def inclination(self) -> Quantity:
@@ -188,7 +183,8 @@ class System:
         )
 
     def __dir__(self) -> list[str]:
-        return [name for name in super().__dir__() if not name.startswith("_")]
+        inner = {"assembly", "scene", "setting"}  # for the package, and those who extend it
+        return [n for n in super().__dir__() if not n.startswith("_") and n not in inner]
 
     def _repr_html_(self) -> str:
         from rockframe.system.html import system_html

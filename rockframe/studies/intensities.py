@@ -196,7 +196,7 @@ class ScaledIntensity:
     ) -> None:
         self._motion = motion
         self._block = system.parts.block
-        self._gravity = quantity(system.gravity_si, ACCELERATION)
+        self._gravity = quantity(system.options.gravity, ACCELERATION)
         self._damping = to_ratio(damping_ratio, owner=owner, name="damping_ratio")
         spectral = name in OF_OSCILLATORS
         if spectral != (period is not None):

@@ -204,7 +204,7 @@ def _labels(system: "System", levels: Array, frequencies: Array) -> dict[str, An
     if isinstance(setting, RigidGroundSetting):
         uplift = min(setting.uplift_accelerations)
         angular = 2.0 * math.pi * frequencies
-        own = setting.body.frequency_at(system.gravity_si)
+        own = setting.body.frequency_at(system.options.gravity)
         for name, dim, values in (
             ("relative_peak_ground_acceleration", SCALE, levels / uplift),
             ("relative_pulse_frequency", MOTION, angular / own),

@@ -60,7 +60,7 @@ class BlockSizes:
         given = [ratio] if slenderness is None else slenderness
         self.slenderness = _above_zero(given, _SLENDER, "slenderness", owner)
         # omega^2 = mu g / ((1 + mu) R0), Eq. (6)
-        scale = si.frequency_at(system.gravity_si) ** 2 * si.radius
+        scale = si.frequency_at(system.options.gravity) ** 2 * si.radius
         radius = scale * (0.5 * self.periods / math.pi) ** 2
         angle = np.arctan(1.0 / self.slenderness)
         self.width = 2.0 * np.sin(angle)[:, None] * radius

@@ -27,7 +27,7 @@ def test_moments_and_uplift_have_their_closed_forms():
     np.testing.assert_allclose(with_tendons - without, added, rtol=1e-11)
     system = rf.System(BENT, TENDON)
     rest = system.equilibrium()
-    weight = 380e3 * system.gravity_si
+    weight = 380e3 * system.options.gravity
     np.testing.assert_allclose(rest.static_left_reaction, 0.5 * (weight + 6e5), rtol=1e-13)
     starts = system.setting.uplift_acceleration
     for share, rocks in ((0.999, False), (1.001, True)):

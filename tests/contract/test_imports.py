@@ -8,7 +8,7 @@ import pytest
 
 import rockframe as rf
 from rockframe import old_names
-from rockframe.errors import AssemblyError, RockframeError, RockframeWarning
+from rockframe.errors import RockframeError, RockframeWarning
 
 pytestmark = pytest.mark.contract
 
@@ -155,11 +155,14 @@ def test_only_what_is_meant_for_users_is_shown():
     assert all(name.endswith(("Error", "Warning")) for name in dir(rf.errors))
     assert not set(rf.__all__) & set(dir(rf.errors))
     assert "Block" in dir(rf.components)
+    shown = set(dir(rf.System(rf.Block(width="1 m", height="3 m", mass="1 t"))))
+    assert {"simulate", "describe", "parts"} <= shown
+    assert not {"assembly", "scene", "setting"} & shown
 
 
 def test_names_that_have_moved_are_given_with_a_warning():
     with pytest.warns(DeprecationWarning, match=r"AssemblyError is now rockframe\.errors"):
-        assert AssemblyError is AssemblyError
+        assert rf.AssemblyError is rf.errors.AssemblyError
     with pytest.warns(DeprecationWarning, match=r"Case is now rockframe\.studies\.Sweep"):
         from rockframe import Case
     assert inspect.isclass(Case)

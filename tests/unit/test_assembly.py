@@ -366,9 +366,9 @@ def test_unknown_options_are_refused():
 
 
 def test_gravity_is_standard_unless_given():
-    assert rf.System(block()).gravity_si == 9.80665
-    assert rf.System(block(), gravity="1 g_0").gravity_si == pytest.approx(9.80665)
-    assert rf.System(block(), gravity="981 Gal").gravity_si == pytest.approx(9.81)
+    assert rf.System(block()).options.gravity == 9.80665
+    assert rf.System(block(), gravity="1 g_0").options.gravity == pytest.approx(9.80665)
+    assert rf.System(block(), gravity="981 Gal").options.gravity == pytest.approx(9.81)
     for bad in ("0 m/s^2", "-9.81 m/s^2", "nan m/s^2", "9.81", 9.81, "9.81 N"):
         assert "gravity" in str(faults(block(), gravity=bad))
 

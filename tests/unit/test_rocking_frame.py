@@ -128,7 +128,7 @@ def test_a_run_keeps_its_energy_tells_the_scene_and_goes_to_a_file(tmp_path):
 
 def test_statics():
     system = rf.System(BENT)
-    weight, half = 380e3 * system.gravity_si, 0.8
+    weight, half = 380e3 * system.options.gravity, 0.8
     at = system.moment_rotation(["0.05 rad"])
     # the weight of the beam rises twice as fast as that of the columns
     lever = (180.0 + 2.0 * 200.0) / 380.0 * np.hypot(0.8, 4.8)

@@ -47,7 +47,7 @@ def test_options_and_ground_are_kept():
     for rung in rf.model_ladder(system).values():
         assert rung.parts.ground == ground
         assert str(rung.restraint) == "leading-corner"
-        assert rung.gravity_si == 3.7
+        assert rung.options.gravity == 3.7
 
 
 def test_a_ladder_does_not_repeat_what_the_scene_has_warned_of():

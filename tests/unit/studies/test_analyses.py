@@ -333,7 +333,7 @@ def test_bodies_told_by_their_inertia_keep_their_shape_factor_at_other_sizes(nam
     for period in (2.0, 3.0):
         case = rf.case(found, slenderness=5.0, rocking_period=period, motion="seed 1")
         block = case.system.parts.the_block
-        frequency = block.frequency_at(system.gravity_si)
+        frequency = block.frequency_at(system.options.gravity)
         assert 2.0 * np.pi / frequency == pytest.approx(period, rel=1e-12)
         assert 1.0 / np.tan(block.overturning_angle) == pytest.approx(5.0, rel=1e-12)
         assert block.shape_factor == pytest.approx(body.shape_factor, rel=1e-12)
