@@ -27,6 +27,7 @@ from rockframe.compiled.calls import (
     register_kernels,
 )
 from rockframe.compiled.language import Integers, ReadOnlyMatrix, Vector, part_of
+from rockframe.compiled.linking import linked_once
 
 VECTOR: Final = BufferType(numba.float64, 1, True)
 """Numba's type of a vector in compiled code."""
@@ -203,9 +204,10 @@ class Job:
         place = str(self.file) if self.file else f"<{name}>"
         exec(compile(text, place, "exec"), module.__dict__)  # noqa: S102
         options = {**OPTIONS, "cache": True} if keep else OPTIONS
-        if self.bound:
-            return numba.cfunc(signature, **options)(module.__dict__["run"])
-        return numba.njit(signature, nogil=True, **options)(module.__dict__["run"])
+        with linked_once():
+            if self.bound:
+                return numba.cfunc(signature, **options)(module.__dict__["run"])
+            return numba.njit(signature, nogil=True, **options)(module.__dict__["run"])
 
 
 def _count(structure: tuple[Any, ...]) -> int:

@@ -1,0 +1,118 @@
+"""Functions that only compiled code calls: optimised once, within the entry that calls them.
+
+numba optimises each function with all that it calls, and makes machine code of it, each time;
+of that only the entry's is ever run. Here a library of numba waits, as it was written, until
+somebody asks for an address in it, or links it outside of rockframe, and is then put together
+from all that it calls and optimised as a whole. Which operations are done in which order stays
+the same, and with that each bit of each result.
+
+numba documents none of this: with a version that was not tried, all goes its ordinary way.
+"""
+
+from collections.abc import Generator
+from contextlib import contextmanager
+from importlib import import_module
+from typing import Any, Final
+
+from rockframe.compiled.calls import numba
+
+TRIED: Final = ((0, 61), (0, 68))
+"""First and last version of numba that this was tried with."""
+
+_codegen: Final[Any] = import_module("numba.core.codegen")
+_registry: Final[Any] = import_module("numba.core.registry")
+_lock: Final[Any] = import_module("numba.core.compiler_lock").global_compiler_lock
+
+IS_KNOWN: Final[bool] = TRIED[0] <= tuple(numba.version_info[:2]) <= TRIED[1] and all(
+    hasattr(_codegen.JITCodeLibrary, name)
+    for name in (
+        "add_linking_library", "finalize", "get_pointer_to_function", "codegen",
+        "_get_module_for_linking",
+    )
+)  # fmt: skip
+"""Whether numba's libraries can wait."""
+
+
+class _Waiting(_codegen.JITCodeLibrary):
+    """A library that is put together when an address in it is asked for."""
+
+    def __init__(self, *arguments: Any, **words: Any) -> None:
+        super().__init__(*arguments, **words)
+        self._environments: list[tuple[str, Any]] = []
+
+    @property
+    def codegen(self) -> Any:
+        """What takes the environments of functions: this, as long as they have no address."""
+        return self._codegen if self._finalized else self
+
+    def set_env(self, name: str, environment: Any) -> None:
+        """Keep the environment of a function until there is a place for it."""
+        self._environments.append((name, environment))
+
+    def add_linking_library(self, library: Any) -> None:
+        """Link a library, in whatever state it is."""
+        if isinstance(library, _Waiting):
+            self._linking_libraries.append(library)
+        else:
+            super().add_linking_library(library)
+
+    def get_pointer_to_function(self, name: str) -> int:
+        """Give the address of a function; 0 where this library has none of that name."""
+        if not self._finalized and not any(
+            name == each.name and not each.is_declaration for each in self._final_module.functions
+        ):
+            return 0
+        address: int = super().get_pointer_to_function(name)
+        return address
+
+    def finalize(self) -> None:
+        """Put the library together from its own code and all that it calls."""
+        self._linking_libraries = _callers_first(self)
+        super().finalize()
+        for library in (self, *self._linking_libraries):
+            for name, environment in getattr(library, "_environments", ()):
+                if self._codegen._engine.is_symbol_defined(name):
+                    self._codegen.set_env(name, environment)
+
+    def _get_module_for_linking(self) -> Any:
+        if self._finalized:
+            return super()._get_module_for_linking()
+        if self._shared_module is None:
+            self._shared_module = self._final_module.clone()
+            for each in self._shared_module.functions:
+                if not each.is_declaration and each.linkage.name == "external":
+                    each.linkage = "linkonce_odr"
+        return self._shared_module
+
+
+def _callers_first(library: Any) -> list[Any]:
+    """Give all that a library calls, in an order in which what is linked has been called before."""
+    seen: set[Any] = set()
+    ended: list[Any] = []
+
+    def visit(caller: Any) -> None:
+        for called in caller._linking_libraries:
+            if called not in seen:
+                seen.add(called)
+                if not called._finalized:
+                    visit(called)
+                ended.append(called)
+
+    visit(library)
+    return ended[::-1]
+
+
+@contextmanager
+def linked_once() -> Generator[None]:
+    """Let all libraries wait that numba makes in this block, which has numba for itself."""
+    if not IS_KNOWN:
+        yield
+        return
+    with _lock:
+        codegen = _registry.cpu_target.target_context.codegen()
+        before = codegen._library_class
+        codegen._library_class = _Waiting
+        try:
+            yield
+        finally:
+            codegen._library_class = before

@@ -1,0 +1,112 @@
+"""Functions wait for their entries: what comes of it is what numba makes by itself."""
+
+import numpy as np
+import pytest
+
+from rockframe.compiled import COMPILED, Vector, entry, inlined, kernel
+
+pytestmark = [
+    pytest.mark.unit,
+    pytest.mark.skipif(not COMPILED, reason="this run does without compilation"),
+]
+
+
+@kernel
+def root_of(x: float) -> float:
+    if x < 0.0:
+        raise ValueError("below zero", x)  # noqa: EM101
+    return x**0.5
+
+
+@kernel
+def left(x: float) -> float:
+    return root_of(x) + 1.0
+
+
+@inlined
+def right(x: float) -> float:
+    return root_of(x) * 3.0
+
+
+@entry
+def both(values: Vector) -> None:
+    for i in range(len(values)):
+        values[i] = left(values[i]) + right(values[i])
+
+
+@kernel
+def thrice(x: float) -> float:
+    return 3.0 * root_of(x)
+
+
+@entry
+def again(values: Vector) -> None:
+    values[0] = thrice(values[0]) + 3.0
+
+
+@entry
+def one(values: Vector) -> None:
+    for i in range(len(values)):
+        values[i] = left(values[i])
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path, monkeypatch):
+    monkeypatch.setenv("ROCKFRAME_CACHE_DIR", str(tmp_path))
+
+
+@pytest.fixture
+def made(monkeypatch):
+    """Give the names of all that numba makes machine code of."""
+    from numba.core.codegen import JITCodeLibrary
+
+    names = []
+    finish = JITCodeLibrary._finalize_specific
+    monkeypatch.setattr(
+        JITCodeLibrary, "_finalize_specific",
+        lambda self: (names.append(self.name), finish(self)),
+    )  # fmt: skip
+    return names
+
+
+def test_only_entries_become_machine_code(made):
+    from rockframe.compiled import linking
+
+    if not linking.IS_KNOWN:
+        pytest.skip(f"this numba is none of {linking.TRIED}")
+    values = np.array([9.0, 16.0])
+    both(values)
+    assert values.tolist() == [13.0, 17.0]
+    one(values)
+    assert values.tolist() == [13.0**0.5 + 1.0, 17.0**0.5 + 1.0]
+    # and numba's own runtime, once in a process
+    assert [name for name in made if name != "nrt"] == ["run", "run"]
+
+
+def test_errors_of_what_waits_arrive():
+    with pytest.raises(ValueError, match="below zero") as found:
+        one(np.array([-4.0]))
+    assert found.value.args == ("below zero", -4.0)
+
+
+def test_functions_of_a_users_own_call_what_waits(made):
+    import numba
+
+    one(np.array([4.0]))
+
+    @numba.njit
+    def own(x):
+        return left(x) + 1.0
+
+    assert own(9.0) == 5.0
+    assert sum("left" in name for name in made) == 1
+
+
+def test_another_numba_goes_its_ordinary_way(made, monkeypatch):
+    from rockframe.compiled import linking
+
+    monkeypatch.setattr(linking, "IS_KNOWN", False)
+    values = np.array([9.0])
+    again(values)
+    assert values.tolist() == [12.0]
+    assert any("thrice" in name for name in made)
