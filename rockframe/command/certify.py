@@ -5,7 +5,7 @@ from textwrap import fill
 
 from rockframe.command.run import finished
 from rockframe.command.shared import RUN, Outputs, scene_from, simulated
-from rockframe.simulation.run_arguments import Certification
+from rockframe.simulation.run_arguments import PROVED, Certification
 
 
 def execute(arguments: argparse.Namespace) -> int:
@@ -13,6 +13,12 @@ def execute(arguments: argparse.Namespace) -> int:
     found = scene_from(arguments)
     outputs = Outputs(arguments, found.files)
     outputs.check(arguments.output, RUN)
+    if arguments.proved:
+        response = simulated(found, certify=PROVED)
+        print(f"Verdict: {response.attrs['verdict']}")
+        print(fill(f"Proof: {response.attrs['proof']}", 100))
+        outputs.result(arguments.output, RUN, response)
+        return 0 if finished(response) else 1
     given = {name: getattr(arguments, name) for name in ("nudge", "reach", "runs")}
     wanted = Certification(**{name: value for name, value in given.items() if value is not None})
     response = simulated(found, certify=wanted)

@@ -143,7 +143,8 @@ COMMANDS: Final = (
         "a little, and under the scaled motion. Tell whether the verdict stays.",
         """\
   rockframe certify scene.toml --motion record.AT2
-  rockframe certify scene.toml --motion record.AT2 --nudge 0.01 -o out.nc""",
+  rockframe certify scene.toml --motion record.AT2 --nudge 0.01 -o out.nc
+  rockframe certify scene.toml --motion record.AT2 --proved""",
         (
             _SCENE,
             *_RUNNING,
@@ -158,6 +159,11 @@ COMMANDS: Final = (
                 type=float,
                 metavar="SHARE",
                 help="largest relative change of the scale (default: 0.5)",
+            ),
+            _word(
+                "--proved",
+                action="store_true",
+                help="prove the verdict instead (a block on rigid ground; needs python-flint)",
             ),
             _word(
                 "--runs", type=int, metavar="N", help="most runs beside the first (default: 200)"

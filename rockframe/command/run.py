@@ -20,8 +20,9 @@ def execute(arguments: argparse.Namespace) -> int:
     print(f"Scene:   {system_words(found.system)} ({response.attrs['model']})")
     print(f"Motion:  {motion_words(response.attrs)}")
     print(f"Verdict: {response.attrs['verdict']}")
-    if "certificate" in response.attrs:
-        print(f"Certificate: {response.attrs['certificate']}")
+    for name in ("certificate", "proof"):
+        if name in response.attrs:
+            print(f"{name.capitalize()}: {response.attrs[name]}")
     outputs.result(arguments.output, RUN, response)
     return 0 if finished(response) else 1
 

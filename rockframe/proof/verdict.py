@@ -63,6 +63,38 @@ class Proof:
         """Whether the block overturns; None where that is undecided."""
         return self.verdict == OVERTURNS if self.decided else None
 
+    def agrees(self, overturned: bool | None, end: float) -> bool:
+        """Whether what is proved is what a run up to a time has shown."""
+        if overturned is None or not self.decided:
+            return False
+        late = self.verdict == OVERTURNS and self.earliest > end
+        return overturned == (self.verdict == OVERTURNS and not late)
+
+    def objections(self, overturned: bool | None, end: float) -> list[str]:
+        """Say where a run up to a time ends otherwise, or too early."""
+        if overturned is None or not self.decided:
+            return []
+        if not self.agrees(overturned, end) and not self.earliest <= end <= self.latest:
+            ends = "overturned" if overturned else "did not overturn"
+            return [f"the run is wrong, or the proof is: the block {ends} in the run. {self}"]
+        if self.verdict == OVERTURNS and not overturned:
+            return [f"the block is proved to overturn after the end of the run. {self}"]
+        return []
+
+    def values(self, overturned: bool | None, end: float) -> dict[str, float | bool]:
+        """Give the scalars by their names in the schema, beside a run up to a time."""
+        falls = self.verdict == OVERTURNS
+        return {
+            "verdict_proved": self.agrees(overturned, end),
+            "proved_overturning_earliest": self.earliest if falls else math.nan,
+            "proved_overturning_latest": self.latest if falls else math.nan,
+            "proof_width": self.width,
+        }
+
+    def attributes(self) -> dict[str, str | int]:
+        """Give what a dataset says of the proof."""
+        return {"proof": str(self), "proof_verdict": self.verdict, "proof_bits": self.bits}
+
     def __str__(self) -> str:
         """Say what has been proved, and of what."""
         tolerance = self.restitution_tolerance

@@ -13,7 +13,7 @@ from rockframe.simulation.system import System
 
 def certified(dataset: xr.Dataset, system: System | None) -> tuple[xr.Dataset, str]:
     """Give a result its certificate, by running it again with all runs beside it."""
-    if "certificate" in dataset.attrs:
+    if "certificate" in dataset.attrs or "proof" in dataset.attrs:
         return dataset, ""
     if system is None:
         return dataset, "the dataset does not describe its system."

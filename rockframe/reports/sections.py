@@ -19,7 +19,7 @@ from rockframe.reports.figures import figure_of
 from rockframe.reports.limits import GENERAL, limits_of
 from rockframe.reports.values import powers_in_html, table_of
 from rockframe.results.outcome import verdict_of
-from rockframe.results.variables.runs import CERTIFICATE
+from rockframe.results.variables.runs import CERTIFICATE, PROOF
 from rockframe.simulation.provenance import motion_words
 from rockframe.simulation.run import NONE
 from rockframe.simulation.system import System
@@ -32,7 +32,7 @@ _BANNERS: Final = {
     None: ("Not finished", "doubt"),
 }
 """Title and kind of what became of the body, by the verdict."""
-_CERTIFICATE: Final = [row.name for row in CERTIFICATE]
+_CERTIFICATE: Final = [row.name for row in (*CERTIFICATE, *PROOF)]
 _PROVENANCE: Final = (
     # (attribute, what it is)
     ("source", "computed by"),
@@ -56,12 +56,16 @@ def verdict_section(dataset: xr.Dataset, reason: str) -> Iterator[str]:
     """Say what became of the body, and how sure that is."""
     title, kind = _BANNERS[verdict_of(dataset)]
     yield page.banner(title, str(dataset.attrs.get("verdict", "")), kind)
+    if "proof" in dataset.attrs:
+        proved = bool(dataset["verdict_proved"])
+        title = f"The verdict is {'' if proved else 'not '}proved"
+        yield page.banner(title, str(dataset.attrs["proof"]), "good" if proved else "doubt")
     if "certificate" in dataset.attrs:
         sure = all(bool(dataset[name]) for name in _CERTIFICATE[:2] if name in dataset)
         words = str(dataset.attrs["certificate"])
         title = f"Certificate: the verdict {'holds' if sure else 'is in doubt'}"
         yield page.banner(title, words, "good" if sure else "doubt")
-    else:
+    elif "proof" not in dataset.attrs:
         yield page.banner("No certificate", reason or "none was asked for.", "doubt")
     cautions = str(dataset.attrs.get("cautions", NONE))
     if cautions != NONE:

@@ -32,6 +32,7 @@ from rockframe.results.variables.runs import (
     HISTORIES,
     MODES,
     MOTION_AFTER_END,
+    PROOF,
     REST,
 )
 from rockframe.results.variables.studies import (
@@ -63,6 +64,7 @@ _TABLES: Final = (
     EVENTS_AND_SCALARS,
     FORCE_SCALARS,
     CERTIFICATE,
+    PROOF,
     HELD,
     REST,
     MODES,

@@ -207,28 +207,9 @@ def prove_critical_scale(
 
 
 def proof_of(
-    system: Assembly, plan: Plan, *, scale: float = 1.0, tolerance: float = 0.0
+    system: Assembly, plan: Plan, *, scale: float = 1.0, tolerance: float = 0.0, owner: str = _OWNER
 ) -> "Proof":
-    """Prove the verdict of a run as it was planned.
-
-    Parameters
-    ----------
-    system : Assembly
-        The scene.
-    plan : Plan
-        The arguments of the run, of which motion and start count.
-    scale, tolerance : float
-        As for :func:`prove`.
-
-    Returns
-    -------
-    Proof
-
-    Raises
-    ------
-    ComponentError
-        No proof is to be had of this.
-    """
+    """Prove the verdict of a run as it was planned, by its motion and its start."""
     model, motion = system.model, plan.motion
     faults: list[str] = []
     law = model.system
@@ -236,12 +217,14 @@ def proof_of(
         faults.append("proofs are of a Block on rigid ground, with rotation='finite'")
     elif law.wall != 0.0:
         faults.append("proofs are of a Block that rocks to both sides, without a RearWall")
+    if not plan.stop_at_overturning:
+        faults.append("proofs are of reaching the overturning angle; leave out overturning")
     if motion is None:
         faults.append("there is no motion")
     if find_spec("flint") is None:
         faults.append("python-flint is not installed: pip install rockframe[proof]")
     if faults or motion is None or not isinstance(law, BlockOnRigidGround):
-        msg = f"{_OWNER}: {'; '.join(faults)}"
+        msg = f"{owner}: {'; '.join(faults)}"
         raise ComponentError(msg)
     from rockframe.proof.verdict import prove_block
 

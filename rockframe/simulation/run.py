@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Final, TypeAlias
+from typing import Final, Literal, TypeAlias
 
 import numpy as np
 import xarray as xr
@@ -23,7 +23,8 @@ from rockframe.simulation.certificate import certify
 from rockframe.simulation.friction import friction_words, slips
 from rockframe.simulation.plan import Plan, end_attributes, start_of
 from rockframe.simulation.provenance import motion_after_end, motion_attributes
-from rockframe.simulation.run_arguments import Certification
+from rockframe.simulation.proving import proof_of
+from rockframe.simulation.run_arguments import PROVED, Certification
 from rockframe.simulation.run_summary import RunSummary, run_summary
 from rockframe.simulation.second_look import doubts, peak_error, second_look
 from rockframe.simulation.soundness import (
@@ -164,13 +165,14 @@ def scalars_of(
 def run(
     system: Assembly,
     plan: Plan,
-    certification: Certification | None = None,
+    certification: Certification | Literal["proved"] | None = None,
     *,
     look_again: bool = False,
 ) -> xr.Dataset:
     """Integrate as planned and label the result."""
     for column in () if system.model.selects else system.model.columns:
         schema_row(column.name)  # before the run
+    proof = proof_of(system, plan, owner="simulate") if certification == PROVED else None
     response = respond(system, plan)
     summary, missing = response.trajectory, response.missing
     attributes = _attributes(system, plan, summary, missing)
@@ -192,11 +194,18 @@ def run(
         )
         values["peak_error_estimate"] = error
         cautions += doubted
+    if proof is not None:
+        shown = response.summary()
+        values |= proof.values(shown.overturned, summary.end_time)
+        attributes |= proof.attributes()
+        cautions += [
+            (SolverWarning, text) for text in proof.objections(shown.overturned, summary.end_time)
+        ]
     # said of every run: what only some datasets say, xarray.concat would take for all
     attributes["cautions"] = NONE
     for kind, text in cautions:
         warn(text, kind)
-    if certification is not None:
+    if isinstance(certification, Certification):
         found = or_missing(
             lambda: certify(system, plan, response.summary(), certification, summary_of),
             None, "the certificate", missing,

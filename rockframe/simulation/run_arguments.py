@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Annotated, Final, TypeAlias, TypedDict
+from typing import Annotated, Final, Literal, TypeAlias, TypedDict
 
 import xarray as xr
 
@@ -139,13 +139,20 @@ class Certification:
         object.__setattr__(self, "runs", most)
 
 
-def certification_of(given: object) -> Certification | None:
+PROVED: Final = "proved"
+"""In the place of what a certificate tries: that the verdict is to be proved."""
+
+
+def certification_of(given: object) -> Certification | Literal["proved"] | None:
     """Read the argument ``certify`` of a run."""
     if given is False:
         return None
+    if given == PROVED:
+        return PROVED
     if given is True:
         return Certification()
     if isinstance(given, Certification):
         return given
-    msg = f"simulate: certify must be True, False or a Certification(...), got {shown(given)}"
+    wanted = f"True, False, {PROVED!r} or a Certification(...)"
+    msg = f"simulate: certify must be {wanted}, got {shown(given)}"
     raise ComponentError(msg)

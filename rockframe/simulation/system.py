@@ -3,7 +3,7 @@
 import json
 from collections.abc import Mapping, Sequence
 from inspect import signature
-from typing import TYPE_CHECKING, Any, Final, Self
+from typing import TYPE_CHECKING, Any, Final, Literal, Self
 
 import xarray as xr
 
@@ -225,7 +225,7 @@ class System:
         outputs: Sequence[str] | None = (),
         points: PointsLike | None = None,
         overturning: OverturningLike = Overturning.STOP,
-        certify: "bool | Certification" = False,
+        certify: "bool | Certification | Literal['proved']" = False,
         second_look: bool = True,
     ) -> xr.Dataset:
         """Integrate the equations of motion.
@@ -259,9 +259,10 @@ class System:
         overturning : {"stop", "continue"}
             Whether the run ends when the rotation reaches the overturning
             angle, or goes on until the block lies flat.
-        certify : bool or Certification
+        certify : bool, Certification or "proved"
             Whether some hundred runs beside this one, by finer means, with nudged
-            parameters and scaled motions, tell how sure the verdict is.
+            parameters and scaled motions, tell how sure the verdict is; or ``"proved"``, to
+            prove the verdict as :func:`rockframe.prove` does.
         second_look : bool
             Whether a run with ``accuracy="fast"`` is made once more, with half as many steps
             again and without histories, to tell whether its verdict and its peak rotation are
@@ -282,7 +283,8 @@ class System:
         SolverError
             Unknown accuracy, or a tolerance out of range.
         ComponentError
-            `certify` is neither True, False nor a Certification.
+            `certify` is neither True, False, ``"proved"`` nor a Certification; or nothing can
+            be proved of the system.
         """
         from rockframe.simulation.plan import plan_run
         from rockframe.simulation.run import run

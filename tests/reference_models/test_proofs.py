@@ -10,6 +10,8 @@ import rockframe as rf
 
 pytest.importorskip("flint", reason="python-flint is not installed")
 
+from reference_models.fifty_digits import DIGITS, ExactRun
+
 from rockframe.proof import flow
 from rockframe.proof.balls import ball, upper, working_precision
 from rockframe.proof.course import Course
@@ -19,8 +21,6 @@ from rockframe.signals.slope import Slope
 from rockframe.system.bodies import OverturningAngles
 
 STEP = 0.0625
-DEGREE = 30
-DIGITS = 50
 BITS = 106
 KNOTS = 60
 
@@ -43,86 +43,6 @@ CASES = {
 
 def numbers(block):
     return rf.System(block, gravity="9.81 m/s^2").assembly.model.system
-
-
-class ExactRun:
-    """Housner's block by Taylor polynomials of high degree, without any enclosure."""
-
-    def __init__(self, block, across, up):
-        self.block = block
-        self.across = [mpmath.mpf(float(value)) for value in across]
-        self.up = (
-            [mpmath.mpf(0)] * len(across) if up is None else [mpmath.mpf(float(v)) for v in up]
-        )
-        self.states, self.sides, self.impacts = [], [], 0
-
-    def corner(self, side):
-        return self.block.right if side > 0 else self.block.left
-
-    def polynomial(self, side, state, along, weight):
-        """Taylor coefficients of the rotation, of z = exp(i (theta s - a)) by z' = -i a' z."""
-        corner = self.corner(side)
-        ratio = mpmath.mpf(corner.radius) / mpmath.mpf(corner.inertia)
-        turning = [mpmath.expj(mpmath.mpf(corner.angle) * side - state[0])]
-        a = list(state)
-        for k in range(DEGREE):
-            moment = sum(
-                row[j] * part(turning[k - j])
-                for row, part in ((weight, mpmath.im), (along, mpmath.re))
-                for j in range(min(2, k + 1))
-            )
-            a.append(-ratio * moment / ((k + 1) * (k + 2)))
-            product = sum((j + 1) * a[j + 1] * turning[k - j] for j in range(k + 1))
-            turning.append(mpmath.mpc(0, -1) * product / (k + 1))
-        return a
-
-    def run(self):
-        """Keep the state at every sample."""
-        with mpmath.workdps(DIGITS):
-            state, side, gravity = [mpmath.mpf(0)] * 2, 0, mpmath.mpf(self.block.gravity)
-            for k in range(KNOTS):
-                self.states.append(state)
-                self.sides.append(side)
-                now, end = mpmath.mpf(0), mpmath.mpf(STEP)
-                while now < end:
-                    x = [(b - a) / end for a, b in (self.across[k : k + 2], self.up[k : k + 2])]
-                    along = [self.across[k] + x[0] * now, x[0]]
-                    weight = [gravity + self.up[k] + x[1] * now, x[1]]
-                    if side == 0:
-                        now, side = self.lift(along, weight, now, end)
-                        continue
-                    now, side, state = self.rock(side, state, along, weight, now, end)
-        return self
-
-    def lift(self, along, weight, now, end):
-        times = []
-        for side in (1, -1):
-            tangent = mpmath.tan(mpmath.mpf(self.corner(side).angle))
-            value, rate = (w * tangent + side * a for w, a in zip(weight, along, strict=True))
-            if value < 0:  # from the first sample on
-                times.append((now, side))
-            elif rate < 0 and value + rate * (end - now) < 0:
-                times.append((now - value / rate, side))
-        return min(times, default=(end, 0))
-
-    def rock(self, side, state, along, weight, now, end):
-        a = self.polynomial(side, state, along, weight)
-        left = end - now
-        height = a[::-1] if state[0] else a[:0:-1]  # without the zero that it has just left
-        if not state[0] and not state[1]:
-            height = a[:1:-1]
-        places = [left * j / 64 for j in range(1, 65)]
-        below = next((t for t in places if side * mpmath.polyval(height, t) < 0), None)
-        if below is None:
-            slopes = [j * each for j, each in enumerate(a)][:0:-1]
-            return end, side, [mpmath.polyval(a[::-1], left), mpmath.polyval(slopes, left)]
-        root = mpmath.findroot(
-            lambda t: mpmath.polyval(height, t), (below - left / 64, below), solver="anderson"
-        )
-        rate = mpmath.polyval([j * each for j, each in enumerate(a)][:0:-1], root)
-        self.impacts += 1
-        restitution = mpmath.mpf(self.corner(-side).restitution)
-        return now + root, -side, [mpmath.mpf(0), rate * restitution]
 
 
 @pytest.fixture(scope="module")

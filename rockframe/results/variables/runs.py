@@ -257,6 +257,26 @@ CERTIFICATE: Final = (
 )
 """How sure the verdict is, on request."""
 
+PROOF: Final = (
+    Variable("verdict_proved", (), None, "whether the verdict is proved", dtype="bool"),
+    Variable(
+        "proved_overturning_earliest",
+        (),
+        Unit.SECOND,
+        "time before which it is proved not to have overturned, NaN unless it is proved to",
+    ),
+    Variable(
+        "proved_overturning_latest",
+        (),
+        Unit.SECOND,
+        "time by which it is proved to have overturned, NaN unless it is",
+    ),
+    Variable(
+        "proof_width", (), Unit.RADIAN, "greatest radius of the rotations that a proof encloses"
+    ),
+)
+"""What is proved of the verdict, on request."""
+
 
 MODE_BODY: Final = ("mode", "body")
 

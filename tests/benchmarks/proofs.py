@@ -1,0 +1,186 @@
+"""Random blocks under recorded motions: what is proved, beside runs and beside fifty digits.
+
+Run as ``python tests/benchmarks/proofs.py`` with the repository on the path and the records of
+tests/records.py at hand; writes docs/data/proofs.json.
+"""
+
+import argparse
+import json
+import sys
+import time
+from collections import Counter
+from pathlib import Path
+
+import mpmath
+import numpy as np
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "tests")]
+
+from records import records_folder  # noqa: E402
+from reference_models.fifty_digits import ExactRun  # noqa: E402
+
+import rockframe as rf  # noqa: E402
+from rockframe.proof.balls import ball  # noqa: E402
+from rockframe.proof.verdict import prove_block  # noqa: E402
+
+SEED = 31
+RECORDS = {
+    "El Centro 1940": ("ElCentro1940_Peknold.AT2", None),
+    "El Centro 1940, array 9": ("PEERSMD_IMPVALL_IELC180.AT2", None),
+    "Nishi-Akashi 1995": ("NIS090.AT2", None),
+    "Gilroy 1989": ("RSN763_LOMAP_GIL067.AT2", None),
+    "San Francisco 1989": ("SMC_LomaPrieta1989_0111a.smc", None),
+    "TCU128 1999": ("PEERSMD_CHICHI_TCU128-N.AT2", None),
+    "TCU128 1999, 090": ("SLAMMER_CHICHI_TCU128-090.txt", None),
+    "Wairakei 2018": ("GEONET_20180212_211557_WPWS_20.V2A", "S74E"),
+    "Hualien 2018": ("CWA_20180206_1-EAS.dat", "E"),
+    "Greece 2019": ("ESM_HI.ARS1..HNE.D.20190728.160908.C.ACC.ASC", None),
+}
+LONGEST = 20.0  # of a record, about its peak [s]
+STRONGEST = (1.0, 8.0)  # peaks, over that of uplift
+GRAVITY = 9.81
+AFTER = "15 s"
+INSTANT = 1e-8  # of overturning, by a run [s]
+
+
+def records():
+    """Give the strong part of each record, as it was written."""
+    found = {}
+    for name, (file, component) in RECORDS.items():
+        bare = {"time_step": "0.005 s", "unit": "g"} if file.endswith(".txt") else {}
+        motion = rf.GroundMotion.read(records_folder() / file, component=component, **bare)
+        samples = motion.si.horizontal.samples
+        step = motion.si.time_step
+        middle, half = int(np.argmax(np.abs(samples))), round(LONGEST / 2 / step)
+        part = samples[max(0, middle - half) : middle + half]
+        found[name] = (part - part[0]) / np.abs(part - part[0]).max(), step
+    return found
+
+
+def drawn(k, all_records):
+    """Draw a block and its motion: every third one eccentric, every fifth on a slope."""
+    rng = np.random.default_rng([SEED, k])
+    name = list(all_records)[k % len(all_records)]
+    radius, slenderness = np.exp(rng.uniform(np.log(0.4), np.log(8.0))), rng.uniform(2.5, 8.0)
+    width = 2.0 * radius / np.hypot(1.0, slenderness)
+    height = slenderness * width
+    away = rng.uniform(-0.08, 0.08) * width if k % 3 == 0 else 0.0
+    block = rf.Block(
+        width=f"{width} m", height=f"{height} m", mass="1 t",
+        centre_of_mass=(f"{height / 2} m", f"{away} m"),
+    )  # fmt: skip
+    slope = {"inclination": f"{rng.uniform(-0.02, 0.02)} rad"} if k % 5 == 0 else {}
+    scene = rf.System(block, gravity=f"{GRAVITY} m/s^2", **slope)
+    shape, step = all_records[name]
+    peak = GRAVITY / slenderness * np.exp(rng.uniform(*np.log(STRONGEST)))
+    across = np.round(peak * shape, 9)
+    vertical = {}
+    if k % 4 == 0:
+        vertical = {"vertical": (np.round(0.4 * across[::-1], 9), "m/s^2")}
+    return name, scene, rf.GroundMotion.from_arrays((across, "m/s^2"), f"{step} s", **vertical)
+
+
+def contradicted(scene, motion, proof):
+    """Whether the run of greatest accuracy ends otherwise."""
+    run = scene.simulate(motion, free_vibration=AFTER, accuracy="reference", outputs=None)
+    falls, ends = bool(run.overturned), motion.si.duration + float(AFTER.split()[0])
+    if not proof.decided:
+        return False
+    if proof.overturns and proof.earliest > ends:
+        return falls
+    if falls and proof.overturns:
+        at = float(run.overturning_time)
+        return not proof.earliest - INSTANT <= at <= proof.latest + INSTANT
+    return falls != proof.overturns
+
+
+def outside_fifty_digits(scene, motion, proof):
+    """Count the samples at which the run with fifty digits is outside of its enclosure."""
+    assembly, boxes = scene.assembly, {}
+
+    def watch(number, after, side, box):
+        if after.is_zero() and number <= motion.si.horizontal.samples.size - 1:
+            boxes[number] = side, box
+
+    prove_block(
+        assembly.model.system, motion.si, assembly.options.slope,
+        assembly.setting.overturning_angles, (0.0, 0.0), watch=watch,
+    )  # fmt: skip
+    vertical = None if motion.si.vertical is None else motion.si.vertical.samples
+    # up to where it comes to rest, which with fifty digits has no end
+    moving = [number for number, (side, _) in boxes.items() if side]
+    rests = [n for n, (side, _) in boxes.items() if side == 0 and n > min(moving, default=n)]
+    until = max((n for n in boxes if n < min(rests, default=n + 1)), default=0)
+    exact = ExactRun(
+        assembly.model.system, motion.si.horizontal.samples, vertical, motion.si.time_step,
+        degree=22, until=until,
+    ).run()  # fmt: skip
+    out = 0
+    with mpmath.workdps(50):
+        for number, (side, box) in boxes.items():
+            if number >= len(exact.states):
+                continue
+            same = side == exact.sides[number] or not any(exact.states[number])
+            pairs = zip(box, exact.states[number], strict=True)
+            held = side == 0 or all(
+                one.overlaps(ball(mpmath.nstr(value, 45))) for one, value in pairs
+            )
+            out += not (same and held)
+    return out, len(exact.states)
+
+
+def campaign(count, exact):
+    """Prove, run and compare."""
+    every = records()
+    verdicts, causes, contradictions, seconds, widths = Counter(), Counter(), [], [], []
+    bits, samples, outside = Counter(), 0, []
+    of_record = {name: Counter() for name in every}
+    level = [k for k in range(count) if k % 5]
+    chosen = set(level[:: max(1, len(level) // exact)][:exact])
+    for k in range(count):
+        name, scene, motion = drawn(k, every)
+        begun = time.process_time()
+        proof = rf.prove(scene, motion)
+        seconds.append(time.process_time() - begun)
+        verdicts[proof.verdict] += 1
+        of_record[name][proof.verdict] += 1
+        bits[str(proof.bits)] += 1
+        if proof.decided:
+            widths.append(proof.width)
+        else:
+            causes[proof.reason] += 1
+        if contradicted(scene, motion, proof):
+            contradictions.append(k)
+        if k in chosen:
+            wrong, there = outside_fifty_digits(scene, motion, proof)
+            samples += there
+            outside += [k] if wrong else []
+        print(k, name, proof.verdict, proof.reason, f"{seconds[-1]:.2f}", flush=True)
+    return {
+        "seed": SEED,
+        "blocks": count,
+        "records": {name: dict(found) for name, found in of_record.items()},
+        "verdicts": dict(verdicts),
+        "undecided by cause": dict(causes),
+        "contradicted by reference": contradictions,
+        "bits": dict(bits),
+        "greatest width": float(f"{max(widths):.2g}"),
+        "median width": float(f"{np.median(widths):.2g}"),
+        "seconds": {
+            "median": float(f"{np.median(seconds):.2g}"),
+            "90 of 100": float(f"{np.quantile(seconds, 0.9):.2g}"),
+            "worst": float(f"{max(seconds):.2g}"),
+        },
+        "fifty digits": {"blocks": len(chosen), "samples": samples, "outside": outside},
+    }
+
+
+if __name__ == "__main__":
+    asked = argparse.ArgumentParser(description=__doc__)
+    asked.add_argument("--count", type=int, default=300)
+    asked.add_argument("--exact", type=int, default=30)
+    asked.add_argument("--output", type=Path, default=ROOT / "docs" / "data" / "proofs.json")
+    given = asked.parse_args()
+    found = campaign(given.count, given.exact)
+    given.output.write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")

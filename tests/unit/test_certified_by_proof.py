@@ -1,0 +1,88 @@
+"""A run that is certified by a proof, in its dataset, on the command line and in the report."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+pytest.importorskip("flint")
+
+import rockframe as rf
+from rockframe.simulation import proving
+
+SHAPE = np.sin(np.pi * np.linspace(0.0, 1.0, 101))
+
+
+@pytest.fixture(scope="module")
+def system():
+    return rf.System(rf.Block(width="1 m", height="5 m", mass="10 t"))
+
+
+def pulse(peak):
+    return rf.GroundMotion.from_arrays((np.round(peak * SHAPE, 9), "m/s^2"), "0.01 s")
+
+
+@pytest.mark.parametrize(("peak", "falls"), [(3.0, False), (3.6, True)])
+def test_the_proof_stands_beside_the_verdict(system, peak, falls):
+    run = system.simulate(pulse(peak), free_vibration="10 s", certify="proved", outputs=None)
+    assert bool(run.verdict_proved)
+    assert bool(run.overturned) is falls
+    assert run.attrs["proof_verdict"] == ("overturns" if falls else "safe for ever")
+    assert run.attrs["proof"].startswith("Proved: the block")
+    assert "says nothing of how well" in run.attrs["proof"]
+    assert np.isfinite(run.proved_overturning_earliest) == falls
+    if falls:
+        assert run.proved_overturning_earliest <= run.overturning_time + 1e-6
+        assert run.proved_overturning_latest >= run.overturning_time - 1e-6
+    assert run.proof_width < 1e-15
+    assert "verdict_margin" not in run
+
+
+def test_a_run_that_ends_too_early_is_told(system):
+    with pytest.warns(rf.SolverWarning, match="after the end of the run"):
+        run = system.simulate(pulse(3.6), certify="proved", outputs=None)
+    assert bool(run.verdict_proved)
+    assert not bool(run.overturned)
+
+
+def test_a_contradiction_is_told_loudly(system, monkeypatch):
+    given = proving.proof_of
+
+    def wrong(*arguments, **options):
+        return replace(given(*arguments, **options), verdict="safe for ever")
+
+    monkeypatch.setattr("rockframe.simulation.run.proof_of", wrong)
+    with pytest.warns(rf.SolverWarning, match="the run is wrong, or the proof is"):
+        run = system.simulate(pulse(3.6), free_vibration="10 s", certify="proved", outputs=None)
+    assert not bool(run.verdict_proved)
+    assert "the run is wrong" in run.attrs["cautions"]
+
+
+def test_what_cannot_be_proved_is_refused_before_the_run(system):
+    with pytest.raises(rf.ComponentError, match="simulate: proofs are of reaching"):
+        system.simulate(pulse(3.0), certify="proved", overturning="continue")
+    pads = rf.System(
+        rf.Block(width="1 m", height="5 m", mass="10 t"),
+        rf.TwoSpringSupport(frequency_ratio=10, damping_ratio=0.1),
+    )
+    with pytest.raises(rf.ComponentError, match="simulate: proofs are of a Block on rigid"):
+        pads.simulate(pulse(3.0), certify="proved")
+
+
+def test_the_report_and_the_command_say_it(system, tmp_path, capsys):
+    from rockframe.command.main import main
+
+    run = system.simulate(pulse(3.0), certify="proved")
+    page = rf.report(run, tmp_path / "run.html").read_text(encoding="utf-8")
+    assert "The verdict is proved" in page
+    assert "No certificate" not in page
+    assert "Proved: the block does not overturn" in page
+    scene, motion = tmp_path / "scene.toml", tmp_path / "pulse.AT2"
+    pulse(3.0).to_at2(motion)
+    parts = '[block]\nwidth = "1 m"\nheight = "5 m"\nmass = "10 t"\n'
+    scene.write_text(parts)
+    assert main(["certify", str(scene), "--motion", str(motion), "--proved"]) == 0
+    assert "Proof: Proved: the block" in capsys.readouterr().out.replace("\n", " ")
+    scene.write_text(f'{parts}[run]\ncertify = "proved"\n')
+    assert main(["run", str(scene), "--motion", str(motion)]) == 0
+    assert "Proof: Proved: the block" in capsys.readouterr().out
