@@ -48,7 +48,7 @@ def model_ladder(system: System) -> dict[str, System]:
     From rigid ground over pads to pads, cap and soil, first by cascade, then coupled; or
     from rigid ground to soil, without the cap and with it. A base of a user's own comes after
     those that it calls simpler. Each with small rotations first, then with finite ones; a block
-    that slides on rigid ground first held, then sliding.
+    that slides first held, then sliding.
 
     Parameters
     ----------
@@ -115,7 +115,8 @@ def model_ladder(system: System) -> dict[str, System]:
                     )
     if slides:
         computed: dict[str, Any] = {**options, "sliding": Sliding.COMPUTED}
-        models["rigid ground, sliding"] = System(*given.values(), **computed)
+        held = list(models)[-1] if models else "rigid ground"
+        models[f"{held}, sliding"] = System(*given.values(), **computed)
     if system.parts.own():
         models[system.setting.model] = System(*given.values(), rotation=system.rotation, **options)
     return models

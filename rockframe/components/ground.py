@@ -5,9 +5,8 @@ from typing import ClassVar, Literal, TypeAlias
 
 from rockframe.components.base import Component
 from rockframe.components.parameters import Choice, Ratio
-from rockframe.components.values import SIValues
-from rockframe.errors import ComponentError
-from rockframe.units import NOT_NEGATIVE, UNIT_INTERVAL, RatioLike
+from rockframe.components.values import Friction, KineticFriction, SIValues, check_frictions
+from rockframe.units import UNIT_INTERVAL, RatioLike
 
 
 class Impact(StrEnum):
@@ -53,19 +52,8 @@ class RigidGround(Component):
         default=None,
         example="0.9",
     )
-    friction = Ratio(
-        NOT_NEGATIVE,
-        doc="Coefficient of friction under the block while it does not slip; without one it is "
-        "held.",
-        default=None,
-        example="0.5",
-    )
-    kinetic_friction = Ratio(
-        NOT_NEGATIVE,
-        doc="Coefficient of friction while it slips; that at rest unless given.",
-        default=None,
-        example="0.45",
-    )
+    friction = Friction(of="the block")
+    kinetic_friction = KineticFriction()
     impact = Choice(
         Impact.COULOMB,
         doc="Whether a corner that strikes slips as far as kinetic friction lets it, or is held.",
@@ -87,12 +75,4 @@ class RigidGround(Component):
         )
 
     def _numbers(self, given: SIValues) -> SIValues:
-        static, kinetic = given.friction, given.kinetic_friction
-        if kinetic is not None and (static is None or kinetic > static):
-            found = "none is given" if static is None else f"that is {static:.6g}"
-            msg = (
-                f"RigidGround: kinetic_friction, here {kinetic:.6g}, is at most the friction "
-                f"at rest, and {found}"
-            )
-            raise ComponentError(msg)
-        return given
+        return check_frictions("RigidGround", given)

@@ -5,7 +5,13 @@ from typing import ClassVar
 from rockframe.components.alternatives import OneOf
 from rockframe.components.base import Component
 from rockframe.components.parameters import Parameter, Ratio
-from rockframe.components.values import DampingRatio, Friction
+from rockframe.components.values import (
+    DampingRatio,
+    Friction,
+    KineticFriction,
+    SIValues,
+    check_frictions,
+)
 from rockframe.units import (
     DAMPING,
     NOT_NEGATIVE,
@@ -25,8 +31,9 @@ class TwoSpringSupport(Component):
     UnitsError
         A value has the wrong unit, or none.
     ComponentError
-        A value is out of range, or not exactly one of `frequency_ratio` and
-        `stiffness`, and one of `damping_ratio` and `damping`, is given.
+        A value is out of range, not exactly one of `frequency_ratio` and `stiffness`, and one of
+        `damping_ratio` and `damping`, is given, or `kinetic_friction` without `friction` or above
+        it.
 
     Warns
     -----
@@ -73,6 +80,7 @@ class TwoSpringSupport(Component):
     )
 
     friction = Friction(of="the block")
+    kinetic_friction = KineticFriction()
 
     def __init__(
         self,
@@ -83,6 +91,7 @@ class TwoSpringSupport(Component):
         damping: QuantityLike | None = None,
         restitution: RatioLike | None = None,
         friction: RatioLike | None = None,
+        kinetic_friction: RatioLike | None = None,
     ) -> None:
         super().__init__(
             frequency_ratio=frequency_ratio,
@@ -91,4 +100,8 @@ class TwoSpringSupport(Component):
             damping=damping,
             restitution=restitution,
             friction=friction,
+            kinetic_friction=kinetic_friction,
         )
+
+    def _numbers(self, given: SIValues) -> SIValues:
+        return check_frictions("TwoSpringSupport", given)

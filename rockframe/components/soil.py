@@ -7,7 +7,13 @@ from rockframe.arguments import hinted
 from rockframe.components.alternatives import OneOf
 from rockframe.components.base import Component
 from rockframe.components.parameters import Choice, Parameter
-from rockframe.components.values import DampingRatio, Friction
+from rockframe.components.values import (
+    DampingRatio,
+    Friction,
+    KineticFriction,
+    SIValues,
+    check_frictions,
+)
 from rockframe.units import (
     BED_DAMPING,
     BED_STIFFNESS,
@@ -82,6 +88,7 @@ class WinklerSoil(Component):
     )
 
     friction = Friction(of="what stands on it")
+    kinetic_friction = KineticFriction()
 
     _depth: float | None = None
 
@@ -99,6 +106,7 @@ class WinklerSoil(Component):
         damping_ratio: RatioLike | None = None,
         separation: SeparationLike = Separation.DISPLACEMENT,
         friction: RatioLike | None = None,
+        kinetic_friction: RatioLike | None = None,
     ) -> None:
         super().__init__(
             stiffness=stiffness,
@@ -106,7 +114,11 @@ class WinklerSoil(Component):
             damping_ratio=damping_ratio,
             separation=separation,
             friction=friction,
+            kinetic_friction=kinetic_friction,
         )
+
+    def _numbers(self, given: SIValues) -> SIValues:
+        return check_frictions("WinklerSoil", given)
 
     @classmethod
     def from_subgrade_modulus(
@@ -118,6 +130,7 @@ class WinklerSoil(Component):
         damping_ratio: RatioLike | None = None,
         separation: SeparationLike = Separation.DISPLACEMENT,
         friction: RatioLike | None = None,
+        kinetic_friction: RatioLike | None = None,
     ) -> Self:
         """Build the bed from the soil's subgrade modulus.
 
@@ -127,7 +140,7 @@ class WinklerSoil(Component):
             Pressure per settlement [Pa m^-1].
         depth : str or Quantity
             Depth of the base out of the plane of rocking [m].
-        damping, damping_ratio, separation, friction
+        damping, damping_ratio, separation, friction, kinetic_friction
             As for :class:`WinklerSoil`.
 
         Returns
@@ -148,6 +161,7 @@ class WinklerSoil(Component):
             damping_ratio=damping_ratio,
             separation=separation,
             friction=friction,
+            kinetic_friction=kinetic_friction,
         )
         object.__setattr__(soil, "_depth", metres)
         return soil

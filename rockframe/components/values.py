@@ -4,6 +4,7 @@ from types import SimpleNamespace
 from typing import Any, Final, NoReturn, Self, overload
 
 from rockframe.components.parameters import Ratio
+from rockframe.errors import ComponentError
 from rockframe.units import NOT_NEGATIVE, Measure, Quantity, quantity
 
 
@@ -40,14 +41,34 @@ class SIProperty:
 
 
 class Friction(Ratio[None]):
-    """A coefficient of friction that runs are held to; it changes no motion."""
+    """A coefficient of friction at rest."""
 
     def __init__(self, *, of: str) -> None:
         words = (
-            f"Coefficient of friction under {of}: a run that needs more of it warns; the model "
-            "holds the base all the same."
+            f"Coefficient of friction under {of} while it does not slip; without one it is held."
         )
         super().__init__(NOT_NEGATIVE, doc=words, default=None, example="0.5")
+
+
+class KineticFriction(Ratio[None]):
+    """A coefficient of friction of slip."""
+
+    def __init__(self) -> None:
+        words = "Coefficient of friction of slip; that at rest unless given."
+        super().__init__(NOT_NEGATIVE, doc=words, default=None, example="0.45")
+
+
+def check_frictions(owner: str, given: SIValues) -> SIValues:
+    """Refuse a friction of slip without one at rest, or above it."""
+    static, kinetic = given.friction, given.kinetic_friction
+    if kinetic is not None and (static is None or kinetic > static):
+        found = "none is given" if static is None else f"that is {static:.6g}"
+        msg = (
+            f"{owner}: kinetic_friction, here {kinetic:.6g}, is at most the friction at rest, and "
+            f"{found}"
+        )
+        raise ComponentError(msg)
+    return given
 
 
 CRITICAL: Final = 1.0

@@ -12,6 +12,7 @@ import numpy as np
 from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics import events
 from rockframe.dynamics.base import Guards
+from rockframe.dynamics.coulomb import Answers, coulomb_impulse
 from rockframe.dynamics.events import IMPACT, REST, SEPARATION, SILENT, UPLIFT
 from rockframe.dynamics.protocol import (
     BODY_COLUMNS,
@@ -346,38 +347,14 @@ class SlideRock(NamedTuple):
     ) -> tuple[float, float]:
         """Give the impulses along and normal to the ground that stop a corner.
 
-        By :eq:`eq-slide-impact`. The normal one acts at `lever` times `beside` from the centre of
-        mass. A slip may end, and turn round, within the impact.
+        The normal one acts at `lever` times `beside` from the centre of mass.
         """
         inertia, friction = self.inertia, self.impulsive
-        normal_by_normal = 1.0 + lever * beside * beside / inertia
-        normal_by_along = -beside * above / inertia
-        along_by_normal = lever * normal_by_along
-        along_by_along = 1.0 + above * above / inertia
-        both = normal_by_normal * along_by_along - normal_by_along * along_by_normal
-        along = normal = 0.0
-        if friction == math.inf and slip * normal_by_along < sinking * along_by_along:
+        mixed, along = -beside * above / inertia, 1.0 + above * above / inertia
+        answers = Answers(1.0 + lever * beside * beside / inertia, mixed, lever * mixed, along)
+        if friction == math.inf and slip * mixed < sinking * along:
             friction = self.kinetic  # to hold the corner the ground would have to pull
-        if slip != 0.0 and friction < math.inf:
-            ratio = -math.copysign(friction, slip)
-            change = along_by_normal + ratio * along_by_along
-            slowing = normal_by_normal + ratio * normal_by_along
-            stops = -slip / change if slip * change < 0.0 else math.inf
-            ends = -sinking / slowing if slowing > 0.0 else math.inf
-            if ends < math.inf and ends <= stops:
-                return ratio * ends, ends
-            if stops < math.inf:
-                normal, along = stops, ratio * stops
-                slip, sinking = 0.0, sinking + slowing * stops
-        pushed = (slip * normal_by_along - sinking * along_by_along) / both
-        held = -(slip + along_by_normal * pushed) / along_by_along
-        if abs(held) > friction * pushed:
-            ratio = math.copysign(friction, held)
-            across = normal_by_normal + ratio * normal_by_along
-            if across > 0.0:
-                pushed = -sinking / across
-                held = ratio * pushed
-        return along + held, normal + pushed
+        return coulomb_impulse(answers, slip, sinking, friction)
 
     @kernel
     def struck(self, bears: int, state: Vector, speeds: tuple[float, float], lever: float) -> None:

@@ -261,26 +261,34 @@ def switch_end(
 
 
 @kernel
+def next_pivot(
+    system: Bodies, part: OnBase, k: int, mode: int, state: Vector, ground: Ground
+) -> int:
+    """Give the corner that leads from now on; upright and at rest, the first lean decides."""
+    was = system.part_mode(mode, k)
+    if was.pivot != PIVOT_CENTRE:
+        return PIVOT_LEFT if was.pivot == PIVOT_RIGHT else PIVOT_RIGHT
+    body = system.state_of(k, state)
+    tendency = body.angular_velocity
+    if tendency == 0.0 and part.body.left != part.body.right:
+        # its own weight rotates a body whose centre of mass is to the side
+        rises = system.end_accelerations(k, mode, state, ground)
+        tendency = rises[0] - rises[1]
+    elif tendency == 0.0:
+        tendency = system.tendency(k, mode, state, ground)
+    return leading_pivot(body.rotation, tendency)
+
+
+@kernel
 def change_pivot(
     system: Bodies, part: OnBase, k: int, mode: int, state: Vector, ground: Ground, memory: Vector
 ) -> int:
-    """Change the corner that leads; upright and at rest, the first lean decides."""
-    was = system.part_mode(mode, k)
-    if was.pivot == PIVOT_CENTRE:
-        memory[LAST_EVENT] = SILENT
-        body = system.state_of(k, state)
-        tendency = body.angular_velocity
-        if tendency == 0.0 and part.body.left != part.body.right:
-            # its own weight rotates a body whose centre of mass is to the side
-            rises = system.end_accelerations(k, mode, state, ground)
-            tendency = rises[0] - rises[1]
-        elif tendency == 0.0:
-            tendency = system.tendency(k, mode, state, ground)
-        pivot = leading_pivot(body.rotation, tendency)
-    else:
+    """Change the corner that leads."""
+    was, pivot = system.part_mode(mode, k), next_pivot(system, part, k, mode, state, ground)
+    memory[LAST_EVENT] = SILENT
+    if was.pivot != PIVOT_CENTRE:
         memory[LAST_EVENT] = PIVOT_CHANGE
         system.stand_upright(k, state)
-        pivot = PIVOT_LEFT if was.pivot == PIVOT_RIGHT else PIVOT_RIGHT
     new = system.with_part(mode, k, Mode(was.contact, pivot, was.slides))
     if not was.slides:
         repin(system, part, k, mode, new, state, memory)

@@ -31,6 +31,8 @@ MOST_OF_IT: Final = 0.95
 """Share of the largest slip below which that is told beside what is left at the end."""
 NOTHING_OF_IT: Final = 1e-9
 """Share of the largest slip below which what is left is rounding."""
+LEAST_SLIP: Final = 1e-6
+"""Slip that is worth telling; changes of the held point leave less [m]."""
 Generic = NDArray[Any]
 Values = Mapping[str, "Generic | float | int | bool"]
 
@@ -281,7 +283,7 @@ def verdict(run: Summary, setting: Setting, *, end: float) -> str:
 
 def _slid(slips: SlipRange) -> str:
     """Tell how far a body slid; also how far at most, where that is worth telling."""
-    if slips.peak == 0.0:
+    if slips.peak < LEAST_SLIP:
         return "Did not slide"
     most = Direction.RIGHT if slips.right > slips.left else Direction.LEFT
     side = Direction.RIGHT if slips.residual > 0.0 else Direction.LEFT

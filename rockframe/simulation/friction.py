@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from rockframe.results.along_steps import AlongSteps, Values
-from rockframe.results.outcome import Generic
+from rockframe.results.outcome import LEAST_SLIP, Generic
 from rockframe.signals.arrays import Array
 from rockframe.system.assembly import Assembly
 
@@ -126,7 +126,7 @@ def count_words(would_slide: Generic) -> str:
 
 def slid_words(peaks: Generic) -> str:
     """Say how many cases slid and how far; nothing where none did."""
-    slid = peaks > 0.0
+    slid = peaks > LEAST_SLIP
     return f"{int(slid.sum())} slid, by {peaks[slid].max():.3g} m at most" if slid.any() else ""
 
 

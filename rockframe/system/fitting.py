@@ -1,14 +1,19 @@
 """Whether parts fit one another."""
 
 import math
+from typing import Final
 
-from rockframe.components import RigidGround, Stack, Tendon
+from rockframe.components import Component, RigidGround, Stack, Tendon
 from rockframe.components.block_numbers import squat
 from rockframe.system.options import Options, Sliding
 from rockframe.system.own_base import OwnBase
 from rockframe.system.parts import Parts
 from rockframe.system.slots import slot_of
 
+SMALL_SLIDING: Final = (
+    "a block slides with rotation='finite' only; give sliding='checked' to hold it and compare its "
+    "friction"
+)
 _ROUNDING = 1e-12
 BASES = ("pads", "soil", "ground")
 """Slots of bases that bodies of a stack may stand on."""
@@ -156,11 +161,20 @@ def contradictions(parts: Parts) -> list[str]:
     ]
 
 
+def friction_under(part: Component, options: Options) -> tuple[float, float] | None:
+    """Give the friction of a base, at rest and of slip; None where the base holds what is on it."""
+    static = getattr(part.si, "friction", None)
+    if static is None or options.sliding is Sliding.CHECKED or isinstance(part, OwnBase):
+        return None
+    kinetic = part.si.kinetic_friction
+    return static, static if kinetic is None else kinetic
+
+
 def is_sliding(parts: Parts, options: Options) -> bool:
     """Whether a block stands on rigid ground on which it slides."""
-    friction = None if parts.ground is None else parts.ground.si.friction
-    given = parts.block is not None and parts.wall is None and friction is not None
-    return given and options.sliding is Sliding.COMPUTED
+    if parts.block is None or parts.wall is not None or parts.ground is None:
+        return False
+    return friction_under(parts.ground, options) is not None
 
 
 def missizes(parts: Parts, options: Options) -> list[str]:

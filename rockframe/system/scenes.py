@@ -16,6 +16,7 @@ from rockframe.system.parts import Parts
 from rockframe.system.rear_wall import rear_wall_setting
 from rockframe.system.rocking_frame import rocking_frame_setting
 from rockframe.system.setting import Setting
+from rockframe.system.sliding_base import alone_on
 from rockframe.system.sliding_ground import rigid_ground_setting
 from rockframe.system.slots import RESTRAINER, support_of
 from rockframe.system.stack import StackSetting, block_setting, stack_setting
@@ -45,18 +46,28 @@ class Scene:
         )
 
 
-def _alone(slot: str, parts: Parts, options: Options) -> AloneSetting:
-    """Put a block on the base in a slot."""
+def _held(slot: str, parts: Parts, options: Options) -> AloneSetting:
+    """Put a block on the base in a slot, which holds it."""
     load = load_of(parts.the_block, options)
     return AloneSetting(load, support_of(parts[slot], load))
 
 
-def _with_cap(parts: Parts, options: Options) -> AloneSetting:
-    """Put block and cap as one body on the soil."""
+def _held_with_cap(parts: Parts, options: Options) -> AloneSetting:
+    """Put block and cap as one body on the soil, which holds it."""
     cap = parts.the_cap
     load = BaseLoad(one_body(parts.the_block, cap), options)
     offset = cap.half_height - load.body.centre_height
     return AloneSetting(load, support_of(parts["soil"], load), cap_offset=offset)
+
+
+def _alone(slot: str, parts: Parts, options: Options) -> AloneSetting:
+    """Put a block on the base in a slot."""
+    return alone_on(parts[slot], _held(slot, parts, options))
+
+
+def _with_cap(parts: Parts, options: Options) -> AloneSetting:
+    """Put block and cap as one body on the soil."""
+    return alone_on(parts["soil"], _held_with_cap(parts, options))
 
 
 def _refuse_twins(parts: Parts, upper: AloneSetting, lower: AloneSetting) -> None:
@@ -73,7 +84,7 @@ def _refuse_twins(parts: Parts, upper: AloneSetting, lower: AloneSetting) -> Non
 
 def _stacked(kind: type[StackedSetting], parts: Parts, options: Options) -> StackedSetting:
     """Put a block on pads on a cap on soil."""
-    upper, lower = _alone("pads", parts, options), _with_cap(parts, options)
+    upper, lower = _held("pads", parts, options), _held_with_cap(parts, options)
     _refuse_twins(parts, upper, lower)
     cap = parts.the_cap
     return kind(upper.load, upper, lower, cap)

@@ -5,11 +5,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rockframe.components.ground import Impact
-from rockframe.components.values import SIValues
 from rockframe.errors import AssemblyError
-from rockframe.system.fitting import is_sliding
-from rockframe.system.impact import Restitutions, resolve_restitution
-from rockframe.system.load import BaseLoad, load_of
+from rockframe.system.fitting import SMALL_SLIDING, friction_under
+from rockframe.system.impact import resolve_restitution
+from rockframe.system.load import load_of
 from rockframe.system.options import Options
 from rockframe.system.parts import Parts
 from rockframe.system.rigid_ground import RigidGroundSetting, refuse_fall
@@ -140,28 +139,23 @@ class SlidingSetting(RigidGroundSetting):
 def rigid_ground_setting(parts: Parts, options: Options) -> RigidGroundSetting:
     """Resolve the parts of a scene on rigid ground."""
     load = load_of(parts.the_block, options)
-    given = None if parts.ground is None else parts.ground.si
+    ground, given = parts.ground, None if parts.ground is None else parts.ground.si
     restitution = resolve_restitution(
         None if given is None else given.restitution, load.body.maximum_restitution
     )
     setting = RigidGroundSetting(load, restitution)
-    if given is not None and is_sliding(parts, options):
-        setting = _sliding(load, restitution, given)
+    friction = None if ground is None else friction_under(ground, options)
+    if ground is not None and friction is not None:
+        setting = _sliding(SlidingSetting(load, restitution, *friction, ground.si.impact))
     refuse_fall(setting)
     return setting
 
 
-def _sliding(load: BaseLoad, restitution: Restitutions, ground: SIValues) -> SlidingSetting:
-    """Put a block on rigid ground with friction; refuse what has no answer."""
-    static = ground.friction
-    kinetic = static if ground.kinetic_friction is None else ground.kinetic_friction
-    setting = SlidingSetting(load, restitution, static, kinetic, ground.impact)
+def _sliding(setting: SlidingSetting) -> SlidingSetting:
+    """Refuse what has no answer."""
     faults = _ill_posed(setting)
-    if load.options.small:
-        faults.append(
-            "a block slides with rotation='finite' only; give sliding='checked' to hold it and "
-            "compare its friction"
-        )
+    if setting.options.small:
+        faults.append(SMALL_SLIDING)
     if faults:
         raise AssemblyError(faults)
     return setting

@@ -317,4 +317,4 @@ def test_the_friction_of_a_stack_is_that_of_both_its_bases():
     assert "The block would slide from " in response.attrs["verdict"]
     assert "; the cap would slide from " in response.attrs["verdict"]
     with pytest.warns(ModelWarning, match="the block would slide"):
-        rf.System(BLOCK, soil).simulate(PULSE)
+        rf.System(BLOCK, soil, sliding="checked").simulate(PULSE)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from reference_models.sliding import compare, draw
+from reference_models.sliding import compare, draw, draw_on_base
 
 pytestmark = [pytest.mark.reference_models, pytest.mark.filterwarnings("ignore")]
 
@@ -10,9 +10,21 @@ pytestmark = [pytest.mark.reference_models, pytest.mark.filterwarnings("ignore")
 SCENES = (2, 4, 8, 11, 15, 21, 33)
 
 
+# pads and beds under each rule of restraint, with landings, flights, a slope, and overturning
+ON_BASES = (1, 2, 8, 10, 13, 18, 20)
+
+
 @pytest.mark.parametrize("number", SCENES)
 def test_random_scenes(number):
-    found = compare(draw(np.random.default_rng([30, number])))
+    check(compare(draw(np.random.default_rng([30, number]))))
+
+
+@pytest.mark.parametrize("number", ON_BASES)
+def test_random_scenes_on_pads_and_beds(number):
+    check(compare(draw_on_base(np.random.default_rng([31, number]))))
+
+
+def check(found):
     assert [kind for _, kind in found["ours"]] == [kind for _, kind in found["theirs"]]
     assert found["peak"] <= 1e-6
     assert found["slip"] <= 1e-6 * max(found["slips"], 1e-3)

@@ -10,7 +10,7 @@ import numpy as np
 
 from rockframe.compiled import Vector, inlined, kernel, numbers_in, part_of, stretch
 from rockframe.dynamics.bodies import DEGREES
-from rockframe.dynamics.chain.rows import COLUMNS, CONSTRAINT, MOST_CONSTRAINTS, PLACES, ROW
+from rockframe.dynamics.chain.rows import COLUMNS
 from rockframe.dynamics.chain.rows import GUARDS as BODY_GUARDS
 from rockframe.dynamics.chain.system import Chain
 from rockframe.dynamics.links import GUARDS, LinkNumbers
@@ -83,13 +83,6 @@ class LinkRows(Chain):
     law: Any
 
     @inlined
-    def first_link(self) -> int:
-        """Give the place of the rows of links, behind those of the chain and its room."""
-        room = PLACES + MOST_CONSTRAINTS * CONSTRAINT + 2 * DEGREES + 2 * BODY_GUARDS + COLUMNS
-        count = self.body_count
-        return count * (ROW + room) + POWERS + (MOST_CONSTRAINTS * count) ** 2
-
-    @inlined
     def link_width(self) -> int:
         """Give the length of the row of a link."""
         return NUMBERS + self.law.number_count()
@@ -97,12 +90,12 @@ class LinkRows(Chain):
     @inlined
     def behind_links(self) -> int:
         """Give the place behind the rows of links."""
-        return self.first_link() + self.link_count * self.link_width()
+        return self.behind_chain() + self.link_count * self.link_width()
 
     @inlined
     def row_of_link(self, i: int) -> Vector:
         """Give the row of a link."""
-        return stretch(self.rows, self.first_link() + i * self.link_width(), self.link_width())
+        return stretch(self.rows, self.behind_chain() + i * self.link_width(), self.link_width())
 
     @inlined
     def law_of(self, row: Vector) -> Any:

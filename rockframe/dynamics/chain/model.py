@@ -18,6 +18,7 @@ from rockframe.dynamics.bed import both_contacts
 from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, DEGREES, ROTATION, VERTICAL
 from rockframe.dynamics.body import BodyState
 from rockframe.dynamics.chain import rows as at
+from rockframe.dynamics.chain.friction import SlippingChain, with_friction
 from rockframe.dynamics.chain.link_rows import ChainLink
 from rockframe.dynamics.chain.linked import Linked, LinkedRigidChain, linked
 from rockframe.dynamics.chain.rigid import KEPT, RigidChain
@@ -68,6 +69,7 @@ def chain(
     limits: Sequence[tuple[float, float]] = (),
     ties: Sequence[ChainLink] = (),
     held: Callable[[float], float] | None = None,
+    frictions: Sequence[tuple[float, float]] = (),
 ) -> ContactModel:
     """Assemble the model of bodies upon one another.
 
@@ -87,6 +89,8 @@ def chain(
     held : callable, optional
         From a rotation of the highest body to the height at which it starts there; unless
         given, that at which its base carries its weight.
+    frictions : sequence of tuple of float
+        Coefficients of friction of each base, at rest and of slip; none where bases hold.
 
     Returns
     -------
@@ -94,7 +98,7 @@ def chain(
     """
     top, count = links[0].body, len(links)
     bare = chain_of(links)
-    system = linked(bare, ties) if ties else bare
+    system = linked(bare, ties) if ties else with_friction(bare, frictions) if frictions else bare
     fastest, damping_rate = fastest_vibration(links, ties)
     rigid = some_rigid(links)
     carried = np.cumsum([one.mass for one in links])
@@ -119,10 +123,20 @@ def chain(
         columns=(
             *(column for k in range(count) for column in _columns(links[k].base, k)),
             *(column for i in range(len(ties)) for column in _tie_columns(i, shown=i < tied)),
+            *(
+                Column(column_of(name, k))
+                for k in range(count if frictions else 0)
+                for name in ("slip", "slip_velocity")
+            ),
         ),
         memory=(
             *MEMORY, *(f"held_place_of_{k}" for k in range(1, count)), "body_of_event",
             *(KEPT if rigid else ()), *(("link_of_event",) if ties else ()),
+            *(
+                f"{name}_of_{k}"
+                for k in range(count if frictions else 0)
+                for name in ("slip_offset", "peak_slip_left", "peak_slip_right")
+            ),
         ),
         shows_bodies=count > 1,
         links=tied,
@@ -286,4 +300,7 @@ def _initial(system: Chain, starts: Starts, start: Start) -> tuple[int, Vector, 
     if isinstance(system, Linked):
         memory = np.append(memory, 0.0)
         mode = system.start_links(mode, state)
+    if isinstance(system, SlippingChain):
+        places = memory[HELD_PLACE : HELD_PLACE + count]
+        memory = np.concatenate([memory, *([-place, 0.0, 0.0] for place in places)])
     return mode, state, memory

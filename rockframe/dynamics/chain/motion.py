@@ -78,6 +78,21 @@ def press_at(system: Rows, k: int, press: float, moment: float, room: Vector) ->
 
 
 @inlined
+def load_along(system: Rows, k: int, thrust: float, room: Vector) -> None:
+    """Add a force along a base on the point of its body that slips, and the reaction."""
+    i = k * PLACES
+    x, y = thrust * room[i + at.COSINE], -thrust * room[i + at.SINE]
+    room[i + at.LOAD_X] += x
+    room[i + at.LOAD_Y] += y
+    room[i + at.LOAD_MOMENT] -= thrust * room[i + at.REACH]
+    if k + 1 < system.body_count:
+        j = i + PLACES
+        room[j + at.LOAD_X] -= x
+        room[j + at.LOAD_Y] -= y
+        room[j + at.LOAD_MOMENT] += thrust * (room[i + at.REACH] - room[i + at.ARM])
+
+
+@inlined
 def coriolis_along(i: int, room: Vector) -> float:
     """Give what the rotation of the body below adds to the acceleration along it."""
     rate = room[i + at.FRAME_RATE]

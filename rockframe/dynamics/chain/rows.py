@@ -398,6 +398,13 @@ class Rows(InState, Lists):
         return stretch(self.rows, first, (MOST_CONSTRAINTS * self.body_count) ** 2)
 
     @inlined
+    def behind_chain(self) -> int:
+        """Give the place behind all these rooms."""
+        room = PLACES + MOST_CONSTRAINTS * CONSTRAINT + 2 * DEGREES + 2 * GUARDS + COLUMNS
+        count = self.body_count
+        return count * (ROW + room) + POWERS + (MOST_CONSTRAINTS * count) ** 2
+
+    @inlined
     def on_base(self, k: int) -> OnBase:
         """Give a body on its base."""
         r = part_of(self.rows, k * ROW)

@@ -162,10 +162,10 @@ class Chain(Rows):
         for k in range(self.body_count):
             i, mass = k * PLACES, self.number(k, at.MASS)
             part, body = self.on_base(k), self.state_of(k, state)
-            contact = part.contact_with_force(self.part_mode(mode, k))
             line = part.body.base_line_at(body)
-            base = part.base.force(contact, line, ())
+            base = part.base.force(self.contact_with_force(k, mode), line, ())
             dissipated += base.dissipated
+            room[i + at.PRESS] = base.upward
             press_at(self, k, base.upward, base.moment, room)
             supplied -= mass * (ground.x * room[i + at.SPEED_X] + ground.y * room[i + at.SPEED_Y])
         dissipated += self.pull(mode, state, room)
@@ -178,6 +178,11 @@ class Chain(Rows):
         powers = DEGREES * self.body_count + self.variables()
         out[powers], out[powers + 1] = dissipated, supplied
         return out
+
+    @inlined
+    def contact_with_force(self, k: int, mode: int) -> int:
+        """Give the contact of a body with its base as far as forces go."""
+        return self.on_base(k).contact_with_force(self.part_mode(mode, k))
 
     @inlined
     def pull(self, mode: int, state: Vector, room: Vector) -> float:

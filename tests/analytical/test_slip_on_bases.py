@@ -1,0 +1,112 @@
+"""A block that slips on pads and on a bed: limits, mirror images, energies, and what is told."""
+
+import numpy as np
+import pytest
+
+import rockframe as rf
+from rockframe.dynamics.coulomb import Answers, coulomb_impulse
+
+pytestmark = [pytest.mark.analytical, pytest.mark.filterwarnings("ignore")]
+
+BLOCK = rf.Block(width="1 m", height="3 m", mass="1 t")
+PADS = rf.TwoSpringSupport(frequency_ratio=12, damping_ratio=0.1)
+SOIL = rf.WinklerSoil(stiffness="2 MPa", damping_ratio=0.1)
+BASES = pytest.mark.parametrize("base", [PADS, SOIL], ids=["pads", "soil"])
+TIMES = np.arange(0.0, 1.01, 0.05)
+ACROSS, UP = 3.4 * np.sin(9.0 * TIMES), 2.0 * np.sin(14.0 * TIMES)
+
+
+def motion(sign=1.0):
+    return rf.GroundMotion.from_arrays(
+        (sign * ACROSS, "m/s^2"), "0.05 s", vertical=(UP, "m/s^2")
+    )  # fmt: skip
+
+
+def run(base, *, sign=1.0, accuracy="standard", **options):
+    return rf.System(BLOCK, base, **options).simulate(
+        motion(sign), free_vibration="0.3 s", accuracy=accuracy, outputs=("energy",)
+    )
+
+
+@BASES
+def test_without_friction_the_ground_moves_beneath_the_block(base):
+    found = run(base.replace(friction=0.0))
+    ground = motion().si.horizontal.samples
+    step = 0.05  # linear between samples: velocity and displacement of the ground by parts
+    speed = np.concatenate([[0.0], np.cumsum(0.5 * step * (ground[1:] + ground[:-1]))])
+    place = np.cumsum(step * speed[:-1] + step**2 * (ground[:-1] / 3.0 + ground[1:] / 6.0))
+    np.testing.assert_allclose(
+        found.slip.sel(time=1.0, method="nearest"), -place[-1], rtol=0.0, atol=1e-9
+    )
+    assert abs(found.rotation).max() < 1e-12
+
+
+@BASES
+@pytest.mark.parametrize("rule", ["contact-state", "leading-corner"])
+def test_friction_without_end_holds_the_base(base, rule):
+    # held, the point changes before the restitution of an impact is taken; with friction in it
+    if base is PADS and rule == "contact-state":
+        base = base.replace(restitution=1.0)
+    held = run(base, restraint=rule, accuracy="reference")
+    far = {}
+    for friction in (1e4, 1e8):
+        found = run(base.replace(friction=friction), restraint=rule, accuracy="reference")
+        far[friction] = abs(found.rotation - held.rotation).max().item() / held.peak_rotation.item()
+        assert found.attrs["verdict"].startswith("Did not slide")
+    assert far[1e4] < 1e-4
+    assert far[1e8] < 1e-8
+
+
+@BASES
+def test_mirror_images_are_the_same(base):
+    one, other = (run(base.replace(friction=0.1), sign=sign) for sign in (1.0, -1.0))
+    assert one.peak_slip > 1e-3
+    np.testing.assert_allclose(one.slip, -other.slip, rtol=0.0, atol=1e-14)
+    np.testing.assert_allclose(one.rotation, -other.rotation, rtol=0.0, atol=1e-14)
+
+
+@BASES
+def test_energies_balance_with_the_work_of_friction(base):
+    found = run(base.replace(friction=0.15, kinetic_friction=0.1), accuracy="reference")
+    assert found.peak_slip > 1e-3
+    assert found.energy_residual < 1e-8
+    assert (np.diff(found.dissipated_energy) >= -1e-9 * found.dissipated_energy.max().item()).all()
+
+
+def test_a_run_tells_slip_and_its_events():
+    found = run(PADS.replace(friction=0.25))
+    assert found.attrs["verdict"].startswith("Slid 0.")
+    kinds = found.event_kind.attrs["flag_meanings"].split()
+    values = found.event_kind.attrs["flag_values"]
+    met = {kinds[list(values).index(one)] for one in found.event_kind.values}
+    assert {"slip", "stick"} <= met
+    assert found.slip[-1] == found.residual_slip
+    assert abs(found.slip).max() <= found.peak_slip * (1.0 + 1e-12)
+    assert "mu_k" in rf.System(BLOCK, PADS.replace(friction=0.25)).describe()
+
+
+def test_small_rotations_are_refused_and_checked_friction_holds():
+    pads = PADS.replace(friction=0.25)
+    with pytest.raises(rf.errors.AssemblyError, match="finite"):
+        rf.System(BLOCK, pads, rotation="small")
+    assert not rf.System(BLOCK, pads, sliding="checked").setting.slides
+    assert list(rf.model_ladder(rf.System(BLOCK, pads)))[-2:] == ["two pads", "two pads, sliding"]
+    with pytest.raises(rf.errors.ComponentError, match="at most the friction at rest"):
+        PADS.replace(kinetic_friction=0.2)
+
+
+def test_an_impulse_dissipates_whatever_the_friction():
+    rng = np.random.default_rng(5)
+    for _ in range(300):
+        root = rng.normal(size=(2, 2))
+        matrix = root @ root.T + 0.01 * np.eye(2)
+        before = np.array([rng.normal(), -rng.random()])  # along, normal
+        share = rng.random()
+        answers = Answers(matrix[1, 1], matrix[1, 0], matrix[0, 1], matrix[0, 0])
+        friction = rng.choice([0.0, rng.random(), 3.0])
+        impulse = np.array(coulomb_impulse(answers, before[0], share * before[1], friction))
+        after = before + matrix @ impulse
+        np.testing.assert_allclose(after[1], (1.0 - share) * before[1], atol=1e-12)
+        assert abs(impulse[0]) <= friction * impulse[1] + 1e-12
+        inverse = np.linalg.inv(matrix)
+        assert after @ inverse @ after <= before @ inverse @ before + 1e-12
