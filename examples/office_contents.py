@@ -85,10 +85,10 @@ def fragilities(motions: dict[str, rf.GroundMotion], store: str | None) -> dict[
             scale=np.geomspace(0.1, 6.4, 19),
             free_vibration="3 s",
             accuracy="fast",
-            width=0.01,
+            bracket_width=0.01,
             store=None if store is None else f"{store}/{name}",
         )
-        found[name] = rf.fragility(analysis, "PGV").isel(limit_state=-1)
+        found[name] = rf.fragility(analysis, "PGV", trials="capacities").isel(limit_state=-1)
     return found
 
 

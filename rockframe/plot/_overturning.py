@@ -89,7 +89,7 @@ def dynamic_analysis(
             float(_at(np.array([scale]), given["scale"].to_numpy(), along)[0])
             for scale, along in zip(capacity, intensity.transpose("motion", "scale").to_numpy(),
                                     strict=True)
-            if not np.isnan(scale)
+            if np.isfinite(scale)
         ]  # fmt: skip
         ordered = np.sort(np.array([0.0, *places]))
         most = max(most, float(ordered[-1]))

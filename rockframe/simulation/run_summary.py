@@ -55,6 +55,7 @@ class RunSummary:
     # whether it would slide, 1 or 0; NaN where no base has a coefficient of friction, or the run
     # was made without samples
     slides: float = math.nan
+    lifted: bool = True  # whether the base left the ground; True also where nobody looked
 
     @property
     def within_the_angle(self) -> bool:
@@ -130,6 +131,7 @@ def run_summary(
         summary.status,
         peak_share,
         in_motion,
+        lifted=not math.isnan(summary.first_uplift_time),
     )
 
 

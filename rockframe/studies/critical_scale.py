@@ -33,9 +33,10 @@ from rockframe.studies.flips import (
     unfinished,
 )
 from rockframe.studies.intensities import ScaledIntensity, of_study
+from rockframe.studies.lines import read_resolution, read_width
 from rockframe.studies.sweeps.execution import ProgressBar, bar_of
 from rockframe.system.rigid_ground import RigidGroundSetting
-from rockframe.units import POSITIVE, Condition, to_ratio
+from rockframe.units import POSITIVE, to_ratio
 
 if TYPE_CHECKING:
     from rockframe.motion import GroundMotion
@@ -43,7 +44,6 @@ if TYPE_CHECKING:
     from rockframe.units import QuantityLike, RatioLike
 
 _OWNER: Final = "critical_scale"
-_WIDTH: Final = Condition("from 1e-12 to 0.1", lambda value: 1e-12 <= value <= 0.1)
 MOST_RUNS: Final = 1_000_000
 _OUTCOMES: Final = {
     False: Outcome.STANDS, True: Outcome.OVERTURNS, None: Outcome.UNDECIDED,
@@ -58,7 +58,8 @@ def critical_scale(
     largest: "RatioLike" = 4.0,
     scales: int = 80,
     runs: int = 400,
-    width: "RatioLike" = 1e-3,
+    resolution: "RatioLike" = 0.01,
+    bracket_width: "RatioLike" = 1e-3,
     intensity: str | None = None,
     period: "QuantityLike | None" = None,
     damping_ratio: "RatioLike" = 0.05,
@@ -80,7 +81,10 @@ def critical_scale(
     runs : int, optional
         Most runs of the scan, beside those that narrow brackets: what `scales` leaves goes
         to intervals in which flips may hide.
-    width : float, optional
+    resolution : float, optional
+        Width of a gap between runs below the least scale that overturns, over its upper scale,
+        down to which gaps are halved as far as `runs` suffice [1].
+    bracket_width : float, optional
         Width of a bracket, over its upper scale [1].
     intensity : str, optional
         Intensity measure whose value at the critical scale is wanted: a name of
@@ -98,8 +102,8 @@ def critical_scale(
     -------
     xarray.Dataset
         Scalars: ``critical_scale``, the least scale found to overturn, NaN if none did;
-        ``followed_scale``, up to which no interval between runs is left that shows signs of
-        flips; ``largest_gap``, the largest distance between neighbouring scales;
+        ``followed_scale``, up to which no gap between runs is wider than `resolution`;
+        ``largest_gap``, the largest distance between neighbouring scales;
         ``uplift_scale``, up to which nothing happens on rigid ground [1]; and the
         intensity measure, by its name. Over ``flip``, for each change of the verdict:
         ``scale_below``, ``scale_above`` [1], and ``overturns_above``. Over ``scale``, for
@@ -128,11 +132,11 @@ def critical_scale(
     -----
     Rocking is not monotone in the scale: above the critical one the verdict may flip back,
     many times. Between two scales of the same verdict an even number of flips may hide, and
-    with them a lesser critical scale. The signs by which certificates look for flips
-    (``rf.Certification``) decide which intervals are halved, first below the least scale
-    that overturns, down to 0.2 % of the scale; ``followed_scale`` tells how far `runs`
-    sufficed. It proves nothing: flips that come in pairs closer together than ``largest_gap``
-    may be missed wherever no run tells of them.
+    with them a lesser critical scale. Up to ``followed_scale`` no range of scales overturns that
+    is wider than `resolution` times its upper end, but those that were found; narrower ones may,
+    and those that end below `resolution` times `largest`. After that the signs by which
+    certificates look for flips (``rf.Certification``) decide which intervals are halved, first
+    below the least scale that overturns, down to 0.2 % of the scale.
 
     A block at rest on rigid ground, without vertical motion, does not move before the peak
     ground acceleration exceeds g tan(theta): the scan begins there.
@@ -154,7 +158,8 @@ def critical_scale(
     greatest_scale = to_ratio(
         largest, owner=_OWNER, name="largest", condition=POSITIVE, example="4"
     )
-    share = to_ratio(width, owner=_OWNER, name="width", condition=_WIDTH, example="0.001")
+    share = read_width(bracket_width, owner=_OWNER)
+    finest = read_resolution(resolution, owner=_OWNER)
     count = whole_number(scales, owner=_OWNER, name="scales", lowest=2, highest=MOST_RUNS)
     most = whole_number(runs, owner=_OWNER, name="runs", lowest=count, highest=MOST_RUNS)
     plan = plan_run(
@@ -180,15 +185,17 @@ def critical_scale(
         return replace(plan, motion=motion.scaled(scale))
 
     # samples tell of friction, and of nothing else that is asked for here
-    step = plan.output_step if has_limit(system.assembly) else None
+    rubs = has_limit(system.assembly)
+    step = plan.output_step if rubs else None
 
     def look(scale: float) -> RunSummary:
         return summary_of(system.assembly, replace(plan_at(scale), output_step=step))
 
     with bar_of(progress, owner=_OWNER, unit="run") as bar:
-        found = follow(_counted(look, bar, len(row)), row, most=most, width=share)
+        counted = _counted(look, bar, len(row))
+        found = follow(counted, row, most=most, width=share, resolution=finest, may_slide=rubs)
     critical = least_overturning(found.shown)
-    told = flips_sentence(found, width=share)
+    told = flips_sentence(found, width=share, resolution=finest)
     if not found.whole:
         warn(f"{_OWNER}: interrupted; {told}", SolverWarning)
     attributes = {
@@ -196,6 +203,7 @@ def critical_scale(
         "largest_scale": greatest_scale,
         "first_scales": count,
         "most_runs": most,
+        "resolution": finest,
         "bracket_width": share,
         "model": system.setting.model,
         "accuracy": plan.accuracy_name,

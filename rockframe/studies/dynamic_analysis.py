@@ -17,12 +17,14 @@ from rockframe.simulation.friction import share_words
 from rockframe.studies.intensities import Intensity, intensity_in, of_study
 from rockframe.studies.limit_states import LimitState, exceeds, limit_states
 from rockframe.studies.lines import (
+    CAPACITY,
     INTERRUPTED,
     SCALE,
     VERDICT,
     Lines,
     bracket_arrays,
     least_exceeding,
+    read_resolution,
     read_scales,
     read_width,
 )
@@ -48,7 +50,8 @@ def incremental_dynamic_analysis(
     limits: Iterable[object] = (),
     intensity: str | None = None,
     period: "QuantityLike | None" = None,
-    width: "RatioLike" = 1e-3,
+    resolution: "RatioLike" = 0.02,
+    bracket_width: "RatioLike" = 1e-3,
     **run: Unpack[SweepArguments],
 ) -> xr.Dataset:
     """Scale motions, and find all scales between which limit states begin or cease to be exceeded.
@@ -70,7 +73,10 @@ def incremental_dynamic_analysis(
         :func:`rockframe.fragility`.
     period : str or Quantity, optional
         Of the oscillator of a spectral intensity [s].
-    width : float, optional
+    resolution : float, optional
+        Width of a gap between runs below a capacity, over its upper scale, down to which gaps are
+        halved, under all motions at once; 1 leaves the scales as they are [1].
+    bracket_width : float, optional
         Width of a bracket, over its upper scale [1].
 
     Returns
@@ -78,10 +84,11 @@ def incremental_dynamic_analysis(
     xarray.Dataset
         The sweep over ``scale`` and ``motion``, with the intensity measure; and over
         ``limit_state`` and ``motion``: ``capacity_scale``, the least scale found to exceed the
-        limit state, NaN if none, and a bound from above where it is the least of the scan;
-        ``flip_count``; over ``flip`` too ``scale_below``, ``scale_above`` [1] and
-        ``exceeds_above``, NaN beyond the last one. The attribute
-        ``verdict`` says it in words.
+        limit state, infinite if none, and a bound from above where it is the least of the scan;
+        ``capacity_resolution``; ``flip_count``; over ``flip`` too ``scale_below``,
+        ``scale_above`` [1] and ``exceeds_above``, NaN beyond the last one. Over ``limit_state``:
+        ``censored_count``, of motions that did not exceed it. The attribute ``verdict`` says it
+        in words.
 
     Raises
     ------
@@ -99,10 +106,13 @@ def incremental_dynamic_analysis(
 
     Notes
     -----
-    Vamvatsikos and Cornell (2002). Rocking is not monotone in the scale; so all flips that
-    the first runs show are narrowed, not only the first one. Two flips between neighbouring
-    scales are not seen: :func:`rockframe.critical_scale` looks into where they are to be
-    feared, for one motion.
+    Vamvatsikos and Cornell (2002). Rocking is not monotone in the scale: above the first
+    exceedance a block may stand again, many times, and each change that the runs show is narrowed.
+    A capacity is the least scale that was found to exceed. Below it, down to the least
+    scale of the scan, no range of scales exceeds that is wider than ``capacity_resolution`` times
+    its upper end; narrower ones may. A share of runs that exceed does not hang on such a
+    resolution: :func:`rockframe.fragility` is fitted to all runs of the scan unless asked for
+    capacities.
 
     Examples
     --------
@@ -118,7 +128,8 @@ def incremental_dynamic_analysis(
     check_system(system, _OWNER)
     states = limit_states(limits, owner=_OWNER)
     scales = read_scales(scale, owner=_OWNER, most=_MOST_SCALES)
-    share = read_width(width, owner=_OWNER)
+    share = read_width(bracket_width, owner=_OWNER)
+    finest = read_resolution(resolution, owner=_OWNER)
     measure = None if intensity is None else Intensity.read(intensity, period, owner=_OWNER)
     given = system.motion if motions is None else motions
     if given is None:
@@ -129,13 +140,13 @@ def incremental_dynamic_analysis(
     def verdicts(runs: xr.Dataset) -> xr.DataArray:
         return xr.concat([exceeds(runs, state) for state in states], VERDICT)
 
-    scan, brackets = lines.followed(scales, verdicts, width=share)
+    scan, seen, brackets = lines.followed(scales, verdicts, width=share, resolution=finest)
     below, above, _, after = bracket_arrays(brackets, (len(states), scan.sizes[MOTION]))
-    shown = verdicts(scan).transpose(VERDICT, MOTION, SCALE).to_numpy()
-    capacity = least_exceeding(scales, shown, above, after)
+    capacity = least_exceeding(seen.first, above, after)
     narrow = build_dataset(
         {
             "capacity_scale": capacity,
+            "capacity_resolution": seen.resolution,
             "flip_count": np.isfinite(below).sum(axis=2),
             "scale_below": below,
             "scale_above": above,
@@ -145,8 +156,11 @@ def incremental_dynamic_analysis(
         over=("limit_state", MOTION),
         source="scan and bisection of event-driven runs",
     )
+    censored = build_dataset(
+        {"censored_count": np.isinf(capacity).sum(axis=1)}, {}, over=("limit_state",)
+    )
     labels = labels_of_states(states)
-    found = scan.assign(narrow.data_vars).assign_coords(labels)
+    found = scan.assign(narrow.data_vars).assign(censored.data_vars).assign_coords(labels)
     if measure is not None:
         found = found.assign({measure.name: intensity_in(scan, measure, given, owner=_OWNER)})
         found.attrs |= of_study(measure.name, measure.period)
@@ -154,6 +168,8 @@ def incremental_dynamic_analysis(
     found.attrs |= {
         "title": "Incremental dynamic analysis of a rocking system",
         "source": narrow.attrs["source"],
+        "capacity": CAPACITY,
+        "resolution": finest,
         "bracket_width": share,
         "verdict": _sentence(found),
     }
@@ -197,10 +213,10 @@ def _sentence(found: xr.Dataset) -> str:
     text = f"Of {count} motions {int(some.sum())} overturned"
     below = _at_the_least(found)
     if some.any() and below.all():
-        text += f", at or below {np.nanmin(capacity):.4g} times the motion"
+        text += f", at or below {capacity[some].min():.4g} times the motion"
     elif some.any():
-        least = f"{'at or below ' if below.any() else ''}{np.nanmin(capacity):.4g}"
-        text += f", from {least} to {np.nanmax(capacity):.4g} times the motion on"
+        least = f"{'at or below ' if below.any() else ''}{capacity[some].min():.4g}"
+        text += f", from {least} to {capacity[some].max():.4g} times the motion on"
     again = int((of_overturning["flip_count"].to_numpy() > 1).sum())
     if again:
         text += f"; under {again} the verdict changed more than once"

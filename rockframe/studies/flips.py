@@ -36,8 +36,8 @@ class Followed:
     """The runs along the scale, and what they show."""
 
     shown: dict[float, RunSummary]  # all runs by their scales, rising
-    # scale up to which every run has a verdict, and no interval is left that shows signs of a
-    # hidden flip. It is no proof that there is none [1]
+    # scale up to which neighbouring runs with a verdict lie no further apart than the resolution,
+    # over the upper one, wherever the base lifts [1]
     up_to: float
     whole: bool = True  # whether no interrupt (Ctrl-C) came in between
 
@@ -55,32 +55,63 @@ class Followed:
         return max((far - near for near, far in pairwise(decided)), default=math.nan)
 
 
-def follow(look: Look, row: Sequence[float], *, most: int, width: float) -> Followed:
+def follow(
+    look: Look,
+    row: Sequence[float],
+    *,
+    most: int,
+    width: float,
+    resolution: float = 1.0,
+    may_slide: bool = False,
+) -> Followed:
     """Scan scales, look into what is doubtful, and narrow every change of the verdict.
 
-    Between two runs of the same verdict an even number of flips may hide. Where that is to
-    be feared (:func:`rockframe.simulation.scan.may_change_between`), the interval is halved: first
-    below the least scale that overturns, until none is left there, then above it.
+    Between two runs of the same verdict an even number of flips may hide. Below the least scale
+    that overturns every interval is halved down to the resolution, the widest first, but where the
+    base does not lift: it holds at any lesser scale too, unless it may slide. Then those where
+    flips are to be feared (:func:`rockframe.simulation.scan.may_change_between`), below that scale
+    and above it.
     """
     least, *others = row
     side = Side(1.0, {least: look(least)}, [least])
-    suspects: list[float] | None = None
     whole = True
+
+    def wide() -> list[tuple[float, float]]:
+        return list(_wide(side, resolution, may_slide=may_slide))
+
     try:
         for scale in others:
             side.add(scale, look(scale))
+        while (gaps := wide()) and len(side.places) < most:
+            near, far = max(gaps, key=lambda ends: (ends[1] - ends[0]) / ends[1])
+            middle = 0.5 * (near + far)
+            side.add(middle, look(middle))
         for up_to_first in (True, False):
             while _halve(side, look, most, up_to_first=up_to_first):
                 pass
-        suspects = _suspect_from(side)
         for flip in list(_flips(_in_order(side))):
             _narrow(side, look, flip, width)
     except KeyboardInterrupt:
         whole = False
-    if suspects is None:  # also flips before the first one known have not been looked for
-        suspects = _suspect_from(side) + _suspect_from(side, up_to_first=True)
-    largest = side.places[-1]
-    return Followed(_in_order(side), min([*suspects, *_undecided(side), largest]), whole)
+    ends = (near for near, _ in _wide(side, resolution, may_slide=may_slide, beyond=True))
+    return Followed(_in_order(side), min([*ends, *_undecided(side), side.places[-1]]), whole)
+
+
+def _wide(
+    side: Side, resolution: float, *, may_slide: bool, beyond: bool = False
+) -> Iterator[tuple[float, float]]:
+    """Give the intervals that are wider than the resolution, where the base lifts.
+
+    Those below the least scale that overturns, or beyond it, too.
+    """
+    for near, far in side.intervals():
+        if side.shown[near].overturned and not beyond:
+            return
+        told = None not in (side.shown[near].overturned, side.shown[far].overturned)
+        if near == 0.0 and far <= resolution * side.places[-1]:
+            continue  # what is so near to zero has no end
+        if told and far - near > resolution * far and (side.shown[far].lifted or may_slide):
+            yield near, far
 
 
 def _halve(side: Side, look: Look, most: int, *, up_to_first: bool) -> bool:
@@ -117,11 +148,6 @@ def _suspects(side: Side, *, up_to_first: bool) -> Iterator[tuple[float, float]]
                 yield near, far
         elif may_change_between(side, number):
             yield near, far
-
-
-def _suspect_from(side: Side, *, up_to_first: bool = False) -> list[float]:
-    """Give the lower ends of the intervals in which flips may hide."""
-    return [near for near, _ in _suspects(side, up_to_first=up_to_first)]
 
 
 def _clearance(side: Side, near: float, far: float) -> float:
@@ -172,7 +198,7 @@ _MOST_GAPS: Final = 3
 """Ranges that stand again which are named one by one."""
 
 
-def flips_sentence(found: Followed, *, width: float) -> str:
+def flips_sentence(found: Followed, *, width: float, resolution: float = 1.0) -> str:
     """Tell from which scale on the block overturns, where it stands again, and what was tried."""
     digits = max(_FEWEST_DIGITS, 1 + math.ceil(-math.log10(width)))
 
@@ -198,11 +224,10 @@ def flips_sentence(found: Followed, *, width: float) -> str:
     slides = share_words(np.array([run.slides for run in found.shown.values()]))
     text += f"; {slides}" if slides else ""
     text += "." if found.whole else ", then interrupted."
-    if found.up_to < largest:
-        lesser = " and a lesser scale" if not found.up_to >= critical else ""
+    if found.up_to < next((one.below for one in flips if one.overturns_above), largest):
         text += (
-            f" Beyond {number(found.up_to)} there are signs of further flips{lesser} between them: "
-            "they are not close enough together to tell."
+            f" Beyond {number(found.up_to)} some are more than {100.0 * resolution:g} % apart, "
+            "and a lesser scale between them may overturn."
         )
     undecided = [scale for scale, run in found.shown.items() if run.overturned is None]
     if undecided:

@@ -1,4 +1,8 @@
-"""Verdicts followed along the scale of the motion: brackets of their changes, halved in rounds."""
+"""Verdicts followed along the scale of the motion, in rounds of runs under all motions at once.
+
+First all motions at the scales of a first row; then the middles of wide intervals below what first
+exceeds a limit state; then brackets of all changes of a verdict, which are halved.
+"""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -117,6 +121,69 @@ def _halved(one: Bracket, middle: float, shown: float) -> Iterator[Bracket]:
         yield replace(one, below=middle, before=shown)
 
 
+@dataclass(frozen=True, eq=False)
+class Seen:
+    """What is known of lines at scales."""
+
+    scales: Array  # all that were run along some line
+    verdicts: Array  # over verdicts, lines and scales; NaN where a line was not run, or told none
+    moves: Generic  # over lines and scales: whether the base left the ground, or slid
+
+    def joined(self, scales: Array, lines: Generic, verdicts: Array, moves: Generic) -> "Seen":
+        """Add cases: their scales and lines, and what they showed."""
+        every = np.union1d(self.scales, scales)
+        known = np.full((*self.verdicts.shape[:2], len(every)), np.nan)
+        moved = np.ones(known.shape[1:], dtype=bool)
+        old, new = np.searchsorted(every, self.scales), np.searchsorted(every, scales)
+        known[..., old], moved[:, old] = self.verdicts, self.moves
+        known[:, lines, new], moved[lines, new] = verdicts, moves
+        return Seen(every, known, moved)
+
+    def gaps(self, verdict: int, line: int) -> tuple[Array, Array]:
+        """Give the intervals between runs, up to the one that ends at the first exceedance.
+
+        Without those at whose upper end nothing moves: a base that holds with elastic parts holds
+        at any lesser scale too.
+        """
+        along = self.verdicts[verdict, line]
+        (known,) = np.nonzero(~np.isnan(along))
+        (over,) = np.nonzero(along[known] == 1.0)
+        known = known[: over[0] + 1] if len(over) else known
+        known, far = known[:-1], known[1:]
+        there = self.moves[line, far]
+        return self.scales[known[there]], self.scales[far[there]]
+
+    def middles(self, resolution: float) -> list[tuple[int, float]]:
+        """Give the lines, and the middles of their gaps, that are wider than the resolution."""
+        found: set[tuple[int, float]] = set()
+        for verdict, line in np.ndindex(self.verdicts.shape[:2]):
+            near, far = self.gaps(verdict, line)
+            middle = 0.5 * (near + far)
+            found |= {(line, one) for one in middle[far - near > resolution * far].tolist()}
+        return sorted(found)
+
+    @property
+    def resolution(self) -> Array:
+        """The widest gap below each first exceedance, over its upper end; verdicts, lines [1].
+
+        One where the least scale exceeds already: nothing parts it from zero.
+        """
+        found = np.zeros(self.verdicts.shape[:2])
+        for place in np.ndindex(found.shape):
+            near, far = self.gaps(*place)
+            along = self.verdicts[place]
+            along = along[~np.isnan(along)]
+            at_once = not len(along) or along[0] == 1.0
+            found[place] = 1.0 if at_once else np.max((far - near) / far, initial=0.0)
+        return found
+
+    @property
+    def first(self) -> Array:
+        """The least scale that exceeds; infinite where none does, NaN without any verdict."""
+        least = np.where(self.verdicts == 1.0, self.scales, np.inf).min(axis=-1)
+        return np.where(np.isnan(self.verdicts).all(axis=-1), np.nan, least)
+
+
 def bracket_arrays(
     brackets: Sequence[Bracket], shape: tuple[int, int]
 ) -> tuple[Array, Array, Array, Array]:
@@ -134,19 +201,20 @@ def bracket_arrays(
     return below, above, before, after
 
 
-def least_exceeding(scales: Array, shown: Array, above: Array, after: Array) -> Array:
-    """Give the least scale that exceeds a limit state."""
+def least_exceeding(seen: Array, above: Array, after: Array) -> Array:
+    """Give the least scale that exceeds, seen or in a bracket; infinite where none was found to."""
     rising = np.where(after == 1.0, above, np.inf).min(axis=-1, initial=np.inf)
-    at = np.where(shown == 1.0, scales, np.inf).min(axis=-1)
-    least = np.minimum(rising, at)
-    return np.where(np.isfinite(least), least, np.nan)
+    return np.minimum(rising, seen)
 
 
 SCALE: Final = "scale"
+CAPACITY: Final = "least scale found to exceed"
+"""What a capacity is, as datasets tell it."""
 _SCAN: Final = "scan"
 INTERRUPTED: Final = "; interrupted."
 """Ends the verdict of an analysis whose brackets are wider than asked."""
 _WIDTH: Final = Condition("from 1e-12 to 0.1", lambda value: 1e-12 <= value <= 0.1)
+_RESOLUTION: Final = Condition("from 1e-4 to 1", lambda value: 1e-4 <= value <= 1.0)
 
 LabelledVerdicts = Callable[[xr.Dataset], xr.DataArray]
 """Gives the verdicts of a sweep over ``verdict`` and its dimensions."""
@@ -167,23 +235,35 @@ class Lines:
     owner: str  # function that asks for it
 
     def followed(
-        self, scales: Array, verdicts: LabelledVerdicts, *, width: float
-    ) -> tuple[xr.Dataset, list[Bracket]]:
+        self,
+        scales: Array,
+        verdicts: LabelledVerdicts,
+        *,
+        width: float,
+        resolution: float | None = None,
+    ) -> tuple[xr.Dataset, Seen, list[Bracket]]:
         """Run all rows and motions at all scales, and narrow every change of a verdict.
 
-        One bar counts the cases of the scan and of all rounds. After an interrupt (Ctrl-C) the
-        verdict of the scan says so.
+        With a resolution the intervals below what first exceeds are made narrower than that
+        before. One bar counts the cases of the scan and of all rounds. After an interrupt (Ctrl-C)
+        the verdict of the scan says so.
         """
         store = read_store(self.run.get("store"), owner=self.owner)
         with bar_of(self.run.get("progress"), owner=self.owner) as bar:
             runner = _Runner(self, store, bar)
             scan = runner.scan(scales)
-            found, whole = runner.narrowed(scan, verdicts, width)
+            with heard() as said:
+                seen, whole = runner.seen(scan, verdicts, resolution)
+                found = brackets_of(seen.scales, seen.verdicts)
+                if whole:
+                    found, whole = runner.narrowed(found, verdicts, width)
+        if said and whole:
+            warn(f"{self.owner}: in further rounds: {said[0]}", ModelWarning)
         if not whole:
             scan.attrs["verdict"] = f"{str(scan.attrs['verdict']).removesuffix('.')}{INTERRUPTED}"
             kept = "; the same call goes on, as it has a store" if store is not None else ""
             warn(f"{self.owner}: interrupted; brackets are wider than asked{kept}", SolverWarning)
-        return scan, found
+        return scan, seen, found
 
 
 @dataclass(frozen=True, eq=False)
@@ -199,31 +279,52 @@ class _Runner:
         heads = self._heads(slice(None))
         return self._sweep(_SCAN, heads or None, {SCALE: scales})
 
-    def narrowed(
-        self, scan: xr.Dataset, verdicts: LabelledVerdicts, width: float
-    ) -> tuple[list[Bracket], bool]:
-        """Narrow every change of a verdict between two scales of the scan; tell if all are."""
-        names = list(self.lines.motions)
-        order = (VERDICT, *([CASE] if self.lines.columns else []), MOTION, SCALE)
-        shown = verdicts(scan).transpose(*order).to_numpy()
+    def seen(
+        self, scan: xr.Dataset, verdicts: LabelledVerdicts, resolution: float | None
+    ) -> tuple[Seen, bool]:
+        """Give what the scan showed, and runs in its gaps; tell if all have been made."""
+        order = ([CASE] if self.lines.columns else []) + [MOTION, SCALE]
+        shown = verdicts(scan).transpose(VERDICT, *order).to_numpy()
         shown = shown.reshape(len(shown), -1, shown.shape[-1])
-        found = brackets_of(scan[SCALE].to_numpy(), shown)
-        if interrupted(scan):
-            return found, False
+        moves = _moves(scan).transpose(*order).to_numpy().reshape(shown.shape[1:])
+        seen = Seen(scan[SCALE].to_numpy(), shown, moves)
+        tried: set[tuple[int, float]] = set()
+        for number in range(1, MOST_ROUNDS + 1):
+            if interrupted(scan):
+                return seen, False
+            # where a middle told no verdict the gap stays
+            wanted = [] if resolution is None else sorted({*seen.middles(resolution)} - tried)
+            if not wanted:
+                break
+            tried |= set(wanted)
+            lines, middles = (np.array(each) for each in zip(*wanted, strict=True))
+            try:
+                scan = self._cases(f"finer {number:02d}", lines, middles)
+            except KeyboardInterrupt:  # between the runs of two rounds
+                return seen, False
+            found = verdicts(scan).transpose(VERDICT, CASE).to_numpy()
+            seen = seen.joined(middles, lines, found, _moves(scan).to_numpy())
+        return seen, True
+
+    def narrowed(
+        self, brackets: Sequence[Bracket], verdicts: LabelledVerdicts, width: float
+    ) -> tuple[list[Bracket], bool]:
+        """Narrow every change of a verdict between two scales that were run; tell if all are."""
 
         def middles(number: int, lines: Generic, scales: Array) -> xr.Dataset:
-            rows, motions = np.divmod(lines, len(names))
-            cases = {**self._heads(rows), SCALE: scales, MOTION: [names[k] for k in motions]}
-            return self._sweep(f"round {number:02d}", cases, {})
+            return self._cases(f"round {number:02d}", lines, scales)
 
         def seen(runs: xr.Dataset) -> Array:
             return verdicts(runs).transpose(VERDICT, CASE).to_numpy()
 
-        with heard() as said:
-            narrow, whole = narrowed(found, middles, seen, width=width)
-        if said and whole:
-            warn(f"while brackets were narrowed: {said[0]}", ModelWarning)
-        return narrow, whole
+        return narrowed(brackets, middles, seen, width=width)
+
+    def _cases(self, part: str, lines: Generic, scales: Array) -> xr.Dataset:
+        """Run lines at scales of their own."""
+        names = list(self.lines.motions)
+        rows, motions = np.divmod(lines, len(names))
+        cases = {**self._heads(rows), SCALE: scales, MOTION: [names[k] for k in motions]}
+        return self._sweep(part, cases, {})
 
     def _heads(self, rows: Any) -> dict[str, Any]:
         columns = self.lines.columns.items()
@@ -239,6 +340,17 @@ class _Runner:
         return run_study(study, self.bar, **means)
 
 
+def _moves(runs: xr.Dataset) -> xr.DataArray:
+    """Tell in which runs the base left the ground, or slid."""
+    moves = runs["first_uplift_time"].notnull()
+    return moves | ~(runs["peak_slip"] == 0.0) if "peak_slip" in runs else moves
+
+
+def read_resolution(given: object, *, owner: str) -> float:
+    """Read the relative width of gaps below a capacity."""
+    return to_ratio(given, owner=owner, name="resolution", condition=_RESOLUTION, example="0.02")
+
+
 def read_scales(given: object, *, owner: str, most: int) -> Array:
     """Read the scales of a scan."""
     values = np.unique(numbers_of(given, TARGETS[SCALE].measure, SCALE))
@@ -250,7 +362,7 @@ def read_scales(given: object, *, owner: str, most: int) -> Array:
 
 def read_width(given: object, *, owner: str) -> float:
     """Read the relative width of brackets."""
-    return to_ratio(given, owner=owner, name="width", condition=_WIDTH, example="0.001")
+    return to_ratio(given, owner=owner, name="bracket_width", condition=_WIDTH, example="0.001")
 
 
 def read_store(given: object, *, owner: str) -> Path | None:

@@ -41,7 +41,7 @@ def overturning_map(
     amplitude: Any,
     frequency: Any,
     impacts: int = 3,
-    width: "RatioLike" = 1e-3,
+    bracket_width: "RatioLike" = 1e-3,
     **run: Unpack[SweepArguments],
 ) -> xr.Dataset:
     """Run pulses of all amplitudes and frequencies, and find the boundaries of overturning.
@@ -60,7 +60,7 @@ def overturning_map(
         Cyclic frequencies: ``([0.5, 1, 2], "Hz")`` [Hz].
     impacts : int, optional
         Number of impacts from which on the ways to overturn are no longer told apart.
-    width : float, optional
+    bracket_width : float, optional
         Width of the brackets about boundaries, over their upper end [1].
 
     Returns
@@ -108,7 +108,7 @@ def overturning_map(
     levels = _rising(amplitude, ACCELERATION, "amplitude")
     frequencies = _rising(frequency, FREQUENCY, "frequency")
     told = whole_number(impacts, owner=_OWNER, name="impacts", lowest=1, highest=_MOST_IMPACTS)
-    share = read_width(width, owner=_OWNER)
+    share = read_width(bracket_width, owner=_OWNER)
     motions = {f"{one!r} {FREQUENCY.unit}": _made(pulse, one) for one in frequencies.tolist()}
     lines = Lines(system, motions, {}, run, _OWNER)
 
@@ -117,7 +117,7 @@ def overturning_map(
         counted = runs["impact_count"].clip(max=told).astype(float)
         return xr.where(verdict == 0.0, _STANDS, counted).where(verdict.notnull())
 
-    scan, brackets = lines.followed(
+    scan, _, brackets = lines.followed(
         levels, lambda runs: ways(runs).expand_dims(VERDICT), width=share
     )
     below, above, before, after = (one[0] for one in bracket_arrays(brackets, (1, len(motions))))

@@ -19,12 +19,14 @@ from rockframe.simulation.system import System
 from rockframe.studies.intensities import POWERS, Intensity, of_motions, of_study, unscaled_motions
 from rockframe.studies.limit_states import overturns
 from rockframe.studies.lines import (
+    CAPACITY,
     SCALE,
     VERDICT,
     Lines,
     bracket_arrays,
     head,
     least_exceeding,
+    read_resolution,
     read_scales,
     read_width,
 )
@@ -222,7 +224,8 @@ def overturning_spectrum(
     scale: "Sequence[float] | np.ndarray",
     intensity: str = "PGA",
     period: "QuantityLike | None" = None,
-    width: "RatioLike" = 1e-3,
+    resolution: "RatioLike" = 0.02,
+    bracket_width: "RatioLike" = 1e-3,
     **run: Unpack[SweepArguments],
 ) -> xr.Dataset:
     """Find the least intensity of motions that overturns blocks of all sizes.
@@ -237,14 +240,17 @@ def overturning_spectrum(
         An intensity measure, see :func:`rockframe.fragility`.
     period : str or Quantity, optional
         Of the oscillator of a spectral intensity [s].
-    width : float, optional
+    resolution : float, optional
+        As for :func:`rockframe.incremental_dynamic_analysis` [1].
+    bracket_width : float, optional
         Width of a bracket, over its upper scale [1].
 
     Returns
     -------
     xarray.Dataset
         Over ``slenderness``, ``rocking_period`` [s] and ``motion``: ``capacity_scale`` [1] and
-        ``capacity_intensity``, the least found to overturn, NaN if none did;
+        ``capacity_intensity``, the least found to overturn, infinite if none did, and
+        ``capacity_resolution``;
         ``left_out_count``, how many runs of the first row have no verdict;
         ``flip_count``, and over ``flip`` too ``scale_below``, ``scale_above`` and
         ``exceeds_above``.
@@ -275,25 +281,27 @@ def overturning_spectrum(
     check_system(system, _OVERTURNING)
     sizes = BlockSizes(system, periods, slenderness, owner=_OVERTURNING)
     scales = read_scales(scale, owner=_OVERTURNING, most=_MOST_SCALES)
-    share = read_width(width, owner=_OVERTURNING)
+    share = read_width(bracket_width, owner=_OVERTURNING)
+    finest = read_resolution(resolution, owner=_OVERTURNING)
     measure = Intensity.read(intensity, period, owner=_OVERTURNING)
     named = named_motions(_given(motions, system, _OVERTURNING))
     lines = Lines(sizes.system, named, sizes.columns, run, _OVERTURNING)
-    scan, brackets = lines.followed(
-        scales, lambda runs: overturns(runs).expand_dims(VERDICT), width=share
+    scan, seen, brackets = lines.followed(
+        scales, lambda runs: overturns(runs).expand_dims(VERDICT), width=share, resolution=finest
     )
     shape = (scan.sizes[CASE], scan.sizes[MOTION])
     below, above, _, after = (
         one[0].reshape(*shape, -1) for one in bracket_arrays(brackets, (1, shape[0] * shape[1]))
     )
     shown = overturns(scan).transpose(CASE, MOTION, SCALE).to_numpy()
-    capacity = least_exceeding(scales, shown, above, after)
+    capacity = least_exceeding(seen.first[0].reshape(shape), above, after)
     unit = of_motions(scan, unscaled_motions(scan, named, owner=_OVERTURNING), measure.of)
-    powers = capacity ** POWERS[measure.name]
+    powers = capacity ** np.where(np.isinf(capacity), 1, POWERS[measure.name])
     narrow = build_dataset(
         {
             "capacity_scale": capacity,
-            "capacity_intensity": unit.to_numpy() * np.where(np.isnan(capacity), np.nan, powers),
+            "capacity_resolution": seen.resolution[0].reshape(shape),
+            "capacity_intensity": unit.to_numpy() * powers,
             "flip_count": np.isfinite(below).sum(axis=-1),
             "left_out_count": np.isnan(shown).sum(axis=-1),
             "scale_below": below,
@@ -310,6 +318,8 @@ def overturning_spectrum(
         title="Overturning spectrum",
         source=narrow.attrs["source"],
         **of_study(measure.name, measure.period),
+        capacity=CAPACITY,
+        resolution=finest,
         bracket_width=share,
     )
 

@@ -42,7 +42,7 @@ def test_a_rectangular_pulse():
     for length in (0.5, 1.0, 3.0):  # p t1
         samples = np.full(2, GRAVITY * THETA)
         pulse = rf.GroundMotion.from_arrays((samples, "m/s^2"), f"{length / P!r} s")
-        found = critical(pulse, width=1e-9)
+        found = critical(pulse, bracket_width=1e-9)
         # (A - 1)(exp(p t1) - 1) = 1: the free motion ends in unstable equilibrium
         threshold = 1.0 / (1.0 - math.exp(-length))
         assert found.uplift_scale.item() == pytest.approx(1.0, rel=1e-12)
@@ -54,7 +54,7 @@ def test_a_rectangular_pulse():
 def test_half_a_sine():
     for ratio in (1, 4, 10):
         pulse = rf.GroundMotion.half_sine_pulse(UPLIFT, f"{math.pi / (ratio * P)!r} s")
-        found = critical(pulse, largest=8.0, width=1e-9)
+        found = critical(pulse, largest=8.0, bracket_width=1e-9)
         threshold = half_sine_threshold(ratio)
         assert found.critical_scale.item() == pytest.approx(threshold, rel=2e-9)
         assert brackets(found, 0, threshold, within=1e-9)
@@ -64,13 +64,13 @@ def test_one_sine_overturns_stands_again_and_overturns_without_impact():
     for ratio, [(lower, upper)] in BANDS.items():
         threshold = one_sine_threshold(ratio)
         pulse = rf.GroundMotion.sine_pulse(UPLIFT, f"{ratio * P / (2.0 * math.pi)!r} Hz")
-        options = {"restitution": 0.9, "largest": 1.2 * threshold, "width": 1e-8}
+        options = {"restitution": 0.9, "largest": 1.2 * threshold, "bracket_width": 1e-8}
         found = critical(pulse, overturning="continue", **options)
         assert found.overturns_above.values.tolist() == [True, False, True], found.verdict
         assert brackets(found, 0, lower, within=1e-6)
         assert brackets(found, 1, upper, within=1e-6)
         assert brackets(found, 2, threshold, within=1e-8)
-        assert found.followed_scale.item() == 1.2 * threshold
+        assert found.followed_scale.item() >= found.critical_scale.item()
         # in the gap the second half of the sine brings the block back from beyond theta
         stands = found.outcome == found.outcome.flag_meanings.split().index("stands")
         gap = stands & (found.scale > upper) & (found.scale < threshold)

@@ -140,7 +140,7 @@ def test_critical_scales_to_either_side():
         corner = Corner(side)
         pulse = rectangle(-side * G * corner.theta, 1.5 / corner.p)
         found = rf.critical_scale(
-            system, pulse, width=1e-8, free_vibration="30 s", accuracy="reference"
+            system, pulse, bracket_width=1e-8, free_vibration="30 s", accuracy="reference"
         )
         assert found.uplift_scale.item() == pytest.approx(1.0, rel=1e-12)
         threshold = 1.0 / (1.0 - math.exp(-1.5))

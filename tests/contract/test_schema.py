@@ -187,6 +187,8 @@ DIMENSIONS = {
     "message_number": (0, 0, 0, 0),
     "rotation_limit": (0, 0, 0, 0),
     "capacity_scale": (0, 0, 0, 0),
+    "capacity_resolution": (0, 0, 0, 0),
+    "censored_count": (0, 0, 0, 0),
     "dispersion": (0, 0, 0, 0),
     "exceedance_probability": (0, 0, 0, 0),
     "velocity_to_acceleration_ratio": (0, 0, 1, 0),

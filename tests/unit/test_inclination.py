@@ -75,7 +75,7 @@ def test_ladders_certificates_and_critical_scales_know_the_slope():
         assert rung.inclination == system.inclination
     block = rf.System(BLOCK, inclination="3 deg")
     pulse = rf.GroundMotion.sine_pulse("1 m/s^2", "1 Hz")
-    found = rf.critical_scale(block, pulse, scales=12, runs=24, width=0.05, largest=6.0)
+    found = rf.critical_scale(block, pulse, scales=12, runs=24, bracket_width=0.05, largest=6.0)
     least = 9.80665 * math.tan(math.atan(0.3) - math.radians(3.0))
     assert found.uplift_scale.item() == pytest.approx(least, rel=1e-6)
     assert found.critical_scale.item() > least

@@ -26,7 +26,7 @@ with warnings.catch_warnings():
         periods=(np.geomspace(1.0, 8.0, 15), "s"),
         slenderness=[4, 6],
         scale=np.geomspace(0.3, 16.0, 15),
-        width=0.01,
+        bracket_width=0.01,
         free_vibration="4 s",
         accuracy="fast",
         progress=False,

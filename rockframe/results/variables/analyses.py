@@ -47,8 +47,15 @@ DYNAMIC_ANALYSIS: Final = (
         "capacity_scale",
         (),
         Unit.ONE,
-        "least scale of the motion that was found to exceed the limit state, NaN if none",
+        "least scale of the motion that was found to exceed the limit state, infinite if none",
     ),
+    Variable(
+        "capacity_resolution",
+        (),
+        Unit.ONE,
+        "widest range of scales, over its upper end, that may exceed unseen below the capacity",
+    ),
+    count("censored_count", "number of motions under which no scale exceeded the limit state"),
 )
 """Of motions that are scaled until limit states are exceeded."""
 

@@ -34,7 +34,7 @@ CRITICAL_SCALE: Final = (
         "followed_scale",
         (),
         Unit.ONE,
-        "scale of the motion up to which no interval between runs shows signs of hidden flips",
+        "scale of the motion up to which no gap between runs is wider than the resolution",
     ),
     Variable(
         "largest_gap",

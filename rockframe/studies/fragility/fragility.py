@@ -27,7 +27,13 @@ from rockframe.studies.fragility.likelihood import (
 )
 from rockframe.studies.fragility.words import POOLED, sentences
 from rockframe.studies.intensities import PERIOD_OF, Intensity, intensity_in
-from rockframe.studies.limit_states import LimitState, check_runs, exceeds, limit_states
+from rockframe.studies.limit_states import (
+    LimitState,
+    check_names,
+    check_runs,
+    exceeds,
+    limit_states,
+)
 from rockframe.studies.lines import SCALE
 from rockframe.studies.sweeps.axes import Changes, free_values
 from rockframe.units import PERIOD, to_si
@@ -162,6 +168,8 @@ def _alike(columns: Sequence[Generic], size: int, apart: bool) -> tuple[Generic,
 
 _OWNER: Final = "fragility"
 _COLUMNS: Final = ("intensity", "exceeded", "trials")
+_CAPACITIES: Final = "capacities"
+_TRIALS: Final = ("runs", _CAPACITIES)
 _MOST_MEASURES: Final = 2
 _MOST_LEFT_OUT: Final = 80
 """Motions up to which each is left out in turn; of more the sandwich holds as often."""
@@ -175,6 +183,7 @@ def fragility(
     period: "QuantityLike | None" = None,
     motions: "GroundMotion | Mapping[str, GroundMotion] | Sequence[GroundMotion] | None" = None,
     pooled: Iterable[str] = (),
+    trials: str = "runs",
     bands: str | None = None,
     confidence: "RatioLike" = 0.95,
 ) -> xr.Dataset:
@@ -183,8 +192,8 @@ def fragility(
     Parameters
     ----------
     runs : xarray.Dataset or dict
-        Of :func:`rockframe.sweep`, or of :func:`rockframe.incremental_dynamic_analysis`,
-        whose least scales that exceed are the capacities then. Or counts, such as those of tests:
+        Of :func:`rockframe.sweep`, or of :func:`rockframe.incremental_dynamic_analysis`.
+        Or counts, such as those of tests:
         ``"intensity"``, values with a unit such as ``([0.2, 0.3], "g_0")``, ``"exceeded"``, how
         many trials exceeded the limit state at each, and ``"trials"``, of how many.
     intensity : str, DataArray, or two of them
@@ -202,6 +211,10 @@ def fragility(
     pooled : iterable of str, optional
         Axes of the sweep, or columns of its table, of which all values are taken for one
         structure, whose dispersion then holds their differences too.
+    trials : {"runs", "capacities"}, optional
+        What is fitted: all runs, each as it went; or, of a dynamic analysis, the least scale
+        that was found to exceed under each motion, above which a block may stand again. The
+        former does not hang on how closely scales were looked at.
     bands : {"profile", "jackknife", "sandwich"}, optional
         Where confidence bounds come from: the profile of the likelihood, which takes all runs
         for independent; fits that leave out each motion in turn; or the sandwich covariance with
@@ -249,8 +262,8 @@ def fragility(
     Rows of a table of cases that differ in motion and scale alone are of one structure, which
     ``case`` calls by the first of them.
 
-    Of a dynamic analysis a capacity may be known from one side only: from above, where the least
-    scale exceeded already, or from below, where none did. Such capacities count with the
+    Of capacities of a dynamic analysis one may be known from one side only: from above, where the
+    least scale exceeded already, or from below, where none did. Such capacities count with the
     probability of lying there; where all lie on one side, there are neither fit nor bounds.
 
     Examples
@@ -277,8 +290,11 @@ def fragility(
     runs = check_runs(runs, owner=_OWNER)
     given = _several(intensity)
     structures = structures_of(runs, pooled, given, owner=_OWNER)
-    of_capacities = "capacity_scale" in runs
-    states = _states(runs, limits, of_capacities=of_capacities)
+    of_capacities = check_names(trials, _TRIALS, owner=_OWNER, name="trials") == _CAPACITIES
+    if of_capacities and "capacity_scale" not in runs:
+        msg = f"{_OWNER}: capacities are those of rf.incremental_dynamic_analysis, found a sweep"
+        raise SchemaError(msg)
+    states = _states(runs, limits)
     measures = [_measure(runs, one, period, motions) for one in given]
     if len({one.name for one in measures}) < len(measures):
         msg = f"{_OWNER}: the two intensity measures are one, {measures[0].name}; give another"
@@ -298,11 +314,11 @@ def fragility(
             if of_capacities:
                 found.append(_of_capacities(runs, state, verdict, along))
             else:
-                trials, count = trials_of_runs(verdict, along, by_motion=by_motion)
-                left_out = verdict.size - int(trials.weight.sum())
-                found.append(StructureTrials(trials, flat(verdict, along), left_out, count))
+                made, count = trials_of_runs(verdict, along, by_motion=by_motion)
+                left_out = verdict.size - int(made.weight.sum())
+                found.append(StructureTrials(made, flat(verdict, along), left_out, count))
     over = dict(zip(structures.groups, structures.shape, strict=True))
-    about: dict[str, str | float | int] = {"trials": "capacities" if of_capacities else "runs"}
+    about: dict[str, str | float | int] = {"trials": trials}
     together = (pooled,) if isinstance(pooled, str) else tuple(pooled)
     if together:
         about[POOLED] = ", ".join(together)
@@ -373,10 +389,8 @@ def _of_counts(
     return found.assign_attrs(verdict=sentences(found))
 
 
-def _states(
-    runs: xr.Dataset, limits: Iterable[object] | None, *, of_capacities: bool
-) -> tuple[LimitState, ...]:
-    if not of_capacities:
+def _states(runs: xr.Dataset, limits: Iterable[object] | None) -> tuple[LimitState, ...]:
+    if "capacity_scale" not in runs:
         return limit_states(("uplift",) if limits is None else limits, owner=_OWNER)
     known = [float(one) for one in np.atleast_1d(runs["rotation_limit"].to_numpy())]
     if limits is None:

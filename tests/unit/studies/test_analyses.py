@@ -138,16 +138,17 @@ def test_a_scan_that_starts_too_high_says_that_capacities_lie_below(analysis):
     most = found.capacity_scale.max().item()
     start = f"Of 4 motions 4 overturned, from at or below {least:.4g} to {most:.4g} times the"
     assert found.verdict.startswith(start)
-    fitted = rf.fragility(found)
+    fitted = rf.fragility(found, trials="capacities")
     text = f"{below} of 4 capacities are only known to lie at or below the least scale."
     assert fitted.verdict.endswith(text)
     with pytest.warns(ModelWarning, match="4 of 4 motions"):
         found = rf.incremental_dynamic_analysis(SYSTEM, suite, scale=[7.0, 8.0], **FAST)
+    assert (found.capacity_resolution.sel(limit_state="overturning") == 1.0).all()
     assert "4 overturned, at or below 7 times the motion" in found.verdict
-    fitted = rf.fragility(found)
+    fitted = rf.fragility(found, trials="capacities")
     assert "no lognormal capacity fits" in fitted.verdict
     assert np.isnan(fitted.median_intensity).all()
-    assert "only known" not in rf.fragility(analysis).verdict
+    assert "only known" not in rf.fragility(analysis, trials="capacities").verdict
 
 
 def test_a_stored_analysis_goes_on_where_it_was(tmp_path, monkeypatch):
@@ -155,7 +156,7 @@ def test_a_stored_analysis_goes_on_where_it_was(tmp_path, monkeypatch):
     kept = rf.incremental_dynamic_analysis(SYSTEM, motions(), store=tmp_path / "s", **options)
     plain = rf.incremental_dynamic_analysis(SYSTEM, motions(), **options)
     folders = sorted(path.name for path in (tmp_path / "s").iterdir())
-    assert folders[:2] == ["round 01", "round 02"]
+    assert {"finer 01", "round 01", "round 02"} <= {*folders}
     assert folders[-1] == "scan"
     from rockframe.studies.sweeps import execution
 
@@ -168,10 +169,12 @@ def test_a_stored_analysis_goes_on_where_it_was(tmp_path, monkeypatch):
         xr.testing.assert_identical(one.drop_attrs(), plain.drop_attrs())
 
 
-@pytest.mark.parametrize("after", [0, 1, 3])
+@pytest.mark.parametrize("after", [0, 1, 2, 3])
 @pytest.mark.parametrize("kind", ["in a round", "between rounds"])
 def test_an_interrupted_analysis_says_so_and_goes_on(tmp_path, monkeypatch, after, kind):
-    options = {"scale": [1.0, 2.0, 4.0], "store": tmp_path / "s", **FAST}
+    # at a resolution of one brackets are narrowed at once
+    some = {"scale": [1.0, 2.0, 4.0], "resolution": 1.0 if after != 2 else 0.02, **FAST}
+    options = {**some, "store": tmp_path / "s"}
     run_study, rounds = lines.run_study, itertools.count()
 
     def cut(study, bar, **means):
@@ -193,13 +196,14 @@ def test_an_interrupted_analysis_says_so_and_goes_on(tmp_path, monkeypatch, afte
             found = rf.incremental_dynamic_analysis(SYSTEM, motions(), **options)
         rounds = itertools.count()
         with pytest.warns(SolverWarning, match="interrupted; brackets"):
-            spectrum = rf.overturning_spectrum(
-                SYSTEM, motions(), periods=["1.7 s"], scale=[1.0, 2.0, 4.0], **FAST
-            )
+            spectrum = rf.overturning_spectrum(SYSTEM, motions(), periods=["1.7 s"], **some)
     assert found.verdict.endswith("; interrupted.")
     assert spectrum.verdict.endswith("; interrupted.")
-    apart = (found.scale_above - found.scale_below).max().item()
-    assert apart == pytest.approx(2.0 / 2**after)
+    if after == 2:
+        assert found.capacity_resolution.max().item() > 0.02
+    else:
+        apart = (found.scale_above - found.scale_below).max().item()
+        assert apart == pytest.approx(2.0 / 2**after)
     whole = rf.incremental_dynamic_analysis(SYSTEM, motions(), **options)
     options["store"] = None
     plain = rf.incremental_dynamic_analysis(SYSTEM, motions(), **options)
@@ -208,7 +212,7 @@ def test_an_interrupted_analysis_says_so_and_goes_on(tmp_path, monkeypatch, afte
 
 
 def test_a_fragility_of_capacities(analysis):
-    found = rf.fragility(analysis, "PGA")
+    found = rf.fragility(analysis, "PGA", trials="capacities")
     capacity = analysis.capacity_scale.sel(limit_state="overturning")
     pga = [one.peak_acceleration.m_as("m/s^2") for one in motions().values()]
     logs = np.log(capacity.values * pga)
@@ -221,6 +225,57 @@ def test_a_fragility_of_capacities(analysis):
     )
     with pytest.raises(ComponentError, match="was not asked for"):
         rf.fragility(analysis, limits=[0.7])
+
+
+def test_capacities_hang_neither_on_the_first_row_nor_on_its_step():
+    suite = motions()
+    found = {
+        step: rf.incremental_dynamic_analysis(
+            SYSTEM, suite, scale=np.arange(0.5, 4.1, step), resolution=finest, **FAST
+        ).sel(limit_state="overturning")
+        for step, finest in ((0.5, 0.02), (0.01, 1.0), (3.5, 0.02))
+    }
+    truth = rf.sweep(SYSTEM, suite, scale=np.arange(0.5, 4.0, 0.0025), **FAST).overturned == 1.0
+    for one in found.values():
+        assert one.attrs["capacity"] == "least scale found to exceed"
+        for name in suite:
+            least = float(one.capacity_scale.sel(motion=name))
+            widest = float(one.capacity_resolution.sel(motion=name))
+            below = truth.sel(motion=name, scale=slice(0.0, least * (1.0 - 1e-3))).squeeze()
+            # no range that is wider than the resolution falls below a capacity
+            edges = np.flatnonzero(np.diff(np.r_[False, below.values, False].astype(int)))
+            ranges = below.scale.values[edges[1::2] - 1] / below.scale.values[edges[::2]] - 1.0
+            assert (ranges <= widest).all()
+    assert float(found[0.5].capacity_resolution.max()) <= 0.02
+    medians = [float(one.capacity_scale.median()) for one in found.values()]
+    assert medians == pytest.approx([medians[1]] * 3, rel=0.05)
+
+
+def test_what_was_not_exceeded_has_an_infinite_capacity_and_is_counted():
+    found = rf.incremental_dynamic_analysis(
+        SYSTEM, motions(), scale=[0.5, 1.0, 1.7], limits=["uplift"], **FAST
+    )
+    capacity = found.capacity_scale.sel(limit_state="overturning")
+    count = int(found.censored_count.sel(limit_state="overturning"))
+    assert 0 < count < capacity.size
+    assert int(np.isinf(capacity).sum()) == count
+    assert not capacity.isnull().any()
+    assert int(found.censored_count.sel(limit_state="uplift")) == 0
+    statistics = rf.ensemble_statistics(capacity, quantiles=[0.01, 0.99])
+    assert statistics.member_count == capacity.size
+    assert np.isinf(statistics.quantile_value[-1])
+    assert (found.capacity_resolution <= 0.02).all()
+
+
+def test_a_fragility_of_an_analysis_is_that_of_its_runs_unless_asked_for_capacities(analysis):
+    runs = rf.sweep(SYSTEM, motions(), scale=analysis.scale.values, free_vibration="4 s", **QUIET)
+    every = rf.fragility(runs, limits=["uplift", 0.4])
+    assert every.attrs["trials"] == "runs"
+    xr.testing.assert_identical(rf.fragility(analysis).drop_attrs(), every.drop_attrs())
+    with pytest.raises(SchemaError, match="incremental_dynamic_analysis"):
+        rf.fragility(runs, trials="capacities")
+    with pytest.raises(ComponentError, match="trials must be one of runs, capacities"):
+        rf.fragility(runs, trials="flips")
 
 
 def test_brackets_split_where_a_third_verdict_lies_between():

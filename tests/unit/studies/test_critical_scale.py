@@ -35,7 +35,7 @@ CASES = {
         SHAKING,
         {**SPARING, "initial": rf.InitialState(rotation="0.05 rad"), "accuracy": "standard"},
     ),
-    "soil, a pulse": (ON_SOIL, PULSE, {**SPARING, "width": 1e-6}),
+    "soil, a pulse": (ON_SOIL, PULSE, {**SPARING, "bracket_width": 1e-6}),
     "pads, until it lies flat": (ON_PADS, PULSE, {**SPARING, "overturning": "continue"}),
 }
 OF_A_RUN = ("free_vibration", "initial", "accuracy", "overturning")
@@ -86,7 +86,9 @@ def test_every_run_is_told(found):
         assert told.scale[-1].item() == 4.0
         for k in range(0, told.scale.size, 9):
             scale = told.scale[k].item()
-            run = system.simulate(motion.scaled(scale), **of_run, outputs=None)
+            with warnings.catch_warnings():  # next to a flip a run is doubted
+                warnings.simplefilter("ignore", SolverWarning)
+                run = system.simulate(motion.scaled(scale), **of_run, outputs=None)
             assert told.outcome[k].item() == int(overturns(run)), (name, scale)
             assert told.peak_rotation[k].item() == run.peak_rotation.item()
             assert told.status[k].item() == run.status.item()
@@ -199,7 +201,7 @@ def test_what_cannot_be_asked_is_refused():
         ({"largest": "4 m"}, UnitsError, "largest"),
         ({"scales": 1}, ComponentError, "scales must be a whole number from 2"),
         ({"scales": 50, "runs": 40}, ComponentError, "runs must be a whole number from 50"),
-        ({"width": 0.0}, ComponentError, "width must be from 1e-12 to 0.1"),
+        ({"bracket_width": 0.0}, ComponentError, "bracket_width must be from 1e-12 to 0.1"),
         ({"intensity": "PGA"}, ComponentError, "must be one of .*peak_ground_acceleration"),
         ({"intensity": "uplift_acceleration"}, ComponentError, "must be one of"),
         ({"intensity": "spectral_displacement"}, ComponentError, "needs a period"),

@@ -1,6 +1,7 @@
 """Finding flips along a scale: verdicts and clearances made up for the purpose."""
 
 import math
+from dataclasses import replace
 from itertools import pairwise
 
 import pytest
@@ -88,11 +89,38 @@ def test_without_runs_to_spare_it_says_how_far_it_looked():
         return 0.2 * scale + 0.8 * math.exp(-((10.0 * (scale - 1.55)) ** 2))
 
     look, asked = runs_of(peak)
-    found = follow(look, ROW, most=len(ROW), width=1e-4)
+    found = follow(look, ROW, most=len(ROW), width=1e-4, resolution=0.02)
     assert len(asked) == len(ROW)
     assert found.flips() == []
-    assert found.up_to < 1.55
-    assert "not close enough together" in flips_sentence(found, width=1e-4)
+    assert found.up_to == 0.0
+    said = flips_sentence(found, width=1e-4, resolution=0.02)
+    assert said.endswith(
+        "Beyond 0 some are more than 2 % apart, and a lesser scale between them may overturn."
+    )
+
+
+@pytest.mark.parametrize("resolution", [0.05, 0.02, 0.005])
+def test_no_range_wider_than_the_resolution_hides_up_to_where_it_was_followed(resolution):
+    """Whatever peaks tell: here nothing."""
+    start = 1.3
+    for length in (1.05, 2.0):
+        wide = start * (1.0 + length * resolution)
+        look, asked = runs_of(lambda at, wide=wide: 1.5 if start < at < wide else 0.01)
+        found = follow(look, [0.0, 1.0, 2.0], most=3000, width=1e-4, resolution=resolution)
+        assert found.up_to >= start
+        assert [flip.overturns_above for flip in found.flips()][:1] == [True]
+        few = follow(look, [0.0, 1.0, 2.0], most=20, width=1e-4, resolution=resolution)
+        assert few.up_to < start
+
+    # a base that does not lift holds at any lesser scale
+    def still(scale):
+        return replace(look(scale), lifted=scale > 1.0)
+
+    count = len(asked)
+    assert (
+        follow(still, [0.0, 1.0, 2.0], most=3000, width=1e-4, resolution=resolution).up_to >= start
+    )
+    assert min(asked[count + 3 :]) > 1.0
 
 
 def test_runs_without_a_verdict_are_neither():
@@ -136,7 +164,8 @@ def test_an_interrupt_leaves_what_was_found_until_then():
         return 0.2 * scale + 0.8 * math.exp(-((10.0 * (scale - 1.55)) ** 2))
 
     look, asked = runs_of(peak)
-    whole = follow(look, ROW, most=100, width=1e-4)
+    how = {"most": 100, "width": 1e-4, "resolution": 0.05}
+    whole = follow(look, ROW, **how)
     assert whole.whole
     for count in range(1, len(asked)):
         look, _ = runs_of(peak)
@@ -147,7 +176,7 @@ def test_an_interrupt_leaves_what_was_found_until_then():
                 return look(scale)
             raise KeyboardInterrupt
 
-        found = follow(interrupted, ROW, most=100, width=1e-4)
+        found = follow(interrupted, ROW, **how)
         assert not found.whole
         assert sorted(found.shown) == sorted(asked[:count])
         assert "interrupted" in flips_sentence(found, width=1e-4)

@@ -170,24 +170,25 @@ def test_capacities_that_nobody_knows_are_left_out():
     analysis = rf.incremental_dynamic_analysis(
         SYSTEM, motions(count=12), scale=[1.0, 3.0, 6.0, 12.0], **HOW
     )
-    all_known = rf.fragility(analysis)
+    all_known = rf.fragility(analysis, trials="capacities")
     lacking = analysis.copy(deep=True)
     fail(lacking, motion=0)
     fail(lacking, motion=1, scale=slice(1, None))
     for name in ("capacity_scale", "scale_above", "scale_below", "exceeds_above"):
         lacking[name][{"motion": [0, 1]}] = np.nan
-    found = rf.fragility(lacking)
+    found = rf.fragility(lacking, trials="capacities")
     assert found.left_out_count.item() == 1
     assert found.trial_count.item() == 11
     assert "1 of 12 capacities are left out" in found.verdict
     # of motion 1 it is known that it withstood the least scale, and no more
-    without = rf.fragility(lacking.isel(motion=slice(2, None)))
+    without = rf.fragility(lacking.isel(motion=slice(2, None)), trials="capacities")
     assert found.median_intensity.item() == pytest.approx(without.median_intensity.item(), rel=0.02)
     assert all_known.left_out_count.item() == 0
     one = analysis.isel(limit_state=0)
-    assert rf.fragility(one).median_intensity.item() == all_known.median_intensity.item()
+    again = rf.fragility(one, trials="capacities")
+    assert again.median_intensity.item() == all_known.median_intensity.item()
     with pytest.raises(SchemaError, match="at one scale"):
-        rf.fragility(analysis.isel(scale=1), analysis.scale.isel(scale=1))
+        rf.fragility(analysis.isel(scale=1), analysis.scale.isel(scale=1), trials="capacities")
 
 
 def test_programs_take_one_structure(runs, tmp_path):

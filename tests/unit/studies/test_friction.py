@@ -107,7 +107,8 @@ def test_analyses_count_the_runs_that_would_slide():
     assert f"; i{words} of the scan the block would slide first." in analysis.attrs["verdict"]
     said = "the block would slide first; these count as if it were held."
     assert f" I{words} {said}" in rf.fragility(runs).attrs["verdict"]
-    assert f" I{words} of the scan {said}" in rf.fragility(analysis).attrs["verdict"]
+    capacities = rf.fragility(analysis, trials="capacities")
+    assert f" I{words} of the scan {said}" in capacities.attrs["verdict"]
     held = rf.critical_scale(ROUGH, PULSE, largest=1.6, scales=20, runs=40)
     assert f"; in none of {held.scale.size} runs the block" in held.attrs["verdict"]
     needed = rf.sweep(ROUGH, PULSE, scale=held.scale.values).peak_friction_demand

@@ -64,8 +64,14 @@ OF_SIZES = {
     "system": OTHER, "motions": TURNED, "periods": ([2, 5], "s"), "slenderness": [3, 5],
 }  # fmt: skip
 SPECTRAL = tuple({"intensity": "SA", "period": period} for period in ("0.5 s", "2 s"))
-LINES = {"scale": [0.5, 2.0], "width": 0.05}
-OF_LINES = {"scale": [0.5, 2.5], "width": 0.02, "intensity": "PGV", "period": SPECTRAL}
+LINES = {"scale": [0.5, 2.0], "bracket_width": 0.05}
+OF_LINES = {
+    "scale": [0.5, 2.5],
+    "bracket_width": 0.02,
+    "resolution": 0.1,
+    "intensity": "PGV",
+    "period": SPECTRAL,
+}
 ANALYSES = {
     "incremental_dynamic_analysis": (
         {"system": SYSTEM, "motions": MOTIONS, **LINES, "intensity": "PGA"},
@@ -73,8 +79,8 @@ ANALYSES = {
     ),
     "overturning_map": (
         {"system": SYSTEM, "pulse": rf.GroundMotion.sine_pulse, "amplitude": ([2, 4, 8], "m/s^2"),
-         "frequency": ([0.8, 10], "Hz"), "width": 0.05, "overturning": "stop"},
-        {**RUN, "system": OTHER, "pulse": rf.GroundMotion.cosine_pulse, "width": 0.02,
+         "frequency": ([0.8, 10], "Hz"), "bracket_width": 0.05, "overturning": "stop"},
+        {**RUN, "system": OTHER, "pulse": rf.GroundMotion.cosine_pulse, "bracket_width": 0.02,
          "amplitude": ([2, 4, 9], "m/s^2"), "frequency": ([0.8, 2], "Hz"), "impacts": 1},
     ),
     "rocking_spectrum": (SIZES, {**RUN, **OF_SIZES}),

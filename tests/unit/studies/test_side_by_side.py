@@ -210,7 +210,7 @@ def test_a_critical_scale_of_a_law_that_cannot_be_compiled(fallbacks):
     pulse = rf.GroundMotion.sine_pulse("-6 m/s^2", "2 Hz")
     found, elastic = (
         rf.critical_scale(
-            rf.System(BLOCK, pads), pulse, largest=2.0, scales=4, runs=6, width=0.1,
+            rf.System(BLOCK, pads), pulse, largest=2.0, scales=4, runs=6, bracket_width=0.1,
             accuracy="fast", duration="0.8 s",
         )
         for pads in (TabulatedPads(frequency_ratio=20, damping_ratio=0.1), PADS)

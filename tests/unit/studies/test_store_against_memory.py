@@ -61,14 +61,14 @@ def of_table(**run):
 
 def dynamic_analysis(**run):
     return rf.incremental_dynamic_analysis(
-        SYSTEM, MOTIONS, scale=[0.5, 1, 2], intensity="PGA", width=0.05, **run
+        SYSTEM, MOTIONS, scale=[0.5, 1, 2], intensity="PGA", bracket_width=0.05, **run
     )
 
 
 def mapped(**run):
     return rf.overturning_map(
         SYSTEM, rf.GroundMotion.sine_pulse, amplitude=([2, 4, 8], "m/s^2"),
-        frequency=([0.8, 2, 10], "Hz"), width=0.05, **run,
+        frequency=([0.8, 2, 10], "Hz"), bracket_width=0.05, **run,
     )  # fmt: skip
 
 
@@ -81,7 +81,7 @@ ANALYSES = {
     "rocking_spectrum": [lambda **run: rf.rocking_spectrum(SYSTEM, MOTIONS, **SIZES, **run)],
     "overturning_spectrum": [
         lambda **run: rf.overturning_spectrum(
-            SYSTEM, MOTIONS, scale=[0.5, 1, 2], width=0.05, **SIZES, **run
+            SYSTEM, MOTIONS, scale=[0.5, 1, 2], bracket_width=0.05, **SIZES, **run
         )
     ],
     "probability_of_overturning": [
