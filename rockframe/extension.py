@@ -9,7 +9,7 @@ of :class:`~rockframe.dynamics.protocol.Equations`, in a :class:`ContactModel`.
 
 from rockframe.compiled import Vector, inlined, kernel
 from rockframe.components import Choice, Component, OneOf, Parameter, Ratio, Text
-from rockframe.components.values import DampingRatio
+from rockframe.components.parameters import DampingRatio
 from rockframe.dynamics.base import Base, BaseForce, EndEvent
 from rockframe.dynamics.base_numbers import BaseNumbers, pads_over, springs_under
 from rockframe.dynamics.bed import Bed
@@ -34,8 +34,8 @@ from rockframe.dynamics.protocol import (
 from rockframe.dynamics.protocol import Equations as System
 from rockframe.results.diagnostics import Diagnostic
 from rockframe.results.variables.variable import EVENT, TIME, Variable
+from rockframe.system.bodies import BaseLoad
 from rockframe.system.links import OwnLink
-from rockframe.system.load import BaseLoad
 from rockframe.system.own_base import OwnBase
 from rockframe.system.own_scene import OwnScene
 from rockframe.system.pads import PadSupport, pads_under

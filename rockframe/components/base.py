@@ -8,9 +8,8 @@ from textwrap import fill
 from typing import Any, ClassVar, Final, NoReturn, Self
 
 from rockframe.components.alternatives import OneOf
-from rockframe.components.parameters import DERIVED, REQUIRED, Declared
+from rockframe.components.parameters import DERIVED, REQUIRED, Declared, SIValues
 from rockframe.components.registry import register_class
-from rockframe.components.values import SIValues
 from rockframe.errors import ComponentError, ModelWarning, shown, warn
 from rockframe.notebook import Polygon, arguments_in_words, card, drawing
 

@@ -12,11 +12,10 @@ from rockframe.components.block_numbers import (
     check_representable,
     unphysical_inertia,
 )
-from rockframe.components.parameters import DERIVED, Parameter, Ratio
+from rockframe.components.parameters import DERIVED, Parameter, Ratio, SIProperty, SIValues
 from rockframe.components.shapes.outline import cylinder_body, outline_body
 from rockframe.components.shapes.parts import Part, body_of_parts
 from rockframe.components.shapes.reading import Place, Points
-from rockframe.components.values import SIProperty, SIValues
 from rockframe.errors import ComponentError, ModelWarning, shown, warn
 from rockframe.notebook import Polygon
 from rockframe.units import (

@@ -6,8 +6,7 @@ from typing import ClassVar
 
 from rockframe.components.alternatives import OneOf
 from rockframe.components.base import Component
-from rockframe.components.parameters import Parameter
-from rockframe.components.values import SIValues
+from rockframe.components.parameters import Parameter, SIValues
 from rockframe.notebook import Polygon
 from rockframe.units import (
     DENSITY,

@@ -9,8 +9,7 @@ import xarray as xr
 
 from rockframe.components.alternatives import OneOf
 from rockframe.components.base import Component
-from rockframe.components.parameters import DERIVED, Parameter, Text
-from rockframe.components.values import SIValues
+from rockframe.components.parameters import DERIVED, Parameter, SIValues, Text
 from rockframe.constants import CONVENTIONS
 from rockframe.errors import ComponentError
 from rockframe.units import (

@@ -11,8 +11,7 @@ import numpy as np
 from rockframe.components.alternatives import OneOf
 from rockframe.components.base import Component
 from rockframe.components.frame_members import Member
-from rockframe.components.parameters import DERIVED, Declared, Missing, Parameter
-from rockframe.components.values import SIValues
+from rockframe.components.parameters import DERIVED, Declared, Missing, Parameter, SIValues
 from rockframe.errors import ComponentError
 from rockframe.units import (
     DENSITY,

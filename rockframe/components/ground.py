@@ -4,8 +4,14 @@ from enum import StrEnum
 from typing import ClassVar, Literal, TypeAlias
 
 from rockframe.components.base import Component
-from rockframe.components.parameters import Choice, Ratio
-from rockframe.components.values import Friction, KineticFriction, SIValues, check_frictions
+from rockframe.components.parameters import (
+    Choice,
+    Friction,
+    KineticFriction,
+    Ratio,
+    SIValues,
+    check_frictions,
+)
 from rockframe.units import UNIT_INTERVAL, RatioLike
 
 

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 from typing import ClassVar, Final
 
 from rockframe.components.base import Component
-from rockframe.components.parameters import Parameter
-from rockframe.components.values import SIValues
+from rockframe.components.parameters import Parameter, SIValues
 from rockframe.errors import shown
 from rockframe.units import (
     ANGLE,

@@ -3,8 +3,7 @@
 from typing import Any, ClassVar, Final
 
 from rockframe.components.base import Component
-from rockframe.components.parameters import Count, Flag, Parameter, Place, Text
-from rockframe.components.values import SIValues
+from rockframe.components.parameters import Count, Flag, Parameter, Place, SIValues, Text
 from rockframe.errors import ComponentError
 from rockframe.units import (
     DAMPING,

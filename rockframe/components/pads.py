@@ -4,11 +4,12 @@ from typing import ClassVar
 
 from rockframe.components.alternatives import OneOf
 from rockframe.components.base import Component
-from rockframe.components.parameters import Parameter, Ratio
-from rockframe.components.values import (
+from rockframe.components.parameters import (
     DampingRatio,
     Friction,
     KineticFriction,
+    Parameter,
+    Ratio,
     SIValues,
     check_frictions,
 )

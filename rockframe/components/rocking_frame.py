@@ -7,9 +7,8 @@ from typing import Any, ClassVar, Final, Self
 from rockframe.components.base import Component
 from rockframe.components.block import Block
 from rockframe.components.block_numbers import BlockSI
-from rockframe.components.parameters import REQUIRED, Count, Declared, Missing, Parameter
+from rockframe.components.parameters import REQUIRED, Count, Declared, Missing, Parameter, SIValues
 from rockframe.components.registry import component_from_dict
-from rockframe.components.values import SIValues
 from rockframe.errors import ComponentError, shown
 from rockframe.notebook import Polygon
 from rockframe.units import LENGTH, MASS, NOT_NEGATIVE, POSITIVE, QuantityLike

@@ -6,11 +6,12 @@ from typing import ClassVar, Literal, Self, TypeAlias
 from rockframe.arguments import hinted
 from rockframe.components.alternatives import OneOf
 from rockframe.components.base import Component
-from rockframe.components.parameters import Choice, Parameter
-from rockframe.components.values import (
+from rockframe.components.parameters import (
+    Choice,
     DampingRatio,
     Friction,
     KineticFriction,
+    Parameter,
     SIValues,
     check_frictions,
 )

@@ -5,8 +5,7 @@ from typing import Any, ClassVar, Final, Literal
 
 from rockframe.arguments import one_of_words
 from rockframe.components.link import BODY, Link
-from rockframe.components.parameters import Choice, Count, Declared, Parameter, Ratio
-from rockframe.components.values import SIValues
+from rockframe.components.parameters import Choice, Count, Declared, Parameter, Ratio, SIValues
 from rockframe.errors import ComponentError
 from rockframe.units import (
     DAMPING,

@@ -10,10 +10,17 @@ from typing import Any, Final, NamedTuple
 
 from rockframe.compiled import constant, inlined, kernel
 from rockframe.dynamics.base import Guards
-from rockframe.dynamics.body import Attitude, BaseLine, Body, BodyState, accelerated
+from rockframe.dynamics.body import (
+    Attitude,
+    BaseLine,
+    Body,
+    BodyState,
+    accelerated,
+    pivot_guard,
+    pivot_of,
+)
 from rockframe.dynamics.events import FLIGHT, FULL, LEFT, RIGHT
 from rockframe.dynamics.protocol import Ground
-from rockframe.dynamics.restraint import pivot_guard, pivot_of
 from rockframe.dynamics.sliding import NO_LEVER
 
 # guards of a body, behind those of both ends of its base

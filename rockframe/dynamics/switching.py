@@ -8,7 +8,14 @@ in the system. Re-pinning :eq:`eq-repinning`, impact :eq:`eq-impact`, partial ho
 
 from rockframe.compiled import Vector, kernel
 from rockframe.dynamics.bodies import Bodies
-from rockframe.dynamics.body import BodyState, accelerated
+from rockframe.dynamics.body import (
+    PIVOT_CENTRE,
+    PIVOT_LEFT,
+    PIVOT_RIGHT,
+    BodyState,
+    accelerated,
+    leading_pivot,
+)
 from rockframe.dynamics.events import (
     IMPACT,
     PIVOT_CHANGE,
@@ -24,7 +31,6 @@ from rockframe.dynamics.protocol import (
     REPINNING_LOSS,
     Ground,
 )
-from rockframe.dynamics.restraint import PIVOT_CENTRE, PIVOT_LEFT, PIVOT_RIGHT, leading_pivot
 from rockframe.dynamics.sliding import (
     DISTURBED,
     blend,

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from rockframe.compiled import Matrix
-from rockframe.dynamics.alone_model import rocking_rate
+from rockframe.dynamics.alone import rocking_rate
 from rockframe.dynamics.base_numbers import BaseNumbers
 from rockframe.dynamics.bed import Rigid
 from rockframe.dynamics.body import Body

@@ -6,8 +6,7 @@ from typing import NamedTuple
 
 from rockframe.dynamics.rigid_ground import BlockOnRigidGround, RockingCorner
 from rockframe.proof.balls import ZERO, Ball, Row, ball, hull, moved, upper
-from rockframe.signals.motion import Motion
-from rockframe.signals.slope import Slope
+from rockframe.signals.motion import Motion, Slope
 from rockframe.system.bodies import OverturningAngles
 
 

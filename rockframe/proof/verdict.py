@@ -8,7 +8,7 @@ from rockframe.proof.balls import ball, working_precision
 from rockframe.proof.course import Course, Watch
 from rockframe.proof.problem import Problem, Undecided
 from rockframe.signals import Motion
-from rockframe.signals.slope import Slope
+from rockframe.signals.motion import Slope
 from rockframe.system.bodies import OverturningAngles
 
 SAFE = "safe for ever"

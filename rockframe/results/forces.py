@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from rockframe.results.along_steps import AlongSteps
 from rockframe.results.outcome import Generic, sines_cosines
 from rockframe.signals.arrays import Array
-from rockframe.system.load import BaseLoad
+from rockframe.system.bodies import BaseLoad
 
 Values = Mapping[str, Generic]
 

@@ -5,16 +5,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rockframe.dynamics.body import PIVOT_LEFT, PIVOT_RIGHT, pivot_of
 from rockframe.dynamics.events import ContactState
-from rockframe.dynamics.restraint import PIVOT_LEFT, PIVOT_RIGHT, pivot_of
 from rockframe.results.along_steps import AlongSteps
 from rockframe.results.outcome import Generic, sines_cosines
 from rockframe.results.variables.requests import POINT_PEAKS
 from rockframe.signals.arrays import Array
+from rockframe.system.bodies import BaseLoad
 from rockframe.system.geometry import Geometry
-from rockframe.system.load import BaseLoad
-from rockframe.system.options import Restraint
-from rockframe.system.restraints import restraint_code
+from rockframe.system.options import Restraint, restraint_code
 
 
 @dataclass(frozen=True)

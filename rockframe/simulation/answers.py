@@ -26,16 +26,18 @@ from rockframe.results.outcome import (
     body_histories,
     cap_histories,
     contact_histories,
+    energies_on_slope,
     energy_histories,
     ground_histories,
+    ground_on_slope,
     relative_histories,
+    without_gravity,
 )
 from rockframe.results.points import point_histories, point_labels, point_peaks
 from rockframe.results.schema import ON_REQUEST, SCHEMA
-from rockframe.results.slope import energies_on_slope, ground_on_slope, without_gravity
 from rockframe.results.variables.variable import EVENT, TIME
 from rockframe.signals.arrays import Array
-from rockframe.signals.slope import Slope
+from rockframe.signals.motion import Slope
 from rockframe.simulation.friction import SlidingCheck, sliding_scalars, slidings
 from rockframe.simulation.plan import Plan
 from rockframe.solve.observe import memory_at_outputs, observe_states, observe_steps

@@ -13,9 +13,16 @@ from rockframe.compiled import compiling_for
 from rockframe.errors import ModelWarning, RockframeWarning, SolverWarning, or_missing, warn
 from rockframe.motion import GroundMotion
 from rockframe.results.dataset import build_dataset
-from rockframe.results.outcome import Generic, event_columns, peak_of, scalars, verdict
+from rockframe.results.outcome import (
+    Generic,
+    event_columns,
+    ground_on_slope,
+    peak_of,
+    scalars,
+    slope_attributes,
+    verdict,
+)
 from rockframe.results.schema import schema_row
-from rockframe.results.slope import ground_on_slope, slope_attributes
 from rockframe.results.variables.runs import Direction
 from rockframe.signals import Motion
 from rockframe.simulation.answers import Answers, answers_of, ground_at

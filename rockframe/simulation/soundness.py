@@ -18,7 +18,7 @@ from rockframe.simulation.run_summary import RunSummary
 from rockframe.solve.accuracy import LEVELS, AccuracyLevel
 from rockframe.solve.trajectory import Summary, Trajectory
 from rockframe.system.assembly import Assembly
-from rockframe.system.overturning_energy import stored_energy
+from rockframe.system.statics import stored_energy
 
 BY_TOLERANCE: Final = 1e-3
 """Residual beyond which steps by tolerance give no solution; sound ones stay below 1e-5."""

@@ -18,7 +18,7 @@ from rockframe.dynamics.protocol import (
 from rockframe.solve import layout as at
 from rockframe.solve.crossings import extremum, interpolate
 from rockframe.solve.equations import BoundEquations, KnownMode, energies_at, slope_at
-from rockframe.solve.guards import LEFT_LIMIT, RIGHT_LIMIT, WEIGHTS, RotationInStep
+from rockframe.solve.march import LEFT_LIMIT, RIGHT_LIMIT, WEIGHTS, RotationInStep
 from rockframe.solve.workspace import (
     EventTable,
     Output,

@@ -10,7 +10,7 @@ from typing import Final
 
 from rockframe.compiled import Vector, kernel
 from rockframe.solve.equations import BoundEquations, write_guards
-from rockframe.solve.guards import DIP_MARGIN, may_dip
+from rockframe.solve.march import DIP_MARGIN, may_dip
 from rockframe.solve.workspace import Span, Workspace
 
 

@@ -19,8 +19,7 @@ from rockframe.compiled import (
 )
 from rockframe.dynamics.protocol import BODY_COLUMNS, BODY_FORCES, Energies, Equations, Ground
 from rockframe.solve.accuracy import STABLE
-from rockframe.solve.guards import guards_at
-from rockframe.solve.march import march_by_tolerance, march_fixed
+from rockframe.solve.march import guards_at, march_by_tolerance, march_fixed
 from rockframe.solve.workspace import Span, Workspace, ground_in
 
 

@@ -90,7 +90,7 @@ class Workspace(NamedTuple):
     stages: Vector  # room for stages
     works: Vector  # energies dissipated and put in, the error of their difference, other errors
     reference: Vector  # largest size so far of each variable
-    limits: Vector  # of the rotation, see rockframe.solve.guards
+    limits: Vector  # of the rotation, see rockframe.solve.march
     scratch: Vector  # state and its slope in between
     scratch_rates: Vector
     inside: Vector  # guards in between

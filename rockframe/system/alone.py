@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from rockframe.errors import AssemblyError
-from rockframe.system.restraints import restraint_words
+from rockframe.system.options import restraint_words
 from rockframe.system.setting import Setting
 from rockframe.system.small_motion import SmallMotion
 from rockframe.system.statics import Statics
@@ -46,7 +46,7 @@ class AloneSetting(Setting):
 
     def contact_model(self) -> "ContactModel":
         """Give the equations of a body on its base."""
-        from rockframe.dynamics.alone_model import alone
+        from rockframe.dynamics.alone import alone
 
         body, base = self.load.rigid_body, self.support.base_numbers
         return alone(self.model, body, base, self.body.mass, self.rest_rotation)

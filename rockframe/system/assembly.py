@@ -7,7 +7,6 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from rockframe.errors import AssemblyError
-from rockframe.system.describe import describe
 from rockframe.system.fitting import contradictions, misfits, missizes
 from rockframe.system.options import (
     Coupling,
@@ -22,6 +21,7 @@ from rockframe.system.own_base import OwnBase
 from rockframe.system.parts import Parts, sort_parts
 from rockframe.system.scenes import Scene, scenes
 from rockframe.system.setting import Setting
+from rockframe.system.words import describe
 
 if TYPE_CHECKING:
     from rockframe.dynamics.protocol import ContactModel

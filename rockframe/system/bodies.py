@@ -1,15 +1,53 @@
-"""Rigid bodies that scenes put on a base: a block, or a block and its cap as one."""
+"""Bodies as they stand on a base: block and cap as one, how they land, and how they are held."""
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
-from typing import NamedTuple
+from functools import cached_property, lru_cache
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 from rockframe.components.block_numbers import BlockSI, BodyGeometry, greatest_restitutions
 from rockframe.components.cap import CushionCapSI
 from rockframe.signals.arrays import Array
-from rockframe.signals.slope import Slope
-from rockframe.system.impact import Restitutions
+from rockframe.signals.motion import Slope
+from rockframe.system.options import Options, restraint_code
+
+if TYPE_CHECKING:
+    from rockframe.dynamics.body import Body
+
+
+ROUNDING = 1e-12
+"""Excess over the greatest restitution that is taken for rounding."""
+
+
+class Restitutions(NamedTuple):
+    """Ratios of speeds after and before an impact, by the corner that lands."""
+
+    left: float
+    right: float
+
+    def words(self) -> str:
+        """Write them; one number where they are equal."""
+        if self.left == self.right:
+            return f"{self.left:.6g}"
+        return f"{self.left:.6g} (onto the left corner), {self.right:.6g} (onto the right one)"
+
+
+def resolve_restitution(given: float | None, greatest: Restitutions) -> Restitutions:
+    """Give the restitutions of a scene: eps_max of Eq. (4) unless the user chose one."""
+    return greatest if given is None else Restitutions(given, given)
+
+
+def restitution_cautions(chosen: Restitutions, greatest: Restitutions) -> list[str]:
+    """Warn of a restitution above eps_max, Eq. (4)."""
+    excess, most, restitution = max(
+        (one - limit, limit, one) for one, limit in zip(chosen, greatest, strict=True)
+    )
+    if excess <= ROUNDING:
+        return []
+    return [
+        f"restitution {restitution:.6g} exceeds eps_max = {most:.6g} of Eq. (4), the greatest "
+        "of a rigid block that rolls over from corner to corner without bouncing"
+    ]
 
 
 @dataclass(frozen=True)
@@ -136,3 +174,73 @@ def one_body(block: BlockSI, cap: Cap) -> SupportedBody:
     )
     shape_factor = mass * (cap.half_width**2 + height**2) / inertia
     return SupportedBody(cap.half_width, height, mass, inertia, shape_factor, beside)
+
+
+_KEPT: Final = 64
+"""Blocks whose loads are kept at hand, for sweeps that change the base under them."""
+
+
+@dataclass(frozen=True)
+class BaseLoad:
+    """A body on a base, with the options of its system.
+
+    Parameters
+    ----------
+    body : SupportedBody
+        In SI units.
+    options : Options
+        Restraint, kinematics, and gravity.
+    """
+
+    body: SupportedBody
+    options: Options
+
+    @property
+    def gravity(self) -> float:
+        """Acceleration of gravity [m s^-2]."""
+        return self.options.gravity
+
+    @cached_property
+    def slope(self) -> Slope:
+        """The base line in its gravity."""
+        return self.options.slope
+
+    @property
+    def weight(self) -> float:
+        """Weight of the body, as far as it presses on the base [N]."""
+        return self.body.mass * self.slope.normal_gravity
+
+    @property
+    def thrust(self) -> float:
+        """Force along the base that keeps the body at rest from sliding [N]."""
+        return self.body.mass * self.slope.along_gravity
+
+    @cached_property
+    def overturning_angles(self) -> OverturningAngles:
+        """Rotations at which the centre of mass stands above an end of the base."""
+        return self.body.overturning_angles.on_slope(self.slope, small=self.options.small)
+
+    @cached_property
+    def rigid_body(self) -> "Body":
+        """The body as the equations take it, per unit of its own mass."""
+        return self.law(self.body.mass)
+
+    def law(self, mass: float) -> "Body":
+        """Give the body as the equations take it, per unit of some mass [kg]."""
+        from rockframe.dynamics.alone import rigid_body
+
+        return rigid_body(
+            left=self.body.left,
+            right=self.body.right,
+            height=self.body.centre_height,
+            inertia=self.body.inertia / mass,
+            restraint=restraint_code(self.options.restraint),
+            small_rotation=self.options.small,
+            gravity=self.slope.normal_gravity,
+        )
+
+
+@lru_cache(maxsize=_KEPT)
+def load_of(block: BlockSI, options: Options) -> BaseLoad:
+    """Give a block as a load; the same one for all scenes that differ in their bases alone."""
+    return BaseLoad(body_of_block(block), options)

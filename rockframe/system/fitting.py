@@ -7,8 +7,7 @@ from rockframe.components import Component, RigidGround, Stack, Tendon
 from rockframe.components.block_numbers import squat
 from rockframe.system.options import Options, Sliding
 from rockframe.system.own_base import OwnBase
-from rockframe.system.parts import Parts
-from rockframe.system.slots import slot_of
+from rockframe.system.parts import Parts, slot_of
 
 SMALL_SLIDING: Final = (
     "a block slides with rotation='finite' only; give sliding='checked' to hold it and compare its "

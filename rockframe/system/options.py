@@ -1,4 +1,4 @@
-"""Options of systems and runs, and the words for them."""
+"""Options of systems and runs, and how they are written and said."""
 
 import math
 from collections.abc import Mapping
@@ -8,7 +8,7 @@ from typing import Final, Literal, TypeAlias, TypeVar
 
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import RockframeError, shown
-from rockframe.signals.slope import Slope
+from rockframe.signals.motion import Slope
 from rockframe.solve.accuracy import Accuracy, AccuracyLevel
 from rockframe.units import ACCELERATION, ANGLE, POSITIVE, Condition, Measure, QuantityLike, to_si
 
@@ -146,3 +146,33 @@ def read_measured(given: object, name: str, faults: list[str]) -> float:
         faults.append(str(problem))
         return one.otherwise
     return value + 0.0  # no negative zero
+
+
+_WORDS = {
+    Restraint.CONTACT_STATE: (
+        "contact-state: the middle of the base while both {ends} bear, else the bearing "
+        "{end}; at each change the momentum is projected on the new restraint"
+    ),
+    Restraint.LEADING_CORNER: (
+        "leading-corner: the corner towards which the block leans, in every contact state"
+    ),
+    Restraint.CENTRE: "centre: the middle of the base, in every contact state",
+}
+
+
+def restraint_words(options: Options, end: str = "corner") -> str:
+    """Say which point of the base is held horizontally."""
+    if options.small:
+        return "the middle of the base (at small rotation the rules coincide)"
+    return _WORDS[options.restraint].format(end=end, ends=f"{end}s")
+
+
+def restraint_code(restraint: Restraint) -> int:
+    """Give the equations' code of a rule."""
+    from rockframe.dynamics import body as rules
+
+    return {
+        Restraint.CONTACT_STATE: rules.BY_CONTACT,
+        Restraint.LEADING_CORNER: rules.LEADING_CORNER,
+        Restraint.CENTRE: rules.CENTRE,
+    }[restraint]

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any, ClassVar
 
 from rockframe.components import Component
-from rockframe.system.load import BaseLoad
+from rockframe.system.bodies import BaseLoad
 from rockframe.system.support import Support
 
 

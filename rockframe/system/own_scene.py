@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING, ClassVar, NoReturn
 
 from rockframe.components import Component
 from rockframe.errors import AssemblyError
-from rockframe.system.overturning_energy import least_overturning_energy
 from rockframe.system.own_base import OwnAnswers
 from rockframe.system.parts import Parts
 from rockframe.system.setting import Setting
-from rockframe.system.statics import Statics
+from rockframe.system.statics import Statics, least_overturning_energy
 
 if TYPE_CHECKING:
     from rockframe.dynamics.protocol import ContactModel

@@ -5,8 +5,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rockframe.components import TwoSpringSupport
-from rockframe.system.impact import Restitutions, resolve_restitution, restitution_cautions
-from rockframe.system.load import BaseLoad
+from rockframe.system.bodies import (
+    BaseLoad,
+    Restitutions,
+    resolve_restitution,
+    restitution_cautions,
+)
 from rockframe.system.support import BaseWords, Support
 from rockframe.system.words import uplift_words
 

@@ -8,9 +8,13 @@ from typing import TYPE_CHECKING
 from rockframe.components import RearWall
 from rockframe.components.wall import WallImpact, WallSide
 from rockframe.errors import AssemblyError
-from rockframe.system.bodies import OverturningAngles, SupportedBody
-from rockframe.system.impact import Restitutions, resolve_restitution
-from rockframe.system.load import load_of
+from rockframe.system.bodies import (
+    OverturningAngles,
+    Restitutions,
+    SupportedBody,
+    load_of,
+    resolve_restitution,
+)
 from rockframe.system.options import Options
 from rockframe.system.parts import Parts
 from rockframe.system.rigid_ground import RigidGroundSetting

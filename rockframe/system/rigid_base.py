@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 from rockframe.components import RigidGround
-from rockframe.system.load import BaseLoad
+from rockframe.system.bodies import BaseLoad
 from rockframe.system.statics import Statics
 from rockframe.system.support import BaseWords, Support
 from rockframe.system.words import uplift_words

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
 from rockframe.errors import AssemblyError
-from rockframe.system.impact import Restitutions, restitution_cautions
+from rockframe.system.bodies import Restitutions, restitution_cautions
 from rockframe.system.rigid_base import NO_VERTICAL_START
 from rockframe.system.setting import Setting
 from rockframe.system.statics import Statics

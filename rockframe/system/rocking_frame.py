@@ -11,10 +11,8 @@ from rockframe.components import Tendon
 from rockframe.components.rocking_frame import RockingFrameSI
 from rockframe.errors import AssemblyError
 from rockframe.signals.arrays import Array
-from rockframe.system.bodies import SupportedBody
-from rockframe.system.impact import Restitutions, resolve_restitution
+from rockframe.system.bodies import BaseLoad, Restitutions, SupportedBody, resolve_restitution
 from rockframe.system.links import link_labels, tie_of, tie_words
-from rockframe.system.load import BaseLoad
 from rockframe.system.options import Options
 from rockframe.system.parts import Parts
 from rockframe.system.rigid_ground import RigidGroundSetting, refuse_fall

@@ -8,17 +8,15 @@ from typing import Final
 from rockframe.components import Component, RigidGround
 from rockframe.errors import AssemblyError
 from rockframe.system.alone import AloneSetting
-from rockframe.system.bodies import one_body
-from rockframe.system.load import BaseLoad, load_of
+from rockframe.system.bodies import BaseLoad, load_of, one_body
 from rockframe.system.options import Coupling, Options
 from rockframe.system.own_scene import OwnScene
-from rockframe.system.parts import Parts
+from rockframe.system.parts import RESTRAINER, Parts, support_of
 from rockframe.system.rear_wall import rear_wall_setting
 from rockframe.system.rocking_frame import rocking_frame_setting
 from rockframe.system.setting import Setting
 from rockframe.system.sliding_base import alone_on
 from rockframe.system.sliding_ground import rigid_ground_setting
-from rockframe.system.slots import RESTRAINER, support_of
 from rockframe.system.stack import StackSetting, block_setting, stack_setting
 from rockframe.system.stacked import CascadeSetting, CoupledSetting, StackedSetting
 

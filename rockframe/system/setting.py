@@ -6,13 +6,11 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
-from rockframe.signals.slope import Slope
-from rockframe.system.bodies import OverturningAngles, SupportedBody
-from rockframe.system.load import BaseLoad
+from rockframe.signals.motion import Slope
+from rockframe.system.bodies import BaseLoad, OverturningAngles, SupportedBody
 from rockframe.system.options import Options
-from rockframe.system.overturning_energy import least_overturning_energy
 from rockframe.system.small_motion import SmallMotion
-from rockframe.system.statics import Statics, required_states
+from rockframe.system.statics import Statics, least_overturning_energy, required_states
 from rockframe.system.support import Support
 from rockframe.system.words import Words
 

@@ -6,9 +6,8 @@ from typing import TYPE_CHECKING
 
 from rockframe.components.ground import Impact
 from rockframe.errors import AssemblyError
+from rockframe.system.bodies import load_of, resolve_restitution
 from rockframe.system.fitting import SMALL_SLIDING, friction_under
-from rockframe.system.impact import resolve_restitution
-from rockframe.system.load import load_of
 from rockframe.system.options import Options
 from rockframe.system.parts import Parts
 from rockframe.system.rigid_ground import RigidGroundSetting, refuse_fall

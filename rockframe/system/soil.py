@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 from rockframe.components import WinklerSoil
 from rockframe.components.soil import Separation
-from rockframe.system.load import BaseLoad
+from rockframe.system.bodies import BaseLoad
 from rockframe.system.support import BaseWords, Support
 from rockframe.system.words import uplift_words
 

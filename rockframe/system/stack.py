@@ -10,17 +10,14 @@ from rockframe.components import Component, Link, Load, Stack, Tendon
 from rockframe.components.block_numbers import BlockSI
 from rockframe.dynamics.statics import Stand, StandingBody, StandingChain, link_of
 from rockframe.errors import AssemblyError
-from rockframe.system.bodies import SupportedBody, body_of_block, with_mass
+from rockframe.system.bodies import BaseLoad, SupportedBody, body_of_block, with_mass
 from rockframe.system.links import PlacedLink, base_of, placed
-from rockframe.system.load import BaseLoad
-from rockframe.system.options import Options
-from rockframe.system.overturning_energy import least_overturning_energy
-from rockframe.system.restraints import restraint_words
+from rockframe.system.options import Options, restraint_words
+from rockframe.system.parts import support_of
 from rockframe.system.rigid_base import REACTIONS, RigidBase, pressed, rocked_statics
 from rockframe.system.setting import Setting
-from rockframe.system.slots import support_of
 from rockframe.system.small_motion import SmallMotion
-from rockframe.system.statics import StandingBodies, Statics
+from rockframe.system.statics import StandingBodies, Statics, least_overturning_energy
 from rockframe.system.support import Support
 from rockframe.system.words import Words
 

@@ -13,7 +13,7 @@ from rockframe.dynamics.statics import Stand, StandingChain, link_of
 from rockframe.errors import AssemblyError
 from rockframe.system.alone import AloneSetting
 from rockframe.system.bodies import Cap
-from rockframe.system.restraints import restraint_words
+from rockframe.system.options import restraint_words
 from rockframe.system.setting import Setting
 from rockframe.system.small_motion import SmallMotion
 from rockframe.system.statics import StandingBodies, Statics
@@ -140,7 +140,7 @@ class StackedSetting(Setting):
         return self._stack(*self._moving_cap)
 
     def _stack(self, cap_mass: float, cap_inertia: float) -> "tuple[ChainBody, ChainBody]":
-        from rockframe.dynamics.alone_model import eccentricity_of
+        from rockframe.dynamics.alone import eccentricity_of
         from rockframe.dynamics.vibrations import ChainBody
 
         (upper, lower), cap, mass = self.supports, self.cap, self.body.mass

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar
 
-from rockframe.system.load import BaseLoad
+from rockframe.system.bodies import BaseLoad
 from rockframe.system.statics import StandingBodies, Statics, required_states
 from rockframe.system.words import vibration_words
 
@@ -128,7 +128,7 @@ class Support(ABC):
     @cached_property
     def standing(self) -> StandingBodies:
         """Its body alone on it, by the law."""
-        from rockframe.dynamics.alone_model import eccentricity_of
+        from rockframe.dynamics.alone import eccentricity_of
         from rockframe.dynamics.on_base import OnBase
         from rockframe.dynamics.statics import StandingChain, link_of
 

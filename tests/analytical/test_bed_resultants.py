@@ -6,12 +6,11 @@ import math
 import numpy as np
 import pytest
 
-from rockframe.dynamics.alone_model import alone, rigid_body
+from rockframe.dynamics.alone import alone, rigid_body
 from rockframe.dynamics.base_numbers import bed_numbers
 from rockframe.dynamics.bed import Bed, Ends, both_contacts, end_of
-from rockframe.dynamics.body import BaseLine, accelerated
+from rockframe.dynamics.body import CENTRE, BaseLine, accelerated
 from rockframe.dynamics.protocol import Ground, Start
-from rockframe.dynamics.restraint import CENTRE
 
 pytestmark = pytest.mark.analytical
 

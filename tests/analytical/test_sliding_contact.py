@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from rockframe.dynamics.alone_model import alone, rigid_body
+from rockframe.dynamics.alone import alone, rigid_body
 from rockframe.dynamics.base_numbers import bed_numbers, pads_numbers
+from rockframe.dynamics.body import CENTRE
 from rockframe.dynamics.events import EventKind
 from rockframe.dynamics.protocol import Start
-from rockframe.dynamics.restraint import CENTRE
 from rockframe.dynamics.sliding import is_lifted, speed_noise
 from rockframe.signals import Motion
 from rockframe.solve.accuracy import accuracy_of

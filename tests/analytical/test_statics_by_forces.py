@@ -10,18 +10,17 @@ from scipy.optimize import minimize
 
 import rockframe as rf
 from rockframe import extension as ext
-from rockframe.dynamics.alone_model import eccentricity_of, rigid_body, starting_state
+from rockframe.dynamics.alone import eccentricity_of, rigid_body, starting_state
 from rockframe.dynamics.base_numbers import bed_numbers, pads_numbers
-from rockframe.dynamics.body import BodyState
+from rockframe.dynamics.body import CENTRE, BodyState
 from rockframe.dynamics.coupled.model import state_at
 from rockframe.dynamics.coupled.model import system_of as coupled_of
 from rockframe.dynamics.linear import PLACES, RATES, linear, of_base
 from rockframe.dynamics.on_base import OnBase
 from rockframe.dynamics.pads import ElasticPads
 from rockframe.dynamics.protocol import Ground, Start
-from rockframe.dynamics.restraint import CENTRE
 from rockframe.dynamics.statics import StandingChain, link_of
-from rockframe.system.overturning_energy import stored_energy
+from rockframe.system.statics import stored_energy
 
 pytestmark = pytest.mark.analytical
 

@@ -11,8 +11,7 @@ from rockframe.compiled import COMPILED
 from rockframe.compiled.bound import structure_of
 from rockframe.dynamics.protocol import Start
 from rockframe.solve.accuracy import LEVELS, AccuracyLevel
-from rockframe.solve.beginning import begun
-from rockframe.solve.integrate import integrate
+from rockframe.solve.integrate import begun, integrate
 
 pytestmark = [
     pytest.mark.benchmarks,

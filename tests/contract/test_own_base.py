@@ -22,7 +22,7 @@ from rockframe.compiled import store
 from rockframe.components import component_from_dict
 from rockframe.errors import AssemblyError, ComponentError, SchemaError
 from rockframe.results.schema import SCHEMA
-from rockframe.system import slots
+from rockframe.system import parts as parts_of
 
 BLOCK = rf.Block(width="1 m", height="4 m", mass="10 t")
 CAP = rf.CushionCap(height="0.5 m", mass="4 t")
@@ -530,7 +530,7 @@ class TestRegistration:
         class Nowhere(ext.OwnBase):
             """Neither a slot nor a support."""
 
-        rows, kinds = dict(SCHEMA), dict(slots._KINDS)
+        rows, kinds = dict(SCHEMA), dict(parts_of._KINDS)
         with pytest.raises(ComponentError) as caught:
             rf.register(
                 Nowhere,
@@ -541,7 +541,7 @@ class TestRegistration:
         for fault in ("Nowhere.slot", "no method support", "'2nd'", "('mode',)", "metros", "None"):
             assert fault in told
         assert rows == SCHEMA
-        assert kinds == slots._KINDS
+        assert kinds == parts_of._KINDS
 
     def test_a_support_that_is_not_registered_is_refused(self):
         with pytest.raises(AssemblyError, match="Doubled carries a body in its own way, but is"):

@@ -13,7 +13,7 @@ from plainly import plainly
 import rockframe as rf
 from rockframe import extension as ext
 from rockframe.results.schema import SCHEMA
-from rockframe.system import slots
+from rockframe.system import parts as parts_of
 
 FILE = Path(__file__).parents[2] / "examples" / "own_yielding_bed.py"
 WALL = rf.Block(width="2 m", height="6 m", mass="30 t")
@@ -23,13 +23,13 @@ SETTLEMENT = 0.005
 
 @pytest.fixture(scope="module")
 def bed():
-    rows, kinds = dict(SCHEMA), dict(slots._KINDS)
+    rows, kinds = dict(SCHEMA), dict(parts_of._KINDS)
     spec = importlib.util.spec_from_file_location(FILE.stem, FILE)
     module = importlib.util.module_from_spec(spec)
     sys.modules[FILE.stem] = module
     spec.loader.exec_module(module)
     yield module
-    for table, was in ((SCHEMA, rows), (slots._KINDS, kinds)):
+    for table, was in ((SCHEMA, rows), (parts_of._KINDS, kinds)):
         table.clear()
         table.update(was)
 

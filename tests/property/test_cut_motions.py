@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import rockframe as rf
-from rockframe.solve.guards import may_dip
+from rockframe.solve.march import may_dip
 
 pytestmark = [
     pytest.mark.property,

@@ -18,10 +18,10 @@ from scipy.linalg import expm
 
 import rockframe as rf
 from rockframe.dynamics.bodies import ROTATION, VERTICAL
+from rockframe.dynamics.body import PIVOT_CENTRE, PIVOT_LEFT, PIVOT_RIGHT
 from rockframe.dynamics.on_base import Mode
 from rockframe.dynamics.pads import CLEAR, CORNER, TOUCHING
 from rockframe.dynamics.protocol import Ground
-from rockframe.dynamics.restraint import PIVOT_CENTRE, PIVOT_LEFT, PIVOT_RIGHT
 
 G = 9.80665
 STATES = 200

@@ -17,7 +17,7 @@ from rockframe.proof.balls import ball, upper, working_precision
 from rockframe.proof.course import Course
 from rockframe.proof.problem import Problem, Undecided
 from rockframe.proof.states import States
-from rockframe.signals.slope import Slope
+from rockframe.signals.motion import Slope
 from rockframe.system.bodies import OverturningAngles
 
 STEP = 0.0625

@@ -9,7 +9,7 @@ from reference_models.rigid_pair.count_impacts import KINDS, draw_impact
 from reference_models.rigid_pair.pair import Body, Pair, Pattern, Phase
 
 import rockframe as rf
-from rockframe.dynamics.alone_model import rigid_body
+from rockframe.dynamics.alone import rigid_body
 from rockframe.dynamics.base_numbers import rigid_numbers
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.model import chain

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import rockframe as rf
-from rockframe.dynamics.alone_model import rigid_body
+from rockframe.dynamics.alone import rigid_body
 from rockframe.dynamics.base_numbers import pads_numbers
 from rockframe.dynamics.chain.link_rows import GROUND, ChainLink
 from rockframe.dynamics.chain.model import AtRest, chain

@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-from rockframe.dynamics.alone_model import alone, rigid_body
+from rockframe.dynamics.alone import alone, rigid_body
 from rockframe.dynamics.base_numbers import pads_numbers
 from rockframe.dynamics.bodies import DEGREES, ROTATION, VERTICAL
+from rockframe.dynamics.body import BY_CONTACT, PIVOT_RIGHT
 from rockframe.dynamics.on_base import Mode
 from rockframe.dynamics.pads import (
     CORNER,
@@ -20,7 +21,6 @@ from rockframe.dynamics.pads import (
     corner_contact,
 )
 from rockframe.dynamics.protocol import MEMORY, Ground
-from rockframe.dynamics.restraint import BY_CONTACT, PIVOT_RIGHT
 from rockframe.dynamics.switching import disturbed
 
 G = 9.81

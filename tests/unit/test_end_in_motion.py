@@ -7,7 +7,7 @@ import pytest
 
 import rockframe as rf
 from rockframe.errors import ModelWarning, SolverWarning
-from rockframe.system.overturning_energy import stored_energy
+from rockframe.system.statics import stored_energy
 
 BLOCK = rf.Block(width="0.5 m", height="2 m", mass="400 kg")
 PULSE = rf.GroundMotion.sine_pulse("4 m/s^2", "1.5 Hz")

@@ -9,7 +9,7 @@ import pytest
 import rockframe as rf
 from rockframe.errors import AssemblyError, ComponentError, ModelWarning
 from rockframe.signals import Motion
-from rockframe.signals.slope import Slope
+from rockframe.signals.motion import Slope
 
 BLOCK = rf.Block(width="0.6 m", height="2 m", mass="1 t")
 SOFT = rf.TwoSpringSupport(stiffness="60 kN/m", damping_ratio=0.1)

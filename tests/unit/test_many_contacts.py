@@ -15,7 +15,7 @@ from rockframe import extension as ext
 from rockframe.dynamics.pads import CONTACTS
 from rockframe.errors import AssemblyError
 from rockframe.results.schema import SCHEMA
-from rockframe.system import slots
+from rockframe.system import parts as parts_of
 
 pytestmark = pytest.mark.unit
 
@@ -141,12 +141,12 @@ def springs(count):
             bed = ext.bed_under(SOIL, load)
             return support(load, bed.stiffness, bed.damping, bed.separation)
 
-    rows, kinds = dict(SCHEMA), dict(slots._KINDS)
+    rows, kinds = dict(SCHEMA), dict(parts_of._KINDS)
     try:
         rf.register(SpringBed)
         yield SpringBed()
     finally:
-        for table, was in ((SCHEMA, rows), (slots._KINDS, kinds)):
+        for table, was in ((SCHEMA, rows), (parts_of._KINDS, kinds)):
             table.clear()
             table.update(was)
 

@@ -21,7 +21,7 @@ from rockframe.simulation.run_arguments import Certification, certification_of
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import Accuracy, AccuracyLevel
 from rockframe.system.options import Overturning
-from rockframe.system.slots import RESTRAINER, slot_of_kind, slots, usual_kind
+from rockframe.system.parts import RESTRAINER, slot_of_kind, slots, usual_kind
 
 _FILE: Final = "file"
 _CONSTRUCTOR: Final = "constructor"

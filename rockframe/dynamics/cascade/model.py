@@ -27,7 +27,7 @@ def cascade(
     Parameters
     ----------
     first : ContactModel
-        Block and cap as one body, :func:`rockframe.dynamics.alone_model.alone`.
+        Block and cap as one body, :func:`rockframe.dynamics.alone.alone`.
     second : ContactModel
         The block on its base, likewise.
     top, cap_centre : float

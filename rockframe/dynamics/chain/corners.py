@@ -12,7 +12,7 @@ from rockframe.compiled import Vector, inlined, kernel, put
 from rockframe.dynamics.base import SIMULTANEOUS, Guards, Variables
 from rockframe.dynamics.bed import DOWN, RAISED, both_contacts
 from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, ROTATION, VERTICAL
-from rockframe.dynamics.body import BodyState
+from rockframe.dynamics.body import PIVOT_CENTRE, PIVOT_LEFT, PIVOT_RIGHT, BodyState
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.impact import (
     BOTH,
@@ -28,7 +28,6 @@ from rockframe.dynamics.chain.system import Chain
 from rockframe.dynamics.on_base import Mode
 from rockframe.dynamics.pads import CORNER, CORNER_GUARDS
 from rockframe.dynamics.protocol import HELD_PLACE, Ground, Slope
-from rockframe.dynamics.restraint import PIVOT_CENTRE, PIVOT_LEFT, PIVOT_RIGHT
 
 NONE: Final = -1.0
 """In place of the number of a constraint."""

@@ -8,6 +8,7 @@ import math
 from typing import Any, Final, NamedTuple
 
 from rockframe.compiled import Vector, kernel
+from rockframe.dynamics.body import PIVOT_LEFT, PIVOT_RIGHT
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.motion import (
     FREE,
@@ -19,7 +20,6 @@ from rockframe.dynamics.chain.motion import (
     write_direction,
 )
 from rockframe.dynamics.chain.rows import CONSTRAINT, MOST_CONSTRAINTS, PLACES
-from rockframe.dynamics.restraint import PIVOT_LEFT, PIVOT_RIGHT
 
 LEFT_ONLY: Final = 1
 RIGHT_ONLY: Final = 2

@@ -15,12 +15,11 @@ from rockframe.dynamics.base import Base, BaseForce, EndEvent, Guards, Variables
 from rockframe.dynamics.base_numbers import BaseNumbers
 from rockframe.dynamics.bed import Bed, Rigid
 from rockframe.dynamics.bodies import DEGREES, InState
-from rockframe.dynamics.body import BaseLine, Body, BodyState
+from rockframe.dynamics.body import BY_CONTACT, BaseLine, Body, BodyState
 from rockframe.dynamics.on_base import BODY_GUARDS, Mode, OnBase
 from rockframe.dynamics.pads import CORNER, CORNER_GUARDS, ElasticPads
 from rockframe.dynamics.point_law import Viscoelastic
 from rockframe.dynamics.protocol import MOST_MODES, POWERS
-from rockframe.dynamics.restraint import BY_CONTACT
 
 # a row: the body's numbers in their order in `Body`, among them
 INERTIA: Final = 3

@@ -8,7 +8,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from rockframe.compiled import Vector
-from rockframe.dynamics.alone_model import (
+from rockframe.dynamics.alone import (
     part_tolerance,
     radius_of,
     rocking_rate,

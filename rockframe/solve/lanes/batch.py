@@ -23,10 +23,9 @@ from rockframe.dynamics.events import FLIGHT
 from rockframe.solve import layout as at
 from rockframe.solve.driver import run_on
 from rockframe.solve.equations import BoundEquations, known_mode
-from rockframe.solve.guards import WEIGHTS
 from rockframe.solve.lanes import fields
 from rockframe.solve.lanes.fields import is_at_end
-from rockframe.solve.march import interval_length, jumps
+from rockframe.solve.march import WEIGHTS, interval_length, jumps
 from rockframe.solve.workspace import (
     TERMS,
     EventTable,

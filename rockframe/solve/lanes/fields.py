@@ -13,9 +13,8 @@ from typing import Final, NamedTuple
 from rockframe.compiled import ReadOnlyMatrix, Vector, as_integers, inlined, lane_of
 from rockframe.dynamics.protocol import POWERS, Equations
 from rockframe.solve import layout as at
-from rockframe.solve.dormand_prince import STAGES
-from rockframe.solve.guards import WEIGHTS
-from rockframe.solve.march import SHORTEST, jumps
+from rockframe.solve.march import SHORTEST, WEIGHTS, jumps
+from rockframe.solve.schemes import STAGES
 from rockframe.solve.workspace import ERRORS, TERMS
 
 # what lanes need beside the clock, controls and counters of a run

@@ -12,9 +12,8 @@ from rockframe.compiled.bound import structure_of
 from rockframe.dynamics.protocol import ContactModel, Ending
 from rockframe.signals import Motion
 from rockframe.solve import layout as at
-from rockframe.solve.beginning import Begun
 from rockframe.solve.equations import BoundEquations, equations_of
-from rockframe.solve.integrate import EVENT_ROOM, make_workspace, pieces_of
+from rockframe.solve.integrate import EVENT_ROOM, Begun, make_workspace, pieces_of
 from rockframe.solve.lanes import fields
 from rockframe.solve.lanes.batch import Batch, BatchSizes, advance_batch
 from rockframe.solve.lanes.fields import Places, places_of

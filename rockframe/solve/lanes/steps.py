@@ -20,7 +20,10 @@ from rockframe.compiled import (
 )
 from rockframe.dynamics.protocol import POWERS, Equations, Ground
 from rockframe.solve import layout as at
-from rockframe.solve.dormand_prince import (
+from rockframe.solve.lanes import fields
+from rockframe.solve.lanes.fields import Places, enter_intervals, evaluate_ground, places_of
+from rockframe.solve.march import SHORTEST, fit_step, may_fall, put_guards, rotation_in_step
+from rockframe.solve.schemes import (
     NODES,
     STAGE_1,
     STAGE_2,
@@ -29,20 +32,18 @@ from rockframe.solve.dormand_prince import (
     STAGE_5,
     STAGE_6,
     STAGES,
+    adapted,
     begin_stages,
     end_works,
     errors_of_places,
     errors_of_rates,
     excess_error,
+    fixed_step,
     next_step,
+    rest_of,
     stage_places,
     stage_rates,
 )
-from rockframe.solve.guards import may_fall, put_guards, rotation_in_step
-from rockframe.solve.lanes import fields
-from rockframe.solve.lanes.fields import Places, enter_intervals, evaluate_ground, places_of
-from rockframe.solve.march import SHORTEST, fit_step
-from rockframe.solve.schemes import adapted, fixed_step, rest_of
 
 
 @inlined

@@ -13,8 +13,7 @@ from rockframe.simulation.plan import Plan, run_length, start_of
 from rockframe.simulation.run import Response, has_no_cautions, respond
 from rockframe.simulation.second_look import Look, is_sure, look_at, second_look
 from rockframe.solve.accuracy import LEVELS, AccuracyLevel
-from rockframe.solve.beginning import begun
-from rockframe.solve.integrate import STILL_INTERVAL
+from rockframe.solve.integrate import STILL_INTERVAL, begun
 from rockframe.solve.lanes.integrate import LaneRun, integrate_lanes, kind_of, lanes_compiled
 from rockframe.solve.layout import Status
 from rockframe.solve.trajectory import Summary, run_counts
