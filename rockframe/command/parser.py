@@ -163,7 +163,7 @@ COMMANDS: Final = (
             _word(
                 "--proved",
                 action="store_true",
-                help="prove the verdict instead (a block on rigid ground; needs python-flint)",
+                help="prove the verdict instead (of a block alone; needs python-flint)",
             ),
             _word(
                 "--runs", type=int, metavar="N", help="most runs beside the first (default: 200)"

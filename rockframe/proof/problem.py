@@ -43,46 +43,19 @@ class Ground(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Problem:
-    """A block under a motion, which is exactly a polynomial between two samples."""
+class Shaking:
+    """A motion of the ground, which is exactly a polynomial between two samples."""
 
-    right: Corner
-    left: Corner
     motion: Motion
     scale: Ball
     slope: Slope
-    frequency: float  # p of the faster corner [1/s]
     still_step: float  # length of the intervals after the motion, when the ground is still [s]
-    _known: dict[int, Ground] = field(default_factory=dict[int, Ground])
-
-    @classmethod
-    def of(
-        cls,
-        block: BlockOnRigidGround,
-        motion: Motion,
-        slope: Slope,
-        limits: OverturningAngles,
-        scale: float,
-        tolerance: float,
-        still_step: float,
-    ) -> "Problem":
-        """Take the floats of a run; the intervals of rest are given times p."""
-        fastest = max(one.radius / one.inertia for one in (block.left, block.right))
-        frequency = (slope.gravity * fastest) ** 0.5
-        return cls(
-            Corner.of(1, block.right, limits.right, tolerance),
-            Corner.of(-1, block.left, limits.left, tolerance),
-            motion, ball(scale), slope, frequency, still_step / frequency,
-        )  # fmt: skip
+    _known: dict[int, Ground] = field(default_factory=dict[int, Ground], kw_only=True)
 
     @property
     def count(self) -> int:
         """Number of intervals of the motion."""
         return self.motion.horizontal.samples.size - 1
-
-    def corner(self, sign: int) -> Corner:
-        """Give the corner that bears while the rotation has a sign."""
-        return self.right if sign > 0 else self.left
 
     def length(self, number: int) -> Ball:
         """Give the length of an interval [s]."""
@@ -114,7 +87,40 @@ class Problem:
             span, number, after = span - left, number + 1, ZERO
 
 
-def _ground(problem: Problem, number: int) -> Ground:
+@dataclass(frozen=True)
+class Problem(Shaking):
+    """A block under a motion."""
+
+    right: Corner
+    left: Corner
+    frequency: float  # p of the faster corner [1/s]
+
+    @classmethod
+    def of(
+        cls,
+        block: BlockOnRigidGround,
+        motion: Motion,
+        slope: Slope,
+        limits: OverturningAngles,
+        scale: float,
+        tolerance: float,
+        still_step: float,
+    ) -> "Problem":
+        """Take the floats of a run; the intervals of rest are given times p."""
+        fastest = max(one.radius / one.inertia for one in (block.left, block.right))
+        frequency = (slope.gravity * fastest) ** 0.5
+        return cls(
+            motion, ball(scale), slope, still_step / frequency,
+            Corner.of(1, block.right, limits.right, tolerance),
+            Corner.of(-1, block.left, limits.left, tolerance), frequency,
+        )  # fmt: skip
+
+    def corner(self, sign: int) -> Corner:
+        """Give the corner that bears while the rotation has a sign."""
+        return self.right if sign > 0 else self.left
+
+
+def _ground(problem: Shaking, number: int) -> Ground:
     inclination, gravity = ball(problem.slope.inclination), ball(problem.slope.gravity)
     across, up = (_component(problem, number, vertical=one) for one in (False, True))
     if problem.slope.level:
@@ -128,7 +134,7 @@ def _ground(problem: Problem, number: int) -> Ground:
     )
 
 
-def _component(problem: Problem, number: int, *, vertical: bool) -> Row:
+def _component(problem: Shaking, number: int, *, vertical: bool) -> Row:
     """Give a component of the motion as a polynomial of time."""
     motion = problem.motion
     signal = motion.vertical if vertical else motion.horizontal

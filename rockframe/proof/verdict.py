@@ -41,6 +41,8 @@ class Proof:
         Precision of the balls.
     scale, restitution_tolerance : float
         What it was proved of [1].
+    law : str
+        That was taken, in words.
     """
 
     verdict: str
@@ -52,6 +54,7 @@ class Proof:
     bits: int
     scale: float
     restitution_tolerance: float
+    law: str = "Housner's law"
 
     @property
     def decided(self) -> bool:
@@ -99,7 +102,7 @@ class Proof:
         """Say what has been proved, and of what."""
         tolerance = self.restitution_tolerance
         of = "for the numbers of this block and this record, joined by straight lines, and for "
-        of += "Housner's law"
+        of += self.law
         if tolerance:
             of += f", with every restitution within {tolerance:g} of the given one"
         if not self.decided:

@@ -4,7 +4,10 @@ from dataclasses import dataclass
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Final
 
+from rockframe.dynamics.alone import Alone
+from rockframe.dynamics.pads import ElasticPads
 from rockframe.dynamics.protocol import Ending
+from rockframe.dynamics.restraint import LEADING_CORNER
 from rockframe.dynamics.rigid_ground import BlockOnRigidGround
 from rockframe.errors import ComponentError, shown
 from rockframe.simulation.plan import Plan, plan_run, start_of
@@ -36,12 +39,13 @@ def prove(
     restitution_tolerance: "RatioLike" = 0.0,
     initial: "InitialState | None" = None,
 ) -> "Proof":
-    """Prove whether a block on rigid ground overturns under a record.
+    """Prove whether a block on rigid ground or on pads overturns under a record.
 
     Parameters
     ----------
     system : System
-        A block on rigid ground, with ``rotation="finite"``; any body, inclined ground too.
+        A block on rigid ground, with ``rotation="finite"``, inclined ground too; or on a
+        :class:`TwoSpringSupport` on level ground, held at its centre or by contact state.
     motion : GroundMotion, optional
         With or without vertical component; of a pulse in closed form the polynomials that runs
         take too. The one among the parts unless given.
@@ -64,7 +68,7 @@ def prove(
     UnitsError
         An argument is no ratio.
     ComponentError
-        Not a System, another scene than a block on rigid ground, small rotation, or
+        Not a System, another scene than these, small rotation on rigid ground, or
         python-flint is not installed (``pip install rockframe[proof]``).
     AssemblyError
         As for :meth:`rockframe.System.simulate`.
@@ -211,26 +215,49 @@ def proof_of(
 ) -> "Proof":
     """Prove the verdict of a run as it was planned, by its motion and its start."""
     model, motion = system.model, plan.motion
-    faults: list[str] = []
-    law = model.system
-    if not isinstance(law, BlockOnRigidGround) or system.options.small:
-        faults.append("proofs are of a Block on rigid ground, with rotation='finite'")
-    elif law.wall != 0.0:
-        faults.append("proofs are of a Block that rocks to both sides, without a RearWall")
+    faults = _faults(system)
     if not plan.stop_at_overturning:
         faults.append("proofs are of reaching the overturning angle; leave out overturning")
     if motion is None:
         faults.append("there is no motion")
     if find_spec("flint") is None:
         faults.append("python-flint is not installed: pip install rockframe[proof]")
-    if faults or motion is None or not isinstance(law, BlockOnRigidGround):
+    if faults or motion is None:
         msg = f"{owner}: {'; '.join(faults)}"
         raise ComponentError(msg)
+    start = start_of(plan.initial)
+    if isinstance(start, Ending):
+        mode, state = start.mode, start.state
+    else:
+        mode, state, _ = model.initial(start)
+    law, slope, limits = model.system, system.options.slope, system.setting.overturning_angles
+    if isinstance(law, Alone):
+        from rockframe.proof.pads.verdict import prove_pads
+
+        return prove_pads(
+            law, mode, state, motion.si, slope, limits, scale=scale, tolerance=tolerance
+        )
+    assert isinstance(law, BlockOnRigidGround)  # noqa: S101
     from rockframe.proof.verdict import prove_block
 
-    start = start_of(plan.initial)
-    state = start.state if isinstance(start, Ending) else model.initial(start)[1]
-    return prove_block(
-        law, motion.si, system.options.slope, system.setting.overturning_angles,
-        (float(state[0]), float(state[1])), scale=scale, tolerance=tolerance,
-    )  # fmt: skip
+    begin = float(state[0]), float(state[1])
+    return prove_block(law, motion.si, slope, limits, begin, scale=scale, tolerance=tolerance)
+
+
+def _faults(system: Assembly) -> list[str]:
+    """Say why no proof is to be had of a scene."""
+    law, options = system.model.system, system.options
+    if isinstance(law, BlockOnRigidGround):
+        faults = ["proofs on rigid ground are with rotation='finite'"] if options.small else []
+        if law.wall != 0.0:
+            faults.append("proofs are of a Block that rocks to both sides, without a RearWall")
+        return faults
+    if not isinstance(law, Alone) or not isinstance(law.part.base, ElasticPads):
+        return [
+            "proofs are of a Block on rigid ground, or on a TwoSpringSupport without friction, "
+            "with nothing tied to it"
+        ]
+    faults = [] if options.slope.level else ["proofs on pads are on level ground"]
+    if law.part.body.restraint == LEADING_CORNER:
+        faults.append("proofs on pads are with restraint='contact-state' or 'centre'")
+    return faults

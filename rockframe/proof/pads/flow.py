@@ -1,0 +1,360 @@
+"""Sets of states of a block on pads: how a step carries them on, in doubles with their errors.
+
+The centre of a set is enclosed by balls; the set about it is so small that doubles, with bounds of
+all that they lose, do for its derivatives. Lemmas :eq:`eq-proof-pads-variation` and
+:eq:`eq-proof-set` of the manual.
+"""
+
+import math
+from collections.abc import Sequence
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+
+from rockframe.dynamics.pads import TOUCHING
+from rockframe.proof.balls import Row, ball, value
+from rockframe.proof.pads.law import SIZE, Guard, PadNumbers, Standing, pin
+from rockframe.proof.pads.series import UPWARDS, Course, TooLong
+
+Array = Any
+DEGREE: Final = 12
+"""Of the polynomials that stand for derivatives and guards."""
+_OF_VARIATION: Final = 20
+_LOST: Final = 1e-13
+"""Share of the sum of sizes that a sum of products of doubles may lose by rounding."""
+_ROTATION, _RATE, _HEIGHT, _SPEED = range(4)
+
+
+class Curve:
+    """A polynomial in the share of a step, within an error that holds all over it."""
+
+    __slots__ = ("error", "of", "size")
+
+    def __init__(self, of: Array, error: float) -> None:
+        self.of, self.error = of, error
+        self.size = (float(np.abs(of).sum()) + error) * UPWARDS
+
+    def __add__(self, other: "Curve") -> "Curve":
+        """Add another one."""
+        error = self.error + other.error + _LOST * (self.size + other.size)
+        return Curve(self.of + other.of, error)
+
+    def __neg__(self) -> "Curve":
+        """Give the opposite."""
+        return Curve(-self.of, self.error)
+
+    def __sub__(self, other: "Curve") -> "Curve":
+        """Take another one away."""
+        return self + (-other)
+
+    def times(self, factor: float) -> "Curve":
+        """Give a multiple."""
+        return Curve(self.of * factor, abs(factor) * self.error + _LOST * abs(factor) * self.size)
+
+    def __mul__(self, other: "Curve") -> "Curve":
+        """Multiply, and cut what is of too high a degree."""
+        whole = np.convolve(self.of, other.of)
+        cut = float(np.abs(whole[DEGREE + 1 :]).sum())
+        error = cut + self.size * other.error + other.size * self.error
+        return Curve(whole[: DEGREE + 1], (error + _LOST * self.size * other.size) * UPWARDS)
+
+    def inverse(self) -> "Curve":
+        """Give one over it, whose product with it differs from one by what is then known."""
+        first = 1.0 / float(self.of[0])
+        found = np.zeros(DEGREE + 1)
+        found[0] = first
+        for k in range(1, DEGREE + 1):
+            found[k] = -first * float(np.dot(self.of[1 : k + 1], found[k - 1 :: -1][:k]))
+        guess = Curve(found, 0.0)
+        product = self * guess
+        product.of[0] -= 1.0
+        off = (float(np.abs(product.of).sum()) + product.error) * UPWARDS
+        if not off < 0.5:
+            raise TooLong
+        return Curve(found, guess.size * off / (1.0 - off) * UPWARDS)
+
+
+def constant(value: float) -> Curve:
+    """Give a curve that is the same everywhere."""
+    found = np.zeros(DEGREE + 1)
+    found[0] = value
+    return Curve(found, abs(value) * _LOST)
+
+
+def curve(series: Row, error: float) -> Curve:
+    """Give the curve of a series, within an error."""
+    middles = np.array([float(one) for one in series])
+    sizes = sum(float(one.abs_upper()) for one in series[DEGREE + 1 :])
+    radii = sum(float(one.rad()) for one in series[: DEGREE + 1])
+    if middles.size <= DEGREE:
+        middles = np.concatenate([middles, np.zeros(DEGREE + 1 - middles.size)])
+    kept = middles[: DEGREE + 1]
+    lost = _LOST * float(np.abs(kept).sum())
+    return Curve(kept, (error + sizes + radii + lost) * UPWARDS)
+
+
+class StateSet(NamedTuple):
+    """Centre + weights times (axes times spread): states of which each spread is at most so far."""
+
+    centre: Row
+    axes: Array
+    spread: Array  # not negative
+
+    def radius(self) -> float:
+        """Bound the distance of a member from the centre, over the weights."""
+        return float((np.abs(self.axes) @ self.spread).max()) * UPWARDS
+
+    def radii(self, weights: Array) -> Array:
+        """Bound the distances of each coordinate from the centre."""
+        return weights * (np.abs(self.axes) @ self.spread) * UPWARDS
+
+    def box(self, weights: Array) -> Row:
+        """Enclose the states."""
+        radii = self.radii(weights).tolist()
+        return [one + ball(0, each) for one, each in zip(self.centre, radii, strict=True)]
+
+    def mapped(self, image: Row, middle: Array, error: Array, weights: Array) -> "StateSet":
+        """Give the image, from that of the centre and the derivative, weighted, within an error."""
+        centre = [one.mid() for one in image]
+        away = np.array(
+            [float((one - mid).abs_upper()) for one, mid in zip(image, centre, strict=True)]
+        )
+        away = away / weights * UPWARDS
+        turned = middle @ self.axes
+        sizes = np.abs(middle) @ np.abs(self.axes)
+        columns = turned * (self.spread + 1e-290)
+        order = np.argsort(-np.abs(columns).sum(axis=0))
+        axes = np.linalg.qr(columns[:, order] / (np.abs(columns).max() + 1e-290))[0]
+        back = axes.T
+        spread = np.abs(back @ turned) @ self.spread
+        spread = spread + np.abs(back) @ (
+            (_LOST * sizes + error @ np.abs(self.axes)) @ self.spread + away
+        )
+        flaw = float(np.abs(back @ axes - np.eye(SIZE)).sum(axis=1).max()) + _LOST
+        if not flaw < 1e-10:
+            raise TooLong
+        spread = (spread + 2.0 * flaw * spread.max()) * UPWARDS
+        return StateSet(centre, axes, spread)
+
+
+def point(start: Sequence[float]) -> StateSet:
+    """Give the set of one state."""
+    return StateSet([ball(one) for one in start], np.eye(SIZE), np.zeros(SIZE))
+
+
+class Step(NamedTuple):
+    """A step of a set."""
+
+    course: Course
+    powers: Array  # of the share, of the derivative by the start, weighted
+    error: Array  # of that derivative, all over the step
+    tube: float  # how far members stray from the centre over the step, over the weights
+    rate: float  # bound of the rate of change over the weights, times h
+    curves: dict[Guard, tuple[Curve, Curve]]  # guards and their derivatives by the share
+
+    def image(self, share: Any) -> Row:
+        """Enclose the centre at a share of the step."""
+        pairs = zip(self.course.series[:SIZE], self.course.left_out[:SIZE], strict=True)
+        return [value(series, share) + ball(0, rest) for series, rest in pairs]
+
+    def derivative(self, share: float) -> Array:
+        """Give the derivative by the start at a share of the step, but for its error."""
+        found = self.powers[-1]
+        for one in self.powers[-2::-1]:
+            found = found * share + one
+        return found
+
+
+def step(
+    pads: PadNumbers, standing: Standing, found: Course, states: StateSet, weights: Array,
+    guards: list[Guard],
+) -> Step:  # fmt: skip
+    """Enclose what a step does to a set, :eq:`eq-proof-pads-variation`.
+
+    Raises
+    ------
+    TooLong
+        The step is to be halved.
+    """
+    h = float(found.h)
+    radius = states.radius()
+    tube = 4.0 * radius
+    for _ in range(8):
+        motion = _motion(pads, found, tube * weights)
+        stiff = _stiffness(pads, standing, motion)
+        matrix, error = _weighted(stiff, h, weights)
+        rate = float((np.abs(matrix).sum(axis=0) + error).sum(axis=1).max()) * UPWARDS
+        if not rate < 20.0:
+            raise TooLong
+        growth = math.exp(rate) * UPWARDS
+        if growth * radius <= tube:
+            break
+        tube = 1.5 * growth * radius
+    else:
+        raise TooLong
+    powers, defect = _variation(matrix, error)
+    off = np.tile((defect.max(axis=0) + _LOST * rate) * growth * UPWARDS, (SIZE, 1))
+    curves = {
+        one: _guard(pads, standing, one, found, motion, (tube, rate), weights) for one in guards
+    }
+    return Step(found, powers, off, tube, rate, curves)
+
+
+class _Motion(NamedTuple):
+    """A motion as curves that hold for all members of a set."""
+
+    rate: Curve
+    sine: Curve
+    cosine: Curve
+    forces: tuple[Curve | None, Curve | None]
+    along: Curve
+    strays: Array  # of the coordinates
+
+
+def _motion(pads: PadNumbers, found: Course, strays: Array) -> _Motion:
+    series, rest = found.series, found.left_out
+    tall, wide = float(pads.height), float(pads.left) + float(pads.right)
+    lean, turn = float(strays[_ROTATION]), float(strays[_RATE])
+    rate = curve(series.rate, rest.rate + turn)
+    if pads.small:
+        sine, cosine = curve(series.rotation, rest.rotation + lean), constant(1.0)
+    else:
+        sine, cosine = (
+            curve(series.sine, rest.sine + lean),
+            curve(series.cosine, rest.cosine + lean),
+        )
+    reach = tall * (1.0 if not pads.small else sine.size) + wide
+    level = float(strays[_HEIGHT]) + reach * lean
+    speed = float(strays[_SPEED]) + reach * turn + (tall + wide) * rate.size * lean
+    away = (float(pads.stiffness) * level + float(pads.damping) * speed) * UPWARDS
+    left, right = (
+        curve(one, left_out + away) if one else None
+        for one, left_out in zip(series.forces, rest.forces, strict=True)
+    )
+    return _Motion(rate, sine, cosine, (left, right), curve(found.along, 0.0), strays)
+
+
+def _stiffness(
+    pads: PadNumbers, standing: Standing, motion: _Motion
+) -> dict[tuple[int, int], Curve]:
+    """Give the derivatives of the accelerations by the state."""
+    if standing.flies:
+        return {}
+    tall, stiff, damped = float(pads.height), float(pads.stiffness), float(pads.damping)
+    rate, sine, cosine = motion.rate, motion.sine, motion.cosine
+    none = constant(0.0)
+    upward, moment = [none] * 4, [none] * 4
+    load = none
+    for left in (True, False):
+        if standing.of(left) != TOUCHING:
+            continue
+        reach = float(pads.left) if left else -float(pads.right)
+        force = motion.forces[not left]
+        assert force is not None  # noqa: S101
+        lever = sine.times(tall) + cosine.times(reach)
+        bend = constant(tall) if pads.small else cosine.times(tall) - sine.times(reach)
+        by_rotation = (lever.times(stiff) + (bend * rate).times(damped)).times(-1.0)
+        by = [by_rotation, lever.times(-damped), constant(-stiff), constant(-damped)]
+        upward = [a + b for a, b in zip(upward, by, strict=True)]
+        by_moment = [lever * by_rotation + force * bend, *(lever * one for one in by[1:])]
+        moment = [a + b for a, b in zip(moment, by_moment, strict=True)]
+        load = load + force * lever
+    if pads.small:
+        inverse = constant(1.0 / (float(pads.inertia) + tall * tall))
+    else:
+        held = float(pin(pads, standing))
+        arm, bend = cosine.times(tall) + sine.times(held), cosine.times(held) - sine.times(tall)
+        square = arm * arm
+        inverse = (constant(float(pads.inertia)) + square).inverse()
+        spin, both = rate * rate, arm * bend
+        push = motion.along + bend * spin
+        turning = (load - arm * push) * inverse
+        moment[_ROTATION] = (
+            moment[_ROTATION] - bend * push + square * spin - (both * turning).times(2.0)
+        )
+        moment[_RATE] = moment[_RATE] - (both * rate).times(2.0)
+    found = {(_SPEED, j): one for j, one in enumerate(upward)}
+    found.update({(_RATE, j): one * inverse for j, one in enumerate(moment)})
+    return found
+
+
+def _weighted(stiff: dict[tuple[int, int], Curve], h: float, weights: Array) -> tuple[Array, Array]:
+    """Give the coefficients of the derivative of the field, over the weights and times h."""
+    matrix, error = np.zeros((DEGREE + 1, SIZE, SIZE)), np.zeros((SIZE, SIZE))
+    for (i, j), one in stiff.items():
+        factor = h * weights[j] / weights[i]
+        matrix[:, i, j] = one.of * factor
+        error[i, j] = (one.error + _LOST * one.size) * factor * UPWARDS
+    for i, j in ((_ROTATION, _RATE), (_HEIGHT, _SPEED)):
+        matrix[0, i, j] = h * weights[j] / weights[i]
+        error[i, j] = _LOST * matrix[0, i, j]
+    return matrix, error
+
+
+def _variation(matrix: Array, error: Array) -> tuple[Array, Array]:
+    """Give a polynomial for the derivative by the start, and by how far it misses its equation."""
+    powers = np.zeros((_OF_VARIATION + 1, SIZE, SIZE))
+    powers[0] = np.eye(SIZE)
+    size, whole = np.abs(matrix), np.zeros((SIZE, SIZE))
+    for k in range(_OF_VARIATION):
+        count = min(k, DEGREE) + 1
+        powers[k + 1] = (matrix[:count] @ powers[k - np.arange(count)]).sum(axis=0) / (k + 1)
+        whole += (size[:count] @ np.abs(powers[k - np.arange(count)])).sum(axis=0)
+    total = np.abs(powers).sum(axis=0)
+    every = size.sum(axis=0) @ total
+    cut = np.maximum(every - whole, 0.0)
+    return powers, (cut + 10.0 * _LOST * every + error @ total) * UPWARDS
+
+
+def _guard(
+    pads: PadNumbers, standing: Standing, guard: Guard, found: Course, motion: _Motion,
+    bounds: tuple[float, float], weights: Array,
+) -> tuple[Curve, Curve]:  # fmt: skip
+    """Give a guard as a curve, and its derivative by the share."""
+    tube, rate = bounds
+    h = float(found.h)
+    lean, turn, sink, fall = (float(one) for one in motion.strays[:4])
+    series, rest = found.series, found.left_out
+    if guard.kind == "limit":
+        limit = float(pads.limits[not guard.left])
+        angle = curve(series.rotation, rest.rotation + lean)
+        angle = angle if guard.left else -angle
+        value = constant(limit) + angle
+        change = curve(series.rate, rest.rate + turn).times(h if guard.left else -h)
+        return value, change
+    i = int(not guard.left)
+    tall, wide = float(pads.height), float(pads.left) + float(pads.right)
+    spin = motion.rate.size
+    reach = (tall * motion.sine.size + wide) * UPWARDS
+    level_away = sink + reach * lean + rest.levels[i]
+    speed_away = fall + reach * turn + (tall + wide) * spin * lean + rest.speeds[i]
+    speed = curve(series.speeds[i], speed_away)
+    if guard.kind in ("depth", "gap"):
+        level = curve(series.levels[i], level_away) - constant(float(pads.settlements[i]))
+        sign = 1.0 if guard.kind == "gap" else -1.0
+        return level.times(sign), speed.times(sign * h)
+    # accelerations stray by no more than the rate of change of the strays
+    turning_away, falling_away = (float(rate * tube * weights[j] / h) for j in (_RATE, _SPEED))
+    order = len(series.speeds[i])
+    sizes = (k * float(one.abs_upper()) for k, one in enumerate(series.rate))
+    turning = turning_away + UPWARDS * (sum(sizes) + len(series.rate) * rest.rate) / h
+    away = (
+        falling_away
+        + reach * turning_away
+        + (tall + wide) * (lean * (turning + spin * spin) + 2.0 * spin * turn)
+    )
+    slope = _slope(series.speeds[i], (order * rest.speeds[i] + away * h) * UPWARDS)
+    if guard.kind == "rise":
+        return speed, slope
+    stiff, damped = float(pads.stiffness), float(pads.damping)
+    force = motion.forces[i]
+    assert force is not None  # noqa: S101
+    change = speed.times(-stiff * h) - slope.times(damped)
+    if guard.kind == "slack":
+        return -force, -change
+    return force, change
+
+
+def _slope(series: Row, error: float) -> Curve:
+    """Give the derivative of a series by the share, as a curve."""
+    return curve([k * one for k, one in enumerate(series)][1:], error)

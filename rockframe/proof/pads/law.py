@@ -1,0 +1,399 @@
+"""A block on two pads as a proof sees it: motion and changes of contact, for balls and for duals.
+
+Derived anew from :eq:`eq-pad-force`, :eq:`eq-two-spring`, :eq:`eq-guards`, :eq:`eq-repinning` and
+:eq:`eq-impact`. A state is rotation, its rate, height, its rate, and the horizontal velocity of a
+block that flies, which is zero as long as a pad holds it.
+"""
+
+from typing import Any, Final, NamedTuple
+
+from rockframe.dynamics.pads import CLEAR, ENGAGING, LEAVING, RELAXING, TOUCHING
+from rockframe.dynamics.restraint import PIVOT_CENTRE, pivot_of
+from rockframe.proof.balls import ZERO, Ball, Row, ball
+from rockframe.proof.problem import Undecided
+
+SIZE: Final = 5
+"""Numbers of a state."""
+_TOGETHER: Final = 1e-9
+"""Share of the settlement within which corners land together, and a little more is undecided."""
+_PARTED: Final = 1e-11
+"""Share of the settlement from which on a corner that leaves is below its pad's level."""
+
+
+class Dual:
+    """A ball with the gradient of what it stands for by the state."""
+
+    __slots__ = ("slope", "value")
+
+    def __init__(self, value: Ball, slope: Row) -> None:
+        self.value, self.slope = value, slope
+
+    def __add__(self, other: Any) -> "Dual":
+        """Add a dual or a ball."""
+        if isinstance(other, Dual):
+            slope = [a + b for a, b in zip(self.slope, other.slope, strict=True)]
+            return Dual(self.value + other.value, slope)
+        return Dual(self.value + other, self.slope)
+
+    __radd__ = __add__
+
+    def __neg__(self) -> "Dual":
+        """Give the opposite."""
+        return Dual(-self.value, [-one for one in self.slope])
+
+    def __sub__(self, other: Any) -> "Dual":
+        """Take away."""
+        return self + (-other)
+
+    def __rsub__(self, other: Any) -> "Dual":
+        """Take from a ball."""
+        return -self + other
+
+    def __mul__(self, other: Any) -> "Dual":
+        """Multiply by a dual or a ball."""
+        if isinstance(other, Dual):
+            a, b = self.value, other.value
+            slope = [x * b + a * y for x, y in zip(self.slope, other.slope, strict=True)]
+            return Dual(a * b, slope)
+        return Dual(self.value * other, [one * other for one in self.slope])
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, other: "Dual") -> "Dual":
+        """Divide by a dual."""
+        value = self.value / other.value
+        slope = [
+            (x - value * y) / other.value for x, y in zip(self.slope, other.slope, strict=True)
+        ]
+        return Dual(value, slope)
+
+    def sin(self) -> "Dual":
+        """Give the sine."""
+        cosine = self.value.cos()
+        return Dual(self.value.sin(), [cosine * one for one in self.slope])
+
+    def cos(self) -> "Dual":
+        """Give the cosine."""
+        sine = self.value.sin()
+        return Dual(self.value.cos(), [-sine * one for one in self.slope])
+
+
+def duals(state: Row) -> list[Dual]:
+    """Give a state of which gradients are asked."""
+    one = [[ball(int(i == j)) for j in range(SIZE)] for i in range(SIZE)]
+    return [Dual(value, one[i]) for i, value in enumerate(state)]
+
+
+class Shaken(NamedTuple):
+    """The ground at an instant, or over some: along the base, and gravity with what is normal."""
+
+    along: Ball
+    weight: Ball
+
+
+class PadNumbers(NamedTuple):
+    """Two pads and the block on them, per unit mass."""
+
+    height: Ball  # h
+    left: Ball  # from the foot of the centre of mass to the left corner
+    right: Ball
+    inertia: Ball  # I_O/m
+    middle: Ball  # of the base, to the right of the centre of mass
+    stiffness: Ball  # of a pad
+    damping: Ball
+    settlements: tuple[Ball, Ball]  # of the left and of the right pad's level
+    restitutions: tuple[Ball, Ball]
+    rest: Ball
+    rule: int  # of the restraint
+    small: bool
+    limits: tuple[Ball, Ball]  # rotations called overturning, to the left and to the right
+    gravity: Ball
+
+
+class Standing(NamedTuple):
+    """Contacts of both corners, by the words of :mod:`rockframe.dynamics.pads`."""
+
+    left: int
+    right: int
+
+    def of(self, left: bool) -> int:
+        """Give the contact of a corner."""
+        return self.left if left else self.right
+
+    def with_corner(self, left: bool, contact: int) -> "Standing":
+        """Give another contact to a corner."""
+        return Standing(contact, self.right) if left else Standing(self.left, contact)
+
+    @property
+    def flies(self) -> bool:
+        """Whether no corner is held."""
+        return self.left >= RELAXING and self.right >= RELAXING
+
+
+class Guard(NamedTuple):
+    """What is positive as long as a contact lasts."""
+
+    kind: str  # "press", "slack", "depth", "gap", "rise", "limit"
+    left: bool
+
+
+_GUARDS: Final = {
+    TOUCHING: ("press",),
+    ENGAGING: ("depth", "slack"),
+    RELAXING: ("depth", "slack"),
+    CLEAR: ("gap",),
+    LEAVING: ("depth", "press", "rise"),
+}
+
+
+def guards_of(standing: Standing) -> list[Guard]:
+    """Give the guards of a standing, :eq:`eq-guards`, and those of overturning."""
+    found = [Guard(kind, left) for left in (True, False) for kind in _GUARDS[standing.of(left)]]
+    return [*found, Guard("limit", True), Guard("limit", False)]
+
+
+class Turned(NamedTuple):
+    """Sine, cosine and rise of a rotation, or their forms at small rotation."""
+
+    sine: Any
+    cosine: Any
+    rise: Any
+
+
+def turned(pads: PadNumbers, rotation: Any) -> Turned:
+    """Give sine, cosine and rise, :eq:`eq-kinematics`."""
+    if pads.small:
+        return Turned(rotation, ball(1), rotation * rotation * (pads.height / 2))
+    cosine = rotation.cos()
+    return Turned(rotation.sin(), cosine, pads.height * (1 - cosine))
+
+
+class Corner(NamedTuple):
+    """Height of a corner above its place at rest, its speed upwards, its lever."""
+
+    level: Any
+    speed: Any
+    lever: Any
+
+
+def corner(pads: PadNumbers, left: bool, state: list[Any]) -> Corner:
+    """Give a corner of a state."""
+    reach = pads.left if left else -pads.right
+    at = turned(pads, state[0])
+    lever = at.sine * pads.height + at.cosine * reach
+    return Corner(state[2] + at.rise + at.sine * reach, state[3] + lever * state[1], lever)
+
+
+def reaction(pads: PadNumbers, left: bool, at: Corner) -> Any:
+    """Give what a pad would press a corner with, :eq:`eq-pad-force`."""
+    depth = pads.settlements[not left] - at.level
+    return depth * pads.stiffness - at.speed * pads.damping
+
+
+def pivot(pads: PadNumbers, standing: Standing) -> int:
+    """Give the point that is held."""
+    left, right = (standing.of(one) < RELAXING for one in (True, False))
+    return pivot_of(pads.rule, left, right, 0.0, 0.0)
+
+
+def pin(pads: PadNumbers, standing: Standing) -> Ball:
+    """Give e, the held point, from beneath the centre of mass."""
+    found = pivot(pads, standing)
+    if found == PIVOT_CENTRE:
+        return pads.middle
+    return pads.right if standing.left >= RELAXING else -pads.left
+
+
+def arm(pads: PadNumbers, standing: Standing, rotation: Any) -> Any:
+    """Give x', by which the centre of mass sways as the block rotates."""
+    if pads.small:
+        return pads.height
+    at = turned(pads, rotation)
+    return at.cosine * pads.height + at.sine * pin(pads, standing)
+
+
+def field(pads: PadNumbers, standing: Standing, state: list[Any], ground: Shaken) -> list[Any]:
+    """Give the rates of a state, :eq:`eq-two-spring`."""
+    rotation, rate, _, speed, _ = state
+    upward, moment = -ground.weight, ZERO
+    for left in (True, False):
+        if standing.of(left) == TOUCHING:
+            at = corner(pads, left, state)
+            force = reaction(pads, left, at)
+            upward, moment = force + upward, force * at.lever + moment
+    zero = rate * ZERO
+    if standing.flies:
+        return [rate, zero, speed, zero + upward, zero - ground.along]
+    sway = arm(pads, standing, rotation)
+    push = ground.along
+    if not pads.small:
+        at = turned(pads, rotation)
+        push = (at.cosine * pin(pads, standing) - at.sine * pads.height) * rate * rate + push
+    turning = zero + moment - zero - push * sway
+    return [rate, turning / (zero + sway * sway + pads.inertia), speed, zero + upward, zero]
+
+
+def guard_value(pads: PadNumbers, guard: Guard, state: list[Any]) -> Any:
+    """Give a guard of a state."""
+    if guard.kind == "limit":
+        limit = pads.limits[not guard.left]
+        return state[0] + limit if guard.left else limit - state[0]
+    at = corner(pads, guard.left, state)
+    if guard.kind == "depth":
+        return pads.settlements[not guard.left] - at.level
+    if guard.kind == "gap":
+        return at.level - pads.settlements[not guard.left]
+    if guard.kind == "rise":
+        return at.speed
+    force = reaction(pads, guard.left, at)
+    return force if guard.kind == "press" else -force
+
+
+class Switched(NamedTuple):
+    """A state after a change of contact; `fresh` are guards that are zero there."""
+
+    state: list[Dual]
+    standing: Standing
+    fresh: tuple[Guard, ...]
+    impacts: int
+
+
+def switched(
+    pads: PadNumbers, standing: Standing, guard: Guard, state: list[Dual], ground: Shaken
+) -> Switched:
+    """Give what becomes of a state whose guard has fallen to zero.
+
+    Raises
+    ------
+    Undecided
+        The sign that decides about it is not known.
+    """
+    left, was = guard.left, standing.of(guard.left)
+    if guard.kind == "depth" and was in (RELAXING, LEAVING):
+        fresh = (Guard("gap", left),)
+        return Switched(state, standing.with_corner(left, CLEAR), fresh, 0)
+    if guard.kind == "press" and was == LEAVING:
+        fresh = (Guard("slack", left),)
+        return Switched(state, standing.with_corner(left, RELAXING), fresh, 0)
+    if guard.kind == "slack" and was == ENGAGING:
+        fresh = (Guard("press", left),)
+        return Switched(state, standing.with_corner(left, TOUCHING), fresh, 0)
+    if was < RELAXING:
+        return _separated(pads, standing, left, state, ground)
+    return _held(pads, standing, left, state)
+
+
+def _separated(
+    pads: PadNumbers, standing: Standing, left: bool, state: list[Dual], ground: Shaken
+) -> Switched:
+    """Let a corner leave."""
+    at, free = corner(pads, left, state), Guard("gap", left)
+    own = CLEAR
+    if standing.of(left) == TOUCHING and pads.damping > 0:
+        depth = (pads.settlements[not left] - at.level).value
+        if not depth > pads.rest * _PARTED:
+            msg = "a corner that leaves its pad at the pad's own level"
+            raise Undecided(msg)
+        own, free = RELAXING, Guard("slack", left)
+    other = standing.of(not left)
+    if other == TOUCHING:
+        if not reaction(pads, not left, corner(pads, not left, state)).value > 0:
+            msg = "both corners let go at once"
+            raise Undecided(msg)
+    elif other in (ENGAGING, LEAVING):
+        other = RELAXING
+    after = Standing(own, other) if left else Standing(other, own)
+    if after.flies:
+        sway = arm(pads, standing, state[0]) * state[1]
+        state = [*state[:4], sway]
+        if own == RELAXING and not _rate(pads, after, Guard("press", left), state, ground) < 0:
+            msg = "a corner that slides on its pad as it leaves"
+            raise Undecided(msg)
+        return Switched(state, after, (free,), 0)
+    if pivot(pads, after) == pivot(pads, standing):
+        return Switched(state, after, (free,), 0)
+    state = _repinned(pads, standing, after, state)
+    at = corner(pads, left, state)
+    if not at.speed.value > 0:
+        msg = "a corner that its restraint keeps from leaving"
+        raise Undecided(msg)
+    if own == CLEAR:
+        return Switched(state, after, (free,), 0)
+    force = reaction(pads, left, at).value
+    if force > 0:
+        return Switched(state, after.with_corner(left, LEAVING), (), 0)
+    if not force < 0:
+        msg = "whether a pad still presses a corner that has left is not resolved"
+        raise Undecided(msg)
+    return Switched(state, after, (), 0)
+
+
+def _held(pads: PadNumbers, standing: Standing, left: bool, state: list[Dual]) -> Switched:
+    """Let a corner land, or be pressed again."""
+    lands, other = standing.of(left) == CLEAR, standing.of(not left)
+    if lands and other == CLEAR:
+        level = guard_value(pads, Guard("gap", not left), state).value
+        if not abs(level) > pads.rest * (2 * _TOGETHER):
+            msg = "both corners land at once"
+            raise Undecided(msg)
+    if other == LEAVING:
+        other = RELAXING
+    after = Standing(TOUCHING, other) if left else Standing(other, TOUCHING)
+    before = corner(pads, left, state).speed.value
+    flew = standing.flies
+    repins = flew or pivot(pads, after) != pivot(pads, standing)
+    if repins:
+        state = _repinned(pads, standing, after, state)
+    at = corner(pads, left, state)
+    slower = at.speed.value < 0 if lands else at.speed.value < before
+    if flew and not slower:
+        msg = "a corner that slides on its pad as it lands"
+        raise Undecided(msg)
+    if lands:
+        fresh = () if pads.damping > 0 else (Guard("press", left),)
+        return Switched(_struck(pads, after, left, state), after, fresh, 1)
+    force = reaction(pads, left, at).value
+    if not repins and standing.of(left) == RELAXING:
+        return Switched(state, after, (Guard("press", left),), 0)
+    if force < 0:
+        return Switched(state, after.with_corner(left, ENGAGING), (), 0)
+    if not force > 0:
+        msg = "whether a pad presses a corner that has come back is not resolved"
+        raise Undecided(msg)
+    return Switched(state, after, (), 0)
+
+
+def _repinned(pads: PadNumbers, before: Standing, after: Standing, state: list[Dual]) -> list[Dual]:
+    """Project the momentum on another held point, :eq:`eq-repinning`."""
+    sway = state[4] if before.flies else arm(pads, before, state[0]) * state[1]
+    reach = arm(pads, after, state[0])
+    slip = sway - reach * state[1]
+    answer = slip * reach / (state[0] * ZERO + reach * reach + pads.inertia)
+    return [state[0], state[1] + answer, state[2], state[3], state[4] * ZERO]
+
+
+def _struck(pads: PadNumbers, after: Standing, left: bool, state: list[Dual]) -> list[Dual]:
+    """Reduce the speed of a landing corner, :eq:`eq-impact`."""
+    at, reach = corner(pads, left, state), arm(pads, after, state[0])
+    if at.speed.value > 0:
+        return state
+    if not at.speed.value < 0:
+        msg = "a landing that hardly touches its pad"
+        raise Undecided(msg)
+    one = state[0] * ZERO + 1
+    answer = one * at.lever / (one * (reach * reach) + pads.inertia)
+    impulse = at.speed * (pads.restitutions[not left] - 1) / (at.lever * answer + 1)
+    return [state[0], state[1] + impulse * answer, state[2], state[3] + impulse, state[4]]
+
+
+def _rate(
+    pads: PadNumbers, standing: Standing, guard: Guard, state: list[Dual], ground: Shaken
+) -> Ball:
+    """Give the rate of a guard of a state, as balls."""
+    at = duals([one.value for one in state])
+    return along(guard_value(pads, guard, at), field(pads, standing, at, ground))
+
+
+def along(of: Dual, rates: list[Dual]) -> Ball:
+    """Give the rate of a dual along the rates of its state."""
+    return sum((a * b.value for a, b in zip(of.slope, rates, strict=True)), ZERO)

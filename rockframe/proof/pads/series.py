@@ -1,0 +1,284 @@
+"""Taylor's series of a block on pads over a step, and what it leaves out.
+
+One recursion gives the coefficients and, with every sign turned to plus, their bounds: lemma
+:eq:`eq-proof-pads-majorant` of the manual.
+"""
+
+import math
+from operator import mul
+from typing import Any, Final, NamedTuple
+
+from rockframe.dynamics.pads import CLEAR, TOUCHING
+from rockframe.proof.balls import Ball, Row, bits
+from rockframe.proof.pads.law import PadNumbers, Standing, pin
+from rockframe.proof.problem import Ground
+
+LOWEST: Final = 14
+HIGHEST: Final = 80
+UPWARDS: Final = 1.0 + 1e-9
+"""More than what a sum of products of doubles that are not negative can lose by rounding."""
+_ROOM: Final = 1.01
+"""Bounds over those of the polynomial, which the motion is shown not to reach."""
+
+
+class TooLong(Exception):  # noqa: N818  (a step to be halved, no error)
+    """A step over which the series does not serve."""
+
+
+class Shape(NamedTuple):
+    """Numbers of the block, its pads and its hold, as balls or as bounds."""
+
+    height: Any
+    reaches: tuple[Any, Any]  # of the left and of the right corner, to the left
+    inertia: Any
+    stiffness: Any
+    damping: Any
+    settlements: tuple[Any, Any]
+    pin: Any
+
+
+class Series(NamedTuple):
+    """Coefficients by the share of a step, in lists; or one bound of each."""
+
+    rotation: Any
+    rate: Any
+    height: Any
+    speed: Any
+    sway: Any  # horizontal velocity of a block that flies
+    sine: Any
+    cosine: Any
+    levels: Any  # of both corners
+    speeds: Any
+    forces: Any  # what the pads press with, or would
+    inertia: Any  # I_O/m + x'^2
+    arm: Any  # x'
+
+
+def product(a: list[Any], b: list[Any]) -> Any:
+    """Give the last coefficient of the product of two series of the same length."""
+    return sum(map(mul, a, b[::-1]))
+
+
+def recursion(
+    shape: Shape, standing: Standing, small: bool, start: Series, ground: tuple[list[Any], ...],
+    h: Any, minus: int, enough: Any,
+) -> Series:  # fmt: skip
+    """Give series from their first coefficients; `minus` is -1, or 1 for their bounds.
+
+    `enough` is told the series after each order, and says when they are long enough.
+    """
+    found = start
+    rotation, rate, height, speed, sway, sine, cosine = start[:7]
+    (up_left, up_right), (by_left, by_right), (on_left, on_right) = start[7:10]
+    inertia, arm = start.inertia, start.arm
+    weights, alongs = ground
+    tall, (reach_left, reach_right) = shape.height, shape.reaches
+    stiff, damped = shape.stiffness, shape.damping
+    free = standing.flies
+    slopes: list[Any] = []  # of the rate
+    arms_rate: list[Any] = []
+    pushes: list[Any] = []
+    levers: tuple[list[Any], list[Any]] = ([], [])
+    corners = (
+        (0, standing.left, reach_left, up_left, by_left, on_left),
+        (1, standing.right, minus * reach_right, up_right, by_right, on_right),
+    )
+    k = 0
+    while True:
+        kept = risen = 0
+        if small:
+            turned = product(rotation, rate)
+            risen = product(rotation, rotation) * tall / 2
+        else:
+            turned, kept = product(sine, rate), product(cosine, rate)
+        weight = weights[k] if k < len(weights) else 0
+        upward, moment = minus * weight, 0
+        for i, contact, reach, levels, speeds, forces in corners:
+            if small:
+                if k:
+                    levels.append(height[k] + risen + reach * rotation[k])
+                speeds.append(speed[k] + tall * turned + reach * rate[k])
+            else:
+                if k:
+                    levels.append(height[k] + minus * tall * cosine[k] + reach * sine[k])
+                speeds.append(speed[k] + tall * turned + reach * kept)
+            if contact == CLEAR:
+                continue
+            if k or not forces:
+                depth = minus * levels[k] + (0 if k else shape.settlements[i])
+                forces.append(stiff * depth + minus * damped * speeds[k])
+            if contact == TOUCHING:
+                upward = upward + forces[k]
+                if not small:
+                    levers[i].append(tall * sine[k] + reach * cosine[k])
+                    moment = moment + product(forces, levers[i])
+                else:
+                    moment = moment + tall * product(forces, rotation) + reach * forces[k]
+        along = alongs[k] if k < len(alongs) else 0
+        if free:
+            turning = 0 * rate[0]
+            sway.append(minus * h * along / (k + 1))
+        elif small:
+            turning = (moment + minus * tall * along) / inertia[0]
+        else:
+            if k:
+                arm.append(tall * cosine[k] + shape.pin * sine[k])
+                inertia.append(product(arm, arm))
+            arms_rate.append(shape.pin * kept + minus * tall * turned)
+            pushes.append(along + product(arms_rate, rate))
+            turning = moment + minus * product(arm, pushes)
+            if k:
+                turning = turning + minus * sum(map(mul, slopes, inertia[:0:-1]))
+            turning = turning / inertia[0]
+        slopes.append(turning)
+        share = h / (k + 1)
+        rotation.append(share * rate[k])
+        rate.append(share * turning)
+        height.append(share * speed[k])
+        speed.append(share * upward)
+        if not small:
+            sine.append(share * kept)
+            cosine.append(minus * share * turned)
+        k += 1
+        if enough(k, found):
+            return found
+
+
+class Course(NamedTuple):
+    """A motion from a point over a step h, and bounds of what its series leave out."""
+
+    h: Ball
+    along: Row  # of the ground
+    series: Series
+    left_out: Series  # of one coefficient each
+
+
+def course(
+    pads: PadNumbers, standing: Standing, shaking: Ground, start: Row, h: Ball,
+    sizes_of: tuple[float, ...], margin: int,
+) -> Course:  # fmt: skip
+    """Enclose the motion from a point, :eq:`eq-proof-pads-majorant`.
+
+    The series end where their coefficients, over typical sizes, are a margin of bits below the
+    precision.
+
+    Raises
+    ------
+    TooLong
+        The step is to be halved.
+    """
+    held = pin(pads, standing) if not (standing.flies or pads.small) else 0 * h
+    shape = Shape(
+        pads.height, (pads.left, pads.right), pads.inertia, pads.stiffness, pads.damping,
+        pads.settlements, held,
+    )  # fmt: skip
+    ground = tuple(
+        [one * h**k for k, one in enumerate(row)] for row in (shaking.weight, shaking.along)
+    )
+    least = 2.0 ** -(bits() + margin)
+    first, second = least * sizes_of[1], least * sizes_of[3]
+
+    def enough(k: int, so_far: Series) -> bool:
+        if k < LOWEST:
+            return False
+        if k >= HIGHEST:
+            raise TooLong
+        fast, sunk = abs(float(so_far.rate[k])), abs(float(so_far.speed[k]))
+        return fast < first and sunk < second and abs(float(so_far.rate[k - 1])) < first * 16
+
+    found = recursion(
+        shape, standing, pads.small, _first(pads, standing, start, held), ground, h, -1, enough
+    )
+    order = len(found.rotation) - 1
+    sizes = [_sizes(one) for one in found]
+    most = [_upper(size) for size in sizes]
+    inertia = found.inertia
+    least_inertia = float(inertia[0].lower()) / UPWARDS
+    swing = sum(float(one.abs_upper()) for one in inertia[1:]) * UPWARDS
+    low = (least_inertia - swing * _ROOM) * 0.999
+    if not low > 0:
+        raise TooLong
+    bounds = Series(
+        [most[0]], [most[1]], [most[2]], [most[3]], [most[4]], [min(1.0, most[5])], [1.0],
+        ([], []), ([], []), tuple([one] for one in most[9]), [low],
+        [float(shape.height) * UPWARDS + abs(float(held)) * UPWARDS * min(1.0, most[5])],
+    )  # fmt: skip
+    bounds.levels[0].append(0.0)
+    bounds.levels[1].append(0.0)
+    upper = Shape(*(_bounds(one) for one in shape))
+    grounds = tuple(_anywhere(row) for row in ground)
+    counts = [len(one) for one in bounds]
+    ended = recursion(
+        upper, standing, pads.small, bounds, grounds, _bounds(h), 1, lambda k, _: k > order
+    )  # fmt: skip
+    grown = zip(ended, counts, strict=True)
+    left_out = Series(
+        *(_last(one) if isinstance(one, tuple) or len(one) > count else 0.0 for one, count in grown)
+    )
+    _kept(sizes, most, left_out, swing, least_inertia - low)
+    return Course(h, ground[1], found, left_out)
+
+
+def _anywhere(row: Row) -> list[float]:
+    """Bound the Taylor coefficients of a polynomial about any share of the step."""
+    sizes = [_bounds(one) for one in row]
+    return [
+        sum(math.comb(j, k) * one for j, one in enumerate(sizes)) * UPWARDS
+        for k in range(len(sizes))
+    ]
+
+
+def _first(pads: PadNumbers, standing: Standing, start: Row, held: Ball) -> Series:
+    """Give the first coefficients of a point."""
+    rotation, rate, height, speed, sway = start
+    if pads.small:
+        sine, cosine = rotation, rotation * 0 + 1
+        rise, arm = rotation * rotation * pads.height / 2, pads.height
+    else:
+        sine, cosine = rotation.sin(), rotation.cos()
+        rise, arm = pads.height * (1 - cosine), pads.height * cosine + held * sine
+    levels = height + rise + pads.left * sine, height + rise - pads.right * sine
+    return Series(
+        [rotation], [rate], [height], [speed], [sway], [sine], [cosine],
+        ([levels[0]], [levels[1]]), ([], []), ([], []), [pads.inertia + arm * arm], [arm],
+    )  # fmt: skip
+
+
+def _bounds(one: Any) -> Any:
+    """Bound the size of balls by doubles."""
+    if isinstance(one, tuple):
+        return tuple(_bounds(each) for each in one)
+    return float(abs(one).upper()) * UPWARDS
+
+
+def _sizes(one: Any) -> Any:
+    """Bound the size of a polynomial."""
+    if isinstance(one, tuple):
+        return tuple(_sizes(each) for each in one)
+    return sum(float(each.abs_upper()) for each in one) * UPWARDS
+
+
+def _upper(size: Any) -> Any:
+    """Give a bound that a motion is to be shown not to reach."""
+    if isinstance(size, tuple):
+        return tuple(_upper(each) for each in size)
+    return size * _ROOM + 1e-200
+
+
+def _last(one: Any) -> Any:
+    """Give the last coefficient of bounds, rounded upwards."""
+    if isinstance(one, tuple):
+        return tuple(_last(each) for each in one)
+    return float(one[-1]) * UPWARDS if one else 0.0
+
+
+def _kept(sizes: list[Any], most: list[Any], left_out: Series, swing: float, low: float) -> None:
+    """Show that no bound was reached, from which all of them hold."""
+    firsts = zip(sizes, most, left_out, strict=True)
+    pairs = [one for i, one in enumerate(firsts) if i in (0, 1, 2, 3, 5)]
+    pairs += zip(sizes[9], most[9], left_out.forces, strict=True)
+    for size, bound, rest in pairs:
+        if size and not size + rest < bound:
+            raise TooLong
+    if not swing + left_out.inertia < low:
+        raise TooLong

@@ -1,0 +1,114 @@
+"""What has been proved of a block on pads."""
+
+import math
+from typing import Final
+
+import numpy as np
+
+from rockframe.compiled import Vector
+from rockframe.dynamics.alone import Alone
+from rockframe.dynamics.on_base import OnBase
+from rockframe.dynamics.pads import corner_contact
+from rockframe.dynamics.restraint import PIVOT_CENTRE
+from rockframe.proof.balls import ball, working_precision
+from rockframe.proof.pads.flow import point
+from rockframe.proof.pads.law import PadNumbers, Standing
+from rockframe.proof.pads.way import PadWay, Watch
+from rockframe.proof.problem import Shaking, Undecided
+from rockframe.proof.verdict import OVERTURNS, PRECISIONS, SAFE, UNDECIDED, Proof
+from rockframe.signals import Motion
+from rockframe.signals.slope import Slope
+from rockframe.system.bodies import OverturningAngles
+
+LAW: Final = "the law of two pads"
+_REACH: Final = 1.6
+"""Step over the time in which the fastest vibration turns by a radian."""
+
+
+def pad_numbers(part: OnBase, limits: OverturningAngles, tolerance: float) -> PadNumbers:
+    """Give a block on elastic pads in balls."""
+    body, base = part.body, part.base
+    return PadNumbers(
+        ball(body.height), ball(body.left), ball(body.right), ball(body.inertia),
+        ball(body.pin(PIVOT_CENTRE)), ball(base.law.stiffness), ball(base.law.damping),
+        (ball(base.left_settlement), ball(base.right_settlement)),
+        (ball(base.left_restitution) + ball(0, tolerance),
+         ball(base.right_restitution) + ball(0, tolerance)),
+        ball(base.rest), body.restraint, body.small, (ball(limits.left), ball(limits.right)),
+        ball(body.gravity),
+    )  # fmt: skip
+
+
+def way_of(
+    law: Alone,
+    mode: int,
+    state: Vector,
+    motion: Motion,
+    slope: Slope,
+    limits: OverturningAngles,
+    *,
+    scale: float = 1.0,
+    tolerance: float = 0.0,
+    watch: Watch | None = None,
+) -> PadWay:
+    """Give the way from a start, not begun."""
+    part, body = law.part, law.state_of(0, state)
+    pads = pad_numbers(part, limits, tolerance)
+    contact = part.mode_of(mode).contact
+    standing = Standing(corner_contact(contact, True), corner_contact(contact, False))
+    vertical = math.sqrt(2.0 * float(pads.stiffness))
+    arm = math.sqrt(float(pads.inertia) + float(pads.height) ** 2)
+    width = float(pads.left) ** 2 + float(pads.right) ** 2
+    fastest = max(vertical, math.sqrt(float(pads.stiffness) * width) / arm)
+    weights = np.array([1.0, fastest, arm, arm * fastest, arm * fastest])
+    weights = 2.0 ** np.round(np.log2(weights))
+    reach = _REACH / fastest
+    shaking = Shaking(motion, ball(scale), slope, reach)
+    begin = [
+        body.rotation, body.angular_velocity, body.vertical, body.vertical_velocity,
+        body.horizontal_velocity if standing.flies else 0.0,
+    ]  # fmt: skip
+    return PadWay(pads, shaking, standing, point(begin), weights, reach, watch=watch)
+
+
+def prove_pads(
+    law: Alone,
+    mode: int,
+    state: Vector,
+    motion: Motion,
+    slope: Slope,
+    limits: OverturningAngles,
+    *,
+    scale: float = 1.0,
+    tolerance: float = 0.0,
+) -> Proof:
+    """Prove the verdict of a block on pads, from its mode and its state.
+
+    Its pads are elastic, its ground is level, and its restraint is no leading corner.
+    """
+    found = None
+    for bits in PRECISIONS[:1] if tolerance else PRECISIONS:
+        with working_precision(bits):
+            way = way_of(law, mode, state, motion, slope, limits, scale=scale, tolerance=tolerance)
+            found = _decided(way, bits, scale, tolerance)
+        if found.decided:
+            break
+    assert found is not None  # noqa: S101
+    return found
+
+
+def _decided(way: PadWay, bits: int, scale: float, tolerance: float) -> Proof:
+    verdict, reason = UNDECIDED, ""
+    earliest = latest = math.nan
+    try:
+        verdict = OVERTURNS if way.decide() else SAFE
+    except Undecided as why:
+        reason, earliest = str(why), float(way.time)
+        latest = earliest
+    if way.overturning is not None:
+        low, high = way.overturning
+        earliest = math.nextafter(float(low), -math.inf)
+        latest = math.nextafter(float(high), math.inf)
+    return Proof(
+        verdict, reason, earliest, latest, way.widest, way.impacts, bits, scale, tolerance, LAW
+    )

@@ -1,0 +1,454 @@
+"""From the start of a motion to a verdict of a block on pads, by enclosures alone."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+import numpy as np
+
+from rockframe.proof.balls import ZERO, Ball, Matrix, Row, ball, bits, times
+from rockframe.proof.pads.flow import Curve, StateSet, Step, step
+from rockframe.proof.pads.law import (
+    SIZE,
+    Guard,
+    PadNumbers,
+    Shaken,
+    Standing,
+    Switched,
+    along,
+    arm,
+    corner,
+    duals,
+    guard_value,
+    guards_of,
+    switched,
+    turned,
+)
+from rockframe.proof.pads.law import field as rates_of
+from rockframe.proof.pads.series import UPWARDS, Series, TooLong, course
+from rockframe.proof.problem import Ground, Shaking, Undecided
+
+_HALVINGS: Final = 30
+_PIECES: Final = 16
+_DEEPEST: Final = 40
+_CHAIN: Final = 6
+"""Changes of contact at one instant beyond which nothing is decided."""
+_PLACES: Final = np.linspace(0.0, 1.0, 4 * _PIECES + 1)
+_LOST_BITS: Final = 16.0
+_NARROW: Final = 1e-3
+"""Radius of a set, over that of its weights, beyond which it tells nothing."""
+
+Watch = Callable[[int, Standing, Row], None]
+"""Is told the number of a knot, the contacts and the enclosure there."""
+
+
+@dataclass
+class PadWay:
+    """The way through a motion; what is found stands in its fields.
+
+    Parameters
+    ----------
+    pads : PadNumbers
+        The block and its pads.
+    shaking : Shaking
+        Of the ground.
+    standing : Standing
+        Contacts at the start.
+    states : StateSet
+        At the start.
+    weights : ndarray
+        Typical sizes of the state's numbers, powers of two.
+    reach : float
+        Length of a step [s].
+    patience : float
+        Time after the record in which the block has to calm down [s].
+    watch : callable, optional
+        Is told every enclosure at a knot.
+    """
+
+    pads: PadNumbers
+    shaking: Shaking
+    standing: Standing
+    states: StateSet
+    weights: Any
+    reach: float
+    patience: float = 60.0
+    watch: Watch | None = None
+    k: int = 0
+    offset: Ball = field(default_factory=lambda: ZERO)
+    fresh: tuple[Guard, ...] = ()
+    margin: int = 16
+    impacts: int = 0
+    changes: int = 0
+    widest: float = 0.0
+    overturning: tuple[Ball, Ball] | None = None
+
+    @property
+    def time(self) -> Ball:
+        """Time from the first sample [s]."""
+        return self.shaking.time(self.k, self.offset)
+
+    def decide(self) -> bool:
+        """Prove that the block overturns, or that it never does.
+
+        Returns
+        -------
+        bool
+            Whether it overturns.
+
+        Raises
+        ------
+        Undecided
+            Neither is proved.
+        """
+        state = self.states.box(self.weights)
+        for one in guards_of(self.standing):
+            if not guard_value(self.pads, one, state) > 0:
+                msg = "the contacts at the start are not resolved"
+                raise Undecided(msg)
+        shaking = self.shaking
+        last = shaking.count + self.patience / shaking.still_step
+        while self.overturning is None:
+            if self.k >= shaking.count and self._kept():
+                return False
+            if self.k > last:
+                msg = "the motion after the record goes on for too long"
+                raise Undecided(msg)
+            self._to_next_knot()
+        return True
+
+    def _to_next_knot(self) -> None:
+        """Go on to the next knot, or until the block has overturned."""
+        depth, parts = 0, 0
+        while True:
+            left = self.shaking.length(self.k) - self.offset
+            if not parts:
+                parts = max(1, round(float(left) / self.reach + 0.4)) << depth
+            ground = self.shaking.ground(self.k).at(self.offset)
+            h = left if parts == 1 else left / parts
+            try:
+                done = self._advance(ground, h)
+            except TooLong:
+                depth, parts = depth + 1, 0
+                if depth > _HALVINGS:
+                    msg = "a contact that hardly changes is not resolved"
+                    raise Undecided(msg) from None
+                continue
+            if self.overturning is not None:
+                return
+            if not done:
+                depth, parts = 0, 0
+                continue
+            parts -= 1
+            if parts == 0:
+                break
+            self.offset = self.offset + h
+            if depth:
+                depth, parts = depth - 1, 0
+        self.k, self.offset = self.k + 1, ZERO
+        radius = self.states.radii(self.weights)[0]
+        self.widest = max(self.widest, float(radius))
+        if self.watch is not None:
+            self.watch(self.k, self.standing, self.states.box(self.weights))
+        if not self.states.radius() < _NARROW:
+            msg = "the enclosure has become as wide as the motion itself"
+            raise Undecided(msg)
+
+    def _advance(self, ground: Ground, h: Ball) -> bool:
+        """Make a step, or a part of it up to a change of contact; tell whether it was whole."""
+        pads, standing = self.pads, self.standing
+        sizes = tuple(float(one) for one in self.weights)
+        found = course(pads, standing, ground, self.states.centre, h, sizes, self.margin)
+        self._set_margin(found.left_out, sizes)
+        made = step(pads, standing, found, self.states, self.weights, guards_of(standing))
+        guard, place = self._first(made)
+        share = ball(1)
+        if guard is not None:
+            share = _root(_series(pads, guard, made), place)
+        until = min(float(share), 1.0)
+        for one, (value, change) in made.curves.items():
+            if not _positive(value, change, until, fresh=one in self.fresh, falls=one == guard):
+                raise TooLong
+        states = self.states.mapped(
+            made.image(share), made.derivative(until), made.error, self.weights
+        )
+        if guard is None:
+            self.states, self.fresh = states, ()
+            return True
+        self._change(ground, h * share, states, guard, made.rate / float(h))
+        return False
+
+    def _set_margin(self, left_out: Series, sizes: tuple[float, ...]) -> None:
+        """Let the next series be longer or shorter by what this one has left out."""
+        rests = zip(left_out[:SIZE], sizes, strict=True)
+        lost = max(float(rest) / size for rest, size in rests) * 2.0 ** bits()
+        if lost > _LOST_BITS:
+            self.margin = min(self.margin + 8, 96)
+        elif lost < 1.0 / _LOST_BITS:
+            self.margin = max(self.margin - 4, 8)
+
+    def _first(self, made: Step) -> tuple[Guard | None, float]:
+        """Guess which guard is the first to fall to zero, and where; nothing is proved by it."""
+        which, first = None, 2.0
+        for guard, (value, change) in made.curves.items():
+            if value.size == 0.0:
+                continue
+            seen = np.polynomial.polynomial.polyval(_PLACES, value.of)
+            below = seen <= 0.0
+            if guard in self.fresh:
+                begin = 1
+                slope = np.polynomial.polynomial.polyval(_PLACES, change.of)
+                while begin < below.size and slope[begin] > 0.0 and below[begin]:
+                    begin += 1
+                below[:begin] = False
+            at = np.nonzero(below)[0]
+            if at.size == 0:
+                continue
+            i = int(at[0])
+            low, high = float(_PLACES[max(i - 1, 0)]), float(_PLACES[i])
+            for _ in range(50):
+                middle = 0.5 * (low + high)
+                if np.polynomial.polynomial.polyval(middle, value.of) > 0.0:
+                    low = middle
+                else:
+                    high = middle
+            if high < first:
+                which, first = guard, high
+        return which, first
+
+    def _change(self, ground: Ground, h: Ball, states: StateSet, guard: Guard, rate: float) -> None:
+        """Carry a set over a change of contact of all its members, :eq:`eq-proof-pads-event`."""
+        whole = self._crossed(ground, h, states.box(self.weights), guard, rate)
+        centre = self._crossed(ground, h, states.centre, guard, rate)
+        self.offset = self.offset + h
+        if guard.kind == "limit":
+            at = self.time
+            self.overturning = (at + whole.delay).lower(), (at + whole.delay).upper()
+            return
+        middle = np.array([[float(one) for one in row] for row in whole.slope])
+        radii = np.array([[float(one.rad()) for one in row] for row in whole.slope])
+        scale = self.weights[None, :] / self.weights[:, None]
+        self.states = states.mapped(
+            centre.image, middle * scale, radii * scale * UPWARDS, self.weights
+        )
+        self.standing, self.fresh = whole.after.standing, whole.after.fresh
+        self.impacts += whole.after.impacts
+        self.changes += 1
+
+    def _crossed(self, shaking: Ground, h: Ball, box: Row, guard: Guard, rate: float) -> "_Crossed":
+        """Enclose the image of a box whose members come to a guard's zero near one time."""
+        pads, standing = self.pads, self.standing
+        value = guard_value(pads, guard, duals(box))
+        falling = along(value, rates_of(pads, standing, duals(box), _shaken(shaking, h)))
+        if not falling < 0:
+            msg = "a contact that changes as it hardly moves"
+            raise Undecided(msg)
+        reach = 2.0 * float(value.value.abs_upper()) / float(falling.abs_lower()) + 1e-60
+        window = ball(0, reach)
+        ground = _shaken(shaking, h + window)
+        wide = _inflated(lambda at: rates_of(pads, standing, at, ground), box, window, self.weights)
+        at = duals(wide)
+        before = rates_of(pads, standing, at, ground)
+        guarded = guard_value(pads, guard, at)
+        falling = along(guarded, before)
+        if not falling < 0:
+            msg = "a contact that changes as it hardly moves"
+            raise Undecided(msg)
+        delay = -value.value / falling
+        if not window.contains(delay):
+            msg = "the time of a change of contact is not enclosed"
+            raise Undecided(msg)
+        met = [a + delay * b.value for a, b in zip(box, before, strict=True)]
+        met = [a.intersection(b) for a, b in zip(met, wide, strict=True)]
+        if guard.kind == "limit":
+            return _Crossed(delay, met, [], Switched([], standing, (), 0))
+        after = self._settled(switched(pads, standing, guard, duals(met), ground), ground)
+        image = [one.value for one in after.state]
+        back = _inflated(
+            lambda at: rates_of(pads, after.standing, at, ground), image, window, self.weights
+        )
+        later = rates_of(pads, after.standing, duals(back), ground)
+        self._resolved(after, back, later)
+        image = [a - delay * b.value for a, b in zip(image, later, strict=True)]
+        slope = _saltation(after, before, later, guarded, falling)
+        swing = reach * max(rate, _norm(later, self.weights), _norm(before, self.weights))
+        near = ball(0, np.expm1(swing) * UPWARDS + 1e-60)
+        slope = self._swung(slope, near)
+        return _Crossed(delay, image, slope, after)
+
+    def _settled(self, after: Switched, ground: Shaken) -> Switched:
+        """Carry out what has to follow at once."""
+        for _ in range(_CHAIN):
+            state = [one.value for one in after.state]
+            waiting = [
+                one
+                for one in guards_of(after.standing)
+                if one not in after.fresh and guard_value(self.pads, one, state) < 0
+            ]
+            if not waiting:
+                return after
+            if len(waiting) > 1:
+                msg = "several contacts change at one instant"
+                raise Undecided(msg)
+            count = after.impacts
+            after = switched(self.pads, after.standing, waiting[0], after.state, ground)
+            after = after._replace(impacts=count + after.impacts)
+        msg = "contacts that change without end at one instant"
+        raise Undecided(msg)
+
+    def _resolved(self, after: Switched, state: Row, later: list[Any]) -> None:
+        """Prove the signs of all guards after a change."""
+        at = duals(state)
+        for one in guards_of(after.standing):
+            value = guard_value(self.pads, one, at)
+            good = along(value, later) > 0 if one in after.fresh else value.value > 0
+            if not good:
+                msg = "the contacts after a change are not resolved"
+                raise Undecided(msg)
+
+    def _swung(self, slope: Matrix, near: Ball) -> Matrix:
+        """Allow for what members go through between their change and that of the centre."""
+        scale = [ball(float(one)) for one in self.weights]
+        beside = [
+            [ball(int(i == j)) + near * scale[i] / scale[j] for j in range(SIZE)]
+            for i in range(SIZE)
+        ]
+        return times(beside, times(slope, beside))
+
+    def _kept(self) -> bool:
+        """Prove by energy that the block stands for ever, :eq:`eq-proof-pads-energy`."""
+        pads, state = self.pads, self.states.box(self.weights)
+        rotation, rate, height, speed, sway = state
+        if not self.standing.flies:
+            sway = arm(pads, self.standing, rotation) * rate
+        energy = (pads.inertia * rate * rate + speed * speed + sway * sway) / 2
+        energy = energy + pads.gravity * height
+        for left in (True, False):
+            depth = pads.settlements[not left] - corner(pads, left, state).level
+            energy = energy + pads.stiffness * depth.nonnegative_part() ** 2 / 2
+        sunk = pads.gravity / pads.stiffness
+        for left in (True, False):
+            limit = -pads.limits[0] if left else pads.limits[1]
+            at = turned(pads, limit)
+            below = at.rise + at.sine * (pads.left if left else -pads.right)
+            crest = pads.gravity * (pads.settlements[not left] - below - sunk / 2)
+            if not energy < crest:
+                return False
+        return bool(-pads.limits[0] < rotation and rotation < pads.limits[1])
+
+
+@dataclass
+class _Crossed:
+    """A change of contact of a box of states."""
+
+    delay: Ball
+    image: Row
+    slope: Matrix
+    after: Switched
+
+
+def _shaken(ground: Ground, time: Ball) -> Shaken:
+    """Give the ground at a time, or over several."""
+    now = ground.at(time)
+    return Shaken(now.along[0], now.weight[0])
+
+
+def _inflated(rates: Callable[[list[Any]], list[Any]], box: Row, window: Ball, weights: Any) -> Row:
+    """Enclose all that a box goes through within a window of time."""
+    grown = box
+    for _ in range(12):
+        flow = [one.value for one in rates(duals(grown))]
+        reached = [a + window * b for a, b in zip(box, flow, strict=True)]
+        if all(a.contains(b) for a, b in zip(grown, reached, strict=True)):
+            return reached
+        grown = [
+            a + (b - a) * ball(0, 1.5) + ball(0, 1e-70 * float(w))
+            for a, b, w in zip(box, reached, weights, strict=True)
+        ]
+    msg = "what happens about a change of contact is not enclosed"
+    raise Undecided(msg)
+
+
+def _saltation(
+    after: Switched, before: list[Any], later: list[Any], guarded: Any, falling: Ball
+) -> Matrix:
+    """Give the derivative of a change by the state, at one time for all."""
+    reset = [one.slope for one in after.state]
+    speeds = [one.value for one in before]
+    jump = [
+        one.value - sum((a * b for a, b in zip(row, speeds, strict=True)), ZERO)
+        for one, row in zip(later, reset, strict=True)
+    ]
+    return [
+        [row[j] + jump[i] * guarded.slope[j] / falling for j in range(SIZE)]
+        for i, row in enumerate(reset)
+    ]
+
+
+def _norm(rates: list[Any], weights: Any) -> float:
+    """Bound the derivative of the field, over the weights."""
+    sizes = np.array([[float(one.abs_upper()) for one in row.slope] for row in rates])
+    return float((sizes * weights[None, :] / weights[:, None]).sum(axis=1).max()) * UPWARDS
+
+
+def _positive(value: Curve, change: Curve, until: float, *, fresh: bool, falls: bool) -> bool:
+    """Prove that a guard is positive up to a share, but for where it begins or ends at zero."""
+    of, slopes = value.of, change.of
+    powers = np.arange(of.size)
+    bend = float((np.abs(of) * powers * np.maximum(powers - 1, 0)).sum()) * UPWARDS
+    turn = float((np.abs(slopes) * powers).sum()) * UPWARDS
+    own = (of * powers)[1:]
+    edges = [(until * i / _PIECES, until * (i + 1) / _PIECES, 0) for i in range(_PIECES)]
+    lost = 1e-14 * (value.size + change.size)
+    while edges:
+        begin, end, depth = edges.pop()
+        middle, half = 0.5 * (begin + end), 0.5 * (end - begin) * UPWARDS
+        tilt = abs(float(np.polynomial.polynomial.polyval(middle, own)))
+        least = float(np.polynomial.polynomial.polyval(middle, of)) - half * (tilt + half * bend)
+        if least > value.error + lost:
+            continue
+        rise = float(np.polynomial.polynomial.polyval(middle, slopes))
+        away = half * turn + change.error + lost
+        if fresh and begin == 0.0 and rise > away:
+            continue
+        if falls and end == until and rise < -away:
+            continue
+        if depth == _DEEPEST:
+            return False
+        edges += [(begin, middle, depth + 1), (middle, end, depth + 1)]
+    return True
+
+
+def _series(pads: PadNumbers, guard: Guard, made: Step) -> Row:
+    """Give the series of a guard."""
+    found, i = made.course.series, int(not guard.left)
+    if guard.kind == "limit":
+        sign = 1 if guard.left else -1
+        first, *others = found.rotation
+        return [pads.limits[i] + sign * first, *(sign * one for one in others)]
+    if guard.kind in ("depth", "gap"):
+        sign = 1 if guard.kind == "gap" else -1
+        first, *others = found.levels[i]
+        return [sign * (first - pads.settlements[i]), *(sign * one for one in others)]
+    if guard.kind == "rise":
+        return found.speeds[i]
+    sign = -1 if guard.kind == "slack" else 1
+    return [sign * one for one in found.forces[i]]
+
+
+def _root(series: Row, place: float) -> Ball:
+    """Give about where a series comes to zero; nothing is proved by it."""
+    at = ball(place)
+    for _ in range(8):
+        value, slope = ZERO, ZERO
+        for one in reversed(series):
+            slope = slope * at + value
+            value = value * at + one.mid()
+        if not float(slope.mid()):
+            break
+        at = (at - value.mid() / slope.mid()).mid()
+    if not abs(float(at) - place) < 1e-6:
+        at = ball(place)
+    if not 0 < at < 1:
+        raise TooLong
+    return at
