@@ -64,3 +64,33 @@ def test_the_table_of_accuracies_is_that_of_the_command():
         assert sum(row["disagrees"] for row in here) == 0
         if name != '`"fast"`':
             assert counts[6] == 0
+
+
+TIED = (
+    "| bodies, tied | scenes | agree | median difference | largest difference | with uplift | "
+    "overturn | events |"
+)
+
+
+def test_the_table_of_tied_stacks_is_that_of_the_command():
+    found = json.loads((DOCS / "data/chain_ties_oracle.json").read_text())
+    rows = table("validation_scenes.md", TIED)
+    for one, row in zip(found, rows, strict=True):
+        keys = ("bodies", "scenes", "agree", "uplifting", "overturning", "events")
+        cells = [row[i] for i in (0, 1, 2, 5, 6, 7)]
+        assert cells == [str(one[key]) for key in keys]
+        assert [float(row[3]), float(row[4])] == [one["median"], one["worst"]]
+
+
+def test_the_table_of_another_seed_is_that_of_the_command():
+    found = {
+        row["kind"]: row for row in json.loads((DOCS / "data/maximal_oracle_28.json").read_text())
+    }
+    rows = table("validation_scenes.md", HEAD.replace("| scene |", "| scene, seed 28 |"))
+    assert [NAMES[row[0]] for row in rows] == list(found)
+    for name, *cells in rows:
+        one = found[NAMES[name]]
+        kept = ("scenes", "agrees", "chaos", "overturned")
+        assert [cells[i] for i in (0, 1, 3, 5)] == [str(one[key]) for key in kept]
+        assert int(cells[4]) == one["sensitive"] + one["disagrees"]
+        assert int(cells[6]) == len(one["verdicts_differ"])
