@@ -5,9 +5,9 @@ from importlib.util import find_spec
 from typing import TYPE_CHECKING, Final
 
 from rockframe.dynamics.alone import Alone
+from rockframe.dynamics.body import LEADING_CORNER
 from rockframe.dynamics.pads import ElasticPads
 from rockframe.dynamics.protocol import Ending
-from rockframe.dynamics.restraint import LEADING_CORNER
 from rockframe.dynamics.rigid_ground import BlockOnRigidGround
 from rockframe.errors import ComponentError, shown
 from rockframe.simulation.plan import Plan, plan_run, start_of

@@ -7,8 +7,8 @@ block that flies, which is zero as long as a pad holds it.
 
 from typing import Any, Final, NamedTuple
 
+from rockframe.dynamics.body import PIVOT_CENTRE, pivot_of
 from rockframe.dynamics.pads import CLEAR, ENGAGING, LEAVING, RELAXING, TOUCHING
-from rockframe.dynamics.restraint import PIVOT_CENTRE, pivot_of
 from rockframe.proof.balls import ZERO, Ball, Row, ball
 from rockframe.proof.problem import Undecided
 

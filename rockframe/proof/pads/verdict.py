@@ -7,9 +7,9 @@ import numpy as np
 
 from rockframe.compiled import Vector
 from rockframe.dynamics.alone import Alone
+from rockframe.dynamics.body import PIVOT_CENTRE
 from rockframe.dynamics.on_base import OnBase
 from rockframe.dynamics.pads import corner_contact
-from rockframe.dynamics.restraint import PIVOT_CENTRE
 from rockframe.proof.balls import ball, working_precision
 from rockframe.proof.pads.flow import point
 from rockframe.proof.pads.law import PadNumbers, Standing
