@@ -17,7 +17,7 @@ from rockframe.proof.pads.way import PadWay, Watch
 from rockframe.proof.problem import Shaking, Undecided
 from rockframe.proof.verdict import OVERTURNS, PRECISIONS, SAFE, UNDECIDED, Proof
 from rockframe.signals import Motion
-from rockframe.signals.slope import Slope
+from rockframe.signals.motion import Slope
 from rockframe.system.bodies import OverturningAngles
 
 LAW: Final = "the law of two pads"
