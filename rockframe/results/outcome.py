@@ -80,6 +80,8 @@ def body_histories(
         name: np.array([values[column_of(one, k)] for k in bodies])
         for name, one in OF_EACH_BODY.items()
     }
+    if "slip" in values:
+        found["body_slip"] = np.array([values[column_of("slip", k)] for k in bodies])
     found["body_contact_state"] = np.array(
         [model.contact_states(run.mode, k) for k in bodies], dtype=np.int8
     )
@@ -203,8 +205,7 @@ def scalars(
             "right_peak_rotation": _unsigned(run.peak_right),
             "rest_rotation": setting.rest_rotation,
         }
-    slips = setting.slips_of(run.ending)
-    if slips is not None:
+    for slips in setting.slips_of(run.ending)[:1]:
         sides |= {"peak_slip": slips.peak + 0.0, "residual_slip": slips.residual}
     return sides | {
         "overturned": run.passed,
@@ -278,9 +279,12 @@ def verdict(run: Summary, setting: Setting, *, end: float) -> str:
         text += f", {run.flight_time:.3g} s in flight"
     if run.passed and not run.status.finished:
         text += f". Not finished: {_cut_off(run)}"
-    slips = setting.slips_of(run.ending)
-    if slips is not None:
-        text = f"{_slid(slips)}, {text[0].lower()}{text[1:]}"
+    slid = [_slid(slips) for slips in setting.slips_of(run.ending)]
+    if len(slid) > 1:
+        slid = [f"body {k} {words[0].lower()}{words[1:]}" for k, words in enumerate(slid, 1)]
+    if slid:
+        words = ", ".join([*slid, f"{text[0].lower()}{text[1:]}"])
+        text = f"{words[0].upper()}{words[1:]}"
     return text + "."
 
 

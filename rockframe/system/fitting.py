@@ -129,12 +129,6 @@ def _misfits_of_stack(stack: Stack, parts: Parts) -> list[str]:
         for one in standing
         if slot_of(one) not in BASES or isinstance(one, OwnBase)
     ]
-    faults += [
-        f"{type(one).__name__}: friction is not looked at in a Stack, whose bodies are held on "
-        "what they stand on"
-        for one in standing
-        if getattr(one.si, "friction", None) is not None
-    ]
     if any(isinstance(one, RigidGround) and one.si.restitution is not None for one in standing):
         faults.append(
             "RigidGround: in a Stack impacts are plastic, and what they leave of the velocities of "

@@ -15,7 +15,7 @@ from rockframe.system.parts import RESTRAINER, Parts, support_of
 from rockframe.system.rear_wall import rear_wall_setting
 from rockframe.system.rocking_frame import rocking_frame_setting
 from rockframe.system.setting import Setting
-from rockframe.system.sliding_base import alone_on
+from rockframe.system.sliding_base import alone_on, stack_on
 from rockframe.system.sliding_ground import rigid_ground_setting
 from rockframe.system.stack import StackSetting, block_setting, stack_setting
 from rockframe.system.stacked import CascadeSetting, CoupledSetting, StackedSetting
@@ -93,7 +93,8 @@ def _upon_one_another(slot: str, parts: Parts, options: Options) -> StackSetting
     base = parts.components().get(slot, RigidGround())
     if parts.stack is None:
         return block_setting(parts.the_block, base, options, parts.links)
-    return stack_setting(parts.stack, base, options, parts.links)
+    held = stack_setting(parts.stack, base, options, parts.links)
+    return stack_on((*parts.stack.interfaces, base), held, parts.links)
 
 
 _STACK = frozenset({"block", "pads", "cap", "soil"})

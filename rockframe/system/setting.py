@@ -197,9 +197,9 @@ class Setting(ABC):
             f"overturning angle to that side, since {' and '.join(reasons)}"
         ]
 
-    def slips_of(self, ending: "Ending") -> SlipRange | None:
-        """Tell how far the body slipped, by the end of a run; None of one that is held."""
-        return None
+    def slips_of(self, ending: "Ending") -> tuple[SlipRange, ...]:
+        """Tell how far each body slipped, by the end of a run; nothing of bodies that are held."""
+        return ()
 
     @abstractmethod
     def contact_model(self) -> "ContactModel":

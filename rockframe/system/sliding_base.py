@@ -1,17 +1,21 @@
-"""The scene of one body that slips on a base that gives way: its numbers, words and model."""
+"""Scenes of bodies that slip on bases that give way: their numbers, words and models."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
-from rockframe.components import Component
+from rockframe.components import Component, Link, RigidGround
 from rockframe.errors import AssemblyError
 from rockframe.system.alone import AloneSetting
 from rockframe.system.fitting import SMALL_SLIDING, friction_under
+from rockframe.system.options import Sliding
 from rockframe.system.setting import SlipRange
-from rockframe.system.words import Words
+from rockframe.system.stack import StackSetting
+from rockframe.system.words import SLIPS, Words
 
 if TYPE_CHECKING:
+    from rockframe.dynamics.chain.friction import SlippingChain
     from rockframe.dynamics.protocol import ContactModel, Ending
 
 
@@ -33,9 +37,7 @@ class SlidingAloneSetting(AloneSetting):
         base = super().words()
         return Words(
             equations=[
-                *base.equations,
-                ("slip", "H = -s mu_k N at the point that would be held, s = sgn(slip'); "
-                 "held while |H| <= mu_s N"),
+                *base.equations, SLIPS,
             ],
             restraint=f"{base.restraint.partition(';')[0]}; as far as friction can",
             numbers=[
@@ -61,9 +63,10 @@ class SlidingAloneSetting(AloneSetting):
         """Give the equations of slip, rotation and rise."""
         return self._model
 
-    def slips_of(self, ending: "Ending") -> SlipRange:
+    def slips_of(self, ending: "Ending") -> tuple[SlipRange, ...]:
         """Tell how far the body slipped."""
-        return SlipRange(*self._model.system.slips(0, ending))  # type: ignore[attr-defined]
+        system = cast("SlippingChain", self._model.system)
+        return (SlipRange(*system.slips(0, ending)),)
 
 
 def alone_on(part: Component, held: AloneSetting) -> AloneSetting:
@@ -74,3 +77,67 @@ def alone_on(part: Component, held: AloneSetting) -> AloneSetting:
     if held.options.small:
         raise AssemblyError([SMALL_SLIDING])
     return SlidingAloneSetting(held.load, held.support, *found, cap_offset=held.cap_offset)
+
+
+@dataclass(frozen=True)
+class SlidingStackSetting(StackSetting):
+    """Bodies upon one another that friction holds on what they stand on."""
+
+    slides = True
+
+    @property
+    def model(self) -> str:
+        """Name of the model."""
+        return "stack-sliding"
+
+    def words(self) -> Words:
+        """Tell bodies and bases, and their friction."""
+        told = super().words()
+        numbers = [
+            (f"base {k}: friction at rest, and of slip", f"{static:.6g}, {kinetic:.6g}")
+            for k, (static, kinetic) in enumerate(self.frictions, 1)
+        ]
+        return replace(
+            told,
+            equations=[*told.equations, SLIPS],
+            numbers=[*told.numbers, *numbers],
+            left_out=[one for one in told.left_out if one != "sliding"],
+        )
+
+    @cached_property
+    def _sliding_model(self) -> "ContactModel":
+        return super().contact_model()
+
+    def contact_model(self) -> "ContactModel":
+        """Give the equations of bodies that slip on what they stand on."""
+        return self._sliding_model
+
+    def slips_of(self, ending: "Ending") -> tuple[SlipRange, ...]:
+        """Tell how far each body slipped."""
+        system = cast("SlippingChain", self._sliding_model.system)
+        return tuple(SlipRange(*system.slips(k, ending)) for k in range(len(self.bodies)))
+
+
+def stack_on(bases: Sequence[Component], held: StackSetting, links: Sequence[Link]) -> StackSetting:
+    """Give the setting of a stack: of one whose bodies slip where its bases have friction."""
+    if all(getattr(one.si, "friction", None) is None for one in bases):
+        return held
+    found = [friction_under(one, held.options) for one in bases]
+    faults = list[str]()
+    if held.options.sliding is Sliding.CHECKED:
+        faults.append("friction in a Stack is computed: give no sliding='checked', or no friction")
+    elif any(one is None for one in found):
+        faults.append("give every base of a Stack a friction, or none")
+    if any(isinstance(one, RigidGround) for one in bases):
+        faults.append(
+            "the bodies of a Stack slide on TwoSpringSupport and WinklerSoil; where one of its "
+            "bases is rigid, give no friction"
+        )
+    if links:
+        faults.append("the bodies of a Stack with restrainers do not slide: give no friction")
+    if held.options.small:
+        faults.append(SMALL_SLIDING)
+    if faults:
+        raise AssemblyError(faults)
+    given = {one.name: getattr(held, one.name) for one in fields(held)}
+    return SlidingStackSetting(**given | {"frictions": tuple(found)})

@@ -72,7 +72,7 @@ class SlidingSetting(RigidGroundSetting):
 
         return slide_rock(self.system(), mass=self.body.mass)
 
-    def slips_of(self, ending: "Ending") -> SlipRange:
+    def slips_of(self, ending: "Ending") -> tuple[SlipRange, ...]:
         """Tell how far the block slipped."""
         from rockframe.dynamics.slide_rock import FLIES_RIGHT, PEAK_LEFT, PEAK_RIGHT, SLIP, SLIPS
 
@@ -80,7 +80,7 @@ class SlidingSetting(RigidGroundSetting):
         left, right = float(ending.memory[PEAK_LEFT]), float(ending.memory[PEAK_RIGHT])
         if ending.mode // SLIPS < FLIES_RIGHT:
             left, right = max(left, -residual), max(right, residual)
-        return SlipRange(residual, left, right)
+        return (SlipRange(residual, left, right),)
 
     def cautions(self) -> list[str]:
         """Give warnings about the restitution, and of a block that its weight moves."""

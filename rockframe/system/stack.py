@@ -42,6 +42,8 @@ class StackSetting(Setting):
     offsets: tuple[float, ...]
     bases: tuple[Support, ...]  # what each stands on, under all that it carries
     ties: tuple[PlacedLink, ...] = ()  # what links their points
+    # of each base at rest and of slip; none where all bases hold
+    frictions: tuple[tuple[float, float], ...] = ()
 
     @property
     def model(self) -> str:
@@ -345,6 +347,7 @@ class StackSetting(Setting):
         return chain(
             self.links, self.body.mass, rest if self.leans else None, limits, self.chain_ties,
             self._held_height if self.ties and len(self.bodies) == 1 and self.groups else None,
+            self.frictions,
         )  # fmt: skip
 
     def _held_height(self, rotation: float) -> float:

@@ -10,6 +10,12 @@ if TYPE_CHECKING:
     from rockframe.system.parts import Parts
     from rockframe.system.setting import Setting
 
+SLIPS = (
+    "slip",
+    "H = -s mu_k N at the point that would be held, s = sgn(slip'); held while |H| <= mu_s N",
+)
+"""Of a base with friction, as an equation of :class:`Words`."""
+
 
 @dataclass(frozen=True)
 class Words:

@@ -110,3 +110,53 @@ def test_an_impulse_dissipates_whatever_the_friction():
         assert abs(impulse[0]) <= friction * impulse[1] + 1e-12
         inverse = np.linalg.inv(matrix)
         assert after @ inverse @ after <= before @ inverse @ before + 1e-12
+
+
+STATUE = rf.Block(width="0.6 m", height="1.8 m", mass="0.5 t")
+PLINTH = rf.Block(width="1 m", height="1 m", mass="1.5 t")
+PULSE = rf.GroundMotion.sine_pulse(amplitude="-4 m/s^2", frequency="1.5 Hz")
+
+
+def stacked(upper, lower, pads=PADS):
+    stack = rf.Stack(STATUE, PLINTH, interfaces=[pads.replace(friction=upper)])
+    return rf.System(stack, SOIL.replace(friction=lower)).simulate(
+        PULSE, free_vibration="0.2 s", accuracy="reference", outputs=("energy",)
+    )
+
+
+@pytest.mark.parametrize("frictions", [(0.2, 0.25), (0.2, 1.0), (1.0, 0.2)])
+def test_bodies_of_a_stack_slip_within_the_cone_of_friction(frictions):
+    found = stacked(*frictions)
+    assert found.energy_residual < 1e-8
+    for k, friction in enumerate(frictions):
+        one = found.isel(body=k)
+        along, normal = one.body_horizontal_reaction, one.body_vertical_reaction
+        weight = abs(normal).max().item()
+        assert (abs(along) <= friction * abs(normal) + 1e-9 * weight).all()
+        rate = np.gradient(one.body_slip, one.time)
+        slips = (abs(rate) > 0.05) & (normal > 0.01 * weight)
+        if friction < 0.3:  # each friction opposes the slip with all that it has
+            assert slips.any()
+            assert (np.sign(along)[slips] == -np.sign(rate)[slips]).mean() > 0.9
+    np.testing.assert_allclose(
+        found.peak_body_slip, abs(found.body_slip).max("time"), rtol=0.05, atol=1e-6
+    )
+    assert "body 2" in found.attrs["verdict"]
+
+
+def test_a_stack_with_friction_without_end_is_held():
+    pads = PADS.replace(restitution=1.0)
+    held, found = stacked(None, None, pads), stacked(1e8, 1e8, pads)
+    far = abs(found.body_rotation - held.body_rotation).max().item()
+    assert far < 1e-7 * held.peak_rotation.item()
+
+
+def test_what_of_a_stack_does_not_slide_is_refused():
+    stack = rf.Stack(STATUE, PLINTH, interfaces=[rf.RigidGround(friction=0.3)])
+    with pytest.raises(rf.errors.AssemblyError, match="one of its bases is rigid"):
+        rf.System(stack, SOIL.replace(friction=0.3))
+    stack = rf.Stack(STATUE, PLINTH, interfaces=[PADS.replace(friction=0.3)])
+    with pytest.raises(rf.errors.AssemblyError, match="or none"):
+        rf.System(stack, SOIL)
+    with pytest.raises(rf.errors.AssemblyError, match="is computed"):
+        rf.System(stack, SOIL.replace(friction=0.3), sliding="checked")

@@ -40,8 +40,10 @@ BODIES: Final = (
         Unit.NEWTON,
         "force of what each body stands on, normal to that, upwards",
     ),
+    Variable("body_slip", BODY_TIME, Unit.METRE, "slip of each body on what it stands on"),
     flag("body_contact_state", BODY_TIME, "part of the base of each body that bears", ContactState),
     Variable("peak_body_rotation", BODY, Unit.RADIAN, "greatest rotation of each body"),
+    Variable("peak_body_slip", BODY, Unit.METRE, "largest absolute slip of each body"),
     Variable(
         "event_body", EVENT, Unit.ONE, "number of the body whose contact changed", dtype="int64"
     ),

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.integrate import solve_ivp
 
-MOST_EVENTS = 3000
+MOST_EVENTS = 500
 
 
 @dataclass
@@ -326,7 +326,7 @@ class Block:
             self.base.contact[one] = self.base.starting(*self.corner(one, z)[:2], one)
         self.offset = -self.place(z)
         t, piece, peak, peak_slip, overturned = 0.0, 0, abs(z[2]), 0.0, False
-        self.slip = 0
+        self.slip, pieces = 0, 0
         while t < duration - 1e-12 and not overturned:
             while self.times[piece + 1] <= t + 1e-13:
                 piece += 1
@@ -358,7 +358,7 @@ class Block:
 
             ran = solve_ivp(
                 rate, (t, end), z, method="DOP853", rtol=rtol, atol=1e-14, max_step=self.longest,
-                first_step=min(end - t, 0.02 * self.longest), dense_output=True,
+                first_step=min(end - t, 1e-9), dense_output=True,
                 events=[*map(event, names), limit],
             )  # fmt: skip
             turns = np.flatnonzero(ran.y[5, :-1] * ran.y[5, 1:] < 0.0)
@@ -378,7 +378,8 @@ class Block:
                     self.events.append((t, "OVERTURNING"))
                     break
                 self.fell(*names[hit], z, self.ground(t, piece), t)
-            if len(self.events) > MOST_EVENTS:
+            pieces += 1
+            if pieces > MOST_EVENTS:
                 msg = "too many events"
                 raise RuntimeError(msg)
         return {"peak": peak, "peak_slip": peak_slip, "slip": self.offset + self.place(z),
