@@ -26,14 +26,14 @@ from rockframe.results.schema import schema_row
 from rockframe.results.variables.runs import Direction
 from rockframe.signals import Motion
 from rockframe.simulation.answers import Answers, answers_of, ground_at
-from rockframe.simulation.certificate import certify
+from rockframe.simulation.certify.certificate import certify
+from rockframe.simulation.certify.run_summary import RunSummary, run_summary
+from rockframe.simulation.certify.second_look import doubts, peak_error, second_look
 from rockframe.simulation.friction import friction_words, slips
 from rockframe.simulation.plan import Plan, end_attributes, start_of
 from rockframe.simulation.provenance import motion_after_end, motion_attributes
 from rockframe.simulation.proving import proof_of
 from rockframe.simulation.run_arguments import PROVED, Certification
-from rockframe.simulation.run_summary import RunSummary, run_summary
-from rockframe.simulation.second_look import doubts, peak_error, second_look
 from rockframe.simulation.soundness import (
     NOT_LOOKED_AT,
     STILL_MOVING,

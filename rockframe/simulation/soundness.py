@@ -13,8 +13,8 @@ import numpy as np
 from rockframe.dynamics.chain.rigid import KEPT, RigidChain
 from rockframe.dynamics.events import OVERTURNING, SEPARATION, SILENT, TOPPLED, UPLIFT
 from rockframe.dynamics.protocol import ContactModel, Ending, Ground
+from rockframe.simulation.certify.run_summary import RunSummary
 from rockframe.simulation.plan import Plan
-from rockframe.simulation.run_summary import RunSummary
 from rockframe.solve.accuracy import LEVELS, AccuracyLevel
 from rockframe.solve.trajectory import Summary, Trajectory
 from rockframe.system.assembly import Assembly

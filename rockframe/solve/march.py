@@ -1,4 +1,8 @@
-"""Steps on end, until something happens; guards of a step, and whether one may fall inside it."""
+"""Steps on end, until something happens; guards of a step, and whether one may fall inside it.
+
+Written for any system and compiled for each, so that the equations are compiled into the loop;
+the driver calls it by its address, and sees to all that is not a quiet step.
+"""
 
 from typing import Final, NamedTuple, TypeAlias
 

@@ -1,4 +1,8 @@
-"""A step: by a tolerance, after Dormand and Prince, or of fixed length, and what differs there."""
+"""A step: by a tolerance, after Dormand and Prince, or of fixed length, and what differs there.
+
+A step of fixed length takes two evaluations, :eq:`eq-fixed-stages` and :eq:`eq-fixed-step`; page
+"Numerics" of the manual has both.
+"""
 
 import math
 from typing import Final, NamedTuple, TypeAlias

@@ -8,9 +8,9 @@ from typing import Final
 
 import numpy as np
 
+from rockframe.simulation.certify.run_summary import RunSummary
+from rockframe.simulation.certify.scan import Side, may_change_between
 from rockframe.simulation.friction import share_words
-from rockframe.simulation.run_summary import RunSummary
-from rockframe.simulation.scan import Side, may_change_between
 
 FINEST: Final = 0.002
 """Length of an interval of scales that is not looked into for hidden flips, over its far end."""
@@ -69,8 +69,8 @@ def follow(
     Between two runs of the same verdict an even number of flips may hide. Below the least scale
     that overturns every interval is halved down to the resolution, the widest first, but where the
     base does not lift: it holds at any lesser scale too, unless it may slide. Then those where
-    flips are to be feared (:func:`rockframe.simulation.scan.may_change_between`), below that scale
-    and above it.
+    flips are to be feared (:func:`rockframe.simulation.certify.scan.may_change_between`), below
+    that scale and above it.
     """
     least, *others = row
     side = Side(1.0, {least: look(least)}, [least])

@@ -10,7 +10,7 @@ import xarray as xr
 import rockframe as rf
 from rockframe.errors import AssemblyError, RockframeError
 from rockframe.plot._artists import Drawer
-from rockframe.simulation.perturbations import parameters
+from rockframe.simulation.certify.perturbations import parameters
 from rockframe.system.geometry import geometry_of
 
 FACADE = rf.Block(width="0.3 m", height="3 m", mass="1.6 t")

@@ -19,7 +19,7 @@ from benchmarks.certified_scenes import Case, cases
 
 import rockframe as rf
 from rockframe.errors import RockframeWarning
-from rockframe.simulation.perturbations import cut, parameters
+from rockframe.simulation.certify.perturbations import cut, parameters
 from rockframe.simulation.run import outcome
 
 DISTANCES = tuple(10.0**-k for k in range(2, 8))

@@ -22,9 +22,9 @@ from records import records_folder
 
 import rockframe as rf
 from rockframe.errors import RockframeWarning
+from rockframe.simulation.certify.second_look import OFF, doubts, second_look
 from rockframe.simulation.plan import plan_run
 from rockframe.simulation.run import respond
-from rockframe.simulation.second_look import OFF, doubts, second_look
 
 RECORDS = (
     "ElCentro1940_Peknold.AT2",

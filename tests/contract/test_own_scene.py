@@ -156,7 +156,9 @@ class TestRun:
         assert not {"slip", "event_slip", "residual_slip"} & set(bare.variables)
 
     def test_a_certificate_nudges_its_parameters(self, system):
-        nudged = {words for words, _ in rf.simulation.perturbations.parameters(system.assembly)}
+        nudged = {
+            words for words, _ in rf.simulation.certify.perturbations.parameters(system.assembly)
+        }
         assert "friction of the ground" in nudged
         certified = system.simulate(PULSE, **RUN, certify=rf.Certification(runs=60))
         assert bool(certified.verdict_converged)

@@ -15,7 +15,7 @@ from benchmarks.certificates import (
 from benchmarks.certified_scenes import cases
 
 import rockframe as rf
-from rockframe.simulation.perturbations import cut
+from rockframe.simulation.certify.perturbations import cut
 
 COUNT = 5
 

@@ -15,11 +15,18 @@ from pages import read, said
 import rockframe as rf
 from rockframe.errors import ComponentError, ModelWarning, SolverError, SolverWarning, UnitsError
 from rockframe.results.outcome import verdict_of
-from rockframe.simulation.certificate import NEAR, RESOLUTION, SAFETY, Certificate, certify, settles
-from rockframe.simulation.perturbations import CUTS, SHORTER, cut, parameters, shortened
+from rockframe.simulation.certify.certificate import (
+    NEAR,
+    RESOLUTION,
+    SAFETY,
+    Certificate,
+    certify,
+    settles,
+)
+from rockframe.simulation.certify.perturbations import CUTS, SHORTER, cut, parameters, shortened
+from rockframe.simulation.certify.run_summary import RunSummary
+from rockframe.simulation.certify.scan import NOT_TRIED, Scan, scan
 from rockframe.simulation.plan import plan_run
-from rockframe.simulation.run_summary import RunSummary
-from rockframe.simulation.scan import NOT_TRIED, Scan, scan
 from rockframe.solve.accuracy import accuracy_of
 
 BLOCK = rf.Block.from_size(radius="5 m", slenderness=5, mass="50 t")

@@ -14,7 +14,7 @@ from rockframe.plot._artists import Drawer
 from rockframe.plot._scene import Moving
 from rockframe.reports.limits import limits_of
 from rockframe.results.points import UPRIGHT, Placement
-from rockframe.simulation.perturbations import parameters
+from rockframe.simulation.certify.perturbations import parameters
 from rockframe.system.geometry import geometry_of
 from rockframe.system.options import Restraint
 

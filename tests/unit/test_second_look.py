@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import rockframe as rf
-from rockframe.simulation.certificate import SAFETY
+from rockframe.simulation.certify.certificate import SAFETY
+from rockframe.simulation.certify.second_look import MORE, OFF, doubts, peak_error
 from rockframe.simulation.plan import plan_run
 from rockframe.simulation.run import outcome
-from rockframe.simulation.second_look import MORE, OFF, doubts, peak_error
 from rockframe.solve.layout import Status
 
 SYSTEM = rf.System(

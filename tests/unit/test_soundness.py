@@ -8,9 +8,9 @@ from extremes.scenes import Scene, scenes
 import rockframe as rf
 from rockframe.errors import SolverWarning
 from rockframe.simulation import soundness
+from rockframe.simulation.certify.run_summary import RunSummary
 from rockframe.simulation.plan import plan_run
 from rockframe.simulation.run import outcome
-from rockframe.simulation.run_summary import RunSummary
 from rockframe.simulation.soundness import (
     BY_TOLERANCE,
     DOUBTFUL,

@@ -11,7 +11,7 @@ from rockframe.components import stack
 from rockframe.dynamics.chain import rows
 from rockframe.dynamics.events import ContactState
 from rockframe.errors import AssemblyError, ComponentError
-from rockframe.simulation.perturbations import parameters
+from rockframe.simulation.certify.perturbations import parameters
 
 STATUE = rf.Block(width="0.5 m", height="1.8 m", mass="900 kg")
 PLINTH = rf.Block(width="0.9 m", height="1 m", mass="2200 kg")

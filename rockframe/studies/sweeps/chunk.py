@@ -14,8 +14,8 @@ from rockframe.results.variables.requests import POINT_TIME
 from rockframe.results.variables.runs import RunStatus
 from rockframe.results.variables.studies import REPEATED, VERDICT_CHANGED
 from rockframe.results.variables.variable import TIME
+from rockframe.simulation.certify.second_look import Look
 from rockframe.simulation.run import NONE, in_motion, scalars_of
-from rockframe.simulation.second_look import Look
 from rockframe.simulation.soundness import STILL_MOVING
 from rockframe.studies.sweeps.cases_of_job import CasesOfJob
 from rockframe.studies.sweeps.side_by_side import (

@@ -9,9 +9,9 @@ import numpy as np
 from rockframe.compiled import compiling_for
 from rockframe.errors import PLEASE_REPORT, RockframeError
 from rockframe.signals import Motion
+from rockframe.simulation.certify.second_look import Look, is_sure, look_at, second_look
 from rockframe.simulation.plan import Plan, run_length, start_of
 from rockframe.simulation.run import Response, has_no_cautions, respond
-from rockframe.simulation.second_look import Look, is_sure, look_at, second_look
 from rockframe.solve.accuracy import LEVELS, AccuracyLevel
 from rockframe.solve.integrate import STILL_INTERVAL, begun
 from rockframe.solve.lanes.integrate import LaneRun, integrate_lanes, kind_of, lanes_compiled

@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import pytest
 
-from rockframe.simulation.run_summary import RunSummary
+from rockframe.simulation.certify.run_summary import RunSummary
 from rockframe.solve.layout import Status
 from rockframe.studies.flips import FINEST, flips_sentence, follow
 

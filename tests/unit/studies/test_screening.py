@@ -8,7 +8,7 @@ import xarray as xr
 
 import rockframe as rf
 from rockframe.errors import RockframeError
-from rockframe.simulation.second_look import Look, is_sure
+from rockframe.simulation.certify.second_look import Look, is_sure
 from rockframe.studies.sweeps import study
 from rockframe.studies.sweeps.study import FEWEST_IN_LANES
 

@@ -7,7 +7,7 @@ from typing import Final
 
 from rockframe.results.outcome import peak_of
 from rockframe.results.variables.runs import Direction
-from rockframe.simulation.certificate import SAFETY
+from rockframe.simulation.certify.certificate import SAFETY
 from rockframe.simulation.plan import Plan
 from rockframe.solve.accuracy import Accuracy, AccuracyLevel, substeps_of
 from rockframe.solve.integrate import STILL_INTERVAL

@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 
 from rockframe.errors import ModelWarning, RockframeError, SolverError
-from rockframe.simulation.perturbations import (
+from rockframe.simulation.certify.perturbations import (
     SHORTER,
     SceneAt,
     finer_plans,
@@ -18,10 +18,10 @@ from rockframe.simulation.perturbations import (
     scales,
     tolerance_words,
 )
+from rockframe.simulation.certify.run_summary import Run, RunSummary
+from rockframe.simulation.certify.scan import NOT_TRIED, Scan, scan
 from rockframe.simulation.plan import Plan
 from rockframe.simulation.run_arguments import Certification
-from rockframe.simulation.run_summary import Run, RunSummary
-from rockframe.simulation.scan import NOT_TRIED, Scan, scan
 from rockframe.solve.accuracy import FEWEST
 from rockframe.system.assembly import Assembly
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Final
 
-from rockframe.simulation.run_summary import RunSummary
+from rockframe.simulation.certify.run_summary import RunSummary
 
 STEEPER: Final = 2.0
 """Slope that a clearance is allowed between two runs, over those seen hereabouts."""
