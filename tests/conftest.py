@@ -1,4 +1,4 @@
-"""Markers from the path: a test's kind is the folder it stands in."""
+"""Markers from the path: a test's kind is the folder it stands in; and what is left out."""
 
 import logging
 import os
@@ -57,6 +57,16 @@ def closed_figures() -> Iterator[None]:
         sys.modules["matplotlib.pyplot"].close("all")
 
 
+def pytest_configure(config: pytest.Config) -> None:
+    from rockframe.compiled import COMPILED
+
+    if COMPILED and hasattr(config, "workerinput"):
+        from rockframe.compiled import parallel
+
+        # each worker has a core: a second process that compiles loads all libraries once more
+        parallel.processors = lambda: 1
+
+
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
     """Have a worker that is done take what waits in another's queue behind a long test."""
@@ -66,11 +76,16 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    kept, timings = [], []
+    left_out = {"benchmarks"} if config.option.markexpr else {"benchmarks", "long"}
+    # a file, folder or test that is named is run with all that it holds
+    if any(Path(argument).resolve() != _ROOT for argument in config.args):
+        left_out.discard("long")
+    kept, others = [], []
     for item in items:
-        kind = item.path.relative_to(_ROOT).parts[0]
-        item.add_marker(getattr(pytest.mark, kind))
-        (timings if kind == "benchmarks" else kept).append(item)
-    if timings and "benchmarks" not in config.option.markexpr:
-        config.hook.pytest_deselected(items=timings)
+        item.add_marker(getattr(pytest.mark, item.path.relative_to(_ROOT).parts[0]))
+        names = {marker.name for marker in item.iter_markers()}
+        asked = any(name in config.option.markexpr for name in names & left_out)
+        (kept if asked or not names & left_out else others).append(item)
+    if others:
+        config.hook.pytest_deselected(items=others)
         items[:] = kept

@@ -39,10 +39,24 @@ class NotCompiledError(Exception):
 
 
 def make_all(jobs: Sequence[Job]) -> list[Any]:
-    """Compile jobs, or take what was kept of them."""
+    """Compile jobs, or take what was kept of them; last those that other processes compile now."""
     _tell(jobs)
+    made: dict[int, Any] = {}
     with _helped(jobs) as waiting:
-        return [_made(place, job, waiting) for place, job in enumerate(jobs)]
+        for now in (True, False):
+            for place, job in enumerate(jobs):
+                if place not in made and not (now and _is_at_work_on(job)):
+                    made[place] = _made(place, job, waiting)
+    return [made[place] for place in range(len(jobs))]
+
+
+def _is_at_work_on(job: Job) -> bool:
+    """Whether another process compiles a job."""
+    try:
+        file = job.file
+        return file is not None and not job.is_stored and store.is_compiled_elsewhere(file)
+    except Exception:  # said where it is compiled
+        return False
 
 
 def time_for(jobs: Sequence[Job]) -> float:

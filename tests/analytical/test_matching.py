@@ -1,5 +1,7 @@
 """Spectral matching in time: its wavelets and its matrix by closed forms and other integrators."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 from scipy import integrate, signal
@@ -158,15 +160,18 @@ def test_the_matrix_is_the_change_of_the_response_per_wavelet():
     made = adjustment_of(oscillators, peaks, targets, COUNT)
     assert made.effects.shape == (peaks.values.size, peaks.values.size)
     small = 1e-3
+
+    @cache
+    def response(oscillator, column=None):
+        changed = samples if column is None else samples + small * made.wavelets[:, column]
+        return exact_history(changed, STEP, PERIODS[oscillator], damping, parts)
+
     for column in range(0, peaks.values.size, 9):
-        changed = samples + small * made.wavelets[:, column]
         for row in range(0, peaks.values.size, 6):
-            period = PERIODS[peaks.oscillators[row]]
+            which = int(peaks.oscillators[row])
             at = np.rint(peaks.times[row] * parts / STEP).astype(int)
-            before, after = (
-                exact_history(one, STEP, period, damping, parts)[at] for one in (samples, changed)
-            )
-            slope = np.sign(peaks.values[row]) * (after - before) / small / 3.0
+            change = response(which, column)[at] - response(which)[at]
+            slope = np.sign(peaks.values[row]) * change / small / 3.0
             assert made.effects[row, column] == pytest.approx(slope, abs=2e-3)
 
 

@@ -29,7 +29,12 @@ RECORDS = {"record.AT2": "NIS090.AT2", "TCU128-N.AT2": "PEERSMD_CHICHI_TCU128-N.
 
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+@pytest.mark.parametrize(
+    "page",
+    # all models of a scene at three accuracies, each compiled
+    [pytest.param(page, marks=[pytest.mark.long] * (page.stem == "tradeoff")) for page in PAGES],
+    ids=[page.name for page in PAGES],
+)
 def test_snippets_run_from_first_to_last(page, tmp_path, monkeypatch, capsys):
     text = page.read_text(encoding="utf-8")
     snippets = SNIPPET.findall(text)

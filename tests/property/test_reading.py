@@ -152,6 +152,7 @@ def undamaged(folder):
 BINARY = ["netcdf", "miniseed", "sac", "asdf"]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("key", [*SAMPLES, *BINARY])
 @examples(150)
 @given(damage=DAMAGE, arguments=ARGUMENTS)

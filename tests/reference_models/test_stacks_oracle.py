@@ -48,6 +48,7 @@ def stack(count: int, **given) -> Scene:
     return Scene(bodies, pads(bodies), rotation=0.1, **given)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kind", COLUMNS)
 @pytest.mark.parametrize("variant", ["plain", "eccentric"])
 def test_one_or_two_bodies_as_in_the_other_model(kind, variant):

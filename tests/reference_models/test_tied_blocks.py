@@ -20,6 +20,8 @@ from rockframe.solve.integrate import integrate
 
 from .monoliths import ties, two_spring
 
+pytestmark = pytest.mark.long
+
 SCENES = 52
 GRAVITY = 9.80665
 TIME_STEP = 0.05

@@ -2,7 +2,7 @@
 
 import math
 
-from .compiling import compiled
+from .compiling import compiled, within
 from .kinematics import height, is_small
 from .layout import (
     BED_DAMPING,
@@ -44,7 +44,7 @@ def down(contact, z, p):
     return to_right - (2.0 * b * u_right / apart if apart > 0.0 else 0.0), to_right
 
 
-@compiled
+@within
 def bed_pressure(z, p, s):
     """Give compression, rate of the height, pressure and lever at a point of the base."""
     w, lever, _ = height(is_small(p), z[1], z[2], -s, p[LOWER_HEIGHT], 1.0)
@@ -53,13 +53,13 @@ def bed_pressure(z, p, s):
     return u, rate, p[BED_STIFFNESS] * u - p[BED_DAMPING] * rate, lever
 
 
-@compiled
+@within
 def no_suction(p):
     """Tell whether the part of the base where dashpots would pull is cut off."""
     return p[NO_SUCTION] > 0.5 and p[BED_DAMPING] > 0.0
 
 
-@compiled
+@within
 def bearing(contact, z, p):
     """Give the ends of the part that bears: that is down, and pushes if suction is excluded.
 
@@ -75,7 +75,7 @@ def bearing(contact, z, p):
     return (root, end) if contact[CUT_START] else (start, root)
 
 
-@compiled
+@within
 def end_pressures(contact, z, p):
     """Give the pressures at both ends of the part that is down, over the static one."""
     start, end = down(contact, z, p)
@@ -83,7 +83,7 @@ def end_pressures(contact, z, p):
     return bed_pressure(z, p, start)[2] / scale, bed_pressure(z, p, end)[2] / scale
 
 
-@compiled
+@within
 def cut_off(contact, z, p, noise):
     """Note which ends are cut off; what stands within `noise` of zero stays as it is."""
     if not no_suction(p):
@@ -95,7 +95,7 @@ def cut_off(contact, z, p, noise):
         contact[CUT_END] = 1 if last < 0.0 else 0
 
 
-@compiled
+@within
 def resultants(contact, z, p):
     """Give force and generalised force on the rotation of what bears."""
     start, end = bearing(contact, z, p)

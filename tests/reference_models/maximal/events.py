@@ -2,7 +2,7 @@
 
 import math
 
-from .compiling import compiled
+from .compiling import within
 from .forces import corner, end, has_lower
 from .kinematics import relative
 from .layout import (
@@ -133,7 +133,7 @@ def _disturbed(z, contact, p, room, noise):
             contact[LOWER_HOLD] = FREE
 
 
-@compiled
+@within
 def due(z, contact, p, room, guards, noise):
     """Give the guard whose switch is due at this instant, or -1.
 

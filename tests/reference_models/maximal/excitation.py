@@ -6,7 +6,7 @@ as an acceleration of the ground that lasts.
 
 import math
 
-from .compiling import compiled
+from .compiling import compiled, within
 
 STILL, RECORD, HARMONIC, RICKER, RICKER_ODD = 0, 1, 2, 3, 4
 COSINE, SINE, PULL = 5, 6, 7
@@ -20,7 +20,7 @@ def ground(t, piece, shape, across, upwards):
     return gx * cosine + gy * sine + shape[PULL], gy * cosine - gx * sine
 
 
-@compiled
+@within
 def _level(t, piece, shape, across, upwards):
     """Give the horizontal and vertical acceleration of the ground.
 

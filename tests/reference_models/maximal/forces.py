@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from .bed import resultants
-from .compiling import compiled
+from .compiling import compiled, within
 from .kinematics import height, is_small, limit_of, relative, sway
 from .layout import (
     BED_LEFT,
@@ -90,7 +90,7 @@ def rooms(p: np.ndarray) -> tuple[np.ndarray, ...]:
     return room
 
 
-@compiled
+@within
 def top_acceleration(p, z, out):
     """Give the acceleration, relative to the ground, of the middle of the lower body's top."""
     far, aside, a, rate = p[TOP], p[LOWER_ECCENTRICITY], z[2], z[8]
@@ -109,7 +109,7 @@ def top_acceleration(p, z, out):
     )  # fmt: skip
 
 
-@compiled
+@within
 def top_velocity(p, z):
     """Give the velocity, relative to the ground, of the middle of the lower body's top."""
     aside = p[LOWER_ECCENTRICITY]
@@ -197,7 +197,7 @@ def accelerate(z, gx, gy, contact, held, p, room, out):
     _solve(active0, active1, down0, down1, kind == CASCADE, room, out)
 
 
-@compiled
+@within
 def _lower_alone(active, wanted, room, out):
     _, _, inverse, hold, keep, load = room
     force = 0.0
@@ -213,7 +213,7 @@ def _lower_alone(active, wanted, room, out):
     out[6] = force
 
 
-@compiled
+@within
 def _solve(active0, active1, wanted0, wanted1, upper_only, room, out):
     _, _, inverse, hold, keep, load = room
     a00 = a01 = a10 = a11 = 0.0
@@ -243,7 +243,7 @@ def _solve(active0, active1, wanted0, wanted1, upper_only, room, out):
     out[7] = force1
 
 
-@compiled
+@within
 def _hinged(z, gx, gy, contact, held, p, out):
     if contact[HOLD] == RESTING:
         return

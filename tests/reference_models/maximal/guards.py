@@ -3,7 +3,7 @@
 import math
 
 from .bed import end_pressures, no_suction
-from .compiling import compiled
+from .compiling import compiled, within
 from .forces import accelerate, corner, end, has_lower
 from .impulses import lower_slip, slip
 from .kinematics import is_small, limit_of, relative, sway
@@ -66,7 +66,7 @@ def total_rotation(z, p):
     return z[2] + z[5] if int(p[KIND]) == CASCADE else z[5]
 
 
-@compiled
+@within
 def evaluate(z, gx, gy, contact, held, p, room, out, guards):
     """Fill in the guards; `out` is room for accelerations."""
     guards[:] = 1.0
@@ -91,7 +91,7 @@ def evaluate(z, gx, gy, contact, held, p, room, out, guards):
         _bed(z, contact, held, p, out, guards)
 
 
-@compiled
+@within
 def _pads(z, contact, held, p, room, out, guards):
     rel, rows = room[0], room[1]
     relative(z, p, rel, rows)
@@ -122,7 +122,7 @@ def _pads(z, contact, held, p, room, out, guards):
         guards[LEAD_GUARD] = held[LEAD] * rel[2] / p[LIMIT]
 
 
-@compiled
+@within
 def _bed(z, contact, held, p, out, guards):
     for i in range(2):
         w = end(p, z, i)[0] / p[BED_SETTLEMENT]

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .compiling import compiled
+from .compiling import compiled, within
 from .forces import corner, has_lower, top_velocity
 from .kinematics import is_small, relative, sway
 from .layout import (
@@ -23,7 +23,7 @@ from .layout import (
 )
 
 
-@compiled
+@within
 def solve_dense(matrix, right, n):
     """Solve a small dense system in place; the solution stands in `right`."""
     for k in range(n):

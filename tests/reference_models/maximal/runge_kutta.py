@@ -3,7 +3,7 @@
 import numpy as np
 
 from .bed import bed_energy
-from .compiling import compiled
+from .compiling import compiled, within
 from .excitation import ground
 from .forces import accelerate, corner, has_lower
 from .impulses import lower_slip, slip
@@ -77,7 +77,7 @@ WEIGHTS = np.array(
 ERROR_WEIGHT = 41 / 840
 
 
-@compiled
+@within
 def rates(t, z, piece, motion, contact, held, p, room, out, slope):
     """Fill in the derivative of the state: rates, accelerations and the powers of both works."""
     gx, gy = ground(t, piece, motion[0], motion[1], motion[2])

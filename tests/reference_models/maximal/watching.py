@@ -1,6 +1,6 @@
 """Looking at the guards inside a step, and finding the first that falls through zero."""
 
-from .compiling import compiled
+from .compiling import compiled, within
 from .excitation import ground
 from .guards import evaluate
 from .layout import GUARDS
@@ -10,7 +10,7 @@ SAMPLES = 8
 POINTS, LAPS = 16, 5
 
 
-@compiled
+@within
 def sample_guards(
     t, h, z, first, new, last, piece, motion, contact, held, p, room, out, inner, samples
 ):
@@ -49,7 +49,7 @@ def sample_guards(
         evaluate(inner, gx, gy, contact, held, p, room, out, samples[m])
 
 
-@compiled
+@within
 def earliest(
     t, h, z, first, piece, motion, contact, held, p, room, out, slopes, scale, trial, guards,
     armed, noise, samples,
@@ -124,7 +124,7 @@ def dip(samples, k, m, start):
     return 0, 0
 
 
-@compiled
+@within
 def _search(
     low, high, hunt, tiny, slot, t, z, first, piece, motion, contact, held, p, room, out, slopes,
     scale, trial, guards,

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
-from reference_models.maximal.compiling import compiled
+from reference_models.maximal.compiling import compiled, within
 from reference_models.maximal.excitation import ground
 from reference_models.maximal.watching import SAMPLES
 
@@ -127,7 +127,7 @@ def accept(course, z, stack, standing, room, path):
         course.states[i] = z
 
 
-@compiled
+@within
 def _arm(path, guards):
     """Note which guards have been positive."""
     for j in range(guards.size):

@@ -3,7 +3,7 @@
 import math
 
 import numpy as np
-from reference_models.maximal.compiling import compiled
+from reference_models.maximal.compiling import compiled, within
 from reference_models.maximal.impulses import solve_dense
 
 from .kinematics import end, relative, sway
@@ -17,13 +17,13 @@ def pad_force(k, i, stack, room):
     return stack.stiffness[k] * (stack.settlement[k] - level) - stack.damping[k] * speed
 
 
-@compiled
+@within
 def mean_product(f0, f1, g0, g1):
     """Give the mean of the product of two linear functions from their values at both ends."""
     return (f0 * g0 + f1 * g1) / 3.0 + (f0 * g1 + f1 * g0) / 6.0
 
 
-@compiled
+@within
 def bed(k, stack, ends, room):
     """Give force, generalised force on the rotation, power of dashpots and energy of a bed."""
     w0, l0, _, v0 = end(k, 0, stack, room)
@@ -80,7 +80,7 @@ def yielding_rate(k, stack):
     return stack.stiffness[k] / stack.damping[k]
 
 
-@compiled
+@within
 def hold_row(k, standing, stack, room, row):
     """Fill in the derivatives of the slip of the held point."""
     _, first, _ = sway(k, standing.point[k], stack, room)
@@ -88,14 +88,14 @@ def hold_row(k, standing, stack, room, row):
         row[j] = room.rows[k, 0, j] - first * room.rows[k, 2, j]
 
 
-@compiled
+@within
 def end_row(k, lever, room, row):
     """Fill in the derivatives of the level of an end with a lever."""
     for j in range(6):
         row[j] = room.rows[k, 1, j] + lever * room.rows[k, 2, j]
 
 
-@compiled
+@within
 def product(one, i, other, j, inverse):
     """Give the product of the rows of bodies i and j over the masses of what both move."""
     total = 0.0
@@ -105,7 +105,7 @@ def product(one, i, other, j, inverse):
     return total
 
 
-@compiled
+@within
 def pull_ties(z, stack, load):
     """Add what ties do to the bodies, and give the power of their dashpots."""
     count, lost = stack.inverse.size, 0.0
@@ -197,7 +197,7 @@ def accelerate(z, gx, gy, stack, standing, room):
         room.out[j] = inverse[j] * load[j]
 
 
-@compiled
+@within
 def _fill(stack, standing, room):
     n = stack.mass.size
     for i in range(n):
@@ -209,7 +209,7 @@ def _fill(stack, standing, room):
             room.matrix[i, i] = 1.0
 
 
-@compiled
+@within
 def _find_gains(stack, standing, room):
     """Find what a unit force of a hold does to a sliding end, with all other holds at work."""
     n = stack.mass.size
@@ -221,7 +221,7 @@ def _find_gains(stack, standing, room):
             room.gain[k] = 1.0 / unit[k]
 
 
-@compiled
+@within
 def powers(z, gx, gy, stack, standing, room):
     """Give what is dissipated and what the ground puts in, after `accelerate` for the state."""
     count = stack.inverse.size

@@ -2,7 +2,7 @@
 
 import math
 
-from reference_models.maximal.compiling import compiled
+from reference_models.maximal.compiling import compiled, within
 
 from .forces import accelerate, pad_force
 from .impulses import relate, slip
@@ -27,7 +27,7 @@ QUIET = 1e-11
 """Speed of an end, over a typical one, that is rounding."""
 
 
-@compiled
+@within
 def evaluate(z, gx, gy, stack, standing, room, guards):
     """Fill in the guards."""
     n = stack.mass.size
@@ -51,7 +51,7 @@ def evaluate(z, gx, gy, stack, standing, room, guards):
     guards[BASE_GUARDS * n] = nearest
 
 
-@compiled
+@within
 def _of_end(k, i, stack, standing, room, guards, g):
     level, _, _, speed = end(k, i, stack, room)
     gap = level / stack.settlement[k] - 1.0
@@ -94,7 +94,7 @@ def noise_levels(z, stack, noise):
         noise[first + LEAD_GUARD] = 1e-14
 
 
-@compiled
+@within
 def due(stack, standing, room, guards, noise):
     """Give the guard whose switch is due at this instant, or -1.
 

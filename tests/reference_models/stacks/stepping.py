@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
-from reference_models.maximal.compiling import compiled
+from reference_models.maximal.compiling import compiled, within
 from reference_models.maximal.excitation import ground
 from reference_models.maximal.runge_kutta import ERROR_WEIGHT, MATRIX, NODES, STAGES, WEIGHTS
 from reference_models.maximal.watching import SAMPLES, dip
@@ -45,7 +45,7 @@ def path_of(states: int, guards: int) -> Path:
     )  # fmt: skip
 
 
-@compiled
+@within
 def rates(t, z, piece, motion, stack, standing, room, slope):
     """Fill in the derivative of the state: rates, accelerations and the powers of both works."""
     gx, gy = ground(t, piece, motion.shape, motion.across, motion.upwards)
@@ -83,7 +83,7 @@ def step(t, h, z, piece, motion, stack, standing, room, path, new):
     return worst
 
 
-@compiled
+@within
 def sample_guards(t, h, z, piece, motion, stack, standing, room, path):
     """Fill in the guards at equally spaced times of a step.
 
@@ -120,7 +120,7 @@ def value_at(x, slot, t, z, piece, motion, stack, standing, room, path):
     return path.guards[slot]
 
 
-@compiled
+@within
 def may_fall(path):
     """Tell whether samples of a guard are negative, or may be between two of them."""
     samples, noise = path.samples, path.noise

@@ -8,6 +8,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -160,6 +161,22 @@ def test_what_a_helper_cannot_import_is_compiled_all_the_same(monkeypatch):
     for made in parallel.make_all(jobs):
         made(values)
     assert values.tolist() == [5.0]
+
+
+def test_what_others_compile_is_left_for_last(monkeypatch):
+    from rockframe.compiled import parallel
+
+    order = []
+
+    def job(name):
+        return SimpleNamespace(
+            file=name, is_stored=False, seconds=0.1, make=lambda _: order.append(name) or name
+        )
+
+    monkeypatch.setattr(parallel, "_helper", lambda jobs: None)
+    monkeypatch.setattr(store, "is_compiled_elsewhere", lambda file: file == "first")
+    assert parallel.make_all([job("first"), job("second")]) == ["first", "second"]
+    assert order == ["second", "first"]
 
 
 @pytest.mark.parametrize(("ends", "waits"), [("0", True), ("1", False)])
