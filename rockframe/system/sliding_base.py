@@ -1,7 +1,7 @@
 """Scenes of bodies that slip on bases that give way: their numbers, words and models."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, cast
 
@@ -139,5 +139,7 @@ def stack_on(bases: Sequence[Component], held: StackSetting, links: Sequence[Lin
         faults.append(SMALL_SLIDING)
     if faults:
         raise AssemblyError(faults)
-    given = {one.name: getattr(held, one.name) for one in fields(held)}
-    return SlidingStackSetting(**given | {"frictions": tuple(found)})
+    frictions = tuple(one for one in found if one is not None)
+    return SlidingStackSetting(
+        held.load, held.bodies, held.tops, held.offsets, held.bases, held.ties, frictions
+    )
