@@ -50,7 +50,7 @@ def to_pelicun(
     *,
     demand: str | None = None,
     offset: int = 0,
-    directional: bool = False,
+    directional: bool = True,
 ) -> "pd.DataFrame":
     """Give the row of a component in pelicun's library of damage models.
 
@@ -67,7 +67,8 @@ def to_pelicun(
     offset : int, optional
         Storeys between the component's location and its demand.
     directional : bool, optional
-        Whether the demand has a direction.
+        Whether the demand has a direction, as that of a planar block has. Otherwise pelicun takes
+        the larger demand of two directions, times 1.2.
 
     Returns
     -------
@@ -147,7 +148,8 @@ def to_openquake(
     category : str, optional
         Of the assets.
     no_damage_limit : float, optional
-        Intensity below which nothing is exceeded, in g or cm/s.
+        Intensity up to which nothing is exceeded, in g or cm/s; the least of the fragility
+        unless given.
     overwrite : bool, optional
         Whether a file that is there is replaced whoever wrote it.
 
@@ -171,7 +173,7 @@ def to_openquake(
     -----
     OpenQuake takes the mean and the standard deviation of the capacity itself, not of its
     logarithm: with median theta and dispersion beta theta exp(beta^2/2), and that times
-    sqrt(exp(beta^2) - 1).
+    sqrt(exp(beta^2) - 1). It takes intensities above the greatest of the fragility for that one.
     """
     if loss not in _LOSSES:
         msg = f"{_OPENQUAKE}: loss must be one of {', '.join(_LOSSES)}, got {shown(loss)}"
@@ -203,10 +205,12 @@ def to_openquake(
             model, "fragilityFunction", id=taxonomy, format="continuous", shape="logncdf"
         )
         levels = fragilities[taxonomy][measure].to_numpy() / size
-        range_of = {"imt": kind, "minIML": f"{levels[0]:.10g}", "maxIML": f"{levels[-1]:.10g}"}
-        if no_damage_limit is not None:
-            range_of["noDamageLimit"] = f"{no_damage_limit:.10g}"
-        Tree.SubElement(function, "imls", range_of)
+        limit = float(levels[0]) if no_damage_limit is None else no_damage_limit
+        # what lies below minIML counts as minIML, so that the limit must lie above
+        least = min(float(levels[0]), 0.5 * limit)
+        range_of = {"minIML": least, "maxIML": levels[-1], "noDamageLimit": limit}
+        numbers = {name: f"{value:.10g}" for name, value in range_of.items()}
+        Tree.SubElement(function, "imls", {"imt": kind, **numbers})
         for state, median, dispersion in states:
             mean = median / size * math.exp(0.5 * dispersion**2)
             deviation = mean * math.sqrt(math.expm1(dispersion**2))

@@ -1,6 +1,7 @@
 """Fragilities: Baker's numbers, brute force, coverage, and what has no fit."""
 
 import numpy as np
+import pandas as pd
 import pytest
 import xarray as xr
 from scipy import optimize, stats
@@ -357,6 +358,49 @@ def test_a_row_for_pelicun(runs):
         rf.export.to_pelicun(rf.fragility(runs), "x")
     with pytest.raises(SchemaError, match="found no fragility over one of"):
         rf.export.to_pelicun(rf.fragility(runs, "CAV", limits=()), "x")
+
+
+def test_openquake_reads_the_same_probabilities(runs, tmp_path):
+    nrml = pytest.importorskip("openquake.hazardlib.nrml", reason="needs openquake.engine")
+    pytest.importorskip("openquake.risklib.read_nrml", reason="needs openquake.engine")
+    found = rf.fragility(runs, "PGV", limits=[0.3])
+    model = nrml.to_python(str(rf.export.to_openquake({"block": found}, tmp_path / "f.xml")))
+    ((_, functions),) = model.items()
+    levels = 100.0 * found.peak_ground_velocity.to_numpy()
+    for one, state in zip(functions.build(model.limitStates), found.limit_state, strict=True):
+        curve = found.exceedance_probability.sel(limit_state=state).to_numpy()
+        np.testing.assert_allclose(one(levels[1:]), curve[1:], rtol=1e-6)
+        assert (one(levels[0] * np.array([1e-9, 0.1, 0.6, 0.99])) == 0.0).all()
+
+
+def test_pelicun_damages_as_often_as_the_curve_tells(tmp_path):
+    pelicun = pytest.importorskip("pelicun.assessment", reason="needs pelicun")
+    found = of_counts(([0.2, 0.3, 0.4, 0.6, 0.8], "g_0"), [1, 4, 6, 13, 16], 20)
+    rf.export.to_pelicun(found, "cabinet").to_csv(tmp_path / "library.csv")
+    library = pd.read_csv(tmp_path / "library.csv", index_col="ID")
+    library = library.drop(columns="LS1-DamageStateWeights")
+    heads = [(*name.split("-", 1), "")[:2] for name in library.columns]
+    library.columns = pd.MultiIndex.from_tuples(heads)
+    size, demand = 4000, 0.8 * found.median_intensity.item() / GRAVITY
+    # the block is on the first axis of a plan; along the second hardly anything moves
+    axes = [("PGA", "0", "1"), ("PGA", "0", "2")]
+    columns = pd.MultiIndex.from_tuples(axes, names=["type", "loc", "dir"])
+    units = pd.DataFrame([["g", "g"]], columns=columns, index=["Units"])
+    sample = pd.DataFrame(np.tile([demand, 1e-6], (size, 1)), columns=columns)
+    piece = {
+        "Units": "ea", "Location": "0", "Direction": "1", "Theta_0": "1", "Blocks": "1",
+        "Family": None,
+    }  # fmt: skip
+    program = pelicun.Assessment({"PrintLog": False, "Seed": 1, "Verbose": False})
+    program.demand.load_sample(pd.concat([units, sample]))
+    program.stories = 0
+    program.asset.load_cmp_model({"marginals": pd.DataFrame([piece], index=["cabinet"])})
+    program.asset.generate_cmp_sample(size)
+    program.damage.load_model_parameters([library], {"cabinet"})
+    program.damage.calculate()
+    shares = program.damage.ds_model.sample.mean()
+    expected = stats.norm.cdf(np.log(0.8) / found.dispersion.item())
+    assert shares["cabinet", "0", "1", "0", "1"] == pytest.approx(expected, abs=0.002)
 
 
 def test_a_file_for_openquake(runs, tmp_path):
