@@ -1,7 +1,7 @@
 """The rigid block."""
 
 import math
-from collections.abc import Collection, Mapping
+from collections.abc import Collection
 from typing import Any, ClassVar, Final, Self, cast
 
 from rockframe.components.alternatives import OneOf
@@ -13,9 +13,7 @@ from rockframe.components.block_numbers import (
     unphysical_inertia,
 )
 from rockframe.components.parameters import DERIVED, Parameter, Ratio, SIProperty, SIValues
-from rockframe.components.shapes.outline import cylinder_body, outline_body
-from rockframe.components.shapes.parts import Part, body_of_parts
-from rockframe.components.shapes.reading import Place, Points
+from rockframe.components.shapes import outline, parts
 from rockframe.errors import ComponentError, ModelWarning, shown, warn
 from rockframe.notebook import Polygon
 from rockframe.units import (
@@ -324,193 +322,12 @@ class Block(Component):
             shape_factor=shape_factor,
         )
 
-    @classmethod
-    def from_outline(
-        cls,
-        points: Points,
-        *,
-        unit: str | None = None,
-        density: QuantityLike | None = None,
-        depth: QuantityLike | None = None,
-        mass: QuantityLike | None = None,
-    ) -> Self:
-        """Build a body from its outline in the plane of rocking.
+    # bodies by their shape are functions, each with its documentation, whose first argument is
+    # the class
 
-        Parameters
-        ----------
-        points : sequence of (x, y), or array with a unit
-            Corners of the outline in their order around it, either way round: pairs of
-            lengths, a Quantity of shape (n, 2), or such an array and a unit; x to the right,
-            y upwards, from any origin. The first need not be repeated [m].
-        unit : str, optional
-            Of points that are bare numbers.
-        density, depth : str or Quantity, optional
-            Mass per volume [kg m^-3], and size perpendicular to the plane [m].
-        mass : str or Quantity, optional
-            Mass, instead of both, spread evenly over the outline [kg].
-
-        Returns
-        -------
-        Block
-
-        Raises
-        ------
-        UnitsError
-            A coordinate or another value has no unit, or one of the wrong kind.
-        ComponentError
-            The outline has fewer than three points or no area, crosses or touches itself, or
-            stands on a single point; the centre of mass is not above the base; not exactly
-            one of mass and density is given; or as for :class:`Block`.
-
-        Warns
-        -----
-        ModelWarning
-            A corner beyond the base would touch the ground before the body overturns; the
-            model lets it through.
-
-        Notes
-        -----
-        The base goes from the leftmost to the rightmost of the lowest corners, so that a body
-        on feet stands on these. Heights that differ by 1e-9 of the size or less are one. Mass,
-        centre of mass and moment of inertia are exact, :eq:`eq-polygon-inertia`. A base that
-        is inclined is refused.
-
-        Examples
-        --------
-        >>> wall = Block.from_outline(
-        ...     [("0 m", "0 m"), ("0.6 m", "0 m"), ("0.2 m", "2 m"), ("0 m", "2 m")],
-        ...     density="2400 kg/m^3",
-        ...     depth="1 m",
-        ... )
-        >>> round(wall.mass.m_as("kg"), 6), round(wall.eccentricity.m_as("m"), 4)
-        (1920.0, -0.0833)
-        """
-        given = {"mass": mass, "density": density, "depth": depth}
-        places = points if unit is None else (points, unit)
-        return outline_body(places, given, f"{cls.__name__}.from_outline").build(cls)
-
-    @classmethod
-    def cylinder(
-        cls,
-        *,
-        diameter: QuantityLike,
-        height: QuantityLike,
-        mass: QuantityLike | None = None,
-        density: QuantityLike | None = None,
-        wall_thickness: QuantityLike | None = None,
-    ) -> Self:
-        """Build a circular cylinder that rocks in a plane, such as a drum or a column.
-
-        Parameters
-        ----------
-        diameter, height : str or Quantity
-            Outer size [m].
-        mass : str or Quantity, optional
-            Mass [kg].
-        density : str or Quantity, optional
-            Mass per volume, instead of `mass` [kg m^-3].
-        wall_thickness : str or Quantity, optional
-            Of a tube, open at both ends; solid unless given [m].
-
-        Returns
-        -------
-        Block
-
-        Raises
-        ------
-        UnitsError
-            A value has no unit, or one of the wrong kind.
-        ComponentError
-            A value is out of range, not exactly one of mass and density is given, or as for
-            :class:`Block`.
-
-        Notes
-        -----
-        Moment of inertia :eq:`eq-cylinder-inertia`. A real cylinder that comes down on its base
-        rolls on along its rim, to a side (Srinivasan and Ruina 2008); the model keeps it in a
-        plane, where it rocks from one end of a diameter to the other.
-
-        Examples
-        --------
-        >>> drum = Block.cylinder(diameter="1 m", height="3 m", density="2700 kg/m^3")
-        >>> round(drum.mass.m_as("t"), 3), round(drum.shape_factor, 3)
-        (6.362, 3.077)
-        """
-        given = {
-            "diameter": diameter,
-            "height": height,
-            "mass": mass,
-            "density": density,
-            "wall_thickness": wall_thickness,
-        }
-        return cylinder_body(given, f"{cls.__name__}.cylinder").build(cls)
-
-    @classmethod
-    def from_parts(cls, parts: Mapping[str, Part], *, base: Place | None = None) -> Self:
-        """Build a body from parts that are fixed to one another, such as a cabinet and its load.
-
-        Parameters
-        ----------
-        parts : mapping of str to mapping
-            Every part by its name, told by one of
-
-            - ``width`` and ``height``, for a rectangle, with its mass;
-            - ``outline``, as the points of :meth:`from_outline`, with its mass;
-            - ``body``, another Block, with its own mass, centre of mass and inertia;
-            - ``mass`` alone for a point, or with ``inertia`` about its centre of mass.
-
-            Mass is ``mass``, or ``density`` with ``depth``. ``at=(x, y)`` says where it is: the
-            middle of the lower edge of a rectangle or of the base of a body, the origin of an
-            outline, the centre of a point. x counts to the right, y from the ground up; both are
-            zero unless given.
-        base : pair of str or Quantity, optional
-            x of its left and of its right end, where a body stands on more or less than the
-            parts show, such as legs; unless given it goes from the leftmost to the rightmost
-            corner on the ground [m].
-
-        Returns
-        -------
-        Block
-
-        Raises
-        ------
-        UnitsError
-            A value has no unit, or one of the wrong kind.
-        ComponentError
-            A part is not told as above, reaches below the ground or stands beyond the base;
-            none stands on the ground and no base is given; the centre of mass is not above
-            the base; or as for :class:`Block`.
-
-        Warns
-        -----
-        ModelWarning
-            A corner of a part beyond the base would touch the ground before the body
-            overturns; the model lets it through.
-
-        Notes
-        -----
-        Masses add up by :eq:`eq-parts-centre` and :eq:`eq-parts-inertia`. Whether parts overlap
-        is not checked: books stand within a bookcase. Of a ``body`` its base and its height are
-        known, not its outline.
-
-        Examples
-        --------
-        >>> bookcase = Block.from_parts(
-        ...     {
-        ...         "case": {"width": "0.8 m", "height": "1.9 m", "mass": "40 kg"},
-        ...         "books": {
-        ...             "width": "0.4 m",
-        ...             "height": "0.3 m",
-        ...             "mass": "25 kg",
-        ...             "at": ("0.15 m", "1.5 m"),
-        ...         },
-        ...         "clock": {"mass": "5 kg", "at": ("-0.3 m", "1.9 m")},
-        ...     }
-        ... )
-        >>> print(f"{bookcase.centre_height:.4f}, {bookcase.eccentricity:.4f}")
-        1.2679 meter, 0.0321 meter
-        """
-        return body_of_parts(parts, base, f"{cls.__name__}.from_parts").build(cls)
+    from_outline = classmethod(outline.from_outline)
+    cylinder = classmethod(outline.cylinder)
+    from_parts = classmethod(parts.from_parts)
 
     @property
     def slenderness(self) -> float:

@@ -9,9 +9,10 @@ import numpy as np
 import numpy.typing as npt
 
 from rockframe.components.alternatives import OneOf
-from rockframe.components.shapes.reading import PlaneMass, read_mass, read_points
+from rockframe.components.shapes.reading import PlaneMass, Points, read_mass, read_points
 from rockframe.components.shapes.standing import (
     ROUNDING,
+    Made,
     OutlineCorner,
     ShapedBody,
     Stance,
@@ -19,7 +20,7 @@ from rockframe.components.shapes.standing import (
 )
 from rockframe.errors import ComponentError
 from rockframe.signals.arrays import Array
-from rockframe.units import DENSITY, LENGTH, MASS, POSITIVE, THICKNESS, Measure, to_si
+from rockframe.units import DENSITY, LENGTH, MASS, POSITIVE, THICKNESS, Measure, QuantityLike, to_si
 
 _THIN: Final = 1e-12  # of the size: what is thinner has no area
 
@@ -247,3 +248,126 @@ def cylinder_body(given: Mapping[str, object], owner: str) -> ShapedBody:
     inertia = mass * (3.0 * (outer * outer + inner * inner) + height * height) / 12.0
     whole = PlaneMass(mass, 0.0, 0.5 * height, inertia)
     return shaped_body(whole, Stance(-outer, outer, 0.0), height, (), owner)
+
+
+def from_outline(
+    cls: type[Made],
+    points: Points,
+    *,
+    unit: str | None = None,
+    density: QuantityLike | None = None,
+    depth: QuantityLike | None = None,
+    mass: QuantityLike | None = None,
+) -> Made:
+    """Build a body from its outline in the plane of rocking.
+
+    Parameters
+    ----------
+    points : sequence of (x, y), or array with a unit
+        Corners of the outline in their order around it, either way round: pairs of
+        lengths, a Quantity of shape (n, 2), or such an array and a unit; x to the right,
+        y upwards, from any origin. The first need not be repeated [m].
+    unit : str, optional
+        Of points that are bare numbers.
+    density, depth : str or Quantity, optional
+        Mass per volume [kg m^-3], and size perpendicular to the plane [m].
+    mass : str or Quantity, optional
+        Mass, instead of both, spread evenly over the outline [kg].
+
+    Returns
+    -------
+    Block
+
+    Raises
+    ------
+    UnitsError
+        A coordinate or another value has no unit, or one of the wrong kind.
+    ComponentError
+        The outline has fewer than three points or no area, crosses or touches itself, or
+        stands on a single point; the centre of mass is not above the base; not exactly
+        one of mass and density is given; or as for :class:`Block`.
+
+    Warns
+    -----
+    ModelWarning
+        A corner beyond the base would touch the ground before the body overturns; the
+        model lets it through.
+
+    Notes
+    -----
+    The base goes from the leftmost to the rightmost of the lowest corners, so that a body
+    on feet stands on these. Heights that differ by 1e-9 of the size or less are one. Mass,
+    centre of mass and moment of inertia are exact, :eq:`eq-polygon-inertia`. A base that
+    is inclined is refused.
+
+    Examples
+    --------
+    >>> from rockframe import Block
+    >>> wall = Block.from_outline(
+    ...     [("0 m", "0 m"), ("0.6 m", "0 m"), ("0.2 m", "2 m"), ("0 m", "2 m")],
+    ...     density="2400 kg/m^3",
+    ...     depth="1 m",
+    ... )
+    >>> round(wall.mass.m_as("kg"), 6), round(wall.eccentricity.m_as("m"), 4)
+    (1920.0, -0.0833)
+    """
+    given = {"mass": mass, "density": density, "depth": depth}
+    places = points if unit is None else (points, unit)
+    return outline_body(places, given, f"{cls.__name__}.from_outline").build(cls)
+
+
+def cylinder(
+    cls: type[Made],
+    *,
+    diameter: QuantityLike,
+    height: QuantityLike,
+    mass: QuantityLike | None = None,
+    density: QuantityLike | None = None,
+    wall_thickness: QuantityLike | None = None,
+) -> Made:
+    """Build a circular cylinder that rocks in a plane, such as a drum or a column.
+
+    Parameters
+    ----------
+    diameter, height : str or Quantity
+        Outer size [m].
+    mass : str or Quantity, optional
+        Mass [kg].
+    density : str or Quantity, optional
+        Mass per volume, instead of `mass` [kg m^-3].
+    wall_thickness : str or Quantity, optional
+        Of a tube, open at both ends; solid unless given [m].
+
+    Returns
+    -------
+    Block
+
+    Raises
+    ------
+    UnitsError
+        A value has no unit, or one of the wrong kind.
+    ComponentError
+        A value is out of range, not exactly one of mass and density is given, or as for
+        :class:`Block`.
+
+    Notes
+    -----
+    Moment of inertia :eq:`eq-cylinder-inertia`. A real cylinder that comes down on its base
+    rolls on along its rim, to a side (Srinivasan and Ruina 2008); the model keeps it in a
+    plane, where it rocks from one end of a diameter to the other.
+
+    Examples
+    --------
+    >>> from rockframe import Block
+    >>> drum = Block.cylinder(diameter="1 m", height="3 m", density="2700 kg/m^3")
+    >>> round(drum.mass.m_as("t"), 3), round(drum.shape_factor, 3)
+    (6.362, 3.077)
+    """
+    given = {
+        "diameter": diameter,
+        "height": height,
+        "mass": mass,
+        "density": density,
+        "wall_thickness": wall_thickness,
+    }
+    return cylinder_body(given, f"{cls.__name__}.cylinder").build(cls)

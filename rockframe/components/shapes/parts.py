@@ -15,6 +15,7 @@ from rockframe.components.shapes.reading import (
 )
 from rockframe.components.shapes.standing import (
     ROUNDING,
+    Made,
     OutlineCorner,
     ShapedBody,
     Stance,
@@ -244,3 +245,71 @@ def _given_base(
             )
             raise ComponentError(msg)
     return Stance(left, right, 0.0)
+
+
+def from_parts(cls: type[Made], parts: Mapping[str, Part], *, base: Place | None = None) -> Made:
+    """Build a body from parts that are fixed to one another, such as a cabinet and its load.
+
+    Parameters
+    ----------
+    parts : mapping of str to mapping
+        Every part by its name, told by one of
+
+        - ``width`` and ``height``, for a rectangle, with its mass;
+        - ``outline``, as the points of :meth:`from_outline`, with its mass;
+        - ``body``, another Block, with its own mass, centre of mass and inertia;
+        - ``mass`` alone for a point, or with ``inertia`` about its centre of mass.
+
+        Mass is ``mass``, or ``density`` with ``depth``. ``at=(x, y)`` says where it is: the
+        middle of the lower edge of a rectangle or of the base of a body, the origin of an
+        outline, the centre of a point. x counts to the right, y from the ground up; both are
+        zero unless given.
+    base : pair of str or Quantity, optional
+        x of its left and of its right end, where a body stands on more or less than the
+        parts show, such as legs; unless given it goes from the leftmost to the rightmost
+        corner on the ground [m].
+
+    Returns
+    -------
+    Block
+
+    Raises
+    ------
+    UnitsError
+        A value has no unit, or one of the wrong kind.
+    ComponentError
+        A part is not told as above, reaches below the ground or stands beyond the base;
+        none stands on the ground and no base is given; the centre of mass is not above
+        the base; or as for :class:`Block`.
+
+    Warns
+    -----
+    ModelWarning
+        A corner of a part beyond the base would touch the ground before the body
+        overturns; the model lets it through.
+
+    Notes
+    -----
+    Masses add up by :eq:`eq-parts-centre` and :eq:`eq-parts-inertia`. Whether parts overlap
+    is not checked: books stand within a bookcase. Of a ``body`` its base and its height are
+    known, not its outline.
+
+    Examples
+    --------
+    >>> from rockframe import Block
+    >>> bookcase = Block.from_parts(
+    ...     {
+    ...         "case": {"width": "0.8 m", "height": "1.9 m", "mass": "40 kg"},
+    ...         "books": {
+    ...             "width": "0.4 m",
+    ...             "height": "0.3 m",
+    ...             "mass": "25 kg",
+    ...             "at": ("0.15 m", "1.5 m"),
+    ...         },
+    ...         "clock": {"mass": "5 kg", "at": ("-0.3 m", "1.9 m")},
+    ...     }
+    ... )
+    >>> print(f"{bookcase.centre_height:.4f}, {bookcase.eccentricity:.4f}")
+    1.2679 meter, 0.0321 meter
+    """
+    return body_of_parts(parts, base, f"{cls.__name__}.from_parts").build(cls)
