@@ -115,6 +115,7 @@ class Course:
         to_end = strike is None or float((left - strike).mid()) < AT_KNOT * float(length)
         step: Ball = left if to_end else strike
         strikes = strike is not None
+        shorter, at_sample = step, False
         impact: Struck | None = None
         while True:
             try:
@@ -127,7 +128,11 @@ class Course:
             except Undecided:
                 if float(step.mid()) < SHORTEST * float(length):
                     raise
-            step, to_end, strikes = (step / 2).mid(), False, False
+                if self.uncertain and not at_sample:  # some may strike before, some after it
+                    step, to_end, strikes, at_sample = left, True, True, True
+                    continue
+            shorter = (shorter / 2).mid()
+            step, to_end, strikes = shorter, False, False
         if near and self.beyond is None:
             self.beyond = self.time, self.time
         if self.beyond is not None and new.box()[0] * self.sign > corner.limit:
@@ -237,7 +242,10 @@ class Course:
         following = self.problem.ground(self.number + 1) if to_end else ground
         new = self.problem.corner(-self.sign)
         impact = struck(states, self.corner, new, ground, following)
-        if not to_end and not step + impact.at < left:
+        near = impact.at.contains(0) or abs(impact.at) < 2 * AT_KNOT * self.problem.length(
+            self.number
+        )
+        if not (near if to_end else step + impact.at < left):
             message = "an impact at a sample of the motion"
             raise Undecided(message)
         return impact

@@ -70,8 +70,9 @@ class Proof:
         """Whether what is proved is what a run up to a time has shown."""
         if overturned is None or not self.decided:
             return False
-        late = self.verdict == OVERTURNS and self.earliest > end
-        return overturned == (self.verdict == OVERTURNS and not late)
+        if overturned:
+            return self.verdict == OVERTURNS
+        return self.verdict == SAFE or self.earliest > end
 
     def objections(self, overturned: bool | None, end: float) -> list[str]:
         """Say where a run up to a time ends otherwise, or too early."""

@@ -58,6 +58,15 @@ def test_a_contradiction_is_told_loudly(system, monkeypatch):
     assert "the run is wrong" in run.attrs["cautions"]
 
 
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("accuracy", ["fast", "standard", "reference"])
+def test_an_instant_of_overturning_a_little_off_is_no_contradiction(system, accuracy):
+    run = system.simulate(
+        pulse(3.6), free_vibration="10 s", certify="proved", outputs=None, accuracy=accuracy
+    )
+    assert bool(run.verdict_proved)
+
+
 def test_what_cannot_be_proved_is_refused_before_the_run(system):
     with pytest.raises(rf.ComponentError, match="simulate: proofs are of reaching"):
         system.simulate(pulse(3.0), certify="proved", overturning="continue")
