@@ -277,3 +277,86 @@ def test_sweeps_name_the_parameters_of_ties():
     )  # fmt: skip
     assert runs.sizes["Restrainer.stiffness"] == 2
     assert float(runs.overturning_time.std()) > 0.0
+
+
+@pytest.mark.parametrize("base", [PADS, rf.RigidGround()], ids=["pads", "rigid"])
+@pytest.mark.parametrize(
+    ("one", "other"),
+    [({"slack": "0 m"}, {}), ({"strength": "1e15 N"}, {}), ({"damping": "0 N s/m"}, {})],
+    ids=["no slack", "strength without end", "no damping"],
+)
+def test_what_is_none_or_without_end_is_as_if_not_given(base, one, other):
+    tie = TIE.replace(slack=None, strength=None)
+    runs = [run(BLOCK, base, tie.replace(**given)) for given in (one, other)]
+    np.testing.assert_allclose(runs[0].rotation, runs[1].rotation, rtol=0.0, atol=1e-13)
+    assert list(runs[0].event_kind) == list(runs[1].event_kind)
+
+
+def test_on_pads_a_tie_that_never_pulls_changes_nothing():
+    slack = rf.System(BLOCK, PADS, TIE.replace(slack="1 km", strength=None))
+    found, alone = (one.simulate(PULSE) for one in (slack, rf.System(BLOCK, PADS)))
+    peak = float(np.abs(alone.rotation).max())
+    assert peak > 0.1
+    np.testing.assert_allclose(found.rotation, alone.rotation, rtol=0.0, atol=1e-6 * peak)
+    assert not (found.restrainer_force != 0.0).any()
+
+
+def test_ever_smaller_impacts_end_at_rest_while_ties_pull():
+    """What bears is looked for where the body is, not where what holds it is."""
+    block = rf.Block(width="0.75 m", height="1.04 m", mass="1556 kg")
+    ties = [
+        rf.Restrainer(
+            on=("0.375 m", "0.522 m"), to=("1.125 m", "0.202 m"), stiffness="330 kN/m",
+            preload="760 N",
+        ),
+        rf.Restrainer(
+            on=("-0.375 m", "0.294 m"), to=("-1.125 m", "0.427 m"), stiffness="58 kN/m",
+            damping="470 N s/m",
+        ),
+    ]  # fmt: skip
+    found = rf.System(block, *ties).simulate(
+        PULSE.scaled(0.1), initial=rf.InitialState(rotation="0.16 rad")
+    )
+    assert int(found.status) == 0
+    assert EventKind(int(found.event_kind[-1])) is EventKind.REST
+
+
+@pytest.mark.filterwarnings("ignore::rockframe.errors.ModelWarning")
+def test_a_corner_that_does_not_press_is_held_beside_ties():
+    """It would come back at once if it were let go, by its acceleration where it is."""
+    width, height = 1.49, 3.32
+    block = rf.Block(width=f"{width} m", height=f"{height} m", mass="9880 kg")
+    tie = rf.Restrainer(on=("0.745 m", "2.13 m"), to=("2.23 m", "2.75 m"), stiffness="362 kN/m")
+    rng = np.random.default_rng(5)
+    rough = rf.GroundMotion.from_arrays(
+        (4.0 * rng.normal(size=100), "m/s^2"),
+        "0.02 s",
+        vertical=(9.0 * rng.normal(size=100), "m/s^2"),
+    )
+    found = rf.System(block, tie).simulate(rough, initial=rf.InitialState(rotation="0.15 rad"))
+    assert int(found.status) in (0, 1)
+    assert len(found.event_kind) < 300
+
+
+def test_ties_add_what_they_store_to_the_energy_that_overturns_a_mixed_stack():
+    upper, lower = (rf.Block(width=w, height="2 m", mass="2 t") for w in ("0.6 m", "1.2 m"))
+    stack = rf.Stack(upper, lower, interfaces=[rf.RigidGround()])
+    tie = rf.Restrainer(
+        on=("-0.3 m", "1 m"), to=("-0.6 m", "1.5 m"), to_body=2, stiffness="2 kN/m",
+        compression=True,
+    )  # fmt: skip
+    free, tied = (rf.System(stack, PADS, *some).setting for some in ((), (tie,)))
+    weight = 2e3 * free.gravity
+    assert free.overturning_energy == pytest.approx(weight * (math.hypot(0.3, 1.0) - 1.0), rel=1e-9)
+    # about its left corner the block's left face turns away from the tie's other point
+    angle, given = math.atan2(0.3, 1.0), np.array([-0.3, 1.0]) - np.array([-0.6, -0.5])
+
+    def stored(side):
+        pivot = np.array([0.3 * side, 0.0])
+        turn = np.array([[math.cos(angle), side * math.sin(angle)],
+                         [-side * math.sin(angle), math.cos(angle)]])  # fmt: skip
+        now = pivot + turn @ (np.array([-0.3, 1.0]) - pivot) - np.array([-0.6, -0.5])
+        return 0.5 * 2e3 * (math.hypot(*now) - math.hypot(*given)) ** 2
+
+    added = tied.overturning_energy - free.overturning_energy
+    assert added == pytest.approx(min(stored(1.0), stored(-1.0)), rel=0.05)

@@ -192,8 +192,7 @@ class RigidCorners(Chain):
                 left = self.on_base(k).base.is_held(standing.contact, True)
                 i = GUARDS * k + (0 if left else CORNER_GUARDS)
                 values[i] = -values[i]
-                free = self.with_part(mode, k, Mode(both_contacts(RAISED, RAISED), 0, False))
-                rises = self.end_accelerations(k, free, state, ground)
+                rises = self.free_rises(k, mode, state, ground)
                 values[i + OPENING] = -rises[0 if left else 1] / self.number(k, at.GRAVITY)
         slides = self.some_end_slides(mode)
         for k in range(self.body_count):
@@ -202,6 +201,30 @@ class RigidCorners(Chain):
                 put(found.values, GUARDS * k, values)
                 put(found.changes, GUARDS * k, changes)
         return Guards(values, changes)
+
+    @kernel
+    def free_rises(self, k: int, mode: int, state: Vector, ground: Ground) -> tuple[float, float]:
+        """Give the accelerations of the ends of a body that is held, as if it were let go."""
+        free = self.with_part(mode, k, Mode(both_contacts(RAISED, RAISED), 0, False))
+        if k + 1 < self.body_count:
+            return self.end_accelerations(k, free, state, ground)
+        # while the lowest body is held, its state tells where that is
+        x = self.horizontal_of(k)
+        held, still = state[x], state[self.coordinates() + x]
+        place, rate = self.sway_at(k, self.part_mode(mode, k), held, state)
+        self.set_sway(k, place, rate, state)
+        found = self.end_accelerations(k, free, state, ground)
+        self.set_sway(k, held, still, state)
+        return found
+
+    @inlined
+    def sway_at(self, k: int, standing: Mode, held: float, state: Vector) -> tuple[float, float]:
+        """Give where a body is along its base, and its rate, by the place of what holds it."""
+        part, body = self.on_base(k), self.standing_state(k, standing, state)
+        pin = part.body.pin(standing.pivot)
+        reach = part.body.reach(pin, part.body.attitude(body.rotation))
+        place = held + part.body.about_pin(pin, body.rotation)
+        return place, reach.rate * body.angular_velocity
 
     @kernel
     def write_corner_guards(
@@ -263,13 +286,12 @@ class RigidCorners(Chain):
             part, standing = self.on_base(k), self.part_mode(mode, k)
             if self.is_rigid(k) and not part.flies(standing.contact):
                 body = self.standing_state(k, standing, state)
-                pin, first = part.body.pin(standing.pivot), BEFORE_HORIZONTAL * k
-                reach = part.body.reach(pin, part.body.attitude(body.rotation))
+                first = BEFORE_HORIZONTAL * k
                 state[first + ROTATION], state[first + VERTICAL] = body.rotation, body.vertical
                 state[n + first + ROTATION] = body.angular_velocity
                 state[n + first + VERTICAL] = body.vertical_velocity
-                place = memory[HELD_PLACE + k] + part.body.about_pin(pin, body.rotation)
-                self.set_sway(k, place, reach.rate * body.angular_velocity, state)
+                place, rate = self.sway_at(k, standing, memory[HELD_PLACE + k], state)
+                self.set_sway(k, place, rate, state)
 
     @kernel
     def hold_contacts(self, mode: int, state: Vector, memory: Vector) -> None:
@@ -281,3 +303,8 @@ class RigidCorners(Chain):
                 rotation = self.standing_state(k, standing, state).rotation
                 memory[HELD_PLACE + k] = place - part.body.about_pin(pin, rotation)
         self.write_contacts(mode, state, memory)
+        self.keep_hold(mode, state, memory)
+
+    @inlined
+    def keep_hold(self, mode: int, state: Vector, memory: Vector) -> None:
+        """Write to the state where the lowest body is held: no one asks where it is."""

@@ -165,7 +165,43 @@ class RigidChain(RigidCorners):
         closed |= self.land(k, left, standing, state)
         memory[LAST_EVENT] = IMPACT
         new = self.let_bear(mode, closed, before, 0, state, ground, memory)
+        new = self.hold_if_small(k, left, new, state, ground, memory)
         return self.rest_where_small(new, state, ground, memory)
+
+    @kernel
+    def hold_if_small(
+        self, k: int, left: bool, mode: int, state: Vector, ground: Ground, memory: Vector
+    ) -> int:
+        """Hold a corner that has landed, and that leaves only to come back at once."""
+        part, corner = self.on_base(k), (LEFT_ONLY if left else RIGHT_ONLY) << 2 * k
+        if not part.flies(self.part_mode(mode, k).contact):
+            return mode
+        line = part.body.base_line_at(self.state_of(k, state))
+        speed = line.left_speed if left else line.right_speed
+        rises = self.end_accelerations(k, mode, state, ground)
+        falls = -(rises[0] if left else rises[1])
+        least = REST_AMPLITUDE * part.body.angle * part.body.size()
+        if falls <= 0.0 or speed * speed >= 2.0 * falls * least:
+            return mode
+        closed, pulled = self.bearing(mode) | corner, self.pulled(mode)
+        held = self.with_bearing(mode, closed, pulled)
+        self.let_stand(closed, mode, held, state, memory)
+        self.accelerate(held, state, ground)
+        if self.corner_force(k, left) < 0.0:
+            held = self.with_bearing(mode, closed, pulled | corner)
+        return held
+
+    @kernel
+    def let_stand(self, corners: int, mode: int, new: int, state: Vector, memory: Vector) -> None:
+        """Let bodies stand on corners in a new mode, by impulses that may pull."""
+        self.write_contacts(mode, state, memory)
+        flying = self.with_bearing(mode, 0, 0)
+        had = self.energies(flying, state).kinetic  # places the bodies, too
+        load_bodies(self, 0.0, 0.0, self.places())
+        attempt(self, flying, corners, corners, False, True, 0.0, state)
+        self.change_velocities(state)
+        self.hold_contacts(new, state, memory)
+        memory[IMPACT_LOSS] += had - self.energies(new, state).kinetic
 
     @kernel
     def meet_anew(self, mode: int, state: Vector, ground: Ground, memory: Vector) -> int:
@@ -263,15 +299,9 @@ class RigidChain(RigidCorners):
     def rest(self, corners: int, mode: int, state: Vector, ground: Ground, memory: Vector) -> int:
         """Let bodies stand on both corners, if these press then; else give the mode as it is."""
         before, lost = self.velocities(state), memory[IMPACT_LOSS]
-        self.write_contacts(mode, state, memory)
         all_of_them = self.bearing(mode) | corners
-        flying, resting = self.with_bearing(mode, 0, 0), self.with_bearing(mode, all_of_them, 0)
-        had = self.energies(flying, state).kinetic
-        load_bodies(self, 0.0, 0.0, self.places())
-        attempt(self, flying, all_of_them, all_of_them, False, True, 0.0, state)
-        self.change_velocities(state)
-        self.hold_contacts(resting, state, memory)
-        memory[IMPACT_LOSS] += had - self.energies(resting, state).kinetic
+        resting = self.with_bearing(mode, all_of_them, 0)
+        self.let_stand(all_of_them, mode, resting, state, memory)
         self.accelerate(resting, state, ground)
         least = 0.0
         for k in range(self.body_count):
@@ -280,6 +310,7 @@ class RigidChain(RigidCorners):
         if least >= 0.0:
             memory[LAST_EVENT] = REST
             return resting
+        self.write_contacts(resting, state, memory)
         self.blend_velocities(before, 0.0, state)
         self.hold_contacts(mode, state, memory)
         memory[IMPACT_LOSS] = lost
