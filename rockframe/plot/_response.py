@@ -111,6 +111,11 @@ MARKS: Final = {
     "slip": (">", BLUE),
     "stick": ("|", GREY),
     "slip_reversal": ("d", BLUE),
+    "restrainer_slack": ("3", GREY),
+    "restrainer_taut": ("4", GREEN),
+    "restrainer_yield": ("D", ORANGE),
+    "restrainer_unloading": ("4", ORANGE),
+    "restrainer_fracture": ("P", VERMILLION),
     "soil_separation": ("2", PURPLE),
     "soil_contact": ("1", PURPLE),
 }

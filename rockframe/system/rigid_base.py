@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from rockframe.components import RigidGround
 from rockframe.system.bodies import BaseLoad
-from rockframe.system.statics import Statics
+from rockframe.system.statics import Statics, work_against
 from rockframe.system.support import BaseWords, Support
 from rockframe.system.words import uplift_words
 
@@ -114,9 +114,36 @@ def pressed(setting: "StackSetting", k: int, tied: "Sequence[Tied]") -> Pressed:
     return Pressed(force, force * load.body.left + couple, force * load.body.right - couple)
 
 
+def rocking_moment(setting: "StackSetting", k: int, rotation: float) -> "tuple[float, list[Tied]]":
+    """Give what holds back all above the base of body `k` as it rocks as one, and the ties [N m].
+
+    All below stays.
+    """
+    from rockframe.dynamics.tied import rocked
+
+    load, (middle, foot) = setting.bases[k].load, setting.base_of(k)
+    side, half = (1.0, load.body.right) if rotation > 0.0 else (-1.0, load.body.left)
+    sine, versine = math.sin(abs(rotation)), 2.0 * math.sin(0.5 * rotation) ** 2
+    arm = half * (1.0 - versine) - load.body.centre_height * sine
+    ends = [one.ends for one in setting.ties]
+    pivot = (middle + side * load.body.half_width, foot)
+    tied = rocked(setting.chain_ties, ends, k, pivot, rotation)
+    pull = sum(float(one.loads[0]) for one in tied)
+    return side * load.weight * arm - setting.body.mass * pull, tied
+
+
+def rocking_energy(setting: "StackSetting", k: int) -> float:
+    """Give the energy that overturns all above the base of body `k` as one [J]."""
+    left, right = setting.bases[k].load.body.overturning_angles
+    return min(
+        work_against(lambda some: [rocking_moment(setting, k, one)[0] for one in some], end)
+        for end in (-left, right)
+    )
+
+
 def rocked_statics(setting: "StackSetting", rotation: float) -> Statics:
     """Give the equilibrium where all bases are rigid: all above the weakest one rocks."""
-    from rockframe.dynamics.tied import at_rest, rocked
+    from rockframe.dynamics.tied import at_rest
 
     right, mass = rotation > 0.0, setting.body.mass
     side = 1.0 if right else -1.0
@@ -126,17 +153,12 @@ def rocked_statics(setting: "StackSetting", rotation: float) -> Statics:
         for of in (pressed(setting, j, tied) for j in range(len(setting.bases)))
     ]
     k = capacities.index(min(capacities))
-    load, (middle, foot) = setting.bases[k].load, setting.base_of(k)
-    half = load.body.right if right else load.body.left
-    corner = middle + side * load.body.half_width
+    (middle, foot), half_width = setting.base_of(k), setting.bases[k].load.body.half_width
+    corner = middle + side * half_width
     sine, versine = math.sin(abs(rotation)), 2.0 * math.sin(0.5 * rotation) ** 2
-    arm = half * (1.0 - versine) - load.body.centre_height * sine
     moment = 0.0
     if rotation != 0.0:
-        ends = [one.ends for one in setting.ties]
-        tied = rocked(setting.chain_ties, ends, k, (corner, foot), rotation)
-        pull = sum(float(one.loads[0]) for one in tied)
-        moment = side * load.weight * arm - mass * pull
+        moment, tied = rocking_moment(setting, k, rotation)
     # of each centre of mass beside the middle of the lowest base; of the highest its rise
     rise, base_moment = 0.0, moment
     for j in range(len(setting.bodies) - 1, -1, -1):

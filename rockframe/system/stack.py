@@ -14,7 +14,13 @@ from rockframe.system.bodies import BaseLoad, SupportedBody, body_of_block, with
 from rockframe.system.links import PlacedLink, base_of, placed
 from rockframe.system.options import Options, restraint_words
 from rockframe.system.parts import support_of
-from rockframe.system.rigid_base import REACTIONS, RigidBase, pressed, rocked_statics
+from rockframe.system.rigid_base import (
+    REACTIONS,
+    RigidBase,
+    pressed,
+    rocked_statics,
+    rocking_energy,
+)
 from rockframe.system.setting import Setting
 from rockframe.system.small_motion import SmallMotion
 from rockframe.system.statics import StandingBodies, Statics, least_overturning_energy
@@ -268,16 +274,7 @@ class StackSetting(Setting):
         """
         if not any(self.rigid) or not self.groups:
             return least_overturning_energy(self)
-        return min(
-            base.load.weight * (math.hypot(half, base.load.body.centre_height)
-            - base.load.body.centre_height)
-            for base in self._rigid_bases
-            for half in (base.load.body.left, base.load.body.right)
-        )  # fmt: skip
-
-    @property
-    def _rigid_bases(self) -> list[RigidBase]:
-        return [base for base in self.bases if isinstance(base, RigidBase)]
+        return min(rocking_energy(self, k) for k, rigid in enumerate(self.rigid) if rigid)
 
     def curve(self, rotations: Sequence[float]) -> list[Statics | None]:
         """Give the equilibria with the highest body held at rotations.

@@ -1,6 +1,6 @@
 """Bodies on bases that give way: at rest, held at rotations, and in small motion."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Final
@@ -159,20 +159,23 @@ def stored_energy(setting: "Setting", rotation: float) -> float:
     -------
     float
     """
-    return rotation * sum(of * moment for of, moment in _moments(setting, rotation))
+    found = _restoring(setting, [at * rotation for at, _ in _PLACES])
+    return rotation * sum(of * one for (_, of), one in zip(_PLACES, found, strict=True))
 
 
 def least_overturning_energy(setting: "Setting") -> float:
     """Give the work against the restoring moment up to where that ends, on the weaker side [J]."""
-    return min(_work_against(setting, end) for end in setting.overturning_rotations)
+    ends = setting.overturning_rotations
+    return min(work_against(lambda some: _restoring(setting, some), end) for end in ends)
 
 
-def _work_against(setting: "Setting", end: float) -> float:
-    return sum(of * max(end * moment, 0.0) for of, moment in _moments(setting, end))
+def work_against(moments: Callable[[list[float]], list[float]], end: float) -> float:
+    """Give the work against moments, of rotations, that hold a body back up to a rotation [J]."""
+    found = moments([at * end for at, _ in _PLACES])
+    return sum(of * max(end * moment, 0.0) for (_, of), moment in zip(_PLACES, found, strict=True))
 
 
-def _moments(setting: "Setting", end: float) -> list[tuple[float, float]]:
-    """Give weights and what holds a body back: nothing where its base gives way altogether."""
-    states = setting.curve([at * end for at, _ in _PLACES])
-    moments = (0.0 if state is None else state.restoring_moment for state in states)
-    return [(of, moment) for (_, of), moment in zip(_PLACES, moments, strict=True)]
+def _restoring(setting: "Setting", rotations: list[float]) -> list[float]:
+    """Give what holds a body back: nothing where its base gives way altogether."""
+    states = setting.curve(rotations)
+    return [0.0 if state is None else state.restoring_moment for state in states]
