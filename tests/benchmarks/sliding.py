@@ -16,7 +16,7 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "tests")]
 
-from reference_models.sliding import compare, draw  # noqa: E402
+from reference_models.sliding import compare, draw, draw_on_base  # noqa: E402
 
 import rockframe as rf  # noqa: E402
 
@@ -25,9 +25,9 @@ CASES, SCALES = 200, 20  # of each scene, and scales among them
 AGREES = 1e-6  # of the overturning angle, and of the peak slip or a millimetre
 
 
-def against_monolith(count):
+def against_monolith(count, draw=draw, seed=SEED):
     """Compare scenes with the reference model."""
-    found = [compare(draw(np.random.default_rng([SEED, k]))) for k in range(count)]
+    found = [compare(draw(np.random.default_rng([seed, k]))) for k in range(count)]
     same = [
         [kind for _, kind in one["ours"]] == [kind for _, kind in one["theirs"]] for one in found
     ]
@@ -127,6 +127,7 @@ def main():
     """Run both, and write what came out."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--scenes", type=int, default=300)
+    parser.add_argument("--on-bases", type=int, default=60, help="scenes on pads and beds")
     parser.add_argument("--runs", type=int, default=20_000)
     parser.add_argument("--json", type=Path, default=ROOT / "docs" / "data" / "sliding.json")
     given = parser.parse_args()
@@ -136,6 +137,8 @@ def main():
         found["until the end"] = until_the_end(given.runs)
     if given.scenes:
         found["against a monolith"] = against_monolith(given.scenes)
+    if given.on_bases:
+        found["on pads and beds"] = against_monolith(given.on_bases, draw_on_base, SEED + 1)
     text = json.dumps(found, indent=1, default=int)  # counts of NumPy among them
     given.json.write_text(text + "\n", encoding="utf-8")
     print(text)

@@ -239,7 +239,8 @@ class Block:
         if self.flies():
             return found
         if self.slip:
-            found["slip", ""] = self.slip * self.slip_speed(z)
+            # a slip that starts is not ended by rounding
+            found["slip", ""] = self.slip * self.slip_speed(z) + 1e-14
         else:
             _, h, pressing = self.motion(z, ground)
             found["hold", ""] = self.static * max(pressing, 0.0) - abs(h)
@@ -335,9 +336,16 @@ class Block:
                 lean = z[2] or z[5] or -ground[0] or -(self.along[piece + 1] - ground[0])
                 self.side = int(math.copysign(1, lean))
                 self.offset = -self.place(z)
-            guards = self.guards(z, ground)
-            if guards.get(("hold", ""), 1.0) < -1e-9:  # the ground has jumped
-                self.fell("hold", "", z, ground, t)
+            # an impulse, or a jump of the ground, may have taken a guard beyond zero
+            for name in (
+                ("leave", "L"),
+                ("leave", "R"),
+                ("turn", "L"),
+                ("turn", "R"),
+                ("hold", ""),
+            ):
+                if self.guards(z, ground).get(name, 1.0) < -1e-9:
+                    self.fell(*name, z, ground, t)
             end = min(self.times[piece + 1], duration)
             names = list(self.guards(z, self.ground(t, piece)))
 
