@@ -166,23 +166,23 @@ def shown(value: object) -> str:
 PLEASE_REPORT: Final = "this is an error in rockframe; please report it"
 """What is said of faults that no argument can cause."""
 
-_heard: Final[ContextVar[list[str] | None]] = ContextVar("heard", default=None)
+_collected: Final[ContextVar[list[str] | None]] = ContextVar("collected_warnings", default=None)
 
 
 @contextmanager
-def heard() -> Generator[list[str]]:
+def collected_warnings() -> Generator[list[str]]:
     """Collect what is warned of, in this thread alone, instead of warning."""
     texts: list[str] = []
-    before = _heard.set(texts)
+    before = _collected.set(texts)
     try:
         yield texts
     finally:
-        _heard.reset(before)
+        _collected.reset(before)
 
 
 def warn(message: str, category: type[RockframeWarning]) -> None:
     """Warn at the line that called into rockframe, however deep the fault is found."""
-    texts = _heard.get()
+    texts = _collected.get()
     if texts is not None:
         texts.append(message)
         return

@@ -18,7 +18,7 @@ from rockframe.errors import (
     ModelWarning,
     SolverWarning,
     StudyError,
-    heard,
+    collected_warnings,
     shown,
     warn,
 )
@@ -252,7 +252,7 @@ class Lines:
         with bar_of(self.run.get("progress"), owner=self.owner) as bar:
             runner = _Runner(self, store, bar)
             scan = runner.scan(scales)
-            with heard() as said:
+            with collected_warnings() as said:
                 seen, whole = runner.seen(scan, verdicts, resolution)
                 found = brackets_of(seen.scales, seen.verdicts)
                 if whole:

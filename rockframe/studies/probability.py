@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe.arguments import one_of_words, whole_number
-from rockframe.errors import ComponentError, RockframeError, StudyError, heard, shown
+from rockframe.errors import ComponentError, RockframeError, StudyError, collected_warnings, shown
 from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import Generic
 from rockframe.results.variables.studies import MOTION
@@ -135,7 +135,7 @@ def _frozen(name: str, parts: list[Any], scene: SweptScene, owner: str) -> Sprea
 
 def _axis(scene: SweptScene, name: str, value: Any, owner: str) -> Axis:
     """Read one value as the axis of its name does."""
-    with heard():  # a width of a distribution is no unusual value
+    with collected_warnings():  # a width of a distribution is no unusual value
         axis = scene.axis(name, [value])
     if axis.unit is None:
         msg = f"{owner}: {name} has words for values, which have no distribution"

@@ -9,7 +9,7 @@ import xarray as xr
 
 from rockframe.comparison.models import check_system
 from rockframe.components import Block
-from rockframe.errors import ComponentError, StudyError, heard, shown
+from rockframe.errors import ComponentError, StudyError, collected_warnings, shown
 from rockframe.motion import GroundMotion
 from rockframe.results.dataset import build_dataset
 from rockframe.results.variables.studies import CASE, MOTION
@@ -102,7 +102,7 @@ def _by_shape_factor(system: System, block: Block) -> System:
     """
     if block.given.inertia is None and block.given.centre_height is None:
         return system
-    with heard():  # block and system have warned when they were made
+    with collected_warnings():  # block and system have warned when they were made
         scaling = block.replace(shape_factor=block.shape_factor, centre_height=None)
         others = [part for part in system.parts.structural() if part is not block]
         return System(

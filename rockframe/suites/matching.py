@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from rockframe.errors import RecordWarning, heard, warn
+from rockframe.errors import RecordWarning, collected_warnings, warn
 
 if TYPE_CHECKING:
     from rockframe.motion import GroundMotion
@@ -46,7 +46,7 @@ def matched(suite: Suite, target: Target, **arguments: Any) -> Suite:
     motions: dict[str, GroundMotion] = {}
     said: list[str] = []
     for label, motion in suite.items():
-        with heard() as texts:
+        with collected_warnings() as texts:
             motions[label] = motion.matched(target, **arguments)
         said += [f"{label!r}: {text}" for text in texts]
     if said:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any, Final, TypeVar
 
 from rockframe.components.shapes.reading import PlaneMass
-from rockframe.errors import ComponentError, ModelWarning, heard, warn
+from rockframe.errors import ComponentError, ModelWarning, collected_warnings, warn
 from rockframe.units import INERTIA, LENGTH, MASS
 
 ROUNDING: Final = 1e-9
@@ -67,7 +67,9 @@ class ShapedBody:
 
     def build(self, kind: Callable[..., Made]) -> Made:
         """Make the block, and warn."""
-        with heard():  # a shape may reach out beside its base, beyond the bound of its inertia
+        with (
+            collected_warnings()
+        ):  # a shape may reach out beside its base, beyond the bound of its inertia
             made = kind(**self.arguments)
         for caution in self.cautions:
             warn(f"{self.owner}: {caution}", ModelWarning)

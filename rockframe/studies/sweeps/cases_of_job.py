@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import Any, TypeAlias
 
 from rockframe.components import InitialState
-from rockframe.errors import AssemblyError, heard
+from rockframe.errors import AssemblyError, collected_warnings
 from rockframe.motion import GroundMotion
 from rockframe.simulation.plan import Plan, fit_plan
 from rockframe.studies.sweeps.axes import OF_SCENES, Changes
@@ -62,7 +62,7 @@ class CasesOfJob:
         found = self._scenes.get(key)
         if found is None:
             values = {axis: each[case] for axis, each in self._of_scene}
-            with heard() as said:
+            with collected_warnings() as said:
                 found = self._scenes[key] = (self.job.scene.assembled(values), said)
         return found
 

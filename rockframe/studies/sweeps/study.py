@@ -8,7 +8,7 @@ from typing import Any, Final
 import numpy as np
 
 from rockframe.compiled import COMPILED
-from rockframe.errors import heard
+from rockframe.errors import collected_warnings
 from rockframe.motion import GroundMotion
 from rockframe.results.outcome import Generic
 from rockframe.simulation.plan import STILL_GROUND_OUTPUT_STEP, RunRequest, run_length
@@ -135,7 +135,7 @@ class Study:
             axes = self.grid.of_cases(case, case + 1)
             values = {axis: each.item() for axis, each in axes if axis.changes in OF_SCENES}
             try:
-                with heard():
+                with collected_warnings():
                     found.append(digest_of(description_of(self.scene.assembled(values))))
             except Exception as problem:  # of which its run tells
                 found.append(type(problem).__name__)
