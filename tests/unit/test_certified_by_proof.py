@@ -8,6 +8,7 @@ import pytest
 pytest.importorskip("flint")
 
 import rockframe as rf
+from rockframe.errors import ComponentError, SolverWarning
 from rockframe.simulation import proving
 
 SHAPE = np.sin(np.pi * np.linspace(0.0, 1.0, 101))
@@ -39,7 +40,7 @@ def test_the_proof_stands_beside_the_verdict(system, peak, falls):
 
 
 def test_a_run_that_ends_too_early_is_told(system):
-    with pytest.warns(rf.SolverWarning, match="after the end of the run"):
+    with pytest.warns(SolverWarning, match="after the end of the run"):
         run = system.simulate(pulse(3.6), certify="proved", outputs=None)
     assert bool(run.verdict_proved)
     assert not bool(run.overturned)
@@ -52,7 +53,7 @@ def test_a_contradiction_is_told_loudly(system, monkeypatch):
         return replace(given(*arguments, **options), verdict="safe for ever")
 
     monkeypatch.setattr("rockframe.simulation.run.proof_of", wrong)
-    with pytest.warns(rf.SolverWarning, match="the run is wrong, or the proof is"):
+    with pytest.warns(SolverWarning, match="the run is wrong, or the proof is"):
         run = system.simulate(pulse(3.6), free_vibration="10 s", certify="proved", outputs=None)
     assert not bool(run.verdict_proved)
     assert "the run is wrong" in run.attrs["cautions"]
@@ -68,13 +69,13 @@ def test_an_instant_of_overturning_a_little_off_is_no_contradiction(system, accu
 
 
 def test_what_cannot_be_proved_is_refused_before_the_run(system):
-    with pytest.raises(rf.ComponentError, match="simulate: proofs are of reaching"):
+    with pytest.raises(ComponentError, match="simulate: proofs are of reaching"):
         system.simulate(pulse(3.0), certify="proved", overturning="continue")
     wall = rf.System(
         rf.Block(width="1 m", height="5 m", mass="10 t"),
         rf.RearWall(side="left", restitution=-0.3),
     )
-    with pytest.raises(rf.ComponentError, match="simulate: .*without a RearWall"):
+    with pytest.raises(ComponentError, match=r"simulate: .*without a RearWall"):
         wall.simulate(pulse(3.0), certify="proved")
 
 
