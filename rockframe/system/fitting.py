@@ -3,11 +3,12 @@
 import math
 from typing import Final
 
-from rockframe.components import Component, RigidGround, Stack, Tendon
+from rockframe.components import Component, RearWall, RigidGround, Stack, Tendon
 from rockframe.components.block_numbers import squat
 from rockframe.system.options import Options, Sliding
 from rockframe.system.own_base import OwnBase
 from rockframe.system.parts import Parts, slot_of
+from rockframe.system.rear_wall import IMPACT_TIME, yielding_wall
 
 SMALL_SLIDING: Final = (
     "a block slides with rotation='finite' only; give sliding='checked' to hold it and compare its "
@@ -40,13 +41,7 @@ def misfits(parts: Parts) -> list[str]:
                 "block directly"
             )
     if parts.wall is not None and not parts.wall.elastic:
-        behind = (pads, soil, cap, parts.stack, parts.frame, *parts.links)
-        others = [type(part).__name__ for part in behind if part is not None]
-        if others:
-            faults.append(
-                f"a RearWall and {' and '.join(others)} are both given; a wall stands behind a "
-                "Block on rigid ground"
-            )
+        faults += _misfits_of_stiff_wall(parts.wall, parts)
     if parts.links and parts.frame is None:
         faults += _misfits_of_links(parts)
     if cap is not None and soil is None:
@@ -60,6 +55,28 @@ def misfits(parts: Parts) -> list[str]:
         if isinstance(part, OwnBase):
             faults += part.misfits(given)
     return faults
+
+
+def _misfits_of_stiff_wall(wall: RearWall, parts: Parts) -> list[str]:
+    """Give the faults of a stiff wall with other parts: its laws are impacts on rigid ground."""
+    base = parts.pads or parts.soil
+    behind = (parts.pads, parts.soil, parts.cap, parts.stack, parts.frame, *parts.links)
+    others = [type(part).__name__ for part in behind if part is not None]
+    if not others:
+        return []
+    fault = (
+        f"a RearWall and {' and '.join(others)} are both given; a wall stands behind a Block on "
+        "rigid ground"
+    )
+    if parts.block is None or base is None or parts.cap is not None:
+        return [fault]
+    found = yielding_wall(wall, parts.block.si)
+    return [
+        f"{fault}, where base and wall are struck at once. {type(base).__name__} takes no impulse, "
+        "and a body leans on a wall for a while: give the wall a stiffness in place of its law. "
+        f"stiffness='{found.stiffness:.4g} N/m', damping='{found.damping:.4g} N*s/m' throws it "
+        f"back with {found.share:.3g} of its speed, within {1e3 * IMPACT_TIME:g} ms"
+    ]
 
 
 def _misfits_of_links(parts: Parts) -> list[str]:

@@ -3,15 +3,17 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 from rockframe.components import RearWall
+from rockframe.components.block_numbers import BlockSI
 from rockframe.components.wall import WallImpact, WallSide
 from rockframe.errors import AssemblyError
 from rockframe.system.bodies import (
     OverturningAngles,
     Restitutions,
     SupportedBody,
+    body_of_block,
     load_of,
     resolve_restitution,
 )
@@ -23,6 +25,9 @@ from rockframe.system.words import Words
 
 if TYPE_CHECKING:
     from rockframe.dynamics.protocol import ContactModel
+
+IMPACT_TIME: Final = 1e-3
+"""Of an elastic wall in place of a stiff one [s]."""
 
 
 @dataclass(frozen=True)
@@ -157,6 +162,30 @@ def _rebound(
         f"the ratio would be {found:.4g}, and is negative for H/B above sqrt(2) of a solid "
         "rectangle; give a ratio, such as restitution=0"
     ])  # fmt: skip
+
+
+class YieldingWall(NamedTuple):
+    """An elastic wall that throws back as a stiff one does."""
+
+    share: float  # of the angular velocity that it leaves
+    stiffness: float  # [N m^-1]
+    damping: float  # [N s m^-1]
+
+
+def yielding_wall(wall: RearWall, block: BlockSI) -> YieldingWall:
+    """Give the elastic wall of an impact of :data:`IMPACT_TIME`, :eq:`eq-yielding-wall`."""
+    law, body = wall.given.restitution, body_of_block(block)
+    share = -law if isinstance(law, float) else -wall_factor(body, wall.given.side, block.height)
+    if law is WallImpact.NEWTON:
+        share = float(wall.given.wall_restitution)
+    share = abs(max(share, 0.0))
+    mass = (body.inertia + body.mass * body.centre_height**2) / block.height**2
+    lost = -math.log(share) if share > 0.0 else math.inf
+    ratio = lost / math.hypot(math.pi, lost) if math.isfinite(lost) else 1.0
+    # half a period of the damped vibration, or of the undamped one where that would not end
+    half = IMPACT_TIME * (math.sqrt(1.0 - ratio * ratio) if ratio < 1.0 else 1.0)
+    frequency = math.pi / half
+    return YieldingWall(share, mass * frequency**2, 2.0 * ratio * mass * frequency)
 
 
 def wall_factor(body: SupportedBody, side: WallSide, height: float) -> float:

@@ -1,13 +1,15 @@
 """Elastic walls on all bases: against an equation written by hand, limits, energy, mirror."""
 
 import math
+import re
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
 import rockframe as rf
-from rockframe.errors import ComponentError
+from rockframe.errors import AssemblyError, ComponentError
+from rockframe.system.rear_wall import yielding_wall
 
 BLOCK = rf.Block(width="1 m", height="4 m", mass="4 t")
 PADS = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
@@ -79,6 +81,37 @@ def test_rocking_against_a_wall_is_that_of_the_equation():
     assert found.min() < -0.003
     assert float(ours.peak_restrainer_force[0]) > 1e3
     np.testing.assert_allclose(ours.rotation, found, rtol=0.0, atol=1e-7 * theta)
+
+
+@pytest.mark.parametrize(
+    ("given", "share"),
+    [
+        ({}, 0.411765),  # 1 - 1.5 cos^2 theta, of the wall alone
+        ({"restitution": "newton", "wall_restitution": 0.3}, 0.3),
+        ({"restitution": -0.6}, 0.6),
+    ],
+)
+def test_the_wall_that_a_refusal_names_throws_back_as_the_stiff_one(given, share):
+    pads = rf.TwoSpringSupport(frequency_ratio=10, damping_ratio=0.05)
+    stiff = rf.RearWall(**given)
+    with pytest.raises(AssemblyError, match="takes no impulse") as refused:
+        rf.System(BLOCK, pads, stiff)
+    stiffness, damping = re.findall(r"'([^']*) N", str(refused.value))
+    wall = rf.RearWall(stiffness=f"{stiffness} N/m", damping=f"{damping} N*s/m")
+    # the second peak of a vibration on the pads, without uplift, with and without the wall
+    start = rf.InitialState(rotation=f"{0.5 * rf.System(BLOCK, pads).setting.uplift_angle} rad")
+    peaks = list[float]()
+    for parts in ((BLOCK, pads), (BLOCK, pads, wall)):
+        run = rf.System(*parts).simulate(initial=start, duration="0.95 s", output_step="0.001 s")
+        peaks.append(float(abs(run.rotation.sel(time=slice(0.5, None))).max()))
+    assert peaks[1] / peaks[0] == pytest.approx(share, abs=5e-4)
+
+
+def test_a_wall_that_stops_the_body_has_critical_damping():
+    found = yielding_wall(rf.RearWall(restitution=0), BLOCK.si)
+    mass = (BLOCK.si.inertia + BLOCK.si.mass * BLOCK.si.centre_height**2) / BLOCK.si.height**2
+    assert found.share == 0.0
+    assert found.damping == pytest.approx(2.0 * math.sqrt(found.stiffness * mass))
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,170 @@
+"""Walls, frames, tendons and loads in everything that is offered for a scene: a table."""
+
+import json
+from functools import cache
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+import xarray as xr
+
+import rockframe as rf
+from rockframe.command.files.scenes import read_scene
+from rockframe.compiled import COMPILED
+
+BLOCK = rf.Block(width="1 m", height="4 m", mass="4 t")
+PADS = rf.TwoSpringSupport(frequency_ratio=10, damping_ratio=0.1)
+BENT = rf.RockingFrame(BLOCK, columns=2, beam_mass="6 t")
+PULSE = rf.GroundMotion.from_arrays(
+    (3.5 * np.sin(np.linspace(0.0, 2.0 * np.pi, 41)), "m/s^2"), time_step="0.02 s", name="pulse"
+)
+PLAN = {"duration": "1.6 s"}
+
+IN_FILE = {
+    "block": '[block]\nwidth = "1 m"\nheight = "4 m"\nmass = "4 t"\n',
+    "pads": "[pads]\nfrequency_ratio = 10\ndamping_ratio = 0.1\n",
+    "frame": '[frame]\ncolumns = 2\nbeam_mass = "6 t"\n'
+    '[frame.column]\nwidth = "1 m"\nheight = "4 m"\nmass = "4 t"\n',
+}
+SCENES = {
+    "stiff wall": (
+        (BLOCK, rf.RearWall(restitution=-0.3)), "restitution", [-0.5, -0.1],
+        ("block",), "[wall]\nrestitution = -0.3\n",
+    ),
+    "elastic wall": (
+        (BLOCK, rf.RearWall(stiffness="1 MN/m", gap="5 mm")), "gap", ["0 mm", "5 mm"],
+        ("block",), '[wall]\nstiffness = "1 MN/m"\ngap = "5 mm"\n',
+    ),
+    "elastic wall on pads": (
+        (BLOCK, PADS, rf.RearWall(stiffness="1 MN/m")), "RearWall.stiffness", ["1 MN/m", "2 MN/m"],
+        ("block", "pads"), '[wall]\nstiffness = "1 MN/m"\n',
+    ),
+    "frame": ((BENT,), "beam_mass", ["0 t", "6 t"], ("frame",), ""),
+    "frame with tendons": (
+        (BENT, rf.Tendon(stiffness="0.2 MN/m", preload="5 kN")), "preload", ["5 kN", "9 kN"],
+        ("frame",), '[[restrainer]]\ntype = "Tendon"\nstiffness = "0.2 MN/m"\npreload = "5 kN"\n',
+    ),
+    "tendon": (
+        (BLOCK, rf.Tendon(stiffness="0.2 MN/m", preload="5 kN")), "preload", ["5 kN", "9 kN"],
+        ("block",), '[[restrainer]]\ntype = "Tendon"\nstiffness = "0.2 MN/m"\npreload = "5 kN"\n',
+    ),
+    "load": (
+        (BLOCK, rf.Load(at=("-0.4 m", "4 m"), vertical="3 kN")), "vertical", ["3 kN", "6 kN"],
+        ("block",), '[[restrainer]]\ntype = "Load"\nat = ["-0.4 m", "4 m"]\nvertical = "3 kN"\n',
+    ),
+}  # fmt: skip
+HAS_LINK = {"elastic wall", "elastic wall on pads", "frame with tendons", "tendon"}
+
+
+@pytest.fixture(autouse=True)
+def _figures():
+    yield
+    plt.close("all")
+
+
+@cache
+def scene(name):
+    return rf.System(*SCENES[name][0])
+
+
+@cache
+def run_of(name):
+    return scene(name).simulate(PULSE, **PLAN)
+
+
+def describes(name, folder):
+    text = scene(name).describe()
+    assert "equations" in text
+    assert type(SCENES[name][0][-1]).__name__ in text
+
+
+def statics(name, folder):
+    found = scene(name).moment_rotation((np.array([0.02, 0.05]), "rad"))
+    assert np.isfinite(found.restoring_moment).all()
+    scene(name).equilibrium()
+
+
+def figures(name, folder):
+    rf.plot.scene(scene(name))
+    rf.plot.state(run_of(name))
+    rf.plot.response(run_of(name))
+    run_of(name).rockframe.player(folder / "run.html")
+
+
+def ladder_and_tradeoff(name, folder):
+    assert len(rf.model_ladder(scene(name))) >= 1
+    table = rf.tradeoff(scene(name), PULSE, accuracies=["fast"], repeats=1, **PLAN)
+    assert float(table.peak_error.max()) >= 0.0
+
+
+def certificate(name, folder):
+    run = scene(name).simulate(PULSE, certify=True, accuracy="fast", **PLAN)
+    assert "certificate" in " ".join(run.attrs)
+
+
+def critical_scale(name, folder):
+    found = rf.critical_scale(
+        scene(name), PULSE, largest=4.0, scales=3, runs=3, accuracy="fast", progress=False, **PLAN
+    )
+    assert "critical_scale" in found
+
+
+def sweep_and_fragility(name, folder):
+    _, axis, values, *_ = SCENES[name]
+    runs = rf.sweep(
+        scene(name), motions={"pulse": PULSE}, scale=[0.5, 1.0, 2.0], axes={axis: values},
+        progress=False, **PLAN,
+    )  # fmt: skip
+    own = next(one for one in runs.peak_rotation.dims if one not in ("scale", "motion"))
+    assert runs.peak_rotation.size == 6
+    # one of them is another scene than the other
+    others = runs.isel(motion=0)
+    assert any(
+        (abs(one.diff(own)) > 0).any()
+        for one in others.data_vars.values()
+        if own in one.dims and one.dtype.kind in "fi"
+    )
+    first = runs.isel({own: 0}, drop=True)
+    assert rf.fragility(first, limits=[0.1]).sizes["limit_state"] == 2
+
+
+def files(name, folder):
+    system = scene(name)
+    assert rf.System.from_dict(json.loads(json.dumps(system.to_dict()))) == system
+    *_, slots, text = SCENES[name]
+    # tables of one part may not be split by others
+    (folder / "scene.toml").write_text("".join(IN_FILE[slot] for slot in slots) + text)
+    assert read_scene(folder / "scene.toml").system == system
+    run_of(name).to_netcdf(folder / "run.nc")
+    with xr.open_dataset(folder / "run.nc") as read:
+        again = rf.System.from_dataset(read)
+        rotation = again.simulate(**PLAN).rotation
+        np.testing.assert_array_equal(rotation, read.rotation)
+
+
+def report_and_table(name, folder):
+    rf.report(run_of(name), folder / "report.html")
+    page = (folder / "report.html").read_text(encoding="utf-8")
+    assert type(SCENES[name][0][-1]).__name__ in page
+    assert rf.table(run_of(name)).shape[1] > 5
+
+
+def links(name, folder):
+    assert ("restrainer" in run_of(name).dims) is (name in HAS_LINK)
+    if name in HAS_LINK:
+        assert float(run_of(name).peak_restrainer_force.max()) > 0.0
+
+
+CAPABILITIES = (
+    describes, statics, figures, ladder_and_tradeoff, certificate, critical_scale,
+    sweep_and_fragility, files, report_and_table, links,
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("capability", CAPABILITIES, ids=lambda one: one.__name__)
+@pytest.mark.parametrize("name", list(SCENES))
+def test_a_part_has_what_every_scene_has(name, capability, tmp_path):
+    many = capability in (certificate, critical_scale, report_and_table)
+    if many and not COMPILED and name not in ("stiff wall", "frame"):
+        pytest.skip("many runs of scenes that are slow in plain Python")
+    capability(name, tmp_path)
