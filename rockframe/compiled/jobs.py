@@ -101,13 +101,14 @@ class Writer:
 _logger = logging.getLogger("rockframe")
 _said: Final[set[str]] = set()
 
-_SECONDS_BOUND: Final = 0.1
-_SECONDS_IN_LANES: Final = 0.25
-_SECONDS_OF_ENTRY: Final = 0.15
+_SECONDS_BOUND: Final = 0.07
+_SECONDS_IN_LANES: Final = 0.15
+_SECONDS_OF_ENTRY: Final = 0.1
 """Time to compile, for each number of a system, in lanes too, and for each word of an entry [s].
 
-Measured with numba 0.62 for a block on rigid ground, on pads, on soil and stacked: the sums for
-a kind of scene are from half to twice those measured.
+Measured with numba 0.62 for a block on rigid ground, on pads, on soil and stacked, and scaled by
+what :mod:`rockframe.compiled.linking` saves with 0.68: the sums for a kind of scene are from half
+to twice those measured.
 """
 
 
