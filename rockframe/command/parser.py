@@ -208,14 +208,15 @@ COMMANDS: Final = (
     ),
     Command(
         "report",
-        "write a page on a run, to file or to print",
+        "write a page on a run or a study, to file or to print",
         "Write one HTML file that needs no other: the scene, the motion and its measures, the "
         "verdict and its certificate, figures, limits of validity, and where it all comes from. "
         "A run without certificate is certified first, where the file holds its motion. Of a study "
-        "it is the page of one case, which is simulated again.",
+        "it has all cases in a table and the worst one in full, or the one that --case names.",
         """\
   rockframe report out.nc
   rockframe report out.nc -o tower.html --title 'Clock tower, record 12'
+  rockframe report runs.nc --units force=kN angle=deg
   rockframe report runs.nc --case scale=2 'width=0.7 m' -o case.html""",
         (
             _DATASET,
@@ -228,6 +229,17 @@ COMMANDS: Final = (
                 help="of a study: which case, by its place along every axis of several values",
             ),
             _word("--title", help="of the page"),
+            _word(
+                "--units",
+                nargs="+",
+                metavar="NAME=UNIT",
+                help="units of all numbers, such as force=kN angle=deg acceleration=g_0",
+            ),
+            _path(
+                "--motion",
+                metavar="RECORD",
+                help="the record of the run, for its certificate where the result does not hold it",
+            ),
             _word(
                 "--no-certificate",
                 action="store_true",

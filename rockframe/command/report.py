@@ -1,44 +1,56 @@
-"""``rockframe report``: a page on a run."""
+"""``rockframe report``: a page on a run or a study."""
 
 import argparse
+from collections.abc import Iterable
 from pathlib import Path
 
 import xarray as xr
 
 from rockframe.command.shared import read_result
-from rockframe.errors import FileError
+from rockframe.errors import ComponentError, FileError
+from rockframe.motion import GroundMotion
 from rockframe.reports import report
-from rockframe.studies import case
+from rockframe.studies import case, open_study
 
 
 def execute(arguments: argparse.Namespace) -> int:
     """Write the page."""
-    dataset = read_result(arguments.dataset)
-    if "axes_json" in dataset.attrs or arguments.case is not None:
+    folder = Path(arguments.dataset).expanduser().is_dir()
+    dataset = open_study(arguments.dataset) if folder else read_result(arguments.dataset)
+    if arguments.case is not None:
         dataset = _case_of(dataset, arguments)
     path = arguments.output
     if path is None:
         path = str(Path(arguments.dataset).with_suffix(".html"))
-    asked = {"certify": not arguments.no_certificate, "overwrite": arguments.overwrite}
-    report(dataset, path, title=arguments.title, **asked)
+    motion = None if arguments.motion is None else GroundMotion.read(arguments.motion)
+    report(
+        dataset,
+        path,
+        title=arguments.title,
+        units=_pairs(arguments.units or (), "--units", "force=kN"),
+        motion=motion,
+        certify=not arguments.no_certificate,
+        overwrite=arguments.overwrite,
+    )
     print(f"Report: {path}")
     return 0
 
 
+def _pairs(words: Iterable[str], option: str, example: str) -> dict[str, str] | None:
+    """Read NAME=VALUE; None where there is none."""
+    found = [word.partition("=") for word in words]
+    for name, _, value in found:
+        if not (name and value):
+            msg = f"{option}: expected NAME=VALUE, such as {example}, got {name!r}"
+            raise ComponentError(msg)
+    return {name: value for name, _, value in found} or None
+
+
 def _case_of(dataset: xr.Dataset, arguments: argparse.Namespace) -> xr.Dataset:
     """Simulate the case of a study that is asked for."""
-    axes = ", ".join(
-        f"{name} ({size})" for name, size in dataset.sizes.items() if name != "message"
-    )
     pairs = [word.partition("=") for word in arguments.case or ()]
     if "axes_json" not in dataset.attrs or not all(name and value for name, _, value in pairs):
         words = f"found --case {' '.join(arguments.case)}; expected NAME=VALUE, of a study's axes"
-        raise FileError(arguments.dataset, [(None, words)])
-    if not pairs and any(size > 1 for size in dataset.sizes.values()):
-        words = (
-            f"found a study over {axes}; expected one of its cases, as in --case scale=2. "
-            f"'rockframe plot {arguments.dataset} -o study.png' draws all of them"
-        )
         raise FileError(arguments.dataset, [(None, words)])
     found = case(dataset, **{name: value for name, _, value in pairs})
     again = found.simulate()

@@ -3,6 +3,7 @@
 import argparse
 import csv
 from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -11,6 +12,7 @@ import xarray as xr
 from rockframe.command.files.scenes import Described, read_scene
 from rockframe.errors import ComponentError, FileError, SolverError
 from rockframe.motion import GroundMotion
+from rockframe.reports.project import ATTRIBUTE
 from rockframe.results.table import head_of
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import accuracy_of
@@ -44,12 +46,17 @@ def scene_from(arguments: argparse.Namespace) -> Described:
         run.pop("free_vibration", None)
     if arguments.free_vibration is not None and arguments.duration is None:
         run.pop("duration", None)
-    return Described(found.system, motion, run, files)
+    return replace(found, motion=motion, run=run, files=files)
 
 
 def simulated(found: Described, **more: Any) -> xr.Dataset:
     """Simulate what a file describes."""
-    return found.system.simulate(found.motion, **{**found.run, **more})
+    return with_project(found.system.simulate(found.motion, **{**found.run, **more}), found.project)
+
+
+def with_project(dataset: xr.Dataset, project: str) -> xr.Dataset:
+    """Let a result keep what its file says of the project."""
+    return dataset.assign_attrs({ATTRIBUTE: project}) if project else dataset
 
 
 class Outputs:

@@ -11,7 +11,7 @@ import numpy as np
 from rockframe.command.files.studies import DescribedStudy, read_study
 from rockframe.command.main import INTERRUPTED
 from rockframe.command.run import FINISHED
-from rockframe.command.shared import STUDY, Outputs, printed, system_words, table_kind
+from rockframe.command.shared import STUDY, Outputs, printed, system_words, table_kind, with_project
 from rockframe.errors import FileError, StudyError
 from rockframe.results.table import table
 from rockframe.results.variables.runs import RunStatus
@@ -51,6 +51,7 @@ def _carried_out(
         runs = sweep(found.system, found.motions, store=store, **found.arguments)
     except StudyError as problem:
         raise FileError(arguments.study, [(None, str(problem))]) from problem
+    runs = with_project(runs, found.project)
     print(f"Verdict: {runs.attrs['verdict']}")
     values = table(runs)
     if len(values) <= _MOST_SHOWN:

@@ -6,16 +6,15 @@ matplotlib's style.
 """
 
 import re
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-import numpy.typing as npt
 import xarray as xr
 
-from rockframe.errors import ComponentError, shown
 from rockframe.studies.intensities import PERIOD_OF, measure_words
-from rockframe.units import Measure, to_si
+from rockframe.units import Measure
+from rockframe.units.shown import Shown as Shown
+from rockframe.units.shown import shown_unit
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -118,26 +117,8 @@ def colour_steps(along: xr.DataArray) -> Any:
 
 RELATIVE: Final = "relative"
 """The word for values that are made relative to a scale of the body."""
-_WRITTEN: Final = {"g_0": "g", "deg": "°", "degree": "°", "degrees": "°"}
-
-
-@dataclass(frozen=True)
-class Shown:
-    """A unit that an axis has."""
-
-    words: str  # as it is written beside the axis
-    size: float  # in the SI unit
-
-    def of(self, values: "xr.DataArray | npt.ArrayLike") -> npt.NDArray[np.float64]:
-        """Give values, in SI units, in this one."""
-        return np.asarray(values, np.float64) / self.size
 
 
 def unit_of(given: object, measure: Measure, *, function: str, name: str) -> Shown:
     """Read the unit of an axis."""
-    owner = f"rf.plot.{function}"
-    if not isinstance(given, str):
-        msg = f"{owner}: {name} must be a unit, such as {str(measure.unit)!r}, got {shown(given)}"
-        raise ComponentError(msg)
-    size = to_si(f"1 {given}", measure, owner=owner, name=name)
-    return Shown(_WRITTEN.get(given, given).replace("*", " "), size)
+    return shown_unit(given, measure, owner=f"rf.plot.{function}", name=name)

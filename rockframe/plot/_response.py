@@ -3,6 +3,9 @@
 Events are marked on the rotation, and strips below it show the contact states.
 """
 
+from collections.abc import Mapping
+from difflib import get_close_matches
+from textwrap import wrap
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -20,6 +23,7 @@ from rockframe.plot._axes import (
     VERMILLION,
     Shown,
     axis_label,
+    colour_of,
     ink,
     key,
     unit_of,
@@ -29,6 +33,7 @@ from rockframe.plot._checks import overturning_angles
 from rockframe.plot._panels import Panels, sheet
 from rockframe.plot._runs import Run, runs_of, runs_title
 from rockframe.units import ACCELERATION, ANGLE, LENGTH
+from rockframe.units.shown import ReaderUnits, reader_units
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -174,6 +179,7 @@ def response(
     rotation: str = RELATIVE,
     vertical: str = RELATIVE,
     acceleration: str = "m/s^2",
+    units: "Mapping[str, str] | None" = None,
     events: bool = False,
     ax: "AxesLike" = None,
     title: str | None = None,
@@ -186,8 +192,9 @@ def response(
         A result with histories; or several to compare. The keys of a mapping are the labels;
         in a list, runs are called by their motions, models or accuracies, or else numbered.
     panels : str or tuple of str, optional
-        Which are drawn, of ``"ground"``, ``"rotation"``, ``"vertical"`` and ``"contact"``. The
-        last one is a strip for each run; for each of its bases, where a cap carries the block.
+        Which are drawn, of ``"ground"``, ``"rotation"``, ``"vertical"`` and ``"contact"``, and
+        any history that the runs hold, by its name, such as ``"base_shear"``. Contact is a strip
+        for each run; for each of its bases, where a cap carries the block.
     window : (str or Quantity or None, str or Quantity or None), optional
         Start and end of what is drawn; all of it unless given [s].
     rotation : str, optional
@@ -198,6 +205,8 @@ def response(
         under the weight where the base gives way, with millimetres at the right.
     acceleration : str, optional
         Unit of the ground's acceleration, such as ``"g_0"``.
+    units : mapping of str to str, optional
+        Units of other histories by what they are of, such as ``{"force": "kN"}``.
     events : bool, optional
         Whether events are marked on the rotation.
     ax : Axes or sequence of Axes, optional
@@ -232,18 +241,22 @@ def response(
     >>> axes.figure.savefig("rotation.png")  # doctest: +SKIP
     """
     given = runs_of(runs, "response", window)
-    units = {
+    shown_in = {
         "ground": unit_of(acceleration, ACCELERATION, function="response", name="acceleration"),
         "rotation": _unless_relative(rotation, ANGLE, "rotation"),
         "vertical": _unless_relative(vertical, LENGTH, "vertical"),
     }
+    others = reader_units(units, owner="rf.plot.response")
     strips = strips_of(given)
     names = [
         name
-        for panel in _chosen(panels)
+        for panel in _chosen(panels, given)
         for name in (strips if panel == "contact" else {panel: None})
     ]
-    heights = [_HEIGHTS.get(name, _HEIGHTS["contact"]) for name in names]
+    heights = [
+        _HEIGHTS["contact" if name in strips else name] if name in {*strips, *_HEIGHTS} else 1.3
+        for name in names
+    ]
 
     def make(figure: "Figure") -> Any:
         ratios = {"height_ratios": heights}
@@ -255,10 +268,12 @@ def response(
         if name in strips:
             state, words = strips[name]
             draw_contact(axes, state, words)
+        elif name not in _DRAW:
+            _history(axes, given, name, others)
         else:
-            _DRAW[name](axes, given, units[name])
+            _DRAW[name](axes, given, shown_in[name])
     if events and "rotation" in drawn:
-        draw_events(drawn["rotation"], given, units["rotation"])
+        draw_events(drawn["rotation"], given, shown_in["rotation"])
     below = [axes for name, axes in drawn.items() if name in strips]
     if below:
         draw_contact_legend(below[-1], next(iter(strips.values()))[0])
@@ -289,14 +304,32 @@ def _unless_relative(given: str, measure: Any, name: str) -> Shown | None:
     return unit_of(given, measure, function="response", name=name)
 
 
-def _chosen(panels: object) -> tuple[str, ...]:
+def _chosen(panels: object, runs: list[Run]) -> tuple[str, ...]:
     several = isinstance(panels, tuple | list)
     chosen: tuple[str, ...] = tuple(panels) if several else (panels,)  # type: ignore[assignment]
-    if not chosen or any(panel not in _HEIGHTS for panel in chosen):
+    histories = [name for name in histories_of(runs[0].dataset)
+                 if all(name in run.dataset for run in runs)]  # fmt: skip
+    unknown = [panel for panel in chosen if panel not in _HEIGHTS and panel not in histories]
+    if not chosen or unknown:
         known = ", ".join(repr(name) for name in _HEIGHTS)
-        msg = f"rf.plot.response: panels are some of {known}, got {shown(panels)}"
+        found = unknown[0] if unknown else panels
+        near = get_close_matches(str(found), [*_HEIGHTS, *histories], 1)
+        meant = f"; did you mean {near[0]!r}?" if near else "."
+        msg = (
+            f"rf.plot.response: panels are some of {known}, and histories of the run, got "
+            f"{shown(found)}{meant} The run holds {', '.join(map(repr, histories))}"
+        )
         raise ComponentError(msg)
     return chosen
+
+
+def histories_of(run: xr.Dataset) -> list[str]:
+    """Name the histories of a run, those of several points or bodies too."""
+    return [
+        str(name)
+        for name, values in run.data_vars.items()
+        if values.dims and values.dims[-1] == "time" and "flag_values" not in values.attrs
+    ]
 
 
 def strips_of(runs: list[Run]) -> dict[str, tuple[xr.DataArray, str]]:
@@ -330,6 +363,26 @@ def _ground(axes: "Axes", runs: list[Run], unit: Shown | None) -> None:
     if axes.get_legend_handles_labels()[0]:
         key(axes)
     axes.set_ylabel(axis_label("ground\n", unit.words).replace("\n ", "\n"))
+
+
+def _history(axes: "Axes", runs: list[Run], name: str, units: ReaderUnits) -> None:
+    """Draw a history that has no panel of its own kind; of several points, a line for each."""
+    unit = units.of(str(runs[0].dataset[name].attrs.get("units", "1")))
+    for run in runs:
+        values = run.dataset[name]
+        rows = values if values.ndim > 1 else values.expand_dims("row")
+        first = str(rows.dims[0])
+        for number, row in enumerate(rows):
+            part = str(row[first].item()) if first in row.coords else ""
+            label = ", ".join(filter(None, (run.label, part))) or None
+            colour = run.colour if len(rows) == 1 else colour_of(number)
+            axes.plot(run.time, unit.of(row), color=colour, linestyle=run.style, linewidth=0.9,
+                      label=label)  # fmt: skip
+    if axes.get_legend_handles_labels()[0]:
+        key(axes)
+    zero_line(axes)
+    words = "\n".join(wrap(name.replace("_", " "), 16))
+    axes.set_ylabel(axis_label(f"{words}\n", unit.words).replace("\n ", "\n"))
 
 
 def _rotation(axes: "Axes", runs: list[Run], unit: Shown | None) -> None:

@@ -47,15 +47,20 @@ figure img { width: 100%; height: auto; background: #ffffff; border: 1px solid v
   border-radius: .3rem; }
 pre { overflow-x: auto; background: var(--band); padding: .7rem .9rem; font-size: .8rem;
   line-height: 1.4; }
-dt { font-weight: 600; margin-top: .5rem; } dd { margin: 0; }
+li { margin: .25rem 0; }
+.sheet { margin: 1rem 0; }
 code { overflow-wrap: anywhere; }
 @media (max-width: 30rem) { td.value { white-space: normal; } }
+@page { size: A4; margin: 18mm 16mm; }
 @media print {
   :root { --ink: #000000; --soft: #444444; --paper: #ffffff; --line: #bbbbbb; --band: #f4f4f4;
     --good: #1b6b3a; --bad: #a3261f; --doubt: #8a5a00; }
   body { max-width: none; padding: 0; font-size: 10pt; }
-  figure, tr, .verdict { break-inside: avoid; } h2, h3, dt { break-after: avoid; }
-  figure img { width: auto; max-width: 100%; max-height: 14.5cm; }
+  figure, tr, .verdict, .sheet { break-inside: avoid; }
+  thead { display: table-header-group; }
+  .scroll { overflow: visible; } td.value { white-space: normal; }
+  h2, h3, dt { break-after: avoid; }
+  figure img { width: auto; max-width: 100%; max-height: 10.5cm; }
   pre { white-space: pre-wrap; } details > summary { display: none; } }
 """
 
@@ -110,16 +115,25 @@ def rows(given: Iterable[Sequence[str]], *, head: Sequence[str] = ()) -> str:
     return "\n".join(lines)
 
 
-def definitions(given: Iterable[tuple[str, str]]) -> str:
-    """Give a list of titles with words."""
-    inner = "\n".join(f"<dt>{escape(name)}</dt><dd>{escape(words)}</dd>" for name, words in given)
-    return f"<dl>\n{inner}\n</dl>"
+def columns(given: Iterable[Sequence[str]], head: Sequence[str]) -> str:
+    """Give a table of which all columns but the first hold values."""
+    names = "".join(f"<th>{escape(name)}</th>" for name in head)
+    lines = [f'<div class="scroll"><table><thead><tr>{names}</tr></thead><tbody>']
+    for first, *others in given:
+        cells = "".join(f'<td class="value">{escape(cell)}</td>' for cell in others)
+        lines.append(f"<tr><td>{escape(first)}</td>{cells}</tr>")
+    lines.append("</tbody></table></div>")
+    return "\n".join(lines)
 
 
-def items(given: Iterable[str]) -> str:
-    """Give a list."""
-    inner = "\n".join(f"<li>{escape(words)}</li>" for words in given)
-    return f"<ul>\n{inner}\n</ul>"
+def items(given: Iterable[str | tuple[str, str]]) -> str:
+    """Give a numbered list; of pairs, the first is a title."""
+    inner = list[str]()
+    for one in given:
+        title, words = ("", one) if isinstance(one, str) else one
+        strong = f"<strong>{escape(title)}.</strong> " if title else ""
+        inner.append(f"<li>{strong}{escape(words)}</li>")
+    return "<ol>\n" + "\n".join(inner) + "\n</ol>"
 
 
 def verbatim(text: str) -> str:

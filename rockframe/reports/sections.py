@@ -1,7 +1,7 @@
 """The sections of a report on a run."""
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from importlib.metadata import version
 from platform import python_version
 from typing import Any, Final
@@ -14,15 +14,18 @@ from rockframe.components.parameters import Declared
 from rockframe.errors import RockframeError
 from rockframe.measures import intensity_measures
 from rockframe.motion import GroundMotion
+from rockframe.plot._response import histories_of
 from rockframe.reports import page
 from rockframe.reports.figures import figure_of
 from rockframe.reports.limits import GENERAL, limits_of
-from rockframe.reports.values import powers_in_html, table_of
+from rockframe.reports.values import extremes_of, powers_in_html, table_of
 from rockframe.results.outcome import verdict_of
 from rockframe.results.variables.runs import CERTIFICATE, PROOF
 from rockframe.simulation.provenance import motion_words
 from rockframe.simulation.run import NONE
 from rockframe.simulation.system import System
+from rockframe.units import Unit
+from rockframe.units.shown import ReaderUnits
 from rockframe.version import __version__
 
 _LIBRARIES: Final = ("numpy", "scipy", "xarray")
@@ -33,6 +36,16 @@ _BANNERS: Final = {
 }
 """Title and kind of what became of the body, by the verdict."""
 _CERTIFICATE: Final = [row.name for row in (*CERTIFICATE, *PROOF)]
+_PANELS: Final = 4
+"""Histories in one figure, which so fits on a page."""
+_DRAWN: Final = frozenset({
+    "ground_acceleration", "vertical_ground_acceleration", "rotation", "relative_rotation",
+    "angular_velocity", "vertical_displacement", "relative_vertical_displacement",
+    "vertical_velocity", "horizontal_displacement", "cap_rotation", "cap_angular_velocity",
+    "cap_vertical_displacement", "cap_vertical_velocity", "rotation_on_cap",
+    "vertical_displacement_on_cap",
+})  # fmt: skip
+"""Histories that the first figure shows, or that follow from what it shows."""
 _PROVENANCE: Final = (
     # (attribute, what it is)
     ("source", "computed by"),
@@ -52,10 +65,15 @@ _PROVENANCE: Final = (
 )
 
 
+def outcome_of(dataset: xr.Dataset) -> str:
+    """Say what became of the body."""
+    title, kind = _BANNERS[verdict_of(dataset)]
+    return page.banner(title, str(dataset.attrs.get("verdict", "")), kind)
+
+
 def verdict_section(dataset: xr.Dataset, reason: str) -> Iterator[str]:
     """Say what became of the body, and how sure that is."""
-    title, kind = _BANNERS[verdict_of(dataset)]
-    yield page.banner(title, str(dataset.attrs.get("verdict", "")), kind)
+    yield outcome_of(dataset)
     if "proof" in dataset.attrs:
         proved = bool(dataset["verdict_proved"])
         title = f"The verdict is {'' if proved else 'not '}proved"
@@ -89,7 +107,9 @@ def scene_section(dataset: xr.Dataset, system: System | None) -> Iterator[str]:
     yield page.verbatim(str(dataset.attrs.get("model_description", "not described")))
 
 
-def motion_section(dataset: xr.Dataset, found: GroundMotion | None) -> Iterator[str]:
+def motion_section(
+    dataset: xr.Dataset, found: GroundMotion | None, units: ReaderUnits
+) -> Iterator[str]:
     """Show the motion, its measures and its figure."""
     attributes = dict(dataset.attrs)
     if "motion" in attributes:
@@ -105,7 +125,7 @@ def motion_section(dataset: xr.Dataset, found: GroundMotion | None) -> Iterator[
     if found is None:
         return
     yield page.subtitle("Measures")
-    yield page.rows(table_of(intensity_measures(found)))
+    yield page.rows(table_of(intensity_measures(found), units=units))
     yield page.picture(
         figure_of(plot.spectra(found)),
         "Ground acceleration along time, its response spectra at 5 % damping and its Fourier "
@@ -113,29 +133,50 @@ def motion_section(dataset: xr.Dataset, found: GroundMotion | None) -> Iterator[
     )
 
 
-def response_section(dataset: xr.Dataset) -> Iterator[str]:
-    """Show the scalars of a run, and its figure."""
+def response_section(dataset: xr.Dataset, units: ReaderUnits) -> Iterator[str]:
+    """Show the scalars of a run, and figures of its histories."""
     if dataset.sizes.get("time", 0) > 1:
+        angle = units.chosen.get(Unit.RADIAN)
         yield page.picture(
-            figure_of(plot.response(dataset)),
-            "From the top: ground acceleration; rotation over the overturning angle; vertical "
-            "displacement; and what bears.",
+            figure_of(plot.response(dataset, rotation="deg" if angle else "relative")),
+            "From the top: ground acceleration; rotation"
+            f"{'' if angle else ' over the overturning angle'}; vertical displacement; and what "
+            "bears.",
         )
+        yield from _histories(dataset, units)
     else:
         yield page.paragraph("The run kept no histories to draw.", kind="soft")
     names = [str(name) for name in dataset.data_vars if str(name) not in _CERTIFICATE]
-    yield page.rows(table_of(dataset, names))
+    yield page.rows(table_of(dataset, names, units))
     if any(name in dataset for name in _CERTIFICATE):
         yield page.subtitle("Certificate")
-        yield page.rows(table_of(dataset, _CERTIFICATE))
+        yield page.rows(table_of(dataset, _CERTIFICATE, units))
 
 
-def limits_section(system: System | None) -> Iterator[str]:
-    """Say what the model leaves out."""
-    yield page.items(GENERAL)
+def _histories(dataset: xr.Dataset, units: ReaderUnits) -> Iterator[str]:
+    """Show forces, accelerations and all else that was asked for along time."""
+    beside = [name for name in histories_of(dataset) if name not in _DRAWN]
+    for start in range(0, len(beside), _PANELS):
+        names = beside[start : start + _PANELS]
+        drawn = plot.response(dataset, panels=tuple(names), units=units.words, title=" ")
+        words = ", ".join(name.replace("_", " ") for name in names)
+        yield page.picture(figure_of(drawn), f"{words[0].upper()}{words[1:]}, along time.")
+    if beside:
+        yield page.subtitle("Least and greatest values along time")
+        rows = extremes_of(dataset, beside, units)
+        yield page.columns(rows, ("", "unit", "least", "greatest"))
+
+
+def limits_section(system: System | None, assumptions: Sequence[str] = ()) -> Iterator[str]:
+    """Say what was assumed, and what the model leaves out."""
     parts = None if system is None else system.parts
     slides = system is not None and system.setting.slides
-    yield page.definitions((one.title, one.words) for one in limits_of(parts, slides=slides))
+    left_out = [(one.title, one.words) for one in limits_of(parts, slides=slides)]
+    if assumptions:
+        yield page.subtitle("Assumptions")
+        yield page.items(assumptions)
+        yield page.subtitle("What the model leaves out")
+    yield page.items([*GENERAL, *left_out])
 
 
 def provenance_section(dataset: xr.Dataset, file: str) -> Iterator[str]:

@@ -2,12 +2,14 @@
 
 import math
 import re
+from collections.abc import Iterable
 from typing import Any, Final
 
 import numpy as np
 import xarray as xr
 
 from rockframe.units import Unit
+from rockframe.units.shown import ReaderUnits
 
 _TRUTH: Final = {"true": "yes", "false": "no"}
 _GAP: Final = re.compile(r", NaN if .*$")
@@ -16,7 +18,7 @@ _POWER: Final = re.compile(r"\^(-?\d+)")
 _ABOVE: Final = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
-def value_of(variable: xr.DataArray) -> str:
+def value_of(variable: xr.DataArray, units: ReaderUnits | None = None) -> str:
     """Write a scalar with its unit; flags and truth values as words."""
     value: Any = variable.item()
     if "flag_values" in variable.attrs:
@@ -30,11 +32,11 @@ def value_of(variable: xr.DataArray) -> str:
         return value
     if isinstance(value, float) and math.isnan(value):
         return "none"
-    unit = str(variable.attrs.get("units", Unit.ONE))
-    number = f"{value + 0.0:.4g}"  # no negative zero
-    if unit == Unit.RADIAN:
+    unit = (units or ReaderUnits()).of(str(variable.attrs.get("units", Unit.ONE)))
+    number = f"{value / unit.size + 0.0:.4g}"  # no negative zero
+    if unit.words == Unit.RADIAN:
         return f"{number} rad ({math.degrees(value):.3g}°)"
-    return number if unit == Unit.ONE else f"{number} {powers_in_html(unit)}"
+    return number if unit.words == Unit.ONE else f"{number} {powers_in_html(unit.words)}"
 
 
 def powers_in_html(unit: str) -> str:
@@ -42,11 +44,34 @@ def powers_in_html(unit: str) -> str:
     return _POWER.sub(lambda power: power[1].translate(_ABOVE), unit)
 
 
-def table_of(dataset: xr.Dataset, names: list[str] | None = None) -> list[tuple[str, str]]:
+def table_of(
+    dataset: xr.Dataset, names: list[str] | None = None, units: ReaderUnits | None = None
+) -> list[tuple[str, str]]:
     """Give the meaning and the value of scalars."""
     chosen = [str(name) for name in dataset.data_vars] if names is None else names
     return [
-        (_GAP.sub("", str(dataset[name].attrs.get("long_name", name))), value_of(dataset[name]))
+        (
+            _GAP.sub("", str(dataset[name].attrs.get("long_name", name))),
+            value_of(dataset[name], units),
+        )
         for name in chosen
         if name in dataset and not dataset[name].dims
     ]
+
+
+def extremes_of(
+    dataset: xr.Dataset, names: Iterable[str], units: ReaderUnits
+) -> list[tuple[str, str, str, str]]:
+    """Give name, unit, least and largest value of histories; of several points, of each."""
+    found = list[tuple[str, str, str, str]]()
+    for name in names:
+        values = dataset[name]
+        unit = units.of(str(values.attrs.get("units", Unit.ONE)))
+        first = str(values.dims[0])
+        for row in values if values.ndim > 1 else [values]:
+            whose = f" ({row[first].item()})" if values.ndim > 1 and first in row.coords else ""
+            ends = unit.of([float(row.min()), float(row.max())])
+            least, most = (f"{one + 0.0:.4g}" for one in ends)
+            words = "" if unit.words == Unit.ONE else powers_in_html(unit.words)
+            found.append((name.replace("_", " ") + whose, words, least, most))
+    return found

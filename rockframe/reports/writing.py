@@ -1,6 +1,7 @@
-"""``report``: a page on a run, to file or to print."""
+"""``report``: a page on a run or a study, to file or to print."""
 
 import warnings
+from collections.abc import Mapping
 from html import escape
 from os import PathLike
 from pathlib import Path
@@ -10,9 +11,12 @@ import xarray as xr
 
 from rockframe.arguments import checked_dataset, text, truth
 from rockframe.errors import RecordWarning, SchemaError
-from rockframe.reports import page, sections
+from rockframe.motion import GroundMotion
+from rockframe.reports import page, sections, studies
 from rockframe.reports.certifying import certified
+from rockframe.reports.project import Project, project_of
 from rockframe.simulation.system import System
+from rockframe.units.shown import ReaderUnits, reader_units
 from rockframe.writing import FileKind, checked_path, generator, write_file
 
 _OWNER: Final = "report"
@@ -24,19 +28,35 @@ def report(
     path: "str | PathLike[str]",
     *,
     title: str | None = None,
+    project: Mapping[str, object] | None = None,
+    units: Mapping[str, str] | None = None,
+    motion: GroundMotion | None = None,
     certify: bool = True,
     overwrite: bool = False,
 ) -> Path:
-    """Write a page on a run: one HTML file that needs no other and makes no request.
+    """Write a page on a run or a study: one HTML file that needs no other and makes no request.
 
     Parameters
     ----------
     response : xarray.Dataset
-        The result of one run, also one read back from a file.
+        The result of one run; or of a sweep over motions or axes, a fragility, a critical scale
+        or another analysis; also one read back from a file.
     path : str or path
-        Of the file; its name ends in ``.html``. A report that is there is replaced.
+        Of the file; its name ends in ``.html``. A report that is there is replaced. Browsers
+        print it to PDF, on sheets of A4.
     title : str, optional
         Of the page; the model unless given.
+    project : mapping of str to str, optional
+        What the report is about: ``object``, ``place``, ``number``, ``date``, ``author``,
+        ``checked_by``; ``conclusion``, a sentence that stands first; and ``assumptions``, a list
+        of texts. What the file of the scene says in its table ``[project]`` unless given.
+    units : mapping of str to str, optional
+        Units of all numbers by what they are of, such as ``{"force": "kN", "angle": "deg"}``:
+        length, mass, angle, angular_velocity, velocity, acceleration, force, moment, energy,
+        stiffness. SI units unless given.
+    motion : GroundMotion, optional
+        That the run was made with, where the dataset does not hold it sample by sample: for its
+        certificate, its measures and its figure.
     certify : bool, optional
         Whether a run without a certificate is certified first, where the dataset holds its
         motion; that takes some hundred runs.
@@ -46,15 +66,20 @@ def report(
     Returns
     -------
     Path
-        The file. It shows the verdict with its certificate, the scene, the motion and its
-        measures, all scalars, figures, limits of validity, and where the numbers come from.
+        The file. Of a run it shows the verdict with its certificate, the scene, the motion and its
+        measures, all scalars, all histories, limits of validity, and where the numbers come from;
+        of a sweep, all cases in a table with mean and largest values, a figure, and the worst case
+        as a run; of other analyses, their figure and numbers.
 
     Raises
     ------
     SchemaError
-        No dataset, or not the result of one run.
+        No dataset, or none of rockframe.
     ComponentError
-        A title that is no text, or `certify` or `overwrite` neither True nor False.
+        A title that is no text, an unknown entry of the project, units that are none, or `certify`
+        or `overwrite` neither True nor False.
+    UnitsError
+        A unit of another kind.
     FileError
         The file cannot be written, its name has another ending, it is there already and no
         report, or it is the one that the result was read from.
@@ -70,32 +95,75 @@ def report(
     'report.html'
     """
     dataset = checked_dataset(response, owner=_OWNER)
-    _check(dataset)
     truth(certify, owner=_OWNER, name="certify")
     given = "" if title is None else text(title, owner=_OWNER, name="title")
+    about = project_of(project, dataset, _OWNER)
+    chosen = reader_units(units, owner=_OWNER)
     source = str(dataset.encoding.get("source", ""))
     read = [source] if source else []
     # before the certificate, which takes a while
     checked_path(path, _KIND, overwrite=overwrite, read=read)
-    system = _system_of(dataset)
-    reason = ""
-    if certify:
-        dataset, reason = certified(dataset, system)
-    model = str(dataset.attrs["model"])
-    heading = given or f"Rocking response, {model} model"
-    motion = None if system is None else system.motion
+    if _is_run(dataset):
+        model = str(dataset.attrs["model"])
+        heading = given or f"Rocking response, {model} model"
+        system = _system_of(dataset, motion)
+        dataset, reason = certified(dataset, system) if certify else (dataset, "")
+        verdict = sections.verdict_section(dataset, reason)
+        body = [page.section("Verdict", [*about.conclusions(), *verdict])]
+        body += _of_run(dataset, system, about, chosen)
+    elif studies.is_study(dataset):
+        heading = given or str(dataset.attrs.get("title", "Study"))
+        body = [*studies.verdict_sections(dataset, about, chosen)]
+        worst = studies.worst_case(dataset)
+        if worst is not None:
+            words, run, system = worst
+            verdict = sections.outcome_of(worst[1])
+            body.append(page.section("The worst case in full", [page.paragraph(words), verdict]))
+            body += _of_run(run, system, about, chosen)
+        else:
+            system = _system_of(dataset, None)
+            if system is not None:
+                body.append(page.section("Scene", sections.scene_section(dataset, system)))
+            limits = sections.limits_section(system, about.assumptions)
+            body.append(page.section("Limits of validity", limits))
+    else:
+        title = dataset.attrs.get("title", "without a title")
+        msg = (
+            f"{_OWNER}: found a dataset ({title}) that is no result of a run or of a study; "
+            "expected that of system.simulate(motion), rf.sweep(...) or another analysis"
+        )
+        raise SchemaError(msg)
     made = str(dataset.attrs.get("history", "")).splitlines()
-    body = [
+    file = Path(source).name
+    content = [
         f"<header>\n{_heading(heading, made)}\n</header>",
-        page.section("Verdict", sections.verdict_section(dataset, reason)),
-        page.section("Response", sections.response_section(dataset)),
-        page.section("Scene", sections.scene_section(dataset, system)),
-        page.section("Ground motion", sections.motion_section(dataset, motion)),
-        page.section("Limits of validity", sections.limits_section(system)),
-        page.section("Provenance", sections.provenance_section(dataset, Path(source).name)),
+        *about.block(),
+        *body,
+        page.section("Provenance", sections.provenance_section(dataset, file)),
     ]
-    content = page.page(heading, body).encode()
-    return write_file(path, _KIND, content, overwrite=overwrite, read=read)
+    written = page.page(heading, content).encode()
+    return write_file(path, _KIND, written, overwrite=overwrite, read=read)
+
+
+def _of_run(
+    dataset: xr.Dataset, system: System | None, about: Project, units: ReaderUnits
+) -> list[str]:
+    """Give the sections on a run behind its verdict."""
+    motion = None if system is None else system.motion
+    return [
+        page.section("Response", sections.response_section(dataset, units)),
+        page.section("Scene", sections.scene_section(dataset, system)),
+        page.section("Ground motion", sections.motion_section(dataset, motion, units)),
+        page.section("Limits of validity", sections.limits_section(system, about.assumptions)),
+    ]
+
+
+def _is_run(dataset: xr.Dataset) -> bool:
+    """Tell the result of one run."""
+    needed = ("overturned", "status", "peak_rotation")
+    return "model" in dataset.attrs and all(
+        name in dataset and not dataset[name].dims for name in needed
+    )
 
 
 def _heading(words: str, made: list[str]) -> str:
@@ -105,31 +173,21 @@ def _heading(words: str, made: list[str]) -> str:
     return "\n".join(lines)
 
 
-def _check(dataset: xr.Dataset) -> None:
-    """Refuse what is not the result of one run."""
-    needed = ("overturned", "status", "peak_rotation")
-    missing = [name for name in needed if name not in dataset]
-    if missing or "model" not in dataset.attrs:
-        title = dataset.attrs.get("title", "without a title")
-        msg = (
-            f"{_OWNER}: found a dataset ({title}) that is no result of a run; expected that of "
-            "system.simulate(motion)"
-        )
-        raise SchemaError(msg)
-    dims = sorted({str(dim) for name in needed for dim in dataset[name].dims})
-    if dims:
-        msg = (
-            f"{_OWNER}: found several runs over {', '.join(dims)}; expected one: simulate it with "
-            "rf.case(runs, ...).simulate()"
-        )
-        raise SchemaError(msg)
-
-
-def _system_of(dataset: xr.Dataset) -> System | None:
+def _system_of(dataset: xr.Dataset, motion: GroundMotion | None) -> System | None:
     """Give the system of a result with its motion; None where that cannot be had."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", RecordWarning)  # said in words on the page
-            return System.from_dataset(dataset)
+            found = System.from_dataset(dataset)
     except SchemaError:
         return None
+    if motion is None:
+        return found
+    digest = dataset.attrs.get("motion_sha256", motion.sha256)
+    if digest != motion.sha256:
+        msg = (
+            f"{_OWNER}: found a motion ({motion.name}) whose samples are not those of the run "
+            f"({dataset.attrs.get('motion')}); expected the one that it was made with"
+        )
+        raise SchemaError(msg)
+    return studies.under(found, motion)

@@ -1,7 +1,10 @@
 """Reports: what stands in them, and that they need no other file."""
 
+import datetime
 import re
+import subprocess
 from html.parser import HTMLParser
+from shutil import which
 
 import numpy as np
 import pytest
@@ -9,8 +12,8 @@ import xarray as xr
 from pages import read
 
 import rockframe as rf
-from rockframe.errors import RecordWarning, SchemaError
-from rockframe.reports import sections
+from rockframe.errors import ComponentError, RecordWarning, SchemaError
+from rockframe.reports import sections, studies
 from rockframe.reports.limits import LIMITS
 
 pytestmark = pytest.mark.unit
@@ -123,16 +126,146 @@ def test_a_certificate_holds_only_where_it_is_sure_in_every_way(response, doubte
     )
 
 
-def test_only_results_of_one_run_are_reported(response, tmp_path):
-    runs = rf.concat([response, response], "run")
+def test_only_results_are_reported(response, tmp_path):
+    measures = rf.measures.intensity_measures(rf.GroundMotion.sine_pulse())
     for given, words in (
         ("out.nc", "xr.open_dataset"),
-        (runs, "several runs over run"),
+        (measures, "no result of a run or of a study"),
         (response.drop_vars("overturned"), "no result of a run"),
     ):
         with pytest.raises(SchemaError, match=words):
             rf.report(given, tmp_path / "x.html")
     assert not (tmp_path / "x.html").exists()
+
+
+UNITS = {"force": "kN", "angle": "deg", "length": "mm", "acceleration": "g_0", "moment": "kN m"}
+PROJECT = {
+    "object": "Bell <tower>",
+    "checked_by": "C. Rossi",
+    "date": datetime.date(2026, 11, 24),
+    "conclusion": "It stands.",
+    "assumptions": ["Sound masonry.", "A level floor."],
+}
+BLOCK = rf.Block(width="0.6 m", height="2.4 m", mass="1 t")
+PADS = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
+SUITE = {
+    "long": rf.GroundMotion.sine_pulse("4 m/s^2", "1 Hz"),
+    "short": rf.GroundMotion.sine_pulse("4 m/s^2", "3 Hz"),
+}
+
+
+def words_of(path):
+    spaced = re.sub(r"</(td|th|strong|li)>", r" \g<0>", path.read_text(encoding="utf-8"))
+    page = Page(spaced)
+    assert page.open == []
+    assert all(one.startswith("data:image/") for one in page.addresses)
+    return " ".join(page.text.split())
+
+
+def test_what_was_asked_for_is_shown_in_the_units_of_the_reader(tmp_path):
+    run = rf.System(BLOCK, PADS).simulate(
+        SUITE["long"], outputs=("base_shear", "base_overturning_moment"),
+        points={"bell": ("0 m", "2 m")},
+    )  # fmt: skip
+    words = words_of(rf.report(run, tmp_path / "r.html", certify=False, units=UNITS))
+    largest = float(run.peak_base_shear) / 1e3
+    assert f"largest absolute base shear up to overturning {largest:.4g} kN" in words
+    top = run.point_horizontal_acceleration.sel(point="bell") / 9.80665
+    row = f"point horizontal acceleration (bell) g {float(top.min()):.4g} {float(top.max()):.4g}"
+    assert row in words
+    moment = run.base_overturning_moment / 1e3
+    assert f"base overturning moment kN m {float(moment.min()):.4g}" in words
+    assert f"largest absolute rotation {np.degrees(float(run.peak_rotation)):.4g} °" in words
+
+
+def test_a_report_says_whose_it_is_and_concludes(response, tmp_path):
+    path = rf.report(response, tmp_path / "r.html", certify=False, project=PROJECT)
+    words = words_of(path)
+    for said in ("Object Bell <tower>", "Checked by C. Rossi", "Date 2026-11-24",
+                 "Conclusion It stands.", "Assumptions Sound masonry. A level floor."):  # fmt: skip
+        assert said in words, said
+    assert path.read_text().count("<ol>") == 2  # what is assumed, and what is left out
+    for wrong, message in (
+        ({"objekt": "x"}, "project has no entry 'objekt': did you mean 'object'"),
+        ({"object": 3.5}, "object of the project must be text"),
+        ({"assumptions": "one"}, "assumptions must be a list"),
+        ("Tower", "project must be a mapping with any of object"),
+    ):
+        with pytest.raises(ComponentError, match=message):
+            rf.report(response, tmp_path / "x.html", project=wrong)
+    with pytest.raises(ComponentError, match="did you mean 'force'"):
+        rf.report(response, tmp_path / "x.html", units={"forces": "kN"})
+
+
+def test_a_sweep_has_all_its_cases_and_the_worst_in_full(tmp_path):
+    runs = rf.sweep(rf.System(BLOCK, PADS), motions=SUITE, scale=[0.5, 2.0])
+    words = words_of(rf.report(runs, tmp_path / "r.html", units=UNITS, project=PROJECT))
+    assert "Some cases overturned Of all 4 cases" in words
+    for motion in SUITE:
+        for scale in (0.5, 2.0):
+            one = runs.sel(motion=motion, scale=scale)
+            fate = "overturned" if bool(one.overturned) else "completed"
+            peak = np.degrees(float(one.peak_rotation))
+            assert f"{scale:g} {motion} {fate} {peak:.4g}" in words
+    mean = np.degrees(float(runs.peak_rotation.mean()))
+    assert f"mean of 4 {mean:.4g}" in words
+    # the worst falls first: its verdict is that of the run alone
+    alone = rf.case(runs, motion="long", scale=2.0).simulate()
+    assert "Simulated again: scale 2, motion long." in words
+    assert alone.attrs["verdict"] in words
+    assert "Ground acceleration along time" in words
+    assert "2 sine pulse" not in words
+
+
+def test_of_many_cases_the_worst_are_listed(tmp_path, monkeypatch):
+    monkeypatch.setattr(studies, "MOST_ROWS", 3)
+    runs = rf.sweep(rf.System(BLOCK), SUITE["long"], scale=[0.4, 0.7, 1.0, 1.3, 1.6])
+    words = words_of(rf.report(runs, tmp_path / "r.html"))
+    assert "The 3 worst of 5 cases." in words
+    assert "mean of 5" in words
+    fallen = [float(one) for one in runs.scale[runs.overturned.squeeze()]]
+    assert fallen
+    assert all(re.search(rf"\b{scale:g} .{{0,40}}overturned", words) for scale in fallen[:3])
+
+
+def test_every_analysis_has_a_report(tmp_path):
+    system = rf.System(BLOCK, PADS)
+    runs = rf.sweep(system, motions=SUITE, scale=[0.5, 1.0, 2.0])
+    for name, result, said in (
+        ("fragility", rf.fragility(runs, intensity="PGA"), "Limit states"),
+        ("critical", rf.critical_scale(system, SUITE["long"], largest=3.0), "Figure"),
+        ("joined", rf.concat([system.simulate(one) for one in SUITE.values()], "run"), "Cases"),
+    ):
+        words = words_of(rf.report(result, tmp_path / f"{name}.html"))
+        assert said in words, name
+        assert "Provenance" in words
+
+
+def test_the_motion_that_a_result_does_not_hold_can_be_handed_in(tmp_path):
+    record = rf.GroundMotion.from_arrays(([0.0, 3.0, -3.0, 0.0] * 40, "m/s^2"), "0.01 s")
+    run = rf.System(BLOCK).simulate(record, outputs=None)
+    words = words_of(rf.report(run, tmp_path / "r.html", motion=record))
+    assert "Certificate: the verdict" in words
+    assert "No certificate" not in words
+    with pytest.raises(SchemaError, match="whose samples are not those of the run"):
+        rf.report(run, tmp_path / "x.html", motion=record.scaled(2.0))
+
+
+def test_a_browser_prints_it_on_whole_sheets(response, tmp_path):
+    browser = which("chromium") or which("google-chrome")
+    if browser is None:
+        pytest.skip("neither chromium nor google-chrome is installed")
+    path = rf.report(response, tmp_path / "r.html", certify=False, project=PROJECT)
+    usual = ["--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={tmp_path}/profile"]
+    sheets = tmp_path / "r.pdf"
+    subprocess.run(
+        [browser, *usual, "--no-pdf-header-footer", f"--print-to-pdf={sheets}", path.as_uri()],
+        capture_output=True, timeout=120, check=True,
+    )  # fmt: skip
+    content = sheets.read_bytes()
+    assert 4 <= len(re.findall(rb"/Type\s*/Page\b", content)) <= 9
+    boxes = re.findall(rb"/MediaBox\s*\[0 0 ([\d.]+) ([\d.]+)\]", content)
+    assert {(round(float(x)), round(float(y))) for x, y in boxes} == {(595, 842)}  # A4, in points
 
 
 def test_the_limits_are_those_of_the_manual():

@@ -16,6 +16,7 @@ from rockframe.components.registry import kinds
 from rockframe.errors import AssemblyError, RockframeError, shown
 from rockframe.motion import GroundMotion
 from rockframe.motion.description import CONSTRUCTORS, OPERATIONS
+from rockframe.reports.project import project_json
 from rockframe.simulation.plan import read_arguments
 from rockframe.simulation.run_arguments import Certification, certification_of
 from rockframe.simulation.system import System
@@ -123,6 +124,7 @@ MODULES: Final = "modules"
 OPTIONS: Final = "system"
 MOTION: Final = "motion"
 RUN: Final = "run"
+PROJECT: Final = "project"
 _OF_ALL: Final = ("from_dict", "declared")
 """Class methods of all components, which are no way to describe one."""
 
@@ -134,7 +136,7 @@ def part_slots() -> tuple[str, ...]:
 
 def keys() -> tuple[str, ...]:
     """Give what a file of a scene may hold."""
-    return (MODULES, *part_slots(), OPTIONS, MOTION, RUN)
+    return (MODULES, *part_slots(), OPTIONS, MOTION, RUN, PROJECT)
 
 
 @dataclass(frozen=True)
@@ -146,6 +148,7 @@ class Described:
     # further arguments of :meth:`rockframe.System.simulate`
     run: dict[str, Any] = field(default_factory=dict)
     files: tuple[Path, ...] = ()  # all files that it was read from
+    project: str = ""  # what reports say of it, as results keep it
 
 
 def read_scene(path: str | Path) -> Described:
@@ -171,6 +174,7 @@ def described_scene(file: TomlFile) -> Described | None:
     ]  # fmt: skip
     motion = described_motion(file, (MOTION,), given[MOTION]) if MOTION in given else None
     run = _run_of(file, given[RUN]) if RUN in given else {}
+    project = _project_of(file, given[PROJECT]) if PROJECT in given else ""
     options = file.table((OPTIONS,), given.get(OPTIONS, {}))
     known = arguments_of(System.__init__, without=("parts",))
     hints = hints_of(System.simulate)  # of what belongs to the parts or to the run
@@ -179,7 +183,7 @@ def described_scene(file: TomlFile) -> Described | None:
     if not file.sound:
         return None
     system = made(file, (OPTIONS,), lambda **rest: System(*parts, **rest), options)
-    return None if system is None else Described(system, motion, run, tuple(file.files))
+    return None if system is None else Described(system, motion, run, tuple(file.files), project)
 
 
 def described_parts(file: TomlFile, slot: str, given: object) -> list[Component | None]:
@@ -275,6 +279,13 @@ def _run_of(file: TomlFile, given: object) -> dict[str, Any]:
     arguments = described_run(file, (RUN,), table)
     made(file, (RUN,), _read_arguments, arguments)
     return arguments
+
+
+def _project_of(file: TomlFile, given: object) -> str:
+    table = file.table((PROJECT,), given)
+    if table is None:
+        return ""
+    return made(file, (PROJECT,), lambda **rest: project_json(rest, PROJECT), table) or ""
 
 
 def _read_arguments(**given: Any) -> None:

@@ -53,6 +53,7 @@ class DescribedStudy:
     store: Path | None  # where the cases are kept, and the file of the results
     output: Path | None
     files: tuple[Path, ...]  # all files, and folders of files, that it was read from
+    project: str  # what reports say of it, as results keep it
 
 
 def read_study(path: str | Path) -> DescribedStudy:
@@ -74,7 +75,9 @@ def read_study(path: str | Path) -> DescribedStudy:
     taken = {name: value for name, value in scene.run.items() if name in _FROM_RUN}
     used = scene.motion if motions is None else motions
     files = (*file.files, *scene.files)
-    return DescribedStudy(scene.system, used, taken | arguments, store, output, files)
+    return DescribedStudy(
+        scene.system, used, taken | arguments, store, output, files, scene.project
+    )  # fmt: skip
 
 
 def sweep_keys() -> dict[str, bool]:

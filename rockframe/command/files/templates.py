@@ -20,6 +20,7 @@ from rockframe.components import Component, InitialState
 from rockframe.components.parameters import REQUIRED, Choice, Declared
 from rockframe.motion import GroundMotion
 from rockframe.motion.description import CONSTRUCTORS, OPERATIONS
+from rockframe.reports.project import ASSUMPTIONS, CONCLUSION, LINES
 from rockframe.simulation.system import System
 from rockframe.studies import sweep
 
@@ -158,6 +159,10 @@ def _lines() -> Iterator[str]:
     yield from _of_motion()
     yield from _of_function("run", "how it is simulated", System.simulate, names=run_keys())
     yield from _of_component("run.initial", "where the run starts", InitialState)
+    yield from _title("project", "what reports say of it")
+    yield from (f'{name} = ""' for name in LINES)
+    yield f'{CONCLUSION} = ""'.ljust(18) + "# a sentence"
+    yield f"{ASSUMPTIONS} = []".ljust(18) + "# a list of texts"
     yield from _of_study()
 
 

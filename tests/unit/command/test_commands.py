@@ -202,13 +202,14 @@ def test_a_table_of_cases_is_read(typed, folder):
         assert np.isfinite(runs.peak_rotation).all()
 
 
-def test_the_report_of_a_study_is_that_of_a_case(typed, folder):
+def test_the_report_of_a_study_is_that_of_all_or_of_a_case(typed, folder):
     (folder / "study.toml").write_text(
         'scene = "scene.toml"\n[axes]\nscale = [1.0, 2.0]\nwidth = ["0.7 m", "0.8 m"]\n'
     )
     assert typed("study", "study.toml", "-o", "runs.nc")[0] == 0
     for words, said in (
-        ([], "found a study over scale (2), width (2), motion (1); expected one of its cases"),
+        (["--units", "force"], "--units: expected NAME=VALUE, such as force=kN"),
+        (["--units", "force=kg"], "units['force'] needs a force"),
         (["--case", "scale"], "expected NAME=VALUE"),
         (["--case", "scale=3", "width=0.7 m"], "scale has no '3'"),
         (["--case", "scale=2"], "width"),
@@ -220,6 +221,27 @@ def test_the_report_of_a_study_is_that_of_a_case(typed, folder):
     with xr.open_dataset("runs.nc") as runs:
         verdict = rf.case(runs, scale=2.0, width="0.7 m").simulate().attrs["verdict"]
     assert verdict in (folder / "case.html").read_text()
+    assert typed("report", "runs.nc", "--units", "angle=deg")[0] == 0
+    assert "The worst case in full" in (folder / "runs.html").read_text()
+
+
+def test_the_file_of_a_scene_says_what_its_reports_say_of_the_project(typed, folder):
+    scene = (folder / "scene.toml").read_text()
+    project = '[project]\nobject = "Tower"\ndate = 2026-11-24\n'
+    (folder / "scene.toml").write_text(f"{scene}\n{project}")
+    assert typed("run", "scene.toml", "-o", "out.nc")[0] == 0
+    assert typed("report", "out.nc", "--no-certificate")[0] == 0
+    text = (folder / "out.html").read_text()
+    assert "Tower" in text
+    assert "2026-11-24" in text
+    (folder / "study.toml").write_text('scene = "scene.toml"\n[axes]\nscale = [1.0]\n')
+    assert typed("study", "study.toml", "-o", "runs.nc")[0] == 0
+    assert typed("report", "runs.nc")[0] == 0
+    assert "Tower" in (folder / "runs.html").read_text()
+    (folder / "scene.toml").write_text(f"{scene}\n[project]\nobjekt = 'Tower'\n")
+    code, _, err = typed("run", "scene.toml")
+    assert code == 2
+    assert "project has no entry 'objekt': did you mean 'object'" in err
 
 
 WRONG = {

@@ -1,0 +1,94 @@
+"""What a report is about, and who answers for it."""
+
+import datetime
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from difflib import get_close_matches
+from typing import Any, Final, cast
+
+import xarray as xr
+
+from rockframe.errors import ComponentError, shown
+from rockframe.reports import page
+
+ATTRIBUTE: Final = "project_json"
+"""Of a result, in which the command line keeps what a scene's file says of the project."""
+LINES: Final = {
+    "object": "Object",
+    "place": "Place",
+    "number": "Number",
+    "date": "Date",
+    "author": "Author",
+    "checked_by": "Checked by",
+}
+CONCLUSION: Final = "conclusion"
+ASSUMPTIONS: Final = "assumptions"
+
+
+@dataclass(frozen=True)
+class Project:
+    """What a report says beside what was computed."""
+
+    lines: tuple[tuple[str, str], ...] = ()
+    conclusion: str = ""
+    assumptions: tuple[str, ...] = ()
+
+    def block(self) -> Iterator[str]:
+        """Give the lines at the head of a report."""
+        if self.lines:
+            yield f'<div class="sheet">{page.rows(self.lines)}</div>'
+
+    def conclusions(self) -> Iterator[str]:
+        """Give the conclusion, which stands above all verdicts."""
+        if self.conclusion:
+            yield page.banner("Conclusion", self.conclusion, "")
+
+
+def project_of(given: object, dataset: xr.Dataset, owner: str) -> Project:
+    """Read a project, or what the result says of it where none is given."""
+    if given is None:
+        given = json.loads(str(dataset.attrs.get(ATTRIBUTE, "{}")))
+    return read_project(given, owner)
+
+
+def read_project(given: object, owner: str) -> Project:
+    """Read a project from a mapping."""
+    known = (*LINES, CONCLUSION, ASSUMPTIONS)
+    if not isinstance(given, Mapping):
+        msg = (
+            f"{owner}: project must be a mapping with any of {', '.join(known)}, got {shown(given)}"
+        )
+        raise ComponentError(msg)
+    values = cast("Mapping[Any, Any]", given)
+    for name in values:
+        if name not in known:
+            near = get_close_matches(str(name), known, 1)
+            meant = f"did you mean {near[0]!r}?" if near else f"known are {', '.join(known)}"
+            msg = f"{owner}: project has no entry {shown(name)}: {meant}"
+            raise ComponentError(msg)
+    assumptions = values.get(ASSUMPTIONS, ())
+    if not isinstance(assumptions, list | tuple):
+        msg = f"{owner}: assumptions must be a list of texts, got {shown(assumptions)}"
+        raise ComponentError(msg)
+    return Project(
+        tuple((title, _text(values[name], name, owner)) for name, title in LINES.items()
+              if name in values),
+        _text(values.get(CONCLUSION, ""), CONCLUSION, owner),
+        tuple(_text(one, ASSUMPTIONS, owner) for one in cast("list[object]", assumptions)),
+    )  # fmt: skip
+
+
+def project_json(given: Mapping[str, object], owner: str) -> str:
+    """Write a project, as results keep it."""
+    read_project(given, owner)
+    return json.dumps(given, default=str)
+
+
+def _text(given: object, name: str, owner: str) -> str:
+    if isinstance(given, datetime.date):  # TOML has dates
+        return given.isoformat()
+    if isinstance(given, str | int):
+        return str(given)
+    msg = f"{owner}: {name} of the project must be text, got {shown(given)}"
+    raise ComponentError(msg)
