@@ -15,7 +15,13 @@ from rockframe.shared_arguments import takes
 from rockframe.signals.arrays import Array
 from rockframe.simulation.friction import share_words
 from rockframe.studies.intensities import Intensity, intensity_in, of_study
-from rockframe.studies.limit_states import LimitState, exceeds, limit_states
+from rockframe.studies.limit_states import (
+    STATES,
+    exceeds,
+    labels_of_states,
+    limit_states,
+    states_json,
+)
 from rockframe.studies.lines import (
     CAPACITY,
     INTERRUPTED,
@@ -67,7 +73,8 @@ def incremental_dynamic_analysis(
         of 0.1 unless given [1].
     limits : iterable, optional
         Limit states beside overturning: ``"uplift"``, and peak rotations over the
-        overturning angle, such as 0.5 [1].
+        overturning angle, such as 0.5; or variables of runs, as for :func:`rockframe.fragility`
+        [1].
     intensity : str, optional
         An intensity measure that the result has beside the scale, such as ``"PGA"``; see
         :func:`rockframe.fragility`.
@@ -169,23 +176,12 @@ def incremental_dynamic_analysis(
         "title": "Incremental dynamic analysis of a rocking system",
         "source": narrow.attrs["source"],
         "capacity": CAPACITY,
+        STATES: states_json(states),
         "resolution": finest,
         "bracket_width": share,
         "verdict": _sentence(found),
     }
     return found
-
-
-def labels_of_states(states: Sequence[LimitState]) -> dict[str, xr.Variable]:
-    """Give the coordinates along limit states."""
-    labels = build_dataset(
-        {
-            "limit_state": np.array([state.name for state in states], dtype=object),
-            "rotation_limit": np.array([state.rotation for state in states]),
-        },
-        {},
-    )
-    return {str(name): labels[name].variable for name in labels.variables}
 
 
 def _at_the_least(found: xr.Dataset) -> Array:

@@ -1,6 +1,8 @@
 """Limit states of a rocking body, and which runs exceed them."""
 
-from collections.abc import Iterable
+import json
+import math
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, Final, cast
 
@@ -9,12 +11,16 @@ import xarray as xr
 
 from rockframe.arguments import checked_dataset
 from rockframe.errors import ComponentError, SchemaError, shown
+from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import overturns
+from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.runs import RunStatus
-from rockframe.units import Condition, to_ratio
+from rockframe.units import Condition, Measure, Unit, to_ratio, to_si
 
 UPLIFT: Final = "uplift"
 OVERTURNING: Final = "overturning"
+STATES: Final = "limits_json"
+"""Attribute by which a dynamic analysis keeps its limit states."""
 _SHARE: Final = Condition("above 0 and below 1", lambda value: 0.0 < value < 1.0)
 _NEEDED: Final = ("status", "peak_relative_rotation", "first_uplift_time", "overturned")
 _TOLD: Final = ("run_json", "axes_json", "motions_json", "motion_names", "study_sha256")
@@ -25,30 +31,86 @@ _TOLD: Final = ("run_json", "axes_json", "motions_json", "motion_names", "study_
 class LimitState:
     """What is asked of a run."""
 
-    rotation: float  # peak rotation over the overturning angle: 0 is uplift, 1 overturning [1]
+    # peak rotation over the overturning angle: 0 is uplift, 1 overturning; NaN of others [1]
+    rotation: float
+    variable: str = ""  # scalar of a run whose size tells, in other limit states
+    # from where on it exceeds, in its SI unit; NaN where it exceeds wherever there is a number
+    value: float = math.nan
+    label: str = ""  # which point, body or restrainer it is of
 
     @property
     def name(self) -> str:
         """Its label."""
-        named = {0.0: UPLIFT, 1.0: OVERTURNING}
-        return named.get(self.rotation, f"rotation {self.rotation:g}")
+        if not self.variable:
+            named = {0.0: UPLIFT, 1.0: OVERTURNING}
+            return named.get(self.rotation, f"rotation {self.rotation:g}")
+        words = [self.variable.replace("_", " "), self.label]
+        if not math.isnan(self.value):
+            unit = SCHEMA[self.variable].attributes().get("units", "1")
+            words += [f"{self.value:g}", "" if unit == "1" else unit]
+        return " ".join(filter(None, words))
 
 
 def limit_states(given: Iterable[object], *, owner: str) -> tuple[LimitState, ...]:
-    """Read the argument ``limits``."""
+    """Read the argument ``limits``: rotations by size, other limit states, overturning."""
     if isinstance(given, str | int | float):
         given = [given]
-    found = {1.0}
+    rotations, others = set[float](), dict[LimitState, None]()
     for one in given:
-        if one == UPLIFT:
-            found.add(0.0)
+        if isinstance(one, tuple):
+            others[_of_variable(cast("tuple[Any, ...]", one), owner)] = None
+        elif one == UPLIFT:
+            rotations.add(0.0)
         elif one != OVERTURNING:
-            found.add(
+            rotations.add(
                 to_ratio(
                     cast("Any", one), owner=owner, name="limits", condition=_SHARE, example="0.5"
                 )
             )
-    return tuple(LimitState(one) for one in sorted(found))
+    return (*map(LimitState, sorted(rotations)), *others, LimitState(1.0))
+
+
+def _of_variable(given: tuple[Any, ...], owner: str) -> LimitState:
+    """Read a limit state on a scalar of runs: its name, from where on, and of which point."""
+    name, value, label = (*given, None, None)[:3] if len(given) in (2, 3) else ("", None, None)
+    if not isinstance(name, str) or name not in SCHEMA:
+        msg = (
+            f"{owner}: a limit state on a variable of runs is its name, a value with a unit or "
+            "None, and of several points, bodies or restrainers which one, for example "
+            f"('peak_slip', '5 cm'); got {shown(given)}"
+        )
+        raise ComponentError(msg)
+    row, least = SCHEMA[name], math.nan
+    if value is not None and row.unit in (None, Unit.ONE):
+        least = to_ratio(value, owner=owner, name=name, example="0.5")
+    elif value is not None:
+        measure = Measure(row.long_name, Unit(row.unit or Unit.ONE), f"1 {row.unit}")
+        least = to_si(value, measure, owner=owner, name=name)
+    return LimitState(math.nan, name, least, "" if label is None else str(label))
+
+
+def labels_of_states(states: Sequence[LimitState]) -> dict[str, xr.Variable]:
+    """Give the coordinates along limit states."""
+    labels = build_dataset(
+        {
+            "limit_state": np.array([state.name for state in states], dtype=object),
+            "rotation_limit": np.array([state.rotation for state in states]),
+        },
+        {},
+    )
+    return {str(name): labels[name].variable for name in labels.variables}
+
+
+def states_json(states: Sequence[LimitState]) -> str:
+    """Write limit states as JSON."""
+    return json.dumps([list(vars(state).values()) for state in states])
+
+
+def states_of(analysis: xr.Dataset) -> tuple[LimitState, ...]:
+    """Give the limit states that a dynamic analysis, or a part of it, still has."""
+    names = np.atleast_1d(analysis["limit_state"].to_numpy()).tolist()
+    every = [LimitState(*one) for one in json.loads(analysis.attrs[STATES])]
+    return tuple(state for state in every if state.name in names)
 
 
 def check_runs(given: object, *, owner: str) -> xr.Dataset:
@@ -71,6 +133,13 @@ def exceeds(runs: xr.Dataset, state: LimitState) -> xr.DataArray:
     overturned = overturns(runs)
     if state.rotation == 1.0:
         return overturned
+    if state.variable:
+        values = _values(runs, state)
+        beyond = values.notnull() if math.isnan(state.value) else abs(values) >= state.value
+        known = runs["peak_relative_rotation"].notnull()
+        known = known if math.isnan(state.value) else known & values.notnull()
+        fell = runs["overturned"] == 1
+        return (beyond | fell).astype(float).where(known | fell)
     beyond = (
         runs["first_uplift_time"].notnull()
         if state.rotation == 0.0
@@ -78,6 +147,26 @@ def exceeds(runs: xr.Dataset, state: LimitState) -> xr.DataArray:
     )
     known = runs["peak_relative_rotation"].notnull()
     return (beyond | (runs["overturned"] == 1)).astype(float).where(known)
+
+
+def _values(runs: xr.Dataset, state: LimitState) -> xr.DataArray:
+    """Give the variable of a limit state, of the point that it is of."""
+    if state.variable not in runs:
+        msg = (
+            f"limits: the runs have no {state.variable}, which limit state {state.name!r} is on; "
+            f"they have {', '.join(str(one) for one in runs if str(one).startswith('peak_'))}"
+        )
+        raise SchemaError(msg)
+    values = runs[state.variable]
+    beside = [dim for dim in values.dims if dim not in runs["status"].dims]
+    labels = values[beside[0]].to_numpy().astype(str).tolist() if beside else [""]
+    if len(beside) > 1 or state.label not in labels:
+        msg = (
+            f"limits: {state.variable} is of {' and '.join(map(str, beside)) or 'the whole'}; "
+            f"give one of {', '.join(map(repr, labels))} third, got {state.label!r}"
+        )
+        raise ComponentError(msg)
+    return values.isel({beside[0]: labels.index(state.label)}, drop=True) if beside else values
 
 
 def interrupted(runs: xr.Dataset) -> bool:

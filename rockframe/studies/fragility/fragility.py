@@ -15,7 +15,6 @@ from rockframe.results.variables.analyses import LIMIT_STATE
 from rockframe.results.variables.studies import CASE, MOTION
 from rockframe.simulation.friction import share_words
 from rockframe.studies.confidence import read_level
-from rockframe.studies.dynamic_analysis import labels_of_states
 from rockframe.studies.fragility.labelling import Means, StructureTrials, fragility_dataset
 from rockframe.studies.fragility.likelihood import (
     Bands,
@@ -32,7 +31,9 @@ from rockframe.studies.limit_states import (
     check_names,
     check_runs,
     exceeds,
+    labels_of_states,
     limit_states,
+    states_of,
 )
 from rockframe.studies.lines import SCALE
 from rockframe.studies.sweeps.axes import Changes, free_values
@@ -204,6 +205,9 @@ def fragility(
     limits : iterable, optional
         Limit states beside overturning: ``"uplift"``, and peak rotations over the
         overturning angle; uplift unless given, and of a dynamic analysis those that it has [1].
+        Or on any scalar of the runs whose size tells: its name and a value with a unit, such
+        as ``("peak_slip", "5 cm")`` or ``("broken_restrainer_count", 1)``; and third, of points,
+        bodies or restrainers, which one. Overturning exceeds each of them.
     period : str or Quantity, optional
         Of the oscillator of a spectral intensity [s].
     motions : GroundMotion, or sequence or mapping of them, optional
@@ -392,11 +396,12 @@ def _of_counts(
 def _states(runs: xr.Dataset, limits: Iterable[object] | None) -> tuple[LimitState, ...]:
     if "capacity_scale" not in runs:
         return limit_states(("uplift",) if limits is None else limits, owner=_OWNER)
-    known = [float(one) for one in np.atleast_1d(runs["rotation_limit"].to_numpy())]
+    known = states_of(runs)
     if limits is None:
-        return tuple(LimitState(one) for one in known)
+        return known
     states = limit_states(limits, owner=_OWNER)
-    lacking = [state.name for state in states if state.rotation not in known]
+    names = [state.name for state in known]
+    lacking = [state.name for state in states if state.name not in names]
     if lacking:
         msg = f"{_OWNER}: the dynamic analysis was not asked for {', '.join(lacking)}"
         raise ComponentError(msg)
