@@ -7,8 +7,6 @@ them move, and whether friction holds or opposes the slip. All quantities per un
 import math
 from typing import Final, NamedTuple
 
-import numpy as np
-
 from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics import events
 from rockframe.dynamics.base import Guards
@@ -20,11 +18,9 @@ from rockframe.dynamics.protocol import (
     LAST_EVENT,
     MEMORY,
     Column,
-    ContactModel,
     Energies,
     Ground,
     Slope,
-    Start,
 )
 from rockframe.dynamics.rigid_ground import REST_AMPLITUDE
 from rockframe.dynamics.trigonometry import sine_cosine
@@ -504,55 +500,3 @@ class SlideRock(NamedTuple):
         lift = self.centre_rise(mode, state)
         body = rotation, rate, lift, up, place, shear, across, slope[ROTATION], sway, rise
         return body + (shear, bearing, left, right, state[SLIP], state[SIZE + SLIP])
-
-
-def ill_posed_friction(inertia: float, square: float) -> float:
-    """Give the least coefficient at which a slipping corner may jam, :eq:`eq-slide-painleve`.
-
-    From the inertia about the centre of mass over the mass, and the square of the distance of
-    that from the corner [m^2].
-    """
-    ratio = inertia / square
-    return 2.0 * math.sqrt(ratio * (1.0 + ratio))
-
-
-def impulse_lever(*, restitution: float, own: float, width: float, about_foot: float) -> float:
-    """Give where the impulse of a block that rolls over acts, :eq:`eq-slide-lever`.
-
-    Over the distance `own` of the corner that strikes from the foot of the centre of mass [m];
-    `about_foot` is the inertia about that foot over the mass [m^2].
-    """
-    lost = 1.0 - restitution
-    return lost * about_foot / (own * (width - lost * own))
-
-
-def slide_rock(system: SlideRock, *, mass: float) -> ContactModel:
-    """Assemble the model of a block that slides and rocks, of some mass [kg]."""
-    gravity = system.gravity
-    least = min(system.left, system.right)
-    angle, radius = math.atan2(least, system.height), math.hypot(least, system.height)
-    frequency = math.sqrt(gravity * radius / (system.inertia + radius * radius))
-    size = np.array([least, angle, least])
-
-    def initial(start: Start) -> tuple[int, Vector, Vector]:
-        rotation, rate = start.rotation or 0.0, start.angular_velocity
-        leans = rotation or rate
-        bears = FULL if leans == 0.0 else ON_RIGHT if leans > 0.0 else ON_LEFT
-        state = np.array([0.0, rotation, 0.0, 0.0, rate, 0.0])
-        return SLIPS * bears + HELD, state, np.zeros(len(REMEMBERED))
-
-    return ContactModel(
-        name="sliding on rigid ground",
-        system=system,
-        rotation_limits=(angle, angle),
-        rotation_weights=np.array([0.0, 1.0, 0.0]),
-        scales=np.concatenate([size, frequency * size]),
-        guard_tolerance=np.array([1e-15, 1e-15, *(1e-14,) * 4]),
-        columns=COLUMNS,
-        memory=REMEMBERED,
-        mass=mass,
-        fastest_frequency=frequency,
-        damping_rate=0.0,
-        energy_scale=gravity * radius * angle,
-        initial=initial,
-    )

@@ -41,7 +41,8 @@ class SlidingSetting(RigidGroundSetting):
 
     def system(self) -> "SlideRock":
         """Give the equations."""
-        from rockframe.dynamics.slide_rock import SlideRock, impulse_lever
+        from rockframe.dynamics.slide_rock import SlideRock
+        from rockframe.dynamics.slide_rock_model import impulse_lever
 
         body = self.body
         left, right = (
@@ -68,7 +69,7 @@ class SlidingSetting(RigidGroundSetting):
 
     def contact_model(self) -> "ContactModel":
         """Give the equations of slip, rotation and rise."""
-        from rockframe.dynamics.slide_rock import slide_rock
+        from rockframe.dynamics.slide_rock_model import slide_rock
 
         return slide_rock(self.system(), mass=self.body.mass)
 
@@ -162,7 +163,7 @@ def _sliding(setting: SlidingSetting) -> SlidingSetting:
 
 def _ill_posed(setting: SlidingSetting) -> list[str]:
     """Refuse friction with which a corner that slips may jam, :eq:`eq-slide-painleve`."""
-    from rockframe.dynamics.slide_rock import ill_posed_friction
+    from rockframe.dynamics.slide_rock_model import ill_posed_friction
 
     body, kinetic = setting.body, setting.kinetic
     limit = ill_posed_friction(
