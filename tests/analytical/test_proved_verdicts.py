@@ -38,6 +38,10 @@ def system(slenderness, radius=5.0, eccentricity=0.0, *, rounded=False):
     return rf.System(block, gravity="9.81 m/s^2")
 
 
+PADS = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
+SLIPPING = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1, friction=0.4)
+
+
 def half_sine(seconds=1.0, up=0.0, step=0.005):
     k = np.arange(round(seconds / step) + 1)
     across = np.round(np.sin(np.pi * k * step / seconds), 12) * 9.81
@@ -115,13 +119,9 @@ def test_a_tolerance_is_proved_or_said_to_be_too_wide():
     ("change", "words"),
     [
         (lambda b, m: (rf.System(b, rotation="small"), m), "finite"),
-        (
-            lambda b, m: (
-                rf.System(b, rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)),
-                m,
-            ),
-            "rigid ground",
-        ),
+        (lambda b, m: (rf.System(b, PADS, restraint="leading-corner"), m), "contact-state"),
+        (lambda b, m: (rf.System(b, PADS, inclination="1 deg"), m), "level ground"),
+        (lambda b, m: (rf.System(b, SLIPPING), m), "without friction"),
         (
             lambda b, m: (rf.System(b, rf.RearWall(side="left", restitution=-0.3)), m),
             "without a RearWall",
@@ -150,3 +150,30 @@ def test_a_motion_that_never_tips_the_block_has_no_critical_scale():
     still = rf.GroundMotion.from_arrays((np.zeros(3), "m/s^2"), "0.01 s")
     with pytest.raises(ComponentError, match="another verdict"):
         rf.prove_critical_scale(system(4), still)
+
+
+@pytest.mark.parametrize(
+    ("rotation", "scale", "verdict"),
+    [("finite", 0.3, "safe for ever"), ("finite", 0.5, "overturns"), ("small", 0.5, "overturns")],
+)
+def test_verdicts_on_pads_are_proved_and_runs_agree(rotation, scale, verdict):
+    block = rf.Block.from_size(radius="5 m", slenderness=4, mass="50 t")
+    scene = rf.System(block, PADS, rotation=rotation, gravity="9.81 m/s^2")
+    proof = rf.prove(scene, half_sine(), scale=scale)
+    assert proof.verdict == verdict
+    assert "two pads" in str(proof)
+    if proof.overturns:
+        run = scene.simulate(half_sine().scaled(scale), duration="3 s", accuracy="reference")
+        assert proof.latest - proof.earliest < 1e-12
+        assert float(run.overturning_time) == pytest.approx(proof.earliest, abs=1e-9)
+
+
+def test_a_tolerance_of_restitutions_on_pads_is_carried_through_impacts():
+    block = rf.Block.from_size(radius="2 m", slenderness=4, mass="1 t")
+    k = np.arange(101)
+    across = 4.8 * np.round(np.sin(2.0 * np.pi * k * 0.01), 12)
+    motion = rf.GroundMotion.from_arrays((across, "m/s^2"), "10 ms")
+    proof = rf.prove(rf.System(block, PADS), motion, restitution_tolerance=1e-6)
+    assert proof.overturns
+    assert proof.impacts == 1
+    assert 1e-9 < proof.latest - proof.earliest < 1e-4

@@ -400,7 +400,8 @@ def _positive(value: Curve, change: Curve, until: float, *, fresh: bool, falls: 
     own = (of * powers)[1:]
     edges = [(until * i / _PIECES, until * (i + 1) / _PIECES, 0) for i in range(_PIECES)]
     lost = 1e-14 * (value.size + change.size)
-    while edges:
+    down = until
+    while edges:  # from the last piece to the first
         begin, end, depth = edges.pop()
         middle, half = 0.5 * (begin + end), 0.5 * (end - begin) * UPWARDS
         tilt = abs(float(np.polynomial.polynomial.polyval(middle, own)))
@@ -411,7 +412,8 @@ def _positive(value: Curve, change: Curve, until: float, *, fresh: bool, falls: 
         away = half * turn + change.error + lost
         if fresh and begin == 0.0 and rise > away:
             continue
-        if falls and end == until and rise < -away:
+        if falls and end == down and rise < -away:
+            down = begin  # from here on it falls all the way to its zero
             continue
         if depth == _DEEPEST:
             return False
