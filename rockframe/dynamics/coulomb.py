@@ -6,7 +6,7 @@ from typing import NamedTuple
 from rockframe.compiled import inlined
 
 
-class Answers(NamedTuple):
+class ImpulseResponse(NamedTuple):
     """What unit impulses do to the velocities of the point that strikes."""
 
     normal_by_normal: float
@@ -17,7 +17,7 @@ class Answers(NamedTuple):
 
 @inlined
 def coulomb_impulse(
-    answers: Answers, slip: float, sinking: float, friction: float
+    answers: ImpulseResponse, slip: float, sinking: float, friction: float
 ) -> tuple[float, float]:
     """Give the impulses along and normal to the base that take a normal velocity away.
 

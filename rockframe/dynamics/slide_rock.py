@@ -10,7 +10,7 @@ from typing import Final, NamedTuple
 from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics import events
 from rockframe.dynamics.base import Guards
-from rockframe.dynamics.coulomb import Answers, coulomb_impulse
+from rockframe.dynamics.coulomb import ImpulseResponse, coulomb_impulse
 from rockframe.dynamics.events import IMPACT, REST, SEPARATION, SILENT, UPLIFT
 from rockframe.dynamics.protocol import (
     BODY_COLUMNS,
@@ -347,7 +347,9 @@ class SlideRock(NamedTuple):
         """
         inertia, friction = self.inertia, self.impulsive
         mixed, along = -beside * above / inertia, 1.0 + above * above / inertia
-        answers = Answers(1.0 + lever * beside * beside / inertia, mixed, lever * mixed, along)
+        answers = ImpulseResponse(
+            1.0 + lever * beside * beside / inertia, mixed, lever * mixed, along
+        )
         if friction == math.inf and slip * mixed < sinking * along:
             friction = self.kinetic  # to hold the corner the ground would have to pull
         return coulomb_impulse(answers, slip, sinking, friction)

@@ -40,7 +40,7 @@ def register(
         The class of a link, with ``law``, which stands in scenes as a Restrainer does; that of a
         base, with ``slot`` and ``support``, which stands in scenes as pads or soil do; that of a
         scene, with the parts that make it and equations of its own; or a function of the state,
-        which gives a :class:`~rockframe.Diagnostic`.
+        which gives a :class:`~rockframe.extension.Diagnostic`.
     columns : sequence of Variable, optional
         What a base or a scene shows and no other does: over ``time``, over ``event``, over
         dimensions of its own, for each of which there is a column of its name with labels, or
