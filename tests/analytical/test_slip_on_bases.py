@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import rockframe as rf
-from rockframe.dynamics.coulomb import Answers, coulomb_impulse
+from rockframe.dynamics.coulomb import ImpulseResponse, coulomb_impulse
 from rockframe.errors import AssemblyError, ComponentError
 
 pytestmark = [pytest.mark.analytical, pytest.mark.filterwarnings("ignore")]
@@ -103,7 +103,7 @@ def test_an_impulse_dissipates_whatever_the_friction():
         matrix = root @ root.T + 0.01 * np.eye(2)
         before = np.array([rng.normal(), -rng.random()])  # along, normal
         share = rng.random()
-        answers = Answers(matrix[1, 1], matrix[1, 0], matrix[0, 1], matrix[0, 0])
+        answers = ImpulseResponse(matrix[1, 1], matrix[1, 0], matrix[0, 1], matrix[0, 0])
         friction = rng.choice([0.0, rng.random(), 3.0])
         impulse = np.array(coulomb_impulse(answers, before[0], share * before[1], friction))
         after = before + matrix @ impulse

@@ -29,7 +29,7 @@ from rockframe.dynamics.chain.motion import (
 )
 from rockframe.dynamics.chain.rows import COLUMNS, GUARDS, MODES, PLACES, Lists
 from rockframe.dynamics.chain.system import Chain
-from rockframe.dynamics.coulomb import Answers, coulomb_impulse
+from rockframe.dynamics.coulomb import ImpulseResponse, coulomb_impulse
 from rockframe.dynamics.events import IMPACT, PIVOT_CHANGE, REENGAGEMENT, SEPARATION, SILENT
 from rockframe.dynamics.on_base import HOLD, PIVOT, SLIP, Mode, SlidingGuards
 from rockframe.dynamics.protocol import (
@@ -308,7 +308,7 @@ class SlippingChain(Chain):
         normal_by_normal, along_by_normal = rises + lever * self.turned(k), slides
         rises, slides = self.answers(k, 0.0, 0.0, 1.0, mode, state)
         along, normal = coulomb_impulse(
-            Answers(normal_by_normal, rises + lever * self.turned(k), along_by_normal, slides),
+            ImpulseResponse(normal_by_normal, rises + lever * self.turned(k), along_by_normal, slides),
             slip, (1.0 - part.base.rebound(left)) * speed, self.friction_of(k, KINETIC),
         )  # fmt: skip
         self.answers(k, normal, normal * lever, along, mode, state)
