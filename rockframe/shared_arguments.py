@@ -76,6 +76,9 @@ def takes(kind: type, **otherwise: object) -> Callable[[Function], Function]:
 
 def _unknown(function: str, name: str, known: Iterable[str]) -> str:
     names = list(known)
+    # an axis has the name of a parameter, so that `width` is always that of a block
+    if f"bracket_{name}" in names:
+        return f"{function}() takes no {name!r}; the width of a bracket is 'bracket_{name}'"
     return f"{function}() takes no {name!r}{meant(name, names)} It takes {', '.join(names)}"
 
 

@@ -87,7 +87,8 @@ def critical_scale(
     bracket_width : float, optional
         Width of a bracket, over its upper scale [1].
     intensity : str, optional
-        Intensity measure whose value at the critical scale is wanted: a name of
+        Intensity measure whose value at the critical scale is wanted: ``"PGA"`` and other
+        abbreviations of :func:`rockframe.fragility`, or a name of
         :func:`rockframe.intensity_measures`, such as ``"peak_ground_acceleration"``, or of
         :func:`rockframe.response_spectrum`, such as ``"pseudo_spectral_acceleration"``.
     period : str or Quantity, optional

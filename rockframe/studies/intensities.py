@@ -195,6 +195,7 @@ class ScaledIntensity:
         owner: str,
     ) -> None:
         self._motion = motion
+        name = SHORT.get(name, name) if isinstance(name, str) else name
         self._block = system.parts.block
         self._gravity = quantity(system.options.gravity, ACCELERATION)
         self._damping = to_ratio(damping_ratio, owner=owner, name="damping_ratio")

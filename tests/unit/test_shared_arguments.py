@@ -157,3 +157,9 @@ def test_values_are_checked_in_one_place():
         rf.rocking_spectrum(
             SYSTEM, PULSE, periods=([2.0], "s"), duration="3 s", free_vibration="1 s"
         )
+
+
+def test_the_width_of_a_bracket_is_told_from_that_of_a_block():
+    for analysis in (rf.critical_scale, rf.incremental_dynamic_analysis, rf.overturning_map):
+        with pytest.raises(TypeError, match="the width of a bracket is 'bracket_width'"):
+            analysis(width=0.01)

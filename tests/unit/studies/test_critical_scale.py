@@ -169,6 +169,9 @@ def test_the_critical_scale_as_an_intensity(found):
         assert told[name].item() == pytest.approx(critical**power * one.item(), rel=1e-9)
         assert told[name].attrs == one.attrs
         assert told.intensity == name
+        if name == "peak_ground_acceleration":
+            short = rf.critical_scale(ON_SOIL, PULSE, intensity="PGA", **options)
+            xr.testing.assert_identical(short.drop_attrs(), told.drop_attrs())
     name = "pseudo_spectral_acceleration"
     told = rf.critical_scale(
         ON_SOIL, PULSE, intensity=name, period="0.5 s", damping_ratio=0.02, **options
@@ -202,7 +205,7 @@ def test_what_cannot_be_asked_is_refused():
         ({"scales": 1}, ComponentError, "scales must be a whole number from 2"),
         ({"scales": 50, "runs": 40}, ComponentError, "runs must be a whole number from 50"),
         ({"bracket_width": 0.0}, ComponentError, "bracket_width must be from 1e-12 to 0.1"),
-        ({"intensity": "PGA"}, ComponentError, "must be one of .*peak_ground_acceleration"),
+        ({"intensity": "PGX"}, ComponentError, "must be one of .*peak_ground_acceleration"),
         ({"intensity": "uplift_acceleration"}, ComponentError, "must be one of"),
         ({"intensity": "spectral_displacement"}, ComponentError, "needs a period"),
         (
