@@ -93,8 +93,9 @@ def test_a_run_with_fifty_digits_is_inside(name, exact_runs):
     assert DIGITS * math.log2(10.0) > BITS
 
 
-def test_a_run_with_another_restitution_is_inside_a_set_of_them():
-    name, tolerance = "symmetric", 1e-9
+@pytest.mark.parametrize("tolerance", [1e-9, 1e-6])
+def test_a_run_with_another_restitution_is_inside_a_set_of_them(tolerance):
+    name = "symmetric"
     block = numbers(SYMMETRIC)
     boxes, _ = enclosures(name, tolerance=tolerance)
     for share in (-0.999, 0.6):
@@ -102,6 +103,21 @@ def test_a_run_with_another_restitution_is_inside_a_set_of_them():
         assert holds(boxes, ExactRun(near, *CASES[name][1:]).run())
     far = changed(block, 40.0 * tolerance)
     assert not holds(boxes, ExactRun(far, *CASES[name][1:]).run())
+
+
+def test_members_of_a_set_may_strike_before_a_sample_and_after_it(monkeypatch):
+    tolerance, sample, across = 1e-3, 53, (0.82 * ACROSS).round(6)
+    monkeypatch.setitem(CASES, "about a sample", (SYMMETRIC, across, None))
+    boxes, _ = enclosures("about a sample", tolerance=tolerance)
+    assert max(boxes) > sample
+    struck = set()
+    for share in (-0.999, -0.3, 0.3, 0.9):
+        run = ExactRun(changed(numbers(SYMMETRIC), share * tolerance), across, None).run()
+        there = boxes.pop(sample)  # there all are told as though they had struck
+        assert holds(boxes, run)
+        boxes[sample] = there
+        struck.add(run.sides[sample])
+    assert struck == {-1, 1}
 
 
 def changed(block, by):
