@@ -15,7 +15,7 @@ import xarray as xr
 from rockframe.plot._artists import CONTACT, SOIL, Layout
 from rockframe.plot._axes import BLUE, GREEN, ORANGE, RELATIVE, VERMILLION, unit_of
 from rockframe.plot._checks import check_run
-from rockframe.plot._response import CONTACT_COLOURS, of_rotation, states_of, strips_of
+from rockframe.plot._response import CONTACT_COLOURS, contact_names_of, of_rotation, strips_of
 from rockframe.plot._runs import Run, runs_of
 from rockframe.plot._scene import Moving
 from rockframe.signals.arrays import Array
@@ -309,7 +309,7 @@ def _strip(state: xr.DataArray, words: str) -> dict[str, Any]:
     """Give the instants at which contact changes, and the state after each."""
     values, time = state.to_numpy(), state["time"].to_numpy()
     changes = np.flatnonzero(np.diff(values, prepend=values[0] - 1))
-    names = dict(states_of(state))
+    names = dict(contact_names_of(state))
     return {"words": words, "times": [round(float(time[k]), 6) for k in changes],
             "states": [names[int(values[k])] for k in changes]}  # fmt: skip
 

@@ -77,7 +77,7 @@ def draw_contact_legend(axes: "Axes", state: xr.DataArray) -> None:
     """Name the colours below the strip."""
     from matplotlib.patches import Patch
 
-    names = [name for _, name in states_of(state)]
+    names = [name for _, name in contact_names_of(state)]
     axes.legend(
         handles=[Patch(facecolor=CONTACT_COLOURS[name], label=name) for name in names],
         loc="upper center", bbox_to_anchor=(0.5, -1.6), ncols=len(names),
@@ -92,14 +92,14 @@ def mixed_colours(state: xr.DataArray, columns: int) -> Any:
     time, values = state["time"].to_numpy(), state.to_numpy()
     edges = np.linspace(time[0], time[-1], columns + 1)
     colours = np.zeros((columns, 3))
-    for value, name in states_of(state):
+    for value, name in contact_names_of(state):
         held = np.concatenate([[0.0], np.cumsum(np.diff(time) * (values[:-1] == value))])
         share = np.diff(np.interp(edges, time, held)) / np.diff(edges)
         colours += share[:, np.newaxis] * np.array(to_rgb(CONTACT_COLOURS[name]))
     return np.clip(colours, 0.0, 1.0)
 
 
-def states_of(state: xr.DataArray) -> list[tuple[int, str]]:
+def contact_names_of(state: xr.DataArray) -> list[tuple[int, str]]:
     """Give the numbers of contact states with their names."""
     meanings = str(state.attrs["flag_meanings"]).split()
     return list(zip(state.attrs["flag_values"], meanings, strict=True))

@@ -308,7 +308,9 @@ class SlippingChain(Chain):
         normal_by_normal, along_by_normal = rises + lever * self.turned(k), slides
         rises, slides = self.answers(k, 0.0, 0.0, 1.0, mode, state)
         along, normal = coulomb_impulse(
-            ImpulseResponse(normal_by_normal, rises + lever * self.turned(k), along_by_normal, slides),
+            ImpulseResponse(
+                normal_by_normal, rises + lever * self.turned(k), along_by_normal, slides
+            ),
             slip, (1.0 - part.base.rebound(left)) * speed, self.friction_of(k, KINETIC),
         )  # fmt: skip
         self.answers(k, normal, normal * lever, along, mode, state)
