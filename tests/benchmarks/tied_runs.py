@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 
 import rockframe as rf
+from rockframe.errors import RockframeError
 
 DATA = Path(__file__).resolve().parents[2] / "docs" / "data" / "tied_runs.json"
 SEED = 31
@@ -114,11 +115,11 @@ def run(number):
     """Run a scene: its level, how it ended, and how well its energy is in balance."""
     try:
         system, motion, asked = drawn(number)
-    except rf.RockframeError as refused:
+    except RockframeError as refused:
         return "refused", str(refused).splitlines()[-1], 0.0
     try:
         found = system.simulate(motion, **asked)
-    except rf.RockframeError as refused:
+    except RockframeError as refused:
         return "refused", str(refused).splitlines()[-1], 0.0
     status = found.status
     names = str(status.attrs["flag_meanings"]).split()
