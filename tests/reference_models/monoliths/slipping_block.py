@@ -378,7 +378,8 @@ class Block:
                 peak = max(peak, float(fit[2] - fit[1] ** 2 / (4.0 * fit[0])))
             peak = max(peak, float(np.abs(ran.y[2]).max()))
             t, z = float(ran.t[-1]), ran.y[:, -1].copy()
-            peak_slip = max(peak_slip, abs(self.offset + self.place(z)))
+            if ran.status == 1 or not self.flies():
+                peak_slip = max(peak_slip, abs(self.offset + self.place(z)))
             if ran.status == 1:
                 hit = next(k for k, times in enumerate(ran.t_events) if len(times))
                 if hit == len(names):
