@@ -16,14 +16,14 @@ from rockframe.proof.balls import (
     upper,
 )
 from rockframe.proof.flow import nearly_still, sweep
-from rockframe.proof.problem import Corner, Ground, Problem, Undecided, acceleration
-from rockframe.proof.states import States
+from rockframe.proof.problem import RockingCorner, GroundPiece, Problem, Undecided, acceleration
+from rockframe.proof.states import StateSet
 
 
 class Struck(NamedTuple):
     """A set after its impacts, as if all of it had struck now."""
 
-    states: States
+    states: StateSet
     at: Ball  # when its members strike, from now [s]
     speed: Ball  # bound of their speeds, and of those with which they leave the ground
 
@@ -36,7 +36,13 @@ class _Reset(NamedTuple):
     leaving: Ball
 
 
-def struck(states: States, old: Corner, new: Corner, before: Ground, after: Ground) -> Struck:
+def struck(
+    states: StateSet,
+    old: RockingCorner,
+    new: RockingCorner,
+    before: GroundPiece,
+    after: GroundPiece,
+) -> Struck:
     """Enclose a set after its impacts.
 
     Every member has its impact at its own instant near now, enclosed by a step of Newton's method
@@ -53,7 +59,9 @@ def struck(states: States, old: Corner, new: Corner, before: Ground, after: Grou
     return Struck(image, whole.at, upper(whole.leaving.union(image.box()[1])))
 
 
-def _reset(state: Row, old: Corner, new: Corner, before: Ground, after: Ground) -> _Reset:
+def _reset(
+    state: Row, old: RockingCorner, new: RockingCorner, before: GroundPiece, after: GroundPiece
+) -> _Reset:
     """Enclose states after impact, with derivatives."""
     rotation, rate = state
     if not rate * old.sign < 0:
@@ -62,7 +70,9 @@ def _reset(state: Row, old: Corner, new: Corner, before: Ground, after: Ground) 
     reach = 2 * upper(rotation) / ball(rate.abs_lower()) + ball(2) ** -400
     window = upper(reach) * WITHIN_ONE
     one, other = before.at(window), after.at(window)
-    ground = Ground([one.along[0].union(other.along[0])], [one.weight[0].union(other.weight[0])])
+    ground = GroundPiece(
+        [one.along[0].union(other.along[0])], [one.weight[0].union(other.weight[0])]
+    )
     there = sweep(state, old, ground, window)
     at = -rotation / there.rate
     if not (there.rate * old.sign < 0 and window.contains(at)):
@@ -102,7 +112,7 @@ def resting_after(impact: Struck, problem: Problem, number: int, after: Ball) ->
     return None
 
 
-def _bounces(box: Row, problem: Problem, ground: Ground) -> Ball | None:
+def _bounces(box: Row, problem: Problem, ground: GroundPiece) -> Ball | None:
     """Bound the time of all bounces under a ground, if it is what it is for as long."""
     height, speed = (upper(one) for one in box)
     corners = problem.right, problem.left

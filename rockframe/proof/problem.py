@@ -14,7 +14,7 @@ class Undecided(Exception):  # noqa: N818  (an answer, no error)
     """Nothing is proved, for the reason that it gives."""
 
 
-class Corner(NamedTuple):
+class RockingCorner(NamedTuple):
     """A corner that a block rocks on, by numbers of the law :eq:`eq-rigid-rocking`."""
 
     sign: int  # of the rotation
@@ -24,22 +24,24 @@ class Corner(NamedTuple):
     limit: Ball  # rotation that is called overturning
 
     @classmethod
-    def of(cls, sign: int, corner: RockingCorner, limit: float, tolerance: float) -> "Corner":
+    def of(
+        cls, sign: int, corner: RockingCorner, limit: float, tolerance: float
+    ) -> "RockingCorner":
         """Take the floats of a run, and a tolerance of the restitution."""
         ratio = ball(corner.radius) / ball(corner.inertia)
         restitution = ball(corner.restitution) + ball(0, tolerance)
         return cls(sign, ball(corner.angle), ratio, restitution, ball(limit))
 
 
-class Ground(NamedTuple):
+class GroundPiece(NamedTuple):
     """Acceleration along the base, and gravity with that normal to it: polynomials of time."""
 
     along: Row
     weight: Row
 
-    def at(self, time: Ball) -> "Ground":
+    def at(self, time: Ball) -> "GroundPiece":
         """Give the polynomials about another time; about all times of a ball."""
-        return Ground(moved(self.along, time), moved(self.weight, time))
+        return GroundPiece(moved(self.along, time), moved(self.weight, time))
 
 
 @dataclass(frozen=True)
@@ -50,7 +52,7 @@ class Shaking:
     scale: Ball
     slope: Slope
     still_step: float  # length of the intervals after the motion, when the ground is still [s]
-    _known: dict[int, Ground] = field(default_factory=dict[int, Ground], kw_only=True)
+    _known: dict[int, GroundPiece] = field(default_factory=dict[int, GroundPiece], kw_only=True)
 
     @property
     def count(self) -> int:
@@ -66,14 +68,14 @@ class Shaking:
         moving, still = min(number, self.count), max(0, number - self.count)
         return moving * ball(self.motion.time_step) + still * ball(self.still_step) + after
 
-    def ground(self, number: int) -> Ground:
+    def ground(self, number: int) -> GroundPiece:
         """Give the ground in an interval, by the time since its start, :eq:`eq-incline-ground`."""
         number = min(number, self.count)
         if number not in self._known:
             self._known[number] = _ground(self, number)
         return self._known[number]
 
-    def ground_over(self, number: int, after: Ball, span: Ball) -> Ground:
+    def ground_over(self, number: int, after: Ball, span: Ball) -> GroundPiece:
         """Enclose all values of the ground over a span of time from an instant of an interval."""
         along, weight = list[Ball](), list[Ball]()
         while True:
@@ -83,7 +85,7 @@ class Shaking:
             along.append(values.along[0])
             weight.append(values.weight[0])
             if span < left:
-                return Ground([hull(along)], [hull(weight)])
+                return GroundPiece([hull(along)], [hull(weight)])
             span, number, after = span - left, number + 1, ZERO
 
 
@@ -91,8 +93,8 @@ class Shaking:
 class Problem(Shaking):
     """A block under a motion."""
 
-    right: Corner
-    left: Corner
+    right: RockingCorner
+    left: RockingCorner
     frequency: float  # p of the faster corner [1/s]
 
     @classmethod
@@ -111,25 +113,25 @@ class Problem(Shaking):
         frequency = (slope.gravity * fastest) ** 0.5
         return cls(
             motion, ball(scale), slope, still_step / frequency,
-            Corner.of(1, block.right, limits.right, tolerance),
-            Corner.of(-1, block.left, limits.left, tolerance), frequency,
+            RockingCorner.of(1, block.right, limits.right, tolerance),
+            RockingCorner.of(-1, block.left, limits.left, tolerance), frequency,
         )  # fmt: skip
 
-    def corner(self, sign: int) -> Corner:
+    def corner(self, sign: int) -> RockingCorner:
         """Give the corner that bears while the rotation has a sign."""
         return self.right if sign > 0 else self.left
 
 
-def _ground(problem: Shaking, number: int) -> Ground:
+def _ground(problem: Shaking, number: int) -> GroundPiece:
     inclination, gravity = ball(problem.slope.inclination), ball(problem.slope.gravity)
     across, up = (_component(problem, number, vertical=one) for one in (False, True))
     if problem.slope.level:
-        return Ground(across, [gravity + up[0], *up[1:]])
+        return GroundPiece(across, [gravity + up[0], *up[1:]])
     sine, cosine = inclination.sin_cos()
     pairs = list(zip_longest(across, up, fillvalue=ZERO))
     along = [x * cosine + y * sine for x, y in pairs]
     weight = [y * cosine - x * sine for x, y in pairs]
-    return Ground(
+    return GroundPiece(
         [along[0] + gravity * sine, *along[1:]], [weight[0] + gravity * cosine, *weight[1:]]
     )
 
@@ -149,18 +151,18 @@ def _component(problem: Shaking, number: int, *, vertical: bool) -> Row:
     return [problem.scale * each / step**power for power, each in enumerate(row)]
 
 
-def acceleration(rotation: Ball, corner: Corner, ground: Ground) -> Ball:
+def acceleration(rotation: Ball, corner: RockingCorner, ground: GroundPiece) -> Ball:
     """Give the angular acceleration, of the ground at the start of its polynomials."""
     sine, cosine = (corner.angle * corner.sign - rotation).sin_cos()
     return -corner.ratio * (ground.weight[0] * sine + ground.along[0] * cosine)
 
 
-def stiffness(rotation: Ball, corner: Corner, ground: Ground) -> Ball:
+def stiffness(rotation: Ball, corner: RockingCorner, ground: GroundPiece) -> Ball:
     """Give the derivative of the angular acceleration with respect to the rotation."""
     sine, cosine = (corner.angle * corner.sign - rotation).sin_cos()
     return corner.ratio * (ground.weight[0] * cosine - ground.along[0] * sine)
 
 
-def strongest(corner: Corner, ground: Ground) -> Ball:
+def strongest(corner: RockingCorner, ground: GroundPiece) -> Ball:
     """Bound the angular acceleration at any rotation and its derivative, :eq:`eq-proof-field`."""
     return upper(corner.ratio * (abs(ground.weight[0]) + abs(ground.along[0])))

@@ -3,13 +3,13 @@
 from itertools import zip_longest
 
 from rockframe.proof.balls import ZERO, Ball, slope, value
-from rockframe.proof.problem import Ground, Problem, Undecided
+from rockframe.proof.problem import GroundPiece, Problem, Undecided
 
 _HALVINGS = 50
 _NEWTON_STEPS = 12
 
 
-def lifts(problem: Problem, ground: Ground, left: Ball) -> tuple[Ball, int] | None:
+def lifts(problem: Problem, ground: GroundPiece, left: Ball) -> tuple[Ball, int] | None:
     """Give when it lifts within a time, and the sign of its rotation; None if it stands."""
     found: list[tuple[Ball, int]] = []
     for side in (1, -1):

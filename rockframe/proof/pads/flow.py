@@ -13,8 +13,8 @@ import numpy as np
 
 from rockframe.dynamics.pads import TOUCHING
 from rockframe.proof.balls import Row, ball, value
-from rockframe.proof.pads.law import SIZE, Guard, PadNumbers, Standing, pin
-from rockframe.proof.pads.series import UPWARDS, Course, TooLong
+from rockframe.proof.pads.law import SIZE, Guard, PadBalls, Standing, pin
+from rockframe.proof.pads.series import UPWARDS, PadCourse, TooLong
 
 Array = Any
 DEGREE: Final = 12
@@ -145,7 +145,7 @@ def point(start: Sequence[float]) -> StateSet:
 class Step(NamedTuple):
     """A step of a set."""
 
-    course: Course
+    course: PadCourse
     powers: Array  # of the share, of the derivative by the start, weighted
     error: Array  # of that derivative, all over the step
     tube: float  # how far members stray from the centre over the step, over the weights
@@ -166,7 +166,7 @@ class Step(NamedTuple):
 
 
 def step(
-    pads: PadNumbers, standing: Standing, found: Course, states: StateSet, weights: Array,
+    pads: PadBalls, standing: Standing, found: PadCourse, states: StateSet, weights: Array,
     guards: list[Guard],
 ) -> Step:  # fmt: skip
     """Enclose what a step does to a set, :eq:`eq-proof-pads-variation`.
@@ -211,7 +211,7 @@ class _Motion(NamedTuple):
     strays: Array  # of the coordinates
 
 
-def _motion(pads: PadNumbers, found: Course, strays: Array) -> _Motion:
+def _motion(pads: PadBalls, found: PadCourse, strays: Array) -> _Motion:
     series, rest = found.series, found.left_out
     tall, wide = float(pads.height), float(pads.left) + float(pads.right)
     lean, turn = float(strays[_ROTATION]), float(strays[_RATE])
@@ -234,9 +234,7 @@ def _motion(pads: PadNumbers, found: Course, strays: Array) -> _Motion:
     return _Motion(rate, sine, cosine, (left, right), curve(found.along, 0.0), strays)
 
 
-def _stiffness(
-    pads: PadNumbers, standing: Standing, motion: _Motion
-) -> dict[tuple[int, int], Curve]:
+def _stiffness(pads: PadBalls, standing: Standing, motion: _Motion) -> dict[tuple[int, int], Curve]:
     """Give the derivatives of the accelerations by the state."""
     if standing.flies:
         return {}
@@ -307,7 +305,7 @@ def _variation(matrix: Array, error: Array) -> tuple[Array, Array]:
 
 
 def _guard(
-    pads: PadNumbers, standing: Standing, guard: Guard, found: Course, motion: _Motion,
+    pads: PadBalls, standing: Standing, guard: Guard, found: PadCourse, motion: _Motion,
     bounds: tuple[float, float], weights: Array,
 ) -> tuple[Curve, Curve]:  # fmt: skip
     """Give a guard as a curve, and its derivative by the share."""

@@ -91,7 +91,7 @@ class Shaken(NamedTuple):
     weight: Ball
 
 
-class PadNumbers(NamedTuple):
+class PadBalls(NamedTuple):
     """Two pads and the block on them, per unit mass."""
 
     height: Ball  # h
@@ -160,7 +160,7 @@ class Turned(NamedTuple):
     rise: Any
 
 
-def turned(pads: PadNumbers, rotation: Any) -> Turned:
+def turned(pads: PadBalls, rotation: Any) -> Turned:
     """Give sine, cosine and rise, :eq:`eq-kinematics`."""
     if pads.small:
         return Turned(rotation, ball(1), rotation * rotation * (pads.height / 2))
@@ -168,7 +168,7 @@ def turned(pads: PadNumbers, rotation: Any) -> Turned:
     return Turned(rotation.sin(), cosine, pads.height * (1 - cosine))
 
 
-class Corner(NamedTuple):
+class CornerMotion(NamedTuple):
     """Height of a corner above its place at rest, its speed upwards, its lever."""
 
     level: Any
@@ -176,27 +176,27 @@ class Corner(NamedTuple):
     lever: Any
 
 
-def corner(pads: PadNumbers, left: bool, state: list[Any]) -> Corner:
+def corner(pads: PadBalls, left: bool, state: list[Any]) -> CornerMotion:
     """Give a corner of a state."""
     reach = pads.left if left else -pads.right
     at = turned(pads, state[0])
     lever = at.sine * pads.height + at.cosine * reach
-    return Corner(state[2] + at.rise + at.sine * reach, state[3] + lever * state[1], lever)
+    return CornerMotion(state[2] + at.rise + at.sine * reach, state[3] + lever * state[1], lever)
 
 
-def reaction(pads: PadNumbers, left: bool, at: Corner) -> Any:
+def reaction(pads: PadBalls, left: bool, at: CornerMotion) -> Any:
     """Give what a pad would press a corner with, :eq:`eq-pad-force`."""
     depth = pads.settlements[not left] - at.level
     return depth * pads.stiffness - at.speed * pads.damping
 
 
-def pivot(pads: PadNumbers, standing: Standing) -> int:
+def pivot(pads: PadBalls, standing: Standing) -> int:
     """Give the point that is held."""
     left, right = (standing.of(one) < RELAXING for one in (True, False))
     return pivot_of(pads.rule, left, right, 0.0, 0.0)
 
 
-def pin(pads: PadNumbers, standing: Standing) -> Ball:
+def pin(pads: PadBalls, standing: Standing) -> Ball:
     """Give e, the held point, from beneath the centre of mass."""
     found = pivot(pads, standing)
     if found == PIVOT_CENTRE:
@@ -204,7 +204,7 @@ def pin(pads: PadNumbers, standing: Standing) -> Ball:
     return pads.right if standing.left >= RELAXING else -pads.left
 
 
-def arm(pads: PadNumbers, standing: Standing, rotation: Any) -> Any:
+def arm(pads: PadBalls, standing: Standing, rotation: Any) -> Any:
     """Give x', by which the centre of mass sways as the block rotates."""
     if pads.small:
         return pads.height
@@ -212,7 +212,7 @@ def arm(pads: PadNumbers, standing: Standing, rotation: Any) -> Any:
     return at.cosine * pads.height + at.sine * pin(pads, standing)
 
 
-def field(pads: PadNumbers, standing: Standing, state: list[Any], ground: Shaken) -> list[Any]:
+def field(pads: PadBalls, standing: Standing, state: list[Any], ground: Shaken) -> list[Any]:
     """Give the rates of a state, :eq:`eq-two-spring`."""
     rotation, rate, _, speed, _ = state
     upward, moment = -ground.weight, ZERO
@@ -233,7 +233,7 @@ def field(pads: PadNumbers, standing: Standing, state: list[Any], ground: Shaken
     return [rate, turning / (zero + sway * sway + pads.inertia), speed, zero + upward, zero]
 
 
-def guard_value(pads: PadNumbers, guard: Guard, state: list[Any]) -> Any:
+def guard_value(pads: PadBalls, guard: Guard, state: list[Any]) -> Any:
     """Give a guard of a state."""
     if guard.kind == "limit":
         limit = pads.limits[not guard.left]
@@ -259,7 +259,7 @@ class Switched(NamedTuple):
 
 
 def switched(
-    pads: PadNumbers, standing: Standing, guard: Guard, state: list[Dual], ground: Shaken
+    pads: PadBalls, standing: Standing, guard: Guard, state: list[Dual], ground: Shaken
 ) -> Switched:
     """Give what becomes of a state whose guard has fallen to zero.
 
@@ -284,7 +284,7 @@ def switched(
 
 
 def _separated(
-    pads: PadNumbers, standing: Standing, left: bool, state: list[Dual], ground: Shaken
+    pads: PadBalls, standing: Standing, left: bool, state: list[Dual], ground: Shaken
 ) -> Switched:
     """Let a corner leave."""
     at, free = corner(pads, left, state), Guard("gap", left)
@@ -328,7 +328,7 @@ def _separated(
     return Switched(state, after, (), 0)
 
 
-def _held(pads: PadNumbers, standing: Standing, left: bool, state: list[Dual]) -> Switched:
+def _held(pads: PadBalls, standing: Standing, left: bool, state: list[Dual]) -> Switched:
     """Let a corner land, or be pressed again."""
     lands, other = standing.of(left) == CLEAR, standing.of(not left)
     if lands and other == CLEAR:
@@ -363,7 +363,7 @@ def _held(pads: PadNumbers, standing: Standing, left: bool, state: list[Dual]) -
     return Switched(state, after, (), 0)
 
 
-def _repinned(pads: PadNumbers, before: Standing, after: Standing, state: list[Dual]) -> list[Dual]:
+def _repinned(pads: PadBalls, before: Standing, after: Standing, state: list[Dual]) -> list[Dual]:
     """Project the momentum on another held point, :eq:`eq-repinning`."""
     sway = state[4] if before.flies else arm(pads, before, state[0]) * state[1]
     reach = arm(pads, after, state[0])
@@ -372,7 +372,7 @@ def _repinned(pads: PadNumbers, before: Standing, after: Standing, state: list[D
     return [state[0], state[1] + answer, state[2], state[3], state[4] * ZERO]
 
 
-def _struck(pads: PadNumbers, after: Standing, left: bool, state: list[Dual]) -> list[Dual]:
+def _struck(pads: PadBalls, after: Standing, left: bool, state: list[Dual]) -> list[Dual]:
     """Reduce the speed of a landing corner, :eq:`eq-impact`."""
     at, reach = corner(pads, left, state), arm(pads, after, state[0])
     if at.speed.value > 0:
@@ -387,7 +387,7 @@ def _struck(pads: PadNumbers, after: Standing, left: bool, state: list[Dual]) ->
 
 
 def _rate(
-    pads: PadNumbers, standing: Standing, guard: Guard, state: list[Dual], ground: Shaken
+    pads: PadBalls, standing: Standing, guard: Guard, state: list[Dual], ground: Shaken
 ) -> Ball:
     """Give the rate of a guard of a state, as balls."""
     at = duals([one.value for one in state])

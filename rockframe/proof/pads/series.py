@@ -10,8 +10,8 @@ from typing import Any, Final, NamedTuple
 
 from rockframe.dynamics.pads import CLEAR, TOUCHING
 from rockframe.proof.balls import Ball, Row, bits
-from rockframe.proof.pads.law import PadNumbers, Standing, pin
-from rockframe.proof.problem import Ground
+from rockframe.proof.pads.law import PadBalls, Standing, pin
+from rockframe.proof.problem import GroundPiece
 
 LOWEST: Final = 14
 HIGHEST: Final = 80
@@ -25,7 +25,7 @@ class TooLong(Exception):  # noqa: N818  (a step to be halved, no error)
     """A step over which the series does not serve."""
 
 
-class Shape(NamedTuple):
+class SeriesNumbers(NamedTuple):
     """Numbers of the block, its pads and its hold, as balls or as bounds."""
 
     height: Any
@@ -60,7 +60,7 @@ def product(a: list[Any], b: list[Any]) -> Any:
 
 
 def recursion(
-    shape: Shape, standing: Standing, small: bool, start: Series, ground: tuple[list[Any], ...],
+    shape: SeriesNumbers, standing: Standing, small: bool, start: Series, ground: tuple[list[Any], ...],
     h: Any, minus: int, enough: Any,
 ) -> Series:  # fmt: skip
     """Give series from their first coefficients; `minus` is -1, or 1 for their bounds.
@@ -144,7 +144,7 @@ def recursion(
             return found
 
 
-class Course(NamedTuple):
+class PadCourse(NamedTuple):
     """A motion from a point over a step h, and bounds of what its series leave out."""
 
     h: Ball
@@ -154,9 +154,9 @@ class Course(NamedTuple):
 
 
 def course(
-    pads: PadNumbers, standing: Standing, shaking: Ground, start: Row, h: Ball,
+    pads: PadBalls, standing: Standing, shaking: GroundPiece, start: Row, h: Ball,
     sizes_of: tuple[float, ...], margin: int,
-) -> Course:  # fmt: skip
+) -> PadCourse:  # fmt: skip
     """Enclose the motion from a point, :eq:`eq-proof-pads-majorant`.
 
     The series end where their coefficients, over typical sizes, are a margin of bits below the
@@ -168,7 +168,7 @@ def course(
         The step is to be halved.
     """
     held = pin(pads, standing) if not (standing.flies or pads.small) else 0 * h
-    shape = Shape(
+    shape = SeriesNumbers(
         pads.height, (pads.left, pads.right), pads.inertia, pads.stiffness, pads.damping,
         pads.settlements, held,
     )  # fmt: skip
@@ -205,7 +205,7 @@ def course(
     )  # fmt: skip
     bounds.levels[0].append(0.0)
     bounds.levels[1].append(0.0)
-    upper = Shape(*(_bounds(one) for one in shape))
+    upper = SeriesNumbers(*(_bounds(one) for one in shape))
     grounds = tuple(_anywhere(row) for row in ground)
     counts = [len(one) for one in bounds]
     ended = recursion(
@@ -216,7 +216,7 @@ def course(
         *(_last(one) if isinstance(one, tuple) or len(one) > count else 0.0 for one, count in grown)
     )
     _kept(sizes, most, left_out, swing, least_inertia - low)
-    return Course(h, ground[1], found, left_out)
+    return PadCourse(h, ground[1], found, left_out)
 
 
 def _anywhere(row: Row) -> list[float]:
@@ -228,7 +228,7 @@ def _anywhere(row: Row) -> list[float]:
     ]
 
 
-def _first(pads: PadNumbers, standing: Standing, start: Row, held: Ball) -> Series:
+def _first(pads: PadBalls, standing: Standing, start: Row, held: Ball) -> Series:
     """Give the first coefficients of a point."""
     rotation, rate, height, speed, sway = start
     if pads.small:

@@ -12,7 +12,7 @@ from rockframe.dynamics.on_base import OnBase
 from rockframe.dynamics.pads import corner_contact
 from rockframe.proof.balls import ball, working_precision
 from rockframe.proof.pads.flow import point
-from rockframe.proof.pads.law import PadNumbers, Standing
+from rockframe.proof.pads.law import PadBalls, Standing
 from rockframe.proof.pads.way import PadWay, Watch
 from rockframe.proof.problem import Shaking, Undecided
 from rockframe.proof.verdict import OVERTURNS, PRECISIONS, SAFE, UNDECIDED, Proof
@@ -25,10 +25,10 @@ _REACH: Final = 1.6
 """Step over the time in which the fastest vibration turns by a radian."""
 
 
-def pad_numbers(part: OnBase, limits: OverturningAngles, tolerance: float) -> PadNumbers:
+def pad_numbers(part: OnBase, limits: OverturningAngles, tolerance: float) -> PadBalls:
     """Give a block on elastic pads in balls."""
     body, base = part.body, part.base
-    return PadNumbers(
+    return PadBalls(
         ball(body.height), ball(body.left), ball(body.right), ball(body.inertia),
         ball(body.pin(PIVOT_CENTRE)), ball(base.law.stiffness), ball(base.law.damping),
         (ball(base.left_settlement), ball(base.right_settlement)),

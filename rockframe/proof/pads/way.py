@@ -11,7 +11,7 @@ from rockframe.proof.pads.flow import Curve, StateSet, Step, step
 from rockframe.proof.pads.law import (
     SIZE,
     Guard,
-    PadNumbers,
+    PadBalls,
     Shaken,
     Standing,
     Switched,
@@ -26,7 +26,7 @@ from rockframe.proof.pads.law import (
 )
 from rockframe.proof.pads.law import field as rates_of
 from rockframe.proof.pads.series import UPWARDS, Series, TooLong, course
-from rockframe.proof.problem import Ground, Shaking, Undecided
+from rockframe.proof.problem import GroundPiece, Shaking, Undecided
 
 _HALVINGS: Final = 30
 _PIECES: Final = 16
@@ -48,7 +48,7 @@ class PadWay:
 
     Parameters
     ----------
-    pads : PadNumbers
+    pads : PadBalls
         The block and its pads.
     shaking : Shaking
         Of the ground.
@@ -66,7 +66,7 @@ class PadWay:
         Is told every enclosure at a knot.
     """
 
-    pads: PadNumbers
+    pads: PadBalls
     shaking: Shaking
     standing: Standing
     states: StateSet
@@ -154,7 +154,7 @@ class PadWay:
             msg = "the enclosure has become as wide as the motion itself"
             raise Undecided(msg)
 
-    def _advance(self, ground: Ground, h: Ball) -> bool:
+    def _advance(self, ground: GroundPiece, h: Ball) -> bool:
         """Make a step, or a part of it up to a change of contact; tell whether it was whole."""
         pads, standing = self.pads, self.standing
         sizes = tuple(float(one) for one in self.weights)
@@ -216,7 +216,9 @@ class PadWay:
                 which, first = guard, high
         return which, first
 
-    def _change(self, ground: Ground, h: Ball, states: StateSet, guard: Guard, rate: float) -> None:
+    def _change(
+        self, ground: GroundPiece, h: Ball, states: StateSet, guard: Guard, rate: float
+    ) -> None:
         """Carry a set over a change of contact of all its members, :eq:`eq-proof-pads-event`."""
         whole = self._crossed(ground, h, states.box(self.weights), guard, rate)
         centre = self._crossed(ground, h, states.centre, guard, rate)
@@ -235,7 +237,9 @@ class PadWay:
         self.impacts += whole.after.impacts
         self.changes += 1
 
-    def _crossed(self, shaking: Ground, h: Ball, box: Row, guard: Guard, rate: float) -> "_Crossed":
+    def _crossed(
+        self, shaking: GroundPiece, h: Ball, box: Row, guard: Guard, rate: float
+    ) -> "_Crossed":
         """Enclose the image of a box whose members come to a guard's zero near one time."""
         pads, standing = self.pads, self.standing
         value = guard_value(pads, guard, duals(box))
@@ -347,7 +351,7 @@ class _Crossed:
     after: Switched
 
 
-def _shaken(ground: Ground, time: Ball) -> Shaken:
+def _shaken(ground: GroundPiece, time: Ball) -> Shaken:
     """Give the ground at a time, or over several."""
     now = ground.at(time)
     return Shaken(now.along[0], now.weight[0])
@@ -421,7 +425,7 @@ def _positive(value: Curve, change: Curve, until: float, *, fresh: bool, falls: 
     return True
 
 
-def _series(pads: PadNumbers, guard: Guard, made: Step) -> Row:
+def _series(pads: PadBalls, guard: Guard, made: Step) -> Row:
     """Give the series of a guard."""
     found, i = made.course.series, int(not guard.left)
     if guard.kind == "limit":
