@@ -7,9 +7,9 @@ from typing import Final
 from rockframe.proof.balls import UNIT, ZERO, Ball, Row, ball, slope, value
 from rockframe.proof.flow import Sweep, advance, flow, jerk
 from rockframe.proof.impacts import Struck, resting_after, struck
-from rockframe.proof.problem import RockingCorner, GroundPiece, Problem, Undecided
+from rockframe.proof.problem import CornerNumbers, GroundPiece, Problem, Undecided
 from rockframe.proof.standing import lifts
-from rockframe.proof.states import StateSet
+from rockframe.proof.states import SetOfStates
 
 SHORTEST: Final = 2.0**-30
 """Step over an interval of the motion below which nothing is decided any more."""
@@ -41,14 +41,14 @@ class Course:
     number: int = 0  # of the interval
     after: Ball = ZERO  # its start
     sign: int = 0  # of the rotation; 0 at rest
-    states: StateSet = field(default_factory=lambda: StateSet.about([ZERO, ZERO], []))
+    states: SetOfStates = field(default_factory=lambda: SetOfStates.about([ZERO, ZERO], []))
     fresh: bool = False  # whether it has just left the upright position
     beyond: tuple[Ball, Ball] | None = None  # when it may first be beyond the overturning angle
     impacts: int = 0
     widest: float = 0.0
 
     @property
-    def corner(self) -> RockingCorner:
+    def corner(self) -> CornerNumbers:
         """The corner that bears."""
         return self.problem.corner(self.sign)
 
@@ -63,7 +63,7 @@ class Course:
             return
         self.sign = 1 if (rotation or rate) > 0.0 else -1
         self.fresh = rotation == 0.0
-        self.states = StateSet.about([ball(rotation), ball(rate)], self.uncertain)
+        self.states = SetOfStates.about([ball(rotation), ball(rate)], self.uncertain)
 
     def overturns(self) -> bool:
         """Go on until it is sure whether it overturns; `beyond` is then when."""
@@ -86,7 +86,7 @@ class Course:
             return None
         at, self.sign = lift
         ground, length = ground.at(at), left - at
-        still = StateSet.about([ZERO, ZERO], self.uncertain)
+        still = SetOfStates.about([ZERO, ZERO], self.uncertain)
         for halvings in range(_HALVINGS):
             try:
                 self.states, sweep = advance(still, self.corner, ground, length)
@@ -195,7 +195,7 @@ class Course:
             guess = (guess - change).mid()
         return (guess * left).mid() if guess < 1 else left
 
-    def _step(self, ground: GroundPiece, step: Ball, *, strikes: bool) -> tuple[StateSet, Sweep]:
+    def _step(self, ground: GroundPiece, step: Ball, *, strikes: bool) -> tuple[SetOfStates, Sweep]:
         """Step, and prove that the rotation keeps its sign until an impact near the end."""
         new, sweep = advance(self.states, self.corner, ground, step)
         # a rotation that is positive at the start, :eq:`eq-proof-sign`
@@ -209,7 +209,7 @@ class Course:
             raise Undecided(message)
         return new, sweep
 
-    def _nears(self, new: StateSet, sweep: Sweep) -> bool:
+    def _nears(self, new: SetOfStates, sweep: Sweep) -> bool:
         """Tell whether the overturning angle may be reached in a step."""
         s, limit = self.sign, self.corner.limit
         if sweep.rotation * s < limit:
@@ -236,7 +236,7 @@ class Course:
         self.beyond = first, begin + high
 
     def _struck(
-        self, states: StateSet, ground: GroundPiece, step: Ball, left: Ball, *, to_end: bool
+        self, states: SetOfStates, ground: GroundPiece, step: Ball, left: Ball, *, to_end: bool
     ) -> Struck:
         """Let the set strike the ground at the end of a step."""
         following = self.problem.ground(self.number + 1) if to_end else ground
@@ -258,7 +258,7 @@ class Course:
         span = resting_after(impact, problem, self.number, self.after)
         if span is None:
             return
-        self.sign, self.states = 0, StateSet.about([ZERO, ZERO], [])
+        self.sign, self.states = 0, SetOfStates.about([ZERO, ZERO], [])
         self.after += span
         while not self.after < problem.length(self.number):
             if not self.after >= problem.length(self.number):
@@ -289,7 +289,7 @@ class Course:
         return None
 
 
-def _potential(rotation: Ball, corner: RockingCorner, still: GroundPiece) -> Ball:
+def _potential(rotation: Ball, corner: CornerNumbers, still: GroundPiece) -> Ball:
     """Give the energy at a rotation over that at none, for a block that turns on one corner."""
     lean = corner.angle * corner.sign
     rise = (lean - rotation).cos() - lean.cos()

@@ -22,14 +22,14 @@ from rockframe.proof.balls import (
     upper,
 )
 from rockframe.proof.problem import (
-    RockingCorner,
+    CornerNumbers,
     GroundPiece,
     Undecided,
     acceleration,
     stiffness,
     strongest,
 )
-from rockframe.proof.states import StateSet, nearly_identity
+from rockframe.proof.states import SetOfStates, nearly_identity
 
 HIGHEST: Final = 60
 """Order of the series beyond which a step is halved."""
@@ -47,7 +47,7 @@ class Sweep(NamedTuple):
     acceleration: Ball
 
 
-def sweep(state: Row, corner: RockingCorner, during: GroundPiece, span: Ball) -> Sweep:
+def sweep(state: Row, corner: CornerNumbers, during: GroundPiece, span: Ball) -> Sweep:
     """Enclose the motion over a span of times about 0, :eq:`eq-proof-sweep`.
 
     The ground is that of all times of the span.
@@ -108,7 +108,7 @@ class Flow(NamedTuple):
 
 
 def flow(
-    start: Row, box: Row, corner: RockingCorner, ground: GroundPiece, during: GroundPiece, h: Ball
+    start: Row, box: Row, corner: CornerNumbers, ground: GroundPiece, during: GroundPiece, h: Ball
 ) -> Flow:
     """Give the series of a rotation from a point, with bounds that hold of a box about it."""
     scale = h * h * corner.ratio
@@ -136,7 +136,7 @@ def flow(
 
 
 def _series(
-    start: Row, corner: RockingCorner, along: Row, weight: Row, h: Ball, order: int
+    start: Row, corner: CornerNumbers, along: Row, weight: Row, h: Ball, order: int
 ) -> tuple[Row, Row, Row]:
     """Give the coefficients of sine, cosine and rotation, by comparing them."""
     first, second = (corner.angle * corner.sign - start[0]).sin_cos()
@@ -177,8 +177,8 @@ def variation(found: Flow, away: Row) -> Matrix:
 
 
 def advance(
-    states: StateSet, corner: RockingCorner, ground: GroundPiece, h: Ball
-) -> tuple[StateSet, Sweep]:
+    states: SetOfStates, corner: CornerNumbers, ground: GroundPiece, h: Ball
+) -> tuple[SetOfStates, Sweep]:
     """Enclose a set after a step, and all its states during it.
 
     The ground is that from the start of the step. A step that is too long is undecided.
@@ -191,14 +191,14 @@ def advance(
     return states.image(found.end(), matrix, free), sweep(box, corner, during, span)
 
 
-def nearly_still(course: Sweep, corner: RockingCorner, during: GroundPiece, length: Ball) -> Matrix:
+def nearly_still(course: Sweep, corner: CornerNumbers, during: GroundPiece, length: Ball) -> Matrix:
     """Enclose the derivative of a short flow, which is near the unit matrix."""
     stiff = upper(stiffness(course.rotation, corner, during))
     bound = upper((ONE.union(stiff) * upper(length)).expm1())
     return nearly_identity(2, ball(0, bound))
 
 
-def jerk(course: Sweep, corner: RockingCorner, during: GroundPiece) -> Ball:
+def jerk(course: Sweep, corner: CornerNumbers, during: GroundPiece) -> Ball:
     """Give the third derivative of the rotation over a step, of the ground of all its times."""
     changes = GroundPiece(*([*row[1:2], ZERO][:1] for row in during))
     return acceleration(course.rotation, corner, changes) + course.rate * stiffness(

@@ -16,14 +16,14 @@ from rockframe.proof.balls import (
     upper,
 )
 from rockframe.proof.flow import nearly_still, sweep
-from rockframe.proof.problem import RockingCorner, GroundPiece, Problem, Undecided, acceleration
-from rockframe.proof.states import StateSet
+from rockframe.proof.problem import CornerNumbers, GroundPiece, Problem, Undecided, acceleration
+from rockframe.proof.states import SetOfStates
 
 
 class Struck(NamedTuple):
     """A set after its impacts, as if all of it had struck now."""
 
-    states: StateSet
+    states: SetOfStates
     at: Ball  # when its members strike, from now [s]
     speed: Ball  # bound of their speeds, and of those with which they leave the ground
 
@@ -37,9 +37,9 @@ class _Reset(NamedTuple):
 
 
 def struck(
-    states: StateSet,
-    old: RockingCorner,
-    new: RockingCorner,
+    states: SetOfStates,
+    old: CornerNumbers,
+    new: CornerNumbers,
     before: GroundPiece,
     after: GroundPiece,
 ) -> Struck:
@@ -60,7 +60,7 @@ def struck(
 
 
 def _reset(
-    state: Row, old: RockingCorner, new: RockingCorner, before: GroundPiece, after: GroundPiece
+    state: Row, old: CornerNumbers, new: CornerNumbers, before: GroundPiece, after: GroundPiece
 ) -> _Reset:
     """Enclose states after impact, with derivatives."""
     rotation, rate = state

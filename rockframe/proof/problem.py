@@ -14,7 +14,7 @@ class Undecided(Exception):  # noqa: N818  (an answer, no error)
     """Nothing is proved, for the reason that it gives."""
 
 
-class RockingCorner(NamedTuple):
+class CornerNumbers(NamedTuple):
     """A corner that a block rocks on, by numbers of the law :eq:`eq-rigid-rocking`."""
 
     sign: int  # of the rotation
@@ -26,7 +26,7 @@ class RockingCorner(NamedTuple):
     @classmethod
     def of(
         cls, sign: int, corner: RockingCorner, limit: float, tolerance: float
-    ) -> "RockingCorner":
+    ) -> "CornerNumbers":
         """Take the floats of a run, and a tolerance of the restitution."""
         ratio = ball(corner.radius) / ball(corner.inertia)
         restitution = ball(corner.restitution) + ball(0, tolerance)
@@ -93,8 +93,8 @@ class Shaking:
 class Problem(Shaking):
     """A block under a motion."""
 
-    right: RockingCorner
-    left: RockingCorner
+    right: CornerNumbers
+    left: CornerNumbers
     frequency: float  # p of the faster corner [1/s]
 
     @classmethod
@@ -113,11 +113,11 @@ class Problem(Shaking):
         frequency = (slope.gravity * fastest) ** 0.5
         return cls(
             motion, ball(scale), slope, still_step / frequency,
-            RockingCorner.of(1, block.right, limits.right, tolerance),
-            RockingCorner.of(-1, block.left, limits.left, tolerance), frequency,
+            CornerNumbers.of(1, block.right, limits.right, tolerance),
+            CornerNumbers.of(-1, block.left, limits.left, tolerance), frequency,
         )  # fmt: skip
 
-    def corner(self, sign: int) -> RockingCorner:
+    def corner(self, sign: int) -> CornerNumbers:
         """Give the corner that bears while the rotation has a sign."""
         return self.right if sign > 0 else self.left
 
@@ -151,18 +151,18 @@ def _component(problem: Shaking, number: int, *, vertical: bool) -> Row:
     return [problem.scale * each / step**power for power, each in enumerate(row)]
 
 
-def acceleration(rotation: Ball, corner: RockingCorner, ground: GroundPiece) -> Ball:
+def acceleration(rotation: Ball, corner: CornerNumbers, ground: GroundPiece) -> Ball:
     """Give the angular acceleration, of the ground at the start of its polynomials."""
     sine, cosine = (corner.angle * corner.sign - rotation).sin_cos()
     return -corner.ratio * (ground.weight[0] * sine + ground.along[0] * cosine)
 
 
-def stiffness(rotation: Ball, corner: RockingCorner, ground: GroundPiece) -> Ball:
+def stiffness(rotation: Ball, corner: CornerNumbers, ground: GroundPiece) -> Ball:
     """Give the derivative of the angular acceleration with respect to the rotation."""
     sine, cosine = (corner.angle * corner.sign - rotation).sin_cos()
     return corner.ratio * (ground.weight[0] * cosine - ground.along[0] * sine)
 
 
-def strongest(corner: RockingCorner, ground: GroundPiece) -> Ball:
+def strongest(corner: CornerNumbers, ground: GroundPiece) -> Ball:
     """Bound the angular acceleration at any rotation and its derivative, :eq:`eq-proof-field`."""
     return upper(corner.ratio * (abs(ground.weight[0]) + abs(ground.along[0])))

@@ -9,7 +9,7 @@ from flint import arb_mat
 from rockframe.proof.balls import ONE, ZERO, Ball, Matrix, Row, ball, times, total
 
 
-class StateSet(NamedTuple):
+class SetOfStates(NamedTuple):
     """The set c + P q + Q r of :eq:`eq-proof-set`, of any number of coordinates and rates."""
 
     centre: Row
@@ -19,7 +19,7 @@ class StateSet(NamedTuple):
     rest: Row  # r
 
     @classmethod
-    def about(cls, state: Row, uncertain: Row) -> "StateSet":
+    def about(cls, state: Row, uncertain: Row) -> "SetOfStates":
         """Give a small set that does not yet depend on the uncertain inputs."""
         centre = [each.mid() for each in state]
         free = [[ZERO] * len(uncertain) for _ in centre]
@@ -37,7 +37,7 @@ class StateSet(NamedTuple):
         """Enclose each component of the states."""
         return [one + away for one, away in zip(self.centre, self.away(), strict=True)]
 
-    def image(self, centre: Row, matrix: Matrix, free: Matrix) -> "StateSet":
+    def image(self, centre: Row, matrix: Matrix, free: Matrix) -> "SetOfStates":
         """Enclose the image of a map, by the mean value theorem :eq:`eq-proof-set`.
 
         Of the map are given an enclosure at the centre, and enclosures over the whole set of
@@ -60,7 +60,7 @@ class StateSet(NamedTuple):
             total(row, self.rest) + total(line, left)
             for row, line in zip(times(back, turned), back, strict=True)
         ]
-        return StateSet(start, middles, self.uncertain, axes, rest)
+        return SetOfStates(start, middles, self.uncertain, axes, rest)
 
 
 def identity(size: int) -> Matrix:

@@ -16,7 +16,7 @@ from rockframe.proof import flow
 from rockframe.proof.balls import ball, upper, working_precision
 from rockframe.proof.course import Course
 from rockframe.proof.problem import Problem, Undecided
-from rockframe.proof.states import StateSet
+from rockframe.proof.states import SetOfStates
 from rockframe.signals.motion import Slope
 from rockframe.system.bodies import OverturningAngles
 
@@ -171,13 +171,13 @@ def test_rounding_to_the_wrong_side_is_caught(exact_runs, monkeypatch):
 
 
 def test_radii_that_are_forgotten_are_caught(exact_runs, monkeypatch):
-    right = StateSet.image
+    right = SetOfStates.image
 
     def wrong(states, *arguments):
         new = right(states, *arguments)
         return new._replace(rest=[each.mid() for each in new.rest])
 
-    monkeypatch.setattr(StateSet, "image", wrong)
+    monkeypatch.setattr(SetOfStates, "image", wrong)
     assert caught("symmetric", exact_runs["symmetric"])
 
 

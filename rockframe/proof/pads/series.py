@@ -60,8 +60,8 @@ def product(a: list[Any], b: list[Any]) -> Any:
 
 
 def recursion(
-    shape: SeriesNumbers, standing: Standing, small: bool, start: Series, ground: tuple[list[Any], ...],
-    h: Any, minus: int, enough: Any,
+    shape: SeriesNumbers, standing: Standing, small: bool, start: Series,
+    ground: tuple[list[Any], ...], h: Any, minus: int, enough: Any,
 ) -> Series:  # fmt: skip
     """Give series from their first coefficients; `minus` is -1, or 1 for their bounds.
 
