@@ -95,6 +95,7 @@ def report(
     'report.html'
     """
     dataset = checked_dataset(response, owner=_OWNER)
+    _check(dataset)
     truth(certify, owner=_OWNER, name="certify")
     given = "" if title is None else text(title, owner=_OWNER, name="title")
     about = project_of(project, dataset, _OWNER)
@@ -111,7 +112,7 @@ def report(
         verdict = sections.verdict_section(dataset, reason)
         body = [page.section("Verdict", [*about.conclusions(), *verdict])]
         body += _of_run(dataset, system, about, chosen)
-    elif studies.is_study(dataset):
+    else:
         heading = given or str(dataset.attrs.get("title", "Study"))
         body = [*studies.verdict_sections(dataset, about, chosen)]
         worst = studies.worst_case(dataset)
@@ -126,13 +127,6 @@ def report(
                 body.append(page.section("Scene", sections.scene_section(dataset, system)))
             limits = sections.limits_section(system, about.assumptions)
             body.append(page.section("Limits of validity", limits))
-    else:
-        title = dataset.attrs.get("title", "without a title")
-        msg = (
-            f"{_OWNER}: found a dataset ({title}) that is no result of a run or of a study; "
-            "expected that of system.simulate(motion), rf.sweep(...) or another analysis"
-        )
-        raise SchemaError(msg)
     made = str(dataset.attrs.get("history", "")).splitlines()
     file = Path(source).name
     content = [
@@ -156,6 +150,17 @@ def _of_run(
         page.section("Ground motion", sections.motion_section(dataset, motion, units)),
         page.section("Limits of validity", sections.limits_section(system, about.assumptions)),
     ]
+
+
+def _check(dataset: xr.Dataset) -> None:
+    """Refuse what is no result of a run or of a study."""
+    if not _is_run(dataset) and not studies.is_study(dataset):
+        title = dataset.attrs.get("title", "without a title")
+        msg = (
+            f"{_OWNER}: found a dataset ({title}) that is no result of a run or of a study; "
+            "expected that of system.simulate(motion), rf.sweep(...) or another analysis"
+        )
+        raise SchemaError(msg)
 
 
 def _is_run(dataset: xr.Dataset) -> bool:

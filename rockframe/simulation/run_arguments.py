@@ -147,7 +147,7 @@ def certification_of(given: object) -> Certification | Literal["proved"] | None:
     """Read the argument ``certify`` of a run."""
     if given is False:
         return None
-    if given == PROVED:
+    if isinstance(given, str) and given == PROVED:
         return PROVED
     if given is True:
         return Certification()

@@ -586,7 +586,7 @@ def test_a_verdict_in_words(found, pads_on_cap, words):
     )
     angles = OverturningAngles(0.2, 0.2)
     setting = SimpleNamespace(
-        overturning_angles=angles, leans=False, stacked=pads_on_cap, slips_of=lambda _: None
+        overturning_angles=angles, leans=False, stacked=pads_on_cap, slips_of=lambda _: []
     )
     assert verdict(replace(summary, **found), setting, end=0.1) == words
     if not summary.overturned and summary.status.finished and not found:

@@ -581,7 +581,7 @@ def test_every_scene_can_be_certified(parts, coupling, tmp_path):
 
 @pytest.mark.parametrize("given", [1, "yes", None, 0.01])
 def test_what_is_no_certification_is_refused(given):
-    with pytest.raises(ComponentError, match="certify must be True, False or a Certification"):
+    with pytest.raises(ComponentError, match="must be True, False, 'proved' or a Certification"):
         SYSTEM.simulate(PULSE, certify=given)
 
 

@@ -53,9 +53,11 @@ def test_the_names_are_those_of_what_differs_between_a_run_that_stands_and_one_t
         if any(not np.array_equal(others[0].attrs[name], other.attrs[name]) for other in others)
     }
     settings = {"accuracy", "certificate_nudge", "certificate_reach", "certificate_resolution"}
-    # no step is of fixed length here, and no body stands on another without a layer
+    # no run is proved, no step is of fixed length, and no body stands on another without a layer
     of_stacks = {"impacts_of_several_modes", "impacts_of_no_mode", "corners_held_without_pressing"}
-    assert differing - asked - settings == OF_ONE_RUN - {"solver_substeps"} - of_stacks
+    of_proofs = {"proof", "proof_bits", "proof_verdict"}
+    not_here = {"solver_substeps"} | of_stacks | of_proofs
+    assert differing - asked - settings == OF_ONE_RUN - not_here
 
 
 def test_no_order_of_joining_leaves_the_verdict_of_one_run(runs):
