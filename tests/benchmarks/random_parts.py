@@ -1,6 +1,7 @@
 """Random scenes of walls, frames and tendons: none may end otherwise than by its verdict.
 
-Run from the root as ``PYTHONPATH=. python tests/benchmarks/random_parts.py --runs 10000 --json docs/data/random_parts.json``.
+Run from the root, with ``PYTHONPATH=.``:
+``python tests/benchmarks/random_parts.py --runs 10000 --json docs/data/random_parts.json``.
 """
 
 import argparse
