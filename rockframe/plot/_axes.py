@@ -122,3 +122,10 @@ RELATIVE: Final = "relative"
 def unit_of(given: object, measure: Measure, *, function: str, name: str) -> Shown:
     """Read the unit of an axis."""
     return shown_unit(given, measure, owner=f"rf.plot.{function}", name=name)
+
+
+def unit_unless_relative(
+    given: object, measure: Measure, *, function: str, name: str
+) -> Shown | None:
+    """Read the unit of an axis; None where values are shown relative to a scale of the body."""
+    return None if given == RELATIVE else unit_of(given, measure, function=function, name=name)

@@ -17,6 +17,7 @@ from rockframe.plot._axes import (
     ink,
     key,
     unit_of,
+    unit_unless_relative,
     zero_line,
 )
 from rockframe.plot._checks import draws, overturning_angles, refuse, system_of_run
@@ -74,7 +75,7 @@ def phase(
         A unit of another kind, or a window without samples.
     """
     given = runs_of(runs, "phase", window)
-    unit = _angle(rotation, "phase")
+    unit = unit_unless_relative(rotation, ANGLE, function="phase", name="rotation")
     on = single(ax, "phase", (5.6, 4.4))
     for run in given:
         across, up = of_rotation(run, unit), _rate(run, unit)
@@ -253,12 +254,6 @@ def energies(
     on.legend(*on.axes.get_legend_handles_labels(), ncols=4)
     on.entitle(runs_title(given), title)
     return on.axes
-
-
-def _angle(rotation: str, function: str) -> Shown | None:
-    if rotation == RELATIVE:
-        return None
-    return unit_of(rotation, ANGLE, function=function, name="rotation")
 
 
 def _rate(run: Run, unit: Shown | None) -> Any:

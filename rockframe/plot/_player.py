@@ -13,10 +13,10 @@ import numpy as np
 import xarray as xr
 
 from rockframe.plot._artists import CONTACT, SOIL, Layout
-from rockframe.plot._axes import BLUE, GREEN, ORANGE, RELATIVE, VERMILLION, unit_of
+from rockframe.plot._axes import BLUE, GREEN, ORANGE, VERMILLION, unit_unless_relative
 from rockframe.plot._checks import check_run
 from rockframe.plot._response import CONTACT_COLOURS, contact_names_of, of_rotation, strips_of
-from rockframe.plot._runs import Run, runs_of
+from rockframe.plot._runs import runs_of
 from rockframe.plot._scene import Moving
 from rockframe.signals.arrays import Array
 from rockframe.units import ANGLE
@@ -154,9 +154,7 @@ def player(
     """
     check_run(run, "player")
     (drawn,) = runs_of(run, "player", window)
-    unit = None if rotation == RELATIVE else unit_of(
-        rotation, ANGLE, function="player", name="rotation"
-    )  # fmt: skip
+    unit = unit_unless_relative(rotation, ANGLE, function="player", name="rotation")
     moving = Moving(drawn.dataset, "player", magnify)
     start, end = float(drawn.time[0]), float(drawn.time[-1])
     count = int(np.clip(1 + round((end - start) * _FRAMES_PER_SECOND), 2, _MOST_FRAMES))
@@ -165,8 +163,8 @@ def player(
     layers = _layers(moving, shown_at, store)
     label = _label("rotation", "-" if unit is None else unit.words)
     traces = [
-        _trace(drawn, of_rotation(drawn, unit), label, BLUE, store),
-        _trace(drawn, drawn.dataset["ground_acceleration"].to_numpy(),
+        _trace(of_rotation(drawn, unit), label, BLUE, store),
+        _trace(drawn.dataset["ground_acceleration"].to_numpy(),
                _label("ground acceleration", "m/s²"), "ink", store),
     ]  # fmt: skip
     sentence = str(run.attrs.get("verdict", "")) if title is None else title
@@ -292,9 +290,7 @@ def _label(words: str, unit: str) -> str:
     return f"{words} [{unit}]"
 
 
-def _trace(
-    drawn: Run, values: np.ndarray, label: str, colour: str, store: _Numbers
-) -> dict[str, Any]:
+def _trace(values: np.ndarray, label: str, colour: str, store: _Numbers) -> dict[str, Any]:
     """Give the least and the largest value of equal parts of the time."""
     edges = np.linspace(0, values.size, min(_TRACE, values.size) + 1).astype(int)
     least = np.minimum.reduceat(values, edges[:-1])

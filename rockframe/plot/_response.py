@@ -27,6 +27,7 @@ from rockframe.plot._axes import (
     ink,
     key,
     unit_of,
+    unit_unless_relative,
     zero_line,
 )
 from rockframe.plot._checks import overturning_angles
@@ -243,8 +244,8 @@ def response(
     given = runs_of(runs, "response", window)
     shown_in = {
         "ground": unit_of(acceleration, ACCELERATION, function="response", name="acceleration"),
-        "rotation": _unless_relative(rotation, ANGLE, "rotation"),
-        "vertical": _unless_relative(vertical, LENGTH, "vertical"),
+        "rotation": unit_unless_relative(rotation, ANGLE, function="response", name="rotation"),
+        "vertical": unit_unless_relative(vertical, LENGTH, function="response", name="vertical"),
     }
     others = reader_units(units, owner="rf.plot.response")
     strips = strips_of(given)
@@ -296,12 +297,6 @@ def of_rotation(run: Run, unit: Shown | None, name: str = "rotation") -> Any:
 def relative(rotation: Any, left: float, right: float) -> Any:
     """Give rotations over the overturning angle of their side."""
     return np.asarray(rotation) / np.where(np.asarray(rotation) < 0.0, left, right)
-
-
-def _unless_relative(given: str, measure: Any, name: str) -> Shown | None:
-    if isinstance(given, str) and given == RELATIVE:  # pyright: ignore[reportUnnecessaryIsInstance]
-        return None
-    return unit_of(given, measure, function="response", name=name)
 
 
 def _chosen(panels: object, runs: list[Run]) -> tuple[str, ...]:

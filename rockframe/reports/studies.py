@@ -28,16 +28,14 @@ _COLUMNS: Final = (
     "peak_relative_rotation",
     "impact_count",
     "first_uplift_time",
-    "required_friction",
+    "peak_friction_demand",
     "peak_slip",
     "residual_slip",
     "peak_base_shear",
-    "peak_base_overturning_moment",
-    "peak_left_reaction",
-    "peak_right_reaction",
-    "peak_soil_reaction",
-    "PGA",
-    "PGV",
+    "peak_restrainer_force",
+    "broken_restrainer_count",
+    "peak_ground_acceleration",
+    "peak_ground_velocity",
 )
 """Variables of a sweep that its table shows where it holds them, in this order."""
 

@@ -15,6 +15,7 @@ import rockframe as rf
 from rockframe.errors import ComponentError, RecordWarning, SchemaError
 from rockframe.reports import sections, studies
 from rockframe.reports.limits import LIMITS
+from rockframe.results.schema import SCHEMA
 
 pytestmark = pytest.mark.unit
 
@@ -198,7 +199,10 @@ def test_a_report_says_whose_it_is_and_concludes(response, tmp_path):
 
 
 def test_a_sweep_has_all_its_cases_and_the_worst_in_full(tmp_path):
-    runs = rf.sweep(rf.System(BLOCK, PADS), motions=SUITE, scale=[0.5, 2.0])
+    forces = ("friction_demand", "base_shear")
+    runs = rf.sweep(
+        rf.System(BLOCK, PADS), motions=SUITE, scale=[0.5, 2.0], outputs=forces, output_step="5 ms"
+    )
     words = words_of(rf.report(runs, tmp_path / "r.html", units=UNITS, project=PROJECT))
     assert "Some cases overturned Of all 4 cases" in words
     for motion in SUITE:
@@ -207,6 +211,11 @@ def test_a_sweep_has_all_its_cases_and_the_worst_in_full(tmp_path):
             fate = "overturned" if bool(one.overturned) else "completed"
             peak = np.degrees(float(one.peak_rotation))
             assert f"{scale:g} {motion} {fate} {peak:.4g}" in words
+    friction = float(runs.peak_friction_demand.sel(motion="short", scale=0.5))
+    shear = float(runs.peak_base_shear.sel(motion="short", scale=0.5)) / 1e3
+    assert "peak friction demand" in words
+    assert "peak base shear [kN]" in words
+    assert f"{friction:.4g} {shear:.4g}" in words
     mean = np.degrees(float(runs.peak_rotation.mean()))
     assert f"mean of 4 {mean:.4g}" in words
     # the worst falls first: its verdict is that of the run alone
@@ -217,15 +226,21 @@ def test_a_sweep_has_all_its_cases_and_the_worst_in_full(tmp_path):
     assert "2 sine pulse" not in words
 
 
+def test_what_tables_and_figures_choose_by_name_exists():
+    assert {*studies._COLUMNS, *sections._DRAWN} <= set(SCHEMA)
+
+
 def test_of_many_cases_the_worst_are_listed(tmp_path, monkeypatch):
     monkeypatch.setattr(studies, "MOST_ROWS", 3)
-    runs = rf.sweep(rf.System(BLOCK), SUITE["long"], scale=[0.4, 0.7, 1.0, 1.3, 1.6])
+    runs = rf.sweep(rf.System(BLOCK), SUITE["long"], scale=[0.4, 0.7, 2.0, 3.0, 4.0])
     words = words_of(rf.report(runs, tmp_path / "r.html"))
     assert "The 3 worst of 5 cases." in words
     assert "mean of 5" in words
+    first = float(runs.overturning_time.squeeze().idxmin("scale"))
+    assert f"Simulated again: scale {first:g}, motion " in words
     fallen = [float(one) for one in runs.scale[runs.overturned.squeeze()]]
-    assert fallen
-    assert all(re.search(rf"\b{scale:g} .{{0,40}}overturned", words) for scale in fallen[:3])
+    assert len(fallen) == 3
+    assert all(re.search(rf"\b{scale:g} .{{0,40}}overturned", words) for scale in fallen)
 
 
 def test_every_analysis_has_a_report(tmp_path):
