@@ -128,4 +128,6 @@ def unit_unless_relative(
     given: object, measure: Measure, *, function: str, name: str
 ) -> Shown | None:
     """Read the unit of an axis; None where values are shown relative to a scale of the body."""
-    return None if given == RELATIVE else unit_of(given, measure, function=function, name=name)
+    if isinstance(given, str) and given == RELATIVE:
+        return None
+    return unit_of(given, measure, function=function, name=name)

@@ -117,7 +117,7 @@ def single(ax: "AxesLike", function: str, size: tuple[float, float]) -> Sheet:
 def _given(ax: Any, function: str, names: Sequence[str]) -> "list[Axes]":
     from matplotlib.axes import Axes
 
-    several = isinstance(ax, Iterable) and not isinstance(ax, str | Axes)
+    several = isinstance(ax, Sequence | np.ndarray) and not isinstance(ax, str | Axes)
     found = list(np.ravel(np.array(ax, dtype=object))) if several else [ax]
     wanted = "one Axes" if len(names) == 1 else f"{len(names)} Axes, for {', '.join(names)}"
     for one in found:

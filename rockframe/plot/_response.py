@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 import xarray as xr
 
+from rockframe.arguments import truth
 from rockframe.errors import ComponentError, shown
 from rockframe.plot._axes import (
     BLUE,
@@ -248,6 +249,7 @@ def response(
         "vertical": unit_unless_relative(vertical, LENGTH, function="response", name="vertical"),
     }
     others = reader_units(units, owner="rf.plot.response")
+    marked = truth(events, owner="rf.plot.response", name="events")
     strips = strips_of(given)
     names = [
         name
@@ -273,7 +275,7 @@ def response(
             _history(axes, given, name, others)
         else:
             _DRAW[name](axes, given, shown_in[name])
-    if events and "rotation" in drawn:
+    if marked and "rotation" in drawn:
         draw_events(drawn["rotation"], given, shown_in["rotation"])
     below = [axes for name, axes in drawn.items() if name in strips]
     if below:
@@ -300,11 +302,11 @@ def relative(rotation: Any, left: float, right: float) -> Any:
 
 
 def _chosen(panels: object, runs: list[Run]) -> tuple[str, ...]:
-    several = isinstance(panels, tuple | list)
-    chosen: tuple[str, ...] = tuple(panels) if several else (panels,)  # type: ignore[assignment]
+    chosen: tuple[object, ...] = tuple(panels) if isinstance(panels, tuple | list) else (panels,)
     histories = [name for name in histories_of(runs[0].dataset)
                  if all(name in run.dataset for run in runs)]  # fmt: skip
-    unknown = [panel for panel in chosen if panel not in _HEIGHTS and panel not in histories]
+    known_names = [*_HEIGHTS, *histories]
+    unknown = [one for one in chosen if not isinstance(one, str) or one not in known_names]
     if not chosen or unknown:
         known = ", ".join(repr(name) for name in _HEIGHTS)
         found = unknown[0] if unknown else panels
@@ -315,7 +317,7 @@ def _chosen(panels: object, runs: list[Run]) -> tuple[str, ...]:
             f"{shown(found)}{meant} The run holds {', '.join(map(repr, histories))}"
         )
         raise ComponentError(msg)
-    return chosen
+    return tuple(map(str, chosen))
 
 
 def histories_of(run: xr.Dataset) -> list[str]:

@@ -5,14 +5,16 @@ from typing import TYPE_CHECKING, Final, cast
 import numpy as np
 import xarray as xr
 
+from rockframe.arguments import truth
 from rockframe.errors import ComponentError, SchemaError, shown
 from rockframe.plot._artists import Drawer, SceneArtist, part_labels
 from rockframe.plot._checks import check_run, draws, require_system, system_of_run
 from rockframe.plot._panels import single
 from rockframe.results.points import UPRIGHT, Placement
 from rockframe.signals.arrays import Array
+from rockframe.simulation.plan import points_of
 from rockframe.system.geometry import Geometry, geometry_of
-from rockframe.units import LENGTH, TIME, QuantityLike, to_si
+from rockframe.units import TIME, QuantityLike, to_si
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -84,18 +86,18 @@ def scene(
     require_system(system, "scene")
     drawer = Drawer(geometry_of(system.assembly))
     at = Placement(drawer.geometry, UPRIGHT, system.restraint)
-    marked = {
-        name: tuple(
-            to_si(one, LENGTH, owner="rf.plot.scene", name=f"point {name!r}") for one in place
-        )
-        for name, place in (points or {}).items()
-    }
-    on = single(ax, "scene", figure_size(drawer, wide=legend))
+    named = truth(legend, owner="rf.plot.scene", name="legend")
+    faults: list[str] = []
+    marked = points_of(points, faults, owner="rf.plot.scene")
+    if faults:
+        msg = f"rf.plot.scene: {'; '.join(faults)}"
+        raise ComponentError(msg)
+    on = single(ax, "scene", figure_size(drawer, wide=named))
     artist = SceneArtist(on.axes, drawer, names=part_labels(system.parts, drawer.geometry))
     artist.frame([at])
-    artist.mark(marked)
+    artist.mark({point.name: (point.x, point.y) for point in marked})
     artist.draw(at)
-    if legend:
+    if named:
         artist.legend()
     on.entitle("", title)
     return on.axes

@@ -96,7 +96,9 @@ def lacking(system: Assembly, names: Iterable[str]) -> list[str]:
     ]
 
 
-def points_of(given: object, faults: list[str]) -> tuple[BodyPoint, ...]:
+def points_of(
+    given: object, faults: list[str], *, owner: str = "simulate"
+) -> tuple[BodyPoint, ...]:
     """Read the argument ``points``: names and places on the body; note what is wrong."""
     if given is None:
         return ()
@@ -115,7 +117,7 @@ def points_of(given: object, faults: list[str]) -> tuple[BodyPoint, ...]:
         else:
             try:
                 x, y = (
-                    to_si(each, LENGTH, owner="simulate", name=f"points[{name!r}]")
+                    to_si(each, LENGTH, owner=owner, name=f"points[{name!r}]")
                     for each in cast("tuple[Any, Any]", place)
                 )
                 points.append(BodyPoint(name, x, y))

@@ -20,6 +20,7 @@ PULSE = rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz")
 RECORD = rf.GroundMotion.from_arrays(([0.0, 1.0, 0.0] * 20, "m/s^2"), "0.01 s", name="record")
 NOTHING = (object(), [None], {"a": None}, 1j, b"x", pd.DataFrame(), lambda: 0, 10**400)
 """What no argument can be."""
+NUMBERS_OF = xr.Dataset({"a": ("x", [1.0, 2.0])})
 TEXTS = (3, *NOTHING)
 NUMBERS = ("x", "", float("nan"), "nan m", *NOTHING)
 
@@ -109,6 +110,12 @@ MISUSES = {
         lambda v: rf.critical_scale(SYSTEM, v, progress=False), (None, 3, "x", *NOTHING)
     ),
     "figure": (rf.plot.response, (None, 3, "x", xr.Dataset(), *NOTHING)),
+    "points drawn": (lambda v: rf.plot.scene(SYSTEM, points=v), (3, "x", NUMBERS_OF, *NOTHING)),
+    "legend drawn": (lambda v: rf.plot.scene(SYSTEM, legend=v), (3, "x", NUMBERS_OF, *NOTHING)),
+    "outline": (
+        lambda v: rf.Block.from_outline(v, unit="m", density="2 t/m^3", depth="1 m"),
+        (3, "x", NUMBERS_OF, *NOTHING),
+    ),
     "scene drawn": (rf.plot.scene, (None, 3, "x", *NOTHING)),
 }  # fmt: skip
 OF_RESULTS = {
@@ -124,7 +131,12 @@ OF_RESULTS = {
     ),
     "figure's title": (lambda run, v: rf.plot.response(run, title=v), TEXTS),
     "figure's unit": (lambda run, v: rf.plot.response(run, rotation=v), (3, "m", *NOTHING)),
-    "panels": (lambda run, v: rf.plot.response(run, ax=v), (3, "x", *NOTHING)),
+    "panels": (lambda run, v: rf.plot.response(run, panels=v), (3, "x", NUMBERS_OF, *NOTHING)),
+    "axes": (lambda run, v: rf.plot.response(run, ax=v), (3, "x", NUMBERS_OF, *NOTHING)),
+    "events": (lambda run, v: rf.plot.response(run, events=v), (3, "x", NUMBERS_OF, *NOTHING)),
+    "units of histories": (
+        lambda run, v: rf.plot.response(run, units=v), (3, "x", NUMBERS_OF, *NOTHING)
+    ),
     "contents": (rf.table, (None, 3, "x", *NOTHING)),
     "labels": (
         lambda run, v: rf.concat([run, run], "run", v), (3, "ab", [1], object(), 1j, 10**400)

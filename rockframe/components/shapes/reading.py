@@ -215,7 +215,7 @@ def read_mass(given: Mapping[str, object], area: float, *, owner: str) -> float:
 def _array(values: object, factor: float, wanted: str) -> Array:
     try:
         array = np.asarray(values)
-    except ValueError:  # rows of different lengths
+    except (ValueError, TypeError):  # rows of different lengths, or what is no array
         array = np.array([None])
     if array.dtype.kind not in "fiu" or array.ndim != 2 or array.shape[1] != 2:
         found = f"shape {array.shape}" if array.dtype.kind in "fiu" else shown(values)
