@@ -5,6 +5,7 @@ been computed of numbers inside them. A comparison of balls is true only where i
 them.
 """
 
+from collections.abc import Sequence
 from operator import mul
 from typing import Any, Final, TypeAlias
 
@@ -39,7 +40,7 @@ def upper(one: Ball) -> Ball:
     return arb(one.abs_upper())
 
 
-def total(one: Row, other: Row) -> Ball:
+def total(one: Sequence[Ball], other: Sequence[Ball]) -> Ball:
     """Sum the products of two rows, as far as the shorter one goes."""
     return sum(map(mul, one, other), ZERO)
 

@@ -1,20 +1,30 @@
 """The course of a set of states from the first sample to what is sure for ever."""
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
-from rockframe.proof.balls import UNIT, ZERO, Ball, Row, ball, slope, value
-from rockframe.proof.flow import Sweep, advance, flow, jerk
-from rockframe.proof.impacts import Struck, resting_after, struck
-from rockframe.proof.problem import CornerNumbers, GroundPiece, Problem, Undecided
-from rockframe.proof.standing import lifts
+from rockframe.dynamics.rigid_ground import BlockOnRigidGround
+from rockframe.proof.balls import UNIT, ZERO, Ball, Row, ball, bits, slope, upper, value
+from rockframe.proof.bounces import Instant, Lifted, settle
+from rockframe.proof.flow import Sweep, advance, flow, jerk, sweep
+from rockframe.proof.impacts import Struck, struck
+from rockframe.proof.problem import CornerNumbers, Deviations, GroundPiece, Problem, Undecided
+from rockframe.proof.sets import proved
+from rockframe.proof.standing import lifts, lifts_about_sample
 from rockframe.proof.states import SetOfStates
+from rockframe.proof.verdict import EXACT, OVERTURNS, SAFE, UNDECIDED, Proof, Tolerances, outwards
+from rockframe.signals import Motion
+from rockframe.signals.motion import Slope
+from rockframe.system.bodies import OverturningAngles
 
 SHORTEST: Final = 2.0**-30
 """Step over an interval of the motion below which nothing is decided any more."""
 FINE: Final = 2.0**-6
 """Share of an interval in steps of which the overturning angle is approached."""
+FINE_OF_SET: Final = 2.0**-3
+"""The same of a set, whose instants of overturning differ by more than such a step."""
 WIDEST: Final = 0.3
 """Width of a set, over theta, beyond which nothing is told of it any more."""
 AT_KNOT: Final = 1e-10
@@ -23,6 +33,10 @@ SLOW: Final = 0.02
 """Speed after an impact, over p, below which coming to rest is tried."""
 LONGEST_TAIL: Final = 60.0
 """Time after the motion, times p, after which a block near its crest is given up."""
+STILL_STEP: Final = 0.1
+"""Length of the intervals after a motion, times p."""
+_LAW: Final = "Housner's law"
+_UNSURE: Final = "an uplift of which it is not sure to which side it goes"
 _SAMPLES: Final = 24
 _HALVINGS: Final = 40
 _NARROWINGS: Final = 60
@@ -37,13 +51,14 @@ class Course:
 
     problem: Problem
     watch: Watch | None = None
-    uncertain: Row = field(default_factory=list[Ball])
+    uncertain: Sequence[Ball] = ()
     number: int = 0  # of the interval
     after: Ball = ZERO  # its start
     sign: int = 0  # of the rotation; 0 at rest
     states: SetOfStates = field(default_factory=lambda: SetOfStates.about([ZERO, ZERO], []))
     fresh: bool = False  # whether it has just left the upright position
     beyond: tuple[Ball, Ball] | None = None  # when it may first be beyond the overturning angle
+    impact: Struck | None = None  # that has just been
     impacts: int = 0
     widest: float = 0.0
 
@@ -76,39 +91,75 @@ class Course:
 
     def _stands(self) -> bool | None:
         """Stand to the end of an interval, or lift, :eq:`eq-proof-uplift`; tell if it stays."""
-        ground = self.problem.ground(self.number).at(self.after)
-        left = self.problem.length(self.number) - self.after
-        lift = lifts(self.problem, ground, left)
+        problem = self.problem
+        ground, left = problem.ground(self.number).at(self.after), self._left()
+        lift = self._lifts(ground, left)
         if lift is None:
-            if self.number >= self.problem.count:
+            if self.number >= problem.count:
                 return False
             self._move(left, to_end=True)
             return None
         at, self.sign = lift
-        ground, length = ground.at(at), left - at
-        still = SetOfStates.about([ZERO, ZERO], self.uncertain)
+        latest = ball(at.upper())
+        if at < left:
+            during, ground = ground.at(at), ground.at(latest)
+        else:  # some lift before the sample, some after it
+            self.number, self.after, latest = self.number + 1, ZERO, latest - left
+            following = problem.ground(self.number)
+            before = ground.at(ball(at.lower()).union(left))
+            during = before.united(following.at(ZERO.union(latest)))
+            ground, left = following.at(latest), self._left()
+        start, length = self._lifted(during, at.upper() - at.lower()), left - latest
         for halvings in range(_HALVINGS):
             try:
-                self.states, sweep = advance(still, self.corner, ground, length)
+                self.states, swept = advance(start, self.corner, ground, length)
             except Undecided:
                 length = (length / 2).mid()
                 continue
-            rises = sweep.acceleration * self.sign > 0
+            rises = swept.acceleration * self.sign > 0
             during = ground.at(UNIT * length)
-            below = sweep.rotation * self.sign < self.corner.limit
-            if below and (rises or jerk(sweep, self.corner, during) * self.sign > 0):
+            below = swept.rotation * self.sign < self.corner.limit
+            if below and (rises or jerk(swept, self.corner, during) * self.sign > 0):
                 self.fresh = False
-                self._move(at + length, to_end=halvings == 0)
+                self._move(latest + length, to_end=halvings == 0)
                 return None
             length = (length / 2).mid()
-        message = "an uplift of which it is not sure to which side it goes"
-        raise Undecided(message)
+        raise Undecided(_UNSURE)
+
+    def _left(self) -> Ball:
+        """Give the time to the end of the interval."""
+        return self.problem.length(self.number) - self.after
+
+    def _lifts(self, ground: GroundPiece, left: Ball) -> tuple[Ball, int] | None:
+        """Give when the members lift, and to which side; None if none does in this interval."""
+        try:
+            return lifts(self.problem, ground, left)
+        except Undecided:
+            if not self.uncertain:
+                raise
+        following, length = (
+            of(self.number + 1) for of in (self.problem.ground, self.problem.length)
+        )
+        lift = lifts_about_sample(self.problem, ground, left, following, length)
+        return None if lift is None or lift[0] > left else lift
+
+    def _lifted(self, during: GroundPiece, waited: Ball) -> SetOfStates:
+        """Enclose all members when the last of them lifts, :eq:`eq-proof-lifted`."""
+        still = [ZERO, ZERO]
+        if waited > 0:
+            third = jerk(sweep(still, self.corner, during, UNIT * waited), self.corner, during)
+            if not third * self.sign > 0:
+                raise Undecided(_UNSURE)
+            risen = [waited**3 / 6, waited**2 / 2]
+            still = [UNIT * (upper(third) * each) * self.sign for each in risen]
+        return SetOfStates.about(still, self.uncertain)
 
     # ---- rocking
 
     def _rocks(self) -> bool | None:
         """Make one step, and the impact at its end if there is one."""
         corner, length = self.corner, self.problem.length(self.number)
+        fine = (FINE_OF_SET if self.uncertain else FINE) * float(length)
         ground = self.problem.ground(self.number).at(self.after)
         left = length - self.after
         strike = self._predicted(ground, left)
@@ -119,14 +170,16 @@ class Course:
         impact: Struck | None = None
         while True:
             try:
-                new, sweep = self._step(ground, step, strikes=strikes)
-                near = self._nears(new, sweep)
-                if not (near and float(step.mid()) > FINE * float(length)):
+                new, swept = self._step(ground, step, strikes=strikes)
+                near = self._nears(new, swept)
+                if not (near and float(step.mid()) > fine):
                     if strikes:
                         impact = self._struck(new, ground.at(step), step, left, to_end=to_end)
                     break
             except Undecided:
                 if float(step.mid()) < SHORTEST * float(length):
+                    if self._bounce(lift=True):
+                        return None
                     raise
                 if self.uncertain and not at_sample:  # some may strike before, some after it
                     step, to_end, strikes, at_sample = left, True, True, True
@@ -136,14 +189,15 @@ class Course:
         if near and self.beyond is None:
             self.beyond = self.time, self.time
         if self.beyond is not None and new.box()[0] * self.sign > corner.limit:
-            self._narrow(ground, step, rises=sweep.rate * self.sign > 0)
+            self._narrow(ground, step, rises=swept.rate * self.sign > 0)
             return True
         self.states, self.fresh = new if impact is None else impact.states, strikes
         if impact is not None:
             self.sign, self.impacts = -self.sign, self.impacts + 1
         self._move(step, to_end=to_end)
+        self.impact = impact
         if impact is not None:
-            self._come_to_rest(impact)
+            self._bounce()
         return self._settled() if self.number >= self.problem.count and self.sign else None
 
     def _move(self, step: Ball, *, to_end: bool) -> None:
@@ -197,24 +251,24 @@ class Course:
 
     def _step(self, ground: GroundPiece, step: Ball, *, strikes: bool) -> tuple[SetOfStates, Sweep]:
         """Step, and prove that the rotation keeps its sign until an impact near the end."""
-        new, sweep = advance(self.states, self.corner, ground, step)
+        new, swept = advance(self.states, self.corner, ground, step)
         # a rotation that is positive at the start, :eq:`eq-proof-sign`
         s = self.sign
-        stays = sweep.rotation * s > 0 or sweep.rate * s > 0
-        falls = sweep.rate * s < 0 or sweep.acceleration * s < 0
+        stays = swept.rotation * s > 0 or swept.rate * s > 0
+        falls = swept.rate * s < 0 or swept.acceleration * s < 0
         if strikes and falls:
-            return new, sweep
+            return new, swept
         if strikes or not (stays or (falls and new.box()[0] * s > 0)):
             message = "whether the block meets the ground is not resolved"
             raise Undecided(message)
-        return new, sweep
+        return new, swept
 
-    def _nears(self, new: SetOfStates, sweep: Sweep) -> bool:
+    def _nears(self, new: SetOfStates, swept: Sweep) -> bool:
         """Tell whether the overturning angle may be reached in a step."""
         s, limit = self.sign, self.corner.limit
-        if sweep.rotation * s < limit:
+        if swept.rotation * s < limit:
             return False
-        steady = sweep.rate * s > 0 or sweep.rate * s < 0
+        steady = swept.rate * s > 0 or swept.rate * s < 0
         ends = self.states.box()[0], new.box()[0]
         return not (steady and all(one * s < limit for one in ends))
 
@@ -250,21 +304,28 @@ class Course:
             raise Undecided(message)
         return impact
 
-    def _come_to_rest(self, impact: Struck) -> None:
-        """Let a slow block under a weak motion come to rest."""
-        problem = self.problem
-        if float(impact.speed) > SLOW * problem.frequency or self.number >= problem.count:
-            return
-        span = resting_after(impact, problem, self.number, self.after)
-        if span is None:
-            return
-        self.sign, self.states = 0, SetOfStates.about([ZERO, ZERO], [])
-        self.after += span
-        while not self.after < problem.length(self.number):
-            if not self.after >= problem.length(self.number):
-                message = "a rest at a sample of the motion"
-                raise Undecided(message)
-            self.after, self.number = self.after - problem.length(self.number), self.number + 1
+    def _bounce(self, *, lift: bool = False) -> bool:
+        """Let slow members come to rest or, on request, be lifted to one side; tell if they do."""
+        problem, (rotation, rate) = self.problem, self.states.box()
+        height, speed = upper(rotation), upper(rate)
+        if self.impact is not None:
+            height, speed = self.impact.height, self.impact.speed
+        if float(speed) > SLOW * problem.frequency or self.number >= problem.count:
+            return False
+        try:
+            found = settle(problem, Instant(self.number, self.after), height, speed)
+        except Undecided:  # of the ground; the course may go on without it
+            return False
+        if found is None or (isinstance(found, Lifted) and not lift):
+            return False
+        if isinstance(found, Lifted):
+            self.sign, (self.number, self.after) = found.sign, found.instant
+            self.states = SetOfStates.about(found.box, self.uncertain)
+        else:
+            self.sign, (self.number, self.after) = 0, found
+            self.states = SetOfStates.about([ZERO, ZERO], [])
+        self.impact, self.fresh = None, False
+        return True
 
     # ---- what is sure
 
@@ -302,3 +363,44 @@ def _value(row: list[float], at: float) -> float:
     for each in reversed(row):
         result = result * at + each
     return result
+
+
+def prove_block(
+    block: BlockOnRigidGround,
+    motion: Motion,
+    slope: Slope,
+    limits: OverturningAngles,
+    start: tuple[float, float],
+    *,
+    scale: float = 1.0,
+    within: Tolerances = EXACT,
+    watch: Watch | None = None,
+) -> Proof:
+    """Prove the verdict of a block on rigid ground, from its rotation and angular velocity.
+
+    All numbers within tolerances are meant; `watch` is told every enclosure.
+    """
+
+    def attempt(inputs: Deviations) -> tuple[Proof, list[float]]:
+        problem = Problem.of(block, motion, slope, limits, scale, inputs, STILL_STEP)
+        course = Course(problem, watch, () if inputs.exact else inputs.spread())
+        course.start(*start)
+        return _concluded(course, scale), course.states.influences()
+
+    return proved(attempt, within)
+
+
+def _concluded(course: Course, scale: float) -> Proof:
+    """Follow a course to its end, and tell what it proves."""
+    verdict, reason, earliest, latest = UNDECIDED, "", math.nan, math.nan
+    try:
+        verdict = OVERTURNS if course.overturns() else SAFE
+    except Undecided as why:
+        reason, earliest = str(why), float(course.time)
+        latest = earliest
+    if verdict == OVERTURNS and course.beyond is not None:
+        low, high = course.beyond
+        earliest, latest = outwards(low.lower(), -math.inf), outwards(high.upper(), math.inf)
+    return Proof(
+        verdict, reason, earliest, latest, course.widest, course.impacts, bits(), scale, _LAW
+    )

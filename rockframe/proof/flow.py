@@ -23,6 +23,7 @@ from rockframe.proof.balls import (
 )
 from rockframe.proof.problem import (
     CornerNumbers,
+    Deviations,
     GroundPiece,
     Undecided,
     acceleration,
@@ -98,6 +99,7 @@ class Flow(NamedTuple):
     weight: Row
     force: Ball  # bound of h^2 f and of its derivative by alpha
     coarse: Ball  # bound of the stiffness that is left out of the equation of variation
+    by_scale: "ByScale | None" = None
 
     def end(self) -> Row:
         """Enclose rotation and rate at the end."""
@@ -107,13 +109,20 @@ class Flow(NamedTuple):
         return [sum(self.angle, ZERO) + far, rate / self.length]
 
 
-def flow(
-    start: Row, box: Row, corner: CornerNumbers, ground: GroundPiece, during: GroundPiece, h: Ball
-) -> Flow:
-    """Give the series of a rotation from a point, with bounds that hold of a box about it."""
-    scale = h * h * corner.ratio
+class ByScale(NamedTuple):
+    """Series of what the scale of a motion adds to h^2 f, and what bounds it."""
+
+    push: Row
+    force: Ball  # bound of it
+    coarse: Ball  # bound of what is left out of the series
+
+
+def _forces(
+    corner: CornerNumbers, ground: GroundPiece, during: GroundPiece, h: Ball
+) -> tuple[Row, Row, list[int]]:
+    """Give kappa h^2 times a ground in powers of x, and bounds over a step as powers."""
     along, weight, powers = list[Ball](), list[Ball](), list[int]()
-    factor = scale
+    factor = h * h * corner.ratio
     for k in range(max(len(ground.along), len(ground.weight))):
         most = ZERO
         if k < len(ground.along):
@@ -124,15 +133,36 @@ def flow(
             most += abs(during.weight[k])
         powers.append(_power(factor * most))
         factor *= h
+    return along, weight, powers
+
+
+def flow(
+    start: Row, box: Row, corner: CornerNumbers, ground: GroundPiece, during: GroundPiece, h: Ball
+) -> Flow:
+    """Give the series of a rotation from a point, with bounds that hold of a box about it.
+
+    The point has the middle of all inputs, the bounds hold for all of them.
+    """
+    along, weight, powers = _forces(corner, ground.middle, during, h)
     force = _raised(powers[0])
     speed = abs(h * box[1]) + force
     bounds, waves, order = majorants(_power(speed), tuple(powers), bits() - 8)
     if not (order and force < 0.5):
         message = "a step too long for its series"
         raise Undecided(message)
-    sine, cosine, angle = _series(start, corner, along, weight, h, order)
-    left_out = total([_raised(one) for one in powers], waves[OF_STIFFNESS + 1 :: -1])
-    return Flow(h, angle, sine, cosine, bounds[order + 1], along, weight, force, left_out)
+    sine, cosine, angle = _series(start, corner.middle(), along, weight, h, order)
+
+    def left_out(of: list[int]) -> Ball:
+        return total([_raised(one) for one in of], waves[OF_STIFFNESS + 1 :: -1])
+
+    by_scale = None
+    if ground.spread is not None and during.spread is not None:
+        x, w, sizes = _forces(corner, ground.spread.by_scale, during.spread.by_scale, h)
+        push = [-product(w, sine, k) - product(x, cosine, k) for k in range(OF_STIFFNESS + 1)]
+        by_scale = ByScale(push, _raised(sizes[0]), left_out(sizes))
+    return Flow(
+        h, angle, sine, cosine, bounds[order + 1], along, weight, force, left_out(powers), by_scale
+    )
 
 
 def _series(
@@ -151,29 +181,40 @@ def _series(
     return sine, cosine, angle
 
 
-def variation(found: Flow, away: Row) -> Matrix:
-    """Enclose the derivative of the end by the start, of all at some distance from the centre."""
+def variation(found: Flow, away: Row, lean: Ball, scale: Ball) -> tuple[Matrix, Row]:
+    """Enclose the derivatives of the end by the start and by the scale.
+
+    They hold for all at some distance from the centre, with an angle theta and a scale that
+    differ from its own, :eq:`eq-proof-variation` and :eq:`eq-proof-inputs`.
+    """
     h, weight, along = found.length, found.weight, found.along
     stiff = [
         product(weight, found.cosine, k) - product(along, found.sine, k)
         for k in range(OF_STIFFNESS + 1)
     ]
-    farthest = 2 * (upper(away[0]) + h * upper(away[1]))
-    rest = found.coarse + found.force * farthest
-    columns: list[Row] = []
-    for start in ([ONE, ZERO], [ZERO, ONE]):
+    other = ZERO if found.by_scale is None else found.by_scale.force * upper(scale)
+    farthest = 2 * (upper(away[0]) + h * upper(away[1])) + 2 * upper(lean) + other
+    rest = found.coarse + found.force * farthest + other
+
+    def column(start: Row, push: Row, error: Ball) -> Row:
         series = list(start)
         for k in range(OF_STIFFNESS + 1):
-            series.append(product(stiff, series, k) / ((k + 1) * (k + 2)))
+            more = push[k] if push else ZERO
+            series.append((product(stiff, series, k) + more) / ((k + 1) * (k + 2)))
         size = [abs(one) for one in series]
-        defect = rest * sum(size, ZERO)
+        defect = rest * sum(size, ZERO) + error
         for i, one in enumerate(stiff):
             defect += abs(one) * sum(size[OF_STIFFNESS + 1 - i :], ZERO)
         bound = upper(defect)
         rate = sum((k * one for k, one in enumerate(series)), ZERO)
-        columns.append([sum(series, ZERO) + ball(0, bound), rate + ball(0, 2 * bound)])
-    (a, b), (c, d) = columns
-    return [[a, c * h], [b / h, d]]
+        return [sum(series, ZERO) + ball(0, bound), (rate + ball(0, 2 * bound)) / h]
+
+    (a, b), (c, d) = column([ONE, ZERO], [], ZERO), column([ZERO, ONE], [], ZERO)
+    matrix = [[a, c * h], [b, d * h]]
+    pushed = found.by_scale
+    if pushed is None:
+        return matrix, [ZERO, ZERO]
+    return matrix, column([ZERO, ZERO], pushed.push, pushed.coarse + pushed.force * farthest)
 
 
 def advance(
@@ -186,21 +227,45 @@ def advance(
     span = UNIT * h
     during, box = ground.at(span), states.box()
     found = flow(states.centre, box, corner, ground, during, h)
-    matrix = variation(found, states.away())
-    free = [[ZERO] * len(states.uncertain) for _ in box]
+    inputs = states.uncertain
+    if not isinstance(inputs, Deviations):
+        matrix, _ = variation(found, states.away(), ZERO, ZERO)
+        return states.image(found.end(), matrix, [[], []]), sweep(box, corner, during, span)
+    sign = corner.sign
+    matrix, by_scale = variation(found, states.away(), inputs.angle(sign), inputs.scale)
+    # the rotation is s theta less an angle whose equation does not know theta
+    by_angle = [sign * (1 - matrix[0][0]), -sign * matrix[1][0]]
+    free = [
+        list(Deviations.of(sign, scale=scale, angle=angle))
+        for scale, angle in zip(by_scale, by_angle, strict=True)
+    ]
     return states.image(found.end(), matrix, free), sweep(box, corner, during, span)
 
 
-def nearly_still(course: Sweep, corner: CornerNumbers, during: GroundPiece, length: Ball) -> Matrix:
-    """Enclose the derivative of a short flow, which is near the unit matrix."""
+class ShortFlow(NamedTuple):
+    """Derivatives of a flow so short that they are near those of none."""
+
+    matrix: Matrix  # by the state
+    angle: Ball  # of either component by theta
+    scale: Ball  # of either component by the scale of the motion
+
+
+def nearly_still(
+    course: Sweep, corner: CornerNumbers, during: GroundPiece, length: Ball
+) -> ShortFlow:
+    """Enclose the derivatives of a short flow, :eq:`eq-proof-impact`."""
     stiff = upper(stiffness(course.rotation, corner, during))
-    bound = upper((ONE.union(stiff) * upper(length)).expm1())
-    return nearly_identity(2, ball(0, bound))
+    growth = upper((ONE.union(stiff) * upper(length)).expm1())
+    longest = upper(length) * (1 + growth)
+    by_scale = ZERO
+    if during.spread is not None:
+        by_scale = ball(0, upper(longest * strongest(corner, during.spread.by_scale)))
+    by_angle = ball(0, upper(longest * stiff))
+    return ShortFlow(nearly_identity(2, ball(0, growth)), by_angle, by_scale)
 
 
 def jerk(course: Sweep, corner: CornerNumbers, during: GroundPiece) -> Ball:
     """Give the third derivative of the rotation over a step, of the ground of all its times."""
-    changes = GroundPiece(*([*row[1:2], ZERO][:1] for row in during))
-    return acceleration(course.rotation, corner, changes) + course.rate * stiffness(
+    return acceleration(course.rotation, corner, during.rates()) + course.rate * stiffness(
         course.rotation, corner, during
     )

@@ -5,13 +5,70 @@ from itertools import zip_longest
 from typing import NamedTuple
 
 from rockframe.dynamics.rigid_ground import BlockOnRigidGround, RockingCorner
-from rockframe.proof.balls import ZERO, Ball, Row, ball, hull, moved, upper
+from rockframe.proof.balls import ONE, ZERO, Ball, Row, ball, moved, upper
 from rockframe.signals.motion import Motion, Slope
 from rockframe.system.bodies import OverturningAngles
 
 
 class Undecided(Exception):  # noqa: N818  (an answer, no error)
     """Nothing is proved, for the reason that it gives."""
+
+
+class Deviations(NamedTuple):
+    """How far numbers of a block and its motion are from the given ones, as balls."""
+
+    left_restitution: Ball = ZERO
+    right_restitution: Ball = ZERO
+    scale: Ball = ZERO
+    left_angle: Ball = ZERO  # theta, with the limit of the rotation [rad]
+    right_angle: Ball = ZERO
+
+    @classmethod
+    def within(cls, restitution: float, scale: float, angle: float) -> "Deviations":
+        """Give all that are within tolerances."""
+        e, factor, lean = (ball(0, one) for one in (restitution, scale, angle))
+        return cls(e, e, factor, lean, lean)
+
+    @classmethod
+    def of(
+        cls,
+        sign: int,
+        *,
+        restitution: Ball = ZERO,
+        angle: Ball = ZERO,
+        other_angle: Ball = ZERO,
+        scale: Ball = ZERO,
+    ) -> "Deviations":
+        """Name them by the corner that bears at a sign of the rotation, and the other one."""
+        if sign > 0:
+            return cls(ZERO, restitution, scale, other_angle, angle)
+        return cls(restitution, ZERO, scale, angle, other_angle)
+
+    @property
+    def exact(self) -> bool:
+        """Whether they are single numbers."""
+        return all(one.is_exact() for one in self)
+
+    def spread(self) -> "Deviations":
+        """Give them less their middles."""
+        return self._make(one - one.mid() for one in self)
+
+    def halves(self, influences: list[float]) -> "tuple[Deviations, Deviations]":
+        """Halve them along the one of the greatest influence; along the widest if none has any."""
+        sizes = influences if any(influences) else [float(one.rad()) for one in self]
+        j = sizes.index(max(sizes))
+        half = self[j].rad() / 2
+        low, high = (self[j].mid() + sign * half + ball(0, half) for sign in (-1, 1))
+        name = self._fields[j]
+        return self._replace(**{name: low}), self._replace(**{name: high})
+
+    def restitution(self, sign: int) -> Ball:
+        """Give that of an impact on the corner that bears at a sign of the rotation."""
+        return self.right_restitution if sign > 0 else self.left_restitution
+
+    def angle(self, sign: int) -> Ball:
+        """Give that of the corner that bears at a sign of the rotation."""
+        return self.right_angle if sign > 0 else self.left_angle
 
 
 class CornerNumbers(NamedTuple):
@@ -25,12 +82,17 @@ class CornerNumbers(NamedTuple):
 
     @classmethod
     def of(
-        cls, sign: int, corner: RockingCorner, limit: float, tolerance: float
+        cls, sign: int, corner: RockingCorner, limit: float, inputs: Deviations
     ) -> "CornerNumbers":
-        """Take the floats of a run, and a tolerance of the restitution."""
+        """Take the floats of a run, and how far from them the numbers are."""
         ratio = ball(corner.radius) / ball(corner.inertia)
-        restitution = ball(corner.restitution) + ball(0, tolerance)
-        return cls(sign, ball(corner.angle), ratio, restitution, ball(limit))
+        restitution = ball(corner.restitution) + inputs.restitution(sign)
+        lean = inputs.angle(sign)
+        return cls(sign, ball(corner.angle) + lean, ratio, restitution, ball(limit) + lean)
+
+    def middle(self) -> "CornerNumbers":
+        """Give the corner in the middle of a set of them."""
+        return self._replace(angle=self.angle.mid(), restitution=self.restitution.mid())
 
 
 class GroundPiece(NamedTuple):
@@ -38,10 +100,45 @@ class GroundPiece(NamedTuple):
 
     along: Row
     weight: Row
+    spread: "GroundSpread | None" = None  # where the scale is no single number
 
     def at(self, time: Ball) -> "GroundPiece":
         """Give the polynomials about another time; about all times of a ball."""
-        return GroundPiece(moved(self.along, time), moved(self.weight, time))
+        spread = None if self.spread is None else self.spread.at(time)
+        return GroundPiece(moved(self.along, time), moved(self.weight, time), spread)
+
+    def rates(self) -> "GroundPiece":
+        """Give the rates at which it changes, at the start of the polynomials."""
+        along, weight = ([*row[1:2], ZERO][:1] for row in (self.along, self.weight))
+        return GroundPiece(along, weight)
+
+    def united(self, other: "GroundPiece") -> "GroundPiece":
+        """Enclose the coefficients of this and of another one."""
+        spread = None
+        if self.spread is not None and other.spread is not None:
+            middle = self.spread.middle.united(other.spread.middle)
+            spread = GroundSpread(middle, self.spread.by_scale.united(other.spread.by_scale))
+        rows = ((self.along, other.along), (self.weight, other.weight))
+        along, weight = (
+            [a.union(b) for a, b in zip_longest(*pair, fillvalue=ZERO)] for pair in rows
+        )
+        return GroundPiece(along, weight, spread)
+
+    @property
+    def middle(self) -> "GroundPiece":
+        """The ground at the middle of its scales."""
+        return self if self.spread is None else self.spread.middle
+
+
+class GroundSpread(NamedTuple):
+    """How the ground depends on the scale of the motion."""
+
+    middle: GroundPiece
+    by_scale: GroundPiece  # its derivative
+
+    def at(self, time: Ball) -> "GroundSpread":
+        """Give the polynomials about another time."""
+        return GroundSpread(self.middle.at(time), self.by_scale.at(time))
 
 
 @dataclass(frozen=True)
@@ -72,20 +169,27 @@ class Shaking:
         """Give the ground in an interval, by the time since its start, :eq:`eq-incline-ground`."""
         number = min(number, self.count)
         if number not in self._known:
-            self._known[number] = _ground(self, number)
+            self._known[number] = self._ground(number)
         return self._known[number]
 
+    def _ground(self, number: int) -> GroundPiece:
+        gravity = ball(self.slope.gravity)
+        ground = _ground(self, number, self.scale, gravity)
+        if self.scale.is_exact():
+            return ground
+        middle = _ground(self, number, self.scale.mid(), gravity)
+        return ground._replace(spread=GroundSpread(middle, _ground(self, number, ONE, ZERO)))
+
     def ground_over(self, number: int, after: Ball, span: Ball) -> GroundPiece:
-        """Enclose all values of the ground over a span of time from an instant of an interval."""
-        along, weight = list[Ball](), list[Ball]()
+        """Enclose the ground about all times of a span from an instant of an interval."""
+        found: GroundPiece | None = None
         while True:
             left = self.length(number) - after
             inside = ZERO.union(span) if span < left else ZERO.union(left)
-            values = self.ground(number).at(after + inside)
-            along.append(values.along[0])
-            weight.append(values.weight[0])
+            here = self.ground(number).at(after + inside)
+            found = here if found is None else found.united(here)
             if span < left:
-                return GroundPiece([hull(along)], [hull(weight)])
+                return found
             span, number, after = span - left, number + 1, ZERO
 
 
@@ -105,16 +209,19 @@ class Problem(Shaking):
         slope: Slope,
         limits: OverturningAngles,
         scale: float,
-        tolerance: float,
+        inputs: Deviations,
         still_step: float,
     ) -> "Problem":
-        """Take the floats of a run; the intervals of rest are given times p."""
+        """Take the floats of a run, and how far from them the numbers are.
+
+        The intervals of rest are given times p.
+        """
         fastest = max(one.radius / one.inertia for one in (block.left, block.right))
         frequency = (slope.gravity * fastest) ** 0.5
         return cls(
-            motion, ball(scale), slope, still_step / frequency,
-            CornerNumbers.of(1, block.right, limits.right, tolerance),
-            CornerNumbers.of(-1, block.left, limits.left, tolerance), frequency,
+            motion, ball(scale) + inputs.scale, slope, still_step / frequency,
+            CornerNumbers.of(1, block.right, limits.right, inputs),
+            CornerNumbers.of(-1, block.left, limits.left, inputs), frequency,
         )  # fmt: skip
 
     def corner(self, sign: int) -> CornerNumbers:
@@ -122,9 +229,9 @@ class Problem(Shaking):
         return self.right if sign > 0 else self.left
 
 
-def _ground(problem: Shaking, number: int) -> GroundPiece:
-    inclination, gravity = ball(problem.slope.inclination), ball(problem.slope.gravity)
-    across, up = (_component(problem, number, vertical=one) for one in (False, True))
+def _ground(problem: Shaking, number: int, scale: Ball, gravity: Ball) -> GroundPiece:
+    inclination = ball(problem.slope.inclination)
+    across, up = (_component(problem, number, scale, vertical=one) for one in (False, True))
     if problem.slope.level:
         return GroundPiece(across, [gravity + up[0], *up[1:]])
     sine, cosine = inclination.sin_cos()
@@ -136,7 +243,7 @@ def _ground(problem: Shaking, number: int) -> GroundPiece:
     )
 
 
-def _component(problem: Shaking, number: int, *, vertical: bool) -> Row:
+def _component(problem: Shaking, number: int, scale: Ball, *, vertical: bool) -> Row:
     """Give a component of the motion as a polynomial of time."""
     motion = problem.motion
     signal = motion.vertical if vertical else motion.horizontal
@@ -148,7 +255,7 @@ def _component(problem: Shaking, number: int, *, vertical: bool) -> Row:
     else:
         row = [ball(float(each)) for each in signal.polynomials[number]]
     step = problem.length(number)
-    return [problem.scale * each / step**power for power, each in enumerate(row)]
+    return [scale * each / step**power for power, each in enumerate(row)]
 
 
 def acceleration(rotation: Ball, corner: CornerNumbers, ground: GroundPiece) -> Ball:

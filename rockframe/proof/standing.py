@@ -2,23 +2,68 @@
 
 from itertools import zip_longest
 
-from rockframe.proof.balls import ZERO, Ball, slope, value
+from rockframe.proof.balls import ZERO, Ball, Row, slope, value
 from rockframe.proof.problem import GroundPiece, Problem, Undecided
 
 _HALVINGS = 50
 _NEWTON_STEPS = 12
+_VERGE = "a ground that comes to the verge of uplift"
 
 
 def lifts(problem: Problem, ground: GroundPiece, left: Ball) -> tuple[Ball, int] | None:
     """Give when it lifts within a time, and the sign of its rotation; None if it stands."""
-    found: list[tuple[Ball, int]] = []
+    return _earlier({side: first_zero(guard_of(problem, ground, side), left) for side in (1, -1)})
+
+
+def lifts_about_sample(
+    problem: Problem, ground: GroundPiece, left: Ball, following: GroundPiece, length: Ball
+) -> tuple[Ball, int] | None:
+    """Give the same of a set, some of which lift before a sample and some after it.
+
+    The time may be up to that sample, or beyond it by up to the length of the interval that
+    follows.
+    """
+    found = dict[int, Ball | None]()
     for side in (1, -1):
-        tangent = problem.corner(side).angle.tan()
-        pairs = zip_longest(ground.weight, ground.along, fillvalue=ZERO)
-        guard = [weight * tangent + side * along for weight, along in pairs]
-        at = first_zero(guard, left)
-        if at is not None:
-            found.append((at, side))
+        here, there = (guard_of(problem, each, side) for each in (ground, following))
+        if there[0] > 0:
+            found[side] = first_zero(here, left)
+            if found[side] is None:
+                after = first_zero(there, length)
+                found[side] = None if after is None else left + after
+        else:
+            found[side] = _zero_about(here, left, there, length)
+    return _earlier(found)
+
+
+def guard_of(problem: Problem, ground: GroundPiece, side: int) -> Row:
+    """Give what is positive while the block does not lift to a side."""
+    tangent = problem.corner(side).angle.tan()
+    pairs = zip_longest(ground.weight, ground.along, fillvalue=ZERO)
+    return [weight * tangent + side * along for weight, along in pairs]
+
+
+def _zero_about(here: Row, left: Ball, there: Row, length: Ball) -> Ball:
+    """Enclose where guards fall through zero, which change their course at a time."""
+    low, high = left, length
+    for _ in range(_HALVINGS):
+        low = (low / 2).mid()
+        falls = value(slope(here), (left - low).union(left)) < 0
+        if value(here, left - low) > 0 and falls and first_zero(here, left - low) is None:
+            break
+    else:
+        raise Undecided(_VERGE)
+    for _ in range(_HALVINGS):
+        if not value(there, high / 2) < 0:
+            break
+        high = (high / 2).mid()
+    if not (value(there, high) < 0 and value(slope(there), ZERO.union(high)) < 0):
+        raise Undecided(_VERGE)
+    return (left - low).union(left + high)
+
+
+def _earlier(times: dict[int, Ball | None]) -> tuple[Ball, int] | None:
+    found = [(at, side) for side, at in times.items() if at is not None]
     if len(found) < 2:
         return found[0] if found else None
     one, other = found
@@ -58,8 +103,7 @@ def _first_zero(
     middle = ((low * 5 + high * 4) / 9).mid()
     there = value(guard, middle)
     if halvings == 0 or not (there > 0 or there < 0):
-        message = "a ground that comes to the verge of uplift"
-        raise Undecided(message)
+        raise Undecided(_VERGE)
     found = _first_zero(guard, rate, low, middle, halvings - 1)
     if found is None and there > 0:
         found = _first_zero(guard, rate, middle, high, halvings - 1)

@@ -1,6 +1,7 @@
 """A set of states, carried without its growing by being boxed at every step (Lohner)."""
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -14,12 +15,12 @@ class SetOfStates(NamedTuple):
 
     centre: Row
     inputs: Matrix  # P, how states depend on the uncertain inputs
-    uncertain: Row  # q, the uncertain inputs less their middles
+    uncertain: Sequence[Ball]  # q, the uncertain inputs less their middles
     axes: Matrix  # Q
     rest: Row  # r
 
     @classmethod
-    def about(cls, state: Row, uncertain: Row) -> "SetOfStates":
+    def about(cls, state: Row, uncertain: Sequence[Ball]) -> "SetOfStates":
         """Give a small set that does not yet depend on the uncertain inputs."""
         centre = [each.mid() for each in state]
         free = [[ZERO] * len(uncertain) for _ in centre]
@@ -32,6 +33,11 @@ class SetOfStates(NamedTuple):
             total(inputs, self.uncertain) + total(axis, self.rest)
             for inputs, axis in zip(self.inputs, self.axes, strict=True)
         ]
+
+    def influences(self) -> list[float]:
+        """Give how far each uncertain input moves the first component."""
+        pairs = zip(self.inputs[0], self.uncertain, strict=True)
+        return [float((row * one).abs_upper()) for row, one in pairs]
 
     def box(self) -> Row:
         """Enclose each component of the states."""

@@ -2,22 +2,23 @@
 
 import math
 from dataclasses import dataclass
+from typing import Final, NamedTuple
 
-from rockframe.dynamics.rigid_ground import BlockOnRigidGround
-from rockframe.proof.balls import ball, working_precision
-from rockframe.proof.course import Course, Watch
-from rockframe.proof.problem import Problem, Undecided
-from rockframe.signals import Motion
-from rockframe.signals.motion import Slope
-from rockframe.system.bodies import OverturningAngles
+SAFE: Final = "safe for ever"
+OVERTURNS: Final = "overturns"
+UNDECIDED: Final = "undecided"
 
-SAFE = "safe for ever"
-OVERTURNS = "overturns"
-UNDECIDED = "undecided"
-PRECISIONS = (106, 212, 424)
-"""Bits of the balls, one after the other while nothing is decided."""
-STILL_STEP = 0.1
-"""Length of the intervals after a motion, times p."""
+
+class Tolerances(NamedTuple):
+    """Within which numbers of a block and its motion are proved of."""
+
+    restitution: float = 0.0
+    scale: float = 0.0
+    angle: float = 0.0  # theta of either corner [rad]
+    parts: int = 1  # into which the set is divided at most
+
+
+EXACT: Final = Tolerances()
 
 
 @dataclass(frozen=True)
@@ -36,13 +37,21 @@ class Proof:
     width : float
         Greatest radius of the rotations enclosed at the samples [rad].
     impacts : int
-        Number of impacts enclosed one by one.
+        Number of impacts enclosed one by one; the greatest of all parts.
     bits : int
         Precision of the balls.
-    scale, restitution_tolerance : float
-        What it was proved of [1].
+    scale : float
+        Of the motion [1].
     law : str
         That was taken, in words.
+    restitution_tolerance, scale_tolerance : float
+        Of the set that it was proved of [1].
+    angle_tolerance : float
+        Of the same [rad].
+    parts : int
+        Into which the set was divided.
+    safe_share, overturning_share : float
+        Of the set, of which that verdict is proved [1].
     """
 
     verdict: str
@@ -53,8 +62,13 @@ class Proof:
     impacts: int
     bits: int
     scale: float
-    restitution_tolerance: float
-    law: str = "Housner's law"
+    law: str
+    restitution_tolerance: float = 0.0
+    scale_tolerance: float = 0.0
+    angle_tolerance: float = 0.0
+    parts: int = 1
+    safe_share: float = 0.0
+    overturning_share: float = 0.0
 
     @property
     def decided(self) -> bool:
@@ -101,15 +115,26 @@ class Proof:
 
     def __str__(self) -> str:
         """Say what has been proved, and of what."""
-        tolerance = self.restitution_tolerance
         of = "for the numbers of this block and this record, joined by straight lines, and for "
         of += self.law
-        if tolerance:
-            of += f", with every restitution within {tolerance:g} of the given one"
+        within = {
+            f"restitution within {self.restitution_tolerance:g}": self.restitution_tolerance,
+            f"scale within {self.scale_tolerance:g}": self.scale_tolerance,
+            f"angle theta within {self.angle_tolerance:g} rad": self.angle_tolerance,
+        }
+        wide = [words for words, tolerance in within.items() if tolerance]
+        if wide:
+            of += f", with every {' and every '.join(wide)} of the given one"
         if not self.decided:
+            at = "" if math.isnan(self.latest) else f", at {self.latest:.6g} s"
+            told = (
+                f"Undecided: {self.reason}{at}; rotations were enclosed within {self.width:.2g} rad"
+            )
+            if not (self.safe_share or self.overturning_share):
+                return f"{told}. Nothing is proved."
             return (
-                f"Undecided: {self.reason}, at {self.latest:.6g} s; rotations were enclosed "
-                f"within {self.width:.2g} rad. Nothing is proved."
+                f"{told}. Of the set {self.safe_share:.3%} are proved safe for ever and "
+                f"{self.overturning_share:.3%} to overturn, {of}."
             )
         found = "does not overturn, however long it stands on the still ground afterwards"
         if self.verdict == OVERTURNS:
@@ -120,50 +145,6 @@ class Proof:
         )
 
 
-def prove_block(
-    block: BlockOnRigidGround,
-    motion: Motion,
-    slope: Slope,
-    limits: OverturningAngles,
-    start: tuple[float, float],
-    *,
-    scale: float = 1.0,
-    tolerance: float = 0.0,
-    watch: Watch | None = None,
-) -> Proof:
-    """Prove the verdict of a block on rigid ground, from its rotation and angular velocity.
-
-    All restitutions within a tolerance are meant; `watch` is told every enclosure.
-    """
-    found = None
-    for bits in PRECISIONS[:1] if tolerance else PRECISIONS:
-        with working_precision(bits):
-            problem = Problem.of(block, motion, slope, limits, scale, tolerance, STILL_STEP)
-            course = Course(problem, watch, [ball(0, tolerance)] * 2 if tolerance else [])
-            course.start(*start)
-            found = _concluded(course, scale, tolerance, bits)
-        if found.decided:
-            break
-    assert found is not None  # noqa: S101
-    return found
-
-
-def _concluded(course: Course, scale: float, tolerance: float, bits: int) -> Proof:
-    """Follow a course to its end, and tell what it proves."""
-    verdict, reason, earliest, latest = UNDECIDED, "", math.nan, math.nan
-    try:
-        verdict = OVERTURNS if course.overturns() else SAFE
-    except Undecided as why:
-        reason, earliest = str(why), float(course.time)
-        latest = earliest
-    if verdict == OVERTURNS and course.beyond is not None:
-        low, high = course.beyond
-        earliest, latest = _outwards(low.lower(), -math.inf), _outwards(high.upper(), math.inf)
-    return Proof(
-        verdict, reason, earliest, latest, course.widest, course.impacts, bits, scale, tolerance
-    )
-
-
-def _outwards(value: object, direction: float) -> float:
+def outwards(value: object, direction: float) -> float:
     """Round to a double on the far side."""
     return math.nextafter(float(value), direction)  # type: ignore[arg-type]

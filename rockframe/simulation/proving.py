@@ -4,22 +4,24 @@ from dataclasses import dataclass
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Final
 
+from rockframe.arguments import whole_number
 from rockframe.dynamics.alone import Alone
 from rockframe.dynamics.body import LEADING_CORNER
 from rockframe.dynamics.pads import ElasticPads
 from rockframe.dynamics.protocol import Ending
 from rockframe.dynamics.rigid_ground import BlockOnRigidGround
 from rockframe.errors import ComponentError, shown
+from rockframe.proof.verdict import EXACT, Tolerances
 from rockframe.simulation.plan import Plan, plan_run, start_of
 from rockframe.system.assembly import Assembly
-from rockframe.units import POSITIVE, Condition, to_ratio
+from rockframe.units import ANGLE, POSITIVE, Condition, to_ratio, to_si
 
 if TYPE_CHECKING:
     from rockframe.components import InitialState
     from rockframe.motion import GroundMotion
     from rockframe.proof.verdict import Proof
     from rockframe.simulation.system import System
-    from rockframe.units import RatioLike
+    from rockframe.units import QuantityLike, RatioLike
 
 _OWNER: Final = "prove"
 _CRITICAL: Final = "prove_critical_scale"
@@ -37,6 +39,9 @@ def prove(
     *,
     scale: "RatioLike" = 1.0,
     restitution_tolerance: "RatioLike" = 0.0,
+    scale_tolerance: "RatioLike" = 0.0,
+    angle_tolerance: "QuantityLike" = "0 rad",
+    parts: int = 64,
     initial: "InitialState | None" = None,
 ) -> "Proof":
     """Prove whether a block on rigid ground or on pads overturns under a record.
@@ -52,7 +57,16 @@ def prove(
     scale : float, optional
         Factor of both components, taken as exact [1].
     restitution_tolerance : float, optional
-        What is proved is proved of all restitutions that differ by no more than this [1].
+        What is proved is proved of all restitutions of either corner that differ by no more than
+        this [1].
+    scale_tolerance : float, optional
+        And of all scales; on rigid ground [1].
+    angle_tolerance : str or Quantity, optional
+        And of all angles theta of either corner, at the same distance from the centre of mass,
+        with the same inertia and restitutions, which overturn at that angle; on rigid ground [rad].
+    parts : int, optional
+        Into so many the set of these numbers is divided at most, where nothing is decided of it as
+        a whole. Each takes a proof of its own.
     initial : InitialState, optional
         Where the motion starts; at rest unless given.
 
@@ -61,7 +75,8 @@ def prove(
     Proof
         Its ``verdict`` is ``"safe for ever"``, on ground that stays still after the record,
         ``"overturns"``, between ``earliest`` and ``latest`` [s], or ``"undecided"``, with the
-        ``reason``. Its text says what has been proved.
+        ``reason``; of a set of which parts are decided, with their shares. Its text says what
+        has been proved.
 
     Raises
     ------
@@ -94,14 +109,21 @@ def prove(
         msg = f"{_OWNER}: system must be a System, got {shown(system)}"
         raise ComponentError(msg)
     factor = to_ratio(scale, owner=_OWNER, name="scale", condition=POSITIVE, example="1.5")
-    tolerance = to_ratio(
-        restitution_tolerance, owner=_OWNER, name="restitution_tolerance", condition=_TOLERANCE
+    ratios = {"restitution_tolerance": restitution_tolerance, "scale_tolerance": scale_tolerance}
+    restitution, factors = (
+        to_ratio(value, owner=_OWNER, name=name, condition=_TOLERANCE)
+        for name, value in ratios.items()
     )
+    angle = to_si(
+        angle_tolerance, ANGLE, owner=_OWNER, name="angle_tolerance", condition=_TOLERANCE
+    )
+    most = whole_number(parts, owner=_OWNER, name="parts", lowest=1)
+    within = Tolerances(restitution, factors, angle, most)
     still = motion is None and assembly.parts.motion is None
     plan = plan_run(
         assembly, motion, initial=initial, outputs=None, duration="1 s" if still else None
     )
-    return proof_of(assembly, plan, scale=factor, tolerance=tolerance)
+    return proof_of(assembly, plan, scale=factor, within=within)
 
 
 @dataclass(frozen=True)
@@ -211,7 +233,12 @@ def prove_critical_scale(
 
 
 def proof_of(
-    system: Assembly, plan: Plan, *, scale: float = 1.0, tolerance: float = 0.0, owner: str = _OWNER
+    system: Assembly,
+    plan: Plan,
+    *,
+    scale: float = 1.0,
+    within: Tolerances = EXACT,
+    owner: str = _OWNER,
 ) -> "Proof":
     """Prove the verdict of a run as it was planned, by its motion and its start."""
     model, motion = system.model, plan.motion
@@ -220,6 +247,10 @@ def proof_of(
         faults.append("proofs are of reaching the overturning angle; leave out overturning")
     if motion is None:
         faults.append("there is no motion")
+    if isinstance(model.system, Alone) and (within.scale or within.angle):
+        faults.append("proofs on pads are of exact scales and angles")
+    if not within.scale < scale:
+        faults.append(f"scale_tolerance must be below the scale, {scale:g}, got {within.scale:g}")
     if find_spec("flint") is None:
         faults.append("python-flint is not installed: pip install rockframe[proof]")
     if faults or motion is None:
@@ -234,14 +265,12 @@ def proof_of(
     if isinstance(law, Alone):
         from rockframe.proof.pads.verdict import prove_pads
 
-        return prove_pads(
-            law, mode, state, motion.si, slope, limits, scale=scale, tolerance=tolerance
-        )
+        return prove_pads(law, mode, state, motion.si, slope, limits, scale=scale, within=within)
     assert isinstance(law, BlockOnRigidGround)  # noqa: S101
-    from rockframe.proof.verdict import prove_block
+    from rockframe.proof.course import prove_block
 
     begin = float(state[0]), float(state[1])
-    return prove_block(law, motion.si, slope, limits, begin, scale=scale, tolerance=tolerance)
+    return prove_block(law, motion.si, slope, limits, begin, scale=scale, within=within)
 
 
 def _faults(system: Assembly) -> list[str]:

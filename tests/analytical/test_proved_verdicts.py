@@ -115,6 +115,39 @@ def test_a_tolerance_is_proved_or_said_to_be_too_wide():
     assert "within 1e-06" in str(rf.prove(scene, motion, scale=0.5, restitution_tolerance=1e-6))
 
 
+def test_a_set_about_a_critical_scale_is_proved_safe_below_and_to_overturn_above():
+    scene, motion = system(4), half_sine()
+    at = 0.5 * (CASES[0][-2] + CASES[0][-1])
+    whole = rf.prove(scene, motion, scale=at, scale_tolerance=2e-3, parts=1)
+    assert (whole.parts, whole.safe_share, whole.overturning_share) == (1, 0.0, 0.0)
+    found = rf.prove(scene, motion, scale=at, scale_tolerance=2e-3, parts=24)
+    assert not whole.decided
+    assert not found.decided
+    assert 1 < found.parts <= 24
+    assert 0.45 < found.safe_share <= 0.5
+    assert 0.45 < found.overturning_share <= 0.5
+    assert "proved safe for ever and" in str(found)
+    for shift, verdict in ((-1e-3, "safe for ever"), (1e-3, "overturns")):
+        beside = rf.prove(scene, motion, scale=at + shift, scale_tolerance=0.99e-3, parts=64)
+        assert beside.verdict == verdict
+        assert 1.0 in (beside.safe_share, beside.overturning_share)
+
+
+@pytest.mark.parametrize(("slenderness", "scale"), [(4, 0.5), (4, 0.577), (6, 0.34), (6, 0.38)])
+def test_a_set_of_angles_scales_and_restitutions_has_the_verdict_of_its_middle(slenderness, scale):
+    scene, motion = system(slenderness), half_sine(up=0.1)
+    found = rf.prove(
+        scene, motion, scale=scale, angle_tolerance="0.02 deg",
+        restitution_tolerance=1e-4, scale_tolerance=1e-4, parts=4,
+    )  # fmt: skip
+    assert found.decided
+    assert "angle theta within 0.000349" in str(found)
+    run = scene.simulate(motion.scaled(scale), free_vibration="20 s")
+    assert found.overturns == bool(run.overturned)
+    if found.overturns:
+        assert found.earliest < run.overturning_time < found.latest
+
+
 @pytest.mark.parametrize(
     ("change", "words"),
     [
@@ -122,6 +155,9 @@ def test_a_tolerance_is_proved_or_said_to_be_too_wide():
         (lambda b, m: (rf.System(b, PADS, restraint="leading-corner"), m), "contact-state"),
         (lambda b, m: (rf.System(b, PADS, inclination="1 deg"), m), "level ground"),
         (lambda b, m: (rf.System(b, SLIPPING), m), "without friction"),
+        (lambda b, m: (rf.System(b, PADS), m, {"scale_tolerance": 1e-3}), "exact scales"),
+        (lambda b, m: (rf.System(b), m, {"scale": 0.01, "scale_tolerance": 0.02}), "below the"),
+        (lambda b, m: (rf.System(b), m, {"parts": 0}), "parts"),
         (
             lambda b, m: (rf.System(b, rf.RearWall(side="left", restitution=-0.3)), m),
             "without a RearWall",
@@ -131,9 +167,9 @@ def test_a_tolerance_is_proved_or_said_to_be_too_wide():
 )
 def test_what_cannot_be_proved_is_refused(change, words):
     block = rf.Block(width="1 m", height="4 m", mass="1 t")
-    scene, motion = change(block, half_sine())
+    scene, motion, *given = change(block, half_sine())
     with pytest.raises(ComponentError, match=words):
-        rf.prove(scene, motion)
+        rf.prove(scene, motion, **(given[0] if given else {}))
 
 
 def test_a_critical_scale_is_bracketed_from_above_and_from_below():

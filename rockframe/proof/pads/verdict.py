@@ -10,12 +10,13 @@ from rockframe.dynamics.alone import Alone
 from rockframe.dynamics.body import PIVOT_CENTRE
 from rockframe.dynamics.on_base import OnBase
 from rockframe.dynamics.pads import corner_contact
-from rockframe.proof.balls import ball, working_precision
+from rockframe.proof.balls import ball, bits
 from rockframe.proof.pads.flow import point
 from rockframe.proof.pads.law import PadBalls, Standing
 from rockframe.proof.pads.way import PadWay, Watch
-from rockframe.proof.problem import Shaking, Undecided
-from rockframe.proof.verdict import OVERTURNS, PRECISIONS, SAFE, UNDECIDED, Proof
+from rockframe.proof.problem import Deviations, Shaking, Undecided
+from rockframe.proof.sets import proved
+from rockframe.proof.verdict import EXACT, OVERTURNS, SAFE, UNDECIDED, Proof, Tolerances, outwards
 from rockframe.signals import Motion
 from rockframe.signals.motion import Slope
 from rockframe.system.bodies import OverturningAngles
@@ -25,15 +26,15 @@ _REACH: Final = 1.6
 """Step over the time in which the fastest vibration turns by a radian."""
 
 
-def pad_numbers(part: OnBase, limits: OverturningAngles, tolerance: float) -> PadBalls:
+def pad_numbers(part: OnBase, limits: OverturningAngles, inputs: Deviations) -> PadBalls:
     """Give a block on elastic pads in balls."""
     body, base = part.body, part.base
     return PadBalls(
         ball(body.height), ball(body.left), ball(body.right), ball(body.inertia),
         ball(body.pin(PIVOT_CENTRE)), ball(base.law.stiffness), ball(base.law.damping),
         (ball(base.left_settlement), ball(base.right_settlement)),
-        (ball(base.left_restitution) + ball(0, tolerance),
-         ball(base.right_restitution) + ball(0, tolerance)),
+        (ball(base.left_restitution) + inputs.left_restitution,
+         ball(base.right_restitution) + inputs.right_restitution),
         ball(base.rest), body.restraint, body.small, (ball(limits.left), ball(limits.right)),
         ball(body.gravity),
     )  # fmt: skip
@@ -48,12 +49,12 @@ def way_of(
     limits: OverturningAngles,
     *,
     scale: float = 1.0,
-    tolerance: float = 0.0,
+    inputs: Deviations | None = None,
     watch: Watch | None = None,
 ) -> PadWay:
     """Give the way from a start, not begun."""
     part, body = law.part, law.state_of(0, state)
-    pads = pad_numbers(part, limits, tolerance)
+    pads = pad_numbers(part, limits, inputs or Deviations())
     contact = part.mode_of(mode).contact
     standing = Standing(corner_contact(contact, True), corner_contact(contact, False))
     vertical = math.sqrt(2.0 * float(pads.stiffness))
@@ -80,24 +81,21 @@ def prove_pads(
     limits: OverturningAngles,
     *,
     scale: float = 1.0,
-    tolerance: float = 0.0,
+    within: Tolerances = EXACT,
 ) -> Proof:
     """Prove the verdict of a block on pads, from its mode and its state.
 
     Its pads are elastic, its ground is level, and its restraint is no leading corner.
     """
-    found = None
-    for bits in PRECISIONS[:1] if tolerance else PRECISIONS:
-        with working_precision(bits):
-            way = way_of(law, mode, state, motion, slope, limits, scale=scale, tolerance=tolerance)
-            found = _decided(way, bits, scale, tolerance)
-        if found.decided:
-            break
-    assert found is not None  # noqa: S101
-    return found
+
+    def attempt(inputs: Deviations) -> tuple[Proof, list[float]]:
+        way = way_of(law, mode, state, motion, slope, limits, scale=scale, inputs=inputs)
+        return _decided(way, scale), []
+
+    return proved(attempt, within)
 
 
-def _decided(way: PadWay, bits: int, scale: float, tolerance: float) -> Proof:
+def _decided(way: PadWay, scale: float) -> Proof:
     verdict, reason = UNDECIDED, ""
     earliest = latest = math.nan
     try:
@@ -107,8 +105,5 @@ def _decided(way: PadWay, bits: int, scale: float, tolerance: float) -> Proof:
         latest = earliest
     if way.overturning is not None:
         low, high = way.overturning
-        earliest = math.nextafter(float(low), -math.inf)
-        latest = math.nextafter(float(high), math.inf)
-    return Proof(
-        verdict, reason, earliest, latest, way.widest, way.impacts, bits, scale, tolerance, LAW
-    )
+        earliest, latest = outwards(low, -math.inf), outwards(high, math.inf)
+    return Proof(verdict, reason, earliest, latest, way.widest, way.impacts, bits(), scale, LAW)

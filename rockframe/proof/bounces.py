@@ -1,0 +1,211 @@
+"""Small bounces, whatever their order: bounds of all members of a set on either side.
+
+Where excursions are smaller than a set of states, its members strike one after the other and none
+of their impacts can be enclosed alone. Their speeds and heights can: :eq:`eq-proof-bounces`.
+"""
+
+from dataclasses import dataclass
+from typing import Final, NamedTuple
+
+from rockframe.proof.balls import UNIT, ZERO, Ball, Row, ball, hull, upper
+from rockframe.proof.problem import (
+    GroundPiece,
+    Problem,
+    Undecided,
+    acceleration,
+    stiffness,
+)
+from rockframe.proof.standing import lifts, lifts_about_sample
+
+_WINDOWS: Final = 200
+"""Windows, of the length of an interval at most, over which bounces are followed."""
+_GUESSES: Final = 12
+_LIFTING: Final = 1.5
+"""Time until which all have lifted, over that in which their last impacts are."""
+
+
+class Instant(NamedTuple):
+    """A time, by the number of its interval and the time since its start."""
+
+    number: int
+    after: Ball
+
+    def later(self, problem: Problem, span: Ball) -> "Instant":
+        """Give the instant that a span of time leads to."""
+        number, after = self.number, self.after + span
+        while not after < problem.length(number):
+            if not after >= problem.length(number):
+                message = "small bounces that end at a sample of the motion"
+                raise Undecided(message)
+            after, number = after - problem.length(number), number + 1
+        return Instant(number, after)
+
+
+class Lifted(NamedTuple):
+    """Where all members are once they have left the ground to one side, without further impact."""
+
+    instant: Instant
+    sign: int
+    box: Row
+
+
+@dataclass(frozen=True)
+class Pull:
+    """How a ground pulls a block back on a corner, or lifts it, over a window."""
+
+    least: Ball  # angular acceleration back to the ground
+    most: Ball
+    faster: Ball  # bound of the rate at which that grows
+
+    @classmethod
+    def of(cls, problem: Problem, sign: int, height: Ball, ground: GroundPiece) -> "Pull":
+        """Take all rotations up to a height, and all values of the ground."""
+        corner = problem.corner(sign)
+        rotation = UNIT * height * sign
+        pull = -sign * acceleration(rotation, corner, ground)
+        grows = -sign * acceleration(rotation, corner, ground.rates())
+        faster = ball(grows.upper()) if grows.upper() > 0 else ZERO
+        return cls(ball(pull.lower()), upper(pull), faster)
+
+
+def settle(
+    problem: Problem, instant: Instant, height: Ball, speed: Ball
+) -> "Instant | Lifted | None":
+    """Follow bounces from bounds of rotation and rate until all rest, or all have lifted.
+
+    Gives the instant from which on all are at rest, where and how they lifted, or None if nothing
+    is sure.
+    """
+    ground = problem.ground(instant.number).at(instant.after)
+    pulls = [Pull.of(problem, sign, height, ground) for sign in (1, -1)]
+    if not all(pull.least > 0 for pull in pulls):
+        return None
+    energetic = (speed * speed + 2 * height * hull([pull.most for pull in pulls])).sqrt()
+    bounds = _Bounds(problem, upper(height), upper(energetic))
+    for _ in range(_WINDOWS):
+        if instant.number >= problem.count:
+            return None
+        left = problem.length(instant.number) - instant.after
+        ground = problem.ground(instant.number).at(instant.after)
+        lift = _lift(problem, instant, ground, left)
+        longest = left if lift is None else ZERO.max(lift[0].lower())
+        window = longest
+        for _ in range(_GUESSES):
+            found = bounds.over(ground.at(UNIT * window), window)
+            if found is not None:
+                break
+            window = (window / 2).mid()
+        else:
+            return None
+        if isinstance(found, _Bounds):
+            bounds = found
+        else:
+            return instant.later(problem, found)
+        whole = window is longest
+        ends = whole and lift is None
+        instant = Instant(instant.number + 1, ZERO) if ends else instant.later(problem, window)
+        if whole and lift is not None:
+            waited = lift[0].upper() - lift[0].lower()
+            return _lifted(problem, instant, lift[1], ball(waited), bounds)
+    return None
+
+
+@dataclass(frozen=True)
+class _Bounds:
+    """Bounds of all members: of the rotation, and of the speed that still has to be lost."""
+
+    problem: Problem
+    height: Ball
+    left: Ball
+
+    @property
+    def restitution(self) -> Ball:
+        """The greater one."""
+        return upper(self.problem.right.restitution.union(self.problem.left.restitution))
+
+    @property
+    def speed(self) -> Ball:
+        """Bound of the speed, and of that with which a member strikes next."""
+        return upper(self.left / self.restitution)
+
+    def over(self, ground: GroundPiece, window: Ball) -> "_Bounds | Ball | None":
+        """Go on over a window, :eq:`eq-proof-bounces`.
+
+        Gives the bounds at its end, or when all are at rest, or None if it is too long.
+        """
+        e = self.restitution
+        reach = upper(self.height + 2 * self.speed * window)
+        pulls = [Pull.of(self.problem, sign, reach, ground) for sign in (1, -1)]
+        limits = self.problem.right.limit, self.problem.left.limit
+        if not (e < 1 and all(reach < limit for limit in limits)):
+            return None
+        growth, push = ZERO, ZERO
+        for pull in pulls:
+            if pull.least > 0:
+                growth = upper(growth.union(pull.faster / pull.least))
+            elif pull.faster > 0:
+                return None
+            else:  # it ends as the ground begins to lift the block
+                push = upper(push.union(-pull.least))
+        root = upper((growth * window / (2 * e)).exp())
+        if not root < 2:
+            return None
+        left = upper((self.left + (2 * push * reach).sqrt() + push * window) * root)
+        least = ball(min((pull.least.lower() for pull in pulls), key=float))
+        if least > 0:
+            lost = (1 - e) * least / 2
+            rest = upper(left / lost)
+            if rest < window:
+                return rest
+            left = upper(left - lost * window)
+            low = upper((left / e) ** 2 / (2 * least))
+            reach = low if low < reach else reach
+        return _Bounds(self.problem, reach, left)
+
+
+def _lift(
+    problem: Problem, instant: Instant, ground: GroundPiece, left: Ball
+) -> tuple[Ball, int] | None:
+    """Give when the ground lifts a block that stands, None if not in this interval."""
+    try:
+        return lifts(problem, ground, left)
+    except Undecided:
+        following, length = (of(instant.number + 1) for of in (problem.ground, problem.length))
+        found = lifts_about_sample(problem, ground, left, following, length)
+        return None if found is None or found[0] > left else found
+
+
+def _lifted(
+    problem: Problem, instant: Instant, sign: int, waited: Ball, bounds: _Bounds
+) -> Lifted | None:
+    """Follow all members from the first time at which the ground lifts any of them, to one side.
+
+    They have the bounds that hold then; the lemma is :eq:`eq-proof-swept`.
+    """
+    corner, speed = problem.corner(sign), bounds.speed
+    span = 2 * waited + speed / problem.frequency
+    for _ in range(_GUESSES):
+        ground = problem.ground_over(instant.number, instant.after, span)
+        lifting = sign * acceleration(ZERO, corner, ground.rates())
+        if not lifting > 0:
+            return None
+        slowest, fastest = ball(lifting.lower()), upper(lifting)
+        reach = upper(bounds.height + (3 * speed + fastest * span * span) * span)
+        back = Pull.of(problem, -sign, reach, ground)
+        stiff = stiffness(UNIT * reach * sign, corner, ground)
+        if not (back.least > 0 and stiff > 0 and reach < corner.limit):
+            return None
+        root = upper((back.faster / back.least * span / 2).exp())
+        down = upper((speed + fastest * waited * waited) * root)
+        last = upper((2 * down / slowest).sqrt() + 2 * down * root / back.least)
+        up = upper(speed * root + (fastest * span / 2 + upper(stiff) * reach) * span)
+        if not (root < 2 and bounds.height + up * span < reach):
+            return None
+        needed = waited + _LIFTING * last
+        if needed < span:
+            after = span - waited
+            slow = slowest * (after * after - last * last) / 2
+            rates = ball(slow.lower()).union(up)
+            return Lifted(instant.later(problem, span), sign, [sign * UNIT * reach, sign * rates])
+        span = (needed * 5 / 4).mid()
+    return None

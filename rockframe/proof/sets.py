@@ -1,0 +1,91 @@
+"""Proofs of sets of numbers, in parts, and of exact ones with as many bits as they take."""
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from heapq import heappop, heappush
+from typing import Final, NamedTuple, TypeAlias
+
+from rockframe.proof.balls import working_precision
+from rockframe.proof.problem import Deviations
+from rockframe.proof.verdict import OVERTURNS, SAFE, UNDECIDED, Proof, Tolerances
+
+PRECISIONS: Final = (106, 212, 424)
+"""Bits of the balls, one after the other while nothing is decided."""
+
+Attempt: TypeAlias = Callable[[Deviations], tuple[Proof, list[float]]]
+"""Proves what it can of a set of inputs; tells how far each of them moves the states."""
+
+
+def proved(attempt: Attempt, within: Tolerances) -> Proof:
+    """Prove a verdict: of exact numbers with more and more bits, of a set in more and more parts.
+
+    A part of which nothing is decided is halved along the input that moves its states most, the
+    largest first.
+    """
+    inputs = Deviations.within(within.restitution, within.scale, within.angle)
+    known, waiting = list[_Part](), list[_Part]()
+    whole: _Part | None = None
+    for bits in PRECISIONS if inputs.exact else PRECISIONS[:1]:
+        with working_precision(bits):
+            whole = _Part(-1.0, 0, inputs, *attempt(inputs))
+        if whole.proof.decided:
+            break
+    assert whole is not None  # noqa: S101
+    (known if whole.proof.decided else waiting).append(whole)
+    with working_precision(PRECISIONS[0]):
+        while waiting and len(known) + len(waiting) < within.parts and not inputs.exact:
+            large = heappop(waiting)
+            for order, half in enumerate(large.inputs.halves(large.influences)):
+                part = _Part(large.share / 2, 2 * large.order + order, half, *attempt(half))
+                if part.proof.decided:
+                    known.append(part)
+                else:
+                    heappush(waiting, part)
+    return replace(
+        _of_parts(known, sorted(waiting)),
+        restitution_tolerance=within.restitution,
+        scale_tolerance=within.scale,
+        angle_tolerance=within.angle,
+    )
+
+
+class _Part(NamedTuple):
+    """A part of a set, in the order of what is halved next."""
+
+    share: float  # of the set, less than zero: the largest comes first
+    order: int
+    inputs: Deviations
+    proof: Proof
+    influences: list[float]
+
+
+def _of_parts(known: list[_Part], rest: list[_Part]) -> Proof:
+    """Say of a set what is proved of its parts."""
+    every = [part.proof for part in (*known, *rest)]
+    shares = {
+        verdict: float(abs(sum(part.share for part in known if part.proof.verdict == verdict)))
+        for verdict in (SAFE, OVERTURNS)
+    }
+    verdict, reason, told = UNDECIDED, "", [part.proof for part in rest[:1] or known]
+    if 1.0 in shares.values():
+        verdict = known[0].proof.verdict
+    elif len(every) == 1:
+        reason = every[0].reason
+    elif rest:
+        reason = f"{rest[0].proof.reason}, in the largest part of which nothing is proved"
+    else:
+        reason = "the verdict is not the same of all of them"
+    falls = [found for found in told if found.verdict != SAFE]
+    return replace(
+        every[0],
+        verdict=verdict,
+        reason=reason,
+        earliest=min((found.earliest for found in falls), default=math.nan),
+        latest=max((found.latest for found in falls), default=math.nan),
+        width=max(found.width for found in every),
+        impacts=max(found.impacts for found in every),
+        parts=len(every),
+        safe_share=shares[SAFE],
+        overturning_share=shares[OVERTURNS],
+    )

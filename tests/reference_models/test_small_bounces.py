@@ -1,0 +1,96 @@
+"""Small bounces that are bounded together: members of a set, each run alone, keep the bounds."""
+
+import numpy as np
+import pytest
+
+import rockframe as rf
+
+pytest.importorskip("flint", reason="python-flint is not installed")
+
+from rockframe.proof import bounces
+from rockframe.proof.balls import ball, working_precision
+from rockframe.proof.bounces import Instant, Lifted, settle
+from rockframe.proof.problem import Deviations, Problem
+
+STEP = 0.02
+BLOCKS = {
+    "symmetric": rf.Block.from_size(radius="2 m", slenderness=4, mass="20 t"),
+    "skew": rf.Block(width="0.8 m", height="4 m", mass="9 t", centre_of_mass=("2 m", "0.05 m")),
+}
+HEIGHT, SPEED = 1e-6, 1e-3
+
+
+def ground(first, last, other=0.0):
+    """Accelerations along straight lines from one value to another, with vertical ones."""
+    across = np.concatenate([np.linspace(first, last, 21), np.full(5, last)])
+    up = other * np.sin(np.arange(across.size))
+    return rf.GroundMotion.from_arrays((across, "m/s^2"), f"{STEP} s", vertical=(up, "m/s^2"))
+
+
+GROUNDS = {
+    "still": ground(0.0, 0.0),
+    "strong to one side": ground(0.9, 0.5, 0.02),
+    "it lifts the block soon": ground(-1.5, -5.0),
+    "it lifts the block late": ground(-1.5, -3.4, 0.02),
+    "it lifts to the other side": ground(1.0, -3.2),
+}
+
+
+def settled(block, motion):
+    system = rf.System(block, gravity="9.81 m/s^2")
+    assembly = system.assembly
+    with working_precision(106):
+        problem = Problem.of(
+            assembly.model.system, motion.si, assembly.options.slope,
+            assembly.setting.overturning_angles, 1.0, Deviations(), 0.1,
+        )  # fmt: skip
+        found = settle(problem, Instant(0, ball(0)), ball(HEIGHT), ball(SPEED))
+    return system, found
+
+
+def members(system, motion, until):
+    """Run members of the set to a time; give their states there."""
+    for rotation in (-HEIGHT, -0.3 * HEIGHT, 0.0, HEIGHT):
+        for rate in (-SPEED, -0.1 * SPEED, 0.2 * SPEED, 0.9999 * SPEED):
+            run = system.simulate(
+                motion,
+                duration=f"{until} s",
+                output_step=f"{until} s",
+                initial=rf.InitialState(
+                    rotation=f"{rotation} rad", angular_velocity=f"{rate} rad/s"
+                ),
+                accuracy="reference",
+            )
+            yield float(run.rotation[-1]), float(run.angular_velocity[-1])
+
+
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize("name", BLOCKS)
+@pytest.mark.parametrize("shaking", GROUNDS)
+def test_every_member_rests_or_has_lifted_as_it_was_told(name, shaking):
+    motion = GROUNDS[shaking]
+    system, found = settled(BLOCKS[name], motion)
+    assert found is not None
+    instant = found.instant if isinstance(found, Lifted) else found
+    until = instant.number * STEP + float(instant.after)
+    states = list(members(system, motion, until))
+    if isinstance(found, Lifted):
+        assert shaking.startswith("it lifts")
+        for state in states:
+            for one, value in zip(found.box, state, strict=True):
+                assert float(one.lower()) - 1e-12 <= value <= float(one.upper()) + 1e-12
+        # bounds, and no more than a few times what there is
+        spread = max(abs(rate) for _, rate in states)
+        assert float(found.box[1].abs_upper()) < 4.0 * spread
+    else:
+        assert until < 1.0
+        assert set(states) == {(0.0, 0.0)}
+
+
+def test_bounces_that_lose_more_than_they_do_are_caught(monkeypatch):
+    motion, block = GROUNDS["strong to one side"], BLOCKS["symmetric"]
+    right = bounces._Bounds.restitution
+    monkeypatch.setattr(bounces._Bounds, "restitution", property(lambda of: right.fget(of) / 3))
+    system, instant = settled(block, motion)
+    until = instant.number * STEP + float(instant.after)
+    assert any(state != (0.0, 0.0) for state in members(system, motion, until))
