@@ -20,6 +20,7 @@ extensions = [
     "sphinx.ext.mathjax",
     "sphinx-mathjax-offline",  # its files and fonts, copied into the site
     "numpydoc",
+    "sphinx_design",  # cards of the first page
     "sphinx_gallery.gen_gallery",
     "code_tables",
     "figures",

@@ -43,8 +43,8 @@ LONGEST = 20.0  # of a record, about its peak [s]
 STRONGEST = (1.0, 8.0)  # peaks, over that of uplift
 GRAVITY = 9.81
 AFTER = "15 s"
-TOLERANCES = (1e-9, 1e-6, 1e-4, 1e-3)
-PARTS = (1, 16)
+TOLERANCES = (1e-12, 1e-9, 1e-6, 1e-4)
+PARTS = (1, 8)
 
 
 def records():
