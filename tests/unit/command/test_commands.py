@@ -14,6 +14,7 @@ import xarray as xr
 
 import rockframe as rf
 from rockframe.command import parser, study
+from rockframe.command.commands import COMMANDS
 from rockframe.command.completion import script
 from rockframe.command.files.templates import TEMPLATES
 from rockframe.command.main import main
@@ -303,7 +304,7 @@ def test_a_traceback_is_shown_on_request(typed):
 def test_help_teaches_by_examples(typed):
     code, told, _ = typed("--help")
     assert code == 0
-    for command in parser.COMMANDS:
+    for command in COMMANDS:
         assert command.name in told
         code, one, _ = typed(command.name, "--help")
         assert code == 0
@@ -312,16 +313,17 @@ def test_help_teaches_by_examples(typed):
         built = parser.build_parser()
         for line in command.examples.splitlines():
             if line.startswith("  rockframe "):
-                typed_line = line.strip().split("  ")[0].split(" > ")[0].split(" | ")[0]
-                words = [word.strip("'") for word in typed_line.split()[1:]]
-                if "--title" not in words:
-                    built.parse_args(words)
+                words = shlex.split(line.strip().split("   ")[0].split(" > ")[0].split(" < ")[0])[
+                    1:
+                ]
+                assert parser.misspelt(words) is None
+                assert built.parse_args(words).command == command.name
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
 def test_completion_names_every_command_and_option(shell):
     text = script(shell)
-    for command in parser.COMMANDS:
+    for command in COMMANDS:
         assert command.name in text
         for argument in command.arguments:
             for name in argument.names:
