@@ -8,7 +8,7 @@ from typing import Any, SupportsIndex, TypeVar, cast
 
 import xarray as xr
 
-from rockframe.errors import ComponentError, SchemaError, shown
+from rockframe.errors import ComponentError, SchemaError, nearest, shown
 
 Words = TypeVar("Words", bound=StrEnum)
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -54,7 +54,8 @@ def one_of_words(kind: type[Words], given: object, *, owner: str, name: str) -> 
         return kind(str(given))
     except ValueError:
         known = " or ".join(repr(str(one)) for one in kind)
-        msg = f"{owner}: {name} must be {known}, got {shown(given)}"
+        near = nearest(given, map(str, kind))
+        msg = f"{owner}: {name} must be {known}, got {shown(given)}{near}"
         raise ComponentError(msg) from None
 
 

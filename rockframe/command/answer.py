@@ -26,6 +26,7 @@ class Answer:
     def __init__(self, command: str, *, quiet: bool, verbose: bool, as_json: bool) -> None:
         self.quiet, self.as_json = quiet, as_json
         self._verbose = verbose
+        self._asked: list[int] = []  # which lines tell what was asked
         self._lines: list[tuple[bool, str]] = []  # whether it is beside the answer; the line
         self._told: dict[str, Any] = {"command": command, "version": __version__}
         self._numbers: dict[str, Any] = {}
@@ -36,6 +37,7 @@ class Answer:
 
     def about(self, label: str, words: str) -> None:
         """Tell what was asked, such as the scene; beside the answer itself."""
+        self._asked.append(len(self._lines))
         self._add(label, words, beside=True)
 
     def says(self, label: str, words: str) -> None:
@@ -75,9 +77,12 @@ class Answer:
         """Keep a warning, which programs get too."""
         self._warnings.append(words)
 
-    def printed(self) -> str:
-        """Give the lines for people."""
-        lines = [words for beside, words in self._lines if not (beside and self.quiet)]
+    def printed(self, error: str = "") -> str:
+        """Give the lines for people; after an error not those that tell what was asked."""
+        lines = [
+            words for number, (beside, words) in enumerate(self._lines)
+            if not (beside and self.quiet) and not (error and number in self._asked)
+        ]  # fmt: skip
         if self._verbose:
             lines += [
                 f"  {name}: {_words(one)}"

@@ -12,7 +12,7 @@ from importlib import import_module
 from types import FrameType
 from typing import TYPE_CHECKING, Any, Final
 
-from rockframe.command.parser import build_parser, misspelt
+from rockframe.command.parser import as_typed, build_parser, misspelt
 from rockframe.command.streams import StandardInput, tell
 from rockframe.errors import RockframeError, RockframeWarning, SolverError
 
@@ -78,7 +78,7 @@ def _told(arguments: "Namespace", who: str, heard: list[int]) -> int:
             code, error = INTERRUPTED, "interrupted"
         except (RockframeError, OSError, MemoryError) as problem:
             code = UNFINISHED if isinstance(problem, SolverError) else WRONG_INPUT
-            error = str(problem) or "there is not enough memory"
+            error = as_typed(str(problem), arguments.command) or "there is not enough memory"
             if arguments.debug:
                 traceback.print_exc()
         written = _print(answer, code, error, who)
@@ -95,7 +95,9 @@ def _execute(arguments: "Namespace", answer: "Answer") -> int:
 
 def _print(answer: "Answer", code: int, error: str, who: str) -> bool:
     """Print what a command found; tell whether that went well, or nobody wants to read more."""
-    told = answer.json(code, error) if answer.as_json else answer.printed()
+    told = answer.json(code, error) if answer.as_json else answer.printed(error)
+    if sys.stdout is None:  # closed before the command began
+        return True
     try:
         if answer.data is not None:  # the words then go beside the file
             sys.stdout.buffer.write(answer.data)
@@ -137,8 +139,9 @@ def _say_warning(who: str, answer: "Answer") -> Any:
     def say(message: object, category: type[Warning], *_: object, **__: object) -> None:
         if not issubclass(category, RockframeWarning):
             return
-        answer.warned(str(message))
+        words = as_typed(str(message), who.split()[-1])
+        answer.warned(words)
         if not answer.quiet:
-            tell(who, f"warning: {message}", "warning")
+            tell(who, f"warning: {words}", "warning")
 
     return say

@@ -62,7 +62,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
 
 def _pulse(found: Described, name: str | None) -> tuple[Any, str]:
     """Give the pulse that was typed, else that of the scene, and what it is called."""
-    known = [one for one in CONSTRUCTORS if _needs(one) == _AXES]
+    known = [one for one in CONSTRUCTORS if _has_axes(one)]
     if name is not None and name not in known:
         listed = f"{meant(name, known)} There are {', '.join(known)}"
         msg = f"--pulse: no pulse of an amplitude and a frequency alone is {name!r}{listed}"
@@ -75,10 +75,12 @@ def _pulse(found: Described, name: str | None) -> tuple[Any, str]:
     return getattr(GroundMotion, name), name.replace("_", " ")
 
 
-def _needs(name: str) -> tuple[str, ...]:
-    """Give the arguments that a constructor of motions must have."""
+def _has_axes(name: str) -> bool:
+    """Tell whether a constructor needs no more than an amplitude and a frequency."""
     taken = arguments_of(getattr(GroundMotion, name))
-    return tuple(one for one, needed in taken.items() if needed)
+    return set(_AXES) <= set(taken) and not any(
+        needed for one, needed in taken.items() if one not in _AXES
+    )
 
 
 def _lines(dataset: xr.Dataset) -> list[str]:

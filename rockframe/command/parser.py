@@ -7,12 +7,19 @@ from typing import Any, Final, NoReturn
 
 from rockframe.command.arguments import EVERYWHERE, Command
 from rockframe.command.commands import COMMANDS
+from rockframe.errors import nearest
 from rockframe.shared_arguments import meant
 from rockframe.version import __version__
 
 STREAM: Final = "-"
 _VALUE: Final = re.compile(r"-[\d.]|-.* ")
 """What begins with a hyphen and is a value: a number, or a quantity with its unit."""
+_EXAMPLE: Final = re.compile(r"\b(\w+)='([^']*)'")
+_OWNER: Final = re.compile(
+    r"^(critical_scale|fragility|incremental_dynamic_analysis|overturning_map|sweep|simulate|"
+    r"rf\.plot\.\w+): "
+)
+"""Names of functions, which whoever types commands did not call."""
 _CHOICE: Final = re.compile(r"invalid choice: '(.*?)'")
 
 EXIT_CODES: Final = """\
@@ -78,19 +85,33 @@ def misspelt(typed: Sequence[str]) -> str | None:
     known = {command.name: command for command in COMMANDS}
     place = next((k for k, word in enumerate(typed) if not word.startswith("-")), len(typed))
     first = typed[place] if place < len(typed) else None
+    foreign = [word for word in typed[:place] if not _is_option(word, _options(None))]
+    if foreign:
+        return _no_option(foreign[0].split("=")[0], None, _options(None))
     if first is not None and first not in known:
-        near = meant(first, known).removesuffix(".")
+        near = nearest(first, known)
         listed = ", ".join(known)
         return f"rockframe: invalid choice: {first!r} is no command{near} There are {listed}"
     command = None if first is None else known[first]
-    for number, word in enumerate(typed):
+    options = _options(command)
+    for word in typed[place + 1 :]:
         if word == "--":
             break
-        within = command if number > place else None
-        options = _options(within)
         if _looks_like_option(word) and not _is_option(word, options):
-            return _no_option(word.split("=")[0], within, options)
+            return _no_option(word.split("=")[0], command, options)
     return None
+
+
+def as_typed(words: str, name: str) -> str:
+    """Say in the words of a command line what functions say in those of Python."""
+    command = next(one for one in COMMANDS if one.name == name)
+    options = _options(command)
+
+    def typed(match: re.Match[str]) -> str:
+        option = f"--{match[1].replace('_', '-')}"
+        return f"{option} '{match[2]}'" if option in options else match[0]
+
+    return _EXAMPLE.sub(typed, _OWNER.sub("", words))
 
 
 def _options(command: Command | None) -> list[str]:

@@ -40,8 +40,15 @@ class StandardInput(BytesIO):
                 "for one of them"
             )
             raise FileError(INPUT, [(None, words)])
+        if sys.stdin is None or sys.stdin.closed:
+            raise FileError(
+                INPUT, [(None, f"it is closed; name the file of {what} instead of '-'")]
+            )
         cls.taken_by = what
         return cls(sys.stdin.buffer.read())
+
+    def __repr__(self) -> str:
+        return self.name
 
 
 def opened(path: str, what: str) -> "str | IO[bytes]":

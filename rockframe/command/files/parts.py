@@ -16,8 +16,7 @@ from rockframe.command.files.tables import (
 )
 from rockframe.components import Component, RockingFrame, Stack
 from rockframe.components.registry import kinds
-from rockframe.errors import shown
-from rockframe.shared_arguments import meant
+from rockframe.errors import nearest, shown
 from rockframe.system.parts import RESTRAINER, slot_of_kind, slots, usual_kind
 
 TYPE: Final = "type"
@@ -90,7 +89,7 @@ def _described(
         ways = constructors(kind)
         if constructor not in ways:
             listed = ", ".join(ways) or "none but the usual one"
-            near = meant(str(constructor), ways).removesuffix(".")
+            near = nearest(str(constructor), ways)
             file.fault(
                 (*where, CONSTRUCTOR),
                 f"constructors of {kind.__name__} are {listed}; got {shown(constructor)}{near}",
@@ -160,7 +159,7 @@ def _kind_of(
     of_own = (
         f'; a class of your own is found once its file is named at the top, {MODULES} = ["mine.py"]'
     )
-    near = meant(str(name), known).removesuffix(".")
+    near = nearest(str(name), known)
     words = f"type must be {' or '.join(known)}, got {shown(name)}{near or of_own}"
     file.fault((*where, TYPE), words)
     return None

@@ -13,11 +13,10 @@ from rockframe.command.files.parts import CONSTRUCTOR, MODULES, described_parts,
 from rockframe.command.files.tables import Place, TomlFile, arguments_of, checked, made
 from rockframe.components import Component, InitialState
 from rockframe.components.registry import kinds
-from rockframe.errors import AssemblyError, RockframeError, shown
+from rockframe.errors import AssemblyError, RockframeError, nearest, shown
 from rockframe.motion import GroundMotion
 from rockframe.motion.description import CONSTRUCTORS, OPERATIONS
 from rockframe.reports.project import project_json
-from rockframe.shared_arguments import meant
 from rockframe.simulation.plan import read_arguments
 from rockframe.simulation.run_arguments import Certification, certification_of
 from rockframe.simulation.system import System
@@ -65,7 +64,7 @@ def _constructed(file: TomlFile, where: Place, table: dict[str, Any]) -> GroundM
     constructor = table.pop(CONSTRUCTOR)
     if constructor not in CONSTRUCTORS:
         known = ", ".join(CONSTRUCTORS)
-        near = meant(str(constructor), CONSTRUCTORS).removesuffix(".")
+        near = nearest(str(constructor), CONSTRUCTORS)
         words = f"constructor must be one of {known}, got {shown(constructor)}{near}"
         file.fault((*where, CONSTRUCTOR), words)
         return None
@@ -209,9 +208,11 @@ _OBJECTS: Final[Mapping[str, type]] = {
 def _run_of(file: TomlFile, given: object) -> dict[str, Any]:
     table = file.table((RUN,), given)
     hints = hints_of(System.simulate)
-    if table is None or not checked(file, (RUN,), table, run_keys(), hints=hints):
+    if table is None:
         return {}
-    arguments = described_run(file, (RUN,), table)
+    checked(file, (RUN,), table, run_keys(), hints=hints)
+    known = {name: value for name, value in table.items() if name in run_keys()}
+    arguments = described_run(file, (RUN,), known)
     made(file, (RUN,), _read_arguments, arguments)
     return arguments
 

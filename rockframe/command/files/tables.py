@@ -4,7 +4,6 @@ import re
 import tomllib
 from codecs import BOM_UTF16_BE, BOM_UTF16_LE
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from difflib import get_close_matches
 from inspect import Parameter, signature
 from pathlib import Path
 from typing import Any, Final, Self, TypeAlias, TypeVar, cast
@@ -17,6 +16,7 @@ from rockframe.errors import (
     RockframeError,
     RockframeWarning,
     StudyError,
+    nearest,
     shown,
     warn,
 )
@@ -112,6 +112,8 @@ def _until_equals(statement: str) -> str:
 
 
 _WHERE: Final = re.compile(r"\s*\(at line (\d+), column \d+\)")
+_EXAMPLE: Final = re.compile(r"for example (\w+)='([^']*)'")
+"""An argument as Python has it, which TOML writes otherwise."""
 _CONTROL: Final = re.compile(r"[\x00-\x08\x0e-\x1f\ufffd]")
 """What stands in no text."""
 _NO_TEXT: Final = (
@@ -159,7 +161,8 @@ class TomlFile:
         """Note what is wrong, at the line of a place or of the table around it."""
         depths = range(len(where), 0, -1)
         lines = [self._lines[where[:depth]] for depth in depths if where[:depth] in self._lines]
-        self._faults.append((lines[0] if lines else None, words))
+        written = _EXAMPLE.sub(r'for example \1 = "\2"', words)
+        self._faults.append((lines[0] if lines else None, written))
 
     @property
     def sound(self) -> bool:
@@ -192,8 +195,7 @@ class TomlFile:
         if hint:
             self.fault((*where, name), f"unknown key {name!r}: {hint}")
             return
-        near = get_close_matches(name.casefold(), known, n=1, cutoff=0.6)
-        meant = f"; was {near[0]!r} meant?" if near else ";"
+        meant = nearest(name, known) or ";"
         inside = f"[{table_title(where)}] takes" if where else "there are"
         self.fault((*where, name), f"unknown key {name!r}{meant} {inside} {', '.join(known)}")
 
