@@ -171,6 +171,13 @@ def nearest(given: object, known: Iterable[str]) -> str:
     return f"; was {' or '.join(repr(words[one]) for one in near)} meant?" if near else ""
 
 
+def unexpected_argument(call: str, name: str, known: Iterable[str]) -> TypeError:
+    """Say what Python says of an argument that there is not, and which one may have been meant."""
+    names = list(known)
+    words = f"{call} got an unexpected keyword argument {name!r}{nearest(name, names) or '.'}"
+    return TypeError(f"{words} It takes {', '.join(names)}")
+
+
 PLEASE_REPORT: Final = "this is an error in rockframe; please report it"
 """What is said of faults that no argument can cause."""
 

@@ -21,10 +21,10 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     if path is None and arguments.dataset == STREAM:
         words = "a result from the standard input has no name; name the report with -o report.html"
         raise FileError(INPUT, [(None, words)])
-    if path is None:
-        path = str(Path(arguments.dataset).with_suffix(".html"))
     folder = Path(arguments.dataset).expanduser().is_dir()
     dataset = open_study(arguments.dataset) if folder else read_result(arguments.dataset)
+    if path is None:
+        path = str(Path(arguments.dataset).with_suffix(".html"))
     if arguments.case is not None:
         dataset = _case_of(dataset, arguments)
     outputs = Outputs(arguments, [arguments.dataset], answer)
