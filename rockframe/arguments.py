@@ -3,27 +3,39 @@
 from collections.abc import Callable, Mapping
 from enum import StrEnum
 from functools import wraps
+from inspect import Parameter, signature
 from operator import index
-from typing import Any, SupportsIndex, TypeVar, cast
+from typing import Any, Final, SupportsIndex, TypeVar, cast
 
 import xarray as xr
 
-from rockframe.errors import ComponentError, SchemaError, shown
+from rockframe.errors import ComponentError, SchemaError, nearest, shown, unexpected_argument
 
 Words = TypeVar("Words", bound=StrEnum)
 Function = TypeVar("Function", bound=Callable[..., Any])
+_BOUND: Final = ("self", "cls", "kind", "motion")
+"""What methods have first, which nobody gives by name."""
 
 
 def hinted(**hints: str) -> Callable[[Function], Function]:
-    """Say more of arguments that a function does not take, but that one may look for there."""
+    """Say more of arguments that a function does not take: hints, or which one was meant."""
 
     def decorate(function: Function) -> Function:
+        first, *rest = signature(function).parameters.values()
+        by_name = (Parameter.POSITIONAL_OR_KEYWORD, Parameter.KEYWORD_ONLY)
+        known = [one.name for one in (first, *rest) if one.kind in by_name]
+        listed = known[1:] if first.name in _BOUND else known
+        any_name = any(one.kind is one.VAR_KEYWORD for one in rest)
+
         @wraps(function)
         def call(*given: Any, **named: Any) -> Any:
             for name in named:
                 if name in hints:
                     msg = f"{function.__qualname__}() takes no {name!r}: {hints[name]}"
                     raise TypeError(msg)
+                if name not in known and not any_name:
+                    words = f"{function.__qualname__}()"
+                    raise unexpected_argument(words, name, listed)
             return function(*given, **named)
 
         call.hints = hints  # type: ignore[attr-defined]
@@ -54,7 +66,8 @@ def one_of_words(kind: type[Words], given: object, *, owner: str, name: str) -> 
         return kind(str(given))
     except ValueError:
         known = " or ".join(repr(str(one)) for one in kind)
-        msg = f"{owner}: {name} must be {known}, got {shown(given)}"
+        near = nearest(given, map(str, kind))
+        msg = f"{owner}: {name} must be {known}, got {shown(given)}{near}"
         raise ComponentError(msg) from None
 
 

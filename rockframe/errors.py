@@ -5,9 +5,10 @@ Every error derives from :class:`RockframeError`, so that a script can tell
 """
 
 import warnings
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Callable, Generator, Iterable, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
+from difflib import get_close_matches
 from inspect import currentframe
 from typing import Final, TypeVar
 
@@ -161,6 +162,20 @@ def shown(value: object) -> str:
         return kind
     line = " ".join(text.split())
     return line if len(line) <= LONGEST_SHOWN else f"{line[: LONGEST_SHOWN - 3]}..."
+
+
+def nearest(given: object, known: Iterable[str]) -> str:
+    """Ask whether a similar word was meant, behind what was given; nothing where there is none."""
+    words = {one.casefold(): one for one in known}
+    near = get_close_matches(str(given).casefold(), words, n=3)
+    return f"; was {' or '.join(repr(words[one]) for one in near)} meant?" if near else ""
+
+
+def unexpected_argument(call: str, name: str, known: Iterable[str]) -> TypeError:
+    """Say what Python says of an argument that there is not, and which one may have been meant."""
+    names = list(known)
+    words = f"{call} got an unexpected keyword argument {name!r}{nearest(name, names) or '.'}"
+    return TypeError(f"{words} It takes {', '.join(names)}")
 
 
 PLEASE_REPORT: Final = "this is an error in rockframe; please report it"

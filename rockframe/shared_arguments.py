@@ -4,10 +4,11 @@ import inspect
 import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from difflib import get_close_matches
 from functools import wraps
 from textwrap import fill
 from typing import Any, Final, TypeVar, cast, get_type_hints
+
+from rockframe.errors import nearest
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -84,8 +85,7 @@ def _unknown(function: str, name: str, known: Iterable[str]) -> str:
 
 def meant(name: str, known: Iterable[str]) -> str:
     """Ask whether a similar name was meant, at the end of a sentence; or end it."""
-    near = get_close_matches(name, list(known), n=3)
-    return f"; was {' or '.join(map(repr, near))} meant?" if near else "."
+    return nearest(name, known) or "."
 
 
 def completed(text: str, names: Iterable[str], declared: Mapping[str, Argument]) -> str:

@@ -1,6 +1,9 @@
 """Commands as pages show them, carried out in this process."""
 
+import io
+import re
 import shlex
+import sys
 from pathlib import Path
 
 from rockframe.command.main import main
@@ -9,13 +12,18 @@ PROMPT = "$ "
 LEFT_OUT = "..."
 
 
-def type_in(console, capsys):
+def type_in(console, capsys, monkeypatch):
     """Carry out the commands of a console, and compare what they write with what it shows.
 
     A line of three dots stands for any lines; what no line shows is not compared.
     """
     for shown in console.removeprefix(PROMPT).split(f"\n{PROMPT}"):
         command, *expected = shown.strip("\n").splitlines()
+        *before, command = re.split(r" \| ", command)
+        for earlier in before:
+            main(shlex.split(earlier)[1:])
+            handed = capsys.readouterr().out.encode()
+            monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(handed)))
         words = shlex.split(command)
         target = None
         if ">" in words:

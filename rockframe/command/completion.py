@@ -3,7 +3,9 @@
 import argparse
 from typing import Final
 
-from rockframe.command.parser import COMMANDS, Command, CommandArgument
+from rockframe.command.answer import Answer
+from rockframe.command.arguments import EVERYWHERE, Command, CommandArgument
+from rockframe.command.commands import COMMANDS
 
 _BASH: Final = """\
 _rockframe() {
@@ -40,9 +42,10 @@ compdef _rockframe rockframe
 """
 
 
-def execute(arguments: argparse.Namespace) -> int:
+def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     """Write the script for a shell."""
-    print(script(arguments.shell), end="")
+    text = script(arguments.shell)
+    answer.text(text.removesuffix("\n"), text=text)
     return 0
 
 
@@ -53,7 +56,8 @@ def script(shell: str) -> str:
 
 def _options(command: Command) -> list[tuple[CommandArgument, str]]:
     """Give the options of a command, each by its long name."""
-    return [(one, one.names[-1]) for one in command.arguments if one.names[0].startswith("-")]
+    given = (*command.arguments, *EVERYWHERE)
+    return [(one, one.names[-1]) for one in given if one.names[0].startswith("-")]
 
 
 def _choices(command: Command) -> list[str]:
@@ -63,7 +67,7 @@ def _choices(command: Command) -> list[str]:
 def _bash() -> str:
     cases = []
     for command in COMMANDS:
-        words = [*_choices(command), *(name for _, name in _options(command)), "--help", "--debug"]
+        words = [*_choices(command), *(name for _, name in _options(command)), "--help"]
         cases.append(f'            {command.name}) words="{" ".join(words)}" ;;')
     names = " ".join(command.name for command in COMMANDS)
     return _BASH.replace("@COMMANDS@", names).replace("@CASES@", "\n".join(cases))

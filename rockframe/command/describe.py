@@ -2,12 +2,20 @@
 
 import argparse
 
+from rockframe.command.answer import Answer
 from rockframe.command.files.scenes import read_scene
 
 
-def execute(arguments: argparse.Namespace) -> int:
+def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     """Describe the scene of a file."""
     found = read_scene(arguments.scene)
-    print(found.system.describe())
-    print(f"Motion:\n  {'none' if found.motion is None else found.motion}")
+    described = found.system.describe()
+    motion = "none" if found.motion is None else str(found.motion)
+    answer.text(
+        f"{described}\nMotion:\n  {motion}",
+        model=found.system.setting.model,
+        parts=[type(part).__name__ for part in found.system.parts.structural()],
+        motion=motion,
+        description=str(described),
+    )
     return 0

@@ -1,17 +1,25 @@
 """The entry: reads the command line, carries out the command, and tells what went wrong."""
 
 import os
+import signal
 import sys
+import threading
 import traceback
 import warnings
-from collections.abc import Sequence
-from contextlib import redirect_stdout
+from collections.abc import Generator, Sequence
+from contextlib import contextmanager
 from importlib import import_module
-from io import StringIO
-from typing import Final
+from types import FrameType
+from typing import TYPE_CHECKING, Any, Final
 
-from rockframe.command.parser import build_parser
+from rockframe.command.parser import as_typed, build_parser, misspelt
+from rockframe.command.streams import StandardInput, tell
 from rockframe.errors import RockframeError, RockframeWarning, SolverError
+
+if TYPE_CHECKING:
+    from argparse import Namespace
+
+    from rockframe.command.answer import Answer
 
 DONE: Final = 0
 UNFINISHED: Final = 1
@@ -21,41 +29,81 @@ INTERRUPTED: Final = 130
 
 def main(given: Sequence[str] | None = None) -> int:
     """Carry out what was typed."""
+    typed = list(sys.argv[1:] if given is None else given)
+    StandardInput.taken_by = ""
+    problem = misspelt(typed)
+    if problem is not None:
+        who, _, words = problem.partition(": ")
+        tell(who, words)
+        return WRONG_INPUT
     parser = build_parser()
     try:
-        arguments = parser.parse_args(given)
+        arguments = parser.parse_args(typed)
     except SystemExit as left:  # help, version, or a wrong command line
         return left.code if isinstance(left.code, int) else WRONG_INPUT
     if arguments.command is None:
         parser.print_help()
         return WRONG_INPUT
-    arguments.typed = list(sys.argv[1:] if given is None else given)
+    arguments.typed = typed
+    for name in ("quiet", "verbose", "json", "debug"):
+        setattr(arguments, name, getattr(arguments, name, False))
     who = f"rockframe {arguments.command}"
+    with _interrupts() as heard:
+        try:
+            return _told(arguments, who, heard)
+        except KeyboardInterrupt:  # also while libraries are loaded
+            tell(who, "interrupted")
+            return INTERRUPTED
+
+
+def _told(arguments: "Namespace", who: str, heard: list[int]) -> int:
+    """Carry out a command, and print what it found once all of its files are written."""
+    from rockframe.command.answer import Answer
+
+    answer = Answer(
+        arguments.command,
+        quiet=arguments.quiet,
+        verbose=arguments.verbose,
+        as_json=arguments.json,
+    )
+    error = ""
     with warnings.catch_warnings():
         warnings.simplefilter("default", RockframeWarning)
-        warnings.showwarning = _say_warning(who)
-        # what is said is printed once all files are written: whoever reads it may stop early
-        told = StringIO()
+        warnings.showwarning = _say_warning(who, answer)
         try:
-            with redirect_stdout(told):
-                code = _execute(arguments)
+            code = _execute(arguments, answer)
+            if heard:  # and what was found until then was told
+                code = INTERRUPTED
         except KeyboardInterrupt:
-            _print(told.getvalue(), who)
-            print(f"{who}: interrupted", file=sys.stderr)
-            return INTERRUPTED
-        except (RockframeError, OSError) as problem:
-            _print(told.getvalue(), who)
-            if getattr(arguments, "debug", False):
+            code, error = INTERRUPTED, "interrupted"
+        except (RockframeError, OSError, MemoryError) as problem:
+            code = UNFINISHED if isinstance(problem, SolverError) else WRONG_INPUT
+            error = as_typed(str(problem), arguments.command) or "there is not enough memory"
+            if arguments.debug:
                 traceback.print_exc()
-            else:
-                print(f"{who}: {problem}", file=sys.stderr)
-            return UNFINISHED if isinstance(problem, SolverError) else WRONG_INPUT
-        return code if _print(told.getvalue(), who) else WRONG_INPUT
+        written = _print(answer, code, error, who)
+    if error and not arguments.debug:
+        tell(who, error)
+    return code if written or error else WRONG_INPUT
 
 
-def _print(told: str, who: str) -> bool:
-    """Print what a command said; tell whether that went well, or nobody wants to read more."""
+def _execute(arguments: "Namespace", answer: "Answer") -> int:
+    """Call the module of the command, which loads what it needs."""
+    module: Any = import_module(f"rockframe.command.{arguments.command}")
+    return int(module.execute(arguments, answer))
+
+
+def _print(answer: "Answer", code: int, error: str, who: str) -> bool:
+    """Print what a command found; tell whether that went well, or nobody wants to read more."""
+    told = answer.json(code, error) if answer.as_json else answer.printed(error)
+    if sys.stdout is None:  # closed before the command began
+        return True
     try:
+        if answer.data is not None:  # the words then go beside the file
+            sys.stdout.buffer.write(answer.data)
+            sys.stdout.flush()
+            print(told, end="", file=sys.stderr)
+            return True
         encoding = sys.stdout.encoding or "utf-8"
         print(told.encode(encoding, "replace").decode(encoding), end="", flush=True)
     except OSError as problem:
@@ -63,20 +111,37 @@ def _print(told: str, who: str) -> bool:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         if isinstance(problem, BrokenPipeError):
             return True
-        print(f"{who}: the output cannot be written ({problem.strerror})", file=sys.stderr)
+        tell(who, f"the output cannot be written ({problem.strerror})")
         return False
     return True
 
 
-def _execute(arguments: object) -> int:
-    """Call the module of the command, which loads what it needs."""
-    name = arguments.command  # type: ignore[attr-defined]
-    return import_module(f"rockframe.command.{name}").execute(arguments)
+@contextmanager
+def _interrupts() -> Generator[list[int]]:
+    """Keep in mind that Ctrl-C was heard, also where an analysis then gives what it has."""
+    heard: list[int] = []
+    if threading.current_thread() is not threading.main_thread():
+        yield heard
+        return
+
+    def hear(number: int, frame: FrameType | None) -> None:
+        heard.append(number)
+        signal.default_int_handler(number, frame)
+
+    before = signal.signal(signal.SIGINT, hear)
+    try:
+        yield heard
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
-def _say_warning(who: str) -> object:
+def _say_warning(who: str, answer: "Answer") -> Any:
     def say(message: object, category: type[Warning], *_: object, **__: object) -> None:
-        if issubclass(category, RockframeWarning):
-            print(f"{who}: warning: {message}", file=sys.stderr)
+        if not issubclass(category, RockframeWarning):
+            return
+        words = as_typed(str(message), who.split()[-1])
+        answer.warned(words)
+        if not answer.quiet:
+            tell(who, f"warning: {words}", "warning")
 
     return say

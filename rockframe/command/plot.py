@@ -6,7 +6,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from rockframe import plot
+from rockframe.command.answer import Answer
 from rockframe.command.shared import Outputs, read_result
+from rockframe.command.streams import STREAM
 from rockframe.errors import ComponentError
 from rockframe.plot._checks import drawn_by
 from rockframe.reports.figures import close, figure_of
@@ -26,20 +28,22 @@ _SIGNED: Final = {
 PICTURE: Final = FileKind.marked("a picture", tuple(_SIGNED), _MARK)
 
 
-def execute(arguments: argparse.Namespace) -> int:
+def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     """Draw what a file holds."""
-    outputs = Outputs(arguments, [arguments.dataset])
+    outputs = Outputs(arguments, [arguments.dataset], answer)
     outputs.check(arguments.output, PICTURE)
     dataset = read_result(arguments.dataset)
     function = getattr(plot, drawn_by(dataset))
     named = {} if arguments.title is None else {"title": arguments.title}
-    save(figure_of(function(dataset, **named)), arguments.output, outputs)
+    save(figure_of(function(dataset, **named)), arguments.output, outputs, arguments.format)
     return 0
 
 
-def save(figure: "Figure", path: str | Path, outputs: Outputs) -> None:
-    """Write a figure, and say so."""
-    kind = Path(path).suffix.lower()
+def save(
+    figure: "Figure", path: str | Path, outputs: Outputs, of_stream: str | None = None
+) -> None:
+    """Write a figure, and say so; `of_stream` is the format on the standard output."""
+    kind = f".{of_stream or 'png'}" if str(path) == STREAM else Path(path).suffix.lower()
     drawn = BytesIO()
     try:
         signed = {_SIGNED[kind]: f"{_MARK}{__version__}"}

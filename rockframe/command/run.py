@@ -4,6 +4,7 @@ import argparse
 
 import xarray as xr
 
+from rockframe.command.answer import Answer
 from rockframe.command.shared import RUN, Outputs, scene_from, simulated, system_words
 from rockframe.results.variables.runs import RunStatus
 from rockframe.simulation.provenance import motion_words
@@ -11,18 +12,19 @@ from rockframe.simulation.provenance import motion_words
 FINISHED = (RunStatus.COMPLETED, RunStatus.OVERTURNED, RunStatus.TOPPLED)
 
 
-def execute(arguments: argparse.Namespace) -> int:
+def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     """Simulate, and say what became of it."""
     found = scene_from(arguments)
-    outputs = Outputs(arguments, found.files)
+    outputs = Outputs(arguments, found.files, answer)
     outputs.check(arguments.output, RUN)
     response = simulated(found)
-    print(f"Scene:   {system_words(found.system)} ({response.attrs['model']})")
-    print(f"Motion:  {motion_words(response.attrs)}")
-    print(f"Verdict: {response.attrs['verdict']}")
+    answer.about("Scene", f"{system_words(found.system)} ({response.attrs['model']})")
+    answer.about("Motion", motion_words(response.attrs))
+    answer.says("Verdict", response.attrs["verdict"])
     for name in ("certificate", "proof"):
         if name in response.attrs:
-            print(f"{name.capitalize()}: {response.attrs[name]}")
+            answer.says(name.capitalize(), response.attrs[name])
+    answer.numbers(response)
     outputs.result(arguments.output, RUN, response)
     return 0 if finished(response) else 1
 

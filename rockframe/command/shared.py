@@ -2,26 +2,40 @@
 
 import argparse
 import csv
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
+from math import floor
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, Final
 
 import xarray as xr
 
+from rockframe.command.answer import Answer
 from rockframe.command.files.scenes import Described, read_scene
-from rockframe.errors import ComponentError, FileError, SolverError
+from rockframe.command.files.tables import arguments_of
+from rockframe.command.streams import INPUT, STREAM, StandardInput, opened
+from rockframe.constants import STANDARD_GRAVITY
+from rockframe.errors import ComponentError, FileError, RecordError, SolverError, shown
 from rockframe.motion import GroundMotion
 from rockframe.reports.project import ATTRIBUTE
 from rockframe.results.table import head_of
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import accuracy_of
+from rockframe.studies.intensities import PERIOD_OF, measure_words
+from rockframe.suites import MotionSuite, read_suite
+from rockframe.units import Unit
 from rockframe.writing import Content, FileKind, checked_path, write_file
 
 if TYPE_CHECKING:
     import pandas as pd
 
 _OF_RESULTS: Final = "give what 'rockframe run' or 'study' has written with -o"
+_NO_MOTION: Final = (
+    "there is no motion; name a record with --motion, or describe one in the file, in [motion]"
+)
+_MOST_VALUES: Final = 100_000
 _LONGEST_HEAD: Final = 65536
 """Most of the first line of a table that is read [bytes]."""
 
@@ -29,24 +43,98 @@ _LONGEST_HEAD: Final = 65536
 def motion_from(path: str, arguments: argparse.Namespace) -> GroundMotion:
     """Read the file of a motion as the options for reading say."""
     step = {} if arguments.time_step is None else {"time_step": arguments.time_step}
-    return GroundMotion.read(path, component=arguments.component, unit=arguments.unit, **step)
+    return GroundMotion.read(
+        opened(path, "a record"), component=arguments.component, unit=arguments.unit, **step
+    )
 
 
-def scene_from(arguments: argparse.Namespace) -> Described:
+def suite_from(paths: Sequence[str], arguments: argparse.Namespace) -> MotionSuite:
+    """Read all records of files, archives and folders."""
+    files = [opened(path, "a record") for path in paths]
+    given = files[0] if len(files) == 1 else files
+    return read_suite(given, unit=arguments.unit, time_step=arguments.time_step)
+
+
+def motions_from(arguments: argparse.Namespace) -> Mapping[str, GroundMotion]:
+    """Read one component of each file where one is named, else all that there are."""
+    paths = arguments.files
+    if arguments.component is not None:
+        found = [motion_from(path, arguments) for path in paths]
+        return {f"{number}: {one.name}": one for number, one in enumerate(found, 1)}
+    try:
+        return suite_from(paths, arguments)
+    except RecordError:
+        if len(paths) > 1 or paths[0] == STREAM:
+            raise
+        with suppress(RecordError):  # a vertical component is read alone, with a warning
+            one = motion_from(paths[0], arguments)
+            return {one.name: one}
+        raise
+
+
+def scene_from(arguments: argparse.Namespace, *, moved: bool = False) -> Described:
     """Read the scene, with the motion and the arguments of the run that options give instead."""
     found = read_scene(arguments.scene)
     motion, files = found.motion, found.files
+    if moved and motion is None and arguments.motion is None:
+        raise FileError(arguments.scene, [(None, _NO_MOTION)])
     if arguments.motion is not None:
         motion = motion_from(arguments.motion, arguments)
         files += (Path(arguments.motion),)
     if arguments.scale is not None and motion is not None:
         motion = motion.scaled(arguments.scale)
-    run = found.run | _run_options(arguments)
+    return replace(found, motion=motion, run=run_from(found.run, arguments), files=files)
+
+
+def run_from(of_file: Mapping[str, Any], arguments: argparse.Namespace) -> dict[str, Any]:
+    """Give the arguments of a run: those of a file, and what options give instead."""
+    run = {**of_file, **_run_options(arguments)}
     if arguments.duration is not None and arguments.free_vibration is None:
         run.pop("free_vibration", None)
     if arguments.free_vibration is not None and arguments.duration is None:
         run.pop("duration", None)
-    return replace(found, motion=motion, run=run, files=files)
+    return run
+
+
+def taken_by(function: Callable[..., Any], run: Mapping[str, Any]) -> dict[str, Any]:
+    """Give those arguments of a run that an analysis takes too."""
+    known = arguments_of(function)
+    return {name: value for name, value in run.items() if name in known}
+
+
+def given_of(arguments: argparse.Namespace, *names: str) -> dict[str, Any]:
+    """Give the options that were typed, by their names."""
+    given = {name: getattr(arguments, name) for name in names}
+    return {name: value for name, value in given.items() if value is not None}
+
+
+def values_of(words: str, option: str, example: str) -> tuple[list[float], str]:
+    """Read numbers, listed or from:to:step, and a unit behind them where the example has one."""
+    numbers, _, unit = words.strip().partition(" ")
+    unit = unit.strip()
+    try:
+        if ":" not in numbers:
+            found = [float(one) for one in numbers.split(",")]
+        else:
+            found = _steps(*map(float, numbers.split(":")))
+        if (" " in example) != bool(unit):
+            raise ValueError
+    except (TypeError, ValueError, ZeroDivisionError):
+        with_unit = " with their unit behind them" if " " in example else " without a unit"
+        msg = (
+            f"{option}: expected numbers{with_unit}, such as '{example}' from, to and step, or "
+            f"listed with commas; got {shown(words)}"
+        )
+        raise ComponentError(msg) from None
+    return found, unit
+
+
+def _steps(start: float, end: float, step: float) -> list[float]:
+    count = (end - start) / step
+    if not 0.0 <= count <= _MOST_VALUES:
+        raise ValueError
+    # a step of 0.1 is no multiple of a power of 2
+    return [round(start + k * step, 12) for k in range(1 + floor(count + 1e-9))]
 
 
 def simulated(found: Described, **more: Any) -> xr.Dataset:
@@ -59,35 +147,93 @@ def with_project(dataset: xr.Dataset, project: str) -> xr.Dataset:
     return dataset.assign_attrs({ATTRIBUTE: project}) if project else dataset
 
 
+def in_words(value: xr.DataArray, of: xr.Dataset) -> str:
+    """Tell an intensity measure: its name, its value and unit, and accelerations in g too."""
+    name = measure_words(str(value.name), of.attrs.get(PERIOD_OF))
+    return f"{name} {amount(float(value), value.attrs)}"
+
+
+def amount(value: float, attributes: Mapping[Any, Any]) -> str:
+    """Write a number with its unit, of an acceleration in g too."""
+    unit = str(attributes.get("units", "1"))
+    if unit == Unit.METRE_PER_SECOND_SQUARED:
+        return f"{value:.4g} {unit} ({value / STANDARD_GRAVITY:.3g} g)"
+    return f"{value:.4g}" if unit == "1" else f"{value:.4g} {unit}"
+
+
 class Outputs:
     """The files that a command writes, and those that it must not write over."""
 
-    def __init__(self, arguments: argparse.Namespace, read: Iterable[str | Path]) -> None:
+    def __init__(
+        self, arguments: argparse.Namespace, read: Iterable[str | Path], answer: Answer
+    ) -> None:
         self._given: dict[str, Any] = {"overwrite": arguments.overwrite, "read": list(read)}
+        self._answer = answer
 
     def check(self, path: str | Path | None, kind: FileKind) -> None:
         """Refuse a file that must not be written, before the work and not after it."""
-        if path is not None:
+        if path is not None and str(path) != STREAM:
             checked_path(path, kind, **self._given)
 
     def write(self, path: str | Path | None, kind: FileKind, title: str, content: Content) -> None:
         """Write a file, if one was named, and say so."""
-        if path is not None:
-            write_file(path, kind, content, **self._given)
-            print(f"{title}: {path}")
+        if path is None:
+            return
+        if str(path) == STREAM:
+            self._answer.hands_on(_bytes_of(content, kind))
+            return
+        write_file(path, kind, content, **self._given)
+        self._answer.wrote(title, path)
 
     def result(self, path: str | Path | None, kind: FileKind, dataset: xr.Dataset) -> None:
         """Write a result, if a file was named, and say so."""
         self.write(path, kind, "Results", dataset.to_netcdf)
+
+    def written_by(
+        self, path: str | Path, ending: str, title: str, save: Callable[[Path], object]
+    ) -> None:
+        """Let something write itself to a file, or to the standard output; and say so."""
+        if str(path) != STREAM:
+            save(Path(path))
+            self._answer.wrote(title, path)
+            return
+        with TemporaryDirectory() as folder:
+            place = Path(folder) / f"file{ending}"
+            save(place)
+            self._answer.hands_on(place.read_bytes())
 
     def table(self, path: str | None, kind: FileKind, values: "pd.DataFrame") -> None:
         """Write a table, if a file was named, and say so."""
         self.write(path, kind, "Table", lambda part: values.to_csv(part))
 
 
+def _bytes_of(content: Content, kind: FileKind) -> bytes:
+    """Give the bytes of a file."""
+    if isinstance(content, bytes):
+        return content
+    with TemporaryDirectory() as folder:
+        part = Path(folder) / f"part{kind.endings[0]}"
+        content(part)
+        return part.read_bytes()
+
+
+def is_result(path: str) -> bool:
+    """Tell a result, or the store of a study, from a scene."""
+    place = Path(path).expanduser()
+    return place.suffix.lower() == ".nc" or place.is_dir()
+
+
 def read_result(path: str) -> xr.Dataset:
     """Read a result."""
-    place = Path(path).expanduser()
+    if path == STREAM:
+        with TemporaryDirectory() as folder:
+            kept = Path(folder) / "result.nc"
+            kept.write_bytes(StandardInput.read_for("a result").getvalue())
+            return _result_in(kept, INPUT)
+    return _result_in(Path(path).expanduser(), path)
+
+
+def _result_in(place: Path, path: str) -> xr.Dataset:
     if not place.is_file():
         found = "this is a folder" if place.is_dir() else "there is no such file"
         raise FileError(path, [(None, f"{found}; {_OF_RESULTS}")])
@@ -101,28 +247,46 @@ def read_result(path: str) -> xr.Dataset:
 def result_kind(words: str, *, axes: bool) -> FileKind:
     """Give the kind of file of results, of one run or along axes."""
 
+    def fits(found: xr.Dataset) -> bool:
+        known = {*found.attrs}
+        return _is_computed(found) and "run_json" in known and axes == ("axes_json" in known)
+
+    return dataset_kind(words, fits)
+
+
+def _is_computed(found: xr.Dataset) -> bool:
+    return str(found.attrs.get("source", "")).startswith("rockframe ")
+
+
+def dataset_kind(words: str, fits: Callable[[xr.Dataset], bool]) -> FileKind:
+    """Give a kind of netCDF file, which is known by what it holds."""
+
     def is_own(path: Path) -> bool:
         try:
             with xr.open_dataset(path, decode_cf=False) as found:
-                attributes: dict[Any, Any] = dict(found.attrs)
+                return fits(found)
         except Exception:  # whatever the libraries raise of files that are none
             return False
-        computed = str(attributes.get("source", "")).startswith("rockframe ")
-        return computed and "run_json" in attributes and axes == ("axes_json" in attributes)
 
     return FileKind(words, (".nc",), is_own)
 
 
-def table_kind(words: str, *names: str) -> FileKind:
+def table_kind(words: str, *names: str, also: Iterable[str] = ()) -> FileKind:
     """Give the kind of table in CSV whose head has variables as only rockframe writes them."""
+    heads = (*also, *map(head_of, names))
 
     def is_own(path: Path) -> bool:
         with path.open("rb") as file:
             head = file.readline(_LONGEST_HEAD).decode("utf-8", "replace")
         columns = next(csv.reader([head]), [])
-        return all(head_of(name) in columns for name in names)
+        return all(head in columns for head in heads)
 
     return FileKind(words, (".csv",), is_own)
+
+
+def analysis_kind(words: str, *names: str) -> FileKind:
+    """Give the kind of file of an analysis, which has some variables."""
+    return dataset_kind(words, lambda found: _is_computed(found) and {*names} <= {*found.variables})
 
 
 RUN: Final = result_kind("the result of a run", axes=False)

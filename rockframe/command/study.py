@@ -2,16 +2,17 @@
 
 import argparse
 import shlex
-import sys
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
+from rockframe.command.answer import Answer
 from rockframe.command.files.studies import DescribedStudy, read_study
 from rockframe.command.main import INTERRUPTED
 from rockframe.command.run import FINISHED
 from rockframe.command.shared import STUDY, Outputs, printed, system_words, table_kind, with_project
+from rockframe.command.streams import bar_for, tell
 from rockframe.errors import FileError, StudyError
 from rockframe.results.table import table
 from rockframe.results.variables.runs import RunStatus
@@ -24,39 +25,46 @@ _MOST_SHOWN: Final = 40
 """Rows up to which the table is printed."""
 
 
-def execute(arguments: argparse.Namespace) -> int:
+def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     """Carry out a study, or what is left of it."""
     found = read_study(arguments.study)
     if arguments.output is None and found.output is not None:
         arguments.output = str(found.output)
-    outputs = Outputs(arguments, found.files)
+    outputs = Outputs(arguments, found.files, answer)
     outputs.check(arguments.output, STUDY)
     outputs.check(arguments.csv, _TABLE)
     if arguments.store == "":
         words = "found no name of a folder after --store; expected one, such as --store kept"
         raise FileError(arguments.study, [(None, words)])
     store = found.store if arguments.store is None else Path(arguments.store).expanduser()
-    print(f"Scene:   {system_words(found.system)}")
+    answer.about("Scene", system_words(found.system))
     try:
-        return _carried_out(found, store, arguments, outputs)
+        return _carried_out(found, store, arguments, outputs, answer)
     except KeyboardInterrupt:
         _say_how_to_go_on(store, arguments.typed)
         raise
 
 
 def _carried_out(
-    found: DescribedStudy, store: Path | None, arguments: argparse.Namespace, outputs: Outputs
+    found: DescribedStudy,
+    store: Path | None,
+    arguments: argparse.Namespace,
+    outputs: Outputs,
+    answer: Answer,
 ) -> int:
     try:
-        runs = sweep(found.system, found.motions, store=store, **found.arguments)
+        with bar_for("study", quiet=arguments.quiet) as bar:
+            given: dict[str, Any] = {"store": store, "progress": bar, **found.arguments}
+            runs = sweep(found.system, found.motions, **given)
     except StudyError as problem:
-        raise FileError(arguments.study, [(None, str(problem))]) from problem
+        raise found.at_lines(problem) from problem
     runs = with_project(runs, found.project)
-    print(f"Verdict: {runs.attrs['verdict']}")
+    answer.says("Verdict", runs.attrs["verdict"])
+    answer.numbers(runs)
     values = table(runs)
     if len(values) <= _MOST_SHOWN:
         wanted = [head for head in values if str(head).split(" [")[0] in _SHOWN]
-        print(printed(values[wanted]))
+        answer.text(printed(values[wanted]))
     outputs.table(arguments.csv, _TABLE, values)
     outputs.result(arguments.output, STUDY, runs)
     status = runs["status"].to_numpy()
@@ -73,4 +81,4 @@ def _say_how_to_go_on(store: Path | None, typed: list[str]) -> None:
     if store is None:
         words += ["--store", "study"]
         told = "it has no store, so that all has to be run again; with one it could go on"
-    print(f"rockframe study: interrupted; {told}: {shlex.join(words)}", file=sys.stderr)
+    tell("rockframe study", f"interrupted; {told}: {shlex.join(words)}")

@@ -2,11 +2,12 @@
 
 import argparse
 
+from rockframe.command.answer import Answer
 from rockframe.command.files.templates import TEMPLATES, every_key
 
 
-def execute(arguments: argparse.Namespace) -> int:
+def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     """Print a file to begin with."""
     text = every_key() if arguments.kind == "all" else TEMPLATES[arguments.kind]
-    print(text, end="")
+    answer.text(text.removesuffix("\n"), text=text)
     return 0

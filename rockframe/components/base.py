@@ -7,10 +7,11 @@ from inspect import Signature, cleandoc
 from textwrap import fill
 from typing import Any, ClassVar, Final, NoReturn, Self
 
+from rockframe.arguments import hinted, hints_of
 from rockframe.components.alternatives import OneOf
 from rockframe.components.parameters import DERIVED, REQUIRED, Declared, SIValues
 from rockframe.components.registry import register_class
-from rockframe.errors import ComponentError, ModelWarning, shown, warn
+from rockframe.errors import ComponentError, ModelWarning, shown, unexpected_argument, warn
 from rockframe.notebook import Polygon, arguments_in_words, card, drawing
 
 _SECTION: Final = re.compile(r"^\w[\w ]*\n-{3,}$", re.MULTILINE)
@@ -83,6 +84,8 @@ class Component:
         cls._declared = {**cls._declared, **own}
         if own and "__init__" not in vars(cls):
             cls.__init__ = _constructor(cls)
+        elif "__init__" in vars(cls) and not hints_of(cls.__init__):
+            cls.__init__ = hinted()(cls.__init__)
         if cls.__doc__ is not None:
             cls.__doc__ = with_parameters(cls.__doc__, cls._declared.values())
         register_class(cls)
@@ -360,8 +363,7 @@ def _every_argument(kind: type[Component], given: Mapping[str, object]) -> dict[
     call = f"{kind.__qualname__}.__init__()"
     for name in given:
         if name not in declared:
-            msg = f"{call} got an unexpected keyword argument {name!r}"
-            raise TypeError(msg)
+            raise unexpected_argument(call, name, declared)
     missing = [
         repr(name)
         for name, one in declared.items()

@@ -16,7 +16,7 @@ import xarray as xr
 
 from rockframe.components import InitialState
 from rockframe.dynamics.protocol import Ending, Start
-from rockframe.errors import AssemblyError, RockframeError, shown
+from rockframe.errors import AssemblyError, RockframeError, nearest, shown
 from rockframe.motion import GroundMotion
 from rockframe.results.diagnostics import DIAGNOSTICS, Diagnostic
 from rockframe.results.forces import OF_SOIL_FRICTION
@@ -58,9 +58,11 @@ def names_of(outputs: object, points: object, faults: list[str]) -> tuple[str, .
         elif isinstance(name, str) and (name in ON_REQUEST or _has_dimensions(name, OVER_TIME)):
             wanted.add(name)
         else:
-            known = ", ".join(repr(other) for other in (*GROUPS, *ON_REQUEST, *DIAGNOSTICS))
+            known = (*GROUPS, *ON_REQUEST, *DIAGNOSTICS)
+            words = ", ".join(map(repr, known))
             faults.append(
-                f"outputs has no {shown(name)}; every run has its response, and on request {known}"
+                f"outputs has no {shown(name)}; every run has its response, and on request "
+                f"{words}{nearest(name, known)}"
             )
     return tuple(name for name in ON_REQUEST if name in wanted)
 

@@ -87,6 +87,7 @@ class System:
 
     __slots__ = ("_assembly",)
 
+    @hinted()
     def __init__(
         self,
         *parts: object,

@@ -10,7 +10,7 @@ from numbers import Integral, Real
 from typing import Any, Final, Literal
 
 from rockframe.dynamics.protocol import ContactModel
-from rockframe.errors import SolverError, shown
+from rockframe.errors import SolverError, nearest, shown
 
 FEWEST: Final = "fewest"
 """Stands for the least number of sub-steps that `steps_per_period` allows."""
@@ -112,7 +112,8 @@ def accuracy_of(choice: "str | float | Accuracy") -> Accuracy:
     except ValueError:
         names = ", ".join(repr(str(level)) for level in AccuracyLevel)
         known = f"one of {names}, a tolerance such as 1e-6 or an Accuracy(...)"
-        msg = f"accuracy must be {known}, got {shown(choice)}"
+        near = nearest(choice, map(str, AccuracyLevel))
+        msg = f"accuracy must be {known}, got {shown(choice)}{near}"
         raise SolverError(msg) from None
 
 

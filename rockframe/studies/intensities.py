@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 import xarray as xr
 
-from rockframe.errors import ComponentError, StudyError, shown
+from rockframe.errors import ComponentError, StudyError, nearest, shown
 from rockframe.measures import intensity_measures, response_spectrum
 from rockframe.motion import GroundMotion
 from rockframe.results.schema import SCHEMA
@@ -54,9 +54,19 @@ POWERS: Final = {
     SPECTRAL: 1,
 }
 """Powers of the scale of the motion with which measures grow."""
+_SPELLED: Final = {short.casefold(): name for short, name in SHORT.items()} | {
+    name.replace("_", " "): name for name in POWERS
+}
+"""Names by how they may be written, in small letters."""
 PERIOD_OF: Final = "intensity_period"
 """Attribute that keeps the period of a spectral intensity [s]."""
 _OSCILLATORS: Final = tuple(name for name in POWERS if SCHEMA[name].dims == OSCILLATOR)
+
+
+def spelled(given: object) -> object:
+    """Give the name of a measure that is written in short, or in other letters."""
+    written = " ".join(given.split()).casefold() if isinstance(given, str) else ""
+    return _SPELLED.get(written, given)
 
 
 def measure_words(name: str, period: float | None) -> str:
@@ -80,7 +90,7 @@ class Intensity:
     @classmethod
     def read(cls, given: object, period: "QuantityLike | None", *, owner: str) -> "Intensity":
         """Read the arguments ``intensity`` and ``period``."""
-        given = SHORT.get(given, given) if isinstance(given, str) else given
+        given = spelled(given)
         name = check_names(given, [*POWERS, *SHORT], owner=owner, name="intensity")
         if name not in _OSCILLATORS:
             return cls(name, None)
@@ -195,7 +205,7 @@ class ScaledIntensity:
         owner: str,
     ) -> None:
         self._motion = motion
-        name = SHORT.get(name, name) if isinstance(name, str) else name
+        name = spelled(name)
         self._block = system.parts.block
         self._gravity = quantity(system.options.gravity, ACCELERATION)
         self._damping = to_ratio(damping_ratio, owner=owner, name="damping_ratio")
@@ -208,7 +218,8 @@ class ScaledIntensity:
         of_motion = self._all(motion)
         known = sorted({*map(str, of_motion.data_vars), *OF_OSCILLATORS} - {*_OF_THE_BLOCK})
         if name not in known:
-            msg = f"{owner}: intensity must be one of {', '.join(known)}, got {shown(name)}"
+            near = nearest(name, [*SHORT, *known])
+            msg = f"{owner}: intensity must be one of {', '.join(known)}, got {shown(name)}{near}"
             raise ComponentError(msg)
         self.name = str(name)
 

@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe.arguments import checked_dataset
-from rockframe.errors import ComponentError, SchemaError, shown
+from rockframe.errors import ComponentError, SchemaError, nearest, shown
 from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import overturns
 from rockframe.results.schema import SCHEMA
@@ -179,5 +179,6 @@ def check_names(given: object, known: Iterable[str], *, owner: str, name: str) -
     listed = list(known)
     if isinstance(given, str) and given in listed:
         return given
-    msg = f"{owner}: {name} must be one of {', '.join(listed)}, got {shown(given)}"
+    near = nearest(given, listed)
+    msg = f"{owner}: {name} must be one of {', '.join(listed)}, got {shown(given)}{near}"
     raise ComponentError(msg)

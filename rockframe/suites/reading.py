@@ -3,6 +3,7 @@
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Final
 
+from rockframe.arguments import hinted
 from rockframe.errors import PLEASE_REPORT, ComponentError, RecordError, RecordWarning, warn
 from rockframe.motion import GroundMotion
 from rockframe.records import (
@@ -33,6 +34,7 @@ _COMPANIONS: Final = (*_OTHER_MOTIONS, ".pdf", ".xml")
 _LISTED: Final = 3
 
 
+@hinted()
 def read_suite(
     path: "RecordLike | Iterable[RecordLike]",
     *,

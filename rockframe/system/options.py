@@ -7,7 +7,7 @@ from enum import StrEnum
 from typing import Final, Literal, TypeAlias, TypeVar
 
 from rockframe.constants import STANDARD_GRAVITY
-from rockframe.errors import RockframeError, shown
+from rockframe.errors import RockframeError, nearest, shown
 from rockframe.signals.motion import Slope
 from rockframe.solve.accuracy import Accuracy, AccuracyLevel
 from rockframe.units import ACCELERATION, ANGLE, POSITIVE, Condition, Measure, QuantityLike, to_si
@@ -131,7 +131,8 @@ def read_option(kind: type[Option], value: object, name: str, faults: list[str])
         return kind(value)  # type: ignore[arg-type]
     except ValueError:
         known = ", ".join(repr(str(option)) for option in kind)
-        faults.append(f"{name} must be one of {known}, got {shown(value)}")
+        near = nearest(value, map(str, kind))
+        faults.append(f"{name} must be one of {known}, got {shown(value)}{near}")
         return next(iter(kind))
 
 

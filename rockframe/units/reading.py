@@ -155,6 +155,8 @@ QuantityLike: TypeAlias = str | Quantity | tuple[float, str]
 """A number with its unit: ``"0.3 m"``, ``(0.3, "m")``, or a Quantity of pint."""
 RatioLike: TypeAlias = float | str | Quantity
 
+_GRAVITY: Final = ("g", "G", "g0")
+"""What engineers write for the acceleration of gravity, which pint calls ``g_0``."""
 _LONGEST_FACTOR: Final = 12
 """Letters of a unit's size that is a number of few digits, such as 0.45359237 kg or 1e-06 m."""
 
@@ -305,6 +307,7 @@ def _parse(value: object, measure: Measure, *, owner: str, name: str) -> Quantit
             why = "one number and its unit are needed"
         msg = f"{needed}, got {shown(value)} ({why}); {example}"
         raise UnitsError(msg)
+    value = _gravity(value, measure)
     for pattern, words in AMBIGUOUS:
         if re.search(pattern, value):
             msg = f"{needed}, got {shown(value)} ({words}); {example}"
@@ -321,6 +324,16 @@ def _parse(value: object, measure: Measure, *, owner: str, name: str) -> Quantit
         hint = misread(value, measure)
         msg = f"{needed}, got {shown(value)}, whose unit cannot be read{hint}; {example}"
         raise UnitsError(msg) from problem
+
+
+def _gravity(text: str, measure: Measure) -> str:
+    """Read ``g`` as the acceleration of gravity where an acceleration is asked for.
+
+    Elsewhere it is the gram, which is no acceleration.
+    """
+    parts = number_and_unit(text)
+    gravity = measure.unit == Unit.METRE_PER_SECOND_SQUARED and parts and parts[1] in _GRAVITY
+    return f"{parts[0]} g_0" if parts and gravity else text
 
 
 def _joined(value: object) -> object:

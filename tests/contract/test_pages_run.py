@@ -53,7 +53,7 @@ def test_snippets_run_from_first_to_last(page, tmp_path, monkeypatch, capsys):
                 Path(named[1]).write_text(snippet, encoding="utf-8")
             continue
         if language == "console":
-            type_in(snippet, capsys)
+            type_in(snippet, capsys, monkeypatch)
             continue
         exec(snippet, names)  # noqa: S102
         if shown:

@@ -270,6 +270,8 @@ THEMSELVES = {
     "compiled/store.py": "machine code, in a folder of its own",
     "command/shared.py": "to the place that the mechanism gives",
     "command/plot.py": "to memory",
+    "command/animate.py": "by the methods of players and animations",
+    "command/convert.py": "by the method of a motion",
     "reports/page.py": "to memory",
     "accessor.py": "by the method of a player",
     "plot/_animation.py": "to the place that the mechanism gives",

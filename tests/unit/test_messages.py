@@ -225,3 +225,49 @@ def test_a_folder_for_machine_code_that_cannot_be_written_is_named_once(
     assert len(told) == 1
     assert str(taken) in told[0]
     assert "ROCKFRAME_CACHE_DIR" in told[0]
+
+
+PADS = rf.TwoSpringSupport(frequency_ratio=40, damping_ratio=0.1)
+MISSPELT = {
+    "a part's parameter": (lambda: rf.Block(widht="1 m"), "'widht'; was 'width' meant?"),
+    "a base's": (lambda: rf.TwoSpringSupport(frequency_ration=40), "was 'frequency_ratio' meant?"),
+    "of a copy": (lambda: PADS.replace(dampin_ratio=0.2), "was 'damping_ratio'"),
+    "of another constructor": (lambda: rf.Block.from_outline([], units="m"), "was 'unit' meant?"),
+    "of a stack": (lambda: rf.Stack(interface=[]), "was 'interfaces' meant?"),
+    "of a link": (lambda: rf.Restrainer(stiffnes="1 kN/m"), "was 'stiffness' meant?"),
+    "of a system": (lambda: rf.System(restrain="centre"), "was 'restraint'"),
+    "an option": (lambda: rf.System(BLOCK, restraint="center"), "was 'centre' meant?"),
+    "of a run": (lambda: SYSTEM.simulate(SHAKING, accuracies="fast"), "was 'accuracy' meant?"),
+    "an output": (lambda: SYSTEM.simulate(SHAKING, outputs=["energis"]), "was 'energy' meant?"),
+    "a level": (lambda: SYSTEM.simulate(SHAKING, accuracy="standrad"), "was 'standard' meant?"),
+    "of a pulse": (lambda: rf.GroundMotion.sine_pulse(amplitde="1 g"), "was 'amplitude' meant?"),
+    "of a record": (lambda: rf.GroundMotion.read("x", units="g"), "was 'unit' meant?"),
+    "of an operation": (lambda: SHAKING.scaled(factr=2), "was 'factor' meant?"),
+    "of a suite": (lambda: rf.read_suite("x", unti="g"), "was 'unit' meant?"),
+    "a measure": (
+        lambda: rf.critical_scale(SYSTEM, SHAKING, intensity="peak_ground_acc"),
+        "was 'peak_ground_acceleration'",
+    ),
+    "a table": (lambda: rf.table(None, "scalar"), "was 'scalars' meant?"),
+}
+BLOCK = rf.Block(width="0.8 m", height="3.2 m", mass="5.5 t")
+SYSTEM = rf.System(BLOCK)
+SHAKING = rf.GroundMotion.sine_pulse("0.3 g", "1 Hz")
+
+
+@pytest.mark.parametrize("name", MISSPELT)
+def test_what_is_misspelt_is_answered_with_a_proposal(name):
+    misspelt, words = MISSPELT[name]
+    with pytest.raises((TypeError, rf.errors.RockframeError)) as caught:
+        misspelt()
+    assert words in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "name", ["pga", "Pga", "peak ground acceleration", "Peak Ground Acceleration"]
+)
+def test_measures_are_known_in_any_letters(name):
+    found = rf.critical_scale(SYSTEM, SHAKING, intensity=name, largest=1, scales=2, runs=2)
+    assert found.attrs["intensity"] == "peak_ground_acceleration"
+    runs = rf.sweep(SYSTEM, [SHAKING, SHAKING.scaled(2)], scale=[1, 2])
+    assert rf.fragility(runs, name).sizes["peak_ground_acceleration"] > 1

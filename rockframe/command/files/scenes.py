@@ -1,19 +1,19 @@
 """A scene in a TOML file: tables for the parts, the system's options, the motion and the run."""
 
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from importlib import import_module
 from importlib.util import module_from_spec, spec_from_file_location
-from inspect import getmembers, ismethod
 from pathlib import Path
 from typing import Any, Final
 
 from rockframe.arguments import hints_of
+from rockframe.command.files.parts import CONSTRUCTOR, MODULES, described_parts, part_slots
 from rockframe.command.files.tables import Place, TomlFile, arguments_of, checked, made
 from rockframe.components import Component, InitialState
 from rockframe.components.registry import kinds
-from rockframe.errors import AssemblyError, RockframeError, shown
+from rockframe.errors import AssemblyError, RockframeError, nearest, shown
 from rockframe.motion import GroundMotion
 from rockframe.motion.description import CONSTRUCTORS, OPERATIONS
 from rockframe.reports.project import project_json
@@ -22,10 +22,9 @@ from rockframe.simulation.run_arguments import Certification, certification_of
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import Accuracy, AccuracyLevel
 from rockframe.system.options import Overturning
-from rockframe.system.parts import RESTRAINER, slot_of_kind, slots, usual_kind
+from rockframe.system.parts import slot_of_kind
 
 _FILE: Final = "file"
-_CONSTRUCTOR: Final = "constructor"
 _OPERATIONS: Final = "operations"
 
 
@@ -41,7 +40,7 @@ def described_motion(file: TomlFile, where: Place, given: object) -> GroundMotio
     if table is None:
         return None
     operations = table.pop(_OPERATIONS, [])
-    if _CONSTRUCTOR in table and _FILE not in table:
+    if CONSTRUCTOR in table and _FILE not in table:
         motion = _constructed(file, where, table)
     elif checked(file, where, {**table}, motion_keys()):
         motion = _read(file, where, table)
@@ -62,12 +61,12 @@ def _read(file: TomlFile, where: Place, table: dict[str, Any]) -> GroundMotion |
 
 
 def _constructed(file: TomlFile, where: Place, table: dict[str, Any]) -> GroundMotion | None:
-    constructor = table.pop(_CONSTRUCTOR)
+    constructor = table.pop(CONSTRUCTOR)
     if constructor not in CONSTRUCTORS:
         known = ", ".join(CONSTRUCTORS)
-        file.fault(
-            (*where, _CONSTRUCTOR), f"constructor must be one of {known}, got {shown(constructor)}"
-        )
+        near = nearest(str(constructor), CONSTRUCTORS)
+        words = f"constructor must be one of {known}, got {shown(constructor)}{near}"
+        file.fault((*where, CONSTRUCTOR), words)
         return None
     function = getattr(GroundMotion, constructor)
     if not checked(file, where, table, arguments_of(function)):
@@ -118,20 +117,10 @@ def _done(file: TomlFile, where: Place, motion: GroundMotion, given: object) -> 
     return made(file, where, getattr(motion, name), table)
 
 
-TYPE: Final = "type"
-CONSTRUCTOR: Final = "constructor"
-MODULES: Final = "modules"
 OPTIONS: Final = "system"
 MOTION: Final = "motion"
 RUN: Final = "run"
 PROJECT: Final = "project"
-_OF_ALL: Final = ("from_dict", "declared")
-"""Class methods of all components, which are no way to describe one."""
-
-
-def part_slots() -> tuple[str, ...]:
-    """Give the tables of parts."""
-    return tuple(slot for slot in slots() if slot != MOTION)
 
 
 def keys() -> tuple[str, ...]:
@@ -186,63 +175,6 @@ def described_scene(file: TomlFile) -> Described | None:
     return None if system is None else Described(system, motion, run, tuple(file.files), project)
 
 
-def described_parts(file: TomlFile, slot: str, given: object) -> list[Component | None]:
-    """Build the part that a table describes, or those of an array of tables."""
-    if slot != RESTRAINER or not isinstance(given, list):
-        return [described_part(file, slot, given)]
-    tables: list[object] = given
-    return [described_part(file, slot, one, (i,)) for i, one in enumerate(tables)]
-
-
-def described_part(
-    file: TomlFile, slot: str, given: object, number: tuple[int, ...] = ()
-) -> Component | None:
-    """Build the part that a table describes; `number` is its own in an array of tables."""
-    where: Place = (slot, *number)
-    table = file.table(where, given)
-    if table is None:
-        return None
-    kind = _kind_of(file, slot, table.pop(TYPE, None))
-    if kind is None:
-        return None
-    constructor = table.pop(CONSTRUCTOR, None)
-    if constructor is None:
-        function: Callable[..., Component] = kind
-        declared = kind.declared()
-    else:
-        ways = constructors(kind)
-        if constructor not in ways:
-            known = ", ".join(ways) or "none but the usual one"
-            file.fault(
-                (*where, CONSTRUCTOR),
-                f"constructors of {kind.__name__} are {known}; got {shown(constructor)}",
-            )
-            return None
-        function, declared = ways[constructor], {}
-    known_keys = arguments_of(function)
-    unknown = [name for name in table if name not in known_keys]
-    if not checked(file, where, table, known_keys, declared, hints_of(kind.__init__)):
-        _say_ways(file, where, kind, unknown)
-        return None
-    return made(file, where, function, table)
-
-
-def classes_in(slot: str) -> dict[str, type[Component]]:
-    """Give the classes of parts that a table may describe, the usual one first."""
-    usual = usual_kind(slot)
-    fitting = {name: kind for name, kind in kinds().items() if slot_of_kind(kind) == slot}
-    return {usual.__name__: fitting[usual.__name__], **fitting}
-
-
-def constructors(kind: type[Component]) -> dict[str, Callable[..., Component]]:
-    """Give the ways to build a component beside its own constructor, by their names."""
-    return {
-        name: one
-        for name, one in getmembers(kind, ismethod)
-        if not name.startswith("_") and name not in _OF_ALL
-    }
-
-
 def run_keys() -> dict[str, bool]:
     """Give the keys of the table of a run, and whether each is needed."""
     return arguments_of(System.simulate, without=("motion",))
@@ -260,6 +192,8 @@ def described_run(file: TomlFile, where: Place, table: dict[str, Any]) -> dict[s
         declared = kind.declared() if issubclass(kind, Component) else {}
         if checked(file, here, given, arguments_of(kind), declared):
             found[name] = made(file, here, kind, given)
+        if not isinstance(found[name], kind):  # which has been told
+            del found[name]
     return found
 
 
@@ -274,9 +208,11 @@ _OBJECTS: Final[Mapping[str, type]] = {
 def _run_of(file: TomlFile, given: object) -> dict[str, Any]:
     table = file.table((RUN,), given)
     hints = hints_of(System.simulate)
-    if table is None or not checked(file, (RUN,), table, run_keys(), hints=hints):
+    if table is None:
         return {}
-    arguments = described_run(file, (RUN,), table)
+    checked(file, (RUN,), table, run_keys(), hints=hints)
+    known = {name: value for name, value in table.items() if name in run_keys()}
+    arguments = described_run(file, (RUN,), known)
     made(file, (RUN,), _read_arguments, arguments)
     return arguments
 
@@ -300,32 +236,6 @@ def _read_arguments(**given: Any) -> None:
     read_arguments(faults, **(usual | given))
     if faults:
         raise AssemblyError(faults)
-
-
-def _kind_of(file: TomlFile, slot: str, name: object) -> type[Component] | None:
-    known = classes_in(slot)
-    if name is None:
-        return next(iter(known.values()))
-    if isinstance(name, str) and name in known:
-        return known[name]
-    of_own = (
-        f'; a class of your own is found once its file is named at the top, {MODULES} = ["mine.py"]'
-    )
-    file.fault((slot, TYPE), f"type must be {' or '.join(known)}, got {shown(name)}{of_own}")
-    return None
-
-
-def _say_ways(file: TomlFile, where: Place, kind: type[Component], unknown: list[str]) -> None:
-    """Say which other constructors take the keys that this one does not know."""
-    for name in unknown:
-        ways = [way for way, one in constructors(kind).items() if name in arguments_of(one)]
-        if ways:
-            file.fault(
-                (*where, name),
-                f"{name!r} goes with {CONSTRUCTOR} = {' or '.join(map(repr, ways))}".replace(
-                    "'", '"'
-                ),
-            )
 
 
 def _unknown_table(file: TomlFile, name: str) -> None:

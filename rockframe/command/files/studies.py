@@ -17,8 +17,8 @@ from rockframe.command.files.scenes import (
     read_scene,
 )
 from rockframe.command.files.scenes import keys as scene_keys
-from rockframe.command.files.tables import TomlFile, arguments_of, checked, made
-from rockframe.errors import FileError, RockframeError, shown
+from rockframe.command.files.tables import TomlFile, arguments_of, checked, key_in, made
+from rockframe.errors import FileError, RockframeError, StudyError, shown
 from rockframe.motion import GroundMotion
 from rockframe.simulation.system import System
 from rockframe.studies import sweep
@@ -54,10 +54,18 @@ class DescribedStudy:
     output: Path | None
     files: tuple[Path, ...]  # all files, and folders of files, that it was read from
     project: str  # what reports say of it, as results keep it
+    source: TomlFile  # the file of the study
+
+    def at_lines(self, problem: StudyError) -> FileError:
+        """Tell what is wrong with a study at the lines of its file."""
+        axes = self.source.values.get(AXES)
+        for words in problem.faults:
+            self.source.fault(key_in(words, (AXES,), axes if isinstance(axes, dict) else {}), words)  # pyright: ignore[reportUnknownArgumentType]
+        return self.source.error()
 
 
-def read_study(path: str | Path) -> DescribedStudy:
-    """Read the file of a study."""
+def read_study(path: str | Path, *, varied: bool = True) -> DescribedStudy:
+    """Read the file of a study; one that need not be varied may be a scene alone."""
     file = TomlFile.read(path)
     import_modules(file)  # whose parts may have tables of their own
     for name in file.values:
@@ -67,7 +75,7 @@ def read_study(path: str | Path) -> DescribedStudy:
     motions = _motions_of(file)
     arguments = _sweep_of(file) | _axes_of(file)
     store, output = (_path_of(file, name) for name in (STORE, OUTPUT))
-    if AXES not in file.values and CASES not in file.values:
+    if varied and AXES not in file.values and CASES not in file.values:
         file.fault((), "a study needs [axes], such as scale = [0.5, 1.0, 1.5], or cases")
     file.check()
     if scene is None:  # without a fault there is a scene
@@ -76,7 +84,7 @@ def read_study(path: str | Path) -> DescribedStudy:
     used = scene.motion if motions is None else motions
     files = (*file.files, *scene.files)
     return DescribedStudy(
-        scene.system, used, taken | arguments, store, output, files, scene.project
+        scene.system, used, taken | arguments, store, output, files, scene.project, file
     )  # fmt: skip
 
 

@@ -2,14 +2,24 @@
 
 import re
 import tomllib
+from codecs import BOM_UTF16_BE, BOM_UTF16_LE
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from difflib import get_close_matches
 from inspect import Parameter, signature
 from pathlib import Path
-from typing import Any, Final, Self, TypeAlias, TypeVar
+from typing import Any, Final, Self, TypeAlias, TypeVar, cast
 
+from rockframe.command.streams import INPUT, STREAM, StandardInput
 from rockframe.components.parameters import Declared
-from rockframe.errors import AssemblyError, FileError, RockframeError, StudyError, shown
+from rockframe.errors import (
+    AssemblyError,
+    FileError,
+    RockframeError,
+    RockframeWarning,
+    StudyError,
+    nearest,
+    shown,
+    warn,
+)
 
 Place: TypeAlias = tuple[str | int, ...]
 """Keys from the outermost table inwards; a number counts the tables of an array."""
@@ -102,6 +112,10 @@ def _until_equals(statement: str) -> str:
 
 
 _WHERE: Final = re.compile(r"\s*\(at line (\d+), column \d+\)")
+_EXAMPLE: Final = re.compile(r"for example (\w+)='([^']*)'")
+"""An argument as Python has it, which TOML writes otherwise."""
+_CONTROL: Final = re.compile(r"[\x00-\x08\x0e-\x1f\ufffd]")
+"""What stands in no text."""
 _NO_TEXT: Final = (
     "this is no text; expected a scene or a study in TOML, as 'rockframe template' prints it. "
     "Results (.nc) are for 'rockframe plot' and for 'rockframe report', which certifies them"
@@ -122,16 +136,8 @@ class TomlFile:
     @classmethod
     def read(cls, path: str | Path) -> Self:
         """Read a file."""
-        place = Path(path).expanduser()
-        try:
-            text = place.read_text(encoding="utf-8")
-        except FileNotFoundError as problem:
-            raise FileError(str(path), [(None, "there is no such file")]) from problem
-        except UnicodeDecodeError as problem:
-            raise FileError(str(path), [(None, _NO_TEXT)]) from problem
-        except (OSError, ValueError) as problem:  # or a name that no file can have
-            raise FileError(str(path), [(None, f"it cannot be read ({problem})")]) from problem
-        # TOML ends lines by \n or \r\n, which read_text makes alike
+        place, data = _bytes_of(path)
+        text = _text_of(str(place), data)
         try:
             values = tomllib.loads(text)
         except tomllib.TOMLDecodeError as problem:
@@ -139,7 +145,7 @@ class TomlFile:
             line = int(found[1]) if found else None
             words = f"this is no TOML: {_WHERE.sub('', str(problem))}"
             hint = '; a text stands in quotation marks, as in width = "1 m"'
-            raise FileError(str(path), [(line, words + hint)]) from problem
+            raise FileError(str(place), [(line, words + hint)]) from problem
         return cls(place, values, lines_of(text))
 
     def beside(self, name: str) -> Path:
@@ -155,7 +161,8 @@ class TomlFile:
         """Note what is wrong, at the line of a place or of the table around it."""
         depths = range(len(where), 0, -1)
         lines = [self._lines[where[:depth]] for depth in depths if where[:depth] in self._lines]
-        self._faults.append((lines[0] if lines else None, words))
+        written = _EXAMPLE.sub(r'for example \1 = "\2"', words)
+        self._faults.append((lines[0] if lines else None, written))
 
     @property
     def sound(self) -> bool:
@@ -165,8 +172,11 @@ class TomlFile:
     def check(self) -> None:
         """Refuse the file if a fault has been found."""
         if self._faults:
-            ordered = sorted(self._faults, key=lambda fault: fault[0] or 0)
-            raise FileError(str(self.path), ordered)
+            raise self.error()
+
+    def error(self) -> FileError:
+        """Give the faults that have been found, in the order of their lines."""
+        return FileError(str(self.path), sorted(self._faults, key=lambda fault: fault[0] or 0))
 
     def table(self, where: Place, given: object) -> dict[str, Any] | None:
         """Give a value that must be a table, or note that it is none."""
@@ -185,10 +195,44 @@ class TomlFile:
         if hint:
             self.fault((*where, name), f"unknown key {name!r}: {hint}")
             return
-        near = get_close_matches(name.casefold(), known, n=1, cutoff=0.6)
-        meant = f"; was {near[0]!r} meant?" if near else ";"
+        meant = nearest(name, known) or ";"
         inside = f"[{table_title(where)}] takes" if where else "there are"
         self.fault((*where, name), f"unknown key {name!r}{meant} {inside} {', '.join(known)}")
+
+
+def _bytes_of(path: str | Path) -> tuple[Path, bytes]:
+    """Read a file, or the standard input, beside which are the files of the folder one is in."""
+    if str(path) == STREAM:
+        return Path(INPUT), StandardInput.read_for("a scene").getvalue()
+    try:
+        place = Path(path).expanduser()
+        return place, place.read_bytes()
+    except FileNotFoundError as problem:
+        raise FileError(str(path), [(None, "there is no such file")]) from problem
+    except IsADirectoryError as problem:
+        words = "this is a folder; expected the file of a scene or a study in it"
+        raise FileError(str(path), [(None, words)]) from problem
+    except (OSError, ValueError, RuntimeError) as problem:  # or a name that no file can have
+        raise FileError(str(path), [(None, f"it cannot be read ({problem})")]) from problem
+
+
+def _text_of(name: str, data: bytes) -> str:
+    """Read the text of a file, as any editor may have written it, with its lines ended alike."""
+    try:
+        marked = data.startswith((BOM_UTF16_LE, BOM_UTF16_BE))
+        text = data.decode("utf-16" if marked else "utf-8-sig")
+    except UnicodeDecodeError as problem:
+        text = data.decode("cp1252", "replace")
+        if _CONTROL.search(text):
+            raise FileError(name, [(None, _NO_TEXT)]) from problem
+        line = data[: problem.start].count(b"\n") + 1
+        sign = data[problem.start : problem.start + 1].decode("cp1252", "replace")
+        words = (
+            f"{name}, line {line}: found {sign!r} in the encoding of old Windows (Latin-1), in "
+            "which the whole file is read; save it as UTF-8, which TOML is written in"
+        )
+        warn(words, RockframeWarning)
+    return text.replace("\r\n", "\n")
 
 
 def table_title(where: Place) -> str:
@@ -246,12 +290,12 @@ def made(
         return function(**table)
     except AssemblyError as problem:
         for words in problem.faults:
-            file.fault(_key_in(words, where, table), words)
+            file.fault(key_in(words, where, table), words)
     except StudyError as problem:
         for words in problem.faults:
-            file.fault(_key_in(words, where, table), words)
+            file.fault(key_in(words, where, table), words)
     except (RockframeError, TypeError, ValueError) as problem:
-        file.fault(_key_in(str(problem), where, table), str(problem))
+        file.fault(key_in(str(problem), where, table), str(problem))
     return None
 
 
@@ -264,8 +308,27 @@ def _wanted(one: Declared[Any, Any] | None) -> str:
     return f" ({one.words.rstrip('.')}); write for example {one.name} = {example}"
 
 
-def _key_in(words: str, where: Place, table: Mapping[str, Any]) -> Place:
+def key_in(words: str, where: Place, table: Mapping[str, Any]) -> Place:
     """Give the place of the first key of a table that a message names; else of the table."""
     found = {name: re.search(rf"\b{re.escape(name)}\b", words) for name in table}
     starts = {name: match.start() for name, match in found.items() if match is not None}
-    return (*where, min(starts, key=lambda name: starts[name])) if starts else where
+    if starts:
+        first = min(starts, key=lambda name: starts[name])
+        return _within(words, (*where, first), table[first])
+    for name, inner in table.items():
+        place = _within(words, (*where, name), inner)
+        if len(place) > len(where) + 1:
+            return place
+    return where
+
+
+def _within(words: str, where: Place, inner: object) -> Place:
+    """Follow the keys of inner tables that a message has in quotation marks."""
+    if not isinstance(inner, dict):
+        return where
+    table = cast("dict[str, object]", inner)
+    named = [name for name in table if repr(name) in words]
+    if not named:
+        return where
+    first = min(named, key=lambda name: words.index(repr(name)))
+    return _within(words, (*where, first), table[first])

@@ -6,14 +6,14 @@ from inspect import Parameter, getdoc, signature
 from textwrap import wrap
 from typing import Any, Final
 
-from rockframe.command.files.scenes import (
+from rockframe.command.files.parts import (
     CONSTRUCTOR,
     classes_in,
     constructors,
-    motion_keys,
+    inner_parts,
     part_slots,
-    run_keys,
 )
+from rockframe.command.files.scenes import motion_keys, run_keys
 from rockframe.command.files.studies import sweep_keys
 from rockframe.command.files.tables import arguments_of
 from rockframe.components import Component, InitialState
@@ -103,6 +103,32 @@ coupling = "coupled"             # or "cascade", as in the paper
 
 """
 
+_STATUE: Final = """\
+# A statue on a plinth, each with a base of its own: bodies and bases from the top down.
+
+[[stack.bodies]]                 # the statue, by its outline in the plane of rocking
+constructor = "from_outline"
+points = [[0.05, 0], [0.65, 0], [0.55, 0.8], [0.60, 1.5], [0.35, 2.0], [0.15, 1.4]]
+unit = "m"
+density = "2600 kg/m^3"
+depth = "0.5 m"
+
+[[stack.bodies]]                 # the plinth
+width = "1.0 m"
+height = "1.1 m"
+mass = "2600 kg"
+
+[[stack.interfaces]]             # between the two
+type = "TwoSpringSupport"        # or "WinklerSoil", "RigidGround"
+frequency_ratio = 40
+damping_ratio = 0.10
+
+[pads]                           # below the plinth
+frequency_ratio = 40
+damping_ratio = 0.10
+
+"""
+
 _STUDY: Final = """\
 # A study: a scene at all combinations of the values of its axes.
 
@@ -125,6 +151,7 @@ TEMPLATES: Final = {
     "pads": _PADS + _MOTION.format(amplitude="-9.81 m/s^2", frequency="1 Hz", free="5 s"),
     "soil": _SOIL + _MOTION.format(amplitude="-6 m/s^2", frequency="1 Hz", free="8 s"),
     "stack": _STACK + _MOTION.format(amplitude="-4 m/s^2", frequency="1 Hz", free="9 s"),
+    "statue": _STATUE + _MOTION.format(amplitude="-3 m/s^2", frequency="1.5 Hz", free="5 s"),
     "study": _STUDY,
 }
 """Texts by what they describe."""
@@ -173,6 +200,12 @@ def _title(table: str, words: str) -> Iterator[str]:
 
 def _of_part(slot: str, name: str, kind: type[Component]) -> Iterator[str]:
     yield from _of_component(slot, _summary(kind), kind, f'type = "{name}"')
+    for key, inner in inner_parts(kind).items():
+        words = " or ".join(f"[{one}]" for one in inner.slots)
+        header = f"[[{slot}.{key}]]" if inner.several else f"[{slot}.{key}]"
+        yield from _commented(f"# {header}", f"must be given: as {words}")
+    if not kind.declared():
+        yield from _keys(", ".join(arguments_of(kind, without=tuple(inner_parts(kind)))))
     for way, function in constructors(kind).items():
         keys = arguments_of(function)
         if not keys:
@@ -188,7 +221,8 @@ def _of_component(
     if first is not None:
         yield first
     for name, one in kind.declared().items():
-        yield from _of_parameter(name, one)
+        if name not in inner_parts(kind):
+            yield from _of_parameter(name, one)
 
 
 def _of_parameter(name: str, one: Declared[Any, Any]) -> Iterator[str]:

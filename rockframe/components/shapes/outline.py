@@ -8,6 +8,7 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
+from rockframe.arguments import hinted
 from rockframe.components.alternatives import OneOf
 from rockframe.components.shapes.reading import PlaneMass, Points, read_mass, read_points
 from rockframe.components.shapes.standing import (
@@ -250,6 +251,7 @@ def cylinder_body(given: Mapping[str, object], owner: str) -> ShapedBody:
     return shaped_body(whole, Stance(-outer, outer, 0.0), height, (), owner)
 
 
+@hinted()
 def from_outline(
     cls: type[Made],
     points: Points,
@@ -316,6 +318,7 @@ def from_outline(
     return outline_body(places, given, f"{cls.__name__}.from_outline").build(cls)
 
 
+@hinted()
 def cylinder(
     cls: type[Made],
     *,

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, TypedDict, cast
 
+from rockframe.arguments import hinted
 from rockframe.components.shapes.outline import outline_mass
 from rockframe.components.shapes.reading import (
     Place,
@@ -247,6 +248,7 @@ def _given_base(
     return Stance(left, right, 0.0)
 
 
+@hinted()
 def from_parts(cls: type[Made], parts: Mapping[str, Part], *, base: Place | None = None) -> Made:
     """Build a body from parts that are fixed to one another, such as a cabinet and its load.
 

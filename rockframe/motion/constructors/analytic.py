@@ -11,7 +11,7 @@ from functools import partial, wraps
 from inspect import signature
 from typing import TYPE_CHECKING, Any, Final, TypeVar, cast
 
-from rockframe.arguments import whole_number
+from rockframe.arguments import hinted, whole_number
 from rockframe.errors import ComponentError, shown
 from rockframe.motion.pulses import (
     QUARTER_TURN,
@@ -96,7 +96,7 @@ def _pulse(
             )
 
         construct.__doc__ = with_raises(declared.__doc__ or "", _RAISES)
-        return cast("Constructor", construct)
+        return hinted()(cast("Constructor", construct))
 
     return decorate
 

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import io
 import tomllib
-import warnings
 from importlib import resources
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Any, Final, cast
 
 import numpy as np
 
-from rockframe.arguments import text
-from rockframe.errors import ComponentError, RecordWarning, UnitsError, shown
+from rockframe.arguments import hinted, text
+from rockframe.errors import ComponentError, RecordWarning, UnitsError, shown, warn
 from rockframe.motion.quantities import accelerations_to_si, declared_times
 from rockframe.motion.value import UNNAMED
 from rockframe.records import read_record, request_of
@@ -33,6 +32,7 @@ _SAME_STEP: Final = 1e-6
 _UNEVEN: Final = 0.01
 
 
+@hinted()
 def read(
     kind: type[Made],
     path: RecordLike,
@@ -103,7 +103,7 @@ def read(
     )
     reading = read_record(path, format, asked)
     for message in reading.warnings:
-        warnings.warn(message, RecordWarning, stacklevel=2)
+        warn(message, RecordWarning)
     return kind(
         reading.si,
         name=reading.name or PurePath(reading.file).stem,
@@ -113,6 +113,7 @@ def read(
     )
 
 
+@hinted()
 def from_arrays(
     kind: type[Made],
     acceleration: ArrayLike,

@@ -6,7 +6,7 @@ import warnings
 from functools import partial
 from typing import TYPE_CHECKING, Final
 
-from rockframe.arguments import one_of_words, whole_number
+from rockframe.arguments import hinted, one_of_words, whole_number
 from rockframe.errors import ComponentError, ModelWarning
 from rockframe.signals import Motion
 from rockframe.units import (
@@ -56,6 +56,7 @@ _STEPS: Final = Condition("from 0.0005 s to 0.02 s", lambda value: 0.0005 <= val
 _EXPONENTS: Final = Condition("from 0 to 1", lambda value: 0.0 <= value <= 1.0)
 
 
+@hinted()
 def stochastic(
     kind: type[Made],
     magnitude: RatioLike,

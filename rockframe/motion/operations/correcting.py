@@ -5,7 +5,7 @@ from __future__ import annotations
 from enum import StrEnum
 from typing import TYPE_CHECKING, Final, cast
 
-from rockframe.arguments import one_of_words, whole_number
+from rockframe.arguments import hinted, one_of_words, whole_number
 from rockframe.errors import ComponentError, shown
 from rockframe.motion.operations.following import following, lost_pieces, with_samples
 from rockframe.motion.processing.samples import (
@@ -32,6 +32,7 @@ class Baseline(StrEnum):
     VELOCITY = "velocity"
 
 
+@hinted()
 def filtered(
     motion: Made,
     low: QuantityLike | None = None,
@@ -140,6 +141,7 @@ def filtered(
     return following(motion, result, step, *lost_pieces(si), operation=operation)
 
 
+@hinted()
 def baseline_corrected(
     motion: Made, order: int = 1, *, fit: Baseline | str = Baseline.ACCELERATION
 ) -> Made:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
+from rockframe.arguments import hinted
 from rockframe.errors import ComponentError
 from rockframe.motion.operations.following import following
 from rockframe.motion.processing.samples import say_coarse
@@ -30,6 +31,7 @@ _OPPOSITE: Final = {UPWARDS: DOWNWARDS, DOWNWARDS: UPWARDS}
 _USUAL_DAMPING: Final = 0.05
 
 
+@hinted()
 def scaled(
     motion: Made,
     factor: RatioLike | None = None,

@@ -7,7 +7,7 @@ from dataclasses import replace
 from enum import StrEnum
 from typing import TYPE_CHECKING, Final
 
-from rockframe.arguments import one_of_words
+from rockframe.arguments import hinted, one_of_words
 from rockframe.errors import ComponentError
 from rockframe.motion.operations.following import (
     SAME_STEP,
@@ -41,6 +41,7 @@ _HOW: Final = {
 }
 
 
+@hinted()
 def window(
     motion: Made,
     start: QuantityLike | None = None,
@@ -118,6 +119,7 @@ def _between(signal: Signal, first: int, final: int) -> Signal:
     return replace(signal, samples=signal.samples[first : final + 1], polynomials=pieces)
 
 
+@hinted()
 def resampled(
     motion: Made,
     time_step: QuantityLike,

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from functools import partial
 from itertools import islice
 from threading import Event
-from typing import Any, Final, Protocol
+from typing import Any, Final, Protocol, runtime_checkable
 
 from rockframe.errors import ComponentError, RockframeError, StudyError, shown
 from rockframe.studies.sweeps.axes import OWNER
@@ -28,6 +28,7 @@ _GROWS: Final = "total grows"
 """What is said where more cases are to come than are known by now."""
 
 
+@runtime_checkable
 class ProgressBar(Protocol):
     """A bar over the cases of one sweep, or of several that follow one another."""
 
@@ -107,7 +108,9 @@ def bar_of(given: object, *, owner: str, unit: str = "case") -> Generator[Progre
             bar.close()
 
 
-def _made(given: object, owner: str, unit: str) -> _Bar | _Silent:
+def _made(given: object, owner: str, unit: str) -> ProgressBar:
+    if isinstance(given, ProgressBar):  # of the caller, who closes it
+        return given
     if given is not None and not isinstance(given, bool):
         msg = f"{owner}: progress must be True, False or None, got {shown(given)}"
         raise ComponentError(msg)

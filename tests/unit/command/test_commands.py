@@ -14,33 +14,12 @@ import xarray as xr
 
 import rockframe as rf
 from rockframe.command import parser, study
+from rockframe.command.commands import COMMANDS
 from rockframe.command.completion import script
 from rockframe.command.files.templates import TEMPLATES
-from rockframe.command.main import main
 from rockframe.studies.sweeps import execution
 
 pytestmark = pytest.mark.unit
-
-
-@pytest.fixture(autouse=True)
-def folder(tmp_path, monkeypatch):
-    """Stand in a folder with a scene and a record."""
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "scene.toml").write_text(TEMPLATES["block"])
-    rf.GroundMotion.sine_pulse("-4 m/s^2", "1 Hz").to_at2("record.AT2")
-    return tmp_path
-
-
-@pytest.fixture
-def typed(capsys):
-    """Carry out a command; give its exit code and what it wrote."""
-
-    def carry_out(*words):
-        code = main(list(words))
-        told = capsys.readouterr()
-        return code, told.out, told.err
-
-    return carry_out
 
 
 def test_a_run_from_the_template_to_the_report(typed, folder):
@@ -303,7 +282,7 @@ def test_a_traceback_is_shown_on_request(typed):
 def test_help_teaches_by_examples(typed):
     code, told, _ = typed("--help")
     assert code == 0
-    for command in parser.COMMANDS:
+    for command in COMMANDS:
         assert command.name in told
         code, one, _ = typed(command.name, "--help")
         assert code == 0
@@ -312,16 +291,16 @@ def test_help_teaches_by_examples(typed):
         built = parser.build_parser()
         for line in command.examples.splitlines():
             if line.startswith("  rockframe "):
-                typed_line = line.strip().split("  ")[0].split(" > ")[0].split(" | ")[0]
-                words = [word.strip("'") for word in typed_line.split()[1:]]
-                if "--title" not in words:
-                    built.parse_args(words)
+                typed_line = re.split("   | [<>] ", line.strip())[0]
+                words = shlex.split(typed_line)[1:]
+                assert parser.misspelt(words) is None
+                assert built.parse_args(words).command == command.name
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
 def test_completion_names_every_command_and_option(shell):
     text = script(shell)
-    for command in parser.COMMANDS:
+    for command in COMMANDS:
         assert command.name in text
         for argument in command.arguments:
             for name in argument.names:

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 import rockframe as rf
-from rockframe.command.files.scenes import classes_in, part_slots, read_scene
+from rockframe.command.files.parts import classes_in, inner_parts, part_slots
+from rockframe.command.files.scenes import read_scene
 from rockframe.command.files.studies import read_study
 from rockframe.command.files.tables import lines_of
 from rockframe.command.files.templates import TEMPLATES, every_key
@@ -283,6 +284,8 @@ def test_every_key_that_can_be_written_is_told():
         assert f"\n[{slot}]" in text
         for name, kind in classes_in(slot).items():
             assert f'type = "{name}"' in text
-            assert all(f"\n# {key} = " in text for key in kind.declared())
+            inner = inner_parts(kind)
+            assert all(f"[{slot}.{key}]" in text for key in inner)
+            assert all(f"\n# {key} = " in text for key in kind.declared() if key not in inner)
     assert "``" not in text
     assert max(map(len, text.splitlines())) < 125

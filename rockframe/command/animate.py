@@ -1,0 +1,73 @@
+"""``rockframe animate``: a run that moves."""
+
+import argparse
+from pathlib import Path
+from typing import Final
+
+import xarray as xr
+
+from rockframe.command.answer import Answer
+from rockframe.command.shared import (
+    Outputs,
+    given_of,
+    is_result,
+    read_result,
+    scene_from,
+    simulated,
+)
+from rockframe.command.streams import STREAM
+from rockframe.errors import ComponentError, FileError
+from rockframe.plot import Animation, Player, animation, player
+from rockframe.reports.figures import close
+
+_PAGES: Final = (".html", ".htm")
+_FILMS: Final = (".gif", ".mp4")
+_OF_SCENES: Final = (
+    "motion", "component", "unit", "time_step", "scale", "accuracy", "free_vibration", "duration",
+)  # fmt: skip
+
+
+def execute(arguments: argparse.Namespace, answer: Answer) -> int:
+    """Write a run as a page or a film."""
+    path = arguments.output
+    ending = f".{arguments.format or 'html'}" if path == STREAM else Path(path).suffix.lower()
+    if ending not in (*_PAGES, *_FILMS):
+        words = f"that of an animation ends in {' or '.join((_PAGES[0], *_FILMS))}"
+        raise FileError(path, [(None, f"the name ends in {ending!r}; {words}")])
+    run = _run_of(arguments, answer)
+    outputs = Outputs(arguments, [arguments.dataset], answer)
+    given = given_of(arguments, "window", "magnify", "title")
+    if ending in _PAGES and arguments.speed is not None:
+        msg = "--speed is that of a film; the page has a choice of speeds"
+        raise ComponentError(msg)
+    moving: Animation | Player = (
+        player(run, **given)
+        if ending in _PAGES
+        else animation(run, **given, **given_of(arguments, "speed"))
+    )
+    try:
+        outputs.written_by(
+            path, ending, "Page" if ending in _PAGES else "Film",
+            lambda place: moving.save(place, overwrite=arguments.overwrite),
+        )  # fmt: skip
+    finally:
+        if isinstance(moving, Animation):
+            close(moving.figure)
+    return 0
+
+
+def _run_of(arguments: argparse.Namespace, answer: Answer) -> xr.Dataset:
+    """Read a run, or simulate a scene."""
+    if is_result(arguments.dataset):
+        typed = [name for name in _OF_SCENES if getattr(arguments, name) is not None]
+        if typed:
+            option = typed[0].replace("_", "-")
+            words = f"this is a result, which has run; --{option} goes with a scene"
+            raise FileError(arguments.dataset, [(None, words)])
+        run = read_result(arguments.dataset)
+    else:
+        arguments.scene = arguments.dataset
+        found = scene_from(arguments)
+        run = simulated(found)
+    answer.says("Verdict", str(run.attrs.get("verdict", "")))
+    return run

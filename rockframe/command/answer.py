@@ -1,0 +1,154 @@
+"""What a command has found: in lines for people, and as JSON for programs."""
+
+import json
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, Final
+
+from rockframe.command.streams import STREAM
+from rockframe.errors import FileError
+from rockframe.version import __version__
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_LABEL: Final = 9
+"""Letters of a line up to what it tells."""
+_ALONG: Final = {"time", "event", "sample_after_end"}
+"""Dimensions of what is left to the files of results."""
+_TRUTH: Final = ["false", "true"]
+"""What flags mean that are truth values."""
+
+
+class Answer:
+    """What a command has found, kept until all of its files are written."""
+
+    def __init__(self, command: str, *, quiet: bool, verbose: bool, as_json: bool) -> None:
+        self.quiet, self.as_json = quiet, as_json
+        self._verbose = verbose
+        self._asked: list[int] = []  # which lines tell what was asked
+        self._lines: list[tuple[bool, str]] = []  # whether it is beside the answer; the line
+        self._told: dict[str, Any] = {"command": command, "version": __version__}
+        self._numbers: dict[str, Any] = {}
+        self._files: dict[str, Any] = {}
+        self._warnings: list[str] = []
+        self.data: bytes | None = None
+        """A file that goes to the standard output."""
+
+    def about(self, label: str, words: str) -> None:
+        """Tell what was asked, such as the scene; beside the answer itself."""
+        self._asked.append(len(self._lines))
+        self._add(label, words, beside=True)
+
+    def says(self, label: str, words: str) -> None:
+        """Tell the answer, or a part of it."""
+        self._add(label, words, beside=False)
+
+    def text(self, words: str, **named: Any) -> None:
+        """Tell lines as they stand; programs get what is named instead."""
+        self._lines.append((False, words))
+        self._told |= {name: _plain(value) for name, value in named.items()}
+
+    def numbers(self, found: "xr.Dataset | Mapping[str, Any]") -> None:
+        """Add numbers with their units: of a result all that are not along time."""
+        self._numbers |= {
+            str(name): _number(one)
+            for name, one in getattr(found, "variables", found).items()
+            if not _ALONG & set(getattr(one, "dims", ()))
+        }
+
+    def wrote(self, title: str, path: object) -> None:
+        """Tell of a file that was written."""
+        self._lines.append((True, f"{title}: {path}"))
+        key = title.lower()
+        before = self._files.get(key)
+        several = [] if before is None else before if isinstance(before, list) else [before]
+        self._files[key] = [*several, str(path)] if several else str(path)
+
+    def hands_on(self, data: bytes) -> None:
+        """Take a file that goes to the standard output, of which there is one."""
+        if self.as_json or self.data is not None:
+            other = "the answer in JSON" if self.as_json else "another file"
+            words = f"{other} goes to the standard output already; name a file instead of '-'"
+            raise FileError(STREAM, [(None, words)])
+        self.data = data
+
+    def warned(self, words: str) -> None:
+        """Keep a warning, which programs get too."""
+        self._warnings.append(words)
+
+    def printed(self, error: str = "") -> str:
+        """Give the lines for people; after an error not those that tell what was asked."""
+        lines = [
+            words for number, (beside, words) in enumerate(self._lines)
+            if not (beside and self.quiet) and not (error and number in self._asked)
+        ]  # fmt: skip
+        if self._verbose:
+            lines += [
+                f"  {name}: {_words(one)}"
+                for name, one in self._numbers.items()
+                if "dims" not in one and one["value"] is not None
+            ]
+        return "".join(f"{line}\n" for line in lines)
+
+    def json(self, code: int, error: str = "") -> str:
+        """Give all of it as a JSON object."""
+        told = {
+            **self._told,
+            **({"numbers": self._numbers} if self._numbers else {}),
+            **({"files": self._files} if self._files else {}),
+            **({"warnings": self._warnings} if self._warnings else {}),
+            **({"error": error} if error else {}),
+            "exit_code": code,
+        }
+        return json.dumps(told, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+
+    def _add(self, label: str, words: str, *, beside: bool) -> None:
+        self._lines.append((beside, f"{f'{label}:'.ljust(_LABEL - 1)} {words}"))
+        self._told[label.lower().replace(" ", "_")] = words
+
+
+def _number(one: Any) -> dict[str, Any]:
+    """Give a value with its unit and, of several, the dimensions along which they stand."""
+    import numpy as np
+
+    attributes = dict(getattr(one, "attrs", {}))
+    values = np.asarray(one)
+    found: dict[str, Any] = {"value": _plain(_in_words(values, attributes))}
+    if "units" in attributes:
+        found["unit"] = str(attributes["units"])
+    if values.ndim:
+        found["dims"] = [str(dim) for dim in one.dims]
+    return found
+
+
+def _in_words(values: Any, attributes: Mapping[str, Any]) -> Any:
+    """Read flags and truth values."""
+    import numpy as np
+
+    meanings = str(attributes.get("flag_meanings", "")).split()
+    if not meanings:
+        return values
+    words = dict(zip(np.atleast_1d(attributes["flag_values"]).tolist(), meanings, strict=True))
+    if meanings == _TRUTH:
+        words = {value: word == "true" for value, word in words.items()}
+    return np.vectorize(lambda flag: words.get(flag), otypes=[object])(values)
+
+
+def _plain(value: Any) -> Any:
+    """Give a value as JSON has it; what is no number, or infinite, is null."""
+    if hasattr(value, "tolist"):  # of numpy
+        value = value.tolist()
+    if isinstance(value, list | tuple):
+        return [_plain(one) for one in value]
+    if isinstance(value, Mapping):
+        return {str(name): _plain(one) for name, one in value.items()}
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    return value if isinstance(value, str | int | bool | None) else str(value)
+
+
+def _words(one: Mapping[str, Any]) -> str:
+    value, unit = one["value"], one.get("unit", "1")
+    number = f"{value:.6g}" if isinstance(value, float) else str(value)
+    return number if unit == "1" else f"{number} {unit}"

@@ -1,0 +1,378 @@
+"""The commands with what they take; no library is loaded, so that help comes at once."""
+
+from typing import Final
+
+from rockframe.command.arguments import (
+    ACCURACY,
+    DATASET,
+    INTENSITY,
+    LENGTH,
+    OVER_MOTIONS,
+    OVERWRITE,
+    PICTURE,
+    PICTURES,
+    READING,
+    RESULT,
+    RUNNING,
+    SCENE,
+    STORE,
+    Command,
+    number_typed,
+    path,
+    whole_typed,
+    word,
+)
+
+COMMANDS: Final = (
+    Command(
+        "template",
+        "write a scene or a study to begin with",
+        "Write a file to begin with. Change its numbers, which carry their units, and run it.",
+        """\
+  rockframe template > scene.toml            a block on rigid ground
+  rockframe template stack > scene.toml      a frame on pads, cap and soil
+  rockframe template statue > scene.toml     a statue on a plinth, with an outline
+  rockframe template study > study.toml      many runs of one scene
+  rockframe template all                     every table and every key, with its meaning""",
+        (
+            word(
+                "kind",
+                nargs="?",
+                default="block",
+                choices=("block", "pads", "soil", "stack", "statue", "study", "all"),
+                help="which one (default: block)",
+            ),
+        ),
+    ),
+    Command(
+        "describe",
+        "tell which model a scene makes, and its numbers",
+        "Check the file of a scene, and tell the model, its equations, its frequencies and what "
+        "it leaves out. Nothing is simulated.",
+        "  rockframe describe scene.toml",
+        (SCENE,),
+    ),
+    Command(
+        "motion",
+        "tell what is in files of ground motions",
+        "List the components of files, archives and folders as agencies give them out, with "
+        "their intensity measures.",
+        """\
+  rockframe motion record.AT2
+  rockframe motion record.AT2 --picture record.png
+  rockframe motion PEERNGARecords.zip --csv measures.csv""",
+        (
+            path("files", nargs="+", metavar="FILE", help="records, archives or folders; or -"),
+            *READING,
+            path(
+                "--picture",
+                metavar="x.png",
+                help=f"write {PICTURES}; of several motions one for each, numbered",
+            ),
+            path("--csv", metavar="x.csv", help="write the table of measures, for a spreadsheet"),
+            OVERWRITE,
+        ),
+    ),
+    Command(
+        "convert",
+        "write records as other programs read them",
+        "Read records of any format that rockframe knows, and write them as AT2 (of PEER), as CSV "
+        "or as netCDF, which keeps all that is known of them. What 'motion' tells of a file is "
+        "what is written.",
+        """\
+  rockframe convert CHI012.V2 --component N12W -o record.AT2
+  rockframe convert record.AT2 -o record.csv
+  rockframe convert PEERNGARecords.zip --to at2 -o records     a file for each, in a folder
+  rockframe convert PEERNGARecords.zip -o suite.nc             all of them in one file
+  rockframe convert - --to csv -o - < record.AT2""",
+        (
+            path("files", nargs="+", metavar="FILE", help="records, archives or folders; or -"),
+            path(
+                "-o",
+                "--output",
+                required=True,
+                metavar="x.AT2",
+                help="the file, ending in .AT2, .csv or .nc; with --to, a folder or -",
+            ),
+            word(
+                "--to",
+                choices=("at2", "csv", "nc"),
+                help="the format, where the name of the file does not tell",
+            ),
+            *READING,
+            OVERWRITE,
+        ),
+    ),
+    Command(
+        "run",
+        "simulate a scene under a motion",
+        "Simulate a scene, say what becomes of it, and write all results to a netCDF file, which "
+        "'plot', 'report', xarray, MATLAB and many others read.",
+        """\
+  rockframe run scene.toml                                 the motion is in the scene
+  rockframe run scene.toml --motion record.AT2 -o out.nc
+  rockframe run scene.toml --motion record.AT2 --scale 1.5 --accuracy fast""",
+        (
+            SCENE,
+            *RUNNING,
+            RESULT,
+            OVERWRITE,
+        ),
+    ),
+    Command(
+        "certify",
+        "tell how sure the verdict of a run is",
+        "Simulate a scene, and then a hundred times more: by finer means, with parameters changed "
+        "a little, and under the scaled motion. Tell whether the verdict stays.",
+        """\
+  rockframe certify scene.toml --motion record.AT2
+  rockframe certify scene.toml --motion record.AT2 --nudge 0.01 -o out.nc
+  rockframe certify scene.toml --motion record.AT2 --proved""",
+        (
+            SCENE,
+            *RUNNING,
+            word(
+                "--nudge",
+                type=number_typed,
+                metavar="SHARE",
+                help="largest relative change of each parameter (default: 0.001)",
+            ),
+            word(
+                "--reach",
+                type=number_typed,
+                metavar="SHARE",
+                help="largest relative change of the scale (default: 0.5)",
+            ),
+            word(
+                "--proved",
+                action="store_true",
+                help="prove the verdict instead (of a block alone; needs python-flint)",
+            ),
+            word(
+                "--runs", type=whole_typed, metavar="N", help="most runs beside it (default: 200)"
+            ),
+            RESULT,
+            OVERWRITE,
+        ),
+    ),
+    Command(
+        "critical",
+        "tell at what shaking a scene falls",
+        "Scale the motion of a scene, and find the least scale at which the body overturns, its "
+        "peak ground acceleration, and all scales above at which it stands again.",
+        """\
+  rockframe critical scene.toml
+  rockframe critical scene.toml --motion record.AT2 --picture critical.png
+  rockframe critical scene.toml --motion record.AT2 --intensity SA --period '0.5 s' --json""",
+        (
+            SCENE,
+            *RUNNING,
+            word(
+                "--largest",
+                type=number_typed,
+                metavar="FACTOR",
+                help="largest scale that is tried (default: 4)",
+            ),
+            word(
+                "--runs",
+                type=whole_typed,
+                metavar="N",
+                help="most runs of the scan; more find narrower ranges that overturn "
+                "(default: 400)",
+            ),
+            *INTENSITY,
+            RESULT,
+            PICTURE,
+            OVERWRITE,
+        ),
+    ),
+    Command(
+        "study",
+        "run a scene at many values",
+        "Run a scene at all combinations of values, or at all rows of a table, under one motion "
+        "or many. With a store, a folder, what has been run is kept: the same command goes on "
+        "where it was interrupted.",
+        """\
+  rockframe study study.toml
+  rockframe study study.toml --store kept -o runs.nc
+  rockframe study study.toml --csv runs.csv""",
+        (
+            path(
+                "study", metavar="study.toml", help="the study; 'template study' writes one; or -"
+            ),
+            STORE,
+            RESULT,
+            path("--csv", metavar="x.csv", help="write a table with a row for each case"),
+            OVERWRITE,
+        ),
+    ),
+    Command(
+        "fragility",
+        "tell how likely a scene falls at a shaking",
+        "Run a scene under many records at many scales, and fit lognormal fragilities: median and "
+        "dispersion of the intensity at which it overturns. Or fit them to a study that has been "
+        "run, out.nc or its store.",
+        """\
+  rockframe fragility scene.toml PEERNGARecords.zip --picture fragility.png
+  rockframe fragility scene.toml records --intensity SA --period '0.5 s' --scales 0.5:4:0.5
+  rockframe fragility study.toml --store kept -o fragility.nc
+  rockframe fragility runs.nc --limits uplift,0.5 --json""",
+        (*OVER_MOTIONS, OVERWRITE),
+    ),
+    Command(
+        "ida",
+        "scale many records until a scene falls",
+        "Incremental dynamic analysis: run a scene under records at rising scales, and narrow each "
+        "scale at which it begins, or ceases, to overturn. Tells the capacity under each record.",
+        """\
+  rockframe ida scene.toml PEERNGARecords.zip --picture ida.png
+  rockframe ida scene.toml records --scales 0.1:6:0.1 --csv capacities.csv -o ida.nc""",
+        (
+            *OVER_MOTIONS,
+            path("--csv", metavar="x.csv", help="write the capacities, a row for each record"),
+            OVERWRITE,
+        ),
+    ),
+    Command(
+        "map",
+        "tell which pulses overturn a scene",
+        "Run a scene under pulses of all amplitudes and frequencies, and find the boundaries of "
+        "overturning: without an impact, after one, and the safe range between.",
+        """\
+  rockframe map scene.toml --amplitude '1:10:1 m/s^2' --frequency '0.5:4:0.25 Hz' -o map.nc
+  rockframe map scene.toml --amplitude '0.1,0.2,0.4 g' --frequency '1,2 Hz' --picture map.png
+  rockframe map scene.toml --pulse cosine_pulse --amplitude '1:9:2 m/s^2' --frequency '1,2 Hz'""",
+        (
+            SCENE,
+            word(
+                "--amplitude",
+                required=True,
+                metavar="VALUES",
+                help="with their unit: '1:10:0.5 m/s^2', from:to:step, or '1,2,4 m/s^2'",
+            ),
+            word("--frequency", required=True, metavar="VALUES", help="likewise: '0.5:4:0.25 Hz'"),
+            word(
+                "--pulse",
+                metavar="NAME",
+                help="sine_pulse or cosine_pulse (default: that of the scene, else sine_pulse)",
+            ),
+            ACCURACY,
+            *LENGTH,
+            STORE,
+            RESULT,
+            PICTURE,
+            OVERWRITE,
+        ),
+    ),
+    Command(
+        "plot",
+        "draw a result",
+        "Draw what a file holds: a run along time, or the figure of a study or an analysis.",
+        """\
+  rockframe plot out.nc -o out.png
+  rockframe plot map.nc -o map.pdf --title 'A pulse on blocks of marble'""",
+        (
+            DATASET,
+            path("-o", "--output", required=True, metavar="x.png", help=f"write {PICTURES}"),
+            word(
+                "--format",
+                choices=("png", "svg", "pdf"),
+                help="of the picture, where it goes to the standard output (default: png)",
+            ),
+            OVERWRITE,
+            word("--title", help="above the figure, in the place of the verdict"),
+        ),
+    ),
+    Command(
+        "animate",
+        "let a run move",
+        "Write a run as it moves: a page with a slider (.html, made at once, some tens of kB), or "
+        "a film (.gif, .mp4, drawn picture by picture). Give a result, or a scene to be run.",
+        """\
+  rockframe animate out.nc -o run.html
+  rockframe animate scene.toml --motion record.AT2 -o run.html
+  rockframe animate out.nc -o run.gif --window '2 s' '8 s' --speed 0.5""",
+        (
+            path("dataset", metavar="out.nc", help="a result of 'run', or a scene; or -"),
+            path(
+                "-o",
+                "--output",
+                required=True,
+                metavar="x.html",
+                help="the file, ending in .html, .gif or .mp4 (which needs ffmpeg)",
+            ),
+            word(
+                "--format",
+                choices=("html", "gif", "mp4"),
+                help="where it goes to the standard output (default: html)",
+            ),
+            word("--window", nargs=2, metavar=("START", "END"), help="what is shown of the run"),
+            word(
+                "--speed",
+                type=number_typed,
+                metavar="FACTOR",
+                help="of a film: time of the run over that of the film",
+            ),
+            word(
+                "--magnify",
+                type=number_typed,
+                metavar="FACTOR",
+                help="multiply displacements in the drawing by this",
+            ),
+            word("--title", help="above it, in the place of the verdict"),
+            *RUNNING,
+            OVERWRITE,
+        ),
+    ),
+    Command(
+        "report",
+        "write a page on a run or a study, to file or to print",
+        "Write one HTML file that needs no other: the scene, the motion and its measures, the "
+        "verdict and its certificate, figures, limits of validity, and where it all comes from. "
+        "A run without certificate is certified first, where the file holds its motion. Of a study "
+        "it has all cases in a table and the worst one in full, or the one that --case names.",
+        """\
+  rockframe report out.nc
+  rockframe report out.nc -o tower.html --title 'Clock tower, record 12'
+  rockframe report runs.nc --units force=kN angle=deg
+  rockframe report runs.nc --case scale=2 'width=0.7 m' -o case.html""",
+        (
+            DATASET,
+            path("-o", "--output", metavar="x.html", help="the file (default: beside the result)"),
+            OVERWRITE,
+            word(
+                "--case",
+                nargs="+",
+                metavar="NAME=VALUE",
+                help="of a study: which case, by its place along every axis of several values",
+            ),
+            word("--title", help="of the page"),
+            word(
+                "--units",
+                nargs="+",
+                metavar="NAME=UNIT",
+                help="units of all numbers, such as force=kN angle=deg acceleration=g_0",
+            ),
+            path(
+                "--motion",
+                metavar="RECORD",
+                help="the record of the run, for its certificate where the result does not hold it",
+            ),
+            word(
+                "--no-certificate",
+                action="store_true",
+                help="do not certify a run that is not yet certified",
+            ),
+        ),
+    ),
+    Command(
+        "completion",
+        "write what a shell needs to complete commands",
+        "Write a script with which a shell completes commands, options and names of files.",
+        """\
+  bash   source <(rockframe completion bash)         in ~/.bashrc
+  zsh    source <(rockframe completion zsh)          in ~/.zshrc
+  fish   rockframe completion fish | source          in ~/.config/fish/config.fish""",
+        (word("shell", choices=("bash", "zsh", "fish"), help="which shell"),),
+    ),
+)

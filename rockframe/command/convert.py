@@ -1,0 +1,130 @@
+"""``rockframe convert``: records as other programs read them."""
+
+import argparse
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Final
+
+from rockframe.command.answer import Answer
+from rockframe.command.shared import (
+    Outputs,
+    dataset_kind,
+    motions_from,
+    table_kind,
+)
+from rockframe.command.streams import STREAM
+from rockframe.errors import FileError
+from rockframe.motion import GroundMotion
+from rockframe.results.table import table
+from rockframe.suites import MotionSuite
+from rockframe.units import Unit
+
+_ENDINGS: Final = {"at2": ".AT2", "csv": ".csv", "nc": ".nc"}
+_TABLE: Final = table_kind(
+    "a motion as a table",
+    also=(f"time [{Unit.SECOND}]", f"acceleration [{Unit.METRE_PER_SECOND_SQUARED}]"),
+)
+_NETCDF: Final = dataset_kind(
+    "a motion or a set of motions",
+    lambda found: "motion_sha256" in {*found.attrs, *found.variables},
+)
+_KINDS: Final = {"csv": _TABLE, "nc": _NETCDF}
+_UNSAFE: Final = re.compile(r"[^\w.+-]+")
+_LISTED: Final = 8
+
+
+def execute(arguments: argparse.Namespace, answer: Answer) -> int:
+    """Read records, and write them."""
+    outputs = Outputs(arguments, arguments.files, answer)
+    target = Path(arguments.output).expanduser()
+    form = arguments.to or _form_of(arguments.output)
+    into_folder = arguments.output != STREAM and (
+        target.is_dir() or target.suffix.lower() not in map(str.lower, _ENDINGS.values())
+    )
+    if not into_folder and form in _KINDS:
+        outputs.check(arguments.output, _KINDS[form])
+    motions = motions_from(arguments)
+    if into_folder:
+        _make(target, arguments.output)
+        for name, path in _names(motions, target, _ENDINGS[form]).items():
+            _write(motions[name], form, path, outputs, arguments)
+    elif form == "nc" and len(motions) > 1:
+        suite = motions if isinstance(motions, MotionSuite) else MotionSuite(motions)
+        outputs.write(arguments.output, _NETCDF, "Motions", suite.to_dataset().to_netcdf)
+    else:
+        _write(_only(motions, arguments), form, arguments.output, outputs, arguments)
+    answer.about("Motions", _listed(motions))
+    return 0
+
+
+def _form_of(output: str) -> str:
+    """Tell the format from the ending of a file."""
+    ending = Path(output).suffix.lower()
+    found = next((form for form, one in _ENDINGS.items() if one.lower() == ending), None)
+    if found is None:
+        known = ", ".join(_ENDINGS.values())
+        words = (
+            f"the name of the file does not tell a format: {known}; or name the format, --to at2, "
+            "and a folder"
+        )
+        raise FileError(output, [(None, words)])
+    return found
+
+
+def _make(folder: Path, named: str) -> None:
+    try:
+        folder.mkdir(exist_ok=True)
+    except OSError as problem:
+        words = f"this folder cannot be made ({problem.strerror})"
+        raise FileError(named, [(None, words)]) from problem
+
+
+def _names(motions: Mapping[str, GroundMotion], folder: Path, ending: str) -> dict[str, Path]:
+    """Give each motion a file of its own."""
+    found: dict[str, Path] = {}
+    for name in motions:
+        stem = _UNSAFE.sub("_", name).strip("._") or "motion"
+        taken = {path.stem.casefold() for path in found.values()}
+        number = 1
+        unique = stem
+        while unique.casefold() in taken:
+            number += 1
+            unique = f"{stem}_{number}"
+        found[name] = folder / f"{unique}{ending}"
+    return found
+
+
+def _only(motions: Mapping[str, GroundMotion], arguments: argparse.Namespace) -> GroundMotion:
+    if len(motions) == 1:
+        return next(iter(motions.values()))
+    words = (
+        f"{len(motions)} motions do not go into one file of this format: {_listed(motions)}; name "
+        "one with --component, or a folder with --to, or a file ending in .nc"
+    )
+    raise FileError(arguments.output, [(None, words)])
+
+
+def _listed(motions: Mapping[str, GroundMotion]) -> str:
+    more = "" if len(motions) <= _LISTED else f" and {len(motions) - _LISTED} more"
+    return f"{', '.join(list(motions)[:_LISTED])}{more}"
+
+
+def _write(
+    motion: GroundMotion,
+    form: str,
+    path: str | Path,
+    outputs: Outputs,
+    arguments: argparse.Namespace,
+) -> None:
+    """Write one motion."""
+    if form == "nc":
+        outputs.write(path, _NETCDF, "Motion", motion.to_dataset().to_netcdf)
+    elif form == "csv":
+        values = table(motion.to_dataset(), "histories")
+        outputs.write(path, _TABLE, "Motion", lambda part: values.to_csv(part))
+    else:
+        outputs.written_by(
+            path, _ENDINGS[form], "Motion",
+            lambda place: motion.to_at2(place, overwrite=arguments.overwrite),
+        )  # fmt: skip

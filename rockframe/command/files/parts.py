@@ -1,0 +1,178 @@
+"""The parts of a scene in a TOML file: a table for each, with tables inside where it has bodies."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from inspect import getmembers, ismethod
+from typing import Any, Final
+
+from rockframe.arguments import hints_of
+from rockframe.command.files.tables import (
+    Place,
+    TomlFile,
+    arguments_of,
+    checked,
+    made,
+    table_title,
+)
+from rockframe.components import Component, RockingFrame, Stack
+from rockframe.components.registry import kinds
+from rockframe.errors import nearest, shown
+from rockframe.system.parts import RESTRAINER, slot_of_kind, slots, usual_kind
+
+TYPE: Final = "type"
+CONSTRUCTOR: Final = "constructor"
+MODULES: Final = "modules"
+_OF_ALL: Final = ("from_dict", "declared")
+"""Class methods of all components, which are no way to describe one."""
+_BODIES: Final = "bodies"
+_MOTION: Final = "motion"
+
+
+@dataclass(frozen=True)
+class InnerParts:
+    """Parts that a part consists of."""
+
+    slots: tuple[str, ...]  # of which kinds they are, the usual one first
+    several: bool  # whether they are an array of tables
+
+
+_INNER: Final[Mapping[type, Mapping[str, InnerParts]]] = {
+    Stack: {
+        _BODIES: InnerParts(("block",), several=True),
+        "interfaces": InnerParts(("pads", "soil", "ground"), several=True),
+    },
+    RockingFrame: {"column": InnerParts(("block",), several=False)},
+}
+
+
+def part_slots() -> tuple[str, ...]:
+    """Give the tables of parts."""
+    return tuple(slot for slot in slots() if slot != _MOTION)
+
+
+def described_parts(file: TomlFile, slot: str, given: object) -> list[Component | None]:
+    """Build the part that a table describes, or those of an array of tables."""
+    if slot != RESTRAINER or not isinstance(given, list):
+        return [described_part(file, slot, given)]
+    tables: list[object] = given
+    return [described_part(file, slot, one, (i,)) for i, one in enumerate(tables)]
+
+
+def described_part(
+    file: TomlFile, slot: str, given: object, number: tuple[int, ...] = ()
+) -> Component | None:
+    """Build the part that a table describes; `number` is its own in an array of tables."""
+    where: Place = (slot, *number)
+    table = file.table(where, given)
+    if table is None:
+        return None
+    return _described(file, where, classes_in(slot), table)
+
+
+def inner_parts(kind: type[Component]) -> Mapping[str, InnerParts]:
+    """Give the parts that a part consists of, by the keys of their tables."""
+    return next((inner for of, inner in _INNER.items() if issubclass(kind, of)), {})
+
+
+def _described(
+    file: TomlFile, where: Place, known: Mapping[str, type[Component]], table: dict[str, Any]
+) -> Component | None:
+    """Build a part of one of some classes, and those that it consists of before it."""
+    kind = _kind_of(file, where, known, table.pop(TYPE, None))
+    if kind is None:
+        return None
+    constructor = table.pop(CONSTRUCTOR, None)
+    if constructor is None:
+        function: Callable[..., Component] = kind
+        declared = kind.declared()
+    else:
+        ways = constructors(kind)
+        if constructor not in ways:
+            listed = ", ".join(ways) or "none but the usual one"
+            near = nearest(str(constructor), ways)
+            file.fault(
+                (*where, CONSTRUCTOR),
+                f"constructors of {kind.__name__} are {listed}; got {shown(constructor)}{near}",
+            )
+            return None
+        function, declared = ways[constructor], {}
+    inner = inner_parts(kind)
+    known_keys = {**dict.fromkeys(inner, True), **arguments_of(function)}
+    faulty = [
+        name for name in inner
+        if name in table and not _inner(file, (*where, name), inner[name], table)
+    ]  # fmt: skip
+    unknown = [name for name in table if name not in known_keys]
+    declared = {name: one for name, one in declared.items() if name not in inner}
+    if not checked(file, where, table, known_keys, declared, hints_of(kind.__init__)):
+        _say_ways(file, where, kind, unknown)
+        return None
+    if faulty:
+        return None
+    bodies = table.pop(_BODIES, ()) if _BODIES in inner else ()
+    return made(file, where, lambda **rest: function(*bodies, **rest), table)
+
+
+def _inner(file: TomlFile, where: Place, wanted: InnerParts, table: dict[str, Any]) -> bool:
+    """Build the parts of a table inside another; tell whether all could be."""
+    name = str(where[-1])
+    given = table[name]
+    if wanted.several and not isinstance(given, list):
+        header = f"[[{table_title(where)}]]"
+        words = f"{name} must be an array of tables, {header} above each, got {shown(given)}"
+        file.fault(where, words)
+        return False
+    items: list[Any] = given if wanted.several else [given]
+    places = [(*where, i) for i in range(len(items))] if wanted.several else [where]
+    known = {key: kind for slot in wanted.slots for key, kind in classes_in(slot).items()}
+    parts: list[Component | None] = []
+    for place, item in zip(places, items, strict=True):
+        inner = file.table(place, item)
+        parts.append(None if inner is None else _described(file, place, known, inner))
+    table[name] = parts if wanted.several else parts[0]
+    return None not in parts
+
+
+def classes_in(slot: str) -> dict[str, type[Component]]:
+    """Give the classes of parts that a table may describe, the usual one first."""
+    usual = usual_kind(slot)
+    fitting = {name: kind for name, kind in kinds().items() if slot_of_kind(kind) == slot}
+    return {usual.__name__: fitting[usual.__name__], **fitting}
+
+
+def constructors(kind: type[Component]) -> dict[str, Callable[..., Component]]:
+    """Give the ways to build a component beside its own constructor, by their names."""
+    return {
+        name: one
+        for name, one in getmembers(kind, ismethod)
+        if not name.startswith("_") and name not in _OF_ALL
+    }
+
+
+def _kind_of(
+    file: TomlFile, where: Place, known: Mapping[str, type[Component]], name: object
+) -> type[Component] | None:
+    if name is None:
+        return next(iter(known.values()))
+    if isinstance(name, str) and name in known:
+        return known[name]
+    of_own = (
+        f'; a class of your own is found once its file is named at the top, {MODULES} = ["mine.py"]'
+    )
+    near = nearest(str(name), known)
+    words = f"type must be {' or '.join(known)}, got {shown(name)}{near or of_own}"
+    file.fault((*where, TYPE), words)
+    return None
+
+
+def _say_ways(file: TomlFile, where: Place, kind: type[Component], unknown: list[str]) -> None:
+    """Say which other constructors take the keys that this one does not know."""
+    for name in unknown:
+        ways = [way for way, one in constructors(kind).items() if name in arguments_of(one)]
+        if ways:
+            file.fault(
+                (*where, name),
+                f"{name!r} goes with {CONSTRUCTOR} = {' or '.join(map(repr, ways))}".replace(
+                    "'", '"'
+                ),
+            )

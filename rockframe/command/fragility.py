@@ -1,0 +1,93 @@
+"""``rockframe fragility``: how likely a scene falls at a shaking."""
+
+import argparse
+from pathlib import Path
+from typing import Any, Final
+
+import xarray as xr
+
+from rockframe.command.answer import Answer
+from rockframe.command.files.studies import AXES, CASES
+from rockframe.command.over_motions import SCALE, asked, scene_and_motions
+from rockframe.command.plot import PICTURE, save
+from rockframe.command.shared import (
+    Outputs,
+    amount,
+    analysis_kind,
+    is_result,
+    read_result,
+    system_words,
+    with_project,
+)
+from rockframe.command.streams import bar_for
+from rockframe.errors import FileError, StudyError
+from rockframe.plot import fragility as draw
+from rockframe.reports.figures import figure_of
+from rockframe.reports.project import ATTRIBUTE
+from rockframe.results.variables.analyses import FragilityStatus
+from rockframe.studies import fragility, open_study, sweep
+
+_RESULT: Final = analysis_kind("a fragility", "exceedance_probability", "fragility_status")
+_USUAL: Final = [0.25 * k for k in range(1, 17)]
+"""Scales of the motions, where neither a file nor the command line gives any."""
+
+
+def execute(arguments: argparse.Namespace, answer: Answer) -> int:
+    """Run a scene under many motions, or read what was run, and fit fragilities."""
+    known = is_result(arguments.scene)
+    found = None if known else scene_and_motions(arguments)
+    read = [arguments.scene, *arguments.records] if found is None else found.files
+    outputs = Outputs(arguments, read, answer)
+    outputs.check(arguments.output, _RESULT)
+    outputs.check(arguments.picture, PICTURE)
+    if found is None:
+        runs = _kept(arguments)
+    else:
+        given: dict[str, Any] = {"store": found.store, **found.arguments}
+        if AXES not in given and CASES not in given:
+            given[AXES] = {SCALE: _USUAL}
+        with bar_for("fragility", quiet=arguments.quiet) as bar:
+            given["progress"] = bar
+            try:
+                runs = sweep(found.system, found.motions, **given)
+            except StudyError as problem:
+                raise found.at_lines(problem) from problem
+        runs = with_project(runs, found.project)
+    dataset = fragility(runs, **asked(arguments, fragility))
+    dataset = with_project(dataset, str(runs.attrs.get(ATTRIBUTE, "")))
+    answer.says("Verdict", dataset.attrs["verdict"])
+    if "median_intensity" in dataset and dataset["median_intensity"].dims == ("limit_state",):
+        for state, row in dataset.groupby("limit_state", squeeze=False):
+            answer.text(_line(str(state), row.squeeze("limit_state")))
+    if found is not None:
+        answer.about("Scene", system_words(found.system))
+    answer.about("Runs", str(runs.attrs["verdict"]))
+    answer.numbers(dataset)
+    outputs.result(arguments.output, _RESULT, dataset)
+    if arguments.picture is not None:
+        save(figure_of(draw(dataset)), arguments.picture, outputs)
+    return 0
+
+
+def _kept(arguments: argparse.Namespace) -> xr.Dataset:
+    """Read the runs of a study, from its file or its store."""
+    more = ("records", "scales", "store", "accuracy", "free_vibration", "duration")
+    if any(getattr(arguments, name) for name in more):
+        words = "its runs have been made; records, scales, a store or lengths of runs go with a "
+        raise FileError(arguments.scene, [(None, f"this is a result: {words}scene")])
+    if Path(arguments.scene).expanduser().is_dir():
+        return open_study(arguments.scene)
+    return read_result(arguments.scene)
+
+
+def _line(state: str, row: xr.Dataset) -> str:
+    """Tell median and dispersion of a limit state."""
+    median = row["median_intensity"]
+    status = row["fragility_status"]
+    words = str(status.attrs["flag_meanings"]).split()[int(status)].replace("_", " ")
+    if bool(median.isnull()):
+        return f"  {state}: no fit, {words}"
+    if int(status) != FragilityStatus.FITTED:
+        return f"  {state}: median about {amount(float(median), median.attrs)}, {words}"
+    dispersion = float(row["dispersion"])
+    return f"  {state}: median {amount(float(median), median.attrs)}, dispersion {dispersion:.3g}"

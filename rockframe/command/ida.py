@@ -1,0 +1,74 @@
+"""``rockframe ida``: records that are scaled until a scene falls."""
+
+import argparse
+from typing import Any, Final
+
+from rockframe.command.answer import Answer
+from rockframe.command.files.studies import AXES, CASES
+from rockframe.command.over_motions import SCALE, asked, scene_and_motions
+from rockframe.command.plot import PICTURE, save
+from rockframe.command.shared import (
+    Outputs,
+    analysis_kind,
+    given_of,
+    printed,
+    system_words,
+    table_kind,
+    taken_by,
+    with_project,
+)
+from rockframe.command.streams import bar_for
+from rockframe.errors import FileError
+from rockframe.plot import dynamic_analysis as draw
+from rockframe.reports.figures import figure_of
+from rockframe.results.table import table
+from rockframe.studies import fragility, incremental_dynamic_analysis
+
+_RESULT: Final = analysis_kind("the result of a dynamic analysis", "capacity_scale", "flip_count")
+_TABLE: Final = table_kind("a table of capacities", "limit_state", "motion", "capacity_scale")
+_SHOWN: Final = ("capacity_scale", "flip_count")
+"""What is told of each record."""
+_MOST_SHOWN: Final = 40
+"""Rows up to which the table is printed."""
+_USUAL: Final = "PGA"
+
+
+def execute(arguments: argparse.Namespace, answer: Answer) -> int:
+    """Scale motions until they overturn, and tell the capacity under each."""
+    found = scene_and_motions(arguments)
+    outputs = Outputs(arguments, found.files, answer)
+    outputs.check(arguments.output, _RESULT)
+    outputs.check(arguments.picture, PICTURE)
+    outputs.check(arguments.csv, _TABLE)
+    axes = found.arguments.get(AXES, {})
+    others = [
+        name for name in (*axes, *([CASES] if CASES in found.arguments else ())) if name != SCALE
+    ]
+    if others:
+        words = f"a dynamic analysis has scales alone, and no {' or '.join(others)}"
+        raise FileError(arguments.scene, [(None, f"{words}; 'fragility' fits each structure")])
+    given: dict[str, Any] = {
+        "intensity": _USUAL,
+        "store": found.store,
+        **axes,
+        **taken_by(incremental_dynamic_analysis, found.arguments),
+        **asked(arguments, incremental_dynamic_analysis),
+    }
+    period = given_of(arguments, "period")
+    with bar_for("ida", quiet=arguments.quiet) as bar:
+        given["progress"] = bar
+        dataset = incremental_dynamic_analysis(found.system, found.motions, **given)
+    dataset = with_project(dataset, found.project)
+    answer.says("Verdict", dataset.attrs["verdict"])
+    answer.about("Scene", system_words(found.system))
+    fitted = fragility(dataset, dataset.attrs["intensity"], trials="capacities", **period)
+    answer.says("Fit", fitted.attrs["verdict"])
+    capacities = table(dataset[list(_SHOWN)].drop_vars("rotation_limit"))
+    if len(capacities) <= _MOST_SHOWN:
+        answer.text(printed(capacities))
+    answer.numbers(dataset)
+    outputs.table(arguments.csv, _TABLE, capacities)
+    outputs.result(arguments.output, _RESULT, dataset)
+    if arguments.picture is not None:
+        save(figure_of(draw(dataset)), arguments.picture, outputs)
+    return 0

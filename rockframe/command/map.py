@@ -1,0 +1,107 @@
+"""``rockframe map``: which pulses overturn a scene."""
+
+import argparse
+from typing import Any, Final
+
+import xarray as xr
+
+from rockframe.command.answer import Answer
+from rockframe.command.files.scenes import Described, read_scene
+from rockframe.command.files.tables import arguments_of
+from rockframe.command.plot import PICTURE, save
+from rockframe.command.shared import (
+    Outputs,
+    analysis_kind,
+    run_from,
+    system_words,
+    taken_by,
+    values_of,
+    with_project,
+)
+from rockframe.command.streams import bar_for
+from rockframe.errors import ComponentError
+from rockframe.motion import GroundMotion
+from rockframe.motion.description import CONSTRUCTORS
+from rockframe.plot import overturning_map as draw
+from rockframe.reports.figures import figure_of
+from rockframe.shared_arguments import meant
+from rockframe.studies import overturning_map
+
+_RESULT: Final = analysis_kind("a map of overturning", "impacts_before_overturning")
+_USUAL: Final = "sine_pulse"
+_AXES: Final = ("amplitude", "frequency")
+
+
+def execute(arguments: argparse.Namespace, answer: Answer) -> int:
+    """Run pulses of all amplitudes and frequencies, and tell what overturns."""
+    found = read_scene(arguments.scene)
+    outputs = Outputs(arguments, found.files, answer)
+    outputs.check(arguments.output, _RESULT)
+    outputs.check(arguments.picture, PICTURE)
+    given: dict[str, Any] = {
+        "store": arguments.store,
+        **taken_by(overturning_map, run_from(found.run, arguments)),
+        "amplitude": values_of(arguments.amplitude, "--amplitude", "1:10:0.5 m/s^2"),
+        "frequency": values_of(arguments.frequency, "--frequency", "0.5:4:0.25 Hz"),
+    }
+    pulse, words = _pulse(found, arguments.pulse)
+    with bar_for("map", quiet=arguments.quiet) as bar:
+        given["progress"] = bar
+        dataset = overturning_map(found.system, pulse, **given)
+    dataset = with_project(dataset, found.project)
+    answer.says("Verdict", dataset.attrs["verdict"])
+    answer.about("Scene", f"{system_words(found.system)} ({dataset.attrs['model']})")
+    answer.about("Pulse", words)
+    answer.text("\n".join(_lines(dataset)))
+    answer.numbers(dataset)
+    outputs.result(arguments.output, _RESULT, dataset)
+    if arguments.picture is not None:
+        save(figure_of(draw(dataset)), arguments.picture, outputs)
+    return 0
+
+
+def _pulse(found: Described, name: str | None) -> tuple[Any, str]:
+    """Give the pulse that was typed, else that of the scene, and what it is called."""
+    known = [one for one in CONSTRUCTORS if _has_axes(one)]
+    if name is not None and name not in known:
+        listed = f"{meant(name, known)} There are {', '.join(known)}"
+        msg = f"--pulse: no pulse of an amplitude and a frequency alone is {name!r}{listed}"
+        raise ComponentError(msg)
+    motion = found.motion
+    described = {} if motion is None else motion.to_dict()
+    if name is None and set(_AXES) <= set(described):
+        return motion, str(described["constructor"]).replace("_", " ")
+    name = name or _USUAL
+    return getattr(GroundMotion, name), name.replace("_", " ")
+
+
+def _has_axes(name: str) -> bool:
+    """Tell whether a constructor needs no more than an amplitude and a frequency."""
+    taken = arguments_of(getattr(GroundMotion, name))
+    return set(_AXES) <= set(taken) and not any(
+        needed for one, needed in taken.items() if one not in _AXES
+    )
+
+
+def _lines(dataset: xr.Dataset) -> list[str]:
+    """Tell for each frequency the boundaries of overturning."""
+    unit = dataset["amplitude"].attrs["units"]
+    lines = [f"  frequency [Hz]   boundaries of overturning [{unit}]"]
+    for number, frequency in enumerate(dataset["frequency"].to_numpy()):
+        one = dataset.isel(frequency=number)
+        ends = zip(one["amplitude_above"].to_numpy(), one["impacts_above"].to_numpy(), strict=True)
+        told = [f"{at:.4g} {_way(impacts)}" for at, impacts in ends if at == at]
+        lines.append(f"  {frequency:<16.4g} {', '.join(told) or _throughout(one)}")
+    return lines
+
+
+def _way(impacts: float) -> str:
+    if impacts != impacts:
+        return "stands"
+    return f"overturns after {impacts:.0f} impact{'' if impacts == 1 else 's'}"
+
+
+def _throughout(one: xr.Dataset) -> str:
+    """Say what all amplitudes do where the verdict does not change."""
+    ways = one["impacts_before_overturning"].to_numpy()
+    return "none: stands throughout" if (ways != ways).all() else "none: overturns throughout"

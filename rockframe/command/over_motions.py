@@ -1,0 +1,64 @@
+"""What analyses of a scene under many motions share: what was typed for them."""
+
+import argparse
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, Final
+
+from rockframe.command.files.studies import AXES, DescribedStudy, read_study
+from rockframe.command.shared import given_of, run_from, suite_from, taken_by, values_of
+from rockframe.errors import ComponentError, FileError
+from rockframe.results.schema import SCHEMA
+from rockframe.shared_arguments import meant
+
+SCALE: Final = "scale"
+_NO_MOTIONS: Final = (
+    "there are no motions; name records, archives or folders behind the scene, or describe motions "
+    "in the file"
+)
+_NUMBER: Final = re.compile(r"[-+]?\.?\d")
+
+
+def scene_and_motions(arguments: argparse.Namespace) -> DescribedStudy:
+    """Read a scene or a study, with the motions, scales and runs that were typed instead."""
+    found = read_study(arguments.scene, varied=False)
+    if arguments.records:
+        suite = suite_from(arguments.records, arguments)
+        files = (*found.files, *map(Path, arguments.records))
+        found = replace(found, motions=dict(suite.items()), files=files)
+    if found.motions is None:
+        raise FileError(arguments.scene, [(None, _NO_MOTIONS)])
+    given = run_from(found.arguments, arguments)
+    if arguments.scales is not None:
+        scales, _ = values_of(arguments.scales, "--scales", "0.25:4:0.25")
+        given[AXES] = {**given.get(AXES, {}), SCALE: scales}
+    store = found.store if arguments.store is None else Path(arguments.store).expanduser()
+    return replace(found, arguments=given, store=store)
+
+
+def asked(arguments: argparse.Namespace, function: Callable[..., Any]) -> dict[str, Any]:
+    """Give the intensity and the limit states that were typed."""
+    given = given_of(arguments, "intensity", "period")
+    if arguments.limits is not None:
+        given["limits"] = [_limit(word.strip()) for word in arguments.limits.split(",")]
+    return taken_by(function, given)
+
+
+def _limit(word: str) -> object:
+    """Read a limit state: a rotation, a name, or a variable and from where on it exceeds."""
+    if _NUMBER.match(word):
+        try:
+            return float(word)
+        except ValueError:
+            msg = f"--limits: expected a number, a name or NAME=VALUE, got {word!r}"
+            raise ComponentError(msg) from None
+    name, equals, value = word.partition("=")
+    if not equals:
+        return word
+    name = name.strip()
+    if name not in SCHEMA:
+        msg = f"--limits: runs have no variable {name!r}{meant(name, [*SCHEMA])}"
+        raise ComponentError(msg)
+    return name, float(value) if re.fullmatch(r"[\d.]+", value.strip()) else value.strip()

@@ -1,0 +1,127 @@
+"""The standard streams: in the place of files, in colours, and with a bar that tells progress."""
+
+import os
+import shutil
+import sys
+from collections.abc import Generator
+from contextlib import contextmanager
+from io import BytesIO
+from time import monotonic
+from typing import IO, Final
+
+from rockframe.errors import FileError
+
+STREAM: Final = "-"
+"""In the place of a file: the standard input, or the standard output."""
+INPUT: Final = "standard input"
+"""What it is called in messages."""
+
+_COLOURS: Final = {"error": "1;31", "warning": "33", "label": "1"}
+_CLEAR: Final = "\r\x1b[K"
+_DELAY: Final = 1.0
+"""What takes no longer shows no bar [s]."""
+_BETWEEN: Final = 0.1
+"""Shortest time between two looks of the bar [s]."""
+
+
+class StandardInput(BytesIO):
+    """What is read from the standard input, as an open file with a name."""
+
+    name = INPUT
+    taken_by = ""
+    """What has read it, for it can be read once."""
+
+    @classmethod
+    def read_for(cls, what: str) -> "StandardInput":
+        """Read all of it."""
+        if cls.taken_by:
+            words = (
+                f"{cls.taken_by} is read from it already, and {what} cannot be too; name a file "
+                "for one of them"
+            )
+            raise FileError(INPUT, [(None, words)])
+        if sys.stdin is None or sys.stdin.closed:
+            raise FileError(
+                INPUT, [(None, f"it is closed; name the file of {what} instead of '-'")]
+            )
+        cls.taken_by = what
+        return cls(sys.stdin.buffer.read())
+
+    def __repr__(self) -> str:
+        return self.name
+
+
+def opened(path: str, what: str) -> "str | IO[bytes]":
+    """Give a path, or the standard input that stands for it."""
+    return StandardInput.read_for(what) if path == STREAM else path
+
+
+def shows_colours(stream: object) -> bool:
+    """Tell whether a stream is a terminal on which colours are wanted (https://no-color.org)."""
+    plain = os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb"
+    return not plain and _is_terminal(stream)
+
+
+def coloured(words: str, kind: str, stream: object) -> str:
+    """Colour words, where they are shown in colours."""
+    return f"\x1b[{_COLOURS[kind]}m{words}\x1b[0m" if shows_colours(stream) else words
+
+
+def tell(who: str, words: str, kind: str = "error") -> None:
+    """Write a message to the standard error, behind the name of the command."""
+    print(f"{coloured(f'{who}:', kind, sys.stderr)} {words}", file=sys.stderr)
+
+
+def _is_terminal(stream: object) -> bool:
+    try:
+        return bool(stream.isatty())  # type: ignore[attr-defined]
+    except (AttributeError, ValueError):  # there is none, or it is closed
+        return False
+
+
+class Bar:
+    """How far it is, in one line of the standard error, where that is a terminal."""
+
+    def __init__(self, what: str, *, wanted: bool) -> None:
+        self._shown = wanted and _is_terminal(sys.stderr) and os.environ.get("TERM") != "dumb"
+        self._what, self._part = what, ""
+        self._total = self._done = 0
+        self._begun, self._last = monotonic(), 0.0
+
+    def name(self, part: str) -> None:
+        """Say which part of the whole comes next."""
+        self._part = f", {part}"
+
+    def expect(self, count: int, done: int = 0) -> None:
+        """Add cases to the total, of which some were done before."""
+        self._total += count
+        self._done += done
+
+    def update(self, count: int) -> None:
+        """Add cases that are done."""
+        self._done += count
+        now = monotonic()
+        if self._shown and now - self._begun > _DELAY and now - self._last > _BETWEEN:
+            self._last = now
+            share = 100.0 * self._done / max(self._total, 1)
+            words = (
+                f"{self._what}{self._part}: {self._done} of {self._total} runs ({share:.0f} %), "
+                f"{now - self._begun:.0f} s"
+            )
+            width = shutil.get_terminal_size().columns
+            print(f"{_CLEAR}{words[: width - 1]}", end="", file=sys.stderr, flush=True)
+
+    def close(self) -> None:
+        """Leave the line as it was."""
+        if self._last > 0.0:
+            print(_CLEAR, end="", file=sys.stderr, flush=True)
+
+
+@contextmanager
+def bar_for(what: str, *, quiet: bool) -> Generator[Bar]:
+    """Show how far it is while something is done."""
+    bar = Bar(what, wanted=not quiet)
+    try:
+        yield bar
+    finally:
+        bar.close()

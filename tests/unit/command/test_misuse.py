@@ -1,0 +1,218 @@
+"""Misuse of each kind: a message that says what is wrong, where, and what leads on."""
+
+import json
+import os
+import shlex
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import rockframe as rf
+
+pytestmark = pytest.mark.unit
+
+WORDS = {
+    # of commands and options
+    "rnu scene.toml": "was 'run' meant?",
+    "Run scene.toml": "'Run' is no command; was 'run' meant?",
+    "critcal scene.toml": "was 'critical' meant?",
+    "run scene.toml --outptu x.nc": "was '--output' meant?",
+    "run scene.toml --Json": "was '--json' meant?",
+    "run scene.toml --nudge 0.1": "no option --nudge here; certify takes it",
+    "--motion record.AT2 run scene.toml": "no option --motion before the command",
+    "run scene.toml -z": "there is no option -z",
+    "template sta": "was 'stack' or 'statue' meant?",
+    "completion bahs": "was 'bash' meant?",
+    "run": "required: scene.toml",
+    "map scene.toml --frequency '1 Hz'": "required: --amplitude",
+    "run scene.toml other.toml": "other.toml",
+}
+VALUES = {
+    # of options
+    "run scene.toml --scale half": "expected a number such as 1.5, got 'half'",
+    "run scene.toml --accuracy standrad": "was 'standard' meant?",
+    "run scene.toml --free-vibration 5": "--free-vibration '20 s'",
+    "critical scene.toml --runs many": "expected a whole number such as 100, got 'many'",
+    "critical scene.toml --runs 1": "runs must be a whole number from 2",
+    "critical scene.toml --largest -1": "largest must be greater than zero",
+    "critical scene.toml --intensity PGAA": "was 'PGA'",
+    "critical scene.toml --intensity SA": "needs a period, for example --period '0.5 s'",
+    "critical scene.toml --period '1 s' --intensity PGA": "has no period",
+    "fragility scene.toml record.AT2 --scales 1:2": "from, to and step",
+    "fragility scene.toml record.AT2 --scales 1:2:0": "from, to and step",
+    "fragility scene.toml record.AT2 --scales '1,2 m'": "without a unit",
+    "fragility scene.toml record.AT2 --limits peak_slop=1": "was 'peak_slip'",
+    "ida scene.toml --limits uplift,0.x": "got '0.x'",
+    "map scene.toml --amplitude 1,2 --frequency '1 Hz'": "with their unit behind them",
+    "map scene.toml --amplitude '1,2 m' --frequency '1 Hz'": "--amplitude '9.81 m/s^2'",
+    "map scene.toml --amplitude '1 g' --frequency '1 Hz' --pulse sine_puls": "was 'sine_pulse'",
+    "animate scene.toml -o x.gif --window 1 2": "--window '20 s'",
+    "animate scene.toml -o x.html --speed 2": "--speed is that of a film",
+    "motion record.AT2 --unit furlong": "furlong",
+}
+FILES = {
+    # that are read or written
+    "run none.toml": "none.toml: there is no such file",
+    "run .": "this is a folder",
+    "run bytes.toml": "this is no text",
+    "run record.AT2": "line 1: this is no TOML",
+    "critical still.toml": "there is no motion; name a record with --motion",
+    "fragility still.toml": "there are no motions; name records",
+    "fragility scene.toml nowhere": "no such file or folder, 'nowhere'",
+    "fragility run.nc": "found a single run, which is no sweep",
+    "animate record.nc -o x.html": "needs the result of one run",
+    "animate scene.toml -o x.avi": "ends in .html or .gif or .mp4",
+    "animate run.nc -o x.html --scale 2": "this is a result, which has run",
+    "convert record.AT2 -o x.xyz": "the name of the file does not tell a format",
+    "convert record.AT2 --to csv -o none/deep": "this folder cannot be made",
+    "convert scene.toml -o x.AT2": "no format recognises",
+    "critical scene.toml -o run.nc": "not the result of a critical scale that rockframe wrote",
+    "critical scene.toml --picture x.txt": "ends in .png or .svg or .pdf",
+    "run scene.toml -o x.nc -m scene.toml": "no format recognises",
+    "plot run.nc -o scene.toml": "ends in .png or .svg or .pdf",
+    "run scene.toml -o shut/x.nc": "shut",
+}
+STREAMS = {
+    # in the place of files
+    "run - -m -": "a scene is read from it already",
+    "run - --json -o -": "the answer in JSON goes to the standard output already",
+    "critical - -o - --picture -": "another file goes to the standard output already",
+    "convert record.AT2 -o -": "or name the format, --to at2",
+    "plot - -o x.png": "this is no netCDF file",
+    "motion -": "standard input: found no horizontal component",
+    "report -": "name the report with -o report.html",
+}
+
+
+def split(words):
+    return shlex.split(words)
+
+
+@pytest.fixture
+def files(folder, typed):
+    """Give files of all kinds."""
+    Path("bytes.toml").write_bytes(bytes(range(256)))
+    Path("still.toml").write_text(Path("scene.toml").read_text().split("[motion]")[0])
+    rf.GroundMotion.read("record.AT2").to_dataset().to_netcdf("record.nc")
+    assert typed("run", "scene.toml", "-o", "run.nc")[0] == 0
+    Path("shut").mkdir()
+    Path("shut").chmod(0o500)
+    return {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()}
+
+
+@pytest.mark.parametrize("words", [*WORDS, *VALUES, *FILES])
+def test_misuse_is_told_and_leads_on(words, typed, files, folder):
+    if words.endswith("shut/x.nc") and os.access("shut", os.W_OK):
+        pytest.skip("this user writes everywhere")
+    code, out, err = typed(*split(words))
+    assert code == 2
+    assert {**WORDS, **VALUES, **FILES}[words] in err
+    assert "Traceback" not in out + err
+    left = {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()}
+    assert left == files
+
+
+@pytest.mark.parametrize("words", STREAMS)
+def test_misuse_of_streams_is_told(words, piped, folder):
+    code, out, err = piped(Path("scene.toml").read_bytes(), *split(words))
+    assert code == 2
+    assert STREAMS[words] in err
+    assert b"Traceback" not in out
+
+
+def test_an_error_is_told_to_programs_too(typed):
+    code, out, err = typed("run", "none.toml", "--json")
+    answer = json.loads(out)
+    assert answer["error"] == "none.toml: there is no such file"
+    assert answer["exit_code"] == code == 2
+    assert err == "rockframe run: none.toml: there is no such file\n"
+
+
+SCENES = {
+    # a file: the line and what is said of it
+    '[block]\nwidth = "1 m"\nheight = 3\nmass = "1 t"\n': (3, 'write for example height = "4 m"'),
+    '[block]\nwidth = "1 m"\nheight = "3 m"\nmas = "1 t"\n': (4, "was 'mass' meant?"),
+    '[blok]\nwidth = "1 m"\n': (1, "was 'block' meant?"),
+    '[block]\ntype = "Blok"\n': (2, "was 'Block' meant?"),
+    '[block]\nconstructor = "from_outlin"\n': (2, "was 'from_outline'"),
+    "{block}[system]\nrestraint = 'center'\n": (6, "was 'centre' meant?"),
+    "{block}[run]\naccuracy = 'quick'\nfree_vibratoin = '1 s'\n": (7, "was 'free_vibration'"),
+    "{block}[run]\naccuracy = 'standrad'\nfree_vibratoin = '1 s'\n": (6, "was 'standard' meant?"),
+    "{block}[run]\noutputs = ['energis']\n": (6, "energis"),
+    "{block}[motion]\nconstructor = 'sin_pulse'\n": (6, "was 'sine_pulse'"),
+    "{block}[motion]\nfile = 'record.AT2'\n[[motion.operations]]\nscald = {{factor = 2}}\n": (
+        8, "was 'scaled' meant?",
+    ),
+    "[stack]\n[[stack.bodies]]\nwidth = '1 m'\nheight = '1 m'\nmass = '1 kg'\n[[stack.bodies]]\n"
+    "width = '2 m'\nheight = '1 m'\nmass = '1 s'\n[[stack.interfaces]]\ntype = 'RigidGrund'\n": (
+        9, "mass needs a mass",
+    ),
+    "[stack]\ninterfaces = []\nbodies = 'two'\n": (3, "[[stack.bodies]] above each"),
+    "[block]\nconstructor = 'from_parts'\n[block.parts.a]\nwidth = '1 m'\nheight = '1 m'\n"
+    "mass = '1 kg'\nunit = 'm'\n": (7, "'unit'"),
+    "[frame]\ncolumns = 3\nbeam_mass = '1 t'\n[frame.column]\nwidth = '1 m'\nheigth = '3 m'\n": (
+        6, "was 'height' meant?",
+    ),
+}  # fmt: skip
+PLAIN = '[block]\nwidth = "0.8 m"\nheight = "3.2 m"\nmass = "5.5 t"\n'
+
+
+@pytest.mark.parametrize("text", SCENES)
+def test_faults_of_a_scene_have_their_line(text, typed):
+    line, words = SCENES[text]
+    Path("wrong.toml").write_text(text.format(block=PLAIN) if "{block}" in text else text)
+    code, _, err = typed("run", "wrong.toml", "--duration", "1 s")
+    assert code == 2
+    said = [one for one in err.splitlines() if f"wrong.toml, line {line}: " in one]
+    assert any(words in one for one in said), err
+
+
+@pytest.mark.parametrize(
+    ("axes", "line", "words"),
+    [
+        ("scale = [1]\nwidht = ['1 m']\n", 5, "was 'width' meant?"),
+        ("scale = [1]\n\nwidth = ['1 s']\n", 6, 'width = "4 m"'),
+        ("scale = ['one']\n", 4, "scale"),
+    ],
+)
+def test_faults_of_a_study_have_their_line(axes, line, words, typed):
+    Path("study.toml").write_text(f'scene = "scene.toml"\n\n[axes]\n{axes}')
+    for command in ("study", "fragility"):
+        code, _, err = typed(command, "study.toml")
+        assert code == 2
+        assert f"study.toml, line {line}: " in err
+        assert words in err
+
+
+def test_files_of_other_editors_are_read(typed):
+    text = f'# Caf\u00e9\n{PLAIN}[run]\nduration = "1 s"\n'
+    for encoding, newline in (("utf-8-sig", "\n"), ("utf-16", "\r\n"), ("utf-8", "\r\n")):
+        Path("other.toml").write_text(text, encoding=encoding, newline=newline)
+        code, told, err = typed("run", "other.toml")
+        assert (code, err) == (0, "")
+        assert "Verdict: " in told
+    Path("other.toml").write_text(text, encoding="latin-1")
+    code, told, err = typed("run", "other.toml")
+    assert code == 0
+    assert "other.toml, line 1: found '\u00e9' in the encoding of old Windows" in err
+    for encoding in ("utf-8-sig", "utf-16", "utf-8"):
+        wrong = text.replace('"3.2 m"', '"3.2 s"')
+        Path("other.toml").write_text(wrong, encoding=encoding, newline="\r\n")
+        code, _, err = typed("run", "other.toml")
+        assert (code, "other.toml, line 4: " in err) == (2, True)
+
+
+@pytest.mark.skipif(shutil.which("sh") is None, reason="there is no shell")
+@pytest.mark.parametrize(
+    ("words", "code"), [("run scene.toml >&-", 0), ("run - <&-", 2), ("run scene.toml 2>&-", 0)]
+)
+def test_closed_streams_are_no_tracebacks(words, code, folder):
+    done = subprocess.run(
+        [shutil.which("sh"), "-c", f"{sys.executable} -m rockframe {words}"],
+        capture_output=True, text=True, check=False, cwd=folder,
+    )  # fmt: skip
+    assert done.returncode == code, done
+    assert "Traceback" not in done.stderr

@@ -1,0 +1,183 @@
+"""The commands that answer questions: what they say is what the functions give."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import rockframe as rf
+
+pytestmark = pytest.mark.unit
+
+BLOCK = rf.Block(width="0.8 m", height="3.2 m", mass="5.5 t")
+AFTER = {"free_vibration": "5 s"}
+
+
+@pytest.fixture
+def records(folder):
+    """Give a folder of records, each of its own strength."""
+    (folder / "records").mkdir()
+    for number in range(5):
+        pulse = rf.GroundMotion.sine_pulse(f"{-3 - 0.6 * number} m/s^2", "1 Hz")
+        pulse.to_at2(f"records/{number}.AT2")
+    return rf.read_suite("records")
+
+
+def test_the_critical_scale_is_that_of_the_function(typed):
+    given = ("critical", "scene.toml", "-m", "record.AT2", "--runs", "60", "--largest", "3")
+    code, told, _ = typed(*given, "-o", "c.nc", "--picture", "c.svg")
+    assert code == 0
+    record = rf.GroundMotion.read("record.AT2")
+    expected = rf.critical_scale(
+        rf.System(BLOCK), record, largest=3.0, runs=60, scales=60, intensity="PGA", **AFTER
+    )
+    assert f"Verdict: {expected.attrs['verdict']}" in told
+    with xr.open_dataset("c.nc") as kept:
+        assert float(kept.critical_scale) == float(expected.critical_scale)
+    peak = float(expected.peak_ground_acceleration)
+    assert f"peak ground acceleration {peak:.4g} m s^-2" in told
+    assert Path("c.svg").stat().st_size > 1000
+    code, told, _ = typed(*given, "--json")
+    answer = json.loads(told)
+    assert answer["numbers"]["critical_scale"] == {
+        "value": float(expected.critical_scale), "unit": "1",
+    }  # fmt: skip
+    assert answer["numbers"]["scale_above"]["dims"] == ["flip"]
+    assert answer["numbers"]["peak_ground_acceleration"]["unit"] == "m s^-2"
+    assert answer["verdict"] == expected.attrs["verdict"]
+
+
+def test_a_scene_that_does_not_fall_has_no_critical_scale(typed):
+    code, told, _ = typed("critical", "scene.toml", "--runs", "10", "--largest", "1", "--json")
+    answer = json.loads(told)
+    assert code == 0
+    assert answer["numbers"]["critical_scale"]["value"] is None
+    assert "shaking" not in answer
+
+
+def test_a_fragility_tells_median_and_dispersion_first(typed, records):
+    given = ("--scales", "0.5:2:0.25", "--accuracy", "fast")
+    code, told, _ = typed(
+        "fragility", "scene.toml", "records", *given, "-o", "f.nc", "--picture", "f.png"
+    )
+    assert code == 0
+    runs = rf.sweep(
+        rf.System(BLOCK), dict(records), scale=np.arange(0.5, 2.1, 0.25), accuracy="fast", **AFTER
+    )
+    expected = rf.fragility(runs)
+    assert told.splitlines()[0] == f"Verdict: {expected.attrs['verdict']}"
+    with xr.open_dataset("f.nc") as kept:
+        assert np.array_equal(kept.median_intensity, expected.median_intensity, equal_nan=True)
+    assert Path("f.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_fragility_is_fitted_to_what_was_run_before(typed, records):
+    Path("study.toml").write_text(
+        'scene = "scene.toml"\nmotions = ["records"]\nstore = "kept"\n'
+        "[axes]\nscale = [0.5, 1.0, 1.5, 2.0]\n"
+    )
+    assert typed("study", "study.toml", "-o", "runs.nc")[0] == 0
+    verdicts = set()
+    for source in ("study.toml", "runs.nc", "kept"):
+        code, told, _ = typed("fragility", source, "--limits", "uplift,0.5", "--json")
+        assert code == 0
+        answer = json.loads(told)
+        verdicts.add(answer["verdict"])
+        states = answer["numbers"]["limit_state"]["value"]
+        assert states == ["uplift", "rotation 0.5", "overturning"]
+    assert len(verdicts) == 1
+    code, _, problem = typed("fragility", "runs.nc", "records")
+    assert (code, "its runs have been made" in problem) == (2, True)
+
+
+def test_a_dynamic_analysis_tells_the_capacity_under_each_record(typed, records):
+    code, told, _ = typed(
+        "ida", "scene.toml", "records", "--scales", "0.5,1,1.5,2", "-o", "i.nc", "--csv", "i.csv",
+        "--picture", "i.svg",
+    )  # fmt: skip
+    assert code == 0
+    expected = rf.incremental_dynamic_analysis(
+        rf.System(BLOCK), dict(records), scale=[0.5, 1, 1.5, 2], intensity="PGA", **AFTER
+    )
+    assert f"Verdict: {expected.attrs['verdict']}" in told
+    rows = Path("i.csv").read_text().splitlines()
+    capacities = [float(row.split(",")[2]) for row in rows[1:]]
+    assert capacities == expected.capacity_scale.to_numpy().ravel().tolist()
+    code, _, problem = typed("plot", "i.nc", "-o", "again.svg")
+    assert code == 0
+    Path("wide.toml").write_text('scene = "scene.toml"\n[axes]\nwidth = ["0.7 m", "0.9 m"]\n')
+    code, _, problem = typed("ida", "wide.toml", "records")
+    assert (code, "scales alone, and no width" in problem) == (2, True)
+
+
+def test_a_map_tells_the_boundaries_at_each_frequency(typed):
+    given = ("--amplitude", "2:8:2 m/s^2", "--frequency", "0.5,2 Hz", "--accuracy", "fast")
+    code, told, _ = typed("map", "scene.toml", *given, "-o", "m.nc", "--picture", "m.png")
+    assert code == 0
+    pulse = rf.GroundMotion.sine_pulse("-5 m/s^2", "2 Hz")
+    expected = rf.overturning_map(
+        rf.System(BLOCK), pulse, amplitude=([2, 4, 6, 8], "m/s^2"),
+        frequency=([0.5, 2], "Hz"), accuracy="fast", **AFTER,
+    )  # fmt: skip
+    first = float(expected.amplitude_above.isel(frequency=0, boundary=0))
+    assert f"{first:.4g} overturns after" in told
+    assert "none: stands throughout" in told
+    with xr.open_dataset("m.nc") as kept:
+        assert kept.amplitude_above.equals(expected.amplitude_above)
+    code, told, _ = typed("map", "scene.toml", *given, "--pulse", "cosine_pulse")
+    assert (code, "Pulse:   cosine pulse" in told) == (0, True)
+
+
+def test_a_run_moves_in_a_page_and_in_a_film(typed):
+    assert typed("run", "scene.toml", "-o", "out.nc")[0] == 0
+    code, told, _ = typed("animate", "out.nc", "-o", "run.html", "--title", "A <tower>")
+    assert (code, "Page: run.html" in told) == (0, True)
+    page = Path("run.html").read_text()
+    assert "A &lt;tower&gt;" in page
+    assert len(page) < 200_000
+    code, told, _ = typed(
+        "animate", "scene.toml", "-m", "record.AT2", "-o", "run.gif",
+        "--window", "0 s", "1 s", "--speed", "5",
+    )  # fmt: skip
+    assert (code, "Film: run.gif" in told) == (0, True)
+    assert Path("run.gif").read_bytes().startswith(b"GIF89a")
+
+
+@pytest.mark.parametrize("form", ["csv", "nc", "at2"])
+def test_converted_records_are_the_same_motions(typed, folder, form):
+    ending = {"at2": "AT2"}.get(form, form)
+    code, *_ = typed("convert", "record.AT2", "-o", f"other.{ending}", "--unit", "g")
+    assert code == 0
+    before, after = (rf.GroundMotion.read(name) for name in ("record.AT2", f"other.{ending}"))
+    assert after.si.time_step == before.si.time_step
+    assert after.si.horizontal.samples == pytest.approx(before.si.horizontal.samples, rel=1e-6)
+
+
+def test_many_records_go_into_a_folder_or_one_file(typed, records):
+    code, *_ = typed("convert", "records", "--to", "csv", "-o", "tables")
+    assert code == 0
+    assert sorted(path.name for path in Path("tables").iterdir()) == [f"{k}.csv" for k in range(5)]
+    assert typed("convert", "records", "-o", "all.nc")[0] == 0
+    again = rf.read_suite("all.nc")
+    assert {one.sha256 for one in again.values()} == {one.sha256 for one in records.values()}
+    assert typed("convert", "records", "-o", "all.nc")[0] == 0  # its own file is replaced
+    code, _, problem = typed("convert", "records", "-o", "one.AT2")
+    assert (code, "5 motions do not go into one file" in problem) == (2, True)
+    assert not Path("one.AT2").exists()
+
+
+def test_a_statue_on_a_plinth_is_that_of_python(typed):
+    _, told, _ = typed("template", "statue")
+    Path("statue.toml").write_text(told)
+    assert typed("run", "statue.toml", "-o", "statue.nc")[0] == 0
+    outline = [[0.05, 0], [0.65, 0], [0.55, 0.8], [0.60, 1.5], [0.35, 2.0], [0.15, 1.4]]
+    statue = rf.Block.from_outline(outline, unit="m", density="2600 kg/m^3", depth="0.5 m")
+    plinth = rf.Block(width="1.0 m", height="1.1 m", mass="2600 kg")
+    pads = rf.TwoSpringSupport(frequency_ratio=40, damping_ratio=0.10)
+    system = rf.System(rf.Stack(statue, plinth, interfaces=[pads]), pads)
+    pulse = rf.GroundMotion.sine_pulse("-3 m/s^2", "1.5 Hz")
+    with xr.open_dataset("statue.nc") as kept:
+        expected = system.simulate(pulse, free_vibration="5 s")
+        assert float(kept.peak_rotation) == float(expected.peak_rotation)

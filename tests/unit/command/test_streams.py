@@ -1,0 +1,183 @@
+"""Standard streams: pipes, answers for programs, colours, progress, interrupts, closed pipes."""
+
+import io
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import xarray as xr
+
+import rockframe as rf
+from rockframe.command import streams
+from rockframe.command.commands import COMMANDS
+from rockframe.command.files.templates import TEMPLATES
+from rockframe.studies.sweeps import execution
+
+pytestmark = pytest.mark.unit
+
+
+class Terminal(io.StringIO):
+    """A stream that says it is a terminal."""
+
+    def isatty(self):
+        return True
+
+
+def test_a_scene_and_a_result_go_through_pipes(piped, folder):
+    scene = Path("scene.toml").read_bytes()
+    code, result, told = piped(scene, "run", "-", "-o", "-")
+    assert code == 0
+    assert "Verdict: Did not overturn" in told
+    Path("piped.nc").write_bytes(result)
+    with xr.open_dataset("piped.nc") as kept:
+        block = rf.Block(width="0.8 m", height="3.2 m", mass="5.5 t")
+        pulse = rf.GroundMotion.sine_pulse("-5 m/s^2", "2 Hz")
+        again = rf.System(block).simulate(pulse, free_vibration="5 s")
+        assert float(kept.peak_rotation) == float(again.peak_rotation)
+    for form, begins in (("png", b"\x89PNG"), ("svg", b"<?xml"), ("pdf", b"%PDF")):
+        code, picture, _ = piped(result, "plot", "-", "-o", "-", "--format", form)
+        assert (code, picture[: len(begins)]) == (0, begins)
+    code, page, _ = piped(result, "report", "-", "-o", "-", "--no-certificate")
+    assert (code, page[:15].lower()) == (0, b"<!doctype html>")
+    code, page, _ = piped(scene, "animate", "-", "-o", "-")
+    assert (code, page[:15].lower()) == (0, b"<!doctype html>")
+
+
+def test_a_record_goes_through_a_pipe(piped, folder):
+    record = Path("record.AT2").read_bytes()
+    code, table, _ = piped(record, "convert", "-", "--to", "csv", "-o", "-")
+    assert code == 0
+    assert table.splitlines()[0] == b"time [s],acceleration [m s^-2]"
+    for words in (
+        ["run", "scene.toml", "-m", "-"],
+        ["motion", "-"],
+        ["fragility", "scene.toml", "-"],
+    ):
+        assert piped(record, *words)[0] == 0
+    code, table, _ = piped(b"", "motion", "record.AT2", "--csv", "-", "-q")
+    assert table.startswith(b"motion,")
+
+
+def test_programs_get_all_numbers_with_their_units(typed):
+    code, told, err = typed("run", "scene.toml", "--json", "-o", "out.nc")
+    answer = json.loads(told)
+    assert (code, err) == (0, "")
+    assert answer["exit_code"] == 0
+    assert answer["files"] == {"results": "out.nc"}
+    numbers = answer["numbers"]
+    with xr.open_dataset("out.nc") as kept:
+        assert answer["verdict"] == kept.attrs["verdict"]
+        scalars = [str(name) for name, one in kept.data_vars.items() if not one.dims]
+        assert set(scalars) <= set(numbers)
+        assert numbers["peak_rotation"] == {"value": float(kept.peak_rotation), "unit": "rad"}
+    assert numbers["overturned"] == {"value": False}
+    assert numbers["overturning_direction"]["value"] == "none"
+    assert numbers["overturning_time"] == {"value": None, "unit": "s"}  # there is none
+
+
+def test_warnings_reach_programs_and_not_who_wants_quiet(typed, folder):
+    text = TEMPLATES["block"].replace(
+        'accuracy = "standard"', "accuracy = { rtol = 1e-9, max_steps = 20 }"
+    )
+    Path("short.toml").write_text(text)
+    code, told, err = typed("run", "short.toml", "--json")
+    answer = json.loads(told)
+    assert code == answer["exit_code"] == 1
+    assert answer["warnings"]
+    assert f"warning: {answer['warnings'][0]}" in err
+    code, told, err = typed("run", "short.toml", "-q")
+    assert (code, err) == (1, "")
+    assert [line.split(":")[0] for line in told.splitlines()] == ["Verdict"]
+
+
+def test_who_wants_more_gets_all_numbers(typed):
+    plain = typed("run", "scene.toml")[1]
+    told = typed("-v", "run", "scene.toml")[1]
+    assert told.startswith(plain)
+    assert re.search(r"^  peak_rotation: 0\.0821\d* rad$", told, re.MULTILINE)
+
+
+@pytest.mark.parametrize(
+    ("environment", "coloured"),
+    [({}, True), ({"NO_COLOR": "1"}, False), ({"NO_COLOR": ""}, True), ({"TERM": "dumb"}, False)],
+)
+def test_messages_are_coloured_on_terminals_that_want_it(environment, coloured, monkeypatch):
+    for name in ("NO_COLOR", "TERM"):
+        monkeypatch.delenv(name, raising=False)
+    for name, value in environment.items():
+        monkeypatch.setenv(name, value)
+    monkeypatch.setattr(sys, "stderr", Terminal())
+    streams.tell("rockframe run", "no")
+    assert ("\x1b[" in sys.stderr.getvalue()) == coloured
+    monkeypatch.setattr(sys, "stderr", io.StringIO())
+    streams.tell("rockframe run", "no")
+    assert sys.stderr.getvalue() == "rockframe run: no\n"
+
+
+ANALYSES = {
+    "study": ["study", "study.toml"],
+    "critical": ["critical", "scene.toml", "--runs", "30"],
+    "fragility": ["fragility", "scene.toml"],
+    "ida": ["ida", "scene.toml", "--scales", "1,2,3"],
+    "map": ["map", "scene.toml", "--amplitude", "2,4 m/s^2", "--frequency", "1,2 Hz"],
+}
+
+
+@pytest.mark.parametrize("name", ANALYSES)
+def test_progress_is_shown_on_a_terminal_alone(name, typed, monkeypatch):
+    Path("study.toml").write_text('scene = "scene.toml"\n[axes]\nscale = [1.0, 2.0]\n')
+    monkeypatch.setattr(streams, "_DELAY", 0.0)
+    monkeypatch.setattr(streams, "_BETWEEN", 0.0)
+    monkeypatch.delenv("TERM", raising=False)
+    assert "runs (" not in typed(*ANALYSES[name])[2]
+    for quiet in ((), ("-q",)):
+        monkeypatch.setattr(sys, "stderr", Terminal())
+        assert typed(*ANALYSES[name], *quiet)[0] == 0
+        shown = sys.stderr.getvalue()
+        assert ("runs (100 %)" in shown) == (not quiet)
+        assert not shown or shown.endswith("\r\x1b[K")
+
+
+@pytest.mark.parametrize("name", ["study", "fragility", "ida", "map"])
+def test_an_interrupted_analysis_tells_what_it_has(name, typed, monkeypatch):
+    Path("study.toml").write_text('scene = "scene.toml"\n[axes]\nscale = [1.0, 2.0]\n')
+    run_chunk, calls = execution.run_chunk, []
+
+    def interrupted(*given, **named):
+        calls.append(given)
+        if len(calls) == 1:
+            os.kill(os.getpid(), signal.SIGINT)
+        return run_chunk(*given, **named)
+
+    monkeypatch.setattr(execution, "run_chunk", interrupted)
+    code, told, _ = typed(*ANALYSES[name], "--json")
+    assert code == json.loads(told)["exit_code"] == 130
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+
+
+def test_nothing_is_lost_where_nobody_reads_on(folder):
+    for command in ("run scene.toml -o out.nc", "critical scene.toml --runs 20 -o out.nc --json"):
+        Path("out.nc").unlink(missing_ok=True)
+        with subprocess.Popen(
+            [sys.executable, "-m", "rockframe", *command.split()],
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+        ) as going:  # fmt: skip
+            going.stdout.close()
+            assert going.stderr.read() == b""
+        assert going.returncode == 0
+        assert Path("out.nc").is_file()
+
+
+def test_every_command_takes_json(typed):
+    for command in COMMANDS:
+        told = typed(command.name, "--help")[1]
+        assert "--json" in told
+    assert json.loads(typed("template", "--json")[1])["text"] == TEMPLATES["block"]
+    assert json.loads(typed("describe", "scene.toml", "--json")[1])["model"] == "rigid ground"
+    measures = json.loads(typed("motion", "record.AT2", "--json")[1])["numbers"]
+    assert measures["peak_ground_acceleration"]["value"] == [pytest.approx(4.0)]
