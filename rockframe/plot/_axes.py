@@ -6,15 +6,16 @@ matplotlib's style.
 """
 
 import re
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 import xarray as xr
 
 from rockframe.studies.intensities import PERIOD_OF, measure_words
-from rockframe.units import Measure
+from rockframe.units import LENGTH, Measure
+from rockframe.units.shown import ReaderUnits, reader_units, shown_unit
 from rockframe.units.shown import Shown as Shown
-from rockframe.units.shown import shown_unit
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -83,6 +84,14 @@ def powers_in_mathtext(unit: str) -> str:
     return re.sub(r"\^(-?\d+)", r"$^{\1}$", unit)
 
 
+_RAISED: Final = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+def raised(text: str) -> str:
+    """Write powers of units in a text as powers, in letters."""
+    return re.sub(r"(?<=[^\W\d_])\^(-?\d+)", lambda power: power[1].translate(_RAISED), text)
+
+
 def grid(axes: "Axes") -> None:
     """Draw a light grid behind what is drawn."""
     axes.grid(visible=True, which="major", color=GREY, alpha=0.25, linewidth=0.6)
@@ -115,17 +124,54 @@ def colour_steps(along: xr.DataArray) -> Any:
     return colormaps["viridis"](np.linspace(0.1, 0.85, along.size))
 
 
+METRES: Final = Shown(str(LENGTH.unit), 1.0)
+
+
+def measured_in(axes: "Axes", length: Shown) -> None:
+    """Write lengths beside axes on which metres are drawn."""
+    from matplotlib.ticker import FuncFormatter, MaxNLocator
+
+    class Places(MaxNLocator):
+        """Round numbers in the unit, where they are on the axis."""
+
+        def tick_values(self, vmin: float, vmax: float) -> Any:
+            return length.size * super().tick_values(vmin / length.size, vmax / length.size)
+
+    if length.size != 1.0:
+        for axis in (axes.xaxis, axes.yaxis):
+            axis.set_major_locator(Places("auto", steps=[1, 2, 2.5, 5, 10]))
+            axis.set_major_formatter(FuncFormatter(lambda place, _: f"{place / length.size:.6g}"))
+    axes.set(xlabel=f"[{length.words}]", ylabel=f"[{length.words}]")
+
+
 RELATIVE: Final = "relative"
 """The word for values that are made relative to a scale of the body."""
 
 
-def unit_of(given: object, measure: Measure, *, function: str, name: str) -> Shown:
-    """Read the unit of an axis."""
-    return shown_unit(given, measure, owner=f"rf.plot.{function}", name=name)
+@dataclass(frozen=True)
+class FigureUnits:
+    """Units of a figure's axes: that of an axis by its name, else the reader's, else the usual."""
+
+    owner: str
+    reader: ReaderUnits
+
+    def of(self, measure: Measure, usual: str = "", **given: object) -> Shown:
+        """Give the unit of an axis, of which the argument of its own may be given by its name."""
+        for name, unit in given.items():
+            if unit is not None:
+                return shown_unit(unit, measure, owner=self.owner, name=name)
+        usual = usual or str(measure.unit)
+        return self.reader.chose(measure) or shown_unit(usual, measure, owner=self.owner, name="")
+
+    def unless_relative(self, measure: Measure, **given: object) -> Shown | None:
+        """Give the unit of an axis; None where values are relative to a scale of the body."""
+        (unit,) = given.values()
+        if unit == RELATIVE or (unit is None and self.reader.chose(measure) is None):
+            return None
+        return self.of(measure, **given)
 
 
-def unit_unless_relative(
-    given: object, measure: Measure, *, function: str, name: str
-) -> Shown | None:
-    """Read the unit of an axis; None where values are shown relative to a scale of the body."""
-    return None if given == RELATIVE else unit_of(given, measure, function=function, name=name)
+def units_of(units: object, function: str) -> FigureUnits:
+    """Read the units of a figure."""
+    owner = f"rf.plot.{function}"
+    return FigureUnits(owner, reader_units(units, owner=owner))

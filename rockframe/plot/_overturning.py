@@ -17,16 +17,19 @@ from rockframe.plot._axes import (
     label_of,
     label_of_intensity,
     plain_ticks,
+    units_of,
 )
 from rockframe.plot._checks import drawable, draws
 from rockframe.plot._panels import Panels, Sheet, sheet, single
 from rockframe.results.outcome import overturns
 from rockframe.studies.sweeps.words import cases_verdict
+from rockframe.units import ACCELERATION
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from rockframe.plot._panels import AxesLike
+    from rockframe.units.shown import UnitsLike
 
 _MOST_NAMED: Final = 8
 """Motions with a line in the legend."""
@@ -37,7 +40,11 @@ _CAPPED: Final = 1.0
 
 @draws("dynamic_analysis", ax="two Axes", title="the verdict")
 def dynamic_analysis(
-    dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None = None
+    dataset: xr.Dataset,
+    *,
+    units: "UnitsLike" = None,
+    ax: "AxesLike" = None,
+    title: str | None = None,
 ) -> "Panels":
     """Draw peak rotations over the intensity, and the share of motions that overturned.
 
@@ -54,7 +61,7 @@ def dynamic_analysis(
     -------
     Panels
     """
-    given = drawable(dataset, "dynamic_analysis")
+    given = drawable(dataset, "dynamic_analysis", units)
     name = str(given.attrs.get("intensity", "scale"))
     intensity = given[name].broadcast_like(given["peak_relative_rotation"])
     on = sheet(
@@ -111,7 +118,11 @@ def dynamic_analysis(
 
 @draws("overturning_map")
 def overturning_map(
-    dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None = None
+    dataset: xr.Dataset,
+    *,
+    units: "UnitsLike" = None,
+    ax: "AxesLike" = None,
+    title: str | None = None,
 ) -> "Axes":
     """Draw which pulses overturn, after how many impacts, and the boundaries between.
 
@@ -123,14 +134,15 @@ def overturning_map(
     Returns
     -------
     matplotlib.axes.Axes
-        On rigid ground the axes are amplitude over that of uplift and
-        frequency over the block's.
+        On rigid ground the axes are amplitude over that of uplift and frequency over the block's,
+        unless `units` has one of accelerations.
     """
     from matplotlib.colors import ListedColormap
     from matplotlib.patches import Patch
 
-    given = drawable(dataset, "overturning_map")
-    relative = "relative_pulse_frequency" in given.coords
+    given = drawable(dataset, "overturning_map", units)
+    asked = units_of(units, "overturning_map").reader.chose(ACCELERATION) is not None
+    relative = "relative_pulse_frequency" in given.coords and not asked
     across = given["relative_pulse_frequency" if relative else "frequency"]
     up = given["relative_peak_ground_acceleration" if relative else "amplitude"]
     told = int(given.attrs["impacts_told_apart"])
@@ -168,7 +180,11 @@ def overturning_map(
 
 @draws("rocking_spectrum", ax="Axes, one for each slenderness")
 def rocking_spectrum(
-    dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None = None
+    dataset: xr.Dataset,
+    *,
+    units: "UnitsLike" = None,
+    ax: "AxesLike" = None,
+    title: str | None = None,
 ) -> "Panels":
     """Draw peak rotations over the size of the block, a panel for each slenderness.
 
@@ -181,7 +197,7 @@ def rocking_spectrum(
     -------
     Panels
     """
-    given = drawable(dataset, "rocking_spectrum")
+    given = drawable(dataset, "rocking_spectrum", units)
     on = _sheet(ax, "rocking_spectrum", given)
     for place, axes in enumerate(on.panels):
         one = given.isel(slenderness=place)
@@ -197,7 +213,11 @@ def rocking_spectrum(
 
 @draws("overturning_spectrum", ax="Axes, one for each slenderness")
 def overturning_spectrum(
-    dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None = None
+    dataset: xr.Dataset,
+    *,
+    units: "UnitsLike" = None,
+    ax: "AxesLike" = None,
+    title: str | None = None,
 ) -> "Panels":
     """Draw the least intensity that overturns over the size of the block, on logarithmic axes.
 
@@ -210,7 +230,7 @@ def overturning_spectrum(
     -------
     Panels
     """
-    given = drawable(dataset, "overturning_spectrum")
+    given = drawable(dataset, "overturning_spectrum", units)
     on = _sheet(ax, "overturning_spectrum", given)
     measure = given["capacity_intensity"].rename(str(given.attrs["intensity"]))
     for place, axes in enumerate(on.panels):

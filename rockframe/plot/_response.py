@@ -3,7 +3,6 @@
 Events are marked on the rotation, and strips below it show the contact states.
 """
 
-from collections.abc import Mapping
 from difflib import get_close_matches
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any, Final
@@ -19,22 +18,20 @@ from rockframe.plot._axes import (
     GREY,
     ORANGE,
     PURPLE,
-    RELATIVE,
     VERMILLION,
     Shown,
     axis_label,
     colour_of,
     ink,
     key,
-    unit_of,
-    unit_unless_relative,
+    units_of,
     zero_line,
 )
-from rockframe.plot._checks import overturning_angles
+from rockframe.plot._checks import draws, overturning_angles
 from rockframe.plot._panels import Panels, sheet
 from rockframe.plot._runs import Run, runs_of, runs_title
 from rockframe.units import ACCELERATION, ANGLE, LENGTH
-from rockframe.units.shown import ReaderUnits, reader_units
+from rockframe.units.shown import ReaderUnits
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -42,6 +39,7 @@ if TYPE_CHECKING:
 
     from rockframe.plot._panels import AxesLike
     from rockframe.plot._runs import RunsLike, Window
+    from rockframe.units.shown import UnitsLike
 
 
 CONTACT_COLOURS: Final = {
@@ -172,16 +170,17 @@ _SI_LENGTH: Final = Shown(str(LENGTH.unit), 1.0)
 _STACKED: Final = "rotation_on_cap"
 
 
+@draws(ax="sequence of Axes, one for each panel", title="the verdict")
 def response(
     runs: "RunsLike",
     *,
     panels: "str | tuple[str, ...]" = tuple(_HEIGHTS),
     window: "Window" = None,
-    rotation: str = RELATIVE,
-    vertical: str = RELATIVE,
-    acceleration: str = "m/s^2",
-    units: "Mapping[str, str] | None" = None,
+    rotation: str | None = None,
+    vertical: str | None = None,
+    acceleration: str | None = None,
     events: bool = False,
+    units: "UnitsLike" = None,
     ax: "AxesLike" = None,
     title: str | None = None,
 ) -> "Panels":
@@ -200,20 +199,14 @@ def response(
         Start and end of what is drawn; all of it unless given [s].
     rotation : str, optional
         Unit of rotations, such as ``"deg"`` or ``"rad"``; or ``"relative"``, over the overturning
-        angle, with degrees at the right.
+        angle, with degrees at the right, which is usual.
     vertical : str, optional
         Unit of vertical displacements, such as ``"mm"``; or ``"relative"``, over the settlement
-        under the weight where the base gives way, with millimetres at the right.
+        under the weight where the base gives way, with millimetres at the right, which is usual.
     acceleration : str, optional
-        Unit of the ground's acceleration, such as ``"g_0"``.
-    units : mapping of str to str, optional
-        Units of other histories by what they are of, such as ``{"force": "kN"}``.
+        Unit of the ground's acceleration, such as ``"g"``.
     events : bool, optional
         Whether events are marked on the rotation.
-    ax : Axes or sequence of Axes, optional
-        What is drawn in, one for each panel; a new figure unless given.
-    title : str, optional
-        Title of the figure; the verdict unless given.
 
     Returns
     -------
@@ -242,12 +235,12 @@ def response(
     >>> axes.figure.savefig("rotation.png")  # doctest: +SKIP
     """
     given = runs_of(runs, "response", window)
+    chosen = units_of(units, "response")
     shown_in = {
-        "ground": unit_of(acceleration, ACCELERATION, function="response", name="acceleration"),
-        "rotation": unit_unless_relative(rotation, ANGLE, function="response", name="rotation"),
-        "vertical": unit_unless_relative(vertical, LENGTH, function="response", name="vertical"),
+        "ground": chosen.of(ACCELERATION, acceleration=acceleration),
+        "rotation": chosen.unless_relative(ANGLE, rotation=rotation),
+        "vertical": chosen.unless_relative(LENGTH, vertical=vertical),
     }
-    others = reader_units(units, owner="rf.plot.response")
     strips = strips_of(given)
     names = [
         name
@@ -270,7 +263,7 @@ def response(
             state, words = strips[name]
             draw_contact(axes, state, words)
         elif name not in _DRAW:
-            _history(axes, given, name, others)
+            _history(axes, given, name, chosen.reader)
         else:
             _DRAW[name](axes, given, shown_in[name])
     if events and "rotation" in drawn:

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.lines import Line2D
 
     from rockframe.plot._panels import AxesLike
+    from rockframe.units.shown import UnitsLike
 
 _LEAST: Final = 1e-14
 """Errors of the integration below are drawn here: they are rounding."""
@@ -30,7 +31,13 @@ _LETTERS: Final = 120
 
 
 @draws("tradeoff", ax="two Axes", title="scene and motion")
-def tradeoff(dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None = None) -> "Panels":
+def tradeoff(
+    dataset: xr.Dataset,
+    *,
+    units: "UnitsLike" = None,
+    ax: "AxesLike" = None,
+    title: str | None = None,
+) -> "Panels":
     """Draw a comparison of models and accuracies.
 
     Left, the error of the integration against the time of a run, a line for each model; right,
@@ -50,7 +57,7 @@ def tradeoff(dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None = 
     from matplotlib import colormaps
     from matplotlib.ticker import LogLocator, NullLocator, StrMethodFormatter
 
-    drawable(dataset, "tradeoff")
+    drawable(dataset, "tradeoff", units)
     models = [str(name) for name in dataset["model"].to_numpy()]
     on = sheet(
         ax, "tradeoff", ("integration", "model and integration"),
