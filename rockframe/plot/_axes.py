@@ -1,8 +1,8 @@
 """What the axes of all figures share: labels with units, colours, a light grid.
 
-The colours are those of Okabe and Ito, which people with any colour vision tell apart, in an order
-in which the first ones are legible on white and on black. Text and axes have the colours of
-matplotlib's style.
+The colours have the hues of those of Okabe and Ito, which people with any colour vision tell apart,
+and a lightness each, so that they are told apart in print without colours too. The first ones are
+legible on white and on black. Text and axes have the colours of matplotlib's style.
 """
 
 import re
@@ -21,17 +21,15 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-BLUE: Final = "#0072b2"
-VERMILLION: Final = "#d55e00"
-GREEN: Final = "#009e73"
-PURPLE: Final = "#cc79a7"
+BLUE: Final = "#00598b"
+VERMILLION: Final = "#d45e00"
+GREEN: Final = "#007a59"
+PURPLE: Final = "#cd7da9"
 ORANGE: Final = "#e69f00"
-SKY: Final = "#56b4e9"
+SKY: Final = "#8cccf0"
 COLOURS: Final = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY)
 STYLES: Final[tuple[Any, ...]] = ("-", "--", "-.", (0, (1, 1)))
 """Of lines that are compared, so that they are told apart without colours too."""
-_SLOW_TO_PLACE: Final = 20_000
-"""Samples of lines between which matplotlib looks for a place for long."""
 STANDS: Final = "#dfe7ef"
 _MANY_DECADES: Final = 200.0
 """End over start of axes that have no room for more than powers of ten."""
@@ -39,11 +37,30 @@ GREY: Final = "0.5"
 """Of what stands behind, legible on white and on black."""
 
 
+_LETTER, _LINE, _HANDLE = 0.07, 0.19, 0.55
+"""Sizes of a legend in small letters: a letter's width, a line's height, and what stands before
+words [in]."""
+
+
 def key(axes: "Axes", **style: Any) -> None:
-    """Write a legend where it hides least."""
-    samples = sum(len(np.atleast_1d(line.get_xdata())) for line in axes.get_lines())
-    place = "best" if samples < _SLOW_TO_PLACE else "upper right"
-    axes.legend(loc=place, fontsize="small", **style)
+    """Write a legend above what is drawn, for which the axis is made longer."""
+    words = axes.get_legend_handles_labels()[1]
+    title = str(style.get("title", ""))
+    width, height = axes.get_window_extent().size / axes.figure.dpi
+    entry = _HANDLE + _LETTER * max(map(len, words))
+    columns = int(np.clip((0.95 * width) // entry, 1, len(words)))
+    rows = -(-len(words) // columns) + bool(title)
+    share = min(0.6, (0.08 + _LINE * rows) / height)
+    linear = axes.get_yscale() == "linear"
+    low, high = axes.get_ylim()[0], axes.dataLim.y1 + (0.05 * axes.dataLim.height if linear else 0)
+    if linear and high > low:
+        axes.set_ylim(low, low + (high - low) / (1.0 - share))
+    elif high > low > 0.0:
+        axes.set_ylim(low, low * (1.05 * high / low) ** (1.0 / (1.0 - share)))
+    axes.legend(
+        loc="upper right", ncols=columns, fontsize="small", frameon=False, borderaxespad=0.2,
+        handlelength=1.8, columnspacing=1.2, **style,
+    )  # fmt: skip
 
 
 def ink() -> Any:
@@ -135,7 +152,8 @@ def measured_in(axes: "Axes", length: Shown) -> None:
         """Round numbers in the unit, where they are on the axis."""
 
         def tick_values(self, vmin: float, vmax: float) -> Any:
-            return length.size * super().tick_values(vmin / length.size, vmax / length.size)
+            places = super().tick_values(vmin / length.size, vmax / length.size)
+            return length.size * np.asarray(places)
 
     if length.size != 1.0:
         for axis in (axes.xaxis, axes.yaxis):
@@ -168,7 +186,7 @@ class FigureUnits:
         (unit,) = given.values()
         if unit == RELATIVE or (unit is None and self.reader.chose(measure) is None):
             return None
-        return self.of(measure, **given)
+        return self.of(measure, "", **given)
 
 
 def units_of(units: object, function: str) -> FigureUnits:

@@ -253,7 +253,7 @@ def energies(
     zero_line(on.axes)
     on.axes.set(xlabel="time [s]", ylabel=axis_label("energy", unit.words))
     on.axes.set_xlim(part.time[0], part.time[-1])
-    on.legend(*on.axes.get_legend_handles_labels(), ncols=4)
+    on.legend(*on.axes.get_legend_handles_labels(), columns=4)
     on.entitle(runs_title(given), title)
     return on.axes
 

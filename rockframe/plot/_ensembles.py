@@ -176,6 +176,8 @@ def fragility(
         on = _sheet(ax, drawn)
         for axes, one in zip(on.panels, drawn, strict=True):
             _contours(axes, one, measures)
+    if len(measures) == 1:
+        on.name_lines()
     known = "independent_count" in given
     on.entitle(sentences(given) if known else str(dataset.attrs.get("verdict", "")), title)
     return on.axes if len(measures) == 1 and not structures else on.panels
@@ -239,7 +241,6 @@ def _curves(axes: "Axes", named: list[tuple[str, xr.Dataset]], measure: str) -> 
         ylim=(-0.02, 1.02),
     )
     axes.set_xlim(left=0.0)
-    axes.legend(frameon=False, fontsize="small", loc="best")
     grid(axes)
 
 
@@ -247,12 +248,14 @@ def _contours(axes: "Axes", one: xr.Dataset, measures: list[str]) -> None:
     across, up = measures
     surface = one[_NAME].transpose(up, across)
     axes.contourf(
-        one[across], one[up], surface, levels=np.linspace(0.0, 1.0, 21), cmap="Blues", alpha=0.8
+        one[across], one[up], surface, levels=np.linspace(0.0, 1.0, 21), cmap="Blues", alpha=0.5
     )
     lines = axes.contour(
         one[across], one[up], surface, levels=_LEVELS, colors=COLOURS[0], linewidths=0.9
     )
-    axes.clabel(lines, fontsize="small", fmt="%.2f")
+    for label in axes.clabel(lines, fontsize="small", fmt="%.2f", inline_spacing=2, colors="black"):
+        label.set_bbox({"facecolor": "white", "alpha": 0.85, "edgecolor": "none", "pad": 0.6})
+        label.set_rotation(0.0)
     axes.set(
         xlabel=label_of_intensity(one[across], one),
         ylabel=label_of_intensity(one[up], one),

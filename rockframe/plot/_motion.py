@@ -13,11 +13,13 @@ from rockframe.plot._axes import (
     BLUE,
     GREEN,
     GREY,
+    VERMILLION,
     Shown,
     axis_label,
     colour_of,
     grid,
     ink,
+    key,
     style_of,
     units_of,
     zero_line,
@@ -39,10 +41,6 @@ if TYPE_CHECKING:
     from rockframe.units.shown import UnitsLike
 
 
-_LETTERS: Final = 90
-"""That a row of a legend has room for."""
-
-
 @dataclass(frozen=True)
 class Drawn:
     """A motion with its label, colour and dashes; without a label where there is but one."""
@@ -51,12 +49,6 @@ class Drawn:
     label: str | None
     colour: str
     style: Any
-
-
-def columns_of(given: list[Drawn]) -> int:
-    """Give the columns of a legend that names motions below a figure."""
-    longest = max(len(one.label or "") for one in given)
-    return max(1, min(len(given), _LETTERS // (longest + 6)))
 
 
 def motions_title(given: list[Drawn]) -> str:
@@ -168,9 +160,9 @@ def motion(
             max(float(history["time"][-1]) for history in found),
         )
     if upwards is not None:
-        on.axes.legend(loc="upper right", fontsize="small", ncols=2, frameon=False)
+        key(on.axes)
     elif len(given) > 1:
-        on.legend(*on.axes.get_legend_handles_labels(), ncols=columns_of(given))
+        on.legend(*on.axes.get_legend_handles_labels(), fontsize="small")
     on.panels[-1].set_xlabel("time [s]")
     if on.own is not None:
         on.own.align_ylabels(on.panels)
@@ -206,11 +198,6 @@ def _mark_peak(axes: "Axes", dataset: xr.Dataset, name: str, unit: Shown, colour
         fontsize="small",
         color=colour,
     )
-
-
-_MOTION: Final = "#999999"
-_PULSE: Final = "#cc6677"
-_RESIDUAL: Final = "#222255"
 
 
 @draws(ax="two Axes", title="name of the motion, period and verdict")
@@ -260,16 +247,16 @@ def velocity_pulse(
     time = extracted["time"].to_numpy() - float(pulse.lead.m_as("s"))
     of_pulse = unit.of(extracted["ground_velocity"])
     left = unit.of(residual["ground_velocity"])
-    above.plot(time, of_pulse + left, color=_MOTION, linewidth=1.0, label="motion")
+    above.plot(time, of_pulse + left, color=GREY, linewidth=1.0, label="motion")
     words = f"pulse, $T_p$ = {pulse.period.m_as('s'):.3g} s"
-    above.plot(time, of_pulse, color=_PULSE, linewidth=1.8, label=words)
-    below.plot(time, left, color=_RESIDUAL, linewidth=1.0, label="residual motion")
+    above.plot(time, of_pulse, color=VERMILLION, linewidth=1.8, label=words)
+    below.plot(time, left, color=BLUE, linewidth=1.0, label="residual motion")
     reach = 1.1 * max(float(np.abs(of_pulse + left).max()), float(np.abs(left).max()))
     for axes in (above, below):
         axes.axhline(0.0, color="0.8", linewidth=0.5, zorder=0)
-        axes.set(ylabel=axis_label("ground velocity", unit.words), xlim=(time[0], time[-1]))
+        axes.set(ylabel=axis_label("ground\nvelocity", unit.words), xlim=(time[0], time[-1]))
         axes.set_ylim(-reach, reach)
-        axes.legend(loc="upper right", fontsize="small", frameon=False)
         grid(axes)
+    on.name_lines()
     below.set_xlabel("time [s]")
     return on.panels

@@ -56,6 +56,9 @@ def _lines(words: str, width: int) -> list[str]:
     return wrap(words, width)
 
 
+_LETTERS_OF_HANDLE: Final = 7
+
+
 class Panels(tuple[Any, ...]):
     """The panels of one figure, in the order in which they were drawn.
 
@@ -97,12 +100,30 @@ class Sheet:
         elif title:
             self.axes.set_title(title, fontsize="medium", wrap=True)
 
-    def legend(self, handles: Sequence[Any], labels: Sequence[str], **style: Any) -> None:
-        """Write a legend below the figure; of given panels, in the last one."""
+    def legend(
+        self, handles: Sequence[Any], labels: Sequence[str], *, columns: int = 12, **style: Any
+    ) -> None:
+        """Write a legend below the figure; of given panels, in the last one.
+
+        It has as many columns as there is room for, and no more than told.
+        """
+        held = self.own or self.panels.figure
+        width = _LETTERS_PER_INCH * held.bbox.width / self.panels.figure.get_dpi()
+        fitting = int(width // (_LETTERS_OF_HANDLE + max(map(len, labels))))
+        style |= {"ncols": max(1, min(len(labels), columns, fitting))}
         if self.own is not None:
             self.own.legend(handles, labels, loc="outside lower center", frameon=False, **style)
         else:
-            self.panels[-1].legend(handles, labels, fontsize="small")
+            self.panels[-1].legend(handles, labels, **{"fontsize": "small", **style})
+
+    def name_lines(self) -> None:
+        """Write one legend of what is named in all panels."""
+        named = {
+            label: handle
+            for axes in self.panels
+            for handle, label in zip(*axes.get_legend_handles_labels(), strict=True)
+        }
+        self.legend(list(named.values()), list(named), fontsize="small")
 
 
 def sheet(

@@ -149,7 +149,7 @@ def draw_events(axes: "Axes", runs: list[Run], unit: "Shown | None") -> None:
                 markersize=4.5, markeredgewidth=0.9, label=label, zorder=3,
             )  # fmt: skip
     if named:
-        key(axes, ncols=2)
+        key(axes)
 
 
 def events_by_kind(run: Run) -> "dict[str, np.ndarray]":
@@ -167,6 +167,8 @@ CONTACTS: Final = {"contact_state": "pads", "soil_contact_state": "soil"}
 _HEIGHTS: Final = {"ground": 1.0, "rotation": 2.0, "vertical": 1.6, "contact": 0.35}
 _SI_ACCELERATION: Final = Shown(str(ACCELERATION.unit), 1.0)
 _SI_LENGTH: Final = Shown(str(LENGTH.unit), 1.0)
+_AT_REST: Final = 1e-12
+"""Rotations below are rounding [rad]."""
 _STACKED: Final = "rotation_on_cap"
 
 
@@ -392,6 +394,8 @@ def _rotation(axes: "Axes", runs: list[Run], unit: Shown | None) -> None:
     if axes.get_legend_handles_labels()[1] != ["block"]:
         key(axes)
     zero_line(axes)
+    if max(float(np.abs(run.dataset["rotation"]).max()) for run in runs) < _AT_REST:
+        axes.set_ylim(-1e-3, 1e-3)  # rounding is no rotation
     if unit is not None:
         axes.set_ylabel(axis_label("rotation", unit.words))
         return

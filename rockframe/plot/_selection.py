@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import xarray as xr
 
-from rockframe.plot._axes import BLUE, GREY, VERMILLION, axis_label, grid, plain_ticks
+from rockframe.plot._axes import BLUE, GREY, VERMILLION, axis_label, grid, key, plain_ticks
 from rockframe.plot._checks import drawable, draws
 from rockframe.plot._panels import Panels, sheet
 
@@ -79,7 +79,7 @@ def selection(
             "pseudo-spectral acceleration", dataset["scaled_spectral_acceleration"].attrs["units"]
         ),
     )
-    spectra.legend(fontsize="small", frameon=False)
+    key(spectra)
     labels = [str(label) for label in dataset["motion"].to_numpy()]
     factors = dataset["scale_factor"].to_numpy()
     misfits.barh(range(count), dataset["spectral_misfit"], color=GREY, alpha=0.7)

@@ -21,7 +21,7 @@ from rockframe.plot._axes import (
     zero_line,
 )
 from rockframe.plot._checks import draws
-from rockframe.plot._motion import Drawn, columns_of, drawn_motions, motions_title
+from rockframe.plot._motion import Drawn, drawn_motions, motions_title
 from rockframe.plot._panels import Panels, sheet, single
 from rockframe.plot._runs import window_of
 from rockframe.units import ACCELERATION, VELOCITY
@@ -118,7 +118,7 @@ def spectra(
         _fourier(on.panels[2], fourier, amplitude, one)
     _label(on.panels, found, unit, amplitude)
     if len(given) > 1:
-        on.legend(*on.panels[1].get_legend_handles_labels(), ncols=columns_of(given))
+        on.legend(*on.panels[1].get_legend_handles_labels(), fontsize="small")
     on.entitle(motions_title(given), title)
     return on.panels
 
@@ -168,7 +168,7 @@ def _label(panels: Panels, found: list[Any], unit: Shown, amplitude: Shown) -> N
     response.set(xlabel="period [s]", ylabel=axis_label("pseudo-spectral acceleration", unit.words))
     response.set_ylim(bottom=0.0)
     if not several:
-        response.legend(title="damping", fontsize="small", title_fontsize="small", frameon=False)
+        key(response, title="damping", title_fontsize="small")
     highest = max(float(amplitude.of(each[3]["fourier_amplitude"]).max()) for each in found)
     if highest > 0.0:
         fourier.set_yscale("log")
@@ -260,7 +260,7 @@ def suite(
     on.axes.set_xlim(period[0], period[-1])
     plain_ticks(on.axes)
     grid(on.axes)
-    key(on.axes, frameon=False)
+    key(on.axes)
     count = len(given)
     damping = float(found["damping_ratio"].to_numpy().ravel()[0])
     usual = f"{count} motion{'s' if count > 1 else ''}; damping {100.0 * damping:g} %"

@@ -287,7 +287,7 @@ def _draw_lines(
     axes.set(xlabel=words, ylabel=label_of(values))
     grid(axes)
     if others:
-        key(axes, frameon=False)
+        key(axes)
 
 
 def _draw_map(axes: "Axes", given: xr.Dataset, values: xr.DataArray, dims: list[str]) -> None:

@@ -26,8 +26,6 @@ _SPREAD: Final = 0.4
 _MARKERS: Final = "osD^vP*h"
 _SMALL: Final = "small rotations"
 _ERROR: Final = "largest error of the rotation{}over its peak [-]"
-_LETTERS: Final = 120
-"""That a row of the legend has room for."""
 
 
 @draws("tradeoff", ax="two Axes", title="scene and motion")
@@ -97,9 +95,7 @@ def tradeoff(
     )
     _mark_below(axes[1], dataset["history_error"].to_numpy())
     keys = _keys(dataset, models)
-    widths = [len(str(key.get_label())) + 6 for key in keys]
-    columns = len(keys) if sum(widths) <= _LETTERS else max(1, _LETTERS // max(widths))
-    on.legend(keys, [str(key.get_label()) for key in keys], ncols=columns)
+    on.legend(keys, [str(key.get_label()) for key in keys])
     on.entitle(f"{dataset.attrs.get('scene', '')}: {dataset.attrs.get('motion', '')}", title)
     return on.panels
 

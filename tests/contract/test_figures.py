@@ -177,7 +177,7 @@ def test_figures_are_drawn_where_they_are_told_to(name, given):
     draw, what = getattr(rf.plot, name), given(name)
     usual = panels_of(draw(what))
     plt.close("all")
-    figure = plt.figure(layout="constrained")
+    figure = plt.figure(figsize=(14.0, 6.0), layout="constrained")
     if len(usual) == 1:
         axes = figure.subplots()
         drawn = panels_of(draw(what, ax=axes, title="given"))
